@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -73,23 +73,36 @@ class Axis:
 
 @dataclass(frozen=True)
 class Candidate:
-    """An effect with its free parameters and the choices that are held."""
+    """An effect with its free parameters and the choices that are held.
 
-    kind: type[Effect]
+    Attributes
+    ----------
+    kind
+        The effect's class: of a campaign's catalogue, or of the pendulums'.
+    stage
+        Where it acts.
+    repeats, costly
+        As :class:`~sim.effects.effect.Effect` has them.
+    """
+
+    kind: type[Any]
     axes: tuple[Axis, ...]
     held: Mapping[str, float]
+    stage: str
+    repeats: bool = True
+    costly: bool = False
 
     @property
     def name(self) -> str:
         """Name of the effect."""
-        return self.kind.name
+        return str(self.kind.name)
 
     @property
     def start(self) -> FloatArray:
         """Where a fit begins, shape ``(p,)``, in prior units."""
         return np.array([one.start for one in self.axes])
 
-    def effect(self, units: FloatArray) -> Effect:
+    def effect(self, units: FloatArray) -> Any:
         """Return the effect with its parameters at ``units`` prior deviations."""
         values = {
             one.parameter.name: one.value(float(unit))
@@ -124,13 +137,13 @@ def candidates(kind: type[Effect], frequencies_hz: Sequence[float]) -> Iterator[
     for chosen in product(*options):
         axes = tuple(one for one in chosen if isinstance(one, Axis))
         held = {name: value for one in chosen if not isinstance(one, Axis) for name, value in [one]}
-        yield Candidate(kind, axes, held)
+        yield Candidate(kind, axes, held, kind.stage.value, kind.repeats, kind.costly)
 
 
 def _options(
     kind: type[Effect], one: Parameter, frequencies_hz: Sequence[float]
 ) -> Iterator[Axis | tuple[str, float]]:
-    axis = _axis(one, kind.parameters())
+    axis = axis_of(one, kind.parameters())
     # Of what does not keep step only the size shows, and in which band.
     sizes = axis.is_size or is_share(one)
     if one.held:
@@ -151,7 +164,7 @@ def _bands(one: Parameter, frequencies_hz: Sequence[float]) -> Sequence[float]:
     return (1.0,) if is_phase(one) else (one.typical,)
 
 
-def _axis(one: Parameter, siblings: tuple[Parameter, ...]) -> Axis:
+def axis_of(one: Parameter, siblings: tuple[Parameter, ...]) -> Axis:
     """Return a parameter with its prior, begun at the middle of it."""
     if is_share(one):
         return Axis(one, 0.5, 0.5, is_log=False)
@@ -184,8 +197,8 @@ def _usual(axis: Axis) -> tuple[float, ...]:
 
 def least_step(parts: Sequence[Candidate], axis: int) -> float:
     """Return the least step of a slope, in prior deviations."""
-    number, kind = [(one, part.kind) for part in parts for one in part.axes][axis]
-    linear = not kind.repeats and number.parameter.low < 0.0 and not is_phase(number.parameter)
+    number, part = [(one, part) for part in parts for one in part.axes][axis]
+    linear = not part.repeats and number.parameter.low < 0.0 and not is_phase(number.parameter)
     return _STEP_IN_TIME if linear else STEP
 
 

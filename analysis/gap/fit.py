@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +16,40 @@ from analysis.gap.gaussian import Nuisances, Posterior, any_size, misfit, poster
 from analysis.gap.inference.answers import answer_of
 from analysis.gap.inference.hypothesis import Evidence, Hypothesis, within
 from hardware.description.arrays import BoolArray, FloatArray
-from sim.effects.effect import Effect
+
+
+class Compared(Protocol):
+    """Measurements beside their simulation: what hypotheses are fitted to, whatever was tested."""
+
+    @property
+    def residual(self) -> FloatArray:
+        """Measured minus simulated in sigma, shape ``(observations,)``."""
+        ...
+
+    @property
+    def stated(self) -> FloatArray:
+        """The same of the simulation as it is stated, should it have been moved."""
+        ...
+
+    @property
+    def nuisances(self) -> Nuisances:
+        """What is free in every hypothesis."""
+        ...
+
+    def signature(self, parts: Sequence[Candidate], units: FloatArray) -> FloatArray:
+        """Return what effects change of the observations, in sigma, shape ``(observations,)``.
+
+        Raises
+        ------
+        PmmError
+            If the simulator cannot run them.
+        """
+        ...
 
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """What every hypothesis is held against.
+    """A campaign beside its simulation.
 
     Attributes
     ----------
@@ -69,6 +98,11 @@ class Problem:
         """Return a change of the observations in sigma."""
         return change / self.simulator.stack.uncertainty
 
+    def signature(self, parts: Sequence[Candidate], units: FloatArray) -> FloatArray:
+        """Return what effects change of the observations, as :class:`Compared` says."""
+        values = self.simulator.predict(built(parts, units))
+        return self.whitened(values - self.simulator.nominal)
+
 
 @dataclass(frozen=True, eq=False)
 class Fit:
@@ -99,7 +133,7 @@ class Fit:
     cost: float
     posterior: Posterior
     shared: float
-    forms: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
+    forms: FloatArray
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -114,7 +148,7 @@ class Fit:
     @property
     def stages(self) -> tuple[str, ...]:
         """Where each effect acts."""
-        return tuple(one.kind.stage.value for one in self.candidates)
+        return tuple(one.stage for one in self.candidates)
 
     @property
     def log_evidence(self) -> float:
@@ -151,15 +185,15 @@ class Fit:
     @property
     def repeats(self) -> bool:
         """Whether all effects repeat with the shaft."""
-        return all(one.kind.repeats for one in self.candidates)
+        return all(one.repeats for one in self.candidates)
 
     @property
     def is_costly(self) -> bool:
         """Whether one of the effects is run in time until it repeats."""
-        return any(one.kind.costly for one in self.candidates)
+        return any(one.costly for one in self.candidates)
 
     @property
-    def effects(self) -> tuple[Effect, ...]:
+    def effects(self) -> tuple[Any, ...]:
         """The effects with the fitted parameters."""
         return built(self.candidates, self.units)
 
@@ -168,8 +202,10 @@ class Fit:
         return residual - self.signature + self.columns @ self.units
 
 
-def built(parts: Sequence[Candidate], units: FloatArray) -> tuple[Effect, ...]:
+def built(parts: Sequence[Candidate], units: FloatArray) -> tuple[Any, ...]:
     """Return the effects at some parameters."""
+    if not parts:
+        return ()
     cuts = np.cumsum([len(one.axes) for one in parts])[:-1]
     pieces = np.split(units, cuts)
     return tuple(one.effect(piece) for one, piece in zip(parts, pieces, strict=True))
@@ -183,7 +219,7 @@ def inside(parts: Sequence[Candidate], units: FloatArray) -> FloatArray:
 
 def bounds(parts: Sequence[Candidate]) -> FloatArray:
     """Return the plausible ranges of all parameters in prior units, shape ``(2, p)``."""
-    return np.concatenate([one.bounds for one in parts], axis=1)
+    return np.concatenate([np.empty((2, 0)), *(one.bounds for one in parts)], axis=1)
 
 
 def most_probable(fit: Fit) -> FloatArray:
@@ -192,7 +228,7 @@ def most_probable(fit: Fit) -> FloatArray:
 
 
 def at(
-    problem: Problem, parts: tuple[Candidate, ...], units: FloatArray, *, roughly: bool = False
+    problem: Compared, parts: tuple[Candidate, ...], units: FloatArray, *, roughly: bool = False
 ) -> Fit:
     """Linearise a hypothesis at some parameters and weigh it.
 
@@ -206,15 +242,13 @@ def at(
     PmmError
         If the simulator cannot run it.
     """
-    simulator = problem.simulator
-    base = simulator.predict(built(parts, units))
-    signature = problem.whitened(base - simulator.nominal)
+    signature = problem.signature(parts, units)
     slopes = (
         [signature / units[0]]
         if roughly and is_sized(parts, units)
-        else [_slope(problem, parts, units, base, axis) for axis in range(len(units))]
+        else [_slope(problem, parts, units, signature, axis) for axis in range(len(units))]
     )
-    columns = np.column_stack(slopes) if slopes else np.zeros((len(base), 0))
+    columns = np.column_stack(slopes) if slopes else np.zeros((len(signature), 0))
     return weighed_at(problem, parts, units, columns, signature)
 
 
@@ -222,11 +256,17 @@ def is_sized(parts: tuple[Candidate, ...], units: FloatArray) -> bool:
     """Tell whether a hypothesis has one parameter, and that one is the size of its signature."""
     axes = [axis for one in parts for axis in one.axes]
     sized = len(axes) == 1 and axes[0].centre == 0.0 and not axes[0].is_log
-    return sized and parts[0].kind.repeats and abs(float(units[0])) > STEP
+    return sized and parts[0].repeats and abs(float(units[0])) > STEP
+
+
+def nothing(problem: Compared) -> Fit:
+    """Return the hypothesis of no effect."""
+    none = np.zeros_like(problem.residual)
+    return weighed_at(problem, (), np.empty(0), none[:, None][:, :0], none)
 
 
 def weighed_at(
-    problem: Problem,
+    problem: Compared,
     parts: tuple[Candidate, ...],
     units: FloatArray,
     columns: FloatArray,
@@ -237,10 +277,10 @@ def weighed_at(
     found = posterior(left + columns @ units, columns, problem.nuisances)
     cost = misfit(left, problem.nuisances) + float(units @ units)
     shared = problem.nuisances.log_determinant
-    return Fit(parts, units, columns, signature, cost, found, shared)
+    return Fit(parts, units, columns, signature, cost, found, shared, columns[:, :0])
 
 
-def joined(problem: Problem, first: Fit, second: Fit) -> Fit:
+def joined(problem: Compared, first: Fit, second: Fit) -> Fit:
     """Put two linearised hypotheses together as if their effects did not act on each other."""
     return weighed_at(
         problem,
@@ -254,7 +294,7 @@ def joined(problem: Problem, first: Fit, second: Fit) -> Fit:
 def with_forms(problem: Problem, fit: Fit) -> Fit:
     """Return a fit with what the other forms of its effects change, where they repeat."""
     if not fit.repeats or fit.is_costly:
-        return replace(fit, forms=np.zeros((len(fit.signature), 0)))
+        return fit
     simulator, effects = problem.simulator, fit.effects
     base = simulator.predict(effects)
     found = [np.zeros((len(base), 0))]
@@ -266,7 +306,7 @@ def with_forms(problem: Problem, fit: Fit) -> Fit:
     return replace(fit, forms=np.hstack(found))
 
 
-def hypothesis(problem: Problem, fit: Fit) -> Hypothesis:
+def hypothesis(problem: Compared, fit: Fit) -> Hypothesis:
     """Return a fit as one equation weighs it, against the rig as it is stated."""
     return Hypothesis(
         fit.names,
@@ -286,7 +326,7 @@ def settled(fit: Fit, found: Evidence) -> Fit:
 
 
 def _slope(
-    problem: Problem, parts: tuple[Candidate, ...], units: FloatArray, base: FloatArray, axis: int
+    problem: Compared, parts: tuple[Candidate, ...], units: FloatArray, base: FloatArray, axis: int
 ) -> FloatArray:
     step = max(least_step(parts, axis), 0.1 * abs(float(units[axis])))
     for sign in (1.0, -1.0):
@@ -294,12 +334,12 @@ def _slope(
         aside[axis] += sign * step
         kept = inside(parts, aside)
         if abs(kept[axis] - units[axis]) > 0.5 * step:
-            change = problem.simulator.predict(built(parts, kept)) - base
-            return np.asarray(problem.whitened(change) / (kept[axis] - units[axis]), np.float64)
+            change = problem.signature(parts, kept) - base
+            return np.asarray(change / (kept[axis] - units[axis]), np.float64)
     return np.zeros_like(base)
 
 
-def expected_evidence(problem: Problem, fit: Fit) -> float:
+def expected_evidence(problem: Compared, fit: Fit) -> float:
     """Return the evidence that one step from here promises, kept within the plausible ranges.
 
     For a first look at many effects: it takes no further simulation.
@@ -308,14 +348,13 @@ def expected_evidence(problem: Problem, fit: Fit) -> float:
     return -0.5 * (cost + fit.shared) + fit.log_volume
 
 
-def linear_cost(problem: Problem, fit: Fit, units: FloatArray) -> float:
+def linear_cost(problem: Compared, fit: Fit, units: FloatArray) -> float:
     """Return what a fit would cost at other parameters, to first order."""
     left = fit.linearised(problem.residual) - fit.columns @ units
     return misfit(left, problem.nuisances) + float(units @ units)
 
 
-def moved(problem: Problem, fit: Fit, units: FloatArray) -> Fit:
+def moved(problem: Compared, fit: Fit, units: FloatArray) -> Fit:
     """Return the fit at other parameters, with the slopes that it has."""
-    values = problem.simulator.predict(built(fit.candidates, units))
-    signature = problem.whitened(values - problem.simulator.nominal)
+    signature = problem.signature(fit.candidates, units)
     return weighed_at(problem, fit.candidates, units, fit.columns, signature)

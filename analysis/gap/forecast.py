@@ -167,7 +167,7 @@ class _Ahead:
 
 def _on_fitted_rig(problem: Problem, there: Problem, fit: Fit, found: Fit) -> FloatArray:
     """Return the signature at further runs on the rig as the campaign fits its coefficients."""
-    if not any(one.kind.repeats for one in fit.candidates):
+    if not any(one.repeats for one in fit.candidates):
         return found.signature
     shared = problem.nuisances.fitted(problem.residual - fit.signature)[: len(there.numbers)]
     return signature_on(there, there.numbers, shared, fit, fit.units)

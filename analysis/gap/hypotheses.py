@@ -12,7 +12,7 @@ from analysis.gap.fit import Fit, Problem, hypothesis, settled, with_forms
 from analysis.gap.free import Free
 from analysis.gap.gaussian import null_evidence
 from analysis.gap.inference.answers import Answers, Considered, answers
-from analysis.gap.look import Looked
+from analysis.gap.look import HIDDEN, Looked
 from analysis.gap.screen import shown, worth_a_look
 from analysis.gap.search import LEADERS, Engine, alone_again, fitted, looked_at, paired
 from analysis.gap.together import together
@@ -21,10 +21,6 @@ from sim.effects.effect import Effect
 
 # What these change are the coefficients, and those are free in every hypothesis.
 COEFFICIENTS: Final = ("added-mass-error", "damping-error")
-
-HIDDEN: Final = (
-    2.0  # sigma of a typical signature below which an effect cannot be seen in these runs
-)
 
 
 @dataclass(frozen=True, eq=False)

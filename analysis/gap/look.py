@@ -5,6 +5,7 @@ look begins where the effect is about as large as what there is to explain.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -12,6 +13,7 @@ import numpy as np
 
 from analysis.gap.candidate import Candidate, candidates
 from analysis.gap.fit import (
+    Compared,
     Fit,
     Problem,
     at,
@@ -34,6 +36,7 @@ _APPROACHES: Final = 3
 _ALIKE: Final = 2.0  # times what there is to explain, within which an effect is about as large
 _HALVINGS: Final = 6
 _LEAST_POWER: Final = 0.2
+HIDDEN: Final = 2.0  # sigma of a typical signature below which records cannot show an effect
 _SIZES: Final = tuple(float(share) for share in np.geomspace(0.01, 10.0, 25))  # of the typical one
 
 
@@ -59,11 +62,18 @@ class Looked:
 
 def look(problem: Problem, kind: type[Effect]) -> Looked:
     """Linearise an effect at its typical values, from each of its starts, and keep the best."""
+    return best_look(problem, kind.name, _starts(problem, kind))
+
+
+def best_look(
+    problem: Compared, name: str, starts: Sequence[tuple[Candidate, FloatArray]]
+) -> Looked:
+    """Linearise an effect at each of some starts, and keep the best."""
     best, most, reason = None, -math.inf, ""
-    for one, start in _starts(problem, kind):
+    for one, start in starts:
         try:
             fit = at(problem, (one,), start, roughly=True)
-            fit = _near(problem, fit) if kind.repeats else fit
+            fit = _near(problem, fit) if one.repeats else fit
         except PmmError as error:
             reason = str(error)
             continue
@@ -71,10 +81,10 @@ def look(problem: Problem, kind: type[Effect]) -> Looked:
         if best is None or expected > most:
             best, most = fit, expected
     if best is None:
-        return Looked(kind.name, None, reason=reason)
+        return Looked(name, None, reason=reason)
     steps = (best.signature, best.columns @ most_probable(best))
     visible = max(left_over(one, problem.nuisances) for one in steps)
-    return Looked(kind.name, best, most, visible)
+    return Looked(name, best, most, visible)
 
 
 def _starts(problem: Problem, kind: type[Effect]) -> list[tuple[Candidate, FloatArray]]:
@@ -110,7 +120,7 @@ def _sized(problem: Problem, one: Candidate) -> tuple[float, FloatArray]:
     return cost, inside((one,), share * one.start)
 
 
-def _near(problem: Problem, fit: Fit) -> Fit:
+def _near(problem: Compared, fit: Fit) -> Fit:
     """Return a first look from where the effect is about as large as what there is to explain.
 
     A backlash that is a thousand times too large is no straight line down to the one that is there.
@@ -135,7 +145,7 @@ def _near(problem: Problem, fit: Fit) -> Fit:
     return fit if near is fit or ratio > _MUCH**2 else at(problem, fit.candidates, near.units)
 
 
-def _along_any(problem: Problem, fit: Fit, wanted: float) -> Fit:
+def _along_any(problem: Compared, fit: Fit, wanted: float) -> Fit:
     """Return the most promising first look, of those from where one parameter alone was moved.
 
     None of them is a size: a droop and an inertia both make a drive yield less, and one of the two
@@ -151,7 +161,7 @@ def _along_any(problem: Problem, fit: Fit, wanted: float) -> Fit:
     )
 
 
-def _along(problem: Problem, fit: Fit, wanted: float, axis: int) -> Fit | None:
+def _along(problem: Compared, fit: Fit, wanted: float, axis: int) -> Fit | None:
     """Return a look from where one parameter makes the effect as large as wanted, if it can."""
     weighted = problem.nuisances.whiten(fit.signature)
     rises = float(weighted @ fit.columns[:, axis]) / max(float(weighted @ weighted), 1e-12)
@@ -171,7 +181,7 @@ def _along(problem: Problem, fit: Fit, wanted: float, axis: int) -> Fit | None:
     return at(problem, fit.candidates, units) if ratio < _MUCH**2 else None
 
 
-def smaller(problem: Problem, fit: Fit, share: float) -> FloatArray:
+def smaller(problem: Compared, fit: Fit, share: float) -> FloatArray:
     """Return parameters at which a signature is about a share of what it is.
 
     By the power with which it goes with its sizes, all together; or, where a parameter can't be

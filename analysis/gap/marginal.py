@@ -74,7 +74,7 @@ def marginals(found: Diagnosis) -> tuple[Marginal, ...]:
 def _marginal(found: Diagnosis, name: str, fit: Fit) -> Marginal:
     shares = found.answers.by_answer
     number = fit.names.index(name)
-    stage = fit.candidates[number].kind.stage.value
+    stage = fit.candidates[number].stage
     size = _size(found.problem, fit, number)
     probability = of_any(shares, [name])
     if size < ALIKE:

@@ -66,7 +66,7 @@ def _fit(problem: Problem, columns: FloatArray) -> Fit:
     cost = misfit(problem.residual - signature, problem.nuisances)
     cost += float(found.mean @ found.mean)
     shared = problem.nuisances.log_determinant
-    return Fit((), found.mean, columns, signature, cost, found, shared)
+    return Fit((), found.mean, columns, signature, cost, found, shared, columns[:, :0])
 
 
 def log_evidence(problem: Problem, columns: FloatArray, rows: BoolArray) -> float:

@@ -1,6 +1,6 @@
 """Improve a fit through the simulator, by damped Gauss-Newton steps."""
 
-from analysis.gap.fit import Fit, Problem, at, linear_cost, most_probable, moved
+from analysis.gap.fit import Compared, Fit, at, linear_cost, most_probable, moved
 from hardware.description.errors import PmmError
 
 _STEPS = 6
@@ -9,7 +9,7 @@ _FULFILLED = 0.5  # share of a step's promise below which slopes are found anew
 _SETTLED = 0.05  # change of the log posterior at which a fit ends
 
 
-def refine(problem: Problem, fit: Fit) -> Fit:
+def refine(problem: Compared, fit: Fit) -> Fit:
     """Improve a fit by damped Gauss-Newton steps through the simulator.
 
     The slopes are kept as long as a step brings most of what they promise, and for what does not
@@ -31,7 +31,7 @@ def refine(problem: Problem, fit: Fit) -> Fit:
     return _anew(problem, best) if stale and fit.repeats else best
 
 
-def _anew(problem: Problem, fit: Fit) -> Fit:
+def _anew(problem: Compared, fit: Fit) -> Fit:
     """Return a fit with slopes found where it is; as it is where nothing can be simulated aside."""
     try:
         return at(problem, fit.candidates, fit.units)
@@ -39,7 +39,7 @@ def _anew(problem: Problem, fit: Fit) -> Fit:
         return fit
 
 
-def stepped(problem: Problem, fit: Fit, steps: int) -> Fit:
+def stepped(problem: Compared, fit: Fit, steps: int) -> Fit:
     """Return a fit after some steps with the slopes that it has; itself if none betters it."""
     best = fit
     for _ in range(steps):
@@ -50,7 +50,7 @@ def stepped(problem: Problem, fit: Fit, steps: int) -> Fit:
     return best
 
 
-def _step(problem: Problem, fit: Fit) -> tuple[Fit | None, float]:
+def _step(problem: Compared, fit: Fit) -> tuple[Fit | None, float]:
     """Return a better fit along the Gauss-Newton step, and how much of its promise it keeps."""
     towards = most_probable(fit) - fit.units
     promise = fit.cost - linear_cost(problem, fit, fit.units + towards)

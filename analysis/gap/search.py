@@ -11,6 +11,7 @@ from typing import Final, TypeVar
 
 from analysis.gap.candidate import turned
 from analysis.gap.fit import (
+    Compared,
     Fit,
     Problem,
     at,
@@ -23,6 +24,7 @@ from analysis.gap.refine import refine, stepped
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
 
+P = TypeVar("P", bound=Compared)
 T = TypeVar("T")
 R = TypeVar("R")
 
@@ -54,7 +56,7 @@ class Engine:
     progress: Callable[[str], None] = lambda _: None
 
     def each(
-        self, what: str, work: Callable[[Problem, T], R], problem: Problem, items: Sequence[T]
+        self, what: str, work: Callable[[P, T], R], problem: P, items: Sequence[T]
     ) -> Iterator[R]:
         """Yield what the work makes of each item, in their order."""
         self.progress(what)
@@ -69,7 +71,7 @@ def looked_at(problem: Problem, kinds: Sequence[type[Effect]], engine: Engine) -
     return list(engine.each("looking at effects", look, problem, kinds))
 
 
-def fitted(problem: Problem, seen: Sequence[Looked], none: float, engine: Engine) -> list[Fit]:
+def fitted(problem: Compared, seen: Sequence[Looked], none: float, engine: Engine) -> list[Fit]:
     """Fit the leading effects in full; the most probable comes first.
 
     Parameters
@@ -89,7 +91,7 @@ def fitted(problem: Problem, seen: Sequence[Looked], none: float, engine: Engine
 
 
 def paired(
-    problem: Problem,
+    problem: Compared,
     singles: Sequence[Fit],
     seen: Sequence[Looked],
     none: float,
@@ -111,8 +113,30 @@ def paired(
         tried |= {one.names[0] for one in firsts}
         members = {name for one in _promising(chances, least)[:_LED] for name in one.fit.names}
         firsts = [one for one in partners if one.names[0] in members - tried]
+    return _fitted_together(problem, chances, least, engine, "fitting pairs")
+
+
+def widened(
+    problem: Compared, firsts: Sequence[Fit], partners: Sequence[Fit], engine: Engine
+) -> list[Fit]:
+    """Give leading sets of effects each partner, by linear steps, and fit what promises most."""
+    if not firsts:
+        return []
+    chances: dict[frozenset[str], _Chance] = {}
+    _join(problem, firsts[:_STARTS], partners, chances)
+    least = max(one.log_evidence for one in firsts) - _WORSE
+    return _fitted_together(problem, chances, least, engine, "fitting sets of three")
+
+
+def _fitted_together(
+    problem: Compared,
+    chances: Mapping[frozenset[str], "_Chance"],
+    least: float,
+    engine: Engine,
+    what: str,
+) -> list[Fit]:
     worth = _affordable(_promising(chances, least))[:PARTNERS]
-    found = engine.each("fitting pairs", _refined_pair, problem, worth)
+    found = engine.each(what, _refined_together, problem, worth)
     return sorted(found, key=lambda one: -one.log_evidence)
 
 
@@ -137,22 +161,22 @@ def alone_again(problem: Problem, singles: Sequence[Fit], pairs: Sequence[Fit]) 
 
 @dataclass(frozen=True, eq=False)
 class _Chance:
-    """A pair as it is seen at first, and the log evidence that it promises."""
+    """Effects together as they are seen at first, and the log evidence that it promises."""
 
     promise: float
     fit: Fit
 
 
 def _join(
-    problem: Problem,
+    problem: Compared,
     firsts: Sequence[Fit],
     partners: Sequence[Fit],
     chances: dict[frozenset[str], _Chance],
 ) -> None:
-    """Give each effect each partner; of two ways to see the same pair the better one is kept."""
+    """Give each effect each partner; of two ways to see the same set the better one is kept."""
     for first in firsts:
         for second in partners:
-            if second.names != first.names:
+            if not set(second.names) & set(first.names):
                 key = frozenset((*first.names, *second.names))
                 both = joined(problem, first, second)
                 promise = expected_evidence(problem, both)
@@ -161,13 +185,13 @@ def _join(
 
 
 def _promising(chances: Mapping[frozenset[str], _Chance], least: float) -> list[_Chance]:
-    """Return the pairs that are worth their cost, most promising first."""
+    """Return the sets that are worth their cost, most promising first."""
     worth = [one for one in chances.values() if one.promise > least + _dearer(one.fit)]
     return sorted(worth, key=lambda one: -one.promise)
 
 
 def _affordable(chances: Sequence[_Chance]) -> list[_Chance]:
-    """Return the pairs without those that are costly, but for the most promising one of these."""
+    """Return the sets without those that are costly, but for the most promising one of these."""
     first = next((one for one in chances if one.fit.is_costly), None)
     return [one for one in chances if one is first or not one.fit.is_costly]
 
@@ -182,7 +206,7 @@ def _dearer(pair: Fit) -> float:
     return _WORSE + _TWICE if pair.is_costly else 0.0
 
 
-def _refined(problem: Problem, fit: Fit) -> Fit:
+def _refined(problem: Compared, fit: Fit) -> Fit:
     """Refine a single effect, from a third of a turn to either side too if it has a phase."""
     found = [refine(problem, fit)]
     for start in turned(fit.candidates[0]):
@@ -193,8 +217,8 @@ def _refined(problem: Problem, fit: Fit) -> Fit:
     return max(found, key=lambda one: one.log_evidence)
 
 
-def _refined_pair(problem: Problem, chance: _Chance) -> Fit:
-    """Refine a pair; with what has to be simulated in time by few steps, its slopes kept.
+def _refined_together(problem: Compared, chance: _Chance) -> Fit:
+    """Refine effects together; with what has to be simulated in time by few steps, its slopes kept.
 
     From where a linear step leads and, if that does not keep what was promised, from where the
     effects were seen.

@@ -26,7 +26,7 @@ def together(problem: Problem, free: Sequence[Free], fit: Fit) -> Fit:
         The nuisances' first columns; without any the fit is returned as it is.
     """
     dear = len(fit.candidates) > 1 and fit.is_costly
-    if dear or not free or not any(one.kind.repeats for one in fit.candidates):
+    if dear or not free or not any(one.repeats for one in fit.candidates):
         return fit
     best = fit
     for _ in range(_ROUNDS):

@@ -21,16 +21,18 @@ DISAGREE = 0.01
 SURE = 0.8  # share of what it has not seen that a cause has to predict to be named
 
 
-def cause_statement(cause: str, predicts: float) -> str:
+def cause_statement(cause: str, predicts: float, *, told: bool) -> str:
     """Return the sentence about the likeliest cause.
 
     Parameters
     ----------
     predicts
         Share of the gap on what was left out of the fit that goes away with it.
+    told
+        Whether it is the cause.
     """
     share = f"{100.0 * max(predicts, 0.0):.0f} % of what it was not fitted to"
-    if predicts >= SURE:
+    if told:
         return f"the cause: {cause}, which predicts {share}"
     return f"the cause cannot be told; likeliest cause: {cause}, which accounts for {share}"
 
@@ -195,8 +197,9 @@ def _flag(
     if causes:
         best = causes[0]
         why = (
-            f"; {cause_statement(str(best), best.predicts)} (chi-squared {best.chi_squared:.3g} "
-            f"over {best.degrees_of_freedom}, gyradius then {best.gyradius_m:.4f} m)"
+            f"; {cause_statement(str(best), best.predicts, told=best.predicts >= SURE)} "
+            f"(chi-squared {best.chi_squared:.3g} over {best.degrees_of_freedom}, "
+            f"gyradius then {best.gyradius_m:.4f} m)"
         )
     message = (
         f"the gyradii range from {values.min():.4f} to {values.max():.4f} m, beyond their "

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -79,16 +79,12 @@ def problem_of(
     else:
         problem = _decay(case, path.parent, known)
     on = [make_effect(one.name, more, **one.parameters) for one in case.effects]
-    return _checked(path, replace(problem, trials=tuple(_with(one, on) for one in problem.trials)))
+    return _checked(path, replace(problem, trials=_with(problem.trials, on)))
 
 
-def _with(trial: Trial, effects: Sequence[PendulumEffect]) -> Trial:
-    """Return a trial whose simulation has effects on, each on the coordinate that is watched."""
-    placed: list[PendulumEffect] = []
-    for one in effects:
-        told = getattr(one, "coordinate", None) == ""
-        placed.append(replace(cast("Any", one), coordinate=trial.acts_on) if told else one)
-    return replace(trial, effects=tuple(placed))
+def _with(trials: Sequence[Trial], effects: Sequence[PendulumEffect]) -> tuple[Trial, ...]:
+    """Return trials whose simulation has effects on."""
+    return tuple(replace(one, effects=tuple(effects)) for one in trials)
 
 
 def _checked(path: Path, problem: Problem) -> Problem:
@@ -146,7 +142,8 @@ def _part(one: Record, folder: Path) -> UsablePart:
 
 def _sampled(part: UsablePart, body: Floating | Pendulum, period_s: float) -> Trial:
     series = part.series
-    windows = cut_into_windows(series.start_s, float(series.time_s[-1]), period_s)
+    stop_s, rate_hz = float(series.time_s[-1]), series.sample_rate_hz
+    windows = cut_into_windows(series.start_s, stop_s, period_s, rate_hz)
     found = swings_of_samples(series.time_s, series.values, windows)
     bench = _bench(body, part.first_amplitude)
     name = body.coordinates[0].name

@@ -1,20 +1,18 @@
 """What a pendulum's diagnosis comes to: the one value from which every word about it is made."""
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
+from analysis.gap.fit import Fit
+from analysis.gap.inference.answers import COEFFICIENTS, NONE, ODD_RUN, UNKNOWN, Answers
 from analysis.gap.pendulum.diagnose import Diagnosis
-from analysis.gap.pendulum.hypothesis import Hypothesis
-from analysis.gap.pendulum.verdict import NONE, UNKNOWN, Verdict
-from analysis.inertia.spread import SURE
+from analysis.gap.pendulum.search import named
+from analysis.gap.pendulum.verdict import CAUSE, UNTOLD, Verdict
 
-CAUSE: Final = "cause"
-UNTOLD: Final = "untold"
-_TAKES_IT: Final = 0.95  # of the withheld gap: what takes as much is not refused as "unknown"
 _SHOWN: Final = 8  # answers
 _LEAST: Final = 1e-4  # probability that is worth a row
+_SAID: Final = {NONE: "no gap", COEFFICIENTS: "coefficients", ODD_RUN: "one record alone"}
 
 
 @dataclass(frozen=True)
@@ -24,63 +22,50 @@ class PendulumConclusion:
     Attributes
     ----------
     verdict
-        ``"none"``, ``"unknown"``, ``"cause"``, or ``"untold"`` where the likeliest cause foretells
-        too little to be called it.
+        ``"none"``, ``"unknown"``, ``"odd-run"``, ``"cause"``, or ``"untold"`` where no answer is
+        probable enough.
     names
         The likeliest causes; empty where none has any part in it.
-    foretells
-        Share of the gap that they foretell of what they were not fitted to; NaN if not asked.
-    lean
-        What the evidence prefers where no observable shows a gap; empty where there is no such.
+    unknown
+        Probability of something that the catalogue does not have.
+    odd
+        The record that alone is off, where that is the verdict.
     """
 
     verdict: str
     names: tuple[str, ...]
-    foretells: float
-    lean: tuple[str, ...] = ()
+    unknown: float = 0.0
+    odd: str = ""
 
     @property
     def adds(self) -> bool:
         """Whether the causes are to be put into the simulation."""
         return self.verdict == CAUSE
 
+    @property
+    def strange(self) -> bool:
+        """Whether something unknown is the likeliest where nothing can be told."""
+        return self.verdict == UNTOLD and self.unknown > 0.5
+
 
 def conclusion_of(found: Diagnosis) -> PendulumConclusion:
     """Return what a diagnosis comes to."""
-    gap = any(one.gap for one in found.where)
-    return conclude(found.verdict.best, found.best.names, found.foretells, gap=gap)
+    answers, verdict = found.weighed.answers, found.verdict
+    odd = max(answers.odd_runs, key=lambda run: answers.odd_runs[run], default="")
+    return PendulumConclusion(
+        verdict.said,
+        named(verdict.best),
+        answers.by_answer[UNKNOWN],
+        odd if verdict.said == ODD_RUN else "",
+    )
 
 
-def conclude(
-    best: tuple[str, ...], names: tuple[str, ...], foretells: float, *, gap: bool
-) -> PendulumConclusion:
-    """Hold what the evidence says against what the tables show.
-
-    Parameters
-    ----------
-    best
-        The most probable answer: causes, none, or ``("unknown",)``.
-    names
-        The most probable causes.
-    gap
-        Whether any observable is beyond noise without a cause.
-    """
-    if not gap:
-        return PendulumConclusion(NONE, (), math.nan, best)
-    if not best:
-        return PendulumConclusion(NONE, (), math.nan)
-    if best == (UNKNOWN,):
-        verdict = CAUSE if names and foretells >= _TAKES_IT else UNKNOWN
-    else:
-        verdict = CAUSE if foretells >= SURE else UNTOLD
-    return PendulumConclusion(verdict, names, foretells)
-
-
-def ranking(verdict: Verdict) -> Iterator[tuple[str, float]]:
+def ranking(answers: Answers) -> Iterator[tuple[str, float]]:
     """Yield the answers that are not out of the question, the most probable first."""
-    for at, (names, share) in enumerate(verdict.by_set.items()):
-        if at < _SHOWN and (share > _LEAST or not at):
-            yield " and ".join(names) or "no gap", share
+    ranked = sorted(answers.by_answer.items(), key=lambda row: -row[1])
+    for at, (answer, share) in enumerate(ranked[:_SHOWN]):
+        if share > _LEAST or not at:
+            yield _SAID.get(answer, " and ".join(answer.split("+"))), share
 
 
 def classes(verdict: Verdict) -> Iterator[tuple[str, float]]:
@@ -90,15 +75,13 @@ def classes(verdict: Verdict) -> Iterator[tuple[str, float]]:
             yield name, share
 
 
-def parameters(best: Hypothesis) -> dict[str, dict[str, dict[str, float]]]:
-    """Return each cause's parameters: value and standard uncertainty (before inflation)."""
+def parameters(best: Fit) -> dict[str, dict[str, dict[str, float]]]:
+    """Return each cause's parameters: value and standard uncertainty."""
     spread = best.posterior.covariance.diagonal() ** 0.5
     found: dict[str, dict[str, dict[str, float]]] = {}
-    at = 0
-    for one in best.causes:
-        rows = found.setdefault(one.name, {})
-        for axis in one.axes:
-            value = axis.value(float(best.units[at]))
-            rows[axis.name] = {"value": value, "uncertainty": axis.deviation * float(spread[at])}
-            at += 1
+    for at, axis in enumerate(best.axes):
+        rows = found.setdefault(best.names[best.whose[at]], {})
+        value = axis.value(float(best.units[at]))
+        each = axis.deviation * (abs(value) if axis.is_log else 1.0)
+        rows[axis.parameter.name] = {"value": value, "uncertainty": each * float(spread[at])}
     return found

@@ -4,9 +4,11 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any, Final
 
+from analysis.gap.fit import Fit
+from analysis.gap.inference.answers import COEFFICIENTS, NONE, effects_in
 from analysis.gap.pendulum.diagnose import Diagnosis
-from analysis.gap.pendulum.hypothesis import Hypothesis
-from analysis.gap.pendulum.verdict import Law, told_apart
+from analysis.gap.pendulum.search import named
+from analysis.gap.pendulum.verdict import Law
 from analysis.gap.pendulum.withheld import Foretold
 from pmm.document.content import (
     Column,
@@ -25,7 +27,7 @@ from pmm.document.content import (
 )
 from pmm.document.notation import percent, written
 from pmm.gap import pendulum_figures as figures
-from pmm.gap.pendulum_conclusion import classes, conclusion_of, parameters, ranking
+from pmm.gap.pendulum_conclusion import classes, parameters, ranking
 from pmm.gap.pendulum_examine import ExaminedPendulum
 from pmm.gap.pendulum_words import sentences
 
@@ -50,10 +52,9 @@ _HEAT: Final = (
 )
 _RANKING: Final = "Answers by probability: sets of causes, something unknown, no gap."
 _LAWS: Final = (
-    "Each law beside what else the answer holds. One is told from the best only if the whole "
-    "record prefers the best by a factor of 20, and the other foretells no withheld swings better "
-    "by more than 0.2 u. ln evidence ratio: the natural logarithm of by how much the record "
-    "prefers the best; 3 is a factor of 20."
+    "Each law beside what else the answer holds. One is told from the best if that is 20 times as "
+    "probable. ln ratio: the natural logarithm of its probability over the best law's; -3 is a "
+    "factor of 20."
 )
 _REGIMES: Final = (
     "Swings that were not fitted to: the gap in u, and by how much an answer shrinks it."
@@ -71,7 +72,7 @@ WHERE: Final = (
 ALTERNATIVES: Final = (
     word("in place of", "instead_of"),
     word("could be", "name"),
-    number("ln evidence ratio", "log_ratio", _ONE),
+    number("ln ratio", "log_ratio", _ONE),
 )
 NEXT: Final[tuple[Column[Any], ...]] = (
     Column("next run", lambda one: one.what, "what"),
@@ -116,22 +117,31 @@ def _sections(name: str, examined: ExaminedPendulum) -> Iterator[Section]:
 
 def _numbers(found: Diagnosis) -> Iterator[Data]:
     """Yield what programs alone get."""
-    verdict = found.verdict
-    shares = {"+".join(names) or "none": share for names, share in verdict.by_set.items()}
-    yield Data("verdict", conclusion_of(found).verdict)
-    yield Data("best", verdict.best)
-    yield Data("inflation", verdict.inflation)
-    yield Data("probabilities", {key: share for key, share in shares.items() if share > 1e-9})
+    verdict, answers = found.verdict, found.weighed.answers
+    yield Data("verdict", verdict.said)
+    yield Data("best", _best(found))
+    yield Data(
+        "probabilities", {key: share for key, share in answers.by_answer.items() if share > 1e-9}
+    )
+    yield Data("besides", answers.besides)
+    yield Data("unknown_stages", answers.unknown_stages)
     yield Data("classes", verdict.by_class)
     yield Data("causes", verdict.by_cause)
     yield Data("parameters", parameters(found.settled.best))
     yield Data("withheld", found.regimes)
-    yield Data("rivals", [one.names for one in found.rivals or ()])
+    yield Data("rivals", [named(one) for one in found.rivals or ()])
+
+
+def _best(found: Diagnosis) -> tuple[str, ...]:
+    """Return the most probable answer: causes, none, or what it is besides."""
+    best = found.weighed.answers.best
+    calm = best in (NONE, COEFFICIENTS)
+    return () if calm else effects_in(best) or (best,)
 
 
 def _which(found: Diagnosis) -> Iterator[Content]:
-    sets = {" and ".join(names): one for names, one in found.searched.sets.items() if names}
-    sets[" and ".join(found.best.names)] = found.settled.best
+    sets = {" and ".join(named(one)): one for one in found.weighed.sets.values()}
+    sets[" and ".join(named(found.best))] = found.settled.best
     answers: tuple[Column[tuple[str, float]], ...] = (
         Column("answer", lambda one: one[0]),
         Column("parameters (u)", lambda one: fitted(sets[one[0]]) if sets.get(one[0]) else ""),
@@ -143,12 +153,12 @@ def _which(found: Diagnosis) -> Iterator[Content]:
     )
     yield Text(("Answers by their probability.",))
     yield Figure("ranking", _RANKING, partial(figures.ranking_figure, found))
-    yield Table("Answers", answers, tuple(ranking(found.verdict)))
+    yield Table("Answers", answers, tuple(ranking(found.weighed.answers)))
     yield Table("Classes and causes", shares, tuple(classes(found.verdict)))
     yield Table("Alternatives", ALTERNATIVES, found.alternatives, "alternatives")
 
 
-def fitted(one: Hypothesis) -> str:
+def fitted(one: Fit) -> str:
     """Return a set's parameters with their standard uncertainties."""
     return "; ".join(
         f"{name}: {key} = {value['value']:.4g} ± {value['uncertainty']:.2g}"
@@ -158,21 +168,18 @@ def fitted(one: Hypothesis) -> str:
 
 
 def _law_columns(found: Diagnosis) -> tuple[Column[Law], ...]:
-    def apart(law: Law) -> bool:
-        return told_apart(found.laws[0], law)
-
     def said(law: Law) -> str:
-        return "" if law is found.laws[0] else "yes" if apart(law) else "no"
+        return "" if law is found.laws[0] else "yes" if law.told_apart else "no"
 
     def gaps(withheld: list[float]) -> str:
         return ", ".join(map(_ONE, withheld))
 
     return (
         word("law of damping", "name"),
-        number("ln evidence ratio", "log_ratio", _ONE),
+        number("ln ratio", "log_ratio", _ONE),
         Column("withheld gap", lambda law: law.withheld, "withheld_u", gaps, "u", number=True),
         Column("told apart", said, number=True),
-        Column(None, apart, "told_apart"),
+        Column(None, lambda law: law.told_apart, "told_apart"),
     )
 
 
@@ -204,24 +211,19 @@ def _records(found: Diagnosis) -> Iterator[Figure]:
 
 
 def _remains(found: Diagnosis) -> Section:
-    wide = found.verdict.inflation
-    line = (
-        f"All evidence is weakened by {wide:.2f}, the chi-square per degree of freedom that the "
-        "search's best fit leaves."
-    )
     columns: tuple[Column[Any], ...] = (
         word("where", "kind"),
         Column("verdict", lambda one: "gap" if one.beyond else "no gap"),
         number("E/u", "after", _TWO),
     )
     left = Table("Remainder", columns, found.where)
-    return Section("What remains", (Text((line,) if wide > 1.0 else ()), left))
+    return Section("What remains", (left,))
 
 
 def _next(found: Diagnosis) -> Section:
     lines: tuple[str, ...] = ()
     if found.proposals and found.rivals is not None:
-        one, other = (" + ".join(rival.names) for rival in found.rivals)
+        one, other = (" + ".join(named(rival)) for rival in found.rivals)
         lines = (
             "Records that a further test can make, by the ln evidence that the right one of two "
             f"answers is expected to gain at least, whichever is right: {one}, or {other}.",

@@ -6,11 +6,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from analysis.gap.pendulum.causes import Cause, cause, causes_for
+from analysis.gap.candidate import Candidate
+from analysis.gap.pendulum.causes import cause, causes_for
 from analysis.gap.pendulum.diagnose import Diagnosis, diagnose_trials
-from analysis.gap.pendulum.hypothesis import fit
 from analysis.gap.pendulum.problem import Problem
-from analysis.gap.pendulum.search import MOST_CAUSES
+from analysis.gap.pendulum.search import MOST_CAUSES, fit
 from analysis.gap.pendulum.settle import Settled, settle
 from analysis.gap.pendulum.trial import Trial
 from hardware.description.arrays import FloatArray
@@ -108,5 +108,5 @@ def _prepared(
     return problem, kinds
 
 
-def _typical(trial: Trial, one: Cause) -> FloatArray:
-    return trial.simulate([one.effect(one.start, trial)])
+def _typical(trial: Trial, one: Candidate) -> FloatArray:
+    return trial.simulate([one.effect(one.start)])

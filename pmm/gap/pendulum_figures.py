@@ -7,6 +7,7 @@ import numpy as np
 
 from analysis.gap.pendulum.diagnose import Diagnosis
 from analysis.gap.pendulum.problem import Problem
+from analysis.gap.pendulum.search import named
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.verdict import as_stated, remainder
 from hardware.description.arrays import FloatArray
@@ -53,14 +54,14 @@ def _map(problem: Problem, pairs: list[tuple[int, int]], left: FloatArray) -> Fl
 
 def ranking_figure(found: Diagnosis) -> "Figure":
     """Draw the answers' probabilities, the best one in its colour."""
-    shown = dict(ranking(found.verdict))
+    shown = dict(ranking(found.weighed.answers))
     return probability_bars(shown, list(shown)[:1], "probability; in blue the most probable")
 
 
 def withheld_figure(found: Diagnosis) -> "Figure":
     """Draw the gap of each withheld regime without a cause, with the best set and the control."""
     rows = [regime.name for regime in found.regimes]
-    best, control = found.best.names, found.control
+    best, control = named(found.best), found.control
     series = [
         Dots("without a cause", "o", BEFORE, [_clear(one.before.gap) for one in found.regimes]),
         Dots("best answer", "s", AFTER, _gaps(found, best)),

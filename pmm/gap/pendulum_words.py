@@ -6,19 +6,12 @@ from typing import Final
 
 import numpy as np
 
+from analysis.gap.fit import nothing
+from analysis.gap.inference.answers import NONE, ODD_RUN, UNKNOWN
 from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING
 from analysis.gap.pendulum.diagnose import Diagnosis
-from analysis.gap.pendulum.hypothesis import null
 from analysis.gap.pendulum.swings import KINDS
-from analysis.gap.pendulum.verdict import (
-    NONE,
-    TOLD_APART,
-    UNKNOWN,
-    Law,
-    foretells_better,
-    open_laws,
-    remainder,
-)
+from analysis.gap.pendulum.verdict import TOLD_APART, Law, open_laws, remainder
 from analysis.inertia.spread import cause_statement
 from pmm.gap.pendulum_conclusion import PendulumConclusion, conclusion_of, parameters
 from pmm.gap.words import OUTSIDE
@@ -40,33 +33,46 @@ def what_is_wrong(found: Diagnosis, concluded: PendulumConclusion) -> str:
 
 def _wrong(found: Diagnosis, concluded: PendulumConclusion) -> Iterator[str]:
     if concluded.verdict == NONE:
-        yield from _no_gap(found, concluded)
+        yield _no_gap(found)
+        return
+    if concluded.verdict == ODD_RUN:
+        yield f"Record {concluded.odd} alone is off, by a gain, a period or a zero of its own"
         return
     if concluded.verdict == UNKNOWN:
         yield f"{OUTSIDE[0].upper()}{OUTSIDE[1:]} separates the record from its simulation"
+        return
+    if not concluded.names:
+        yield f"The cause cannot be told; {_strange(concluded)}"
         return
     rivals = open_laws(found.laws)
     others = [one for one in concluded.names if one not in DAMPING]
     damped = len(others) < len(concluded.names)
     damping = [_damping(found.laws, rivals, concluded.names)] if damped else []
     what = " and ".join([*damping, *others])
-    said = (
-        cause_statement(what, found.foretells) if found.regimes else f"the likeliest cause: {what}"
-    )
+    said = _named(found, concluded, what)
     yield f"{said[0].upper()}{said[1:]}"
+    if concluded.strange:
+        yield _strange(concluded)
     if rivals:
-        yield from _undecided(found.laws[0], rivals)
+        yield _undecided(found.laws[0], rivals)
 
 
-def _no_gap(found: Diagnosis, concluded: PendulumConclusion) -> Iterator[str]:
+def _named(found: Diagnosis, concluded: PendulumConclusion, what: str) -> str:
+    if found.regimes:
+        return cause_statement(what, found.foretells, told=concluded.adds)
+    told = "the cause" if concluded.adds else "the cause cannot be told; likeliest cause"
+    return f"{told}: {what}"
+
+
+def _strange(concluded: PendulumConclusion) -> str:
+    return f"that it is {OUTSIDE} has probability {concluded.unknown:.2f}"
+
+
+def _no_gap(found: Diagnosis) -> str:
     left = [one.kind for one in found.where if one.out_of_tolerance]
     if left:
-        yield f"Nothing that was considered explains the difference in {' and '.join(left)}"
-        return
-    agree = "the record and its simulation agree within what the record can tell"
-    lean = " and ".join(concluded.lean)
-    towards = f", though the evidence leans towards {lean}" if lean else ""
-    yield f"No gap: {agree}{towards}"
+        return f"Nothing that was considered explains the difference in {' and '.join(left)}"
+    return "No gap: the record and its simulation agree within what the record can tell"
 
 
 def _damping(laws: Sequence[Law], rivals: Sequence[Law], names: Sequence[str]) -> str:
@@ -77,26 +83,24 @@ def _damping(laws: Sequence[Law], rivals: Sequence[Law], names: Sequence[str]) -
     return FASTER if all(set(one) & set(BEYOND_LINEAR) for one in possible) else "damping"
 
 
-def _undecided(first: Law, rivals: Sequence[Law]) -> Iterator[str]:
-    yield (
-        f"its law cannot be told: {first.name} has the best evidence, but it cannot be told apart "
+def _undecided(first: Law, rivals: Sequence[Law]) -> str:
+    return (
+        f"its law cannot be told: {first.name} is the most probable, but it cannot be told apart "
         f"from {', '.join(law.name for law in rivals)}"
     )
-    better = [law.name for law in rivals if foretells_better(law, first)]
-    if better:
-        yield f"withheld swings are foretold better by {', '.join(better)}"
 
 
 def how_large_it_is(found: Diagnosis) -> str:
     """Return by how much amplitude and phase are off without a cause, and the cause's own size."""
     problem = found.problem
-    left = np.abs(remainder(problem, null(problem))) * problem.uncertainty
-    sizes = []
+    left = np.abs(remainder(problem, nothing(problem))) * problem.uncertainty
+    sizes: list[str] = []
     for kind, said in ((_DECAY, _amplitude), (_PERIOD, _phase)):
         rows = np.flatnonzero(problem.kind == kind)
         if rows.size:
             at = int(rows[np.argmax(left[rows])])
-            sizes.append(said(found, float(left[at]), at))
+            verb = "" if sizes else "is off "
+            sizes.append(said(verb, float(left[at])) + _place(found, at))
     own = [
         f"{name}: {key} = {one['value']:.4g} ± {2.0 * one['uncertainty']:.2g}"
         for name, values in parameters(found.settled.best).items()
@@ -107,12 +111,12 @@ def how_large_it_is(found: Diagnosis) -> str:
     return f"{'; '.join([f'Without a cause {off}', *named])}."
 
 
-def _amplitude(found: Diagnosis, size: float, at: int) -> str:
-    return f"the amplitude is off by up to {100.0 * math.expm1(size):.2g} %{_place(found, at)}"
+def _amplitude(verb: str, size: float) -> str:
+    return f"the amplitude {verb}by up to {100.0 * math.expm1(size):.2g} %"
 
 
-def _phase(found: Diagnosis, size: float, at: int) -> str:
-    return f"the phase by up to {math.degrees(size):.2g} degrees of a swing{_place(found, at)}"
+def _phase(verb: str, size: float) -> str:
+    return f"the phase {verb}by up to {math.degrees(size):.2g} degrees of a swing"
 
 
 def _place(found: Diagnosis, at: int) -> str:

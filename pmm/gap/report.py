@@ -159,7 +159,7 @@ def _ranking(examined: Examined) -> Iterator[Ranked]:
         members = found.classes if name == best else {}
         alike = {other: left for group in members.values() for other, left in group}
         stage = "" if fit is None else " and ".join(
-            dict.fromkeys(one.kind.stage.value for one in fit.candidates)
+            dict.fromkeys(one.stage for one in fit.candidates)
         )  # fmt: skip
         effects = [] if fit is None else list(effect_rows(fit))
         measure = [

@@ -58,7 +58,7 @@ class Considered:
 
     Attributes
     ----------
-    singles, pairs
+    singles, pairs, triples
         What was fitted.
     count
         How many effects there are; those that were not considered have no part in any answer.
@@ -70,6 +70,7 @@ class Considered:
     pairs: Sequence[Hypothesis]
     count: int
     concealed: int
+    triples: Sequence[Hypothesis] = ()
 
 
 def answers(given: Considered, beside: Background) -> Answers:
@@ -82,21 +83,18 @@ def answers(given: Considered, beside: Background) -> Answers:
     odds, count = ODDS, max(given.count, 1)
     share = given.concealed / count
     none = odds.none + odds.single * share + odds.pair * share**2
-    small, large = _even(_SMALL), _even(~_SMALL)
-    any_size = _even(np.ones_like(_SMALL))
+    small, large, any_size = _even(_SMALL), _even(~_SMALL), _any_size()
     each_odd = odds.mistake / max(len(beside.own), 1)
     logs = {
         NONE: _log_weight(beside.none(), small, none),
         COEFFICIENTS: _log_weight(beside.coefficients(), small, odds.mistake),
     }
     found: dict[str, list[Evidence]] = {}
-    pair = odds.pair / max(count * (count - 1) / 2, 1)
     priors: dict[str, float] = {}
-    for each, ones in ((odds.single / count, given.singles), (pair, given.pairs)):
-        for one in ones:
-            name = answer_of(one.names)
-            found[name], priors[name] = beside.named(one), each
-            logs[name] = _log_weight(_evidences(found[name]), any_size, each)
+    for one in (*given.singles, *given.pairs, *given.triples):
+        name = answer_of(one.names)
+        found[name], priors[name] = beside.named(one), prior(len(one.names), count)
+        logs[name] = _log_weight(_evidences(found[name]), any_size, priors[name])
     odd = {run: _log_weight(one, _seen(one), each_odd) for run, one in beside.odd_runs().items()}
     leading = sorted(given.singles, key=lambda one: -logs[answer_of(one.names)])
     beside_odd = {
@@ -140,6 +138,17 @@ def _located(
     return {stage: math.exp(log - total) for stage, log in logs.items()}
 
 
+def prior(size: int, count: int) -> float:
+    """Return the prior probability of one set of effects of some size, out of a catalogue's."""
+    of_size = (ODDS.single, ODDS.pair, ODDS.triple)[min(size, 3) - 1]
+    return of_size / max(math.comb(count, size), 1)
+
+
+def weight(found: Sequence[Evidence]) -> float:
+    """Return the log weight of a named answer but for its prior odds, beside any deviation."""
+    return _log_weight(_evidences(found), _any_size(), 1.0)
+
+
 def answer_of(names: Sequence[str]) -> str:
     """Return the name of a hypothesis: its effects in alphabetical order."""
     return "+".join(sorted(names))
@@ -148,6 +157,11 @@ def answer_of(names: Sequence[str]) -> str:
 def effects_in(answer: str) -> tuple[str, ...]:
     """Return the effects that an answer names; none for one that names no effect."""
     return () if answer in NAMELESS else tuple(answer.split("+"))
+
+
+def _any_size() -> FloatArray:
+    """Return the prior weights of a deviation's size beside what is named."""
+    return _even(np.ones_like(_SMALL))
 
 
 def _evidences(found: Sequence[Evidence]) -> FloatArray:

@@ -67,6 +67,8 @@ class Background:
 
     def coefficients(self) -> FloatArray:
         """Return that of coefficients that are off by more than anybody thought: one, or all."""
+        if not self.sought.any():
+            return np.full(len(TAUS), -np.inf)
         ones = [np.arange(len(self.sought)) == at for at in np.flatnonzero(self.sought)]
         wide = [np.where(own, WIDE, 1.0) for own in (*ones, self.sought)]
         return _mean(self._smooth(self._scale(tolerances=one)) for one in wide)

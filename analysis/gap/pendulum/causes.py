@@ -1,33 +1,30 @@
 """The effects of the pendulums' catalogue as causes to be tried: free parameters with priors.
 
-A size has a normal prior about zero, three typical values wide; a shape (an exponent) a normal one
-about its typical value. What is random from run to run shows in the scatter, not in the swings, and
-is no cause here; what only light gates have drops out where their passages are averaged.
+What is random from run to run shows in the scatter, not in the swings, and is no cause here; what
+only light gates have drops out where their passages are averaged.
 """
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any, Final
 
-import numpy as np
-
+from analysis.gap.candidate import Axis, Candidate, axis_of
 from analysis.gap.pendulum.problem import Tolerance
 from analysis.gap.pendulum.trial import Trial
-from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
+from sim.effects.effect import Parameter
 from sim.pendulum.effects import CATALOGUE, by_name
-from sim.pendulum.effects.base import PendulumEffect, Plausible, plausible
+from sim.pendulum.effects.base import plausible
 from sim.pendulum.effects.setup import ON_LINES
 from sim.pendulum.floating import Floating
 from sim.pendulum.suspension import Suspension
 
-_TYPICAL: Final = 3.0
 _RANDOM: Final = ("missed_passages", "gate_jitter", "unsteady_release")
 _GATES: Final = ("flag_width", "gate_offset")
 _NEEDS_LINES: Final = ("line_stretch", "line_creep", "off_level", "yaw_pitch_resonance")
-_SHAPES: Final = ("beta", "period_ratio")
-_HELD: Final = {"sensor_noise": {"noise_rms": 0.0}}
+_HUNG: Final = tuple(one.name for one in ON_LINES)
+# A reading's noise shows in the scatter; a power law's damping ratio is that at this amplitude.
+_HELD: Final = {"sensor_noise": {"noise_rms": 0.0}, "power_drag": {"amplitude": 0.1}}
 
 DAMPING: Final = (
     "bearing_friction",
@@ -38,97 +35,49 @@ DAMPING: Final = (
 )
 BEYOND_LINEAR: Final = ("quadratic_drag", "cubic_damping", "power_drag")
 STIFFNESS: Final = ("inertia", "restoring", "amplitude_period", "nonlinear_restoring")
+DAMPED: Final = "damping"
+RESTORED: Final = "inertia and restoring"
+LINES: Final = "lines"
+READ: Final = "sensors"
+_STAGES: Final[Mapping[str, tuple[str, ...]]] = {
+    DAMPED: DAMPING,
+    RESTORED: (*STIFFNESS, "finite_amplitude", "air"),
+    LINES: (*_NEEDS_LINES, *_HUNG),
+}
 
 
-@dataclass(frozen=True)
-class Axis:
-    """One free parameter: value = centre + deviation * unit, within its plausible range."""
-
-    name: str
-    known: Plausible
-    centre: float
-    deviation: float
-
-    def value(self, unit: float) -> float:
-        """Return the parameter's value."""
-        return min(max(self.centre + self.deviation * unit, self.known.low), self.known.high)
-
-    @property
-    def bounds(self) -> tuple[float, float]:
-        """Plausible range in prior units."""
-        low, high = self.known.low - self.centre, self.known.high - self.centre
-        return low / self.deviation, high / self.deviation
-
-    @property
-    def start(self) -> float:
-        """Where a fit begins, in prior units: at the typical value, or a tenth of it."""
-        return (self.known.typical or 0.1 * self.deviation) / self.deviation - (
-            self.centre / self.deviation
-        )
-
-
-@dataclass(frozen=True)
-class Cause:
-    """One effect with its free parameters."""
-
-    kind: type[Any]
-    axes: tuple[Axis, ...]
-    held: tuple[tuple[str, float], ...] = ()
-
-    @property
-    def name(self) -> str:
-        """The effect's."""
-        return str(self.kind.name)
-
-    def effect(self, units: FloatArray, trial: Trial) -> PendulumEffect:
-        """Return the effect on a trial, its parameters at ``units`` prior deviations."""
-        values: dict[str, Any] = {
-            axis.name: axis.value(float(unit)) for axis, unit in zip(self.axes, units, strict=True)
-        }
-        fields = self.kind.__dataclass_fields__
-        if "coordinate" in fields:
-            values["coordinate"] = trial.acts_on
-        if self.name == "power_drag":  # the damping ratio is that of the release
-            values["amplitude"] = trial.reference_amplitude
-        effect: PendulumEffect = self.kind(**values, **dict(self.held))
-        return effect
-
-    @property
-    def bounds(self) -> FloatArray:
-        """Plausible ranges in prior units, shape ``(2, p)``."""
-        return np.array([axis.bounds for axis in self.axes]).reshape(-1, 2).T
-
-    @property
-    def start(self) -> FloatArray:
-        """Where a fit begins, shape ``(p,)``."""
-        return np.array([axis.start for axis in self.axes])
-
-
-def cause(kind: type[Any]) -> Cause:
-    """Return an effect as a cause."""
+def cause(kind: type[Any]) -> Candidate:
+    """Return an effect as a cause; what is no parameter of its size is held."""
     held = _HELD.get(kind.name, {})
-    known = plausible(kind)
-    if kind.name == "power_drag":
-        known = {key: known[key] for key in ("beta", "damping_ratio")}
-    axes = tuple(_axis(key, one) for key, one in known.items() if key not in held)
-    return Cause(kind, axes, tuple(held.items()))
+    known = [
+        Parameter(name, one.unit, one.typical, one.low, one.high, "")
+        for name, one in plausible(kind).items()
+    ]
+    axes = [_axis(one, tuple(known)) for one in known if one.name not in held]
+    return Candidate(kind, tuple(axes), held, _stage(kind))
 
 
-def _axis(name: str, known: Plausible) -> Axis:
-    if name in _SHAPES:
-        return Axis(name, known, known.typical, 0.25 * (known.high - known.low))
-    size = abs(known.typical) or 0.1 * max(abs(known.low), abs(known.high))
-    return Axis(name, known, 0.0, _TYPICAL * size)
+def _axis(one: Parameter, siblings: tuple[Parameter, ...]) -> Axis:
+    """Return a parameter that begins at its typical value, or a tenth of its prior's width."""
+    axis = axis_of(one, siblings)
+    start = axis.unit(one.typical or 0.1 * axis.deviation)
+    return Axis(one, axis.centre, axis.deviation, axis.is_log, start)
+
+
+def _stage(kind: type[Any]) -> str:
+    """Return what of a test an effect is about; of one's own the body if it says nothing."""
+    own = (stage for stage, names in _STAGES.items() if kind.name in names)
+    return next(own, str(getattr(kind, "stage", "body")))
 
 
 def causes_for(
     trials: Sequence[Trial], kinds: Iterable[type[Any]] = CATALOGUE
-) -> tuple[Cause, ...]:
+) -> tuple[Candidate, ...]:
     """Return every cause that these trials can have, of some effects."""
     first = trials[0].bench.body
     unfit = [*_RANDOM, *_GATES]
     if not isinstance(first, Suspension):
-        unfit += [*_NEEDS_LINES, *(one.name for one in ON_LINES)]
+        unfit += [*_NEEDS_LINES, *_HUNG]
     if isinstance(first, Floating):
         unfit += ["air", "finite_amplitude"]
     if all(one.scaled for one in trials):  # light gates have no reading to be wrong
@@ -154,13 +103,5 @@ def tolerance(name: str, deviation: float, *, own: bool = False) -> Tolerance:
         near = get_close_matches(name, fit, n=1, cutoff=0.4)
         hint = f"did you mean {near[0]}?" if near else f"known: {', '.join(fit)}"
         raise ConfigurationError(f"nothing called {name!r} can be known within a tolerance; {hint}")
-    kind, (axis,) = known[name], cause(known[name]).axes
-
-    def make(error: float, trial: Trial) -> PendulumEffect:
-        given: dict[str, Any] = {axis.name: error}
-        if "coordinate" in kind.__dataclass_fields__:
-            given["coordinate"] = trial.acts_on
-        effect: PendulumEffect = kind(**given)
-        return effect
-
-    return Tolerance(name, make, deviation, own)
+    (axis,) = cause(known[name]).axes
+    return Tolerance(name, known[name](**{axis.parameter.name: deviation}), own)

@@ -3,14 +3,18 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
-from analysis.gap.pendulum.causes import DAMPING, Cause, causes_for
+from analysis.gap.candidate import Candidate
+from analysis.gap.fit import Fit
+from analysis.gap.inference.answers import effects_in
+from analysis.gap.pendulum.causes import DAMPING, causes_for
 from analysis.gap.pendulum.further import Proposal, Reach, propose
-from analysis.gap.pendulum.hypothesis import Hypothesis
 from analysis.gap.pendulum.problem import Problem
-from analysis.gap.pendulum.search import MOST_CAUSES, Searched, search
+from analysis.gap.pendulum.search import MOST_CAUSES, Weighed, named, weigh
 from analysis.gap.pendulum.settle import Settled, settle
 from analysis.gap.pendulum.verdict import (
+    CAUSE,
     TOLD_APART,
     Alternative,
     KindOfGap,
@@ -19,11 +23,12 @@ from analysis.gap.pendulum.verdict import (
     alternatives,
     damping_laws,
     judge,
-    told_apart,
+    open_laws,
     where,
 )
 from analysis.gap.pendulum.withheld import Regime, foretell
-from analysis.inertia.spread import SURE
+
+_ASKED: Final = 10.0  # ln weight behind the best law within which the withheld swings are asked too
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,8 +37,6 @@ class Diagnosis:
 
     Attributes
     ----------
-    best
-        The most probable set of causes; of no causes where there is no gap.
     settled
         The best set, its parameters fitted about itself.
     laws
@@ -48,17 +51,25 @@ class Diagnosis:
         Further records that tell them apart, best first.
     """
 
-    problem: Problem
-    searched: Searched
+    weighed: Weighed
     verdict: Verdict
-    best: Hypothesis
     settled: Settled
     where: tuple[KindOfGap, ...]
     laws: tuple[Law, ...]
     alternatives: tuple[Alternative, ...]
     regimes: tuple[Regime, ...]
-    rivals: tuple[Hypothesis, Hypothesis] | None = None
+    rivals: tuple[Fit, Fit] | None = None
     proposals: tuple[Proposal, ...] = ()
+
+    @property
+    def problem(self) -> Problem:
+        """What was diagnosed."""
+        return self.weighed.problem
+
+    @property
+    def best(self) -> Fit:
+        """The most probable set of causes; of no causes where there is no gap."""
+        return self.verdict.best
 
     @property
     def foretells(self) -> float:
@@ -67,20 +78,15 @@ class Diagnosis:
         return min(shares, default=math.nan)
 
     @property
-    def told(self) -> bool:
-        """Whether the best set is the answer, and foretells enough to be called the cause."""
-        return self.verdict.best == self.best.names and self.foretells >= SURE
-
-    @property
     def control(self) -> tuple[str, ...]:
         """The wrong cause that is asked to foretell too; empty where there is none."""
-        wrong = _wrong(self.searched, self.best)
+        wrong = _wrong(self.weighed, self.best)
         return () if wrong is None else wrong.names
 
 
 def diagnose_trials(
     problem: Problem,
-    causes: Sequence[Cause] | None = None,
+    causes: Sequence[Candidate] | None = None,
     *,
     most: int = MOST_CAUSES,
     reach: Reach | None = None,
@@ -98,80 +104,73 @@ def diagnose_trials(
         Within which a further suspension is proposed.
     """
     tried = tuple(causes_for(problem.trials) if causes is None else causes)
-    searched = search(problem, tried, most, progress)
-    verdict = judge(problem, searched)
-    best = searched.best(verdict.inflation)
-    damped = any(name in DAMPING for name in best.names)
+    weighed = weigh(problem, tried, most, progress)
+    verdict = judge(weighed)
+    best = verdict.best
     progress("laws of damping")
-    laws = damping_laws(problem, best, tried, verdict.inflation) if damped else ()
+    laws = damping_laws(weighed, best, tried) if set(best.names) & set(DAMPING) else ()
     progress("what else it could be")
-    others = alternatives(problem, best, tried, verdict.inflation)
+    others = alternatives(weighed, best)
     progress("withheld swings")
-    regimes = foretell(problem, _rivals(searched, best, laws)) if best.causes else ()
+    regimes = foretell(problem, _asked(weighed, best, laws)) if best.candidates else ()
     laws = _with_withheld(laws, regimes)
     progress("how large")
     after = settle(problem, best)
-    gap = where(problem, after)
-    found = Diagnosis(problem, searched, verdict, best, after, gap, laws, others, regimes)
+    found = Diagnosis(weighed, verdict, after, where(problem, after), laws, others, regimes)
     progress("the next run")
     rivals = leading(found)
-    proposals = propose(problem, *rivals, verdict.inflation, reach) if rivals else ()
+    proposals = propose(problem, *rivals, reach) if rivals else ()
     return replace(found, rivals=rivals, proposals=proposals)
 
 
-def leading(found: Diagnosis) -> tuple[Hypothesis, Hypothesis] | None:
+def leading(found: Diagnosis) -> tuple[Fit, Fit] | None:
     """Return the two answers that a further record should tell apart; none where all is told."""
-    laws, wide = found.laws, found.verdict.inflation
-    left = [law.hypothesis for law in laws[1:] if not told_apart(laws[0], law)]
+    left = [law.hypothesis for law in open_laws(found.laws)]
     if left:
-        best = laws[0].hypothesis
+        best = found.laws[0].hypothesis
         return best, next((one for one in left if not _nested(best, one)), left[0])
-    if not found.best.causes:
+    if not found.best.candidates:
         return None
-    others = [one for one in found.searched.sets.values() if not _nested(found.best, one)]
-    weights = {one.names: found.searched.log_weight(one.names, wide) for one in others}
-    second = max(others, key=lambda one: weights[one.names], default=None)
+    second = next((one for one in found.weighed.ranked if not _nested(found.best, one)), None)
     if second is None:
         return None
-    ahead = found.searched.log_weight(found.best.names, wide) - weights[second.names]
-    return None if found.told and ahead > math.log(TOLD_APART) else (found.best, second)
+    shares = found.weighed.answers.by_answer
+    ahead = shares[found.best.answer] > TOLD_APART * shares[second.answer]
+    return None if found.verdict.said == CAUSE and ahead else (found.best, second)
 
 
-def _nested(one: Hypothesis, other: Hypothesis) -> bool:
+def _nested(one: Fit, other: Fit) -> bool:
     """Whether either has all causes of the other."""
     return set(one.names) <= set(other.names) or set(other.names) <= set(one.names)
-
-
-_ASKED = 20.0  # ln evidence behind the best law within which the withheld swings are asked too
 
 
 def _with_withheld(laws: Sequence[Law], regimes: Sequence[Regime]) -> tuple[Law, ...]:
     """Return the laws with what each leaves of the withheld swings."""
     found = []
     for law in laws:
-        names = law.hypothesis.names
+        names = named(law.hypothesis)
         gaps = [one.gap for regime in regimes for one in regime.foretold if one.causes == names]
         found.append(replace(law, withheld=tuple(gaps)))
     return tuple(found)
 
 
-def _rivals(searched: Searched, best: Hypothesis, laws: Sequence[Law]) -> tuple[Hypothesis, ...]:
+def _asked(weighed: Weighed, best: Fit, laws: Sequence[Law]) -> tuple[Fit, ...]:
     """Return what to foretell with: the best set, laws not far behind, the best wrong cause."""
-    sets = {best.names: best}
+    sets = {best.answer: best}
     for law in laws:
         if law.log_ratio > -_ASKED:
-            sets.setdefault(law.hypothesis.names, law.hypothesis)
-    control = _wrong(searched, best)
+            sets.setdefault(law.hypothesis.answer, law.hypothesis)
+    control = _wrong(weighed, best)
     if control is not None:
-        sets.setdefault(control.names, control)
+        sets.setdefault(control.answer, control)
     return tuple(sets.values())
 
 
-def _wrong(searched: Searched, best: Hypothesis) -> Hypothesis | None:
+def _wrong(weighed: Weighed, best: Fit) -> Fit | None:
     """Return the best single cause among those that the best set has nothing to do with."""
     wrong = [
         one
-        for one in searched.sets.values()
-        if len(one.names) == 1 and not set(one.names) & {*best.names, *DAMPING}
+        for answer, one in weighed.sets.items()
+        if len(effects_in(answer)) == 1 and answer not in (*best.names, *DAMPING)
     ]
     return max(wrong, key=lambda one: one.log_evidence, default=None)

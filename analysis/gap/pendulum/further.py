@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
+from analysis.gap.fit import Fit, at
 from analysis.gap.gaussian import Nuisances, posterior
-from analysis.gap.pendulum.hypothesis import Hypothesis, held
 from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.trial import Trial
@@ -60,18 +60,14 @@ class Reach:
 
 def propose(
     problem: Problem,
-    first: Hypothesis,
-    second: Hypothesis,
-    wide: float = 1.0,
+    first: Fit,
+    second: Fit,
     reach: Reach | None = None,
 ) -> tuple[Proposal, ...]:
     """Rank further records: other suspensions where light gates watch one, else releases.
 
     Parameters
     ----------
-    wide
-        Chi-square per degree of freedom of the records there are: uncertainties are this much
-        wider.
     reach
         Of suspensions; where left out a little beyond those that were used, but no wider.
     """
@@ -82,13 +78,12 @@ def propose(
     )
     found = []
     for what, trial in made:
-        planned = replace(trial, uncertainty=trial.uncertainty * math.sqrt(wide))
-        one, other = (_foretold(problem, planned, h, wide) for h in (first, second))
+        one, other = (_foretold(problem, trial, answer) for answer in (first, second))
         found.append(Proposal(what, (_divergence(one, other), _divergence(other, one))))
     return tuple(sorted(found, key=lambda one: -one.gain))
 
 
-def _releases(trial: Trial, first: Hypothesis) -> Iterator[tuple[str, Trial]]:
+def _releases(trial: Trial, first: Fit) -> Iterator[tuple[str, Trial]]:
     """Yield larger and smaller releases, and longer records, as the first answer foretells them."""
     held_at = trial.bench.release
     for factor in _FACTORS:
@@ -105,7 +100,7 @@ def _releases(trial: Trial, first: Hypothesis) -> Iterator[tuple[str, Trial]]:
             yield what, _planned(replace(trial, windows=windows, bench=bench), trial, first)
 
 
-def _suspensions(problem: Problem, first: Hypothesis, reach: Reach) -> Iterator[tuple[str, Trial]]:
+def _suspensions(problem: Problem, first: Fit, reach: Reach) -> Iterator[tuple[str, Trial]]:
     """Yield suspensions within reach, as the first answer foretells their records."""
     trial = problem.trials[0]
     body = suspension_of(trial.bench, "a further suspension")
@@ -117,7 +112,8 @@ def _suspensions(problem: Problem, first: Hypothesis, reach: Reach) -> Iterator[
         for line in lines:
             hung = replace(body, half_spacing_m=float(half), line_length_m=float(line))
             other = replace(trial, bench=replace(trial.bench, body=hung))
-            bench = other.bench.with_effects([*other.effects, *first.effects(other)])
+            on = other.placed([*other.effects, *first.effects])
+            bench = other.bench.with_effects(on)
             inertia, restoring = small_swing(bench, trial.acts_on)
             omega = math.sqrt(restoring / inertia)
             other = replace(other, windows=replace(trial.windows, reference_rad_s=omega))
@@ -132,9 +128,9 @@ def _reach(problem: Problem) -> Reach:
     return Reach((min(halves) / _BEYOND, max(halves)), (min(lines) / _BEYOND, _BEYOND * max(lines)))
 
 
-def _planned(planned: Trial, trial: Trial, first: Hypothesis) -> Trial:
+def _planned(planned: Trial, trial: Trial, first: Fit) -> Trial:
     """Return a trial as the first answer foretells it, with noise like the record's."""
-    observed = planned.simulate(first.effects(trial))
+    observed = planned.simulate(first.effects)
     known, size = np.exp(trial.observed[_DECAY]), np.exp(observed[_DECAY])
     spread = np.full_like(observed, np.nan)
     for kind in range(len(KINDS)):
@@ -152,16 +148,14 @@ class _Expected:
     covariance: FloatArray
 
 
-def _foretold(problem: Problem, trial: Trial, one: Hypothesis, wide: float) -> _Expected:
+def _foretold(problem: Problem, trial: Trial, one: Fit) -> _Expected:
     """Return what an answer expects of a planned record, given the records that there are."""
     there = replace(problem, trials=(trial,))
     again = len(problem.trials) == 1 and not problem.on_lines
     (kept, free), (carried, begun) = (_parted(part, again=again) for part in (problem, there))
-    root = math.sqrt(wide)
-    columns = np.hstack([kept, one.columns]) / root
-    left = (one.without_signature(problem) + one.columns @ one.units) / root
-    known = posterior(left, columns, Nuisances(free / root))
-    planned = held(there, one.causes, one.units)
+    columns = np.hstack([kept, one.columns])
+    known = posterior(one.linearised(problem.residual), columns, Nuisances(free))
+    planned = at(there, one.candidates, one.units)
     slopes = np.hstack([carried, planned.columns])
     moved = known.mean - np.concatenate([np.zeros(kept.shape[1]), one.units])
     covariance = np.eye(len(slopes)) + begun @ begun.T + slopes @ known.covariance @ slopes.T

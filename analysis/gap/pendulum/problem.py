@@ -1,12 +1,14 @@
 """Measured releases as one problem: observations, and what is free in every hypothesis."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.gap.candidate import Candidate
+from analysis.gap.fit import built
 from analysis.gap.gaussian import Nuisances
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.trial import FURTHER, TURNED, Trial
@@ -26,25 +28,20 @@ class Tolerance:
 
     Attributes
     ----------
-    make
-        From its error to the effect.
+    effect
+        What changes if it is off by that.
     own
         Whether each trial has its own error; all share one otherwise.
     """
 
     name: str
-    make: Callable[[float, Trial], PendulumEffect]
-    deviation: float
+    effect: PendulumEffect
     own: bool = False
-
-
-def _nothing(_: Trial) -> Sequence[PendulumEffect]:
-    return ()
 
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """What every hypothesis is held against.
+    """Records of releases beside their simulation: :class:`analysis.gap.fit.Compared`.
 
     Attributes
     ----------
@@ -61,7 +58,7 @@ class Problem:
     tolerances: tuple[Tolerance, ...] = ()
     kinds: tuple[str, ...] = KINDS
     model_error: tuple[float, ...] = (0.0,) * len(KINDS)
-    about: Callable[[Trial], Sequence[PendulumEffect]] = field(default=_nothing)
+    about: tuple[PendulumEffect, ...] = ()
 
     @property
     def suspensions(self) -> bool:
@@ -119,19 +116,28 @@ class Problem:
         parts = [np.broadcast_to(one.windows.centres_s, one.observed.shape) for one in self.trials]
         return self.flat(parts)
 
-    def predict(self, effects: Callable[[Trial], Sequence[PendulumEffect]]) -> FloatArray:
+    def predict(self, effects: Sequence[PendulumEffect] = ()) -> FloatArray:
         """Return what all records would show, shape ``(observations,)``."""
-        return self.flat([one.simulate(effects(one)) for one in self.trials])
+        return self.flat([one.simulate(effects) for one in self.trials])
+
+    def signature(self, parts: Sequence[Candidate], units: FloatArray) -> FloatArray:
+        """Return what effects change of the observations, in sigma."""
+        return (self.predict(built(parts, units)) - self.nominal) / self.uncertainty
 
     @cached_property
     def nominal(self) -> FloatArray:
         """What the nominal simulation shows."""
-        return self.predict(lambda _: ())
+        return self.predict()
 
     @cached_property
     def residual(self) -> FloatArray:
         """Measured less nominal, in sigma."""
         return (self.observed - self.nominal) / self.uncertainty
+
+    @property
+    def stated(self) -> FloatArray:
+        """The same: the simulation is as it is stated."""
+        return self.residual
 
     @cached_property
     def nuisances(self) -> Nuisances:
@@ -200,20 +206,17 @@ class Problem:
         return columns
 
     def _tolerated(self, known: Tolerance) -> list[FloatArray]:
-        made = [known.make(known.deviation, trial) for trial in self.trials]
-        return [self._column(at, effect, 1.0) for at, effect in enumerate(made)]
+        return [self._column(at, known.effect, 1.0) for at in range(len(self.trials))]
 
     def _varied(self, at: int, bench: PendulumBench) -> FloatArray:
         trial = self.trials[at]
         other = replace(trial, bench=replace(bench, release=trial.bench.release))
-        there = self.about(trial)
-        return self._change(at, other.simulate(there) - trial.simulate(there))
+        return self._change(at, other.simulate(self.about) - trial.simulate(self.about))
 
     def _column(self, at: int, effect: PendulumEffect, share: float) -> FloatArray:
         """Return the change by an effect on one trial, per whole of which it is a share."""
         trial = self.trials[at]
-        there = self.about(trial)
-        change = trial.simulate([*there, effect]) - trial.simulate(there)
+        change = trial.simulate([*self.about, effect]) - trial.simulate(self.about)
         return self._change(at, change / share)
 
     def _change(self, at: int, change: FloatArray) -> FloatArray:

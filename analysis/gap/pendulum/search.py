@@ -1,139 +1,128 @@
-"""Which sets of causes are worth fitting: one, then more as long as each pays for itself."""
+"""Fit what could explain the gap of a pendulum test, and weigh it: nothing, causes, anything."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from analysis.gap.gaussian import Nuisances, misfit
-from analysis.gap.pendulum.causes import Cause
-from analysis.gap.pendulum.hypothesis import Hypothesis, fit, linearised, null
+from analysis.gap.candidate import Candidate
+from analysis.gap.fit import Fit, at, hypothesis, inside, nothing, settled
+from analysis.gap.gaussian import null_evidence
+from analysis.gap.inference.answers import (
+    UNKNOWN,
+    Answers,
+    Considered,
+    answers,
+    effects_in,
+    prior,
+    weight,
+)
+from analysis.gap.inference.constants import ODDS
+from analysis.gap.inference.evidence import Background
+from analysis.gap.look import HIDDEN, Looked, best_look
+from analysis.gap.pendulum.deviation import background
 from analysis.gap.pendulum.problem import Problem
-from hardware.description.arrays import BoolArray, FloatArray
-from hardware.description.errors import PmmError
+from analysis.gap.refine import refine
+from analysis.gap.search import Engine, fitted, paired, widened
+from hardware.description.arrays import FloatArray
+from hardware.description.errors import DataError
 
 MOST_CAUSES: Final = 3
-_BEAM = 3
-_REFINED = 5
-_PRIOR: Final = {0: 0.35, 1: 0.30, 2: 0.15, 3: 0.10}
-_UNKNOWN = 0.10
-SIZES: Final = (3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0)  # of a deviation, in sigma
-_CHOICE = 3.0  # log odds against any size of it
+_TINY: Final = 1e-300
 
 
 @dataclass(frozen=True, eq=False)
-class Searched:
-    """All hypotheses that were fitted, and that of a deviation without a cause.
+class Weighed:
+    """All hypotheses, and how probable each is.
 
     Attributes
     ----------
     sets
-        By their causes' names; the null under ``()``.
-    unknown
-        Log evidence of a smooth deviation that no cause is assumed for.
-    count
-        How many causes there were to choose from.
+        The fitted sets of causes by their answers.
+    looked
+        First looks at every cause.
+    beside
+        What stands beside every hypothesis.
     """
 
-    sets: dict[tuple[str, ...], Hypothesis]
-    unknown: float
-    count: int
+    problem: Problem
+    sets: Mapping[str, Fit]
+    looked: tuple[Looked, ...]
+    beside: Background
+    answers: Answers
 
-    def log_weight(self, names: tuple[str, ...], wide: float = 1.0) -> float:
-        """Return log evidence and prior odds of one set.
+    @property
+    def ranked(self) -> list[Fit]:
+        """The sets of causes, most probable first."""
+        shares = self.answers.by_answer
+        return sorted(self.sets.values(), key=lambda one: -shares[one.answer])
 
-        Parameters
-        ----------
-        wide
-            Chi-square per degree of freedom by which the evidence is weakened.
-        """
-        size = len(names)
-        odds = _PRIOR[size] / max(math.comb(self.count, size), 1)
-        return self.sets[names].log_evidence / wide + math.log(odds)
+    @property
+    def strangeness(self) -> float:
+        """Log of how much better something unknown does than any set, prior odds left out."""
+        shares, count = self.answers.by_answer, len(self.looked)
+        named = (shares[one.answer] / prior(len(one.names), count) for one in self.sets.values())
+        best, unknown = max(named, default=0.0), shares[UNKNOWN] / ODDS.unknown
+        return math.log(max(unknown, _TINY)) - math.log(max(best, _TINY))
 
-    def log_weight_unknown(self, wide: float = 1.0) -> float:
-        """Return log evidence and prior odds of what is unknown."""
-        return self.unknown / wide + math.log(_UNKNOWN)
-
-    def best(self, wide: float = 1.0) -> Hypothesis:
-        """Return the most probable set."""
-        return self.sets[max(self.sets, key=lambda names: self.log_weight(names, wide))]
+    def weight(self, one: Fit) -> float:
+        """Return the log weight of a set beside any deviation, prior odds included."""
+        odds = math.log(prior(len(one.names), len(self.looked)))
+        return weight(self.beside.named(hypothesis(self.problem, one))) + odds
 
 
-def search(
+def weigh(
     problem: Problem,
-    causes: Sequence[Cause],
+    causes: Sequence[Candidate],
     most: int = MOST_CAUSES,
     progress: Callable[[str], None] = lambda _: None,
-) -> Searched:
-    """Fit sets of causes, from none up to ``most``, along the most probable ones."""
-    found: dict[tuple[str, ...], Hypothesis] = {(): null(problem)}
-    searched = Searched(found, unknown_evidence(problem), len(causes))
-    frontier = [found[()]]
-    for size in range(1, min(most, len(causes)) + 1):
-        progress(f"sets of {size}")
-        level = _level(problem, frontier, causes, found, everything=size == 1)
-        if not level:
-            break
-        found |= level
-        ranked = sorted(level, key=searched.log_weight, reverse=True)
-        before = max(searched.log_weight(one.names) for one in frontier)
-        if size > 2 and searched.log_weight(ranked[0]) < before:
-            break
-        frontier = [level[names] for names in ranked[:_BEAM]]
-    return searched
+) -> Weighed:
+    """Fit sets of causes, from one up to ``most``, and weigh every answer.
+
+    Raises
+    ------
+    DataError
+        If the evidence is no number.
+    """
+    engine = Engine(None, progress)
+    progress("looking at causes")
+    looked = tuple(best_look(problem, one.name, [(one, one.start)]) for one in causes)
+    none = null_evidence(problem.residual, problem.nuisances)
+    seen = [one for one in looked if one.fit and one.visible >= HIDDEN]
+    singles = fitted(problem, seen, none, engine)
+    pairs = paired(problem, singles, seen, none, engine) if most > 1 else []
+    partners = [*(one.fit for one in seen if one.fit is not None), *singles]
+    triples = widened(problem, pairs, partners, engine) if most > 2 else []
+    progress("weighing")
+    beside = background(problem, looked)
+    kept = [[hypothesis(problem, one) for one in ones] for ones in (singles, pairs, triples)]
+    considered = Considered(kept[0], kept[1], len(causes), len(causes) - len(seen), kept[2])
+    found = answers(considered, beside)
+    if not all(math.isfinite(share) for share in found.by_answer.values()):
+        raise DataError("the simulation cannot follow these records: their evidence is no number")
+    sets = {
+        one.answer: settled(one, found.settled[one.answer]) for one in (*singles, *pairs, *triples)
+    }
+    return Weighed(problem, sets, looked, beside, found)
 
 
-def _level(
-    problem: Problem,
-    frontier: Sequence[Hypothesis],
-    causes: Sequence[Cause],
-    known: dict[tuple[str, ...], Hypothesis],
-    *,
-    everything: bool,
-) -> dict[tuple[str, ...], Hypothesis]:
-    """Return the sets of one cause more, the most promising of them fitted in full."""
-    promising: dict[tuple[str, ...], Hypothesis] = {}
-    for base in frontier:
-        for one in causes:
-            names = tuple(sorted((*base.names, one.name)))
-            if one.name in base.names or names in known:
-                continue
-            rough = _tried(problem, base, one)
-            best = promising.get(names)
-            if rough and (best is None or rough.log_evidence > best.log_evidence):
-                promising[names] = rough
-    ranked = sorted(promising.items(), key=lambda row: -row[1].log_evidence)
-    kept = ranked if everything else ranked[:_REFINED]
-    return {names: fit(problem, rough.causes, rough.units) for names, rough in kept}
+def fit(problem: Problem, causes: Sequence[Candidate], start: FloatArray | None = None) -> Fit:
+    """Fit some causes together.
+
+    Parameters
+    ----------
+    start
+        Parameters in prior units; typical values where left out.
+    """
+    parts = tuple(causes)
+    if not parts:
+        return nothing(problem)
+    units = np.concatenate([one.start for one in parts]) if start is None else start
+    return refine(problem, at(problem, parts, inside(parts, units)))
 
 
-def _tried(problem: Problem, base: Hypothesis, one: Cause) -> Hypothesis | None:
-    try:
-        return linearised(problem, base, one)
-    except PmmError:  # cannot act on these tests
-        return None
-
-
-def unknown_evidence(problem: Problem) -> float:
-    """Return the log evidence of a smooth deviation in any one kind of observable, or in all."""
-    smooth = smooth_columns(problem)
-    kinds: list[BoolArray] = [np.isin(problem.kind, [k]) for k in np.unique(problem.kind)]
-    kinds.append(np.ones(problem.kind.size, dtype=bool))
-    scores = []
-    for rows in kinds:
-        columns = np.where(rows[:, None], smooth, 0.0)
-        for size in SIZES:
-            wider = Nuisances(np.hstack([problem.nuisances.columns, size * columns]))
-            cost = misfit(problem.residual, wider) + wider.log_determinant
-            scores.append(-0.5 * cost - _CHOICE)
-    return max(scores)
-
-
-def smooth_columns(problem: Problem) -> FloatArray:
-    """Return columns of smooth curves over each trial's windows, of one sigma each time."""
-    pairs = sorted(set(zip(problem.trial.tolist(), problem.kind.tolist(), strict=True)))
-    parts = [problem.smooth((problem.trial == t) & (problem.kind == k)) for t, k in pairs]
-    return np.hstack(parts)
+def named(one: Fit) -> tuple[str, ...]:
+    """Return a set's causes in alphabetical order."""
+    return effects_in(one.answer) if one.candidates else ()

@@ -9,8 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.gap.pendulum.hypothesis import Hypothesis, fit
+from analysis.gap.fit import Fit
 from analysis.gap.pendulum.problem import Problem
+from analysis.gap.pendulum.search import fit
 from hardware.description.errors import PmmError
 
 _ROUNDS = 3
@@ -21,16 +22,16 @@ class Settled:
     """A set of causes, and the problem that is linear about it."""
 
     problem: Problem
-    best: Hypothesis
+    best: Fit
 
 
-def settle(problem: Problem, best: Hypothesis) -> Settled:
+def settle(problem: Problem, best: Fit) -> Settled:
     """Fit a set again about itself; as it is where the body would not swing back there."""
     found = Settled(problem, best)
-    for _ in range(_ROUNDS if best.causes else 0):
+    for _ in range(_ROUNDS if best.candidates else 0):
         try:
             about = _about(found)
-            found = Settled(about, fit(about, best.causes, found.best.units))
+            found = Settled(about, fit(about, best.candidates, found.best.units))
         except PmmError:
             break
     return found
@@ -38,7 +39,7 @@ def settle(problem: Problem, best: Hypothesis) -> Settled:
 
 def _about(found: Settled) -> Problem:
     problem, best = found.problem, found.best
-    free = problem.nuisances.fitted(best.without_signature(problem))
+    free = problem.nuisances.fitted(problem.residual - best.signature)
     first = np.cumsum([0, *(trial.release_columns for trial in problem.trials)])
     trials = tuple(
         trial.as_released(float(free[at]), float(free[at + 1]))

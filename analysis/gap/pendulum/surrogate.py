@@ -10,9 +10,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.gap.pendulum.causes import Cause, cause
-from analysis.gap.pendulum.hypothesis import Hypothesis, effects_at, fit, null
+from analysis.gap.candidate import Candidate
+from analysis.gap.fit import Fit, built, nothing
+from analysis.gap.pendulum.causes import cause
 from analysis.gap.pendulum.problem import Problem
+from analysis.gap.pendulum.search import fit, named
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.trial import Trial
 from hardware.description.arrays import FloatArray
@@ -63,25 +65,25 @@ def surrogate(trial: Trial, *, restoring: bool = True) -> Surrogate:
     """
     kinds = KINDS[:2] if restoring else KINDS[:1]
     problem = Problem((trial,), kinds=kinds)
-    best = null(problem)
+    best = nothing(problem)
     for stage in _STAGES:
         best = _better(problem, best, [cause(one) for one in stage])
     for more in _PERIODS if restoring else ():
-        kept = [one for one in best.causes if one.name not in _OF_PERIODS]
+        kept = [one for one in best.candidates if one.name not in _OF_PERIODS]
         best = _better(problem, best, [*kept, *(cause(one) for one in more)])
     bench = _released(problem, trial, best)
     left = trial.observed - replace(trial, bench=bench).simulate()
     rms = tuple(_rms(row) for row in left)
-    return Surrogate(bench, tuple(_variants(trial, best)), best.names, rms)
+    return Surrogate(bench, tuple(_variants(trial, best)), named(best), rms)
 
 
-def _variants(trial: Trial, best: Hypothesis) -> Iterator[PendulumBench]:
+def _variants(trial: Trial, best: Fit) -> Iterator[PendulumBench]:
     values, vectors = np.linalg.eigh(best.posterior.covariance)
     for value, vector in zip(values, vectors.T, strict=True):
         for sign in (1.0, -1.0):  # the other way where this one leaves what a body can do
             moved = best.units + sign * np.sqrt(value) * vector
             try:
-                yield trial.bench.with_effects(effects_at(best.causes, moved, trial))
+                yield trial.bench.with_effects(trial.placed(built(best.candidates, moved)))
             except PmmError:
                 continue
             break
@@ -92,24 +94,24 @@ def _rms(row: FloatArray) -> float:
     return float(np.sqrt(np.mean(good**2))) if good.size else 0.0
 
 
-def _better(problem: Problem, best: Hypothesis, causes: Sequence[Cause]) -> Hypothesis:
+def _better(problem: Problem, best: Fit, causes: Sequence[Candidate]) -> Fit:
     start = np.concatenate([_start(best, one) for one in causes])
     tried = fit(problem, causes, start)
     return tried if tried.log_evidence > best.log_evidence else best
 
 
-def _start(best: Hypothesis, one: Cause) -> FloatArray:
+def _start(best: Fit, one: Candidate) -> FloatArray:
     """Return where the best fit has a cause, or its typical value."""
     at = 0
-    for other in best.causes:
+    for other in best.candidates:
         if other.name == one.name:
             return best.units[at : at + len(one.axes)]
         at += len(other.axes)
     return 0.1 * one.start
 
 
-def _released(problem: Problem, trial: Trial, best: Hypothesis) -> PendulumBench:
+def _released(problem: Problem, trial: Trial, best: Fit) -> PendulumBench:
     """Return the bench with the effects, released as the record was."""
-    free = problem.nuisances.fitted(best.without_signature(problem))
+    free = problem.nuisances.fitted(problem.residual - best.signature)
     released = trial.as_released(float(free[0]), float(free[1]))
-    return released.bench.with_effects(best.effects(trial))
+    return released.bench.with_effects(trial.placed(best.effects))

@@ -21,6 +21,7 @@ from hardware.description.arrays import FloatArray
 KINDS: Final = ("decay", "period", "mean", "third in phase", "third in quadrature")
 _DECAY, _PERIOD, _MEAN, _THIRD = 0, 1, 2, 3
 _TERMS = 9
+_SAMPLES: Final = 2 * _TERMS  # in a window, at least
 FEWEST_WINDOWS: Final = 8
 MOST_WINDOWS: Final = 60
 _LEAST_PASSAGES = 5
@@ -54,9 +55,15 @@ class Windows:
         return np.asarray(self.length_s * (np.arange(self.count) + 0.5), np.float64)
 
 
-def cut_into_windows(start_s: float, stop_s: float, period_s: float) -> Windows:
-    """Return windows of as few whole swings as leave at most 60 of them."""
-    swings = max(1, math.ceil((stop_s - start_s) / period_s / MOST_WINDOWS))
+def cut_into_windows(
+    start_s: float, stop_s: float, period_s: float, sample_rate_hz: float = math.inf
+) -> Windows:
+    """Return windows of as few whole swings as leave at most 60, each with samples enough."""
+    fewest = (
+        (stop_s - start_s) / period_s / MOST_WINDOWS,
+        _SAMPLES / (sample_rate_hz * period_s),
+    )
+    swings = max(1, *map(math.ceil, fewest))
     count = int((stop_s - start_s) / (swings * period_s) + 1e-9)
     return Windows(start_s, 2.0 * math.pi / period_s, swings, count)
 
@@ -101,7 +108,7 @@ def _fitted(
     for at, centre in enumerate(windows.centres_s):
         inside = slice(edges[at], edges[at + 1])
         good = np.isfinite(values[inside])
-        if good.sum() >= 2 * _TERMS:
+        if good.sum() >= _SAMPLES:
             t = since_s[inside][good] - centre
             key = (t.size, round(float(t[0] + t[-1]) * omega_rad_s, 9))
             if key not in inverses or t.size < good.size:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import Any, cast
 
 import numpy as np
 
@@ -33,8 +34,6 @@ class Trial:
         them; NaN where there is none.
     scaled
         Whether the size of the amplitude is unknown (light gates).
-    reference_amplitude
-        At which a power law's damping is stated.
     variants
         Benches that the nominal one may be as well, one standard deviation away each.
     effects
@@ -48,7 +47,6 @@ class Trial:
     observed: FloatArray
     uncertainty: FloatArray
     scaled: bool = False
-    reference_amplitude: float = 0.1
     variants: tuple[PendulumBench, ...] = ()
     effects: tuple[PendulumEffect, ...] = ()
 
@@ -59,7 +57,7 @@ class Trial:
 
     def simulate(self, effects: Iterable[PendulumEffect] = ()) -> FloatArray:
         """Return what the record would show with more effects on, shape ``(5, windows)``."""
-        bench = self.bench.with_effects((*self.effects, *effects))
+        bench = self.bench.with_effects(self.placed((*self.effects, *effects)))
         rate_hz = _SAMPLES_A_SWING * self.windows.reference_rad_s / (2.0 * math.pi)
         count = _SAMPLES_A_SWING * self.windows.swings * self.windows.count + 1
         true_rate_hz = rate_hz * (1.0 + bench.clock_error)
@@ -69,6 +67,15 @@ class Trial:
         time_s = np.arange(count) / rate_hz
         since = replace(self.windows, start_s=0.0)
         return swings_of_samples(time_s, run[recorded(sensor.channel).name], since)
+
+    def placed(self, effects: Iterable[PendulumEffect]) -> list[PendulumEffect]:
+        """Return effects on the coordinate that is watched, where they name none."""
+        return [
+            replace(cast("Any", one), coordinate=self.acts_on)
+            if getattr(one, "coordinate", None) == ""
+            else one
+            for one in effects
+        ]
 
     def released(self) -> "Trial":
         """Return the trial with the release read off its first windows."""
@@ -83,8 +90,7 @@ class Trial:
         at = names.index(self.coordinate)
         held[at], rates[at] = amplitude * math.cos(phase), -amplitude * omega * math.sin(phase)
         release = replace(self.bench.release, displacement=tuple(held), rate=tuple(rates))
-        bench = replace(self.bench, release=release)
-        return replace(self, bench=bench, reference_amplitude=amplitude)
+        return replace(self, bench=replace(self.bench, release=release))
 
     @property
     def release_columns(self) -> int:

@@ -1,30 +1,30 @@
-"""From fitted hypotheses to what is said: probabilities, classes, laws of damping, shares."""
+"""From weighed hypotheses to what is said: the verdict, classes, laws of damping, shares."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 
-from analysis.gap.gaussian import Nuisances, misfit
-from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING, STIFFNESS, Cause, cause
-from analysis.gap.pendulum.hypothesis import Hypothesis, fit, linearised, null
+from analysis.gap.candidate import Candidate
+from analysis.gap.fit import Fit, expected_evidence, joined, nothing
+from analysis.gap.gaussian import Nuisances
+from analysis.gap.inference.answers import COEFFICIENTS, NONE, ODD_RUN, UNKNOWN, effects_in
+from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING, STIFFNESS
 from analysis.gap.pendulum.problem import Problem
-from analysis.gap.pendulum.search import Searched
+from analysis.gap.pendulum.search import Weighed, fit, named
 from analysis.gap.pendulum.settle import Settled
 from analysis.gap.pendulum.swings import KINDS
 from hardware.description.arrays import FloatArray
-from hardware.description.errors import DataError, PmmError
+from hardware.description.errors import PmmError
 from sim.pendulum.effects import body
 
-UNKNOWN: Final = "unknown"
-NONE: Final = "none"
-TOLD_APART: Final = 20.0  # ratio of evidence from which one answer is preferred to another
-TOLERATED: Final = 0.1  # remainder over gap at which a name is worth half
-_STEEP: Final = 4.0
+CAUSE: Final = "cause"
+UNTOLD: Final = "untold"
+TOLD_APART: Final = 20.0  # ratio of weights from which one answer is preferred to another
+_LIKELY: Final = 0.8  # probability from which an answer is said
 _BEYOND: Final = 4.0
-_CHANCE_U: Final = 0.2  # standard deviation of the gap that noise alone leaves in a dozen windows
 _HOPELESS = 60.0  # log evidence to first order that a full fit does not make up for
 LAWS: Final[Mapping[str, tuple[type[Any], ...]]] = {
     "dry friction": (body.BearingFriction,),
@@ -39,98 +39,91 @@ LAWS: Final[Mapping[str, tuple[type[Any], ...]]] = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Verdict:
-    """What is how probable.
+    """What is said of the records.
 
     Attributes
     ----------
-    by_set
-        Over sets of causes, ``()`` for none, and ``("unknown",)``; sums to 1.
+    said
+        ``"none"``, ``"unknown"``, ``"odd-run"``, ``"cause"``, or ``"untold"`` where nothing is
+        probable enough.
+    best
+        The most probable set of causes; of no causes where there is no gap.
+    probability
+        Of what is the most probable: of a cause with all that these records cannot tell from it.
     by_cause
         Of each cause, whatever else is there too.
     by_class
-        Probability of damping beyond linear, of any damping, of inertia or stiffness.
-    inflation
-        Chi-square per degree of freedom that the best set leaves, at least 1; all evidence is
-        weakened by it.
+        Of any damping, of damping beyond linear, of inertia or stiffness, of none and unknown.
     """
 
-    by_set: dict[tuple[str, ...], float]
-    by_cause: dict[str, float]
-    by_class: dict[str, float]
-    inflation: float
-
-    @property
-    def best(self) -> tuple[str, ...]:
-        """The most probable answer."""
-        return max(self.by_set, key=lambda names: self.by_set[names])
+    said: str
+    best: Fit
+    probability: float
+    by_cause: Mapping[str, float]
+    by_class: Mapping[str, float]
 
 
-def judge(problem: Problem, searched: Searched) -> Verdict:
-    """Turn evidence into probabilities.
+def judge(weighed: Weighed) -> Verdict:
+    """Return what is said: what is the most probable, where it is probable enough.
 
-    A set that leaves much of the gap counts for its names only in part; the rest of its weight
-    goes to ``"unknown"``.
-
-    Raises
-    ------
-    DataError
-        If the evidence is no number.
+    Something unknown is said only where the records prefer it to every set of causes; where its
+    prior odds alone do, the cause cannot be told.
     """
-    wide = inflation(problem, searched.best())
-    logs = {names: searched.log_weight(names, wide) for names in searched.sets}
-    logs[(UNKNOWN,)] = searched.log_weight_unknown(wide)
-    if not all(math.isfinite(one) for one in logs.values()):
-        raise DataError("the simulation cannot follow these records: their evidence is no number")
-    top = max(logs.values())
-    weights = {names: math.exp(value - top) for names, value in logs.items()}
-    total = sum(weights.values())
-    shares = {names: value / total for names, value in weights.items()}
-    for names, one in searched.sets.items():
-        kept = _deserved(problem, one) if names else 1.0
-        shares[(UNKNOWN,)] += (1.0 - kept) * shares[names]
-        shares[names] *= kept
-    causes = sorted({name for names in shares for name in names if name != UNKNOWN})
+    shares = weighed.answers.by_answer
+    first = weighed.ranked[0] if weighed.sets else nothing(weighed.problem)
+    found = {
+        NONE: shares[NONE] + shares[COEFFICIENTS],
+        UNKNOWN: shares[UNKNOWN],
+        ODD_RUN: shares[ODD_RUN],
+        CAUSE: _with_any(shares, [alike(weighed, name) for name in named(first)]),
+    }
+    said = max(found, key=lambda name: found[name])
+    probability = found[said]
+    unfounded = said == UNKNOWN and weighed.strangeness < math.log(TOLD_APART)
+    if said != NONE and (probability < _LIKELY or unfounded):
+        said = UNTOLD
+    causes = sorted({name for answer in shares for name in effects_in(answer)})
     return Verdict(
-        dict(sorted(shares.items(), key=lambda row: -row[1])),
-        {one: sum(s for names, s in shares.items() if one in names) for one in causes},
+        said,
+        nothing(weighed.problem) if said == NONE else first,
+        probability,
+        {name: _with_any(shares, [(name,)]) for name in causes},
         _classes(shares),
-        wide,
     )
 
 
-def _classes(shares: Mapping[tuple[str, ...], float]) -> dict[str, float]:
-    def any_of(names: Sequence[str]) -> float:
-        return sum(share for key, share in shares.items() if set(key) & set(names))
+def alike(weighed: Weighed, name: str) -> tuple[str, ...]:
+    """Return the causes that pass for one: laws of damping of its kind, and its twins."""
+    twins = weighed.beside.shapes.alike.get(name, frozenset((name,)))
+    kin = next((kind for kind in (BEYOND_LINEAR, DAMPING) if name in kind), ())
+    return tuple(sorted({name, *twins, *kin}))
 
+
+def _with_any(shares: Mapping[str, float], groups: Sequence[Sequence[str]]) -> float:
+    """Return the probability of the answers that have a cause of each group; 0 of no group."""
+    return sum(
+        share
+        for answer, share in shares.items()
+        if groups and all(set(effects_in(answer)) & set(one) for one in groups)
+    )
+
+
+def _classes(shares: Mapping[str, float]) -> dict[str, float]:
     # dry friction beside linear damping is not "beyond linear": it grows more slowly
     return {
-        "damping": any_of(DAMPING),
-        "damping beyond linear": any_of(BEYOND_LINEAR),
-        "inertia or stiffness": any_of(STIFFNESS),
+        "damping": _with_any(shares, [DAMPING]),
+        "damping beyond linear": _with_any(shares, [BEYOND_LINEAR]),
+        "inertia or stiffness": _with_any(shares, [STIFFNESS]),
         "only inertia or stiffness": sum(
-            share for key, share in shares.items() if key and set(key) <= set(STIFFNESS)
+            share
+            for answer, share in shares.items()
+            if effects_in(answer) and set(effects_in(answer)) <= set(STIFFNESS)
         ),
-        NONE: shares[()],
-        UNKNOWN: shares[(UNKNOWN,)],
+        NONE: shares[NONE],
+        UNKNOWN: shares[UNKNOWN],
     }
-
-
-def inflation(problem: Problem, best: Hypothesis) -> float:
-    """Return chi-square per degree of freedom of the best set, at least 1."""
-    left = misfit(best.without_signature(problem), problem.nuisances)
-    freedom = max(problem.residual.size - best.units.size, 1)
-    return max(left / freedom, 1.0)
-
-
-def _deserved(problem: Problem, one: Hypothesis) -> float:
-    """Return how much of a set's weight its names deserve, by what it leaves of the gap."""
-    size = problem.residual.size
-    before = misfit(problem.residual, problem.nuisances) - size
-    after = misfit(one.without_signature(problem), problem.nuisances) - 2.0 * size
-    ratio = math.sqrt(max(after, 0.0) / max(before, 1.0))
-    return 1.0 / (1.0 + math.pow(ratio / TOLERATED, _STEEP))
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,57 +133,40 @@ class Law:
     Attributes
     ----------
     log_ratio
-        Natural log of its evidence over the best law's, weakened by the inflation.
+        Natural log of its weight over the best law's.
     withheld
         The gap that it leaves on withheld swings, in u, one for each regime; empty where it was
         not asked.
     """
 
     name: str
-    hypothesis: Hypothesis
+    hypothesis: Fit
     log_ratio: float
     withheld: tuple[float, ...] = ()
 
     @property
-    def possible(self) -> bool:
-        """Whether the record as a whole does not tell the best law from it."""
-        return self.log_ratio > -math.log(TOLD_APART)
-
-
-def told_apart(first: Law, other: Law) -> bool:
-    """Whether the law of the best evidence can be told from another one.
-
-    Both have to say so: the evidence of the whole record, by a factor of 20, and the swings that
-    were withheld, none of which the other one foretells better by more than chance. A law far
-    behind in evidence is not asked to foretell.
-    """
-    return first.name != other.name and not other.possible and not foretells_better(other, first)
+    def told_apart(self) -> bool:
+        """Whether the records tell it from the best law, by a factor of 20."""
+        return self.log_ratio < -math.log(TOLD_APART)
 
 
 def open_laws(laws: Sequence[Law]) -> tuple[Law, ...]:
-    """Return the laws of damping that cannot be told from the one of the best evidence."""
-    return tuple(law for law in laws[1:] if not told_apart(laws[0], law))
+    """Return the laws of damping that cannot be told from the best one."""
+    return tuple(law for law in laws[1:] if not law.told_apart)
 
 
-def foretells_better(one: Law, other: Law) -> bool:
-    """Whether a law foretells any withheld swings better than another one by more than chance."""
-    gaps = zip(one.withheld, other.withheld, strict=False)
-    return any(mine < its - _CHANCE_U for mine, its in gaps)
-
-
-def damping_laws(
-    problem: Problem, best: Hypothesis, causes: Sequence[Cause], wide: float
-) -> tuple[Law, ...]:
+def damping_laws(weighed: Weighed, best: Fit, causes: Sequence[Candidate]) -> tuple[Law, ...]:
     """Fit every law of damping that the causes make beside the best set's others; best first."""
-    others = [one for one in best.causes if one.name not in DAMPING]
-    possible = {one.name for one in causes}
+    others = [one for one in best.candidates if one.name not in DAMPING]
+    possible = {one.name: one for one in causes}
     fitted = {
-        name: fit(problem, [*others, *(cause(kind) for kind in kinds)])
+        name: fit(weighed.problem, [*others, *(possible[kind.name] for kind in kinds)])
         for name, kinds in LAWS.items()
-        if {kind.name for kind in kinds} <= possible
+        if {kind.name for kind in kinds} <= set(possible)
     }
-    top = max(one.log_evidence for one in fitted.values())
-    laws = [Law(name, one, (one.log_evidence - top) / wide) for name, one in fitted.items()]
+    weights = {name: weighed.weight(one) for name, one in fitted.items()}
+    top = max(weights.values())
+    laws = [Law(name, one, weights[name] - top) for name, one in fitted.items()]
     return tuple(sorted(laws, key=lambda law: -law.log_ratio))
 
 
@@ -203,32 +179,32 @@ class Alternative:
     log_ratio: float
 
 
-def alternatives(
-    problem: Problem, best: Hypothesis, causes: Sequence[Cause], wide: float
-) -> tuple[Alternative, ...]:
-    """Return which causes could stand in the place of each one, evidence within a factor of 20."""
-    found = []
-    for one in best.causes:
-        rest = [other for other in best.causes if other.name != one.name]
-        base = fit(problem, rest)
-        for other in causes:
-            if other.name in best.names:
-                continue
-            ratio = _in_place(problem, base, other, best.log_evidence)
-            if ratio / wide > -math.log(TOLD_APART):
-                found.append(Alternative(one.name, other.name, ratio / wide))
+def alternatives(weighed: Weighed, best: Fit) -> tuple[Alternative, ...]:
+    """Return which causes could stand in the place of each one, weights within a factor of 20."""
+    found = [
+        Alternative(one.name, name, ratio)
+        for at, one in enumerate(best.candidates)
+        for name, ratio in _in_place(weighed, best, at)
+        if ratio > -math.log(TOLD_APART)
+    ]
     return tuple(sorted(found, key=lambda row: (row.instead_of, -row.log_ratio)))
 
 
-def _in_place(problem: Problem, base: Hypothesis, other: Cause, reference: float) -> float:
-    """Return the log evidence of a cause beside a fit, over the reference."""
-    try:
-        rough = linearised(problem, base, other)
-        if rough.log_evidence < reference - _HOPELESS:
-            return rough.log_evidence - reference
-        return fit(problem, rough.causes, rough.units).log_evidence - reference
-    except PmmError:  # cannot act on these tests
-        return -math.inf
+def _in_place(weighed: Weighed, best: Fit, at: int) -> Iterator[tuple[str, float]]:
+    """Yield the causes in the place of one of a set's, and their weight over the set's."""
+    problem, reference = weighed.problem, weighed.weight(best)
+    base = fit(problem, [one for number, one in enumerate(best.candidates) if number != at])
+    for seen in weighed.looked:
+        if seen.fit is None or seen.name in best.names:
+            continue
+        rough = joined(problem, base, seen.fit)
+        if expected_evidence(problem, rough) < best.log_evidence - _HOPELESS:
+            continue
+        try:
+            one = fit(problem, rough.candidates, rough.units)
+        except PmmError:  # cannot act on these tests
+            continue
+        yield seen.name, weighed.weight(one) - reference
 
 
 @dataclass(frozen=True)
@@ -272,7 +248,7 @@ class KindOfGap:
 def where(problem: Problem, after: Settled) -> tuple[KindOfGap, ...]:
     """Return the gap by kind of observable, before and after."""
     left = remainder(after.problem, after.best)
-    lefts = (as_stated(problem), remainder(problem, null(problem)), left)
+    lefts = (as_stated(problem), remainder(problem, nothing(problem)), left)
     found = []
     for kind in np.unique(problem.kind):
         rows = problem.kind == kind
@@ -281,9 +257,9 @@ def where(problem: Problem, after: Settled) -> tuple[KindOfGap, ...]:
     return tuple(found)
 
 
-def remainder(problem: Problem, one: Hypothesis) -> FloatArray:
+def remainder(problem: Problem, one: Fit) -> FloatArray:
     """Return what a hypothesis leaves of the gap with its nuisances at their best, in sigma."""
-    left = one.without_signature(problem)
+    left = problem.residual - one.signature
     return left - problem.nuisances.columns @ problem.nuisances.fitted(left)
 
 

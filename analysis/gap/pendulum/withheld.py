@@ -11,9 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from analysis.gap.fit import Fit, at, nothing
 from analysis.gap.gaussian import Nuisances, posterior
-from analysis.gap.pendulum.hypothesis import Hypothesis, fit, held, null
 from analysis.gap.pendulum.problem import Problem
+from analysis.gap.pendulum.search import fit, named
 from analysis.gap.pendulum.trial import Trial
 from hardware.description.arrays import BoolArray, FloatArray
 
@@ -69,7 +70,7 @@ class Regime:
     foretold: tuple[Foretold, ...]
 
 
-def foretell(problem: Problem, sets: Sequence[Hypothesis]) -> tuple[Regime, ...]:
+def foretell(problem: Problem, sets: Sequence[Fit]) -> tuple[Regime, ...]:
     """Withhold small swings, then large ones, and foretell them with some sets of causes.
 
     Where the records are of several suspensions, each of them is withheld instead.
@@ -101,7 +102,7 @@ def _regime(
     name: str,
     problem: Problem,
     hidden: Sequence[BoolArray],
-    sets: Sequence[Hypothesis],
+    sets: Sequence[Fit],
 ) -> Regime:
     seen = _without(problem, hidden)
     parts = [
@@ -109,12 +110,12 @@ def _regime(
         for rows, t in zip(hidden, problem.trials, strict=True)
     ]
     rows = problem.flat([part.astype(float) for part in parts]) > 0.5
-    plain = _left(problem, null(seen), rows)
+    plain = _left(problem, nothing(seen), rows)
     before = _foretold(problem, rows, (), plain, plain)
     after = []
     for one in sets:
-        left = _left(problem, fit(seen, one.causes, one.units), rows)
-        after.append(_foretold(problem, rows, one.names, plain, left))
+        left = _left(problem, fit(seen, one.candidates, one.units), rows)
+        after.append(_foretold(problem, rows, named(one), plain, left))
     sizes = problem.amplitude[rows]
     count = int(sum(r.sum() for r in hidden))
     return Regime(name, count, (float(sizes.min()), float(sizes.max())), before, tuple(after))
@@ -129,19 +130,19 @@ def _without(problem: Problem, hidden: Sequence[BoolArray]) -> Problem:
     return replace(problem, trials=tuple(trials))
 
 
-def _left_out(problem: Problem, sets: Sequence[Hypothesis]) -> Regime:
+def _left_out(problem: Problem, sets: Sequence[Fit]) -> Regime:
     """Foretell each suspension from the others."""
     every = np.ones(problem.residual.size, dtype=bool)
     lefts: list[list[tuple[FloatArray, FloatArray]]] = [[] for _ in (None, *sets)]
-    for at in range(len(problem.trials)):
+    for out in range(len(problem.trials)):
         hidden = [
-            np.full(trial.windows.count, number == at)
+            np.full(trial.windows.count, number == out)
             for number, trial in enumerate(problem.trials)
         ]
-        seen, rows = _without(problem, hidden), problem.trial == at
-        lefts[0].append(_left(problem, null(seen), rows))
+        seen, rows = _without(problem, hidden), problem.trial == out
+        lefts[0].append(_left(problem, nothing(seen), rows))
         for kept, one in zip(lefts[1:], sets, strict=True):
-            kept.append(_left(problem, fit(seen, one.causes, one.units), rows))
+            kept.append(_left(problem, fit(seen, one.candidates, one.units), rows))
     plain, *after = [
         (np.concatenate([one for one, _ in part]), np.hstack([drawn for _, drawn in part]))
         for part in lefts
@@ -153,18 +154,18 @@ def _left_out(problem: Problem, sets: Sequence[Hypothesis]) -> Regime:
         (float(sizes.min()), float(sizes.max())),
         _foretold(problem, every, (), plain, plain),
         tuple(
-            _foretold(problem, every, one.names, plain, left)
+            _foretold(problem, every, named(one), plain, left)
             for one, left in zip(sets, after, strict=True)
         ),
     )
 
 
-def _left(problem: Problem, one: Hypothesis, rows: BoolArray) -> tuple[FloatArray, FloatArray]:
+def _left(problem: Problem, one: Fit, rows: BoolArray) -> tuple[FloatArray, FloatArray]:
     """Return the withheld windows' remainder in u, and draws of it, shape ``(draws, rows)``."""
-    full = held(problem, one.causes, one.units)
+    full = at(problem, one.candidates, one.units)
     whole = problem.nuisances.columns
     among = Nuisances(whole[~rows])
-    left = full.without_signature(problem)
+    left = problem.residual - full.signature
     columns = np.hstack([whole, full.columns])
     both = posterior(left[~rows], columns[~rows], Nuisances(np.zeros((int((~rows).sum()), 0))))
     found = left[rows] - whole[rows] @ among.fitted(left[~rows])

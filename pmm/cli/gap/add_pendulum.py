@@ -46,8 +46,7 @@ def add_pendulum(
     refuse_twice(path, there, causes)
     after = _settled(path, causes, PendulumOptions(given.effects, given.without, most))
     refuse_twice(path, there, after.best.names)
-    effects = after.best.effects(after.problem.trials[0])
-    added = [Added(one.name, _told(one)) for one in effects]
+    added = [Added(one.name, _told(one)) for one in after.best.effects]
     again = pasted(
         "gap", "pendulum", file, *(word for one in given.files for word in ("--effects", one))
     )

@@ -26,7 +26,6 @@ from pmm.gap.coefficients import CoefficientRow
 from pmm.gap.conclusion import Conclusion, Weighing, verdict_of
 from pmm.gap.document import document
 from pmm.gap.hull_report import Convention
-from pmm.gap.pendulum_conclusion import conclude
 from pmm.gap.report import GapReport
 from pmm.gap.rows import ControlRow, Ranked, RegimeRow
 from pmm.gap.sizes import HowLarge, Size, spoiled
@@ -232,23 +231,6 @@ def test_the_most_probable_answer_is_what_is_said(report: GapReport) -> None:
     assert found.adds == (first not in BEGINNINGS)
     if found.adds:
         assert set(first.split("+")) <= set(re.findall(r"[\w-]+", report.said[0]))
-
-
-@given(
-    best=st.sampled_from([(), ("unknown",), ("drag",), ("drag", "lag")]),
-    foretells=st.floats(-1.0, 1.0) | st.just(math.nan),
-    gap=st.booleans(),
-)
-def test_any_pendulum(best: tuple[str, ...], foretells: float, gap: bool) -> None:
-    names = ("drag",) if best == ("unknown",) else best
-    found = conclude(best, names, foretells, gap=gap)
-    if not gap:
-        assert found.verdict == "none"
-    if found.adds:
-        assert found.names
-        assert foretells >= 0.8
-    if gap and best and foretells >= 0.95:
-        assert found.adds
 
 
 # Diagnoses of simulated rigs

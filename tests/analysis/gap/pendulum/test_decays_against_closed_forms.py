@@ -5,13 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from analysis.gap.pendulum.causes import Cause, cause, causes_for, tolerance
-from analysis.gap.pendulum.hypothesis import fit
+from analysis.gap.candidate import Candidate
+from analysis.gap.gaussian import misfit
+from analysis.gap.pendulum.causes import cause, causes_for, tolerance
 from analysis.gap.pendulum.problem import Problem
-from analysis.gap.pendulum.search import search
+from analysis.gap.pendulum.search import fit, weigh
 from analysis.gap.pendulum.swings import cut_into_windows, scatter, swings_of_samples
 from analysis.gap.pendulum.trial import Trial
-from analysis.gap.pendulum.verdict import judge
+from analysis.gap.pendulum.verdict import CAUSE, judge
 from analysis.gap.pendulum.withheld import foretell
 from hardware.description.arrays import FloatArray
 from sim.pendulum.benches import decay_bench
@@ -36,7 +37,7 @@ def decay(amplitude: FloatArray, seed: int, phase: FloatArray | float = 0.0) -> 
     return Problem((trial,), (tolerance("restoring", 1e-3),), kinds=kinds)
 
 
-def some(problem: Problem) -> list[Cause]:
+def some(problem: Problem) -> list[Candidate]:
     """Return the causes that are tried: those of every kind, so that a test takes a second."""
     names = (*LOSSES, "inertia", "restoring", "amplitude_period", "sensor_offset")
     return [one for one in causes_for(problem.trials) if one.name in names]
@@ -61,18 +62,18 @@ SIZES = {
 @pytest.mark.parametrize("name", list(LOSSES))
 def test_loss_is_named_with_its_size(name: str) -> None:
     problem = decay(LOSSES[name], seed=3)
-    searched = search(problem, some(problem), most=1)
-    assert judge(problem, searched).best == (name,)
-    best = searched.sets[(name,)]
-    (axis,) = best.causes[0].axes
+    found = weigh(problem, some(problem), most=1)
+    assert found.answers.best == name
+    best = found.sets[name]
+    (axis,) = best.axes
     assert axis.value(float(best.units[0])) == pytest.approx(SIZES[name], rel=0.03)
 
 
 def test_nothing_missing_is_none() -> None:
     problem = decay(np.full(TIME_S.size, RELEASE), seed=5)
-    verdict = judge(problem, search(problem, some(problem), most=1))
-    assert verdict.best == ()
-    assert verdict.by_class["none"] > 0.5
+    answers = weigh(problem, some(problem), most=1).answers
+    assert answers.best == "none"
+    assert answers.by_answer["none"] > 0.5
 
 
 def test_period_that_falls_with_amplitude_is_no_damping() -> None:
@@ -83,8 +84,7 @@ def test_period_that_falls_with_amplitude_is_no_damping() -> None:
     chosen = [
         cause(kind) for kind in (body.ViscousDamping, body.AmplitudePeriod, body.QuadraticDrag)
     ]
-    verdict = judge(problem, search(problem, chosen, most=2))
-    assert verdict.best == ("amplitude_period", "viscous_damping")
+    assert weigh(problem, chosen, most=2).answers.best == "amplitude_period+viscous_damping"
 
 
 def test_withheld_swings_are_foretold_by_the_true_loss() -> None:
@@ -100,6 +100,13 @@ def test_withheld_swings_are_foretold_by_the_true_loss() -> None:
 
 def test_inertia_and_restoring_are_twins() -> None:
     problem = decay(np.full(TIME_S.size, RELEASE), seed=13, phase=-0.02 * math.pi * CYCLES)
-    sets = search(problem, some(problem), most=1).sets
-    assert sets[("inertia",)].cost == pytest.approx(sets[("restoring",)].cost, abs=2.0)
-    assert sets[("inertia",)].cost < sets[()].cost - 100.0
+    found = weigh(problem, some(problem), most=1)
+    sets, shares = found.sets, found.answers.by_answer
+    assert sets["inertia"].cost == pytest.approx(sets["restoring"].cost, abs=2.0)
+    assert sets["inertia"].cost < misfit(problem.residual, problem.nuisances) - 100.0
+    assert shares["inertia"] == pytest.approx(shares["restoring"], rel=0.5)
+    verdict = judge(found)
+    assert verdict.said == CAUSE
+    # at one amplitude, a period that changes with it is a third one
+    alike = sum(shares[one] for one in ("inertia", "restoring", "amplitude_period"))
+    assert verdict.probability == pytest.approx(alike, abs=0.02)

@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from analysis.gap.fit import Fit
 from analysis.gap.pendulum.causes import cause, tolerance
 from analysis.gap.pendulum.further import Proposal, Reach, propose
-from analysis.gap.pendulum.hypothesis import Hypothesis, fit
 from analysis.gap.pendulum.problem import Problem
+from analysis.gap.pendulum.search import fit
 from analysis.gap.pendulum.swings import Windows, cut_into_windows, scatter, swings_of_samples
 from analysis.gap.pendulum.trial import Trial
 from hardware.description.errors import ConfigurationError
@@ -46,7 +47,7 @@ def on_lines(*trials: Trial) -> Problem:
     return Problem(trials, known, kinds=("period",))
 
 
-def both(problem: Problem, *kinds: type) -> tuple[Hypothesis, Hypothesis]:
+def both(problem: Problem, *kinds: type) -> tuple[Fit, Fit]:
     """Fit two causes, each by itself."""
     first, second = (fit(problem, [cause(kind)]) for kind in kinds)
     return first, second

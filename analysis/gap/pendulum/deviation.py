@@ -1,0 +1,127 @@
+"""What stands beside every hypothesis of a pendulum test: how large, and how alike.
+
+A deviation changes with the amplitude, and is alike for records of one body in one set-up where
+their amplitudes are alike; a share of it is each record's own. Light gates tell no amplitude:
+what they see deviates throughout a record.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.inference.evidence import Background, Kind
+from analysis.gap.inference.kernel import Kernel
+from analysis.gap.inference.shapes import Looked as Shown
+from analysis.gap.inference.shapes import Shapes
+from analysis.gap.look import Looked
+from analysis.gap.pendulum.causes import DAMPED, LINES, READ, RESTORED
+from analysis.gap.pendulum.problem import Problem
+from analysis.gap.pendulum.swings import KINDS
+from hardware.description.arrays import BoolArray, FloatArray
+
+_OWN: Final = 0.2  # share of a deviation's variance that is each record's own
+_OCTAVE: Final = float(np.log(2.0))  # of amplitude, over which a deviation keeps its value
+_FEWEST: Final = 3  # records, from which one of them may be odd
+_WHENCE: Final[Mapping[str, tuple[str, ...]]] = {
+    "decay": (DAMPED,),
+    "period": (RESTORED, LINES),
+    "mean": (READ,),
+}
+_DECAY, _PERIOD, _MEAN = (KINDS.index(one) for one in ("decay", "period", "mean"))
+
+
+def background(problem: Problem, looked: Sequence[Looked]) -> Background:
+    """Return what stands beside every hypothesis of a pendulum test.
+
+    Parameters
+    ----------
+    looked
+        First looks at the causes of the catalogue.
+    """
+    scale = units(problem) / problem.uncertainty
+    columns = problem.nuisances.columns
+    shown = [
+        Shown(one.name, one.fit.stages[0], one.fit.signature, one.fit.columns)
+        for one in looked
+        if one.fit is not None
+    ]
+    stages, everywhere = tuple(dict.fromkeys(one.stage for one in shown)), np.ones_like(scale) > 0.0
+    cells = [np.flatnonzero(problem.kind == kind) for kind in np.unique(problem.kind)]
+    return Background(
+        problem.residual,
+        columns,
+        np.zeros(columns.shape[1], dtype=bool),
+        Kernel.of(cells, [_likeness(problem, rows) for rows in cells], scale),
+        Shapes.of(shown, scale, problem.nuisances),
+        _own(problem, scale),
+        dict.fromkeys(stages, everywhere),
+        dict(_kinds(problem, stages)),
+    )
+
+
+def _kinds(problem: Problem, stages: tuple[str, ...]) -> Iterator[tuple[str, Kind]]:
+    """Yield where something unknown may show: in one kind of observable, or in all."""
+    for kind in np.unique(problem.kind):
+        name = KINDS[kind]
+        whence = tuple(one for one in _WHENCE.get(name, stages) if one in stages)
+        yield name, Kind(problem.kind == kind, whence or stages)
+    yield "all", Kind(np.ones(len(problem.kind), dtype=bool), stages)
+
+
+def units(problem: Problem) -> FloatArray:
+    """Return how large a deviation of 1 is at each observation, in the observation's unit.
+
+    Of the amplitude's logarithm what it is predicted to fall by over the record, an e-fold at
+    least; of the phase all that was turned since the release, so that it is a share of the period;
+    of the mean the predicted amplitude; a third harmonic is a share of the amplitude already.
+    """
+    out = np.ones(len(problem.kind))
+    for at, trial in enumerate(problem.trials):
+        here = problem.trial == at
+        falls = problem.nominal[here & (problem.kind == _DECAY)]
+        turned = trial.windows.reference_rad_s * problem.centre_s
+        out = np.where(here & (problem.kind == _PERIOD), turned, out)
+        if len(falls):
+            out[here & (problem.kind == _DECAY)] = max(float(np.ptp(falls)), 1.0)
+            out[here & (problem.kind == _MEAN)] = float(np.exp(falls.max()))
+    return np.asarray(out, np.float64)
+
+
+def _likeness(problem: Problem, rows: NDArray[np.intp]) -> FloatArray:
+    """Return how alike a deviation is in some windows, shape ``(rows, rows)``."""
+    record, size = problem.trial[rows], _log_size(problem)[rows]
+    bodies = [one.bench.body for one in problem.trials]
+    alike = np.array([[one == other for other in bodies] for one in bodies])
+    shared = alike[np.ix_(record, record)] * np.exp(-0.5 * ((size[:, None] - size) / _OCTAVE) ** 2)
+    own = record[:, None] == record
+    return np.asarray((1.0 - _OWN) * shared + _OWN * own, np.float64)
+
+
+def _log_size(problem: Problem) -> FloatArray:
+    """Return the logarithm of each window's amplitude, its noise taken off by a parabola in time.
+
+    Noise that stood here and in what is observed would be taken for a deviation.
+    """
+    found = np.zeros(len(problem.kind))
+    for at, trial in enumerate(problem.trials):
+        seen = np.isfinite(trial.observed[_DECAY])
+        if not trial.scaled:
+            time_s, here = trial.windows.centres_s, problem.trial == at
+            fell = np.polynomial.Polynomial.fit(time_s[seen], trial.observed[_DECAY, seen], 2)
+            found[here] = fell(problem.centre_s[here])
+    return found
+
+
+def _own(problem: Problem, scale: FloatArray) -> dict[str, FloatArray]:
+    """Return by record what a gain, a period and a zero of its own change; none of very few."""
+    if len(problem.trials) < _FEWEST:
+        return {}
+    parts: list[BoolArray] = [problem.kind == kind for kind in (_DECAY, _PERIOD, _MEAN)]
+    return {
+        trial.name: np.column_stack(
+            [np.where(part & (problem.trial == at), scale, 0.0) for part in parts if part.any()]
+        )
+        for at, trial in enumerate(problem.trials)
+    }
