@@ -17,7 +17,6 @@ from analysis.gap.components import Part, Stack
 from analysis.gap.fit import Problem
 from analysis.gap.polynomial import motion, scaled_motion
 from analysis.gap.sparse_law import FORM, Law, sparse_law
-from analysis.gap.where import remaining
 from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.channels import FORCES
 from hardware.description.setpoint import Medium, SetPoint
@@ -79,7 +78,10 @@ def describe(problem: Problem, residual: FloatArray) -> Description | None:
         What is not explained, in sigma, shape ``(observations,)``; the free coefficients have not
         been taken out yet.
     """
-    stack, left = problem.simulator.stack, remaining(problem, residual)
+    # What changes smoothly over the runs would take a part of any law.
+    settings = problem.nuisances.settings
+    left = residual - settings.columns @ settings.fitted(residual)
+    stack = problem.simulator.stack
     rows = np.array([one.channel in FORCES and one.order <= _highest(stack) and one.part in FORM
                      for one in stack.components])  # fmt: skip
     if not rows.any() or math.sqrt(float(np.mean(left[rows] ** 2))) < _CLEAR:

@@ -180,7 +180,7 @@ def tolerated(simulator: Simulator, free: Sequence[Free], tolerances: Tolerances
     on = dict(always_on(simulator, base, tolerances))
     names = (*(one.name for one in free), *on)
     every = [*found, *on.values(), *sensors, *own, *smooth, *_noise_levels(stack)]
-    return Nuisances(np.column_stack(every), names)
+    return Nuisances(np.column_stack(every), names, len(on))
 
 
 def _sensors(stack: Stack, base: FloatArray, relative: float) -> Iterator[FloatArray]:

@@ -17,10 +17,11 @@ from typing import Final
 
 import numpy as np
 
+from analysis.gap.inference.constants import VISIBLE
 from hardware.description.arrays import BoolArray, FloatArray
 
 _APART: Final = 3.0  # from one width of a size's prior to the next
-_HARDLY: Final = 3.0  # sigma of a prior deviation's signature, below which there is no next one
+_HARDLY: Final = math.exp(VISIBLE)  # sigma of a prior deviation's signature at least
 _MOST_SCALES: Final = 6
 
 
@@ -34,10 +35,26 @@ class Nuisances:
         Shape ``(observations, nuisances)``, whitened.
     names
         Of the first columns: coefficients, settings, what is always on.
+    always_on
+        How many of these, the last ones, are of what is always on.
     """
 
     columns: FloatArray
     names: tuple[str, ...] = ()
+    always_on: int = 0
+
+    @property
+    def settings(self) -> "Nuisances":
+        """Coefficients and settings alone."""
+        count = len(self.names) - self.always_on
+        return Nuisances(self.columns[:, :count], self.names[:count])
+
+    @property
+    def without_always_on(self) -> "Nuisances":
+        """All but what is always on."""
+        count = len(self.names) - self.always_on
+        kept = np.delete(self.columns, np.s_[count : len(self.names)], axis=1)
+        return Nuisances(kept, self.names[:count])
 
     @cached_property
     def _gain(self) -> FloatArray:
@@ -61,7 +78,7 @@ class Nuisances:
 
     def among(self, rows: BoolArray) -> "Nuisances":
         """Return the nuisances over some of the observations."""
-        return Nuisances(self.columns[rows], self.names)
+        return Nuisances(self.columns[rows], self.names, self.always_on)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,9 +109,9 @@ def any_size(found: Posterior, groups: Sequence[BoolArray], reaches: Sequence[fl
     """Return the log evidence gained by not knowing by orders of magnitude how large effects are.
 
     A size's prior is a mixture of normals: as wide as it is, thrice that up to what is plausible, a
-    third of that and so on down to where the effect would hardly be seen, each as likely as the
-    others. One wide normal would ask more evidence of an effect the better a rig shows it, and the
-    more, the further it is from what is typical.
+    third of that and so on down to where these runs would hardly show the effect, each as likely as
+    the others: an effect that they hardly show is none. One wide normal would ask more evidence of
+    an effect the better a rig shows it, and the more, the further it is from what is typical.
 
     Parameters
     ----------

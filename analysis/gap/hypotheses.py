@@ -16,7 +16,6 @@ from analysis.gap.look import HIDDEN, Looked
 from analysis.gap.screen import shown, worth_a_look
 from analysis.gap.search import LEADERS, Engine, alone_again, fitted, looked_at, paired
 from analysis.gap.together import together
-from sim.effects.catalogue import catalogue as whole
 from sim.effects.effect import Effect
 
 # What these change are the coefficients, and those are free in every hypothesis.
@@ -92,7 +91,7 @@ def weigh(
     considered = Considered(
         [hypothesis(problem, one) for one in singles],
         [hypothesis(problem, one) for one in pairs],
-        max(len(kinds), len(whole())),  # a part of the catalogue has its part of the odds
+        len(kinds),
         len(_hidden(looked)) + len(kinds) - len(worth),
     )
     found = answers(considered, background(problem, looked, sought))

@@ -6,6 +6,7 @@ a kind of its own; where nothing of that kind is beyond u, it is not there to be
 """
 
 from collections.abc import Iterable, Mapping, Set
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -41,7 +42,9 @@ def shown(problem: Problem) -> frozenset[DeviationTrace]:
     Where the shaft is not recorded, the struts speak for it, and forces where nothing else is.
     """
     stack = problem.simulator.stack
-    left = left_by_step(problem, problem.residual)
+    # An effect may show in what every rig has a little of.
+    bare = replace(problem, nuisances=problem.nuisances.without_always_on)
+    left = left_by_step(bare, problem.residual)
     kinds: dict[Component, list[int]] = {}
     for at, one in enumerate(stack.components):
         kinds.setdefault(one, []).append(at)

@@ -61,7 +61,7 @@ class Considered:
     singles, pairs, triples
         What was fitted.
     count
-        How many effects there are; those that were not considered have no part in any answer.
+        How many effects were considered.
     concealed
         How many these runs cannot show, or do not: as good as none.
     """

@@ -71,7 +71,8 @@ def test_an_effect_at_the_edge_of_the_noise_is_no_odd_run(
     rig: SimulatedRig, name: str, share: float
 ) -> None:
     whole = build(name)
-    weak = replace(whole, **{key: share * value for key, value in vars(whole).items()})
+    sizes = [one.name for one in whole.parameters() if not one.forms]
+    weak = replace(whole, **{key: share * getattr(whole, key) for key in sizes})
     found = diagnosed(rig, record(rig, [weak], seed=3)).answers
     assert found.by_answer[ODD_RUN] < 0.5
 

@@ -23,12 +23,12 @@ KNOWN = (
 @pytest.mark.parametrize(
     ("said", "seed"),
     [
-        (("connecting-rod:rod_length_m=60", "coulomb-friction:friction_n=0.05"), 81),
+        (("connecting-rod:rod_length_m=10", "coulomb-friction:friction_n=0.3"), 81),
         (("carriage-fluctuation:relative=0.001", "slot-tilt:tilt_aft_rad=0.005"), 82),
     ],
 )
 def test_both_are_named(rig: SimulatedRig, said: tuple[str, str], seed: int) -> None:
-    """The slot's bow is 40 times less than a usual rod makes, the swell a third."""
+    """The rod's bow is six times less than a usual one makes, the swell a third."""
     runs = record(rig, [build(one) for one in said], seed)
     found = diagnose(rig, runs, Settings({name: find(name) for name in KNOWN}))
     assert found.answers.best == "+".join(sorted(one.split(":")[0] for one in said))
@@ -42,9 +42,8 @@ def test_neither_need_be_among_the_likeliest_alone(rig: SimulatedRig) -> None:
              "channel-skew", "viscous-guides", "strut-tare", "memory", "cable")  # fmt: skip
     found = diagnose(rig, runs, Settings({name: find(name) for name in names}))
     assert found.answers.best == "coulomb-friction+quadratic-damping"
-    assert "cable" in dict(found.classes["coulomb-friction"])
     assert found.rival is not None
-    assert not {"cable", *found.best.names} & set(found.rival.names)
+    assert not {*found.best.names} & set(found.rival.names)
 
 
 def test_every_start_is_within_its_range() -> None:

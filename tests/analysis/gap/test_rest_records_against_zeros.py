@@ -147,7 +147,7 @@ def test_uneven_friction_does_not_and_the_odds_say_so(rig: SimulatedRig) -> None
 def advantage(found: Diagnosis) -> float:
     """Return the log odds of uneven friction over a zero offset."""
     fits = {one.name: one.fit for one in found.weighed.looked}
-    fits |= {one.fit.names[0]: one.fit for one in found.weighed.singles}
+    fits |= {one.names[0]: one for one in found.weighed.singles}
     friction, zero = fits["uneven-friction"], fits["zero-offset"]
     assert friction is not None
     assert zero is not None

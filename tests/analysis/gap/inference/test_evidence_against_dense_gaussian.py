@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from analysis.gap.components import GapRun, Stack
 from analysis.gap.deviation import background, likeness, units
 from analysis.gap.fit import at, hypothesis
-from analysis.gap.inference.constants import PLAIN, STRANGE, TAUS, TOLERATED, VISIBLE, WIDE
+from analysis.gap.inference.constants import FORMS, PLAIN, STRANGE, TAUS, TOLERATED, VISIBLE, WIDE
 from analysis.gap.inference.evidence import Background
 from analysis.gap.inference.gram import Weighted
 from analysis.gap.inference.kernel import Kernel
@@ -148,10 +148,11 @@ def test_a_named_effect_of_no_free_size_has_its_normal_density(
     own = _square(np.hstack(list(beside.own.values())))
     shapes = beside.shapes.columns * beside.shapes.beside(fit.names)
     for at_, tau in enumerate(TAUS):
-        whole = np.eye(len(one.target)) + _square(beside.tolerances) + _square(forms)
+        whole = np.eye(len(one.target)) + _square(beside.tolerances) + _square(fit.columns)
         whole += PLAIN * tau**2 * (_dense(beside.kernel) + own) + _square(tau * shapes)
-        found = beside.named(free)[at_].log_evidence
-        assert found == pytest.approx(_log(one.target, whole + _square(fit.columns)), rel=1e-6)
+        each = [_log(one.target, whole + _square(share * forms)) for share in FORMS]
+        wanted = np.logaddexp.reduce(each) - np.log(len(each))
+        assert beside.named(free)[at_].log_evidence == pytest.approx(wanted, rel=1e-6)
 
 
 def test_what_stands_beside_an_effect_has_not_its_shape(beside: Background) -> None:
