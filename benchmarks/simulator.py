@@ -25,7 +25,7 @@ from sim.model.laws import Quadratic
 from sim.model.mounting import Mounting
 from sim.model.water.radiation import Radiation
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
-from sim.solve.periodic import steady_run
+from sim.run import steady_run
 
 RATE_HZ = 200.0
 _SET_POINT = SetPoint(1.0, 0.02, 0.7)

@@ -26,6 +26,11 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
+# Classes of tables carry this as ``__pydantic_config__``, for the tables in them too: unknown keys,
+# NaN and infinity are refused.
+STRICT_TABLE: Final = {"extra": "forbid", "allow_inf_nan": False}
+
+
 class Fault(NamedTuple):
     """One error of a file: where, and what."""
 

@@ -5,7 +5,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import ClassVar
 
 from analysis.readers import ColumnMap
 from analysis.resolver.reference_choice import ReferenceChoice
@@ -15,6 +14,7 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
 from pmm.campaign.model_uncertainty import ModelUncertainty
 from pmm.campaign.runs import AtRest, RecordedWith, Run, nearest_run
+from pmm.configuration import STRICT_TABLE
 from sim.acquisition.channels import Acquisition
 from sim.acquisition.photocell import PhotocellStage
 from sim.drive.carriage import CarriageSettings
@@ -111,8 +111,7 @@ class Campaign:
     at_rest: tuple[AtRest, ...] = ()
     tared: bool = False
 
-    # Holds for the classes of all tables: unknown keys, NaN and infinity are refused.
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+    __pydantic_config__ = STRICT_TABLE
 
     def rig(self) -> SimulatedRig:
         """Return the rig as the simulation believes it to be.

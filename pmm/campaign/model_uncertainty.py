@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from pmm.configuration import Fault, validate
+from pmm.configuration import STRICT_TABLE, Fault, validate
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class ModelUncertainty:
     cg_z_m: float = 0.0
     inertia_degrees_of_freedom: float = math.inf
 
-    __pydantic_config__ = {"extra": "forbid", "allow_inf_nan": False}  # noqa: RUF012
+    __pydantic_config__ = STRICT_TABLE
 
 
 def take_uncertainty(table: dict[str, Any], faults: list[Fault]) -> ModelUncertainty | None:

@@ -4,14 +4,14 @@ from copy import deepcopy
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
-from typing import Any, ClassVar, Final
+from typing import Any, Final
 
 from analysis.coefficients.names import Form
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from hardware.description.errors import ConfigurationError
 from hardware.description.toml import is_number
 from hardware.description.units import STANDARD_GRAVITY_M_S2
-from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
+from pmm.configuration import STRICT_TABLE, Fault, as_error, limit_faults, read_toml, validate
 
 SETTINGS_FILE: Final = "coefficients.toml"
 MODEL: Final = "model"
@@ -140,7 +140,7 @@ class Settings:
     amplifiers: dict[str, AmplifierTable] = field(default_factory=dict)
     references: tuple[ReferenceFile, ...] = ()
 
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+    __pydantic_config__ = STRICT_TABLE
 
 
 def read_settings(path: Path) -> Settings:

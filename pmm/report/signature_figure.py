@@ -17,8 +17,8 @@ from sim.effects.effect import Effect
 from sim.effects.situation import Situation
 from sim.effects.switching import switch_on
 from sim.rig import SimulatedRig
+from sim.run import steady_run
 from sim.signals import recorded
-from sim.solve.periodic import steady_run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

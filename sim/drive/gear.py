@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import ClassVar
 
 import numpy as np
 
@@ -39,7 +38,7 @@ class Gear:
     damping_n_m_s_rad: float = 20.0
     crank_inertia_kg_m2: float = 0.02
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def __post_init__(self) -> None:
         for key in ("backlash_rad", "stiffness_n_m_rad", "crank_inertia_kg_m2"):

@@ -1,7 +1,7 @@
 """The model's own mass and weight, and the linear reaction of the water."""
 
 from dataclasses import dataclass
-from typing import ClassVar, TypeAlias
+from typing import TypeAlias
 
 from hardware.description.body import Body
 from hardware.description.oscillator import Plane
@@ -36,7 +36,7 @@ class HullCoefficients:
     damping: Matrix = _NONE
     restoring: Matrix = _NONE
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
 
 def mass_matrix(body: Body, plane: Plane) -> Matrix:

@@ -1,7 +1,6 @@
 """Surge: the water's resistance along the model."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 from sim.stage import UNKNOWN_KEYS_REFUSED
 
@@ -29,4 +28,4 @@ class SurgeForces:
     x_vr: float = 0.0
     x_rr: float = 0.0
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED

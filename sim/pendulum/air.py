@@ -1,7 +1,6 @@
 """The air around a body that swings in it."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 from sim.stage import UNKNOWN_KEYS_REFUSED
 
@@ -24,4 +23,4 @@ class Air:
     added_mass_ratio: float = 0.0
     added_inertia_ratio: float = 0.0
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED

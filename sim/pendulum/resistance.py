@@ -1,7 +1,6 @@
 """Forces on one coordinate alone: friction, damping, drag, and restoring beyond the linear."""
 
 from dataclasses import dataclass, fields
-from typing import ClassVar
 
 import numpy as np
 
@@ -42,7 +41,7 @@ class Resistance:
     restoring_cubic: float = 0.0
     restoring_quintic: float = 0.0
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def __post_init__(self) -> None:
         for name in ("viscous", "quadratic", "cubic", "power", "exponent", "coulomb"):

@@ -53,6 +53,10 @@ PLANTED = [
         "pmm/recorder/journal.py",
         "import analysis.gap.diagnose",
     ),
+    ("Within sim each link knows those before it", "sim/solve/relaxation.py", "import sim.rig"),
+    ("Within sim each link knows those before it", "sim/drive/gear.py", "import sim.coupled.march"),
+    ("Within sim each link knows those before it", "sim/gauges/dynamometer.py", "import sim.rig"),
+    ("The water knows no model in it", "sim/model/water/tank.py", "import sim.model.hull"),
     ("Within pmm imports go down only", "pmm/run/gate.py", "import pmm.console.pacing"),
     ("Within pmm imports go down only", "pmm/recorder/disk.py", "import pmm.campaign.calibration"),
 ]

@@ -20,9 +20,9 @@ from sim.model.law_point import Acting, Point
 from sim.model.laws import Cubic, Quadratic
 from sim.model.mounting import Mounting
 from sim.rig import SimulatedRig, vertical_rig
+from sim.run import steady_run
 from sim.signals import Signals
 from sim.solve.compilation import follow_interpreted, follow_loop
-from sim.solve.periodic import steady_run
 from tests.exact.forces import state
 from tests.exact.rig import ExactRig
 

@@ -8,7 +8,7 @@ are closed forms, for v = V cos(phi), and serve as oracles.
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -37,7 +37,7 @@ class CrossFlow:
     cubic: Rows | None = None
     quadratic: Rows | None = None
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def scaled(self, factor: float) -> "CrossFlow":
         """Return loads that are larger by a factor."""
