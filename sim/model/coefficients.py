@@ -1,14 +1,11 @@
 """The model's own mass and weight, and the linear reaction of the water."""
 
 from dataclasses import dataclass
-from typing import TypeAlias
 
 from hardware.description.body import Body
 from hardware.description.oscillator import Plane
+from sim.model.water.hydrostatics import Matrix
 from sim.stage import UNKNOWN_KEYS_REFUSED
-
-# Rows are force and moment, columns translation and rotation about the midpoint of the struts.
-Matrix: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
 _NONE: Matrix = ((0.0, 0.0), (0.0, 0.0))
 

@@ -11,10 +11,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from hardware.description.arrays import FloatArray
-from hardware.description.errors import ConfigurationError
 from sim.solve.linear_system import Rows, as_rows
 from sim.stage import UNKNOWN_KEYS_REFUSED
 
@@ -46,30 +43,6 @@ class CrossFlow:
 
 def _times(rows: Rows | None, factor: float) -> Rows | None:
     return None if rows is None else as_rows(np.array(rows) * factor)
-
-
-def cubic_loads(coefficients: ArrayLike, velocity: ArrayLike) -> FloatArray:
-    """Return force and moment of the cubic terms.
-
-    Parameters
-    ----------
-    coefficients
-        Shape ``(2, 4)``: rows force and moment, columns :data:`CUBIC_TERMS`.
-    velocity
-        Shape ``(2, ...)``.
-
-    Returns
-    -------
-    loads
-        Shape ``(2, ...)``.
-
-    Raises
-    ------
-    ConfigurationError
-        If the coefficients do not have this shape.
-    """
-    v, r = np.asarray(velocity, dtype=np.float64)
-    return _combined(coefficients, CUBIC_TERMS, np.stack([v**3, v * v * r, v * r * r, r**3]))
 
 
 def quadratic_describing_function(harmonic: int, drift_ratio: float = 0.0) -> float:
@@ -104,14 +77,3 @@ def _integral(e: float, n: int, end: float) -> float:
         + e * (of_cosine(n - 1) + of_cosine(n + 1))
         + 0.25 * (of_cosine(n - 2) + of_cosine(n + 2))
     )
-
-
-def _combined(coefficients: ArrayLike, names: tuple[str, ...], terms: FloatArray) -> FloatArray:
-    matrix = np.asarray(coefficients, dtype=np.float64)
-    if matrix.shape != (2, 4):
-        raise ConfigurationError(
-            f"coefficients have the shape {matrix.shape}; (2, 4) is needed: force and moment for "
-            f"{', '.join(names)}"
-        )
-    loads: FloatArray = np.tensordot(matrix, terms, 1)
-    return loads
