@@ -18,7 +18,7 @@ from pmm.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from pmm.coefficients.settings import Settings
+    from pmm.coefficients.settings import CoefficientSettings
     from pmm.coefficients.solving import Progress
     from pmm.coefficients.workflow import CampaignOutcome
 
@@ -31,7 +31,7 @@ SHARED = with_options(
     click.option(
         "--settings",
         metavar="TOML",
-        help="Settings file.  [default: coefficients.toml in the first campaign, if there]",
+        help="CoefficientSettings file.  [default: coefficients.toml in the first campaign, if there]",
     ),
     click.option("--form", type=click.Choice(FORMS), help="Names and signs.  [manoeuvring]"),
     click.option("--system", type=click.Choice(SYSTEMS), help="Units.  [dimensional]"),
@@ -148,7 +148,7 @@ def finish(outcome: "CampaignOutcome") -> None:
         click.get_current_context().exit(min(statuses))
 
 
-def _few(folders: Sequence[Path], settings: "Settings") -> bool:
+def _few(folders: Sequence[Path], settings: "CoefficientSettings") -> bool:
     """Whether there is too little to do for starting processes."""
     from pmm.campaign.campaign_file import read_campaign
     from pmm.campaign.file_names import CAMPAIGN_FILE

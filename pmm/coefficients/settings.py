@@ -93,7 +93,7 @@ class ReferenceFile:
 
 
 @dataclass(frozen=True)
-class Settings:
+class CoefficientSettings:
     """How a campaign's coefficients are had.
 
     Attributes
@@ -143,7 +143,7 @@ class Settings:
     __pydantic_config__ = STRICT_TABLE
 
 
-def read_settings(path: Path) -> Settings:
+def read_settings(path: Path) -> CoefficientSettings:
     """Read a settings file; files that it names lie beside it.
 
     Raises
@@ -155,13 +155,13 @@ def read_settings(path: Path) -> Settings:
     table = read_toml(path)
     faults: list[Fault] = list(limit_faults(table))
     faults += _value_faults(table)
-    found = validate(Settings, _with_folder(table, path.parent), faults)
+    found = validate(CoefficientSettings, _with_folder(table, path.parent), faults)
     if found is None or faults:
         raise as_error(path, faults, table)
     return found
 
 
-def settings_of(folder: Path, given: str | None) -> tuple[Settings, Path | None]:
+def settings_of(folder: Path, given: str | None) -> tuple[CoefficientSettings, Path | None]:
     """Return the settings of a campaign's folder, or those of the file that was given.
 
     Raises
@@ -171,7 +171,7 @@ def settings_of(folder: Path, given: str | None) -> tuple[Settings, Path | None]
     """
     path = folder / SETTINGS_FILE if given is None else Path(given)
     if given is None and not path.exists():
-        return Settings(), None
+        return CoefficientSettings(), None
     return read_settings(path), path
 
 

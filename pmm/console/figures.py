@@ -64,10 +64,10 @@ def _has_runs(folder: Path) -> bool:
 
 
 def _result(folder: Path) -> CampaignCoefficients:
-    from pmm.coefficients.settings import Settings
+    from pmm.coefficients.settings import CoefficientSettings
     from pmm.coefficients.workflow import coefficients_of
 
-    settings = Settings(nonlinear=False, zero_frequency=False)
+    settings = CoefficientSettings(nonlinear=False, zero_frequency=False)
     return coefficients_of([folder], settings, _Here(), _silent).result
 
 

@@ -19,7 +19,7 @@ from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator
 from pmm.campaign.campaign import Campaign
 from pmm.coefficients.reading import read_cycle, read_zero
-from pmm.coefficients.settings import Settings, settings_of
+from pmm.coefficients.settings import CoefficientSettings, settings_of
 from pmm.coefficients.stated_inputs import chain_of, oscillator_of, stated_of
 from pmm.coefficients.tasks import Done, Failed, Task, work_of
 from pmm.coefficients.workflow import request_of
@@ -91,7 +91,11 @@ class _Found:
     """Gathers what the runs say; one that cannot be used is told and stops no other."""
 
     def __init__(
-        self, campaign: Campaign, oscillator: Oscillator, settings: Settings, failed: list[Failed]
+        self,
+        campaign: Campaign,
+        oscillator: Oscillator,
+        settings: CoefficientSettings,
+        failed: list[Failed],
     ) -> None:
         self._campaign, self._oscillator, self._failed = campaign, oscillator, failed
         self._settings = settings

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from analysis.gap.components import GapRun
-from analysis.gap.diagnose import Settings
+from analysis.gap.diagnose import CoefficientSettings
 from analysis.gap.observe import COMPARED
 from analysis.gap.quality import doubts, judged
 from analysis.gap.recentre import Recentred
@@ -15,8 +15,7 @@ from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
-from pmm.coefficients.settings import Settings as Reporting
-from pmm.coefficients.settings import settings_of
+from pmm.coefficients.settings import CoefficientSettings, settings_of
 from pmm.coefficients.systems import check_dimensions
 from pmm.gap.case import Case, read_case
 from pmm.gap.hold_out import held_out_runs
@@ -57,9 +56,9 @@ class Prepared:
     there: Recentred
     fitted: tuple[GapRun, ...]
     withheld: tuple[GapRun, ...]
-    settings: Settings
+    settings: CoefficientSettings
     cut_short: Mapping[str, str] = field(default_factory=dict)
-    reporting: Reporting = field(default_factory=Reporting)
+    reporting: CoefficientSettings = field(default_factory=CoefficientSettings)
     damaged: Mapping[str, tuple[Flag, ...]] = field(default_factory=dict)
 
 
@@ -102,7 +101,7 @@ def prepare(
             f"{file}: {len(fitted)} runs to fit, a diagnosis needs {_FEWEST}: record "
             f"more set-points, or withhold fewer{why}"
         )
-    settings = Settings(
+    settings = CoefficientSettings(
         known,
         case.priors,
         on=tuple(on),
@@ -118,7 +117,7 @@ def prepare(
     )
 
 
-def _reporting(folder: Path) -> Reporting:
+def _reporting(folder: Path) -> CoefficientSettings:
     found, _ = settings_of(folder, None)
     check_dimensions(found.system, found.ship)
     return found

@@ -10,7 +10,7 @@ from pmm.cli.report import report
 from pmm.coefficients.settings import (
     AmplifierTable,
     ReferenceFile,
-    Settings,
+    CoefficientSettings,
     ShipTable,
     read_settings,
 )
@@ -28,7 +28,7 @@ def test_options() -> None:
 
 
 def test_keys() -> None:
-    for kind in (Settings, ShipTable, AmplifierTable, ReferenceFile):
+    for kind in (CoefficientSettings, ShipTable, AmplifierTable, ReferenceFile):
         for one in fields(kind):
             assert re.search(rf"\b{one.name}\b", PAGE), one.name
 
