@@ -18,11 +18,11 @@ from sim.acquisition.amplifier import LowPass
 from sim.acquisition.channels import Digitiser
 from sim.drive.motor import Servo
 from sim.drive.prescribed_drive import DriveSettings, SpeedRipple
-from sim.model.coefficients import HullCoefficients
 from sim.model.friction import Coulomb
 from sim.model.law_point import Acting, Point
 from sim.model.laws import Quadratic
 from sim.model.mounting import Mounting
+from sim.model.parameters import HullCoefficients
 from sim.model.water.radiation import Radiation
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.run import steady_run

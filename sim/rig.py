@@ -21,8 +21,7 @@ from sim.mechanism.linkage import Mechanism, Setting
 from sim.model.hull import Hull, HullCoefficients
 from sim.model.law_point import Acting
 from sim.model.mounting import Mounting
-from sim.model.surge import SurgeForces
-from sim.model.water.force_laws import CrossFlow
+from sim.model.water.force_laws import CrossFlow, SurgeForces
 from sim.model.water.radiation import Radiation
 from sim.stage import UNKNOWN_KEYS_REFUSED, Stage
 

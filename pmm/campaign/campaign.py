@@ -26,8 +26,7 @@ from sim.mechanism.linkage import Setting
 from sim.model.hull import HullCoefficients
 from sim.model.law_point import Acting
 from sim.model.mounting import Mounting
-from sim.model.surge import SurgeForces
-from sim.model.water.force_laws import CrossFlow
+from sim.model.water.force_laws import CrossFlow, SurgeForces
 from sim.model.water.radiation_file import RadiationFile
 from sim.rig import SimulatedRig
 

@@ -16,8 +16,7 @@ from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import check_within
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.file_names import campaign_name_faults, no_file_name
-from pmm.campaign.model_uncertainty import take_uncertainty
-from pmm.campaign.oscillator_table import expand_preset
+from pmm.campaign.model_uncertainty import expand_preset, take_uncertainty
 from pmm.campaign.runs import AtRest, Run
 from pmm.configuration import Fault, Place, as_error, limit_faults, read_toml, validate
 

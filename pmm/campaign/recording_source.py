@@ -13,7 +13,7 @@ from hardware.roles import Reading
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.runs import AtRest, Run
 from pmm.recorder.files import EVENTS, RECORDING
-from pmm.recorder.texts import read_lines
+from pmm.recorder.line_shapes import read_lines
 
 if TYPE_CHECKING:
     from analysis.readers import ColumnMap

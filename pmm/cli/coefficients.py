@@ -31,7 +31,7 @@ SHARED = with_options(
     click.option(
         "--settings",
         metavar="TOML",
-        help="CoefficientSettings file.  [default: coefficients.toml in the first campaign, if there]",
+        help="Settings file.  [default: coefficients.toml in the first campaign, if there]",
     ),
     click.option("--form", type=click.Choice(FORMS), help="Names and signs.  [manoeuvring]"),
     click.option("--system", type=click.Choice(SYSTEMS), help="Units.  [dimensional]"),

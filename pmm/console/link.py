@@ -7,8 +7,7 @@ from dataclasses import replace
 from multiprocessing.connection import Connection
 from typing import Final
 
-from pmm.console.messages import Frame, LoopOrder, PackedPlan, Told
-from pmm.console.packing import unpack
+from pmm.console.messages import Frame, LoopOrder, PackedPlan, Told, unpack
 
 _POLL_S: Final = 0.2
 _FRAMES: Final = 25  # one second's; older ones are dropped

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from analysis.gap.components import GapRun
-from analysis.gap.diagnose import CoefficientSettings
+from analysis.gap.diagnose import Settings
 from analysis.gap.observe import COMPARED
 from analysis.gap.quality import doubts, judged
 from analysis.gap.recentre import Recentred
@@ -56,7 +56,7 @@ class Prepared:
     there: Recentred
     fitted: tuple[GapRun, ...]
     withheld: tuple[GapRun, ...]
-    settings: CoefficientSettings
+    settings: Settings
     cut_short: Mapping[str, str] = field(default_factory=dict)
     reporting: CoefficientSettings = field(default_factory=CoefficientSettings)
     damaged: Mapping[str, tuple[Flag, ...]] = field(default_factory=dict)
@@ -101,7 +101,7 @@ def prepare(
             f"{file}: {len(fitted)} runs to fit, a diagnosis needs {_FEWEST}: record "
             f"more set-points, or withhold fewer{why}"
         )
-    settings = CoefficientSettings(
+    settings = Settings(
         known,
         case.priors,
         on=tuple(on),

@@ -14,7 +14,7 @@ from hardware.description.oscillator import Oscillator
 from hardware.rig_configuration import TABLES, RigConfiguration, read_rig
 from hardware.watch import WatchLimits
 from pmm.campaign.calibration import Calibration, read_calibration
-from pmm.campaign.oscillator_table import expand_preset
+from pmm.campaign.model_uncertainty import expand_preset
 from pmm.configuration import (
     Fault,
     as_error,

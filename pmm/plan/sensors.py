@@ -43,7 +43,7 @@ def acquisition_table(
     recorded
         The channels of the recordings.
     noise_rms
-        Of each record at rest, by channel (:func:`pmm.recorder.noise.white_noise_rms`).
+        Of each record at rest, by channel (:func:`pmm.recorder.recording.white_noise_rms`).
     """
     channels = {one.name: one for one in recorded}
     steps = resolutions(rig.hardware)

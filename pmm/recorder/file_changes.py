@@ -13,8 +13,9 @@ from pmm.recorder.files import (
     SAMPLES,
     TEXTS,
     contents_of,
+    read_marker,
+    read_recovered,
 )
-from pmm.recorder.marker import read_marker, read_recovered
 from pmm.recorder.recording import RunData, marker_is_whole
 
 _OTHER: Final = "its bytes are not those that were written"

@@ -1,7 +1,9 @@
 """What a line of each journal of text holds: JSON of another shape is damage, not data."""
 
+import json
 import math
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any, Final
 
 from pmm.recorder.files import CYCLES, EVENTS, HARMONICS, LINES, PULSES
@@ -112,3 +114,30 @@ _SHAPES: Final[Mapping[str, Shape]] = {
     LINES: _row(_whole, _text, _bytes),
     CYCLES: _row(_whole, _finite, _finite, _finite, _whole),
 }
+
+
+def as_line(value: Any) -> bytes:
+    """Return a value as a line."""
+    return json.dumps(value, separators=(",", ":")).encode() + b"\n"
+
+
+def read_lines(path: Path) -> tuple[list[Any], int]:
+    """Return the whole values of a journal, and how many bytes behind them are not whole.
+
+    A journal that is not there is an empty one.
+    """
+    if not path.exists():
+        return [], 0
+    data = path.read_bytes()
+    values: list[Any] = []
+    at = 0
+    while (end := data.find(b"\n", at)) >= 0:
+        try:
+            value = json.loads(data[at:end])
+        except (ValueError, RecursionError):
+            break
+        if not is_line_of(path.name, value):
+            break
+        values.append(value)
+        at = end + 1
+    return values, len(data) - at

@@ -13,10 +13,10 @@ from hardware.description.flags import Flag, Severity
 from pmm.recorder.decoding import decode
 from pmm.recorder.disk import DiskFullError, free_bytes
 from pmm.recorder.files import BUS, LINES, PULSES, SAMPLES, set_aside
+from pmm.recorder.line_shapes import as_line
 from pmm.recorder.live_path import Taken, joined
 from pmm.recorder.recording import RunData, marker_is_whole
 from pmm.recorder.samples import SampleWriter
-from pmm.recorder.texts import as_line
 from pmm.whole_file import write_whole
 
 

@@ -29,13 +29,12 @@ from pmm.recorder.files import (
     RECORDING,
     SAMPLES,
     TEXTS,
+    read_marker,
 )
 from pmm.recorder.header import RunHeader
 from pmm.recorder.lateness import CycleStatistics
-from pmm.recorder.marker import read_marker
-from pmm.recorder.noise import white_noise_rms
+from pmm.recorder.line_shapes import read_lines
 from pmm.recorder.samples import JournalSamples, counts, read_header, read_samples
-from pmm.recorder.texts import read_lines
 from pmm.whole_file import sync_folder
 
 _OPEN, _CLOSED = "gate open", "hold"  # states of run control, as its events have them
@@ -264,3 +263,28 @@ def _gate_by_time(run: RunData) -> dict[str, Any]:
     open_s = times[_CLOSED] - times[_OPEN] + 1.0 / run.header.sample_rate_hz
     periods = math.floor(open_s * point.frequency_hz) - 1
     return {"opened_s": times[_OPEN], "periods": periods} if periods > 0 else {}
+
+
+def white_noise_rms(samples: FloatArray) -> FloatArray:
+    """Return the standard deviation of each channel's white noise.
+
+    From the differences of neighbouring samples, which are blind to a zero that wanders and to
+    waves that are long against a sample; missing samples are passed over.
+
+    Parameters
+    ----------
+    samples
+        Shape ``(channels, n)``.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape ``(channels,)``; NaN where a channel has no two samples in a row.
+    """
+    steps = np.diff(samples, axis=1) ** 2
+    known = np.isfinite(steps)
+    count = known.sum(axis=1)
+    total = np.where(known, steps, 0.0).sum(axis=1)
+    found = np.full(len(samples), np.nan)
+    np.divide(total, 2.0 * count, out=found, where=count > 0)
+    return np.asarray(np.sqrt(found))

@@ -11,10 +11,9 @@ from analysis.resolver.weights import REACH
 from hardware.description.kinds import RunKind
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.live_path import PATIENCE_CYCLES, LivePath
-from pmm.run.conduct import Conduct
+from pmm.run.conduct import Conduct, check_frequency, check_standing
 from pmm.run.errors import PulseOverdueError
 from pmm.run.gate import GateState
-from pmm.run.shaft_checks import check_frequency, check_standing
 from pmm.run.states import State
 
 _OVERDUE_TURNS: Final = 4.5  # beyond the limit of the photocells' own drivers

@@ -19,7 +19,7 @@ from hardware.description.body import DIMENSIONS
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.campaign.calibrated_recording import CARRIED
 from pmm.campaign.calibration import as_table
-from pmm.campaign.oscillator_table import expand_preset
+from pmm.campaign.model_uncertainty import expand_preset
 from pmm.configuration import place_text, read_toml
 from pmm.places import Place
 from pmm.plan.campaign_writer import FinishedRun

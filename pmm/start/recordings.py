@@ -16,8 +16,7 @@ from hardware.description.channels import CARRIAGE_SPEED, DISPLACEMENTS, FORCES,
 from hardware.description.kinds import RunKind
 from hardware.description.setpoint import SetPoint
 from pmm.start import words
-from pmm.start.at_rest import at_rest
-from pmm.start.behaviour import RecordingBehaviour, watch
+from pmm.start.behaviour import RecordingBehaviour, at_rest, watch
 from pmm.start.channels import as_columns, by_order_of_names
 from pmm.start.found_campaign import (
     CHANNELS,

@@ -1,7 +1,7 @@
 """Common parts of the water's effects: loads of changed coefficients, and motions at a point.
 
 No effect itself. Matrices are (force, moment) per (translation, rotation), as in
-:class:`sim.model.coefficients.HullCoefficients`.
+:class:`sim.model.parameters.HullCoefficients`.
 """
 
 from collections.abc import Callable
@@ -21,7 +21,7 @@ from sim.model.water.radiation import Radiation, constant
 from sim.rig import SimulatedRig
 
 if TYPE_CHECKING:
-    from sim.model.coefficients import HullCoefficients
+    from sim.model.parameters import HullCoefficients
 
 HIGHEST = 3  # order that a signature names
 STRUTS = (Point.AFT, Point.FORE)

@@ -12,12 +12,11 @@ from hardware.description.arrays import FloatArray
 from hardware.description.struts import to_motion
 from sim import signals
 from sim.model.block_forces import BlockForces, HullState
-from sim.model.coefficients import HullCoefficients, mass_matrix
 from sim.model.forces import Instants
 from sim.model.hull_steady_state import HullSteady
 from sim.model.model_march import Marching, marching_of
 from sim.model.numbers import numbers_of, turns_with, weight_less_buoyancy
-from sim.model.parameters import ModelParameters
+from sim.model.parameters import HullCoefficients, ModelParameters, mass_matrix
 from sim.model.system import HullSystem
 from sim.model.water.radiation import constant
 from sim.signals import Signals

@@ -1,4 +1,4 @@
-"""Forces on one coordinate alone: friction, damping, drag, and restoring beyond the linear."""
+"""What a body meets as it swings: resistance to its motion, and the air around it."""
 
 from dataclasses import dataclass, fields
 
@@ -7,6 +7,27 @@ import numpy as np
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim.stage import UNKNOWN_KEYS_REFUSED
+
+
+@dataclass(frozen=True)
+class Air:
+    """What the air does beside damping.
+
+    Attributes
+    ----------
+    buoyancy_ratio
+        Density of the air over the body's: g' = g (1 - ratio).
+    added_mass_ratio
+        Mass of air that moves along, over the body's mass.
+    added_inertia_ratio
+        The same for rotation, over the body's moments of inertia.
+    """
+
+    buoyancy_ratio: float = 0.0
+    added_mass_ratio: float = 0.0
+    added_inertia_ratio: float = 0.0
+
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
 
 @dataclass(frozen=True)

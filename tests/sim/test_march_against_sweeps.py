@@ -32,8 +32,7 @@ from sim.model.laws import (
     Viscous,
 )
 from sim.model.mounting import Mounting
-from sim.model.surge import SurgeForces
-from sim.model.water.force_laws import CrossFlow
+from sim.model.water.force_laws import CrossFlow, SurgeForces
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.run import steady_run
 from sim.solve import compilation

@@ -236,7 +236,7 @@ class AirAround:
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on; a body afloat stays as it is."""
-        from sim.pendulum.air import Air
+        from sim.pendulum.resistance import Air
 
         if not hasattr(bench.body, "air"):
             return bench
