@@ -17,7 +17,6 @@ SETTINGS_FILE: Final = "coefficients.toml"
 MODEL: Final = "model"
 DRY: Final = "dry"
 
-_ABOVE_0 = ("length_m", "draught_m", "volume_m3", "density_kg_m3", "gravity_m_s2")
 _PAIR = "should be two rows of two numbers"
 
 
@@ -177,11 +176,6 @@ def settings_of(folder: Path, given: str | None) -> tuple[CoefficientSettings, P
 
 def _value_faults(table: dict[str, Any]) -> list[Fault]:
     faults = []
-    ship = table.get("ship")
-    for key in _ABOVE_0 if isinstance(ship, dict) else ():
-        value = ship.get(key) if isinstance(ship, dict) else None
-        if is_number(value) and not value > 0.0:
-            faults.append(Fault(("ship", key), f"= {value:g} should be above 0"))
     stated = table.get("uncertainty")
     for key, value in stated.items() if isinstance(stated, dict) else ():
         if is_number(value) and value < 0.0:
