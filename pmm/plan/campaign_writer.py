@@ -82,7 +82,7 @@ def _tables(folder: Path, plan: Plan, rig: RigFile, done: Sequence[FinishedRun])
         yield toml_table("model", body)
     if rig.hull is not None:
         yield toml_table("hull", asdict(rig.hull))
-    offset = {key: one for key, one in asdict(rig.photocell_offset).items() if one}
+    offset = {key: one for key, one in asdict(rig.reference).items() if one}
     if offset:
         yield toml_table("reference", offset)
     yield from _handed_on(folder, rig, done)

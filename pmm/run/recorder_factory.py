@@ -121,7 +121,7 @@ class RecorderFactory:
         return DiskWatch(self.folder, per_s, reserve, self._look)
 
     def _header(self, run: RunPlan) -> RunHeader:
-        rig, offset = self.rig, self.rig_file.photocell_offset
+        rig, offset = self.rig, self.rig_file.reference
         return RunHeader(
             run_name=run.name,
             channels=header_channels(rig),
