@@ -1,7 +1,7 @@
 """The photocell on a small microcontroller that stamps its pulses and sends them by serial line."""
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -10,15 +10,13 @@ import numpy as np
 from hardware.driver import Driver, Services
 from hardware.errors import (
     HardwareError,
-    LineError,
     PhotocellDeadError,
     PhotocellExtraError,
     PhotocellMissedError,
-    SilentPortError,
-    worst,
 )
-from hardware.lines import TICK_MODULUS, Decoder, LineKind, SerialLine, Unwrapped
+from hardware.lines import TICK_MODULUS, LineKind, SerialLine, Unwrapped
 from hardware.roles import Cycle, Pulse, Role
+from hardware.serial_instrument import SerialInstrument
 from hardware.serial_port import PortSettings
 
 _MARKS: Final = 240
@@ -81,7 +79,7 @@ class TimestamperSettings:
     silent_s: float = 3.0
 
 
-class SerialPhotocell:
+class SerialPhotocell(SerialInstrument):
     """A :class:`hardware.roles.Photocell` that knows the time of each pulse to a microsecond.
 
     Attributes
@@ -91,22 +89,14 @@ class SerialPhotocell:
     """
 
     def __init__(self, name: str, settings: TimestamperSettings, services: Services) -> None:
-        self.name = name
+        super().__init__(name, settings, services, (LineKind.PULSE, LineKind.TIME))
         self.fit = ClockFit()
-        self._settings = settings
-        self._port = services.port(name, settings.port)
-        self._decoder = Decoder(name)
         self._ticks = Unwrapped(TICK_MODULUS)
         self._pulses: list[Pulse] = []
         self._count: int | None = None
         self._at_s: float | None = None  # of the last pulse, in the rig's time
         self._waiting_s: float | None = None  # since when the first pulse is due
         self._period_s: float | None = None
-        self._heard_s: float | None = None
-        self._told: set[type] = set()
-
-    def prepare(self) -> None:
-        """Nothing to write: the device talks by itself."""
 
     def expect(self, frequency_hz: float | None) -> None:
         """Say how fast the shaft turns; ``None``: it is idle, a lost port is opened again."""
@@ -126,15 +116,7 @@ class SerialPhotocell:
         """
         if self._period_s is None:
             self._port.recover(cycle.time_s)
-        faults: list[HardwareError] = []
-        for raw in self._port.lines():
-            try:
-                self._take(self._decoder.decode(raw), cycle)
-            except HardwareError as error:
-                faults.append(error)
-        self._absent(cycle.time_s, faults)
-        if faults:
-            raise worst(faults)
+        self._read(cycle)
 
     def take(self) -> tuple[Pulse, ...]:
         """Return the pulses since the last call."""
@@ -159,18 +141,10 @@ class SerialPhotocell:
         PortOpenError
             If the port is still not there.
         """
-        self._port.open()
-        self._heard_s, self._at_s, self._waiting_s, self._count = None, None, None, None
-        self._told.clear()
-
-    def close(self) -> None:
-        """Close the port."""
-        self._port.close()
+        super().reset_fault()
+        self._at_s = self._waiting_s = self._count = None
 
     def _take(self, line: SerialLine, cycle: Cycle) -> None:
-        if line.kind is LineKind.ANGLE:
-            raise LineError(self.name, "an angle on the photocell's line; swap the ports")
-        self._heard_s = cycle.time_s
         device_s = self._ticks.take(line.ticks_us) * 1e-6
         self.fit.add(device_s, cycle.time_s)
         before, self._count = self._count, int(line.value)
@@ -201,17 +175,8 @@ class SerialPhotocell:
                 self.name, f"{periods:.3f} periods between pulses (limit {_MISSED_PERIODS})"
             )
 
-    def _absent(self, now_s: float, faults: list[HardwareError]) -> None:
-        """Add what is missing by now: pulses, or any line at all."""
-        if self._heard_s is None:
-            self._heard_s = now_s
-        silent_s = now_s - self._heard_s
-        if silent_s > self._settings.silent_s and SilentPortError not in self._told:
-            self._told.add(SilentPortError)
-            limit = f"{self._settings.silent_s:g} s"
-            faults.append(
-                SilentPortError(self.name, f"no line for {silent_s:.2f} s (limit {limit})")
-            )
+    def _absent(self, now_s: float) -> Iterator[HardwareError]:
+        """Yield which pulses are missing by now."""
         if self._period_s is None:
             return
         if self._at_s is None and self._waiting_s is None:
@@ -225,7 +190,7 @@ class SerialPhotocell:
             if periods > limit_periods and kind not in self._told:
                 self._told |= {kind, PhotocellMissedError}
                 what = f"no pulse for {periods:.2f} periods (limit {limit_periods})"
-                faults.append(kind(self.name, what))
+                yield kind(self.name, what)
 
 
 DRIVER = Driver(Role.PHOTOCELL, TimestamperSettings, SerialPhotocell)
