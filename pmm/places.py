@@ -21,10 +21,7 @@ def find(kind: Any, place: Place, table: Any) -> PlaceMatch | None:
     Where a table may be one of several classes, told apart by their keys, pydantic names a class in
     the place and tries them all.
 
-    Returns
-    -------
-    Found or None
-        ``None`` for what is wrong with a table taken for a class that it is not meant to be.
+    It is ``None`` for what is wrong with a table taken for a class that it is not meant to be.
     """
     cleaned: list[str | int] = []
     known: tuple[str, ...] = ()

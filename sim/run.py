@@ -39,6 +39,9 @@ def simulate(
 ) -> "xr.Dataset":
     """Simulate one run and return its record.
 
+    The record is in the schema of :mod:`hardware.description.dataset`; its clock starts with the
+    record, and so do the drifts of the dynamometers' zeros and of the channels.
+
     Parameters
     ----------
     periods
@@ -48,12 +51,6 @@ def simulate(
         Periods that pass before the record begins.
     seed
         Of all noise: the same seed gives the same record.
-
-    Returns
-    -------
-    xarray.Dataset
-        In the schema of :mod:`hardware.description.dataset`; its clock starts with the record, and
-        so do the drifts of the dynamometers' zeros and of the channels.
 
     Raises
     ------

@@ -142,15 +142,12 @@ def combine(name: str, parts: Sequence[BodyPart], *, without: Sequence[BodyPart]
 def combined(rows: FloatArray, signs: FloatArray) -> FloatArray:
     """Combine parameters by the signs of the parts; complex ones too.
 
+    The result has the shape ``(10, ...)``.
+
     Parameters
     ----------
     rows
         Shape ``(parts, 10, ...)``: trials may follow.
-
-    Returns
-    -------
-    FloatArray
-        Shape ``(10, ...)``.
     """
     mass = np.einsum("p,p...->p...", signs, rows[:, 0])
     total = mass.sum(axis=0)

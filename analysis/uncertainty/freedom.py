@@ -9,6 +9,8 @@ from hardware.description.arrays import FloatArray
 def effective_freedom(variances: FloatArray, degrees_of_freedom: FloatArray) -> FloatArray:
     """Return the degrees of freedom of sums of independent inputs (Welch and Satterthwaite).
 
+    The result has the shape ``(n,)``; infinite where no input that is known by repeats has a part.
+
     Parameters
     ----------
     variances
@@ -16,11 +18,6 @@ def effective_freedom(variances: FloatArray, degrees_of_freedom: FloatArray) -> 
     degrees_of_freedom
         Of the inputs, shape ``(inputs,)`` or ``(inputs, n)``; an input without any counts as known
         for certain.
-
-    Returns
-    -------
-    FloatArray
-        Shape ``(n,)``; infinite where no input that is known by repeats has a part.
     """
     known = np.where(degrees_of_freedom > 0.0, degrees_of_freedom, np.inf)
     loss = (variances**2 / known.reshape(len(known), -1)).sum(axis=0)

@@ -24,6 +24,9 @@ _REFERENCE = re.compile(r"url\(#([^)]*)\)")
 def inline_svg(svg: bytes, prefix: str, description: str) -> str:
     """Return a drawing as an element to put into HTML.
 
+    It is an ``svg`` element without namespaces (HTML implies them), XML header, metadata and style
+    sheet; the latter would apply to the whole page.
+
     Parameters
     ----------
     svg
@@ -32,12 +35,6 @@ def inline_svg(svg: bytes, prefix: str, description: str) -> str:
         Goes before every id and every reference to one.
     description
         What a screen reader says in place of the drawing.
-
-    Returns
-    -------
-    str
-        An ``svg`` element without namespaces (HTML implies them), XML header, metadata and style
-        sheet; the latter would apply to the whole page.
     """
     root = ET.fromstring(svg)  # noqa: S314  our own drawing, not a stranger's
     for element in root.iter():

@@ -60,11 +60,6 @@ def write_campaign(folder: Path, plan: Plan, rig: RigFile, done: Sequence[Finish
     """Write the campaign file of the runs made so far, in their order; the old one is replaced.
 
     The file is whole at every moment: it is written beside and moved into place.
-
-    Returns
-    -------
-    Path
-        The file.
     """
     target = folder / _NAME
     write_whole(target, "\n".join(_tables(folder, plan, rig, done)))

@@ -28,10 +28,7 @@ def rebuild(
     The samples are decoded by the same code as in the run, so they are the same bit by bit; those
     that are whole stay. The bytes of a damaged ``samples.arrows`` are kept under another name.
 
-    Returns
-    -------
-    tuple
-        What was done, and the names of the files that were made.
+    It returns what was done, and the names of the files that were made.
 
     Raises
     ------

@@ -271,15 +271,12 @@ def white_noise_rms(samples: FloatArray) -> FloatArray:
     From the differences of neighbouring samples, which are blind to a zero that wanders and to
     waves that are long against a sample; missing samples are passed over.
 
+    The result has the shape ``(channels,)``; NaN where a channel has no two samples in a row.
+
     Parameters
     ----------
     samples
         Shape ``(channels, n)``.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape ``(channels,)``; NaN where a channel has no two samples in a row.
     """
     steps = np.diff(samples, axis=1) ** 2
     known = np.isfinite(steps)

@@ -219,13 +219,7 @@ def _legend(figure: "Figure", *, with_effect: bool) -> None:
 def save_chain_figure(
     campaign: Campaign, run: Run, effects: Sequence[Effect], seed: int, folder: Path
 ) -> list[Path]:
-    """Write the figure of one run of a campaign as ``<run>-chain.svg`` and ``.png``.
-
-    Returns
-    -------
-    list of Path
-        The files written.
-    """
+    """Write the figure of one run of a campaign as ``<run>-chain.svg`` and ``.png``."""
     figure = run_figure(campaign, run, effects, seed)
     return write_figure(figure, folder, f"{run.name}-chain")
 

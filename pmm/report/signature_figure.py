@@ -204,10 +204,7 @@ def save_signature_figure(
 ) -> list[Path]:
     """Write the figure of an effect as ``<name>-signature.svg`` and ``.png``.
 
-    Returns
-    -------
-    list of Path
-        The files written; none where the effect changes no harmonic.
+    The files written; none where the effect changes no harmonic.
     """
     grid = signature_grid(effect, rig, set_point)
     if not grid.simulated:

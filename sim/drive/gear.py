@@ -59,16 +59,13 @@ def geared(motor: Motor | None, gear: Gear, added_inertia_kg_m2: float) -> Linea
 
     and the motor feels the same torque, less T.
 
+    Inputs: load torque T and c (N m). Outputs: angle (rad), speed (rad/s) and acceleration (rad/s2)
+    of the cranks; opening d_m - d of the gear (rad).
+
     Parameters
     ----------
     motor
         ``None`` for one that turns as it is told.
-
-    Returns
-    -------
-    LinearSystem
-        Inputs: load torque T and c (N m). Outputs: angle (rad), speed (rad/s) and acceleration
-        (rad/s2) of the cranks; opening d_m - d of the gear (rad).
     """
     front = _told() if motor is None else closed_loop(motor, 0.0)
     m, inertia = len(front.A), gear.crank_inertia_kg_m2 + added_inertia_kg_m2

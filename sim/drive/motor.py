@@ -173,10 +173,7 @@ class Servo:
 def closed_loop(motor: Motor, added_inertia_kg_m2: float) -> LinearSystem:
     """Return the closed loop from load torque to the shaft's deviation, by python-control.
 
-    Returns
-    -------
-    LinearSystem
-        Input: load torque (N m). Outputs: angle (rad), speed (rad/s), acceleration (rad/s2).
+    Input: load torque (N m). Outputs: angle (rad), speed (rad/s), acceleration (rad/s2).
     """
     return _closed(as_rows(np.hstack(motor.plant(added_inertia_kg_m2))), motor.loop)
 

@@ -12,11 +12,8 @@ from sim.solve.compilation import compile_loop
 def linkages_of(mechanism: Mechanism) -> FloatArray:
     """Return the linkages of a mechanism whose joints have no play.
 
-    Returns
-    -------
-    FloatArray
-        Aft and fore, shape ``(2, 5)``: eccentricity and phase of the crank as it is; length of a
-        rod, 0 for a yoke; what its guide misses the crank's centre by; what is taken off its reach.
+    Aft and fore, shape ``(2, 5)``: eccentricity and phase of the crank as it is; length of a rod, 0
+    for a yoke; what its guide misses the crank's centre by; what is taken off its reach.
     """
     rows = []
     rod = mechanism.rod_length_m

@@ -170,17 +170,14 @@ class Mechanism:
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return a strut's displacement and its first two derivatives by the crank angle.
 
+        The results are displacement, slope, curvature: in m, m/rad and m/rad^2.
+
         Parameters
         ----------
         angle
             Crank angle of this strut in radians, any shape.
         rod_offset_m
             By how much a rod's guide misses the crank's centre.
-
-        Returns
-        -------
-        displacement, slope, curvature
-            In m, m/rad and m/rad^2.
         """
         e = self.eccentricity_m
         sine, cosine = np.sin(angle), np.cos(angle)
