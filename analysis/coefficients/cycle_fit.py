@@ -165,10 +165,7 @@ def fit_terms(
 ) -> CycleFit:
     """Return the coefficients of terms of a form's velocities, by the names that it gives them.
 
-    Raises
-    ------
-    DataError
-        As :func:`fit_cycles`.
+    It raises what :func:`fit_cycles` raises.
     """
     highest = min(cycle.orders for cycle in cycles)
     even = np.ones((len(cycles), len(orders), 3))

@@ -118,10 +118,7 @@ def as_table(one: Calibration) -> dict[str, Any]:
 def from_table(table: Mapping[str, Any], where: str) -> Calibration:
     """Return the calibration that a table holds; ``where`` names it in errors.
 
-    Raises
-    ------
-    ConfigurationError
-        As :func:`read_calibration`.
+    It raises what :func:`read_calibration` raises.
     """
     missing = [key for key in _KEYS if key not in table]
     if missing:

@@ -163,10 +163,7 @@ def read_settings(path: Path) -> CoefficientSettings:
 def settings_of(folder: Path, given: str | None) -> tuple[CoefficientSettings, Path | None]:
     """Return the settings of a campaign's folder, or those of the file that was given.
 
-    Raises
-    ------
-    ConfigurationError
-        As :func:`read_settings`.
+    It raises what :func:`read_settings` raises.
     """
     path = folder / SETTINGS_FILE if given is None else Path(given)
     if given is None and not path.exists():
