@@ -51,8 +51,8 @@ def _likeness(kind: Any, table: dict[str, Any]) -> float:
         for key in table
     )
     missing = sum(
-        one.name not in table and one.default is MISSING and one.default_factory is MISSING
-        for one in fields(kind)
+        field.name not in table and field.default is MISSING and field.default_factory is MISSING
+        for field in fields(kind)
     )
     return like - 0.1 * missing
 
@@ -66,7 +66,7 @@ def _members(kind: Any) -> list[Any]:
 
 
 def _keys(kind: Any) -> tuple[str, ...]:
-    return tuple(one.name for one in fields(kind)) if is_dataclass(kind) else ()
+    return tuple(field.name for field in fields(kind)) if is_dataclass(kind) else ()
 
 
 def _part(kind: Any, key: str | int) -> Any:

@@ -171,9 +171,9 @@ class Campaign:
             If a name, a parameter or a value is wrong: all of them in one message.
         """
         built, faults = [], []
-        for number, one in enumerate(self.effects, 1):
+        for number, effect in enumerate(self.effects, 1):
             try:
-                built.append(build_from(one.name, one.parameters, dict(more or {})))
+                built.append(build_from(effect.name, effect.parameters, dict(more or {})))
             except ConfigurationError as error:
                 faults.append(f"effects[{number}]: {error}")
         if faults:

@@ -117,8 +117,8 @@ def _run_faults(table: dict[str, Any]) -> Iterator[Fault]:
 
 def _valid(table: dict[str, Any], array: str, kind: type[T]) -> Iterator[tuple[Place, T]]:
     entries = table.get(array)
-    for number, one in enumerate(entries if isinstance(entries, list) else []):
-        found = validate(kind, one, [])
+    for number, entry in enumerate(entries if isinstance(entries, list) else []):
+        found = validate(kind, entry, [])
         if found is not None:
             yield (array, number), found
 

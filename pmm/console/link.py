@@ -36,8 +36,8 @@ class Link:
             threading.Thread(target=one, name=f"console {name}", daemon=True)
             for name, one in (("sender", self._send), ("receiver", self._receive))
         ]
-        for one in self._threads:
-            one.start()
+        for thread in self._threads:
+            thread.start()
 
     @property
     def lost(self) -> bool:

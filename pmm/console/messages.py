@@ -239,8 +239,8 @@ _PAUSE_S: Final = 5e-4  # between pieces: the loop's thread goes first
 
 def pack(plan: QueuedPlan) -> PackedPlan:
     """Return a plan in pieces."""
-    wanted = {one.name for one in plan.runs}
-    runs = [(one, one.name in wanted) for one in plan.plan.runs]
+    wanted = {run.name for run in plan.runs}
+    runs = [(run, run.name in wanted) for run in plan.plan.runs]
     pieces = tuple(pickle.dumps(runs[k : k + _PIECE]) for k in range(0, len(runs), _PIECE))
     return PackedPlan(plan.number, replace(plan.plan, runs=()), plan.folder, pieces)
 

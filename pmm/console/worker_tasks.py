@@ -67,8 +67,8 @@ class Queued:
         """Forget the others, by what the latest frame tells of; it may not know the newest yet."""
         self._told = max(self._told, *numbers)
         self._plans = {
-            number: one
-            for number, one in self._plans.items()
+            number: plan
+            for number, plan in self._plans.items()
             if number > self._told or number in numbers
         }
 
@@ -83,4 +83,4 @@ class Queued:
 
     def pictures(self) -> dict[str, EncodedText]:
         """Return the pictures of the plans at hand, by their numbers."""
-        return {str(number): one.picture for number, one in self._plans.items()}
+        return {str(number): plan.picture for number, plan in self._plans.items()}

@@ -52,7 +52,7 @@ class InWater:
     @property
     def straight(self) -> tuple[Tow, ...]:
         """The straight tows."""
-        return tuple(one for one in self.tows if one.kind is RunKind.STRAIGHT_TOW)
+        return tuple(tow for tow in self.tows if tow.kind is RunKind.STRAIGHT_TOW)
 
 
 def in_water(campaign: Campaign, folder: Path) -> InWater:
@@ -64,17 +64,17 @@ def in_water(campaign: Campaign, folder: Path) -> InWater:
         If the campaign has such runs and no oscillator, or ``coefficients.toml`` is wrong.
     """
     kinds = (RunKind.RESTORING, RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW)
-    planned = {one.kind for one in campaign.runs} | {one.kind for one in campaign.at_rest}
+    planned = {run.kind for run in campaign.runs} | {one.kind for one in campaign.at_rest}
     if not planned & set(kinds):
         return InWater()
     oscillator = oscillator_of(campaign, folder)
     settings, _ = settings_of(folder, None)
     work = work_of(campaign, folder, oscillator, chain_of(settings), harmonics=_HARMONICS)
-    wanted = [one for one in work.runs if one.kind in kinds]
+    wanted = [run for run in work.runs if run.kind in kinds]
     used = {name for one in wanted for name in one.zero_names}
-    zeros = [read_zero(one) for one in work.zeros if one.name in used]
-    known = {one.name: one.zero for one in zeros if not isinstance(one, Failed) and one.zero}
-    failed = [_named(one) for one in zeros if isinstance(one, Failed)]
+    zeros = [read_zero(zero) for zero in work.zeros if zero.name in used]
+    known = {zero.name: zero.zero for zero in zeros if not isinstance(zero, Failed) and zero.zero}
+    failed = [_named(zero) for zero in zeros if isinstance(zero, Failed)]
     found = _Found(campaign, oscillator, settings, failed)
     for task in wanted:
         found.take(task.with_zeros(known))
@@ -120,7 +120,7 @@ class _Found:
     def derivatives(self) -> CampaignCoefficients | None:
         """Return what the tows tell as one campaign, about the midpoint."""
         cycles = [one.cycle for one in self._towed if one.cycle is not None]
-        if not any(one.drift_rad for one in cycles):
+        if not any(cycle.drift_rad for cycle in cycles):
             return None
         gauges = [one.calibration for one in self._towed if one.calibration is not None]
         stated = stated_of(self._campaign, self._settings, (), gauges, motion_asked=False)

@@ -111,8 +111,8 @@ def expected_readings(run: RunPlan, rig: RigFile) -> dict[str, Expected]:
     own = READING_UNCERTAINTY * np.abs(readings)
     spread = np.sqrt((np.abs(parts) ** 2).sum(axis=0) + own**2)
     return {
-        name: Expected(float(abs(one)), float(u))
-        for name, one, u in zip(FORCES, readings, spread, strict=True)
+        name: Expected(float(abs(reading)), float(u))
+        for name, reading, u in zip(FORCES, readings, spread, strict=True)
     }
 
 

@@ -78,7 +78,7 @@ class RigFile(RigTables):
     @property
     def watched(self) -> WatchLimits:
         """What the rig watches in every cycle: highest frequency, safe loads."""
-        loads = {one.channel: one.safe_n for one in self.gauges}
+        loads = {gauge.channel: gauge.safe_n for gauge in self.gauges}
         return WatchLimits(self.oscillator.frequency_hz.high, MappingProxyType(loads))
 
     @property

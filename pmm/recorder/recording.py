@@ -68,7 +68,7 @@ class RunData:
     @property
     def pulses_s(self) -> FloatArray:
         """Times of the photocell's pulses, in order."""
-        return np.array([one[1] for one in self.texts[PULSES]], dtype=np.float64)
+        return np.array([text[1] for text in self.texts[PULSES]], dtype=np.float64)
 
     @property
     def cycles(self) -> CycleStatistics | None:
@@ -157,7 +157,7 @@ def marker_text(
         found[key] = len(run.texts[name])
     found["lines"] = len(run.texts[LINES])
     found["cycles"] = asdict(run.cycles) if run.cycles else None
-    found["flags"] = [asdict(one) for one in flags]
+    found["flags"] = [asdict(flag) for flag in flags]
     found |= _noise_at_rest(run)
     found |= {"files": contents}
     return json.dumps({**found, _SUM: _sum(found)}, indent=1)
@@ -180,7 +180,7 @@ def _noise_at_rest(run: RunData) -> dict[str, Any]:
     if run.header.kind != RunKind.ZERO or run.samples is None:
         return {}
     found = white_noise_rms(run.samples[:, :])
-    names = (one.name for one in run.header.channels)
+    names = (channel.name for channel in run.header.channels)
     pairs = zip(names, found, strict=True)
     return {NOISE: {name: float(rms) for name, rms in pairs if np.isfinite(rms)}}
 
@@ -239,7 +239,9 @@ def _provenance(run: RunData) -> dict[str, str]:
         "plan": header.plan_json,
         "outcome": str(run.marker["outcome"]) if run.marker else "not closed",
         "configuration_sha256": json.dumps(dict(header.configuration_sha256)),
-        "readings": json.dumps({name: asdict(one) for name, one in header.readings.items()}),
+        "readings": json.dumps(
+            {name: asdict(reading) for name, reading in header.readings.items()}
+        ),
     }
     return found | _gate(run) | (run.cycles.as_text() if run.cycles else {})
 
@@ -255,8 +257,8 @@ def _gate(run: RunData) -> dict[str, str]:
 def _gate_by_time(run: RunData) -> dict[str, Any]:
     """Return the gate of an oscillation without pulses: whole periods, wherever one begins."""
     point = run.header.set_point
-    events = (one for one in run.texts[EVENTS] if one["kind"] == "state")
-    times = {one["text"]: float(one["time_s"]) for one in events}
+    events = (text for text in run.texts[EVENTS] if text["kind"] == "state")
+    times = {event["text"]: float(event["time_s"]) for event in events}
     if run.header.photocell or point is None or not {_OPEN, _CLOSED} <= set(times):
         return {}
     # The cycle in which it closed is open to its end.

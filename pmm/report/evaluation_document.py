@@ -87,12 +87,12 @@ def evaluation_document(found: Evaluation) -> Document:
         Data("tows", water.tows),
         *(() if derivatives is None else conclusion(derivatives)),
         Data("derivatives", derivatives and to_dict(derivatives)),
-        Text([_verdict(one) for one in found.charts]),
+        Text([_verdict(chart) for chart in found.charts]),
         Data("control", found.charts),
         Data("in_control", found.in_control),
         Data("notes", found.notes),
         Data("failed", found.failed),
-        Text([str(one) for one in found.files], "files"),
+        Text([str(file) for file in found.files], "files"),
     )
     return Document("", "tests of rig and model", (Section("", told),), SCHEMA)
 

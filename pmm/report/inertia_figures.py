@@ -39,7 +39,7 @@ def figures(outcome: Outcome) -> Iterator[Figure]:
     for test in outcome.statics:
         caption = f"{test.where}. Tilts under weights, and their fit."
         yield Figure(_file_name(test.where), caption, partial(static_figure, test))
-    if any(one.assessment is not None for one in outcome.findings):
+    if any(finding.assessment is not None for finding in outcome.findings):
         caption = "Where the uncertainty of each result comes from."
         yield Figure("budget", caption, partial(budget_figure, outcome))
     axes, lines = outcome.axes, outcome.line_errors
@@ -110,7 +110,7 @@ def line_figure(outcome: Outcome, errors: Mapping[str, Sequence[tuple[float, flo
     """
     from matplotlib.figure import Figure as Drawing
 
-    found = {one.name: one.estimate.value for one in outcome.findings}
+    found = {finding.name: finding.estimate.value for finding in outcome.findings}
     with drawing():
         figure = Drawing(figsize=(10.5, 4.6), layout="constrained")
         figure.suptitle(f"{plain(outcome.name)}: lines for the pitch gyradius")

@@ -34,10 +34,10 @@ def _homing(c: Conduct) -> State | None:
     axes = [one for one in (c.rig.eccentricity, c.rig.phase) if one is not None]
     if not c.told:
         c.told = True
-        for one in axes:
-            if not one.homed:
-                one.home()
-    ready = all(one.homed and not one.moving for one in axes)
+        for axis in axes:
+            if not axis.homed:
+                axis.home()
+    ready = all(axis.homed and not axis.moving for axis in axes)
     return State.SETTING if ready else None
 
 

@@ -57,7 +57,7 @@ class Sources:
 
     def __init__(self, folder: Path, plan: Plan, rig: RigFile) -> None:
         self._folder, self._plan, self._rig = folder, plan, rig
-        self._planned = {one.name: one for one in plan.runs}
+        self._planned = {run.name: run for run in plan.runs}
 
     def made(self, header: RunHeader, run: RunPlan) -> RunOrigin:
         """Return what a recorded run was made from.
