@@ -22,7 +22,7 @@ from starlette.websockets import WebSocket
 from hardware.description.errors import PmmError
 from pmm.console.actions import PageActions, TooLargeError, body_of, who_asks
 from pmm.console.app_settings import ConsoleSettings
-from pmm.console.client import Client, pump
+from pmm.console.client import Client
 from pmm.console.coefficient_updates import Finished
 from pmm.console.hub import Hub
 from pmm.console.limits import MOST_STREAMS
@@ -31,6 +31,7 @@ from pmm.console.loop_side import LoopSide
 from pmm.console.messages import Notice, Reply
 from pmm.console.pages import Pages
 from pmm.console.plans import Plans
+from pmm.console.pump import pump
 from pmm.console.quick_stop import QuickStop
 from pmm.console.requests import TokenPosted
 from pmm.console.security import COOKIE, Guard

@@ -1,15 +1,12 @@
 """One browser, seen from the server: what waits for it is bounded, and pictures never wait."""
 
 import asyncio
-import logging
 from collections import deque
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from typing import Final
 
 from starlette.websockets import WebSocketDisconnect
-
-from pmm.console.hub import Hub
 
 REPLACED: Final = 4001  # of RFC 6455's private codes; the page knows it
 WAITING: Final = 64  # messages that are no pictures: alarms, states, plans, runs that ended
@@ -111,40 +108,3 @@ class Client:
         with suppress(WebSocketDisconnect, RuntimeError, OSError):  # it has gone
             for text in texts:
                 await self._send(text)
-
-
-_LOG: Final = logging.getLogger(__name__)
-_BATCH: Final = 8  # browsers: half a millisecond
-
-
-async def pump(hub: Hub) -> None:
-    """Send for ever."""
-    while True:
-        await hub.news.wait()
-        hub.news.clear()
-        try:
-            await send_round(hub)
-        except Exception:  # a picture that cannot be made must not end all others
-            _LOG.exception("a picture could not be sent")
-
-
-async def send_round(hub: Hub) -> None:
-    """Send to every browser once what it lacks; one that still takes the last is left out."""
-    clock = asyncio.get_running_loop().time
-    clients = list(hub.clients.values())
-    for start in range(0, len(clients), _BATCH):
-        began_s = clock()
-        first = [hub.in_control] if hub.in_control is not None else []
-        for one in first + clients[start : start + _BATCH]:
-            _begin(hub, one)
-        if len(clients) > _BATCH:
-            await asyncio.sleep(0.0)  # they are sent now
-            await asyncio.sleep(clock() - began_s)
-
-
-def _begin(hub: Hub, client: Client) -> None:
-    if client.busy or hub.clients.get(client.session) is not client:
-        return
-    texts = hub.due(client)
-    if texts:
-        client.begin(texts, hub.news.set)

@@ -12,9 +12,9 @@ from analysis.readers import read_recording
 from analysis.readers.damage import check_whole
 from analysis.recording import Recording
 from hardware.description.errors import DataError
-from pmm.recorder.files import EVENTS, HARMONICS, HEADER, RECORDING, read_marker
+from pmm.recorder.files import EVENTS, HARMONICS, HEADER, RECORDING
 from pmm.recorder.header import RunHeader
-from pmm.recorder.line_shapes import read_lines
+from pmm.recorder.line_shapes import read_lines, read_marker
 
 _FORCE_UNITS = ("N", "N m")
 

@@ -29,11 +29,10 @@ from pmm.recorder.files import (
     RECORDING,
     SAMPLES,
     TEXTS,
-    read_marker,
 )
 from pmm.recorder.header import RunHeader
 from pmm.recorder.lateness import CycleStatistics
-from pmm.recorder.line_shapes import read_lines
+from pmm.recorder.line_shapes import read_lines, read_marker
 from pmm.recorder.samples import JournalSamples, counts, read_header, read_samples
 from pmm.whole_file import sync_folder
 

@@ -24,9 +24,9 @@ from pmm.recorder.files import (
     STREAMS,
     contents_of,
     is_run,
-    read_recovered,
     set_aside,
 )
+from pmm.recorder.line_shapes import read_recovered
 from pmm.recorder.rebuilding import rebuild
 from pmm.recorder.recording import RunData, convert, read_run
 from pmm.recorder.samples import SampleWriter, counts

@@ -8,8 +8,9 @@ from pmm.plan.campaign_writer import FinishedRun
 from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
-from pmm.recorder.files import HEADER, RECORDING, is_run, read_marker
+from pmm.recorder.files import HEADER, RECORDING, is_run
 from pmm.recorder.header import RunHeader
+from pmm.recorder.line_shapes import read_marker
 from pmm.recorder.recording import NOISE
 from pmm.recorder.run_recorder import RunEnd
 from pmm.run.run_origin import KEPT, Sources, check_unchanged

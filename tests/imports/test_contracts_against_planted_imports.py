@@ -27,7 +27,7 @@ PLANTED = [
     ("The vocabulary knows nobody", "hardware/description/body.py", "import serial"),
     (
         "Analysis and simulation know no device but the simulated ones",
-        "analysis/uncertainty/",
+        "analysis/uncertainty/values.py",
         "import hardware.pacing",
     ),
     (
@@ -47,7 +47,11 @@ PLANTED = [
     ),
     ("Who knows the simulator is named here", "analysis/exchange/simman.py", "import sim.rig"),
     ("Who knows the simulator is named here", "pmm/doctor/host.py", "import sim.rig"),
-    ("No analysis builds on the gap diagnosis", "analysis/uncertainty/", "import analysis.gap"),
+    (
+        "No analysis builds on the gap diagnosis",
+        "analysis/uncertainty/values.py",
+        "import analysis.gap",
+    ),
     (
         "What drives a rig never reaches the simulator",
         "pmm/recorder/journal.py",
