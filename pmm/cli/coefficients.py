@@ -212,7 +212,7 @@ def _written(outcome: "CampaignOutcome", options: Mapping[str, Any]) -> Iterator
         written = write_figures(figures(outcome.result), Path(options["plot"]), "coefficients")
         yield f"{len(written)} figures in {options['plot']}"
     if options["simman"] is not None:
-        from pmm.coefficients.deliverables import write_deliverables
+        from pmm.coefficients.files import write_deliverables
 
         folder, overwrite = Path(options["simman"]), bool(options["overwrite"])
         count = write_deliverables(outcome, folder, overwrite=overwrite)

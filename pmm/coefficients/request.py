@@ -9,14 +9,16 @@ from analysis.coefficients.names import Form
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.coefficients.references import beside, check_systems, read_references
-from pmm.coefficients.settings import DRY, MODEL, ReferenceFile, CoefficientSettings, System
+from pmm.coefficients.settings import DRY, MODEL, CoefficientSettings, ReferenceFile, System
 from pmm.coefficients.systems import in_system
 from pmm.coefficients.workflow import CampaignOutcome
 
 _PLAIN: Final = ("form", "level", "seed", "system", "inertia", "wanted", "leave_out")
 
 
-def merged(base: CoefficientSettings, options: Mapping[str, Any], default_trials: int) -> CoefficientSettings:
+def merged(
+    base: CoefficientSettings, options: Mapping[str, Any], default_trials: int
+) -> CoefficientSettings:
     """Return the settings with what the command line says in their place."""
     given: dict[str, Any] = {name: options[name] for name in _PLAIN if options[name]}
     if "form" in given:

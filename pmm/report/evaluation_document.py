@@ -26,8 +26,7 @@ from pmm.evaluation.control_chart import Chart
 from pmm.evaluation.evaluation import Evaluation
 from pmm.evaluation.rig_tests import GaugeResponse, GaugeZeros, RungMode
 from pmm.report.coefficients_document import conclusion
-from pmm.report.control_chart import chart_figure
-from pmm.report.slow_tests import drift_figure, resistance_figure, restoring_figure
+from pmm.report.slow_tests import chart_figure, drift_figure, resistance_figure, restoring_figure
 
 SCHEMA: Final = "pmm-evaluation-1"
 _ZEROS: Final[tuple[Column[GaugeZeros], ...]] = (

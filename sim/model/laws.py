@@ -158,7 +158,7 @@ class Stiffening(NumberedLaw):
     even: bool = False
 
     kernel = staticmethod(_stiffening)
-    strengths: ClassVar[tuple[str, ...]] = ("stiffening_n",)
+    strengths = ("stiffening_n",)
 
     @property
     def corners(self) -> tuple[Corner, ...]:

@@ -9,8 +9,8 @@ from pmm.cli.coefficients import coefficients
 from pmm.cli.report import report
 from pmm.coefficients.settings import (
     AmplifierTable,
-    ReferenceFile,
     CoefficientSettings,
+    ReferenceFile,
     ShipTable,
     read_settings,
 )
