@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from pmm.document.content import Figure
+from pmm.document import content
 from pmm.document.labels import plain, shown_name
 from pmm.document.style import FIT, PALETTE, TRACE, drawing
 from pmm.inertia.outcome import Outcome, StaticTest
@@ -23,35 +23,35 @@ from pmm.report.inertia_record import MOST_RUNS, record_figure
 from pmm.report.inertia_spectrum import spectrum_figure
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure as Drawing
+    from matplotlib.figure import Figure
 
 
-_RECORDS: "Final[dict[str, tuple[str, Callable[[PeriodRuns], Drawing]]]]" = {
+_RECORDS: "Final[dict[str, tuple[str, Callable[[PeriodRuns], Figure]]]]" = {
     "record": ("The fit over the records, with what is left.", record_figure),
     "amplitude": ("Period against amplitude, with the extrapolation.", amplitude_figure),
     "spectrum": ("Spectrum, with beats.", spectrum_figure),
 }
 
 
-def figures(outcome: Outcome) -> Iterator[Figure]:
+def figures(outcome: Outcome) -> Iterator[content.Figure]:
     """Yield what there is to draw."""
     yield from _records(outcome)
     for test in outcome.statics:
         caption = f"{test.where}. Tilts under weights, and their fit."
-        yield Figure(_file_name(test.where), caption, partial(static_figure, test))
+        yield content.Figure(_file_name(test.where), caption, partial(static_figure, test))
     if any(finding.assessment is not None for finding in outcome.findings):
         caption = "Where the uncertainty of each result comes from."
-        yield Figure("budget", caption, partial(budget_figure, outcome))
+        yield content.Figure("budget", caption, partial(budget_figure, outcome))
     axes, lines = outcome.axes, outcome.line_errors
     if axes is not None:
         draw = partial(ellipse_figure, outcome.name, axes)
-        yield Figure("ellipse", "The inertia ellipse in the centre plane.", draw)
+        yield content.Figure("ellipse", "The inertia ellipse in the centre plane.", draw)
     if lines is not None:
         caption = "The gyradius' error over the lines' length."
-        yield Figure("line", caption, partial(line_figure, outcome, lines))
+        yield content.Figure("line", caption, partial(line_figure, outcome, lines))
 
 
-def _records(outcome: Outcome) -> Iterator[Figure]:
+def _records(outcome: Outcome) -> Iterator[content.Figure]:
     taken: set[str] = set()
     for at, runs in enumerate(outcome.periods, 1):
         own = _file_name(runs.where)
@@ -59,10 +59,12 @@ def _records(outcome: Outcome) -> Iterator[Figure]:
         taken.add(own)
         if runs.records:
             for kind, (caption, draw) in _RECORDS.items():
-                yield Figure(f"{own}-{kind}", f"{runs.where}. {caption}", partial(draw, runs))
+                yield content.Figure(
+                    f"{own}-{kind}", f"{runs.where}. {caption}", partial(draw, runs)
+                )
         if runs.gates:
             caption = f"{runs.where}. The gate's passages."
-            yield Figure(f"{own}-gates", caption, partial(gates_figure, runs))
+            yield content.Figure(f"{own}-gates", caption, partial(gates_figure, runs))
 
 
 def _file_name(where: str) -> str:
@@ -71,12 +73,12 @@ def _file_name(where: str) -> str:
     return "-".join(kept.split())
 
 
-def gates_figure(runs: PeriodRuns) -> "Drawing":
+def gates_figure(runs: PeriodRuns) -> "Figure":
     """Draw the time of each whole swing, and below the residual of the passages' times."""
-    from matplotlib.figure import Figure as Drawing
+    from matplotlib.figure import Figure
 
     with drawing():
-        figure = Drawing(figsize=(10.5, 6.0), layout="constrained")
+        figure = Figure(figsize=(10.5, 6.0), layout="constrained")
         figure.suptitle(f"{plain(runs.where)}: light gates")
         axes = figure.add_subplot(2, 1, 1)
         rest = figure.add_subplot(2, 1, 2, sharex=axes)
@@ -100,7 +102,7 @@ def gates_figure(runs: PeriodRuns) -> "Drawing":
 _WORDS = {"fixed": "depth known (fig 17)", "joint": "depth measured along"}
 
 
-def line_figure(outcome: Outcome, errors: Mapping[str, Sequence[tuple[float, float]]]) -> "Drawing":
+def line_figure(outcome: Outcome, errors: Mapping[str, Sequence[tuple[float, float]]]) -> "Figure":
     """Draw the error of the gyradius per error of the periods; the best line is where it is least.
 
     Parameters
@@ -108,11 +110,11 @@ def line_figure(outcome: Outcome, errors: Mapping[str, Sequence[tuple[float, flo
     errors
         By reading: line length in m, and metres per second.
     """
-    from matplotlib.figure import Figure as Drawing
+    from matplotlib.figure import Figure
 
     found = {finding.name: finding.estimate.value for finding in outcome.findings}
     with drawing():
-        figure = Drawing(figsize=(10.5, 4.6), layout="constrained")
+        figure = Figure(figsize=(10.5, 4.6), layout="constrained")
         figure.suptitle(f"{plain(outcome.name)}: lines for the pitch gyradius")
         axes = figure.add_subplot()
         for number, (reading, rows) in enumerate(errors.items()):
@@ -132,17 +134,17 @@ def line_figure(outcome: Outcome, errors: Mapping[str, Sequence[tuple[float, flo
     return figure
 
 
-def static_figure(test: StaticTest) -> "Drawing":
+def static_figure(test: StaticTest) -> "Figure":
     """Draw the tilts' tangents over weight times lever, with the fit, and the residuals below.
 
     Residuals tell levers apart that the upper panel shows on one line.
     """
-    from matplotlib.figure import Figure as Drawing
+    from matplotlib.figure import Figure
 
     pooled = test.result.pooled
     slope, offset = 1.0 / pooled.moment.value, pooled.offset_rad.value
     with drawing():
-        figure = Drawing(figsize=(10.5, 6.0), layout="constrained")
+        figure = Figure(figsize=(10.5, 6.0), layout="constrained")
         figure.suptitle(f"{plain(test.where)}: tilts under weights")
         grid = figure.add_gridspec(2, 1, height_ratios=(2.0, 1.0))
         axes = figure.add_subplot(grid[0])

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from sim.run import steady_run
 
 from hardware.description.arrays import ComplexArray
 from hardware.description.setpoint import SetPoint
@@ -30,6 +29,7 @@ from sim.effects.switching import switch_on
 from sim.model.force_law import LawInput
 from sim.model.laws import Spring, Stiffening
 from sim.rig import SimulatedRig, vertical_rig
+from sim.run import steady_run
 from sim.stage import Block
 
 RIG = vertical_rig().ideal()
