@@ -76,6 +76,6 @@ def test_a_command_draws_what_the_gallery_says(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(gallery, "PICTURES", tmp_path)
-    missing = list(gallery.draw(lambda one: one.draws.endswith(".inertia_gates.gates_figure")))
+    missing = list(gallery.draw(lambda one: one.draws.endswith(".inertia_figures.gates_figure")))
     assert missing == []
     assert [path.suffix for path in tmp_path.iterdir()] == [".png"]
