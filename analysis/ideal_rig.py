@@ -60,15 +60,12 @@ def strut_displacements(
 
     and half of that for the mean (m = 0), before L is taken off.
 
+    They are phasors in m, of the shape ``(orders + 1, 2)``, columns aft and fore.
+
     Parameters
     ----------
     orders
         Highest harmonic.
-
-    Returns
-    -------
-    numpy.ndarray
-        Phasors in m, shape ``(orders + 1, 2)``, columns aft and fore.
 
     Raises
     ------

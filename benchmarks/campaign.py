@@ -19,7 +19,7 @@ from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.readers import read_recording
 from benchmarks.campaign_folder import make_campaign
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
-from pmm.coefficients.settings import Settings
+from pmm.coefficients.settings import CoefficientSettings
 from pmm.coefficients.solving import TrialBlock, draw_block
 from pmm.coefficients.workflow import CampaignOutcome, coefficients_of
 from pmm.parallel import InThisProcess, LocalProcesses, open_executor
@@ -100,7 +100,7 @@ def _read_all(paths: list[Path]) -> float:
 
 
 def _solved(folder: Path, executor: Executor) -> CampaignOutcome:
-    return coefficients_of([folder], Settings(), executor, lambda *_: None)
+    return coefficients_of([folder], CoefficientSettings(), executor, lambda *_: None)
 
 
 def _in_two(folder: Path) -> CampaignOutcome:
@@ -172,7 +172,7 @@ def _same(folder: Path, quick: bool, report: Report) -> tuple[list[Row], float]:
     """Solve a small campaign on every engine, with Monte Carlo; a Dask worker is killed."""
     folder.mkdir()
     make_campaign(folder, 8 if quick else _SMALL, 20.0)
-    settings = Settings(trials=10_000, seed=3)
+    settings = CoefficientSettings(trials=10_000, seed=3)
     report("one process, two, and a cluster")
     alone = coefficients_of([folder], settings, InThisProcess(), lambda *_: None).result
     rows: list[Row] = []
@@ -186,7 +186,7 @@ def _same(folder: Path, quick: bool, report: Report) -> tuple[list[Row], float]:
     return rows, max(float(row["largest difference"]) for row in rows)
 
 
-def _on_cluster(folder: Path, settings: Settings) -> CampaignCoefficients:
+def _on_cluster(folder: Path, settings: CoefficientSettings) -> CampaignCoefficients:
     import distributed
 
     with warnings.catch_warnings():

@@ -186,7 +186,7 @@ def run(quick: bool, report: Report) -> Outcome:
     made = {
         "nulls": [null("examples/gap", 0, few)],
         "friction": [],
-        "mutations": [{"campaign": "mutated", **spoiled("mutations", 0, 4)}],
+        "mutations": [{"campaign": "mutated", **spoiled("mutations", 0, 1)}],
         "commands": [{"campaign": "mutated", **spoiled("commands", 0, 1)}],
     }
     return counted(

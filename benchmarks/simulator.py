@@ -18,14 +18,14 @@ from sim.acquisition.amplifier import LowPass
 from sim.acquisition.channels import Digitiser
 from sim.drive.motor import Servo
 from sim.drive.prescribed_drive import DriveSettings, SpeedRipple
-from sim.model.coefficients import HullCoefficients
 from sim.model.friction import Coulomb
 from sim.model.law_point import Acting, Point
 from sim.model.laws import Quadratic
 from sim.model.mounting import Mounting
+from sim.model.parameters import HullCoefficients
 from sim.model.water.radiation import Radiation
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
-from sim.solve.periodic import steady_run
+from sim.run import steady_run
 
 RATE_HZ = 200.0
 _SET_POINT = SetPoint(1.0, 0.02, 0.7)

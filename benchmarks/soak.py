@@ -126,7 +126,7 @@ def _kept(folder: Path, watched: _Watched) -> Iterator[_Kept]:
 
 def run(quick: bool, report: Report) -> Outcome:
     """Carry out a day of half hours."""
-    periods, repeats = (3, 3) if quick else (1500, 25)
+    periods, repeats = (3, 1) if quick else (1500, 25)
     with tempfile.TemporaryDirectory() as place:
         report("pmm run")
         watched = _carry_out(Path(place), periods, repeats)

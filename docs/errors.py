@@ -9,6 +9,7 @@ import sys
 import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 HERE = Path(__file__).parent
@@ -33,6 +34,7 @@ def sources() -> Iterator[Path]:
         yield from sorted((HERE.parent / room).rglob("*.py"))
 
 
+@cache
 def error_types() -> dict[str, ErrorType]:
     """Return all classes that come from :class:`PmmError`, by name, in the order of the rooms."""
     classes = {one.name: one for path in sources() for one in _classes(path)}
@@ -74,6 +76,7 @@ def reaction(name: str, types: dict[str, ErrorType]) -> str:
     return next((found for base in one.bases if (found := reaction(base, types))), "")
 
 
+@cache
 def templates() -> set[str]:
     """Return all texts of the code, with ``...`` where a value is put in."""
     found = set()

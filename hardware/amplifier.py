@@ -82,13 +82,15 @@ class Amplifier:
         self.name = name
         self.sample_rate_hz = services.sample_rate_hz
         self.channels = tuple(
-            Channel(one.name, one.unit, one.full_scale) for one in settings.channels
+            Channel(channel.name, channel.unit, channel.full_scale) for channel in settings.channels
         )
         self._settings = settings
         self._node = join(nodes(name, settings)[0], services)
         self._channels = settings.channels
-        self._values = tuple(entry(one.object) for one in settings.channels)
-        self._status = tuple(entry(one.status) if one.status else None for one in settings.channels)
+        self._values = tuple(entry(channel.object) for channel in settings.channels)
+        self._status = tuple(
+            entry(channel.status) if channel.status else None for channel in settings.channels
+        )
         self._value_streams = tuple(
             stream for stream in self._node.streams if set(stream.layout.entries) & {*self._values}
         )
@@ -191,8 +193,8 @@ class Amplifier:
 
     def _scaled(self, raw: tuple[int | float, ...], valid: list[bool]) -> tuple[float, ...]:
         return tuple(
-            value * one.scale + one.offset if good and math.isfinite(value) else math.nan
-            for value, one, good in zip(raw, self._channels, valid, strict=True)
+            value * channel.scale + channel.offset if good and math.isfinite(value) else math.nan
+            for value, channel, good in zip(raw, self._channels, valid, strict=True)
         )
 
     def _is_valid(self, i: int) -> bool:
@@ -249,16 +251,16 @@ def nodes(name: str, settings: AmplifierSettings) -> tuple[NodePlan, ...]:
     ConfigurationError
         If a channel's object is in no TPDO, or the EDS is unknown.
     """
-    tpdos = tuple(tuple(entry(text) for text in one) for one in settings.tpdos)
+    tpdos = tuple(tuple(entry(text) for text in tpdo) for tpdo in settings.tpdos)
     if not tpdos:
         dictionary = load(settings.eds, settings.node, name)
         tpdos = tuple(one for one in default_mapping(dictionary, 0x1A00) if one)
-    mapped = {at for one in tpdos for at in one}
-    for one in settings.channels:
-        for text in (one.object, *((one.status,) if one.status else ())):
+    mapped = {at for tpdo in tpdos for at in tpdo}
+    for channel in settings.channels:
+        for text in (channel.object, *((channel.status,) if channel.status else ())):
             if entry(text) not in mapped:
                 raise ConfigurationError(
-                    f"{name}: channel {one.name}: object {entry(text)} is in no TPDO; "
+                    f"{name}: channel {channel.name}: object {entry(text)} is in no TPDO; "
                     f"mapped are {', '.join(map(str, sorted(mapped)))}"
                 )
     return (NodePlan(name, settings.node, settings.eds, tpdos),)

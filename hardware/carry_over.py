@@ -28,11 +28,11 @@ class Carrying(Protocol):
 
 def opening_of(rig: Rig) -> dict[str, dict[str, Any]]:
     """Return what the devices carry over now, by their names; ask between two cycles."""
-    return {one.name: one.carried() for one in rig.devices if isinstance(one, Carrying)}
+    return {device.name: device.carried() for device in rig.devices if isinstance(device, Carrying)}
 
 
 def carry_on(rig: Rig, opening: Mapping[str, Mapping[str, Any]]) -> None:
     """Let the devices of a fresh rig go on where others stood."""
-    for one in rig.devices:
-        if isinstance(one, Carrying) and one.name in opening:
-            one.carry_on(opening[one.name])
+    for device in rig.devices:
+        if isinstance(device, Carrying) and device.name in opening:
+            device.carry_on(opening[device.name])

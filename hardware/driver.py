@@ -48,8 +48,8 @@ class NodePlan:
                 raise ConfigurationError(f"{self.name}: {len(pdos)} {what}s; the limit is 4")
             both.append(
                 tuple(
-                    layout(dictionary, one, base + 0x100 * n + self.node_id, f"{self.name} {what}")
-                    for n, one in enumerate(pdos)
+                    layout(dictionary, pdo, base + 0x100 * n + self.node_id, f"{self.name} {what}")
+                    for n, pdo in enumerate(pdos)
                 )
             )
         return both[0], both[1]
@@ -142,7 +142,10 @@ def find_driver(name: str, where: str, among: Iterable[EntryPoint] | None = None
     ConfigurationError
         If there is none, or its package cannot be loaded.
     """
-    found = {one.name: one for one in (entry_points(group=GROUP) if among is None else among)}
+    found = {
+        entry_point.name: entry_point
+        for entry_point in (entry_points(group=GROUP) if among is None else among)
+    }
     if name not in found:
         near = get_close_matches(name, found, n=1, cutoff=0.5)
         hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(sorted(found))}"
@@ -200,7 +203,7 @@ def read_settings(kind: type[T], table: Mapping[str, object], where: str) -> T:
 def _keys(kind: type) -> dict[str, None]:
     from dataclasses import fields
 
-    return {one.name: None for one in fields(kind)}
+    return {field.name: None for field in fields(kind)}
 
 
 def _hint(key: str, known: Iterable[str]) -> str:

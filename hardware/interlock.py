@@ -37,7 +37,7 @@ class _Guarded:
 
     def _refuse(self, what: str, limit: str) -> None:
         self._refuse_in_fault(what)
-        moving = [one.name for one in self._others if one.moving]
+        moving = [other.name for other in self._others if other.moving]
         if moving:
             raise InterlockError(
                 self._inner.name, f"cannot {what} while {' and '.join(moving)} {limit}"

@@ -216,7 +216,7 @@ class Master:
 
     def _listen(self) -> None:
         """Listen for another master before anything is sent; on a private bus there is none."""
-        self._company.begin([one for node in self.nodes for one in node.rpdos])
+        self._company.begin([rpdo for node in self.nodes for rpdo in node.rpdos])
         listen_ms = 0 if is_private(self.configuration) else self.configuration.listen_ms
         end = self.clock() + listen_ms / 1000.0
         while (frame := self.receive(max(end - self.clock(), 0.0))) is not None:

@@ -90,16 +90,16 @@ class Node:
         self.dictionary = dictionary
         self.sdo = Sdo(name, node_id, dictionary, carrier)
         self.values: dict[Entry, Number] = {at: 0 for one in (*tpdos, *rpdos) for at in one.entries}
-        self.streams = tuple(PdoStream(one, self) for one in tpdos)
+        self.streams = tuple(PdoStream(tpdo, self) for tpdo in tpdos)
         self.last_beat = 0
         self._rpdos = rpdos
-        self._wanted: dict[Entry, Number] = {at: 0 for one in rpdos for at in one.entries}
+        self._wanted: dict[Entry, Number] = {at: 0 for rpdo in rpdos for at in rpdo.entries}
         self._sent: dict[int, bytes] = {}
 
     @property
     def rpdos(self) -> frozenset[int]:
         """Identifiers by which the node is commanded."""
-        return frozenset(one.cob_id for one in self._rpdos)
+        return frozenset(rpdo.cob_id for rpdo in self._rpdos)
 
     def put(self, at: Entry, value: Number) -> None:
         """Set an object of an RPDO; it goes out at the end of the cycle."""
@@ -108,11 +108,11 @@ class Node:
     def outputs(self, *, repeat: bool = False) -> list[tuple[int, bytes]]:
         """Return the RPDOs to send: those that changed, or all of them to ``repeat``."""
         due = []
-        for one in self._rpdos:
-            data = one.code.pack(*[self._wanted[at] for at in one.entries])
-            if repeat or self._sent.get(one.cob_id) != data:
-                self._sent[one.cob_id] = data
-                due.append((one.cob_id, data))
+        for rpdo in self._rpdos:
+            data = rpdo.code.pack(*[self._wanted[at] for at in rpdo.entries])
+            if repeat or self._sent.get(rpdo.cob_id) != data:
+                self._sent[rpdo.cob_id] = data
+                due.append((rpdo.cob_id, data))
         return due
 
     def configure(self, bus: BusConfiguration) -> None:

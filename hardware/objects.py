@@ -46,7 +46,7 @@ class MappedObjects:
 
     def _read(self) -> Iterator[ObjectValue]:
         for node, sdo in self._asked:
-            for at in dict.fromkeys(at for one in node.tpdos for at in one.entries):
+            for at in dict.fromkeys(at for tpdo in node.tpdos for at in tpdo.entries):
                 try:
                     raw = sdo.read_raw(at)
                 except HardwareError as error:

@@ -1,23 +1,66 @@
 """The photocell on a small microcontroller that stamps its pulses and sends them by serial line."""
 
-from collections.abc import Mapping
+from collections import deque
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
-from hardware.clock_fit import ClockFit
+import numpy as np
+
 from hardware.driver import Driver, Services
 from hardware.errors import (
     HardwareError,
-    LineError,
     PhotocellDeadError,
     PhotocellExtraError,
     PhotocellMissedError,
-    SilentPortError,
-    worst,
 )
-from hardware.lines import TICK_MODULUS, Decoder, LineKind, SerialLine, Unwrapped
+from hardware.lines import TICK_MODULUS, LineKind, SerialLine, Unwrapped
 from hardware.roles import Cycle, Pulse, Role
+from hardware.serial_instrument import SerialInstrument
 from hardware.serial_port import PortSettings
+
+_MARKS: Final = 240
+_ENOUGH: Final = 3
+
+
+class ClockFit:
+    """Turns a device's time into the rig's.
+
+    A mark arrives late by the transmission and by up to one cycle, never early. So the slope comes
+    from all recent marks by least squares, and the line is then lowered onto the least delayed one.
+    Until there are enough marks the clocks are taken to run equally fast.
+    """
+
+    def __init__(self) -> None:
+        self._device: deque[float] = deque(maxlen=_MARKS)
+        self._rig: deque[float] = deque(maxlen=_MARKS)
+        self._slope = 1.0
+        self._offset_s = 0.0
+
+    @property
+    def drift(self) -> float:
+        """How much faster the rig's clock runs: 1e-6 is one microsecond a second."""
+        return self._slope - 1.0
+
+    @property
+    def marks(self) -> list[tuple[float, float]]:
+        """The marks that count now: the device's time and the rig's time when it had arrived."""
+        return list(zip(self._device, self._rig, strict=True))
+
+    def add(self, device_s: float, arrived_s: float) -> None:
+        """Take a mark: the device's time in it, and the rig's time when it had arrived."""
+        self._device.append(device_s)
+        self._rig.append(arrived_s)
+        device, rig = np.array(self._device), np.array(self._rig)
+        if len(device) >= _ENOUGH and device[-1] > device[0]:
+            off = device - device.mean()
+            self._slope = float(off @ (rig - rig.mean()) / (off @ off))
+        self._offset_s = float(np.min(rig - self._slope * device))
+
+    def rig_time_s(self, device_s: float) -> float:
+        """Return the rig's time for a time of the device."""
+        return self._slope * device_s + self._offset_s
+
 
 _MISSED_PERIODS, _DEAD_PERIODS, _EXTRA_PERIODS = 1.5, 3.5, 0.5
 
@@ -36,7 +79,7 @@ class TimestamperSettings:
     silent_s: float = 3.0
 
 
-class SerialPhotocell:
+class SerialPhotocell(SerialInstrument):
     """A :class:`hardware.roles.Photocell` that knows the time of each pulse to a microsecond.
 
     Attributes
@@ -46,22 +89,14 @@ class SerialPhotocell:
     """
 
     def __init__(self, name: str, settings: TimestamperSettings, services: Services) -> None:
-        self.name = name
+        super().__init__(name, settings, services, (LineKind.PULSE, LineKind.TIME))
         self.fit = ClockFit()
-        self._settings = settings
-        self._port = services.port(name, settings.port)
-        self._decoder = Decoder(name)
         self._ticks = Unwrapped(TICK_MODULUS)
         self._pulses: list[Pulse] = []
         self._count: int | None = None
         self._at_s: float | None = None  # of the last pulse, in the rig's time
         self._waiting_s: float | None = None  # since when the first pulse is due
         self._period_s: float | None = None
-        self._heard_s: float | None = None
-        self._told: set[type] = set()
-
-    def prepare(self) -> None:
-        """Nothing to write: the device talks by itself."""
 
     def expect(self, frequency_hz: float | None) -> None:
         """Say how fast the shaft turns; ``None``: it is idle, a lost port is opened again."""
@@ -81,15 +116,7 @@ class SerialPhotocell:
         """
         if self._period_s is None:
             self._port.recover(cycle.time_s)
-        faults: list[HardwareError] = []
-        for raw in self._port.lines():
-            try:
-                self._take(self._decoder.decode(raw), cycle)
-            except HardwareError as error:
-                faults.append(error)
-        self._absent(cycle.time_s, faults)
-        if faults:
-            raise worst(faults)
+        self._read(cycle)
 
     def take(self) -> tuple[Pulse, ...]:
         """Return the pulses since the last call."""
@@ -114,18 +141,10 @@ class SerialPhotocell:
         PortOpenError
             If the port is still not there.
         """
-        self._port.open()
-        self._heard_s, self._at_s, self._waiting_s, self._count = None, None, None, None
-        self._told.clear()
-
-    def close(self) -> None:
-        """Close the port."""
-        self._port.close()
+        super().reset_fault()
+        self._at_s = self._waiting_s = self._count = None
 
     def _take(self, line: SerialLine, cycle: Cycle) -> None:
-        if line.kind is LineKind.ANGLE:
-            raise LineError(self.name, "an angle on the photocell's line; swap the ports")
-        self._heard_s = cycle.time_s
         device_s = self._ticks.take(line.ticks_us) * 1e-6
         self.fit.add(device_s, cycle.time_s)
         before, self._count = self._count, int(line.value)
@@ -156,17 +175,8 @@ class SerialPhotocell:
                 self.name, f"{periods:.3f} periods between pulses (limit {_MISSED_PERIODS})"
             )
 
-    def _absent(self, now_s: float, faults: list[HardwareError]) -> None:
-        """Add what is missing by now: pulses, or any line at all."""
-        if self._heard_s is None:
-            self._heard_s = now_s
-        silent_s = now_s - self._heard_s
-        if silent_s > self._settings.silent_s and SilentPortError not in self._told:
-            self._told.add(SilentPortError)
-            limit = f"{self._settings.silent_s:g} s"
-            faults.append(
-                SilentPortError(self.name, f"no line for {silent_s:.2f} s (limit {limit})")
-            )
+    def _absent(self, now_s: float) -> Iterator[HardwareError]:
+        """Yield which pulses are missing by now."""
         if self._period_s is None:
             return
         if self._at_s is None and self._waiting_s is None:
@@ -180,7 +190,7 @@ class SerialPhotocell:
             if periods > limit_periods and kind not in self._told:
                 self._told |= {kind, PhotocellMissedError}
                 what = f"no pulse for {periods:.2f} periods (limit {limit_periods})"
-                faults.append(kind(self.name, what))
+                yield kind(self.name, what)
 
 
 DRIVER = Driver(Role.PHOTOCELL, TimestamperSettings, SerialPhotocell)

@@ -39,7 +39,7 @@ def come_to_rest(rig: Moving) -> None:
     if not rig.powered() or _is_lost(rig):
         return
     rate_hz = rig.configuration.sample_rate_hz
-    if not any(one.reaction >= Reaction.QUICK_STOP for one in rig.faults):
+    if not any(fault.reaction >= Reaction.QUICK_STOP for fault in rig.faults):
         rig.stop()
         _wait(rig, round(_PROFILE_STOP_S * rate_hz), gently=True)
     for one in rig.powered():
@@ -69,4 +69,4 @@ def _cycle(rig: Moving) -> bool:
 
 
 def _is_lost(rig: Moving) -> bool:
-    return any(one.reaction is Reaction.END_RUN for one in rig.faults)
+    return any(fault.reaction is Reaction.END_RUN for fault in rig.faults)

@@ -233,7 +233,7 @@ class Rig:
     def powered(self) -> tuple[Powered, ...]:
         """Return the axes that the rig has."""
         axes = (self.shaft, self.eccentricity, self.phase)
-        return tuple(one for one in axes if one is not None)
+        return tuple(axis for axis in axes if axis is not None)
 
     def _each(self, command: Callable[[Powered], None]) -> None:
         failed = []
@@ -275,7 +275,7 @@ class Rig:
         """Keep a fault that stops the rig; tell whether it is to be raised."""
         if error.reaction < Reaction.PROFILE_STOP:
             return True
-        known = {(type(one), one.device) for one in self.faults}
+        known = {(type(fault), fault.device) for fault in self.faults}
         new = (type(error), error.device) not in known
         if new:
             self.faults.append(error)

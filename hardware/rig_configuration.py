@@ -123,7 +123,7 @@ def check(rig: RigConfiguration) -> None:
             plans += mine
             for plan in mine:
                 for layouts in plan.layouts():
-                    frames.update(one.size for one in layouts)
+                    frames.update(layout.size for layout in layouts)
         except ConfigurationError as error:
             faults.append(str(error))
     faults += _node_faults(plans, rig.bus)

@@ -79,10 +79,10 @@ Sample = tuple[int, tuple[float, ...]]
 def blocks(samples: Sequence[Sample]) -> tuple[SampleBlock, ...]:
     """Put samples, each its number and its values over the channels, into blocks without gaps."""
     stretches: list[list[Sample]] = []
-    for one in samples:
-        if not stretches or one[0] != stretches[-1][-1][0] + 1:
+    for sample in samples:
+        if not stretches or sample[0] != stretches[-1][-1][0] + 1:
             stretches.append([])
-        stretches[-1].append(one)
+        stretches[-1].append(sample)
     return tuple(
         SampleBlock(part[0][0], np.array([values for _, values in part], dtype=np.float64).T)
         for part in stretches

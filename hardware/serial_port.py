@@ -103,13 +103,13 @@ def know(scheme: str) -> None:
     OSError
         If a package cannot be loaded.
     """
-    for one in entry_points(group=URL_GROUP, name=scheme):
+    for entry_point in entry_points(group=URL_GROUP, name=scheme):
         try:
-            one.load()
+            entry_point.load()
         except Exception as error:  # a foreign package may raise anything while it is imported
-            raise OSError(f"{one.value}, which {scheme}:// needs, cannot be loaded: {error}") from (
-                error
-            )
+            raise OSError(
+                f"{entry_point.value}, which {scheme}:// needs, cannot be loaded: {error}"
+            ) from (error)
 
 
 def resolve(url: str) -> str:

@@ -76,7 +76,7 @@ class Watch:
 
     def __init__(self, shaft: Shaft | None, forces: Sequence[ForceChannels]) -> None:
         self._shaft = shaft
-        self._watched = tuple(_WatchedForces(one) for one in forces)
+        self._watched = tuple(_WatchedForces(force) for force in forces)
         self.forces = cast("tuple[ForceChannels, ...]", self._watched)
         self._cycles_beyond = 0
         self.limit(WatchLimits())
@@ -86,8 +86,8 @@ class Watch:
         own = self._shaft.frequency_hz.high if self._shaft is not None else math.inf
         self._highest_hz = OVERSPEED * min(own, limits.frequency_hz)
         self._loads = [
-            [limits.loads.get(channel.name, math.inf) for channel in one.channels]
-            for one in self.forces
+            [limits.loads.get(channel.name, math.inf) for channel in force.channels]
+            for force in self.forces
         ]
 
     def look(self) -> Iterator[HardwareError]:
@@ -117,6 +117,6 @@ def _merged(taken: Sequence[SampleBlock]) -> tuple[SampleBlock, ...]:
         stretches[-1].append(one)
         end = one.first + one.values.shape[1]
     return tuple(
-        SampleBlock(parts[0].first, np.concatenate([one.values for one in parts], axis=1))
+        SampleBlock(parts[0].first, np.concatenate([part.values for part in parts], axis=1))
         for parts in stretches
     )

@@ -26,6 +26,11 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
+# Classes of tables carry this as ``__pydantic_config__``, for the tables in them too: unknown keys,
+# NaN and infinity are refused.
+STRICT_TABLE: Final = {"extra": "forbid", "allow_inf_nan": False}
+
+
 class Fault(NamedTuple):
     """One error of a file: where, and what."""
 
@@ -156,43 +161,48 @@ _COUNT: Final = 100_000  # of periods: more than two weeks at 0.1 Hz
 _SECONDS: Final = 1e6  # eleven days
 # What a number of that name must be, in whichever table it stands. Ten times more would ask for
 # what no tank does and no memory holds; ten times less would refuse long swings and fast gauges.
+_ABOVE_0: Final = (
+    "acceleration_m_s2 amplitude_m apart_m beam_m beats body_density_kg_m3 "
+    "carriage_acceleration_m_s2 coefficient density_kg_m3 depth_m diameter_m draught_m flush_s "
+    "force_per_strut_n full_scale full_scale_n gravity_m_s2 half_spacing_m highest_speed_m_s "
+    "inertia_kg_m2 known_inertia_kg_m2 known_scatter_s length_m lever_m line_m mass_kg moment_kg_m "
+    "moment_relative oscillations period_s period_scatter_relative pivot_distance_m reaction_s "
+    "rod_length_m safe_load_n square_half_side_m steady_tolerance stiffness_n_m_rad stroke_m "
+    "tolerance tolerance_kg tolerance_m velocity_m_s volume_m3 weight_kg width_m"
+)
+_FROM_0: Final = (
+    "air_density_kg_m3 counting_error displaced_kg eccentricity_m eccentricity_mm k_pitch_m "
+    "k_roll_m k_yaw_m noise_rms resolution speed_m_s sway_coefficient"
+)
 _BOUNDS: Final[Mapping[str, Bounds]] = {
-    "displaced_kg": Bounds(0.0, _MOST, from_low=True),
+    **dict.fromkeys(_ABOVE_0.split(), Bounds(0.0, _MOST)),
+    **dict.fromkeys(_FROM_0.split(), Bounds(0.0, _MOST, from_low=True)),
     "duration_s": Bounds(0.0, _SECONDS),
-    "eccentricity_m": Bounds(0.0, _MOST, from_low=True),
-    "eccentricity_mm": Bounds(0.0, _MOST, from_low=True),
     "every": Bounds(0.0, _COUNT),
-    "force_per_strut_n": Bounds(0.0, _MOST),
     "frequency_hz": Bounds(0.0, 1e4),
-    "full_scale": Bounds(0.0, _MOST),
-    "full_scale_n": Bounds(0.0, _MOST),
     "gate_periods": Bounds(0.0, _COUNT),
-    "half_spacing_m": Bounds(0.0, _MOST),
     "harmonics": Bounds(0.0, 1000.0),
-    "inertia_kg_m2": Bounds(0.0, _MOST),
     "jitter_rms_s": Bounds(0.0, _SECONDS, from_low=True),
-    "mass_kg": Bounds(0.0, _MOST),
+    "known_scatter_degrees_of_freedom": Bounds(0.0, math.inf),
     "max_periods": Bounds(0.0, _COUNT),
-    "noise_rms": Bounds(0.0, _MOST, from_low=True),
     "pause_s": Bounds(0.0, _SECONDS, from_low=True),
+    "period_degrees_of_freedom": Bounds(0.0, math.inf),
     "periods": Bounds(0.0, _COUNT),
     "repeats": Bounds(0.0, 1000.0),
-    "resolution": Bounds(0.0, _MOST, from_low=True),
-    "rod_length_m": Bounds(0.0, _MOST),
     "sample_rate_hz": Bounds(0.0, 1e6),
     "seed": Bounds(0.0, 2.0**63, from_low=True),
     "settling_periods": Bounds(0.0, _COUNT, from_low=True),
     "start_ramp_s": Bounds(0.0, _SECONDS, from_low=True),
-    "steady_tolerance": Bounds(0.0, _MOST),
     "waiting_s": Bounds(0.0, _SECONDS, from_low=True),
 }
+_UNCERTAINTY: Final = Bounds(0.0, math.inf, from_low=True)  # of a key that begins with u_
 
 
 def _number_fault(key: str, value: float) -> str | None:
     """Say what a number should be that is none, or not within the bounds of its name."""
     if not math.isfinite(value) and (math.isnan(value) or not key.endswith(_MAY_BE_INFINITE)):
         return "should be a finite number"
-    bounds = _BOUNDS.get(key)
+    bounds = _UNCERTAINTY if key.startswith("u_") else _BOUNDS.get(key)
     return bounds.fault(value) if bounds else None
 
 

@@ -21,10 +21,7 @@ def find(kind: Any, place: Place, table: Any) -> PlaceMatch | None:
     Where a table may be one of several classes, told apart by their keys, pydantic names a class in
     the place and tries them all.
 
-    Returns
-    -------
-    Found or None
-        ``None`` for what is wrong with a table taken for a class that it is not meant to be.
+    It is ``None`` for what is wrong with a table taken for a class that it is not meant to be.
     """
     cleaned: list[str | int] = []
     known: tuple[str, ...] = ()
@@ -54,8 +51,8 @@ def _likeness(kind: Any, table: dict[str, Any]) -> float:
         for key in table
     )
     missing = sum(
-        one.name not in table and one.default is MISSING and one.default_factory is MISSING
-        for one in fields(kind)
+        field.name not in table and field.default is MISSING and field.default_factory is MISSING
+        for field in fields(kind)
     )
     return like - 0.1 * missing
 
@@ -69,7 +66,7 @@ def _members(kind: Any) -> list[Any]:
 
 
 def _keys(kind: Any) -> tuple[str, ...]:
-    return tuple(one.name for one in fields(kind)) if is_dataclass(kind) else ()
+    return tuple(field.name for field in fields(kind)) if is_dataclass(kind) else ()
 
 
 def _part(kind: Any, key: str | int) -> Any:

@@ -106,6 +106,9 @@ class Chain:
         Any way of cutting a run into blocks gives the same samples, and the same state and count
         always give the same samples.
 
+        The results are state, signals: the state after the block, and every signal of the chain
+        over the block, by name.
+
         Parameters
         ----------
         substitute
@@ -115,11 +118,6 @@ class Chain:
             several parts together uses them between its parts. Displacement, velocity and
             acceleration of a strut are three signals: whoever substitutes a measured motion has to
             supply all three.
-
-        Returns
-        -------
-        state, signals
-            The state after the block, and every signal of the chain over the block, by name.
 
         Raises
         ------

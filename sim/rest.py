@@ -17,9 +17,9 @@ from hardware.description.oscillator import Range
 from hardware.description.setpoint import SetPoint
 from sim import signals
 from sim.drive.prescribed_drive import DriveSettings
+from sim.periodic import SteadyState, steady_state
 from sim.rig import SimulatedRig
 from sim.solve.period import Period
-from sim.solve.periodic import SteadyState, steady_state
 
 _ORDERS = 2
 _POINTS = 64

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar
+from typing import Any
 
 from hardware.description.arrangement import DriftBy, Joint
 from hardware.description.body import Body
@@ -12,6 +12,7 @@ from hardware.description.setpoint import Medium, SetPoint, check_within
 from sim.acquisition.channels import Acquisition, Digitiser
 from sim.acquisition.photocell import PhotocellStage
 from sim.chain import Chain
+from sim.coupled.stage import Coupled, reflected_inertia
 from sim.drive.carriage import Carriage, CarriageSettings
 from sim.drive.loaded_drive import LoadedDrive
 from sim.drive.prescribed_drive import ConstantSpeedDrive, DriveSettings
@@ -20,10 +21,8 @@ from sim.mechanism.linkage import Mechanism, Setting
 from sim.model.hull import Hull, HullCoefficients
 from sim.model.law_point import Acting
 from sim.model.mounting import Mounting
-from sim.model.surge import SurgeForces
-from sim.model.water.force_laws import CrossFlow
+from sim.model.water.force_laws import CrossFlow, SurgeForces
 from sim.model.water.radiation import Radiation
-from sim.solve.coupled import Coupled, reflected_inertia
 from sim.stage import UNKNOWN_KEYS_REFUSED, Stage
 
 
@@ -74,7 +73,7 @@ class SimulatedRig:
     photocell: PhotocellStage | None = field(default_factory=PhotocellStage)
     surge: SurgeForces | None = None
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def chain(self, set_point: SetPoint) -> Chain:
         """Return the stages of this rig, set for one run.

@@ -1,4 +1,4 @@
-"""A simulated run, as the dataset that a recorder would have written."""
+"""A simulated run: as the dataset that a recorder would have written, or one period of it."""
 
 import json
 import math
@@ -14,8 +14,10 @@ from hardware.description.flags import Flag, Severity
 from hardware.description.setpoint import SetPoint
 from hardware.description.version import version_of
 from sim import signals
+from sim.periodic import SteadyState, steady_state
 from sim.rig import SimulatedRig
 from sim.signals import Signals
+from sim.solve.period import Period
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,6 +39,9 @@ def simulate(
 ) -> "xr.Dataset":
     """Simulate one run and return its record.
 
+    The record is in the schema of :mod:`hardware.description.dataset`; its clock starts with the
+    record, and so do the drifts of the dynamometers' zeros and of the channels.
+
     Parameters
     ----------
     periods
@@ -46,12 +51,6 @@ def simulate(
         Periods that pass before the record begins.
     seed
         Of all noise: the same seed gives the same record.
-
-    Returns
-    -------
-    xarray.Dataset
-        In the schema of :mod:`hardware.description.dataset`; its clock starts with the record, and
-        so do the drifts of the dynamometers' zeros and of the channels.
 
     Raises
     ------
@@ -77,6 +76,13 @@ def simulate(
         schema.ATTR_FLAGS: json.dumps([asdict(flag) for flag in flags]),
     }
     return _dataset(rig, run, skipped, sample_rate_hz, attributes)
+
+
+def steady_run(
+    rig: SimulatedRig, set_point: SetPoint, *, orders: int = 12, points: int = 128
+) -> SteadyState:
+    """Return the periodic steady state of a rig at a set-point; see :func:`steady_state`."""
+    return steady_state(rig.chain(set_point), Period(set_point.frequency_hz, orders, points))
 
 
 def _zeroed(rig: SimulatedRig, time_s: float) -> SimulatedRig:

@@ -7,7 +7,6 @@ import can
 import pytest
 from hypothesis import HealthCheck, settings
 
-from analysis.foreign.process import end_children
 from tests.hardware.leaks import Leaks
 
 # No clock decides a test: a slow machine is no fault of the code.
@@ -23,7 +22,6 @@ def _nothing_left_behind() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         leaks = Leaks(patch)
         yield
-        end_children()  # one is kept for the next file, by design
         left = leaks.found()
     assert not left, f"left behind: {', '.join(left)}"
 

@@ -61,6 +61,8 @@ def of_struts(
 ) -> InBodyAxes:
     """Return the model's phasors about the midpoint.
 
+    It raises what :func:`analysis.kinematics.body_frame.in_body_axes` raises.
+
     Parameters
     ----------
     struts
@@ -70,11 +72,6 @@ def of_struts(
         Numbers, not arrays.
     asked
         Whether the displacements are the set-point's: the photocell's latency acts on them.
-
-    Raises
-    ------
-    DataError
-        As :func:`analysis.kinematics.body_frame.in_body_axes`.
     """
     channels = len(struts.names) // (orders + 1)
     omega = 2.0 * math.pi * frequency_hz
@@ -111,6 +108,8 @@ def parts_of_struts(
 ) -> tuple[FloatArray, Tare]:
     """Return the interleaved parts and the ``tare`` of :func:`of_struts` alone, of many runs.
 
+    It raises what :func:`of_struts` raises.
+
     Parameters
     ----------
     readings
@@ -119,11 +118,6 @@ def parts_of_struts(
         Speed and drift of shape ``(runs, 1)``.
     omega
         Angular frequencies, rad/s, shape ``(runs,)``.
-
-    Raises
-    ------
-    DataError
-        As :func:`of_struts`.
     """
     runs, count, channels = readings.shape
     moved = driven(interleaved(readings[..., :2].reshape(runs, -1)), omega)

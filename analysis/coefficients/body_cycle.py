@@ -29,7 +29,6 @@ from hardware.description.setpoint import Medium
 MOTIONS = ("translation", "rotation")
 LOADS = ("force", "moment")
 SURGE_FORCE = CHANNELS[-1]
-_GAUGED = (*LOADS, SURGE_FORCE)
 
 _SAME_FREQUENCY = 5e-3
 _SAME_MOTION = 1e-2
@@ -112,11 +111,6 @@ class BodyCycle:
     def channels(self) -> tuple[str, ...]:
         """Names of the channels whose phasors the cycle has."""
         return CHANNELS if self.has_surge else CHANNELS[:-1]
-
-    @property
-    def motion_is_asked(self) -> bool:
-        """Whether the motion is the set-point's, because none was measured."""
-        return any(flag.code == "motion_from_set_point" for flag in self.flags)
 
     @property
     def motion(self) -> ComplexArray:

@@ -1,7 +1,6 @@
 """The budget of one coefficient, GUM style: what each input adds.
 
-Inputs of one kind stand in one line (the scatter of all runs, the repeats of all runs); what two
-coefficients have in common is kept (:func:`correlation`), because both are made of the same inputs.
+Inputs of one kind stand in one line: the scatter of all runs, the repeats of all runs.
 """
 
 import math
@@ -107,13 +106,6 @@ def budget(coefficients: CampaignCoefficients, row: int) -> CoefficientBudget:
         _lines(coefficients, row, spread),
         _digits(entry.name, entry.retained),
     )
-
-
-def correlation(coefficients: CampaignCoefficients, first: int, second: int) -> float:
-    """Return the correlation coefficient of two entries; 0 where one has no uncertainty."""
-    covariance = coefficients.uncertain.covariance([first, second])
-    spread = math.sqrt(covariance[0, 0] * covariance[1, 1])
-    return float(covariance[0, 1]) / spread if spread else 0.0
 
 
 def _lines(coefficients: CampaignCoefficients, row: int, spread: float) -> tuple[BudgetLine, ...]:

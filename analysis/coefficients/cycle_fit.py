@@ -101,15 +101,12 @@ class CycleFit:
     def refitted(self, parts: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return values and squares of other numbers of the cycles, with the same weights.
 
+        The results are values, chi_square: their shapes are ``(trials, n)`` and ``(trials, 3)``.
+
         Parameters
         ----------
         parts
             Shape ``(trials, cycles, numbers)``.
-
-        Returns
-        -------
-        values, chi_square
-            Shapes ``(trials, n)`` and ``(trials, 3)``.
         """
         design, loads = self.problem.design(parts)
         values = self.problem.solved(design, loads)
@@ -168,10 +165,7 @@ def fit_terms(
 ) -> CycleFit:
     """Return the coefficients of terms of a form's velocities, by the names that it gives them.
 
-    Raises
-    ------
-    DataError
-        As :func:`fit_cycles`.
+    It raises what :func:`fit_cycles` raises.
     """
     highest = min(cycle.orders for cycle in cycles)
     even = np.ones((len(cycles), len(orders), 3))

@@ -12,17 +12,14 @@ def least_squares(matrix: FloatArray, target: FloatArray) -> FloatArray:
     and whoever fits here has refused columns of which more than two would go; a decomposition of
     each trial takes several times as long.
 
+    The result has the shape ``(trials, n)``.
+
     Parameters
     ----------
     matrix
         Shape ``(trials, equations, n)``.
     target
         Shape ``(trials, equations)``.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape ``(trials, n)``.
     """
     size = np.sqrt((matrix**2).sum(axis=-2, keepdims=True))
     scale = np.where(size > 0.0, size, 1.0)

@@ -14,8 +14,8 @@ import numpy as np
 from analysis.coefficients.body_cycle import LOADS, BodyCycle, at_order
 from analysis.coefficients.campaign_records import Outlier
 from analysis.coefficients.phasors import Phasors, parts_of
-from analysis.uncertainty.freedom import student_factor
-from analysis.uncertainty.values import Contribution
+from analysis.uncertainty.freedom import effective_freedom, student_factor
+from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.arrays import ComplexArray, FloatArray
 
 _SAME_FREQUENCY = 5e-3
@@ -36,14 +36,14 @@ class RepeatedMotion:
     size
         Largest part of each load, that errors of the run are relative to, shape ``(2,)``.
     freedom
-        Fewest of the runs' scatter.
+        Effective, of the runs' mean variance of each load, shape ``(2,)``.
     """
 
     runs: tuple[str, ...]
     loads: ComplexArray
     variance: FloatArray
     size: FloatArray
-    freedom: float
+    freedom: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +142,7 @@ def _distance(
     widest = max(between, within)
     scale = math.sqrt(widest * (1.0 + 1.0 / len(others))) + 1e-12 * float(kind.size[row])
     largest = max(abs(apart.real), abs(apart.imag))
-    return largest / scale, freedom if between >= within else kind.freedom
+    return largest / scale, freedom if between >= within else float(kind.freedom[row])
 
 
 def _limit(freedom: float, tests: int) -> float:
@@ -185,19 +185,24 @@ def _size(cycle: BodyCycle) -> FloatArray:
 
 
 def _kind(cycles: Sequence[BodyCycle]) -> RepeatedMotion:
-    loads, variance, freedom = [], [], math.inf
-    for cycle in cycles:
-        loads.append(cycle.loads / _ratio(cycles[0], cycle))
-        variance.append(np.maximum(_variance(cycle.hull.phasors), _variance(cycle.phasors)))
-        freedom = min([freedom, *(s.degrees_of_freedom for s in cycle.phasors.real.contributions)])
+    loads = np.stack([cycle.loads / _ratio(cycles[0], cycle) for cycle in cycles])
+    own = [_loads(cycle.phasors) for cycle in cycles]
+    variance = np.maximum(_variance(own), _variance([_loads(one.hull.phasors) for one in cycles]))
+    each = np.stack([one.degrees_of_freedom.reshape(2, 2).min(axis=1) for one in own])
+    freedom = effective_freedom(variance, each)
     names = tuple(cycle.name for cycle in cycles)
-    return RepeatedMotion(names, np.stack(loads), np.stack(variance), _size(cycles[0]), freedom)
+    return RepeatedMotion(names, loads, variance, _size(cycles[0]), freedom)
 
 
-def _variance(phasors: Phasors) -> FloatArray:
-    """Of both loads at the fundamental, the mean of their two parts."""
-    chosen = phasors.select([at_order(name, 1) for name in LOADS])
-    return np.asarray(np.diagonal(chosen.covariance).reshape(2, 2).mean(axis=1))
+def _loads(phasors: Phasors) -> UncertainValues:
+    """Return both loads at the fundamental."""
+    return phasors.select([at_order(name, 1) for name in LOADS]).real
+
+
+def _variance(loads: Sequence[UncertainValues]) -> FloatArray:
+    """Of both loads of each run, the mean of their two parts, shape ``(runs, 2)``."""
+    parts = np.stack([one.standard_uncertainty**2 for one in loads])
+    return np.asarray(parts.reshape(-1, 2, 2).mean(axis=2))
 
 
 def _squares(loads: ComplexArray) -> FloatArray:

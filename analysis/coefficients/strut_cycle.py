@@ -47,20 +47,14 @@ class StrutCycle:
     def calibrated(self, matrix: FloatArray) -> "StrutCycle":
         """Return it with ``force = matrix @ reading`` at every order, aft and fore.
 
-        Raises
-        ------
-        ConfigurationError
-            As :func:`analysis.coefficients.corrections.calibration`.
+        It raises what :func:`analysis.coefficients.corrections.calibration` raises.
         """
         return self._mapped(FORCES, lambda _: calibration(matrix))
 
     def without_response(self, responses: Mapping[str, Response]) -> "StrutCycle":
         """Return it with known responses taken out, each order's at its own frequency.
 
-        Raises
-        ------
-        DataError
-            As :func:`analysis.coefficients.corrections.response_factors`.
+        It raises what :func:`analysis.coefficients.corrections.response_factors` raises.
         """
         names = tuple(responses)
 
@@ -95,10 +89,7 @@ class StrutCycle:
     def model(self) -> BodyCycle:
         """Return motion and loads of the model about the midpoint between the struts.
 
-        Raises
-        ------
-        DataError
-            As :func:`analysis.kinematics.body_frame.in_body_axes`.
+        It raises what :func:`analysis.kinematics.body_frame.in_body_axes` raises.
         """
         point, oscillator = self.set_point, self.oscillator
         geometry = self.geometry

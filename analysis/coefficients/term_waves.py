@@ -17,15 +17,12 @@ MOVES = ("u", "v", "r", "vdot", "rdot")
 def waves_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
     """Return each term's product of factors over a cycle.
 
+    The result has the shape ``(..., terms, instants)``.
+
     Parameters
     ----------
     moves
         :data:`MOVES`, shape ``(..., 5, instants)``.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape ``(..., terms, instants)``.
     """
     waves = np.empty((*moves.shape[:-2], len(terms), moves.shape[-1]))
     for k, term in enumerate(terms):

@@ -27,9 +27,9 @@ from sim import signals
 from sim.chain import Chain
 from sim.drive.prescribed_drive import shaft_over
 from sim.effects.switching import switch_on
+from sim.periodic import steady_state
 from sim.rig import SimulatedRig
 from sim.solve.period import Period
-from sim.solve.periodic import steady_state
 
 if TYPE_CHECKING:
     from sim.acquisition.channels import Digitiser

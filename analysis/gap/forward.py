@@ -28,9 +28,9 @@ from sim.effects.effect import Effect
 from sim.effects.switching import switch_on
 from sim.model.law_point import Acting
 from sim.model.laws import Spring
+from sim.periodic import SteadyState
 from sim.rig import SimulatedRig
 from sim.solve.period import Period
-from sim.solve.periodic import SteadyState
 
 Records = dict[tuple[str, tuple[Effect, ...], int], FloatArray]
 

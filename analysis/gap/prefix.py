@@ -7,9 +7,8 @@ before it need not be solved again.
 from typing import TYPE_CHECKING, Any, Final
 
 from sim.chain import Chain
+from sim.periodic import SteadyState, steady_of
 from sim.solve.period import Period, Spectra
-from sim.solve.periodic import SteadyState
-from sim.solve.sampled_period import steady_of
 
 if TYPE_CHECKING:
     from hardware.description.arrays import ComplexArray
@@ -31,7 +30,7 @@ class Solved:
         return Solved, ()
 
     def steady_state(self, chain: Chain, period: Period) -> SteadyState:
-        """Return the steady state of a chain without inputs; see :mod:`sim.solve.periodic`."""
+        """Return the steady state of a chain without inputs; see :mod:`sim.periodic`."""
         spectra: dict[str, ComplexArray] = {}
         for stage in chain.stages:
             fed = {one.name: spectra[one.name] for one in stage.reads}

@@ -19,10 +19,7 @@ SWAY_TOLERANCE = 0.03
 def check_record(part: UsablePart) -> tuple[Flag, ...]:
     """Check number of swings and size of an oscillation; its sampling was when it was found.
 
-    Returns
-    -------
-    tuple of Flag
-        ``few_swings`` under ten.
+    The flag is ``few_swings``, under ten.
 
     Raises
     ------

@@ -82,15 +82,12 @@ def pitch_without_lines(
 def square_frame(half_side_m: Value, depth_m: Value) -> tuple[Value, Value]:
     """Gyradii of a square frame of side 2d about the body's centre of gravity (eq 27).
 
+    The results are level, upright: about an axis along a side, and about the vertical.
+
     Parameters
     ----------
     depth_m
         ``l_2``, of the centre of gravity below the frame.
-
-    Returns
-    -------
-    level, upright
-        About an axis along a side, and about the vertical.
     """
     square = half_side_m * half_side_m
     return sqrt(depth_m * depth_m + 2.0 * square / 3.0), 2.0 * half_side_m / math.sqrt(3.0)

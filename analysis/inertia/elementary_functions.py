@@ -52,17 +52,14 @@ def inner(first: FloatArray, second: FloatArray) -> float:
 def jacobian(function: Callable[[FloatArray], FloatArray], at: FloatArray) -> FloatArray:
     """Return the derivative of a real-analytic function by complex steps: exact to rounding.
 
+    The result has the shape ``(m, n)``.
+
     Parameters
     ----------
     function
         Takes shape ``(n,)`` and gives ``(m,)``; sums, products, quotients and roots only.
     at
         Where, shape ``(n,)``.
-
-    Returns
-    -------
-    FloatArray
-        Shape ``(m, n)``.
     """
     step = 1e-30
     columns = []

@@ -27,17 +27,14 @@ def fit_swing_form(
 ) -> DampedFit:
     """Fit one of the four functions ``A exp(-lambda t) cos(2 pi t/T + phi) [+ offset]``.
 
+    It raises what :func:`analysis.inertia.damped_fit.fit_damped` raises.
+
     Parameters
     ----------
     time_s, values
         Shape ``(samples,)``; NaN where a sample is missing.
     start_period_s
         A user's guess; the spectrum's own competes with it.
-
-    Raises
-    ------
-    DataError
-        As :func:`analysis.inertia.damped_fit.fit_damped`.
     """
     start = None if start_period_s is None else (start_period_s,)
     fit = fit_damped(

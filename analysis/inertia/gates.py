@@ -108,15 +108,12 @@ def gate_events(
 ) -> GateEvents:
     """Check edges that were read elsewhere.
 
+    It raises what :func:`read_gate_events` raises.
+
     Parameters
     ----------
     states
         0 (free) or 1 (blocked) from each time on, shape ``(gates, events)``.
-
-    Raises
-    ------
-    DataError
-        As :func:`read_gate_events`.
     """
     if time_s.size < 8:
         raise DataError(f"{name}: {time_s.size} gate event(s); at least 8 are needed (two swings)")

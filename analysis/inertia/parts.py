@@ -142,15 +142,12 @@ def combine(name: str, parts: Sequence[BodyPart], *, without: Sequence[BodyPart]
 def combined(rows: FloatArray, signs: FloatArray) -> FloatArray:
     """Combine parameters by the signs of the parts; complex ones too.
 
+    The result has the shape ``(10, ...)``.
+
     Parameters
     ----------
     rows
         Shape ``(parts, 10, ...)``: trials may follow.
-
-    Returns
-    -------
-    FloatArray
-        Shape ``(10, ...)``.
     """
     mass = np.einsum("p,p...->p...", signs, rows[:, 0])
     total = mass.sum(axis=0)
@@ -164,15 +161,3 @@ def _shifted(place: FloatArray) -> FloatArray:
     """Inertia of unit masses at places, shape ``(parts, 6, ...)``."""
     x, y, z = place[:, 0], place[:, 1], place[:, 2]
     return np.stack([y * y + z * z, z * z + x * x, x * x + y * y, x * y, x * z, y * z], axis=1)
-
-
-def inertia_about(body: BodyPart, point: tuple[float, float, float]) -> tuple[Estimate, ...]:
-    """Return roll, pitch and yaw inertia about axes through a point, kg m2."""
-
-    def moved(given: FloatArray) -> FloatArray:
-        place = (given[1:4] - np.array(point)).reshape(1, 3)
-        return np.asarray(given[4:7] + given[0] * _shifted(place)[0, :3])
-
-    at = body.parameters
-    about = body.uncertain.carried(moved(at), jacobian(moved, at))
-    return tuple(Estimate(about.taken([k]), "kg m2") for k in range(3))

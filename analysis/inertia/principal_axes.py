@@ -15,20 +15,6 @@ from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
 
-def gyradius_off_level(
-    px_m: Value, py_m: Value, pz_m: Value, pitch_rad: Value, roll_rad: Value
-) -> Value:
-    """Gyradius about the vertical of a body off level (eq 28).
-
-    The square is that of the principal ones weighted with the axis' direction cosines; angles are
-    those of the vertical to the principal z axis, in the centre plane and across it.
-    """
-    x = px_m * sin(pitch_rad) * cos(roll_rad)
-    y = py_m * sin(roll_rad)
-    z = pz_m * cos(pitch_rad) * cos(roll_rad)
-    return sqrt(x * x + y * y + z * z)
-
-
 def principal_angle(roll_m: Value, yaw_m: Value, tilted_m: Value, axis_angle_rad: Value) -> Value:
     """Angle ``psi`` of the principal x axis from three gyradii (eq 4), within a quarter turn."""
     s, c = sin(axis_angle_rad), cos(axis_angle_rad)

@@ -5,8 +5,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import combinations
 
-import numpy as np
-
 from analysis.inertia.elementary_functions import Value
 from analysis.uncertainty.budget import Budget, derived
 from analysis.uncertainty.estimate import Estimate, joint
@@ -99,11 +97,10 @@ def _inertia(mass: Value, gyradius: Value, **arms: Value) -> Value:
 
 def _correlations(estimates: Mapping[str, Estimate]) -> Iterator[tuple[list[str], float]]:
     """Yield pairs of names and their correlation coefficients, where these are not zero."""
-    covariance = joint(estimates.values()).covariance()
-    spread = np.sqrt(np.diag(covariance))
+    coefficients = joint(estimates.values()).correlation()
     for (i, first), (k, second) in combinations(enumerate(estimates), 2):
-        if covariance[i, k] != 0.0:
-            yield [first, second], float(covariance[i, k] / (spread[i] * spread[k]))
+        if coefficients[i, k] != 0.0:
+            yield [first, second], float(coefficients[i, k])
 
 
 def estimate_numbers(estimate: Estimate) -> dict[str, object]:

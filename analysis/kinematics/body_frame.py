@@ -16,18 +16,15 @@ def in_body_axes(geometry: Geometry, driven: Driven, readings: Waves) -> Waves:
     The loads are as complete as the readings' harmonics are: a gauge's order left out is missed in
     its neighbours by the sine of the angle.
 
+    Its rows are :data:`CHANNELS`, the last only with an X gauge: displacement across the tank and
+    rotation against it, velocities through the water along and across the model, and the struts'
+    loads on it, gross; shape ``(..., 6 or 7, instants)``.
+
     Parameters
     ----------
     readings
         Of the gauges aft, fore and X, N (of a turntable force, moment and X), shape
         ``(..., 3, instants)``; ``(..., 2, instants)`` without an X gauge.
-
-    Returns
-    -------
-    numpy.ndarray
-        :data:`CHANNELS`, the last only with an X gauge: displacement across the tank and rotation
-        against it, velocities through the water along and across the model, and the struts' loads
-        on it, gross; shape ``(..., 6 or 7, instants)``.
 
     Raises
     ------

@@ -21,15 +21,12 @@ nothing conjugated, no absolute values."""
 def pointwise(function: Pointwise, inputs: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return a function's value for given waves, and its derivative.
 
+    The results are values, slope: their shapes are ``(m, instants)`` and ``(m, k, instants)``.
+
     Parameters
     ----------
     inputs
         Shape ``(k, instants)``.
-
-    Returns
-    -------
-    values, slope
-        Shapes ``(m, instants)`` and ``(m, k, instants)``.
     """
     stepped = inputs + 1j * _STEP * np.eye(len(inputs))[:, :, None]
     value = function(stepped)
@@ -40,17 +37,14 @@ def pointwise(function: Pointwise, inputs: FloatArray) -> tuple[FloatArray, Floa
 def by_parts(slope: FloatArray, inputs: FloatArray, orders: int) -> FloatArray:
     """Return the slope of the outputs' harmonics by the inputs' interleaved parts.
 
+    The result has the shape ``(2 * m * (orders + 1), parts)``.
+
     Parameters
     ----------
     slope
         Of :func:`pointwise`, shape ``(m, k, instants)``.
     inputs
         Waves of each input per part, shape ``(k, parts, instants)``.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape ``(2 * m * (orders + 1), parts)``.
     """
     over = np.einsum("mkt,kpt->pmt", slope, inputs, optimize=True)
     return np.asarray(harmonics(over, orders).T)

@@ -20,17 +20,14 @@ INSTANTS = 64  # |v|v folds back 1e-5 of itself, what is smooth nothing at 30 de
 def waves(parts: Waves, channels: int, times: int = 0) -> Waves:
     """Return the waves of interleaved parts, or their derivative by theta.
 
+    The result has the shape ``(..., channels, INSTANTS)``.
+
     Parameters
     ----------
     parts
         Shape ``(..., 2 * channels * (orders + 1))``.
     times
         How often they are differentiated.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape ``(..., channels, INSTANTS)``.
     """
     shaped = parts.reshape(*parts.shape[:-1], -1, channels, 2)
     by_channel = np.moveaxis(shaped, -2, -3).reshape(*parts.shape[:-1], channels, -1)
@@ -58,17 +55,14 @@ def per_part(
 ) -> FloatArray:
     """Return the waves of some channels, differentiated in time, per interleaved part.
 
+    The result has the shape ``(len(wanted), 2 * channels * count, INSTANTS)``.
+
     Parameters
     ----------
     count
         Number of orders, the mean included.
     wanted
         Channel, and how often it is differentiated.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape ``(len(wanted), 2 * channels * count, INSTANTS)``.
     """
     parts = np.zeros((len(wanted), count, channels, 2, INSTANTS))
     for k, (channel, times) in enumerate(wanted):

@@ -18,17 +18,14 @@ _PIVOT, _SLIDE, _ALONG = range(3)
 def loads(geometry: Geometry, line_rad: Waves, readings: Waves) -> Waves:
     """Return the struts' loads on the model.
 
+    They have the shape of the readings, :data:`ROWS`; without an X gauge there is no surge force.
+
     Parameters
     ----------
     line_rad
         :attr:`analysis.kinematics.motion.MotionWaves.line_rad`, shape ``(..., instants)``.
     readings
         Shape ``(..., 3, instants)``, or ``(..., 2, instants)`` without an X gauge.
-
-    Returns
-    -------
-    numpy.ndarray
-        Of the shape of the readings: :data:`ROWS`, without an X gauge no surge force.
 
     Raises
     ------

@@ -8,9 +8,8 @@ many runs at once and for bodies that are known with an uncertainty.
 
 import numpy as np
 
-from analysis.kinematics.geometry import Geometry, Waves
-from analysis.kinematics.motion import Driven, MotionWaves, motion
-from analysis.kinematics.projection import readings
+from analysis.kinematics.geometry import Waves
+from analysis.kinematics.motion import MotionWaves
 from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
 from hardware.description.oscillator import Plane
@@ -69,19 +68,6 @@ def weight_terms(pitch_rad: Waves) -> Waves:
     cosine = STANDARD_GRAVITY_M_S2 * np.cos(pitch_rad)
     none = np.zeros_like(sine)
     return _stacked((-cosine, none, sine), (none, cosine, none), (none, sine, none))
-
-
-def zero_readings(geometry: Geometry, body: Body) -> Waves:
-    """Return what the gauges read of the body at rest in air, where the drift sets it: ``(3,)``.
-
-    A zero run takes it off the readings of the runs after it, so it comes back before weight does
-    off their loads. Of the vertical plane; in the horizontal one there is nothing.
-    """
-    still = np.zeros((2, 1))
-    at = motion(geometry, Driven(still, still, still))
-    if geometry.plane is Plane.HORIZONTAL:
-        return np.zeros(3)
-    return readings(geometry, at.line_rad, weight(body, at))[:, 0]
 
 
 def _sum(values: FloatArray, terms: Waves) -> Waves:

@@ -124,10 +124,7 @@ class Summing:
 def read_sums(file: Any) -> Sums | None:
     """Read the checksums of a file that is open as :class:`h5py.File`.
 
-    Returns
-    -------
-    Sums or None
-        ``None`` if they are not there whole.
+    It is ``None`` if they are not there whole.
     """
     try:
         return _read(file[schema.CHECKSUMS])

@@ -24,10 +24,7 @@ if TYPE_CHECKING:
 def to_dataset(recording: Recording) -> "xarray.Dataset":
     """Turn a recording into a dataset; lazily read samples are read whole.
 
-    Returns
-    -------
-    xarray.Dataset
-        As :mod:`hardware.description.dataset` says.
+    It is as :mod:`hardware.description.dataset` says.
 
     Raises
     ------

@@ -1,10 +1,12 @@
 """Recordings as NetCDF4 files: written whole, read a stretch at a time."""
 
+import errno
 import os
 from collections.abc import Iterator
-from dataclasses import replace
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, BinaryIO, Final
 
 import numpy as np
 
@@ -20,7 +22,6 @@ from analysis.readers.attributes import (
 from analysis.readers.checksums import BLOCK_SAMPLES, KIND, Summing
 from analysis.readers.conditioning import without_spikes
 from analysis.readers.damage import Damage, find_damage
-from analysis.readers.disk_space import reserved
 from analysis.readers.hdf5_checks import check_declared, check_heaps
 from analysis.readers.missing_values import with_missing_said
 from analysis.readers.reader import Reader
@@ -30,6 +31,54 @@ from hardware.description import dataset as schema
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.room import said
+
+_CANNOT: Final = {errno.EOPNOTSUPP, errno.ENOSYS, errno.EINVAL}  # not every disk can take room
+
+
+@dataclass(frozen=True)
+class Reserved:
+    """A new, empty file and the room that it will need at most."""
+
+    file: BinaryIO
+    size_bytes: int
+
+    def take(self) -> None:
+        """Take the room.
+
+        Raises
+        ------
+        OSError
+            If there is not so much.
+        """
+        if not hasattr(os, "posix_fallocate"):
+            return
+        try:
+            os.posix_fallocate(self.file.fileno(), 0, self.size_bytes)
+        except OSError as error:
+            if error.errno not in _CANNOT:
+                raise
+
+
+@contextmanager
+def reserved(path: Path, size_bytes: int) -> Iterator[Reserved]:
+    """Open a new file for which there is room, and bring it to the disk at the end.
+
+    HDF5 does not outlive a disk that fills up under it: it takes the process with it. It begins
+    with an empty file, so the room is tried first, and taken for good once HDF5 has begun.
+
+    Raises
+    ------
+    OSError
+        If there is no room; nothing is written then.
+    """
+    with path.open("wb+") as file:
+        opened = Reserved(file, size_bytes)
+        opened.take()
+        file.truncate(0)
+        yield opened
+        file.flush()
+        os.fsync(file.fileno())
+
 
 # Half a megabyte of one channel: small beside any memory, large beside a disk's seek.
 CHUNK_SAMPLES = 64 * BLOCK_SAMPLES

@@ -25,18 +25,16 @@ def edges_of_level(
 ) -> FloatArray:
     """Find the pulses' edges in a sampled level.
 
+    The result holds the edges' fractional sample numbers: the straight line between the two samples
+    around the threshold crosses it there. A pulse counts once it is 10 % of the span past the
+    threshold.
+
     Parameters
     ----------
     level
         Shape ``(samples,)``; NaN where a sample is missing.
     threshold
         Level of an edge; ``None`` takes the middle of the extremes.
-
-    Returns
-    -------
-    numpy.ndarray
-        Fractional sample numbers of the edges: the straight line between the two samples around the
-        threshold crosses it there. A pulse counts once it is 10 % of the span past the threshold.
     """
     sign = 1.0 if edge is Edge.RISING else -1.0
     good = np.flatnonzero(np.isfinite(level))

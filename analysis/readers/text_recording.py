@@ -67,17 +67,14 @@ def from_columns(
 ) -> Recording:
     """Return a recording of columns of numbers, whatever file they stood in.
 
+    It raises what :func:`analysis.readers.read_recording` raises.
+
     Parameters
     ----------
     table
         At least the plan's wanted columns, all of one length.
     noticed
         What the file's own reader says of it.
-
-    Raises
-    ------
-    DataError, ConfigurationError
-        As :func:`analysis.readers.read_recording`.
     """
     path, where = origin.path, str(origin.path)
     plan = without_idle(plan, table, where)

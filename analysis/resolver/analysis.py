@@ -244,11 +244,8 @@ def let_through(
     Found by feeding the very gate with them; see
     :func:`analysis.resolver.leakage.measured_leakage`.
 
-    Returns
-    -------
-    numpy.ndarray
-        Part of the vibration's amplitude that appears in each harmonic at the worst phase, shape
-        ``(frequencies, harmonics)``.
+    It is the part of the vibration's amplitude that appears in each harmonic at the worst phase,
+    shape ``(frequencies, harmonics)``.
 
     Raises
     ------

@@ -95,6 +95,8 @@ class _Witness:
 def widened(left: FloatArray, cycles: FloatArray, gate_periods: int, line: bool) -> FloatArray:
     """Return the deviations of some periods, as large as the noise's memory makes them count.
 
+    It is of the same shape; no smaller than ``left``.
+
     Parameters
     ----------
     left
@@ -106,11 +108,6 @@ def widened(left: FloatArray, cycles: FloatArray, gate_periods: int, line: bool)
         Periods of the gate whose mean is asked for.
     line
         Whether a drift was taken out of the means.
-
-    Returns
-    -------
-    numpy.ndarray
-        Of the same shape; no smaller than ``left``.
     """
     count, orders = len(left), left.shape[2] // 2
     block = -(-count // _MOST_BLOCKS)

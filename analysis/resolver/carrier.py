@@ -159,6 +159,9 @@ def demodulate(
 ) -> Recording:
     """Detect the signals that ride on a carrier.
 
+    The recording is half the filter's length shorter at either end, ``start_s`` moved accordingly;
+    NaN wherever the filter meets a missing sample.
+
     Parameters
     ----------
     channels
@@ -174,12 +177,6 @@ def demodulate(
         Up to here ``E`` comes through unchanged to 1e-6.
     output_rate_hz
         A whole fraction of the sample rate; by default the lowest of at least 4 bandwidths.
-
-    Returns
-    -------
-    Recording
-        Half the filter's length shorter at either end, ``start_s`` moved accordingly; NaN wherever
-        the filter meets a missing sample.
 
     Raises
     ------

@@ -50,18 +50,15 @@ def mode_for(frequency_hz: float) -> ClassicMode:
 def products(values: FloatArray, cycles: FloatArray, harmonics: int) -> FloatArray:
     """Return what the resolver hands to the integrators, with a gain of 2.
 
+    It is ``y 2 sin(theta), y 2 cos(theta), y 2 sin(2 theta), ...``, shape ``(channels, 2 *
+    harmonics, samples)``; their means are ``S_1, C_1, S_2, ...``.
+
     Parameters
     ----------
     values
         Shape ``(channels, samples)``.
     cycles
         Revolutions of the shaft at the samples, shape ``(samples,)``.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``y 2 sin(theta), y 2 cos(theta), y 2 sin(2 theta), ...``, shape
-        ``(channels, 2 * harmonics, samples)``; their means are ``S_1, C_1, S_2, ...``.
     """
     basis = harmonic_basis(cycles, np.arange(1.0, harmonics + 1.0))[1:]
     return 2.0 * values[:, None, :] * basis

@@ -231,10 +231,8 @@ def _deviations(scatter: GateScatter, drift: Drift, ramp: FloatArray) -> FloatAr
 
     The slopes are correlated between channels as their means are.
 
-    Returns
-    -------
-    numpy.ndarray
-        Shape ``(channels, K, k)``, with no more deviates than there are coefficients.
+    The result has the shape ``(channels, K, k)``, with no more deviates than there are
+    coefficients.
     """
     periods, channels, size = scatter.deviations.shape
     flat = scatter.deviations.reshape(periods, -1)

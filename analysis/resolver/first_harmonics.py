@@ -17,15 +17,12 @@ _UNITS = (DISPLACEMENT_AFT.unit, FORCE_AFT.unit)
 def first_harmonics(recording: Recording, analysis: Analysis) -> RunHarmonics | None:
     """Return the first harmonics over the first gate, also of the channel that tells the phase.
 
+    It is ``None`` for a recording without a set-point.
+
     Parameters
     ----------
     recording
         With all its channels, as it was read.
-
-    Returns
-    -------
-    Seen or None
-        ``None`` for a recording without a set-point.
     """
     told, reading = recording.set_point, analysis.readings[0]
     if told is None:

@@ -30,6 +30,9 @@ def measured_leakage(
 ) -> FloatArray:
     """Worst leakage of an estimator as it is, by feeding it the interference.
 
+    It is the amplitude that appears in each harmonic per unit of interference at its worst phase,
+    shape ``(frequencies, harmonics)``.
+
     Parameters
     ----------
     recording
@@ -38,12 +41,6 @@ def measured_leakage(
         Resolves any recording of that length in the gate in question.
     frequencies_hz
         Of the interference, shape ``(frequencies,)``.
-
-    Returns
-    -------
-    numpy.ndarray
-        Amplitude that appears in each harmonic per unit of interference at its worst phase, shape
-        ``(frequencies, harmonics)``.
     """
     parts = [
         _respond(recording, estimator, frequencies_hz[k : k + _AT_ONCE])

@@ -17,6 +17,9 @@ def from_photocell(
 ) -> PhaseReference:
     """Build a reference from photocell pulses, straight within each revolution.
 
+    Its knots are at the pulses. A missed pulse is bridged, one too many is dropped; both are
+    flagged.
+
     Parameters
     ----------
     edges_s
@@ -25,12 +28,6 @@ def from_photocell(
         How much later than the mark's passage a pulse is stamped; taken off.
     angle_offset_rad
         Shaft angle at the mark.
-
-    Returns
-    -------
-    PhaseReference
-        Knots at the pulses. A missed pulse is bridged, one too many is dropped; both are
-        flagged.
 
     Raises
     ------

@@ -33,17 +33,14 @@ def phasor_sums(
 ) -> ComplexArray:
     """Sum ``y exp(i n theta)`` for n = 0 to N over each period, all samples of weight 1.
 
+    The result has the shape ``(periods, channels, N + 1)``.
+
     Parameters
     ----------
     samples
         Shape ``(channels, samples)``.
     first, count, cycle, step
         First sample, number of samples, cycles there and per sample, shape ``(periods,)``.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape ``(periods, channels, N + 1)``.
     """
     samples = samples if samples.strides[-1] == samples.itemsize else np.ascontiguousarray(samples)
     windows = _windows(first, count)
@@ -144,10 +141,7 @@ def _sum_strips(
 ) -> FloatArray:
     """Sum a few samples of each period with the phasors of their places.
 
-    Returns
-    -------
-    numpy.ndarray
-        Shape ``(periods, 2 (N + 1), channels)``.
+    The result has the shape ``(periods, 2 (N + 1), channels)``.
     """
     place = np.arange(int(count.max()))
     number = np.minimum(start[:, None] + place, samples.shape[1] - 1)

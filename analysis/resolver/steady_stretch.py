@@ -67,17 +67,14 @@ class _Judged:
 def find_steady(values: PeriodValues, tolerance: float) -> Stretch:
     """Find the longest stretch in which every channel's first harmonic keeps within a tolerance.
 
+    It may be as short as one period; it is for the caller to say how many are enough.
+
     Parameters
     ----------
     tolerance
         Largest distance, relative to the channel's usual amplitude, by which in-phase and
         quadrature may stray to either side. Where a channel's own noise is larger, four standard
         deviations of it are allowed, so that a channel of mere noise does not stand in the way.
-
-    Returns
-    -------
-    Stretch
-        May be as short as one period; it is for the caller to say how many are enough.
     """
     judged = _judge(values, tolerance)
     finite = np.isfinite(judged.phasors).all(axis=1)

@@ -92,11 +92,8 @@ def phasor_series(
 ) -> tuple[ComplexArray, ComplexArray]:
     """Sum ``exp(i n theta)`` over ``count`` samples whose cycles are ``first_cycle + k * step``.
 
-    Returns
-    -------
-    sums, moments
-        For n = 0 to ``highest``, shape ``(periods, highest + 1)``: of the phasors, and of the
-        phasors times the samples' distance from the middle one.
+    The results are sums, moments: for n = 0 to ``highest``, shape ``(periods, highest + 1)``: of
+    the phasors, and of the phasors times the samples' distance from the middle one.
     """
     orders = np.arange(1, highest + 1)
     middle = (first_cycle + step * (count - 1) / 2.0)[:, None] * orders

@@ -47,16 +47,13 @@ def _correction_polynomials() -> FloatArray:
 def edge_corrections(fractions: FloatArray) -> FloatArray:
     """Return what an opening edge at ``fraction`` past sample 0 adds to unit weights from sample 1.
 
+    They are corrections to samples -2, -1, 0, 1, 2, 3, shape ``(edges, 6)``. A closing edge has the
+    same ones, negative.
+
     Parameters
     ----------
     fractions
         In [0, 1), shape ``(edges,)``: each edge lies between samples 0 and 1.
-
-    Returns
-    -------
-    numpy.ndarray
-        Corrections to samples -2, -1, 0, 1, 2, 3, shape ``(edges, 6)``. A closing edge has the same
-        ones, negative.
     """
     powers = np.asarray(fractions)[:, None] ** np.arange(2 * REACH + 1)
     return np.asarray(powers @ _correction_polynomials().T)
@@ -78,6 +75,9 @@ def _extrapolation(distance: int) -> FloatArray:
 def gate_weights(opening: float, closing: float, count: int) -> tuple[int, FloatArray]:
     """Weights of the samples for the integral from ``opening`` to ``closing``.
 
+    The results are first, weights: the number of the first sample and the weights from there on, in
+    units of the sample spacing.
+
     Parameters
     ----------
     opening, closing
@@ -85,11 +85,6 @@ def gate_weights(opening: float, closing: float, count: int) -> tuple[int, Float
     count
         Number of samples there are, six or more. Near either end of a record the samples that an
         edge would need beyond it are continued by a polynomial through the last six.
-
-    Returns
-    -------
-    first, weights
-        Number of the first sample and the weights from there on, in units of the sample spacing.
     """
     first = int(opening) + 1 - REACH
     last = int(closing) + REACH

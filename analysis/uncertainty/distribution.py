@@ -14,7 +14,6 @@ class Distribution(StrEnum):
 
     NORMAL = "normal"  # Student's t where the degrees of freedom are finite
     UNIFORM = "uniform"
-    TRIANGULAR = "triangular"
 
 
 def shaped(
@@ -31,8 +30,6 @@ def shaped(
     """
     if distribution is Distribution.UNIFORM:
         return np.asarray(math.sqrt(3.0) * generator.uniform(-1.0, 1.0, normal.shape))
-    if distribution is Distribution.TRIANGULAR:
-        return np.asarray(math.sqrt(6.0) * generator.triangular(-1.0, 0.0, 1.0, normal.shape))
     if not 0.0 < degrees_of_freedom < np.inf:
         return normal
     chi_square = generator.chisquare(degrees_of_freedom, normal.shape[1])

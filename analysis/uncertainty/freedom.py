@@ -9,20 +9,18 @@ from hardware.description.arrays import FloatArray
 def effective_freedom(variances: FloatArray, degrees_of_freedom: FloatArray) -> FloatArray:
     """Return the degrees of freedom of sums of independent inputs (Welch and Satterthwaite).
 
+    The result has the shape ``(n,)``; infinite where no input that is known by repeats has a part.
+
     Parameters
     ----------
     variances
         Each input's part of each sum's variance, shape ``(inputs, n)``.
     degrees_of_freedom
-        Of the inputs, shape ``(inputs,)``; an input without any counts as known for certain.
-
-    Returns
-    -------
-    FloatArray
-        Shape ``(n,)``; infinite where no input that is known by repeats has a part.
+        Of the inputs, shape ``(inputs,)`` or ``(inputs, n)``; an input without any counts as known
+        for certain.
     """
     known = np.where(degrees_of_freedom > 0.0, degrees_of_freedom, np.inf)
-    loss = (variances**2 / known[:, None]).sum(axis=0)
+    loss = (variances**2 / known.reshape(len(known), -1)).sum(axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
         freedom = variances.sum(axis=0) ** 2 / loss
     return np.asarray(np.where(loss > 0.0, freedom, np.where(np.isnan(loss), np.nan, np.inf)))

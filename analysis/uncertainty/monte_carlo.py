@@ -28,8 +28,6 @@ class MonteCarlo:
         Mean and standard deviation of the trials.
     low, high
         Ends of the probabilistically symmetric interval of 95 %.
-    lost
-        Part of the trials in which the formula had no finite value.
     """
 
     trials: int
@@ -37,7 +35,6 @@ class MonteCarlo:
     uncertainty: float
     low: float
     high: float
-    lost: float
 
 
 @dataclass(frozen=True)
@@ -47,19 +44,14 @@ class Assessment:
     Attributes
     ----------
     linear_good_enough
-        Whether both ends of the linear interval lie within ``tolerance`` of the Monte Carlo's.
-    tolerance
-        Half a unit of the second significant digit of the linear uncertainty (GUM-S1, 8.1.3), or
-        four times what the trials themselves leave open, whichever is larger.
-    message
-        Says so in words.
+        Whether both ends of the linear interval lie near the Monte Carlo's: within half a unit of
+        the second significant digit of the linear uncertainty (GUM-S1, 8.1.3), or four times what
+        the trials themselves leave open, whichever is larger.
     """
 
     budget: Budget
     monte_carlo: MonteCarlo
     linear_good_enough: bool
-    tolerance: float
-    message: str
 
     @cached_property
     def result(self) -> Estimate:
@@ -119,9 +111,7 @@ def monte_carlo(
             "%): the inputs' uncertainties reach where the formula ends; measure them better"
         )
     low, high = np.quantile(good, (0.025, 0.975))
-    return MonteCarlo(
-        trials, float(good.mean()), float(good.std(ddof=1)), float(low), float(high), lost
-    )
+    return MonteCarlo(trials, float(good.mean()), float(good.std(ddof=1)), float(low), float(high))
 
 
 def assess(
@@ -146,13 +136,7 @@ def assess(
     tolerance = max(_rounding(linear.uncertainty), 4.0 * _end_error(trial))
     low, high = linear.interval()
     worst = max(abs(low - trial.low), abs(high - trial.high))
-    good = worst <= tolerance
-    verdict = "holds" if good else "does not hold; the Monte Carlo's interval is the result"
-    message = (
-        f"{name}: the ends of the linear interval are within {worst:.2g} {unit} of the Monte "
-        f"Carlo's (limit {tolerance:.2g}): the linear budget {verdict}"
-    )
-    return Assessment(budget, trial, good, tolerance, message)
+    return Assessment(budget, trial, worst <= tolerance)
 
 
 def _rounding(uncertainty: float) -> float:

@@ -85,6 +85,13 @@ class UncertainValues:
             )
         return total
 
+    def correlation(self) -> FloatArray:
+        """Return the correlation coefficients, shape ``(n, n)``; 0 where one has no uncertainty."""
+        covariance = self.covariance()
+        spread = np.sqrt(np.diag(covariance))
+        scale = np.divide(1.0, spread, out=np.zeros_like(spread), where=spread > 0.0)
+        return np.asarray(covariance * np.outer(scale, scale))
+
     def variances(self) -> FloatArray:
         """Return each input's part of each variance, shape ``(inputs, n)``, not to be changed."""
         return self._variances

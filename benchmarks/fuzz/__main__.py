@@ -10,7 +10,7 @@ import json
 import selectors
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any, Final
 
@@ -31,9 +31,9 @@ _RESULT: Final = ROOT / "benchmarks" / "results" / "fuzz.json"
 _UNCAUGHT, _HANG, _, _ = PROMISES
 
 
-def main() -> int:
+def main(arguments: Sequence[str]) -> int:
     """Read what is left of the board; return 1 where a promise was broken."""
-    request = _parse()
+    request = _parse(arguments)
     request.folder.mkdir(parents=True, exist_ok=True)
     counts = read_counts(request.folder)
     for target in TARGETS:
@@ -53,10 +53,12 @@ def main() -> int:
 
 def _batch(target: Target, count: Count, end: int, folder: Path) -> None:
     """Have a worker read inputs up to a number, or until it dies."""
-    last = folder / "last"
+    last = folder.resolve() / "last"
     words = ["-m", "benchmarks.fuzz.worker", target.name, str(count.done), str(end), str(last)]
     errors = (folder / "errors.txt").open("w+b")
-    process = subprocess.Popen([sys.executable, *words], stdout=subprocess.PIPE, stderr=errors)
+    process = subprocess.Popen(
+        [sys.executable, *words], cwd=ROOT, stdout=subprocess.PIPE, stderr=errors
+    )
     with errors, process:
         stopped = process.stdout is None
         for line in _lines(process.stdout) if process.stdout is not None else ():
@@ -109,13 +111,13 @@ def _print(name: str, count: Count) -> None:
     )
 
 
-def _parse() -> argparse.Namespace:
+def _parse(arguments: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.fuzz", description=__doc__)
     parser.add_argument("--share", type=float, default=1.0, help="part of the board")
     parser.add_argument("--folder", type=Path, default=ROOT / "build" / "fuzz")
     parser.add_argument("--only", action="append", help="a reader; repeatable")
-    return parser.parse_args()
+    return parser.parse_args(arguments)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))

@@ -55,5 +55,7 @@ class Ship(Body):
     draught_m: float | None = None
 
 
-DIMENSIONS: Final = frozenset(one.name for one in fields(Ship)) - {one.name for one in fields(Body)}
+DIMENSIONS: Final = frozenset(field.name for field in fields(Ship)) - {
+    field.name for field in fields(Body)
+}
 """Keys of ``[model]`` that a campaign's has not."""

@@ -17,6 +17,9 @@ T = TypeVar("T", float, complex, np.ndarray)
 def to_motion(aft: T, fore: T, half_spacing_m: float, plane: Plane) -> tuple[T, T]:
     """Turn strut displacements into the motion of the midpoint.
 
+    The results are translation, rotation: heave in metres (down) and pitch in radians (bow up), or
+    sway in metres (to starboard) and yaw in radians (bow to starboard).
+
     Parameters
     ----------
     aft, fore
@@ -24,12 +27,6 @@ def to_motion(aft: T, fore: T, half_spacing_m: float, plane: Plane) -> tuple[T, 
         (vertical) or to starboard (horizontal).
     half_spacing_m
         The distance ``l``.
-
-    Returns
-    -------
-    translation, rotation
-        Heave in metres (down) and pitch in radians (bow up), or sway in metres (to starboard) and
-        yaw in radians (bow to starboard).
     """
     difference = aft - fore if plane is Plane.VERTICAL else fore - aft
     return (aft + fore) / 2.0, difference / (2.0 * half_spacing_m)
@@ -38,6 +35,8 @@ def to_motion(aft: T, fore: T, half_spacing_m: float, plane: Plane) -> tuple[T, 
 def to_strut_forces(force: T, moment: T, half_spacing_m: float, plane: Plane) -> tuple[T, T]:
     """Turn a load on the model into the forces of the struts on it.
 
+    The results are aft, fore: forces at ``x = -l`` and ``x = +l`` in N, positive as the force.
+
     Parameters
     ----------
     force, moment
@@ -45,11 +44,6 @@ def to_strut_forces(force: T, moment: T, half_spacing_m: float, plane: Plane) ->
         midpoint in N m, bow up or bow to starboard.
     half_spacing_m
         The distance ``l``.
-
-    Returns
-    -------
-    aft, fore
-        Forces at ``x = -l`` and ``x = +l`` in N, positive as the force.
     """
     couple = moment / half_spacing_m
     if plane is Plane.VERTICAL:

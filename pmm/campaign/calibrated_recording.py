@@ -46,10 +46,7 @@ def carried(recording: Recording) -> Calibration | None:
 def applied(recording: Recording) -> Calibration | None:
     """Return the calibration that made a recording's readings forces, if one did.
 
-    Raises
-    ------
-    DataError
-        As :func:`carried`.
+    It raises what :func:`carried` raises.
     """
     return _kept(recording, APPLIED)
 

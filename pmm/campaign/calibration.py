@@ -118,10 +118,7 @@ def as_table(one: Calibration) -> dict[str, Any]:
 def from_table(table: Mapping[str, Any], where: str) -> Calibration:
     """Return the calibration that a table holds; ``where`` names it in errors.
 
-    Raises
-    ------
-    ConfigurationError
-        As :func:`read_calibration`.
+    It raises what :func:`read_calibration` raises.
     """
     missing = [key for key in _KEYS if key not in table]
     if missing:
@@ -133,7 +130,7 @@ def from_table(table: Mapping[str, Any], where: str) -> Calibration:
     except (TypeError, ValueError) as error:
         raise ConfigurationError(f"{where}: no calibration: {error}") from error
     size = len(channels)
-    if [one.shape for one in arrays] != [(size, size), (size, size), (size,), (size,)]:
+    if [array.shape for array in arrays] != [(size, size), (size, size), (size,), (size,)]:
         raise ConfigurationError(f"{where}: the matrix does not fit the {size} channels")
     pairs = zip(_ARRAYS, arrays, strict=True)
     if wrong := [key for key, one in pairs if not np.isfinite(one).all()]:

@@ -5,7 +5,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import ClassVar
 
 from analysis.gap.tolerances import Tolerances
 from analysis.readers import ColumnMap
@@ -16,6 +15,7 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
 from pmm.campaign.model_uncertainty import ModelUncertainty
 from pmm.campaign.runs import AtRest, RecordedWith, Run, nearest_run
+from pmm.configuration import STRICT_TABLE
 from sim.acquisition.channels import Acquisition
 from sim.acquisition.photocell import PhotocellStage
 from sim.drive.carriage import CarriageSettings
@@ -27,8 +27,7 @@ from sim.mechanism.linkage import Setting
 from sim.model.hull import HullCoefficients
 from sim.model.law_point import Acting
 from sim.model.mounting import Mounting
-from sim.model.surge import SurgeForces
-from sim.model.water.force_laws import CrossFlow
+from sim.model.water.force_laws import CrossFlow, SurgeForces
 from sim.model.water.radiation_file import RadiationFile
 from sim.rig import SimulatedRig
 
@@ -115,8 +114,7 @@ class Campaign:
     tared: bool = False
     tolerances: Tolerances = field(default_factory=Tolerances)
 
-    # Holds for the classes of all tables: unknown keys, NaN and infinity are refused.
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+    __pydantic_config__ = STRICT_TABLE
 
     def rig(self) -> SimulatedRig:
         """Return the rig as the simulation believes it to be.
@@ -177,9 +175,9 @@ class Campaign:
             If a name, a parameter or a value is wrong: all of them in one message.
         """
         built, faults = [], []
-        for number, one in enumerate(self.effects, 1):
+        for number, effect in enumerate(self.effects, 1):
             try:
-                built.append(build_from(one.name, one.parameters, dict(more or {})))
+                built.append(build_from(effect.name, effect.parameters, dict(more or {})))
             except ConfigurationError as error:
                 faults.append(f"effects[{number}]: {error}")
         if faults:

@@ -8,16 +8,14 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, TypeVar
 
-from analysis.readers import ColumnMap
-from analysis.readers.columns_toml import parse_column_map
 from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import check_within
 from pmm.campaign.campaign import Campaign
+from pmm.campaign.column_table import take_columns
 from pmm.campaign.file_names import campaign_name_faults, no_file_name
-from pmm.campaign.model_uncertainty import take_uncertainty
-from pmm.campaign.oscillator_table import expand_preset
+from pmm.campaign.model_uncertainty import expand_preset, take_uncertainty
 from pmm.campaign.runs import AtRest, Run
 from pmm.configuration import Fault, Place, as_error, limit_faults, read_toml, validate
 
@@ -50,7 +48,7 @@ def read_campaign(path: str | Path) -> Campaign:
     table = deepcopy(original)
     uncertainty = take_uncertainty(table, faults)
     faults += limit_faults(table)
-    columns = _take_columns(table, path, faults)
+    columns = take_columns(table, path, faults)
     expand_preset(table, faults)
     _expand_units(table, faults)
     _none_for_false(table)
@@ -66,21 +64,6 @@ def read_campaign(path: str | Path) -> Campaign:
     return replace(
         campaign, name=name, columns=columns, model_uncertainty=uncertainty, radiation=radiation
     )
-
-
-def _take_columns(table: dict[str, Any], path: Path, faults: list[Fault]) -> ColumnMap | None:
-    columns = table.pop("columns", None)
-    if columns is None:
-        return None
-    if not isinstance(columns, dict):
-        faults.append(Fault(("columns",), "should be a table"))
-        return None
-    origin = f"{path.name} [columns]"
-    try:
-        return parse_column_map(columns, origin)
-    except ConfigurationError as error:
-        faults.append(Fault((), f"[columns] {str(error).removeprefix(f'{origin}: ')}"))
-        return None
 
 
 def _expand_units(table: dict[str, Any], faults: list[Fault]) -> None:
@@ -134,8 +117,8 @@ def _run_faults(table: dict[str, Any]) -> Iterator[Fault]:
 
 def _valid(table: dict[str, Any], array: str, kind: type[T]) -> Iterator[tuple[Place, T]]:
     entries = table.get(array)
-    for number, one in enumerate(entries if isinstance(entries, list) else []):
-        found = validate(kind, one, [])
+    for number, entry in enumerate(entries if isinstance(entries, list) else []):
+        found = validate(kind, entry, [])
         if found is not None:
             yield (array, number), found
 

@@ -1,10 +1,12 @@
-"""The table ``[model_uncertainty]``: what ``pmm inertia`` knows of ``[model]``'s numbers."""
+"""Tables that need more than a check of their keys: [oscillator] and [model_uncertainty]."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from difflib import get_close_matches
 from typing import Any
 
-from pmm.configuration import Fault, validate
+from hardware.description.oscillator import PRESETS
+from pmm.configuration import STRICT_TABLE, Fault, validate
 
 
 @dataclass(frozen=True)
@@ -23,7 +25,7 @@ class ModelUncertainty:
     cg_z_m: float = 0.0
     inertia_degrees_of_freedom: float = math.inf
 
-    __pydantic_config__ = {"extra": "forbid", "allow_inf_nan": False}  # noqa: RUF012
+    __pydantic_config__ = STRICT_TABLE
 
 
 def take_uncertainty(table: dict[str, Any], faults: list[Fault]) -> ModelUncertainty | None:
@@ -46,3 +48,16 @@ def take_uncertainty(table: dict[str, Any], faults: list[Fault]) -> ModelUncerta
 
 
 _FREEDOM = "inertia_degrees_of_freedom"
+
+
+def expand_preset(table: dict[str, Any], faults: list[Fault]) -> None:
+    """Fill in the oscillator that a preset stands for; the keys beside it win."""
+    oscillator = table.get("oscillator")
+    if not isinstance(oscillator, dict) or "preset" not in oscillator:
+        return
+    preset = oscillator.pop("preset")
+    if not isinstance(preset, str) or preset not in PRESETS:
+        names = " or ".join(PRESETS)
+        faults.append(Fault(("oscillator", "preset"), f"= {preset!r} should be {names}"))
+        preset = get_close_matches(str(preset), PRESETS, n=1, cutoff=0.0)[0]
+    table["oscillator"] = asdict(PRESETS[preset]) | oscillator

@@ -13,7 +13,7 @@ from hardware.roles import Reading
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.runs import AtRest, Run
 from pmm.recorder.files import EVENTS, RECORDING
-from pmm.recorder.texts import read_lines
+from pmm.recorder.line_shapes import read_lines
 
 if TYPE_CHECKING:
     from analysis.readers import ColumnMap
@@ -149,7 +149,7 @@ def _gated(recording: "Recording", path: Path) -> "Recording":
     if not (path.parent / EVENTS).exists():
         return recording
     events, _ = read_lines(path.parent / EVENTS)
-    times = {one["text"]: float(one["time_s"]) for one in events if one["kind"] == "state"}
+    times = {event["text"]: float(event["time_s"]) for event in events if event["kind"] == "state"}
     if not {"gate open", "hold"} <= set(times):
         return recording
     return recording.between(times["gate open"], times["hold"])

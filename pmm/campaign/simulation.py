@@ -97,16 +97,16 @@ def simulate_runs(
         As :func:`sim.run.simulate` does; the message begins with the run's name.
     """
     rig = campaign.rig()
-    for one in runs:
-        run_seed = seed_of(seed, one.name)
-        own = rig if one.recorded_with is None else campaign.as_recorded(one.name).rig()
-        recording = _simulated(own, campaign, one, one.set_point, one.periods, run_seed, effects)
+    for run in runs:
+        run_seed = seed_of(seed, run.name)
+        own = rig if run.recorded_with is None else campaign.as_recorded(run.name).rig()
+        recording = _simulated(own, campaign, run, run.set_point, run.periods, run_seed, effects)
         switched_on = {"effects": json.dumps(effect_rows(effects))} if effects else {}
         told = {**recording.provenance, **switched_on}
-        recording = replace(recording, set_point=one.set_point, provenance=told)
-        file = _written(recording, folder, one.name, overwrite=overwrite)
+        recording = replace(recording, set_point=run.set_point, provenance=told)
+        file = _written(recording, folder, run.name, overwrite=overwrite)
         rate, count = recording.sample_rate_hz, recording.sample_count
-        yield SimulatedRun(one, file, run_seed, rate, count, recording.flags)
+        yield SimulatedRun(run, file, run_seed, rate, count, recording.flags)
 
 
 def simulate_zeros(
@@ -126,14 +126,14 @@ def simulate_zeros(
         As :func:`simulate_runs`.
     """
     rig = campaign.rig()
-    for one in zeros:
+    for zero in zeros:
         # The gauges' mean is taken with the scatter between blocks: a block stands for a period.
-        point = replace(one.set_point, frequency_hz=ZERO_BLOCKS / one.duration_s)
+        point = replace(zero.set_point, frequency_hz=ZERO_BLOCKS / zero.duration_s)
         periods = ZERO_BLOCKS - 1  # a simulated record is one longer
-        own = seed_of(seed, one.name)
-        recording = _simulated(rig, campaign, one, point, periods, own, effects)
+        own = seed_of(seed, zero.name)
+        recording = _simulated(rig, campaign, zero, point, periods, own, effects)
         recording = replace(recording, set_point=None)
-        yield _written(recording, folder, one.name, overwrite=overwrite)
+        yield _written(recording, folder, zero.name, overwrite=overwrite)
 
 
 def _simulated(
@@ -170,7 +170,7 @@ def _written(recording: "Recording", folder: Path, name: str, *, overwrite: bool
 
 def effect_rows(effects: Sequence[Effect]) -> list[dict[str, Any]]:
     """Return effects with their parameters, as recordings and programs get them."""
-    return [{"name": one.name, "parameters": asdict(one)} for one in effects]
+    return [{"name": effect.name, "parameters": asdict(effect)} for effect in effects]
 
 
 def seed_of(seed: int, name: str) -> int:

@@ -18,7 +18,7 @@ from pmm.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from pmm.coefficients.settings import Settings
+    from pmm.coefficients.settings import CoefficientSettings
     from pmm.coefficients.solving import Progress
     from pmm.coefficients.workflow import CampaignOutcome
 
@@ -148,7 +148,7 @@ def finish(outcome: "CampaignOutcome") -> None:
         click.get_current_context().exit(min(statuses))
 
 
-def _few(folders: Sequence[Path], settings: "Settings") -> bool:
+def _few(folders: Sequence[Path], settings: "CoefficientSettings") -> bool:
     """Whether there is too little to do for starting processes."""
     from pmm.campaign.campaign_file import read_campaign
     from pmm.campaign.file_names import CAMPAIGN_FILE
@@ -212,7 +212,7 @@ def _written(outcome: "CampaignOutcome", options: Mapping[str, Any]) -> Iterator
         written = write_figures(figures(outcome.result), Path(options["plot"]), "coefficients")
         yield f"{len(written)} figures in {options['plot']}"
     if options["simman"] is not None:
-        from pmm.coefficients.deliverables import write_deliverables
+        from pmm.coefficients.files import write_deliverables
 
         folder, overwrite = Path(options["simman"]), bool(options["overwrite"])
         count = write_deliverables(outcome, folder, overwrite=overwrite)

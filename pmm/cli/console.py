@@ -53,7 +53,7 @@ def console(**options: Any) -> None:
     from pmm.cli.screen import messages
     from pmm.cli.terminal import Terminal
     from pmm.coefficients.references import read_references
-    from pmm.coefficients.settings import ReferenceFile, Settings
+    from pmm.coefficients.settings import CoefficientSettings, ReferenceFile
     from pmm.console.request import ConsoleRequest
     from pmm.console.session import run_loop, station_of
     from pmm.run.operator import Interrupts
@@ -64,7 +64,9 @@ def console(**options: Any) -> None:
         check_folder(Path(request.output), "--output")
     if request.reference is not None:  # shown only when runs have ended: read now
         read_references(
-            (ReferenceFile(request.reference),), rig_file.oscillator.plane, Settings().form
+            (ReferenceFile(request.reference),),
+            rig_file.oscillator.plane,
+            CoefficientSettings().form,
         )
     interrupts = Interrupts()
     # The terminal is waited for last: the rig is left by then.

@@ -1,4 +1,4 @@
-"""A campaign's coefficients as files for programs: a CSV and a NetCDF file."""
+"""A campaign's coefficients as files: CSV and NetCDF, and what SIMMAN asks of each run."""
 
 import csv
 import io
@@ -10,6 +10,9 @@ from typing import Any
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.exchange import to_dataset
 from analysis.coefficients.recommendation import table
+from analysis.exchange.simman import SimmanDescription, deliverables_of
+from analysis.exchange.simman_files import write_simman
+from hardware.description.errors import DataError
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.whole_file import write_whole
 
@@ -38,3 +41,35 @@ def _cell(value: Any) -> Any:
     if isinstance(value, tuple):
         return " ".join(map(str, value))
     return repr(value) if isinstance(value, float) else value
+
+
+def write_deliverables(outcome: CampaignOutcome, folder: Path, *, overwrite: bool = False) -> int:
+    """Write the deliverables of every run that oscillated, a folder each; return how many.
+
+    Raises
+    ------
+    DataError
+        If a run's are there already, or no run oscillated.
+    """
+    moving = [cycle for cycle in outcome.cycles if cycle.frequency_hz > 0.0]
+    if not moving:
+        raise DataError("no run oscillates: there is no cycle to deliver")
+    rates = {one.name: one.sample_rate_hz for one in outcome.runs}
+    periods = {one.name: one.periods for one in outcome.runs}
+    body, ship = outcome.body, outcome.settings.ship
+    for cycle in moving:
+        description = SimmanDescription(
+            run=cycle.name,
+            campaign=", ".join(outcome.names),
+            scale=ship.scale,
+            length_m=ship.length_m,
+            mass_kg=None if body is None else body.mass_kg,
+            inertia_kg_m2=None if body is None else body.inertia_kg_m2,
+            cg_x_m=None if body is None else body.cg_x_m,
+            water_temperature_deg_c=ship.water_temperature_deg_c,
+            density_kg_m3=ship.density_kg_m3,
+            logging_rate_hz=rates[cycle.name],
+            periods=periods[cycle.name],
+        )
+        write_simman(deliverables_of(cycle, description), folder / cycle.name, overwrite=overwrite)
+    return len(moving)

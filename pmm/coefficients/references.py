@@ -55,10 +55,7 @@ def beside(
 ) -> CampaignCoefficients:
     """Return the campaign with all tables of one system beside its own values.
 
-    Raises
-    ------
-    ConfigurationError, DataError
-        As :func:`analysis.coefficients.reference.compared`.
+    It raises what :func:`analysis.coefficients.reference.compared` raises.
     """
     for one in references:
         if one.system is system:

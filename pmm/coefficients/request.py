@@ -9,14 +9,16 @@ from analysis.coefficients.names import Form
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.coefficients.references import beside, check_systems, read_references
-from pmm.coefficients.settings import DRY, MODEL, ReferenceFile, Settings, System
+from pmm.coefficients.settings import DRY, MODEL, CoefficientSettings, ReferenceFile, System
 from pmm.coefficients.systems import in_system
 from pmm.coefficients.workflow import CampaignOutcome
 
 _PLAIN: Final = ("form", "level", "seed", "system", "inertia", "wanted", "leave_out")
 
 
-def merged(base: Settings, options: Mapping[str, Any], default_trials: int) -> Settings:
+def merged(
+    base: CoefficientSettings, options: Mapping[str, Any], default_trials: int
+) -> CoefficientSettings:
     """Return the settings with what the command line says in their place."""
     given: dict[str, Any] = {name: options[name] for name in _PLAIN if options[name]}
     if "form" in given:
@@ -35,7 +37,7 @@ def merged(base: Settings, options: Mapping[str, Any], default_trials: int) -> S
     return replace(base, **given, trials=_trials(base, options, default_trials))
 
 
-def _trials(base: Settings, options: Mapping[str, Any], default: int) -> int:
+def _trials(base: CoefficientSettings, options: Mapping[str, Any], default: int) -> int:
     wanted, trials = options["uncertainty"], options["trials"]
     if wanted == "linear" and trials is not None:
         raise ConfigurationError("--trials belongs to --uncertainty monte-carlo")
@@ -66,7 +68,7 @@ def campaign_folder(text: str) -> Path:
     return path
 
 
-def finished(outcome: CampaignOutcome, settings: Settings) -> CampaignOutcome:
+def finished(outcome: CampaignOutcome, settings: CoefficientSettings) -> CampaignOutcome:
     """Put reference tables beside the values, and bring both to the system asked for."""
     found = outcome.result
     references = read_references(settings.references, found.plane, found.form)

@@ -4,20 +4,19 @@ from copy import deepcopy
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
-from typing import Any, ClassVar, Final
+from typing import Any, Final
 
 from analysis.coefficients.names import Form
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from hardware.description.errors import ConfigurationError
 from hardware.description.toml import is_number
 from hardware.description.units import STANDARD_GRAVITY_M_S2
-from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
+from pmm.configuration import STRICT_TABLE, Fault, as_error, limit_faults, read_toml, validate
 
 SETTINGS_FILE: Final = "coefficients.toml"
 MODEL: Final = "model"
 DRY: Final = "dry"
 
-_ABOVE_0 = ("length_m", "draught_m", "volume_m3", "density_kg_m3", "gravity_m_s2")
 _PAIR = "should be two rows of two numbers"
 
 
@@ -93,7 +92,7 @@ class ReferenceFile:
 
 
 @dataclass(frozen=True)
-class Settings:
+class CoefficientSettings:
     """How a campaign's coefficients are had.
 
     Attributes
@@ -140,10 +139,10 @@ class Settings:
     amplifiers: dict[str, AmplifierTable] = field(default_factory=dict)
     references: tuple[ReferenceFile, ...] = ()
 
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+    __pydantic_config__ = STRICT_TABLE
 
 
-def read_settings(path: Path) -> Settings:
+def read_settings(path: Path) -> CoefficientSettings:
     """Read a settings file; files that it names lie beside it.
 
     Raises
@@ -155,33 +154,25 @@ def read_settings(path: Path) -> Settings:
     table = read_toml(path)
     faults: list[Fault] = list(limit_faults(table))
     faults += _value_faults(table)
-    found = validate(Settings, _with_folder(table, path.parent), faults)
+    found = validate(CoefficientSettings, _with_folder(table, path.parent), faults)
     if found is None or faults:
         raise as_error(path, faults, table)
     return found
 
 
-def settings_of(folder: Path, given: str | None) -> tuple[Settings, Path | None]:
+def settings_of(folder: Path, given: str | None) -> tuple[CoefficientSettings, Path | None]:
     """Return the settings of a campaign's folder, or those of the file that was given.
 
-    Raises
-    ------
-    ConfigurationError
-        As :func:`read_settings`.
+    It raises what :func:`read_settings` raises.
     """
     path = folder / SETTINGS_FILE if given is None else Path(given)
     if given is None and not path.exists():
-        return Settings(), None
+        return CoefficientSettings(), None
     return read_settings(path), path
 
 
 def _value_faults(table: dict[str, Any]) -> list[Fault]:
     faults = []
-    ship = table.get("ship")
-    for key in _ABOVE_0 if isinstance(ship, dict) else ():
-        value = ship.get(key) if isinstance(ship, dict) else None
-        if is_number(value) and not value > 0.0:
-            faults.append(Fault(("ship", key), f"= {value:g} should be above 0"))
     stated = table.get("uncertainty")
     for key, value in stated.items() if isinstance(stated, dict) else ():
         if is_number(value) and value < 0.0:

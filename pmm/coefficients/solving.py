@@ -63,10 +63,7 @@ def solve_campaign(
 ) -> CampaignCoefficients:
     """Return all coefficients of a campaign.
 
-    Raises
-    ------
-    ConfigurationError, DataError
-        As :func:`analysis.coefficients.campaign.campaign_coefficients`.
+    It raises what :func:`analysis.coefficients.campaign.campaign_coefficients` raises.
     """
     check_campaign(cycles)
     known = repeatability(cycles)

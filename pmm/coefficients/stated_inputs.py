@@ -21,7 +21,7 @@ from pmm.campaign.campaign import Campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.campaign.model_uncertainty import ModelUncertainty, take_uncertainty
 from pmm.campaign.runs import Run
-from pmm.coefficients.settings import DRY, MODEL, Settings
+from pmm.coefficients.settings import DRY, MODEL, CoefficientSettings
 from pmm.coefficients.tasks import MeasuringChain
 from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
 
@@ -51,7 +51,7 @@ def oscillator_of(campaign: Campaign, folder: Path) -> Oscillator:
     return campaign.oscillator
 
 
-def chain_of(settings: Settings) -> MeasuringChain:
+def chain_of(settings: CoefficientSettings) -> MeasuringChain:
     """Return what is known of the measuring chain.
 
     Raises
@@ -111,7 +111,7 @@ def body_of(
 
 
 def with_own_body(
-    cycle: BodyCycle, campaign: Campaign, settings: Settings, body: Body | None
+    cycle: BodyCycle, campaign: Campaign, settings: CoefficientSettings, body: Body | None
 ) -> BodyCycle:
     """Return a cycle with what is to be taken off: the body, or the one it was recorded with.
 
@@ -148,7 +148,7 @@ def _model_file(path: Path, own: Body | None) -> tuple[Body, tuple[ModelUncertai
     return body, () if uncertainty is None else (uncertainty,)
 
 
-def restoring_of(campaign: Campaign, settings: Settings) -> FloatArray:
+def restoring_of(campaign: Campaign, settings: CoefficientSettings) -> FloatArray:
     """Return the hydrostatic restoring about the midpoint, shape ``(2, 2)``."""
     given = settings.restoring
     return np.array(campaign.hull.restoring if given is None else given, dtype=np.float64)
@@ -156,7 +156,7 @@ def restoring_of(campaign: Campaign, settings: Settings) -> FloatArray:
 
 def stated_of(
     campaign: Campaign,
-    settings: Settings,
+    settings: CoefficientSettings,
     models: Sequence[ModelUncertainty],
     calibrations: Sequence[Calibration],
     *,

@@ -20,7 +20,7 @@ from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.campaign.plausibility import implausible
 from pmm.campaign.runs import nearest_run
 from pmm.coefficients.reading import read_cycle, read_zero
-from pmm.coefficients.settings import Settings
+from pmm.coefficients.settings import CoefficientSettings
 from pmm.coefficients.solving import Progress, solve_campaign
 from pmm.coefficients.stated_inputs import (
     body_of,
@@ -60,7 +60,7 @@ class CampaignOutcome:
     left_out: tuple[Flag, ...]
     stated: StatedUncertainties
     body: Body | None
-    settings: Settings
+    settings: CoefficientSettings
 
     @property
     def noticed(self) -> tuple[Flag, ...]:
@@ -106,7 +106,7 @@ class _Read:
 
 def coefficients_of(
     folders: Sequence[Path],
-    settings: Settings,
+    settings: CoefficientSettings,
     executor: Executor,
     progress: Progress,
     *,
@@ -161,7 +161,7 @@ def coefficients_of(
     )
 
 
-def request_of(settings: Settings, stated: StatedUncertainties) -> Request:
+def request_of(settings: CoefficientSettings, stated: StatedUncertainties) -> Request:
     """Return what is wanted of the campaign."""
     return Request(
         settings.form,
@@ -204,7 +204,7 @@ def _check_left_out(names: Sequence[str], campaigns: Sequence[Campaign]) -> None
 def _read(
     folder: Path,
     campaign: Campaign,
-    settings: Settings,
+    settings: CoefficientSettings,
     executor: Executor,
     progress: Progress,
     *,

@@ -1,7 +1,8 @@
 """What a browser may do: each action is checked, carried out, logged and answered."""
 
+import json
 from collections.abc import Awaitable, Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
@@ -11,14 +12,12 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hardware.description.errors import PmmError
-from pmm.console.command_log import CommandRecord, keep
 from pmm.console.desk import NotInControlError
 from pmm.console.encoding import encode_answer
 from pmm.console.hub import Hub
 from pmm.console.limits import LARGEST_PLAN, LARGEST_REQUEST
 from pmm.console.loop_side import LoopSide
 from pmm.console.messages import Notice, OrderKind
-from pmm.console.plan_queue import Queued
 from pmm.console.plans import Plans
 from pmm.console.requests import (
     AnswerPosted,
@@ -28,9 +27,52 @@ from pmm.console.requests import (
     Posted,
     TakePosted,
 )
-from pmm.console.worker_tasks import check_plan_text, ready_plan
-from pmm.console.workers import Workers
+from pmm.console.worker_process import Workers
+from pmm.console.worker_tasks import Queued, check_plan_text, ready_plan
 from pmm.run.states import Command
+
+COMMANDS: Final = "commands.jsonl"
+
+
+@dataclass(frozen=True)
+class CommandRecord:
+    """A command.
+
+    Attributes
+    ----------
+    utc
+        When it came, in ISO 8601.
+    address
+        Of the browser.
+    session
+        Its first characters: enough to tell browsers apart, too few to speak for one.
+    taken
+        Whether it was carried out.
+    said
+        The answer: what happened, or why not.
+    """
+
+    utc: str
+    address: str
+    session: str
+    action: str
+    given: str
+    taken: bool
+    said: str
+
+
+def keep(folder: Path, record: CommandRecord) -> None:
+    """Add a line to the folder's log.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / COMMANDS).open("a", encoding="utf-8") as file:
+        file.write(json.dumps(asdict(record), ensure_ascii=False) + "\n")
+
 
 SESSION: Final = "x-pmm-session"
 _LOGGED: Final = 400  # bytes of what was posted; plans are kept as files

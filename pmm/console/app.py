@@ -35,8 +35,8 @@ from pmm.console.pump import pump
 from pmm.console.quick_stop import QuickStop
 from pmm.console.requests import TokenPosted
 from pmm.console.security import COOKIE, Guard
+from pmm.console.worker_process import Shared, Workers
 from pmm.console.worker_tasks import look_around
-from pmm.console.workers import Shared, Workers
 
 PAGE: Final = Path(__file__).parent / "page"
 _SESSION_LENGTH: Final = range(16, 65)

@@ -53,8 +53,8 @@ def hello_picture(hello: Hello) -> dict[str, Any]:
         "trace_rate_hz": hello.trace_rate_hz,
         "harmonics": hello.harmonics,
         "channels": [
-            {"name": one.name, "unit": one.unit, "full_scale": number(one.full_scale)}
-            for one in hello.channels
+            {"name": channel.name, "unit": channel.unit, "full_scale": number(channel.full_scale)}
+            for channel in hello.channels
         ],
     }
 
@@ -121,8 +121,8 @@ def outcome_picture(
         "reason": outcome.reason,
         "folder": folder,
         "at": at,
-        "flags": [one.message for one in outcome.flags],
-        "rows": [_row(one) for one in outcome.harmonics],
+        "flags": [flag.message for flag in outcome.flags],
+        "rows": [_row(harmonic) for harmonic in outcome.harmonics],
         "needles": needles_picture(needles),
     }
 

@@ -39,7 +39,9 @@ def figures_of(
         try:
             if of == "earlier" or _has_runs(folder):
                 result = _result(folder)
-                points += [{**one, "of": of, "campaign": folder.name} for one in _points(result)]
+                points += [
+                    {**point, "of": of, "campaign": folder.name} for point in _points(result)
+                ]
         except (PmmError, OSError) as error:
             problems.append(f"{folder.name}: {error}")
     if reference is not None and result is not None:
@@ -47,9 +49,9 @@ def figures_of(
             points += list(_reference_points(reference, result))
         except (PmmError, OSError) as error:
             problems.append(str(error))
-    for one in points:
+    for point in points:
         for key in ("value", "half_width", "frequency_hz", "speed_m_s"):
-            one[key] = number(one[key])
+            point[key] = number(point[key])
     return {"points": points, "problems": problems}
 
 
@@ -60,14 +62,14 @@ def _has_runs(folder: Path) -> bool:
 
     runs = read_toml(folder / CAMPAIGN_FILE).get("runs") or []
     wanted = {"outcome": "complete", "medium": "water"}
-    return any(all(one.get(key, must) == must for key, must in wanted.items()) for one in runs)
+    return any(all(run.get(key, must) == must for key, must in wanted.items()) for run in runs)
 
 
 def _result(folder: Path) -> CampaignCoefficients:
-    from pmm.coefficients.settings import Settings
+    from pmm.coefficients.settings import CoefficientSettings
     from pmm.coefficients.workflow import coefficients_of
 
-    settings = Settings(nonlinear=False, zero_frequency=False)
+    settings = CoefficientSettings(nonlinear=False, zero_frequency=False)
     return coefficients_of([folder], settings, _Here(), _silent).result
 
 
@@ -95,22 +97,22 @@ def _reference_points(path: Path, result: CampaignCoefficients) -> Iterator[dict
     from pmm.coefficients.settings import ReferenceFile
 
     units = {entry.name: entry.unit for entry in result.entries}
-    for one in read_references((ReferenceFile(str(path)),), result.plane, result.form):
-        if str(one.system) != result.normalisation:
+    for reference in read_references((ReferenceFile(str(path)),), result.plane, result.form):
+        if str(reference.system) != result.normalisation:
             raise DataError(
-                f"reference {path}: is in the system {one.system}, the page shows "
+                f"reference {path}: is in the system {reference.system}, the page shows "
                 f"{result.normalisation} values; give it in that system"
             )
-        for name in units.keys() & one.table.values.keys():
-            for k, frequency_hz in enumerate(one.table.frequency_hz):
+        for name in units.keys() & reference.table.values.keys():
+            for k, frequency_hz in enumerate(reference.table.frequency_hz):
                 yield {
                     "name": name,
                     "unit": units[name],
                     "frequency_hz": float(frequency_hz),
-                    "speed_m_s": one.table.speed_m_s,
-                    "value": float(one.table.values[name][k]),
+                    "speed_m_s": reference.table.speed_m_s,
+                    "value": float(reference.table.values[name][k]),
                     "half_width": float("nan"),
                     "runs": [],
                     "of": "reference",
-                    "campaign": one.table.name,
+                    "campaign": reference.table.name,
                 }

@@ -155,8 +155,8 @@ class Hub:
 
     def _begin(self, hello: Hello) -> None:
         self._hello, self._connected = encode(hello_picture(hello)), True
-        for one in self.clients.values():
-            one.fall_behind()
+        for client in self.clients.values():
+            client.fall_behind()
         self._changed()
 
     def _changed(self) -> None:
@@ -164,8 +164,8 @@ class Hub:
         self.news.set()
 
     def _tell(self, text: str) -> None:
-        for one in self.clients.values():
-            one.offer(text)
+        for client in self.clients.values():
+            client.offer(text)
         self._changed()
 
     def _desk(self, session: str) -> str:

@@ -7,8 +7,7 @@ from dataclasses import replace
 from multiprocessing.connection import Connection
 from typing import Final
 
-from pmm.console.messages import Frame, LoopOrder, PackedPlan, Told
-from pmm.console.packing import unpack
+from pmm.console.messages import Frame, LoopOrder, PackedPlan, Told, unpack
 
 _POLL_S: Final = 0.2
 _FRAMES: Final = 25  # one second's; older ones are dropped
@@ -37,8 +36,8 @@ class Link:
             threading.Thread(target=one, name=f"console {name}", daemon=True)
             for name, one in (("sender", self._send), ("receiver", self._receive))
         ]
-        for one in self._threads:
-            one.start()
+        for thread in self._threads:
+            thread.start()
 
     @property
     def lost(self) -> bool:

@@ -1,7 +1,9 @@
 """What the loop and the web server tell each other: frozen, and small enough to be pickled."""
 
 import math
-from dataclasses import dataclass
+import pickle
+import time
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Final
@@ -229,3 +231,26 @@ class Frame:
 
 
 Told = Hello | Notice | Frame | Reply
+
+
+_PIECE: Final = 50  # runs: 2 ms
+_PAUSE_S: Final = 5e-4  # between pieces: the loop's thread goes first
+
+
+def pack(plan: QueuedPlan) -> PackedPlan:
+    """Return a plan in pieces."""
+    wanted = {run.name for run in plan.runs}
+    runs = [(run, run.name in wanted) for run in plan.plan.runs]
+    pieces = tuple(pickle.dumps(runs[k : k + _PIECE]) for k in range(0, len(runs), _PIECE))
+    return PackedPlan(plan.number, replace(plan.plan, runs=()), plan.folder, pieces)
+
+
+def unpack(packed: PackedPlan) -> QueuedPlan:
+    """Return the plan again; it lets other threads run between the pieces."""
+    runs = []
+    for piece in packed.pieces:
+        runs += pickle.loads(piece)  # noqa: S301 - from the console's own process
+        time.sleep(_PAUSE_S)
+    plan = replace(packed.plan, runs=tuple(one for one, _ in runs))
+    chosen = tuple(one for one, wanted in runs if wanted)
+    return QueuedPlan(packed.number, plan, packed.folder, chosen)

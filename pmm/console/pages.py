@@ -61,19 +61,21 @@ class Pages:
 def pages_in(folders: Iterable[Path]) -> dict[Path, list[str]]:
     """Return the names of the pages in folders and in the folders directly in them."""
     every = dict.fromkeys(one for folder in folders for one in (folder, *_within(folder)))
-    return {folder: [one.name for one in _pages(folder)] for folder in every}
+    return {folder: [page.name for page in _pages(folder)] for folder in every}
 
 
 def _page(folder: Path, name: str) -> Path | None:
-    return next((one for one in _pages(folder) if one.name == name), None)
+    return next((page for page in _pages(folder) if page.name == name), None)
 
 
 def _within(folder: Path) -> list[Path]:
-    return [one for one in _entries(folder) if one.is_dir() and not one.name.startswith(".")]
+    return [
+        entry for entry in _entries(folder) if entry.is_dir() and not entry.name.startswith(".")
+    ]
 
 
 def _pages(folder: Path) -> list[Path]:
-    return [one for one in _entries(folder) if one.suffix in _KINDS and one.is_file()]
+    return [entry for entry in _entries(folder) if entry.suffix in _KINDS and entry.is_file()]
 
 
 def _entries(folder: Path) -> list[Path]:

@@ -24,17 +24,21 @@ _FOLLOWING: Final = 3
 
 def channels_of(rig: Rig, rig_file: RigFile) -> tuple[ChannelInfo, ...]:
     """Return the recorded channels with the ranges of their needles."""
-    gauges = {one.channel: one.full_scale_n for one in rig_file.gauges}
+    gauges = {gauge.channel: gauge.full_scale_n for gauge in rig_file.gauges}
     return tuple(
-        ChannelInfo(one.name, one.unit, gauges.get(one.name, one.full_scale or math.nan))
-        for one in header_channels(rig)
+        ChannelInfo(
+            header_channel.name,
+            header_channel.unit,
+            gauges.get(header_channel.name, header_channel.full_scale or math.nan),
+        )
+        for header_channel in header_channels(rig)
     )
 
 
 def bus_of(rig: Rig) -> Bus:
     """Return how the bus is."""
     master = rig.master
-    faults = tuple(str(one) for one in rig.faults)
+    faults = tuple(str(fault) for fault in rig.faults)
     if master is None:
         return Bus(not faults, 0, 0, faults)
     return Bus(master.healthy and not faults, len(master.nodes), master.error_frames.total, faults)
@@ -62,7 +66,7 @@ def present_run(control: RunControl, status: RunStatus) -> RunPlan | None:
 def following(control: RunControl, status: RunStatus) -> tuple[str, ...]:
     """Return the names of the runs that come after that one."""
     after = status.run_number
-    return tuple(one.name for one in control.runs[after : after + _FOLLOWING])
+    return tuple(run.name for run in control.runs[after : after + _FOLLOWING])
 
 
 class NeedleReader:
@@ -82,12 +86,12 @@ class NeedleReader:
         shape = (len(rows), 2 * HARMONICS + 1)
         widths = self._half_widths(final)
         values = np.full(shape, math.nan) if final is None else final.coefficients.copy()
-        first = [(one.mean, one.in_phase, one.quadrature) for one in rows]
+        first = [(row.mean, row.in_phase, row.quadrature) for row in rows]
         values[:, :3] = first
         if widths is None or widths.shape != values.shape:
             widths = np.full(values.shape, math.nan)
-            widths[:, 0] = [one.half_width for one in rows]
-        return Needles(values, widths, final=all(one.final for one in rows))
+            widths[:, 0] = [row.half_width for row in rows]
+        return Needles(values, widths, final=all(row.final for row in rows))
 
     def standing(self, measurement: Measurement) -> Needles | None:
         """Return the last reading over whole periods; where there is none, what the needles show.

@@ -51,7 +51,7 @@ class Pictures:
     def traces(self, since: int) -> str:
         """Return the pieces from that number on, or all that there are."""
         first = self.next_piece - len(self._pieces)
-        texts = [one.text for one in self._pieces]
+        texts = [piece.text for piece in self._pieces]
         return f"[{','.join(texts[max(since - first, 0) :])}]"
 
     def _keep(self, trace: SignalTrace) -> None:

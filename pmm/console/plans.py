@@ -43,7 +43,7 @@ class CheckedPlan:
     @property
     def refused(self) -> bool:
         """Whether the rig cannot run it."""
-        return any(one.verdict is PlanVerdict.REFUSE for one in self.findings)
+        return any(finding.verdict is PlanVerdict.REFUSE for finding in self.findings)
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ class Plans:
         """Hold the plan's rig against this console's; no file of another name is opened."""
         named = read_toml(path).get("rig", "rig.toml")
         if named not in self.rigs:
-            known = " or ".join(f'rig = "{one}"' for one in self.rigs)
+            known = " or ".join(f'rig = "{rig}"' for rig in self.rigs)
             given = str(named)[:_SHOWN]
             raise ConfigurationError(
                 f"{path}: rig = {given!r} is no rig of this console; write {known}"
@@ -171,7 +171,7 @@ def plan_picture(found: CheckedPlan) -> dict[str, Any]:
         "findings": [
             {"verdict": str(f.verdict), "run": f.run, "message": f.message}
             for f in (
-                *(one for one in found.findings if not one.is_stated),
+                *(finding for finding in found.findings if not finding.is_stated),
                 *largest_stated(found.findings),
             )
         ],

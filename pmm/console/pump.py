@@ -34,8 +34,8 @@ async def send_round(hub: Hub) -> None:
     for start in range(0, len(clients), _BATCH):
         began_s = clock()
         first = [hub.in_control] if hub.in_control is not None else []
-        for one in first + clients[start : start + _BATCH]:
-            _begin(hub, one)
+        for client in first + clients[start : start + _BATCH]:
+            _begin(hub, client)
         if len(clients) > _BATCH:
             await asyncio.sleep(0.0)  # they are sent now
             await asyncio.sleep(clock() - began_s)

@@ -133,7 +133,7 @@ def _with_headers(send: Send) -> Send:
     async def sent(message: MutableMapping[str, Any]) -> None:
         if message["type"] == "http.response.start":
             there = {key for key, _ in message.get("headers", ())}
-            more = [one for one in _HEADERS if one[0] not in there]
+            more = [header for header in _HEADERS if header[0] not in there]
             message["headers"] = [*message.get("headers", ()), *more]
         await send(message)
 

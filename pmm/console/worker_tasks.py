@@ -1,11 +1,11 @@
 """What the workers do for the server: plans are read, folders are looked at, texts are made."""
 
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pmm.console.encoding import EncodedText, encode
-from pmm.console.messages import PackedPlan
-from pmm.console.packing import pack
+from pmm.console.messages import PackedPlan, pack
 from pmm.console.pages import pages_in
 from pmm.console.plans import Plans, plan_picture
 
@@ -38,3 +38,49 @@ def ready_plan(plans: Plans, name: str, text: str) -> ReadyPlan:
 def look_around(plans: Plans, folders: tuple[Path, ...]) -> tuple[list[str], dict[Path, list[str]]]:
     """Return the names of the plans, and the pages in each of the campaigns' folders."""
     return plans.names(), pages_in(folders)
+
+
+class Queued:
+    """Keeps plans by their numbers, which are never used twice.
+
+    A plan's picture has its runs, up to a megabyte. It is kept while the plan is under way or
+    waits, and until a frame tells of it; its folder is kept, for what was recorded there.
+    """
+
+    def __init__(self) -> None:
+        self._plans: dict[int, ReadyPlan] = {}
+        self._folders: dict[Path, None] = {}
+        self._count = self._told = 0
+
+    def add(self, plan: ReadyPlan) -> int:
+        """Keep a plan that is about to be queued; return its number."""
+        self._count += 1
+        self._plans[self._count] = replace(plan, packed=replace(plan.packed, pieces=()))
+        self._folders[plan.packed.folder] = None
+        return self._count
+
+    def drop(self, number: int) -> None:
+        """Forget a plan that was refused or taken out of the queue."""
+        self._plans.pop(number, None)
+
+    def at_hand(self, numbers: Collection[int]) -> None:
+        """Forget the others, by what the latest frame tells of; it may not know the newest yet."""
+        self._told = max(self._told, *numbers)
+        self._plans = {
+            number: plan
+            for number, plan in self._plans.items()
+            if number > self._told or number in numbers
+        }
+
+    def folder(self, number: int) -> Path | None:
+        """Return the folder of a plan that is at hand."""
+        found = self._plans.get(number)
+        return None if found is None else found.packed.folder
+
+    def folders(self) -> list[Path]:
+        """Return the folders of all campaigns that were queued, each once."""
+        return list(self._folders)
+
+    def pictures(self) -> dict[str, EncodedText]:
+        """Return the pictures of the plans at hand, by their numbers."""
+        return {str(number): plan.picture for number, plan in self._plans.items()}

@@ -93,8 +93,8 @@ class Live:
     def _channels(self, device: Sampled) -> Iterator[DeviceRow]:
         unknown = (math.nan,) * len(device.channels)
         values = self._latest.get(device.name, unknown)
-        for one, value in zip(device.channels, values, strict=True):
-            yield DeviceRow(device.name, one.name, value, one.unit)
+        for channel, value in zip(device.channels, values, strict=True):
+            yield DeviceRow(device.name, channel.name, value, channel.unit)
 
 
 def _state(device: Powered) -> DeviceRow:

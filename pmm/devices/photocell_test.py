@@ -39,7 +39,11 @@ class PhotocellRecord:
     @property
     def good(self) -> bool:
         """Whether all pulses came, and none too many."""
-        return self.enough and not self.said and not any(one.verdict for one in self.intervals)
+        return (
+            self.enough
+            and not self.said
+            and not any(interval.verdict for interval in self.intervals)
+        )
 
 
 def watch(

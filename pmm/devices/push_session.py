@@ -47,17 +47,19 @@ class GaugeReadings:
     def __init__(self, rig: Rig) -> None:
         self.rig = rig
         self.channels: tuple[Channel, ...] = tuple(
-            one for device in rig.forces for one in device.channels
+            channel for device in rig.forces for channel in device.channels
         )
         if not self.channels:
             raise ConfigurationError("the rig has no force channels; it needs a [[forces]] table")
-        self._rates = {one.name: dev.sample_rate_hz for dev in rig.forces for one in dev.channels}
+        self._rates = {
+            channel.name: dev.sample_rate_hz for dev in rig.forces for channel in dev.channels
+        }
         self._kept: dict[str, deque[float]] = {}
         self.begin()
 
     def begin(self) -> None:
         """Forget what was read."""
-        self._kept = {one.name: deque() for one in self.channels}
+        self._kept = {channel.name: deque() for channel in self.channels}
 
     def run(self, seconds: float, prompt: str = "") -> None:
         """Let cycles pass; ``prompt`` is shown to the operator meanwhile."""
@@ -67,8 +69,8 @@ class GaugeReadings:
             self.rig.cycle()
             for device in self.rig.forces:
                 for block in device.take():
-                    for one, row in zip(device.channels, block.values, strict=True):
-                        self._kept[one.name].extend(row.tolist())
+                    for channel, row in zip(device.channels, block.values, strict=True):
+                        self._kept[channel.name].extend(row.tolist())
 
     def records(self, last_s: float | None = None) -> Mapping[str, FloatArray]:
         """Return the samples of each channel, all of them or the last seconds."""
@@ -167,5 +169,5 @@ def _wait_for_rest(
 
 
 def _load(gauges: GaugeReadings, name: str) -> float:
-    full = next(one.full_scale for one in gauges.channels if one.name == name)
+    full = next(channel.full_scale for channel in gauges.channels if channel.name == name)
     return _PUSH_SHARE * (full or 1.0)

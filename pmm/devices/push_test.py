@@ -80,12 +80,13 @@ def judge(
     PushError
         If a channel has too few samples or one that is not valid, or if two gauges moved alike.
     """
-    changes = {one.name: _largest(one.name, rest, pushed) for one in channels}
+    changes = {channel.name: _largest(channel.name, rest, pushed) for channel in channels}
     limits = {
-        one.name: max(
-            noise_times * float(np.std(rest[one.name])), least_share * (one.full_scale or 0.0)
+        channel.name: max(
+            noise_times * float(np.std(rest[channel.name])),
+            least_share * (channel.full_scale or 0.0),
         )
-        for one in channels
+        for channel in channels
     }
     first, *weaker = sorted(
         channels, key=lambda one: _strength(changes[one.name], limits[one.name]), reverse=True

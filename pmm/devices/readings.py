@@ -53,7 +53,9 @@ def of_bus(bus: BusConfiguration) -> Iterator[Look]:
             time.sleep(seconds if seconds == REFRESH_S else 0.0)  # once: nothing to wait for
             values = objects.read()
             return Shown(
-                tuple(DeviceRow(f"node {one.node_id}", one.name, one.value) for one in values)
+                tuple(
+                    DeviceRow(f"node {value.node_id}", value.name, value.value) for value in values
+                )
             )
 
         yield look

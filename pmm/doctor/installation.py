@@ -47,7 +47,9 @@ def _python(machine: Machine) -> MachineFinding:
 
 
 def _libraries(machine: Machine) -> Iterator[MachineFinding]:
-    wanted = [one for one in machine.requirements() if "extra ==" not in one]
+    wanted = [
+        requirement for requirement in machine.requirements() if "extra ==" not in requirement
+    ]
     wrong = 0
     for one in wanted:
         match = _REQUIREMENT.match(one)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, ClassVar, Final, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Final, Generic, TypeVar
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
@@ -233,7 +233,7 @@ class Figure:
     draw: "Callable[[], Drawing]"
     key: str = PEOPLE_ALONE
     data: Any = None
-    empty: ClassVar = False
+    empty = False
 
 
 @dataclass(frozen=True)
@@ -242,7 +242,7 @@ class Data:
 
     key: str
     data: Any
-    empty: ClassVar = True
+    empty = True
 
 
 Content = Table[Any] | Text | Notes | Figure | Data

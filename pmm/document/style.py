@@ -126,10 +126,7 @@ def write_figure(
 ) -> list[Path]:
     """Write a figure as ``<name>.<format>`` and return the files; the folder is made.
 
-    Raises
-    ------
-    ConfigurationError
-        As :func:`render`.
+    It raises what :func:`render` raises.
     """
     folder.mkdir(parents=True, exist_ok=True)
     paths = [folder / f"{name}.{suffix}" for suffix in formats]

@@ -23,7 +23,7 @@ def calibrate(runs: Sequence[RunResult], made: date, valid_days: int) -> Calibra
     DataError
         If a gauge has fewer than three steps, or all of them at one load.
     """
-    steps = [(one.plan["load"], one.means()) for one in runs]
+    steps = [(run.plan["load"], run.means()) for run in runs]
     channels = tuple(dict.fromkeys(str(load["channel"]) for load, _ in steps))
     size = len(channels)
     matrix, spread = np.zeros((size, size)), np.zeros((size, size))
@@ -44,7 +44,7 @@ def calibrate(runs: Sequence[RunResult], made: date, valid_days: int) -> Calibra
 
 def modes_text(modes: Sequence[Mapping[str, object]]) -> str:
     """Return structural modes as the file that ``modes_file`` of a rig names."""
-    return "\n".join(toml_table("modes", one, array=True) for one in modes)
+    return "\n".join(toml_table("modes", mode, array=True) for mode in modes)
 
 
 def _check_steps(channel: str, forces: FloatArray) -> None:

@@ -79,10 +79,10 @@ def chart(quantity: str, unit: str, runs: Sequence[str], values: FloatArray) -> 
 
 def control_charts(runs: Sequence[RunResult]) -> tuple[Chart, ...]:
     """Return amplitude and phase of each force channel over the control runs."""
-    names = [one.name for one in runs]
+    names = [run.name for run in runs]
     charts = []
     for channel in runs[0].forces if runs else ():
-        first = np.array([one.first[channel] for one in runs])
+        first = np.array([run.first[channel] for run in runs])
         turned = np.unwrap(np.angle(first))
         charts.append(chart(f"{channel} amplitude", "N", names, np.abs(first)))
         charts.append(chart(f"{channel} phase", "rad", names, turned))

@@ -56,7 +56,7 @@ class Evaluation:
     @property
     def in_control(self) -> bool:
         """Whether no chart shows a change."""
-        return all(one.in_control for one in self.charts)
+        return all(chart.in_control for chart in self.charts)
 
 
 def evaluate(folder: Path, valid_days: int) -> Evaluation:
@@ -155,6 +155,6 @@ def _write(found: Evaluation, folder: Path) -> list[Path]:
         written.append(write_calibration(found.calibration, folder / CALIBRATION_FILE))
     if found.modes:
         path = folder / MODES_FILE
-        write_whole(path, modes_text([one.as_table() for one in found.modes]))
+        write_whole(path, modes_text([mode.as_table() for mode in found.modes]))
         written.append(path)
     return written

@@ -69,10 +69,10 @@ def zero_drifts(runs: Sequence[RunResult]) -> tuple[GaugeZeros, ...]:
     """Return how the zero of each gauge moved over the zero runs."""
     if not runs:
         return ()
-    means = [one.means() for one in runs]
+    means = [run.means() for run in runs]
     drifts = []
     for name in runs[0].forces:
-        values = np.array([one[name] for one in means])
+        values = np.array([mean[name] for mean in means])
         largest = float(np.abs(np.diff(values)).max()) if values.size > 1 else 0.0
         drifts.append(GaugeZeros(name, float(values[0]), float(values[-1]), largest))
     return tuple(drifts)
@@ -86,7 +86,7 @@ def rung_modes(runs: Sequence[RunResult]) -> tuple[RungMode, ...]:
     DataError
         If a record holds no ring-down.
     """
-    return tuple(_mode(one) for one in runs)
+    return tuple(_mode(run) for run in runs)
 
 
 def known_mass_responses(

@@ -14,8 +14,7 @@ from analysis.recording import Recording
 from hardware.description.errors import DataError
 from pmm.recorder.files import EVENTS, HARMONICS, HEADER, RECORDING
 from pmm.recorder.header import RunHeader
-from pmm.recorder.marker import read_marker
-from pmm.recorder.texts import read_lines
+from pmm.recorder.line_shapes import read_lines, read_marker
 
 _FORCE_UNITS = ("N", "N m")
 
@@ -45,7 +44,9 @@ class RunResult:
     @property
     def forces(self) -> tuple[str, ...]:
         """Names of the force channels."""
-        return tuple(one.name for one in self.header.channels if one.unit in _FORCE_UNITS)
+        return tuple(
+            channel.name for channel in self.header.channels if channel.unit in _FORCE_UNITS
+        )
 
     def recording(self) -> Recording:
         """Read the samples.
@@ -67,7 +68,7 @@ class RunResult:
         """
         recording = self.recording()
         events, _ = read_lines(self.folder / EVENTS)
-        states = [(one["time_s"], one["text"]) for one in events if one["kind"] == "state"]
+        states = [(event["time_s"], event["text"]) for event in events if event["kind"] == "state"]
         opened = next((time_s for time_s, text in states if text == "gate open"), None)
         closed = next((time_s for time_s, text in states if text == "hold"), None)
         if opened is None or closed is None:
@@ -97,7 +98,7 @@ def read_results(folder: Path) -> tuple[RunResult, ...]:
 
 def of_kind(results: Sequence[RunResult], *kinds: str) -> tuple[RunResult, ...]:
     """Return the runs of some kinds."""
-    return tuple(one for one in results if one.header.kind in kinds)
+    return tuple(result for result in results if result.header.kind in kinds)
 
 
 def _results(folder: Path) -> Iterator[RunResult]:

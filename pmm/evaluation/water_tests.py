@@ -19,7 +19,7 @@ from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator
 from pmm.campaign.campaign import Campaign
 from pmm.coefficients.reading import read_cycle, read_zero
-from pmm.coefficients.settings import Settings, settings_of
+from pmm.coefficients.settings import CoefficientSettings, settings_of
 from pmm.coefficients.stated_inputs import chain_of, oscillator_of, stated_of
 from pmm.coefficients.tasks import Done, Failed, Task, work_of
 from pmm.coefficients.workflow import request_of
@@ -52,7 +52,7 @@ class InWater:
     @property
     def straight(self) -> tuple[Tow, ...]:
         """The straight tows."""
-        return tuple(one for one in self.tows if one.kind is RunKind.STRAIGHT_TOW)
+        return tuple(tow for tow in self.tows if tow.kind is RunKind.STRAIGHT_TOW)
 
 
 def in_water(campaign: Campaign, folder: Path) -> InWater:
@@ -64,17 +64,17 @@ def in_water(campaign: Campaign, folder: Path) -> InWater:
         If the campaign has such runs and no oscillator, or ``coefficients.toml`` is wrong.
     """
     kinds = (RunKind.RESTORING, RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW)
-    planned = {one.kind for one in campaign.runs} | {one.kind for one in campaign.at_rest}
+    planned = {run.kind for run in campaign.runs} | {one.kind for one in campaign.at_rest}
     if not planned & set(kinds):
         return InWater()
     oscillator = oscillator_of(campaign, folder)
     settings, _ = settings_of(folder, None)
     work = work_of(campaign, folder, oscillator, chain_of(settings), harmonics=_HARMONICS)
-    wanted = [one for one in work.runs if one.kind in kinds]
+    wanted = [run for run in work.runs if run.kind in kinds]
     used = {name for one in wanted for name in one.zero_names}
-    zeros = [read_zero(one) for one in work.zeros if one.name in used]
-    known = {one.name: one.zero for one in zeros if not isinstance(one, Failed) and one.zero}
-    failed = [_named(one) for one in zeros if isinstance(one, Failed)]
+    zeros = [read_zero(zero) for zero in work.zeros if zero.name in used]
+    known = {zero.name: zero.zero for zero in zeros if not isinstance(zero, Failed) and zero.zero}
+    failed = [_named(zero) for zero in zeros if isinstance(zero, Failed)]
     found = _Found(campaign, oscillator, settings, failed)
     for task in wanted:
         found.take(task.with_zeros(known))
@@ -91,7 +91,11 @@ class _Found:
     """Gathers what the runs say; one that cannot be used is told and stops no other."""
 
     def __init__(
-        self, campaign: Campaign, oscillator: Oscillator, settings: Settings, failed: list[Failed]
+        self,
+        campaign: Campaign,
+        oscillator: Oscillator,
+        settings: CoefficientSettings,
+        failed: list[Failed],
     ) -> None:
         self._campaign, self._oscillator, self._failed = campaign, oscillator, failed
         self._settings = settings
@@ -116,7 +120,7 @@ class _Found:
     def derivatives(self) -> CampaignCoefficients | None:
         """Return what the tows tell as one campaign, about the midpoint."""
         cycles = [one.cycle for one in self._towed if one.cycle is not None]
-        if not any(one.drift_rad for one in cycles):
+        if not any(cycle.drift_rad for cycle in cycles):
             return None
         gauges = [one.calibration for one in self._towed if one.calibration is not None]
         stated = stated_of(self._campaign, self._settings, (), gauges, motion_asked=False)

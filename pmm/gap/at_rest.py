@@ -24,15 +24,13 @@ def records_at_rest(
 
     Other records at rest carry a load that is not the simulation's.
 
+    The runs that can be used come first; then by name why the others cannot, and what is not what
+    was written.
+
     Parameters
     ----------
     sensors
         Channels to use; all if empty.
-
-    Returns
-    -------
-    tuple
-        Those that can be used; by name why the others cannot, and what is not what was written.
     """
     found: list[GapRun] = []
     left_out: dict[str, str] = {}

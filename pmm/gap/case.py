@@ -5,7 +5,7 @@ Any campaign may have one: tolerances, runs whose outcome is to be foretold, wha
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 from analysis.gap.propose import Choices
 from analysis.gap.tolerances import Tolerances
@@ -14,7 +14,7 @@ from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.runs import Asked
-from pmm.configuration import Fault, as_error, read_toml, validate
+from pmm.configuration import STRICT_TABLE, Fault, as_error, read_toml, validate
 from sim.effects.effect import FurtherMeasurement
 
 CASE_FILE = "case.toml"
@@ -56,7 +56,7 @@ class Case:
     held_out: tuple[HeldOut, ...] = ()
     rig: RigChoices | None = None
 
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+    __pydantic_config__ = STRICT_TABLE
 
     def choices(self, campaign: Campaign) -> Choices | None:
         """Return what the rig can do next.

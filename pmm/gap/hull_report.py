@@ -13,7 +13,7 @@ from analysis.coefficients.names import place_of
 from analysis.coefficients.normalisation import DIMENSIONAL, Normalisation
 from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import Medium, SetPoint
-from pmm.coefficients.settings import Settings, System
+from pmm.coefficients.settings import CoefficientSettings, System
 from pmm.coefficients.systems import system_of
 from sim.rig import SimulatedRig
 
@@ -75,7 +75,7 @@ class Reported:
 
 
 def reported(
-    settings: Settings, rig: SimulatedRig, set_points: Sequence[SetPoint]
+    settings: CoefficientSettings, rig: SimulatedRig, set_points: Sequence[SetPoint]
 ) -> tuple[Convention, tuple[Reported, ...]]:
     """Return the coefficients that a campaign's runs report, and how they are written.
 
@@ -110,7 +110,7 @@ def reported(
 
 
 def _of_state(
-    settings: Settings, rig: SimulatedRig, state: State, system: Normalisation | None
+    settings: CoefficientSettings, rig: SimulatedRig, state: State, system: Normalisation | None
 ) -> Iterator[Reported]:
     """Yield each coefficient at one speed and frequency."""
     form, plane, (speed, frequency) = settings.form, rig.oscillator.plane, state

@@ -42,10 +42,7 @@ def chosen_of_pendulums(
 ) -> tuple[dict[str, type[Any]], dict[str, type[Any]]]:
     """Return the same of the pendulums' catalogue.
 
-    Raises
-    ------
-    ConfigurationError
-        As :func:`chosen_effects`.
+    It raises what :func:`chosen_effects` raises.
     """
     return _chosen(
         effects, without, Known(pendulum.by_name(), pendulum.find, pendulum.user_effects)

@@ -58,15 +58,12 @@ def problem_of(
 ) -> Problem:
     """Read the records of a file that has been read.
 
+    It raises what :func:`load_problem` raises.
+
     Parameters
     ----------
     more
         Effects of the user's own, by name; the file may have one on.
-
-    Raises
-    ------
-    ConfigurationError, DataError
-        As :func:`load_problem`.
     """
     scaled = bool(case.suspensions)
     known = tuple(

@@ -6,14 +6,11 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, ClassVar
 
 from analysis.gap.pendulum.further import Reach
-from pmm.configuration import Fault, as_error, read_toml, validate
+from pmm.configuration import STRICT_TABLE, Fault, as_error, read_toml, validate
 from sim.pendulum.floating import Floating
 from sim.pendulum.pivot import Pendulum
-
-_KEEP: dict[str, Any] = {"extra": "forbid", "allow_inf_nan": False}
 
 
 @dataclass(frozen=True)
@@ -23,7 +20,7 @@ class Record:
     record: str
     channel: str
 
-    __pydantic_config__: ClassVar = _KEEP
+    __pydantic_config__ = STRICT_TABLE
 
 
 @dataclass(frozen=True)
@@ -35,14 +32,14 @@ class GateTable:
     half_spacing_m: float
     line_m: float
 
-    __pydantic_config__: ClassVar = _KEEP
+    __pydantic_config__ = STRICT_TABLE
 
 
 @dataclass(frozen=True)
 class ReachTable(Reach):
     """What a further suspension may be."""
 
-    __pydantic_config__: ClassVar = _KEEP
+    __pydantic_config__ = STRICT_TABLE
 
 
 @dataclass(frozen=True)
@@ -52,7 +49,7 @@ class EffectTable:
     name: str
     parameters: Mapping[str, float | str] = field(default_factory=dict)
 
-    __pydantic_config__: ClassVar = _KEEP
+    __pydantic_config__ = STRICT_TABLE
 
 
 @dataclass(frozen=True)
@@ -89,7 +86,7 @@ class PendulumCase:
     reach: ReachTable | None = None
     effects: tuple[EffectTable, ...] = ()
 
-    __pydantic_config__: ClassVar = _KEEP
+    __pydantic_config__ = STRICT_TABLE
 
 
 def read_case(path: Path) -> PendulumCase:

@@ -15,8 +15,7 @@ from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
-from pmm.coefficients.settings import Settings as Reporting
-from pmm.coefficients.settings import settings_of
+from pmm.coefficients.settings import CoefficientSettings, settings_of
 from pmm.coefficients.systems import check_dimensions
 from pmm.gap.case import Case, read_case
 from pmm.gap.hold_out import held_out_runs
@@ -59,7 +58,7 @@ class Prepared:
     withheld: tuple[GapRun, ...]
     settings: Settings
     cut_short: Mapping[str, str] = field(default_factory=dict)
-    reporting: Reporting = field(default_factory=Reporting)
+    reporting: CoefficientSettings = field(default_factory=CoefficientSettings)
     damaged: Mapping[str, tuple[Flag, ...]] = field(default_factory=dict)
 
 
@@ -119,7 +118,7 @@ def prepare(
     )
 
 
-def _reporting(folder: Path) -> Reporting:
+def _reporting(folder: Path) -> CoefficientSettings:
     found, _ = settings_of(folder, None)
     check_dimensions(found.system, found.ship)
     return found

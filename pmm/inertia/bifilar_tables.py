@@ -106,14 +106,8 @@ class FrameTable:
 class KnownTable(FrameTable):
     """The frame with a body of known yaw inertia in the model's place; the mass is of both."""
 
-    known_inertia_kg_m2: float = field(default=0.0, kw_only=True)
+    known_inertia_kg_m2: float = field(kw_only=True)
     u_known_inertia_kg_m2: float = field(default=0.0, kw_only=True)
-
-    @staticmethod
-    def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-        """The inertia is needed."""
-        if "known_inertia_kg_m2" not in table:
-            yield "known_inertia_kg_m2", "is missing: the known body's, about the vertical axis"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -27,11 +27,8 @@ def combined_budgets(
 ) -> dict[str, Assessment]:
     """Return the budget, with a Monte Carlo, of each result that an input's doubt reaches.
 
-    Returns
-    -------
-    dict of str to Assessment
-        By the result's name: ``cg_x_m`` ... ``k_yaw_m``. The inputs are called ``part.key``, those
-        of what is taken off ``less part.key``.
+    They go by the result's name: ``cg_x_m`` ... ``k_yaw_m``. The inputs are called ``part.key``,
+    those of what is taken off ``less part.key``.
     """
     tables = [*parts, *without]
     labels = _labels([one.name for one in parts], [f"less {one.name}" for one in without])

@@ -2,12 +2,13 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 from analysis.inertia.inclining_test import incline_from_both_ends, incline_from_one_end
 from analysis.uncertainty.estimate import Estimate
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
+from pmm.configuration import STRICT_TABLE
 from pmm.inertia.outcome import Outcome, TargetTable, assessed, compare
 from pmm.inertia.reading import one_of, read_job
 from pmm.inertia.stated_values import given, without_uncertainty
@@ -71,7 +72,7 @@ class InclineJob:
     targets: tuple[TargetTable, ...] = ()
     monte_carlo_seed: int = 0
 
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+    __pydantic_config__ = STRICT_TABLE
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

@@ -1,9 +1,9 @@
 """What the files of all swung and hung tests have in common."""
 
 from dataclasses import dataclass, field
-from typing import ClassVar
 
 from hardware.description.oscillator import Plane
+from pmm.configuration import STRICT_TABLE
 from pmm.inertia.air import AirTable
 from pmm.inertia.outcome import TargetTable
 from pmm.inertia.properties import ModelTable, PartTable
@@ -35,4 +35,4 @@ class JobTable:
     plane: Plane | None = None
     monte_carlo_seed: int = 0
 
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+    __pydantic_config__ = STRICT_TABLE

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 from analysis.inertia.ballast import BallastTarget, Weight, place_ballast
 from analysis.inertia.parts import BodyPart, combine
@@ -13,6 +13,7 @@ from analysis.uncertainty.estimate import Estimate, exactly
 from analysis.uncertainty.monte_carlo import Assessment
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
+from pmm.configuration import STRICT_TABLE
 from pmm.inertia.combine_budget import combined_budgets
 from pmm.inertia.outcome import Finding, Outcome, PlaneAxes, TargetTable, assessed, compare
 from pmm.inertia.properties import AXES, PartTable
@@ -32,7 +33,7 @@ class CombineJob:
     targets: tuple[TargetTable, ...] = ()
     plane: Plane | None = None
 
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+    __pydantic_config__ = STRICT_TABLE
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -98,7 +99,7 @@ class BallastJob:
     plane: Plane | None = None
     seed: int = 0
 
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+    __pydantic_config__ = STRICT_TABLE
 
 
 def run_combine(path: str) -> Outcome:

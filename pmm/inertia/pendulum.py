@@ -1,16 +1,18 @@
 """``pmm inertia pendulum``: a body swinging about one axis or two, or on a torsion rod."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+import numpy as np
+
 from analysis.inertia.compound_pendulum import compound_pendulum, lamboley
 from analysis.inertia.elementary_functions import Value, sqrt
+from analysis.inertia.record import RecordAnalysis
 from analysis.uncertainty.estimate import Estimate
 from analysis.uncertainty.monte_carlo import Assessment, assess
 from hardware.description.oscillator import Plane
 from pmm.inertia.air import air_rules, without_air
-from pmm.inertia.free_decay import decay_findings
 from pmm.inertia.job_table import JobTable
 from pmm.inertia.outcome import (
     Finding,
@@ -198,3 +200,31 @@ def _inertia(mass_kg: Value, gyradius_m: Value) -> Value:
 
 def _gyradius(inertia_kg_m2: Value, mass_kg: Value) -> Value:
     return sqrt(inertia_kg_m2 / mass_kg)
+
+
+def decay_findings(runs: PeriodRuns) -> list[Finding]:
+    """Return the period at no amplitude, and with records the damped one and the damping ratio.
+
+    The damped period is that of the whole record at its amplitudes; releases differ in it as they
+    do in the other.
+    """
+    period = runs.period
+    found = [Finding("period_s", "period at no amplitude, undamped", period)]
+    if runs.records:
+        damped = float(np.mean([one.fit.modes[0].period_s for one in runs.records]))
+        own = period.following(damped, 1.0)
+        found.append(Finding("damped_period_s", "damped period of the whole record", own))
+        found.append(Finding("damping_ratio", "damping ratio", _damping(runs.records)))
+    return found
+
+
+def _damping(records: Sequence[RecordAnalysis]) -> Estimate:
+    """Return the mean over the records; one alone has the scatter along it, undivided."""
+    ratios = np.array([one.fit.modes[0].damping_ratio for one in records])
+    if ratios.size > 1:
+        spread = float(ratios.std(ddof=1)) / np.sqrt(ratios.size)
+        return Estimate.of(float(ratios.mean()), float(spread), "1", float(ratios.size - 1))
+    local, mode = records[0].modes[0].local, records[0].fit.modes[0]
+    rates = -np.diff(np.log(local.amplitude)) / np.diff(local.time_s)
+    along = rates * mode.period_s / (2.0 * np.pi)
+    return Estimate.of(float(ratios[0]), float(along.std(ddof=1)), "1", float(along.size - 1))

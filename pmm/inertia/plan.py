@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from analysis.uncertainty.budget import derived
 from analysis.uncertainty.estimate import Estimate, exactly
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag
+from pmm.configuration import STRICT_TABLE
 from pmm.inertia.outcome import Finding, Outcome, TargetTable, compare, once
 from pmm.inertia.reading import read_job
 from pmm.inertia.stated_values import flags_of, given, gravity_of
@@ -69,7 +70,7 @@ class PlanJob:
     swing: PlannedSwing | None = None
     targets: tuple[TargetTable, ...] = ()
 
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+    __pydantic_config__ = STRICT_TABLE
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

@@ -7,52 +7,10 @@ from pathlib import Path
 from typing import Any, Generic, TypeVar, get_args, get_type_hints
 
 from analysis.readers import ColumnMap
-from analysis.readers.columns_toml import parse_column_map
-from hardware.description.errors import ConfigurationError
-from hardware.description.toml import is_number
+from pmm.campaign.column_table import take_columns
 from pmm.configuration import Fault, Place, as_error, limit_faults, read_toml, validate
 
 Table = TypeVar("Table")
-
-# What a number of that name must be, in whichever table it stands; beside those of all files.
-_ABOVE_0 = (
-    "apart_m",
-    "beats",
-    "body_density_kg_m3",
-    "coefficient",
-    "depth_m",
-    "diameter_m",
-    "duration_s",
-    "gravity_m_s2",
-    "known_inertia_kg_m2",
-    "known_scatter_degrees_of_freedom",
-    "known_scatter_s",
-    "length_m",
-    "lever_m",
-    "line_m",
-    "moment_kg_m",
-    "moment_relative",
-    "oscillations",
-    "period_degrees_of_freedom",
-    "period_s",
-    "period_scatter_relative",
-    "pivot_distance_m",
-    "reaction_s",
-    "square_half_side_m",
-    "stiffness_n_m_rad",
-    "tolerance",
-    "tolerance_kg",
-    "tolerance_m",
-    "weight_kg",
-)
-_NOT_BELOW_0 = (
-    "air_density_kg_m3",
-    "counting_error",
-    "k_pitch_m",
-    "k_roll_m",
-    "k_yaw_m",
-    "sway_coefficient",
-)
 
 
 @dataclass(frozen=True)
@@ -88,51 +46,15 @@ def read_job(path: str | Path, kind: type[Table]) -> Job[Table]:
     """
     path = Path(path)
     original = read_toml(path)
-    table, faults = deepcopy(original), list(_limits(original))
-    columns = _take_columns(table, path, faults)
+    table: dict[str, Any] = deepcopy(original)
+    faults: list[Fault] = []
+    columns = take_columns(table, path, faults)
+    faults += limit_faults(table)
     found = validate(kind, table, faults)
     faults += rule_faults(kind, table)
     if found is None or faults:
         raise as_error(path, faults, original)
     return Job(path, found, columns)
-
-
-def _take_columns(table: dict[str, Any], path: Path, faults: list[Fault]) -> ColumnMap | None:
-    columns = table.pop("columns", None)
-    if columns is None:
-        return None
-    origin = f"{path.name} [columns]"
-    if not isinstance(columns, dict):
-        faults.append(Fault(("columns",), "should be a table"))
-        return None
-    try:
-        return parse_column_map(columns, origin)
-    except ConfigurationError as error:
-        faults.append(Fault((), f"[columns] {str(error).removeprefix(f'{origin}: ')}"))
-        return None
-
-
-def _limits(original: dict[str, Any]) -> Iterator[Fault]:
-    table = {key: value for key, value in original.items() if key != "columns"}
-    yield from limit_faults(table)
-    yield from _own_limits(table)
-
-
-def _own_limits(table: Any, place: Place = ()) -> Iterator[Fault]:
-    parts = table.items() if isinstance(table, dict) else enumerate(table)
-    for key, value in parts:
-        here: Place = (*place, key)
-        if isinstance(value, dict | list):
-            yield from _own_limits(value, here)
-        elif is_number(value):
-            if key in _ABOVE_0 and value <= 0:
-                yield Fault(here, f"= {value:g} should be above 0")
-            elif _never_below_0(key) and value < 0:
-                yield Fault(here, f"= {value:g} should be 0 or more")
-
-
-def _never_below_0(key: object) -> bool:
-    return isinstance(key, str) and (key in _NOT_BELOW_0 or key.startswith("u_"))
 
 
 def rule_faults(kind: Any, table: Mapping[str, Any], place: Place = ()) -> Iterator[Fault]:

@@ -69,30 +69,16 @@ class StateTable:
 class CheckTable(StateTable):
     """The swing with a body of known inertia about the pivot in the model's place."""
 
-    known_inertia_kg_m2: float = field(default=0.0, kw_only=True)
+    known_inertia_kg_m2: float = field(kw_only=True)
     u_known_inertia_kg_m2: float = field(default=0.0, kw_only=True)
-
-    @staticmethod
-    def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-        """As for every state; the inertia is needed."""
-        yield from StateTable.rules(table)
-        if "known_inertia_kg_m2" not in table:
-            yield "known_inertia_kg_m2", "is missing: the known body's, about the pivot"
 
 
 @dataclass(frozen=True)
 class SecondPivotTable(StateTable):
     """The empty swing hung from its upper pivot."""
 
-    pivot_distance_m: float = field(default=0.0, kw_only=True)
+    pivot_distance_m: float = field(kw_only=True)
     u_pivot_distance_m: float = field(default=0.0, kw_only=True)
-
-    @staticmethod
-    def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-        """As for every state; the distance is needed."""
-        yield from StateTable.rules(table)
-        if "pivot_distance_m" not in table:
-            yield "pivot_distance_m", "is missing: of the pivots"
 
 
 @dataclass(frozen=True)

@@ -60,11 +60,6 @@ def write_campaign(folder: Path, plan: Plan, rig: RigFile, done: Sequence[Finish
     """Write the campaign file of the runs made so far, in their order; the old one is replaced.
 
     The file is whole at every moment: it is written beside and moved into place.
-
-    Returns
-    -------
-    Path
-        The file.
     """
     target = folder / _NAME
     write_whole(target, "\n".join(_tables(folder, plan, rig, done)))
@@ -82,7 +77,7 @@ def _tables(folder: Path, plan: Plan, rig: RigFile, done: Sequence[FinishedRun])
         yield toml_table("model", body)
     if rig.hull is not None:
         yield toml_table("hull", asdict(rig.hull))
-    offset = {key: one for key, one in asdict(rig.photocell_offset).items() if one}
+    offset = {key: one for key, one in asdict(rig.reference).items() if one}
     if offset:
         yield toml_table("reference", offset)
     yield from _handed_on(folder, rig, done)

@@ -69,8 +69,8 @@ def _expired(rig: RigFile, today: date | None) -> Iterator[PlanFinding]:
 
 def _not_checked(plan: Plan, rig: RigFile) -> Iterator[PlanFinding]:
     """Yield what the rig's file does not say, and which checks are missing for it."""
-    model, towed = rig.model, any(one.set_point.carriage_speed_m_s for one in plan.runs)
-    turning = any(one.oscillates for one in plan.runs)
+    model, towed = rig.model, any(run.set_point.carriage_speed_m_s for run in plan.runs)
+    turning = any(run.oscillates for run in plan.runs)
     for absent, table, what in (
         (turning and model is None, "[model]", "forces are"),
         (model is not None and rig.hull is None, "[hull]", "the water's part of the force is"),

@@ -12,14 +12,11 @@ _LIMITS: Final = (0.635, 0.378, 0.280, 0.245)
 def echo_limit(breadth_over_length: float) -> float:
     """Return w U / g above which the walls' echoes miss the model.
 
+    It is NaN outside the table, 0.5 to 4.
+
     Parameters
     ----------
     breadth_over_length
         Of the tank and the model; between the table's ratios the limit is interpolated.
-
-    Returns
-    -------
-    float
-        NaN outside the table, 0.5 to 4.
     """
     return float(np.interp(breadth_over_length, _BREADTHS, _LIMITS, np.nan, np.nan))

@@ -65,10 +65,7 @@ class ForceEstimate:
 def force_estimate(run: RunPlan, rig: RigFile) -> ForceEstimate | None:
     """Return the estimate for a run that oscillates.
 
-    Returns
-    -------
-    ForceEstimate or None
-        ``None`` where the rig's file describes no model.
+    It is ``None`` where the rig's file describes no model.
     """
     if rig.model is None:
         return None
@@ -90,10 +87,7 @@ def force_estimate(run: RunPlan, rig: RigFile) -> ForceEstimate | None:
 def force_peak_n(run: RunPlan, rig: RigFile) -> float | None:
     """Return an estimate of the largest force of a strut, in newtons.
 
-    Returns
-    -------
-    float or None
-        ``None`` where the rig's file describes no model.
+    It is ``None`` where the rig's file describes no model.
     """
     found = force_estimate(run, rig)
     if found is None:
@@ -117,8 +111,8 @@ def expected_readings(run: RunPlan, rig: RigFile) -> dict[str, Expected]:
     own = READING_UNCERTAINTY * np.abs(readings)
     spread = np.sqrt((np.abs(parts) ** 2).sum(axis=0) + own**2)
     return {
-        name: Expected(float(abs(one)), float(u))
-        for name, one, u in zip(FORCES, readings, spread, strict=True)
+        name: Expected(float(abs(reading)), float(u))
+        for name, reading, u in zip(FORCES, readings, spread, strict=True)
     }
 
 

@@ -98,7 +98,7 @@ def _near_full_scale(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
     force = force_peak_n(run, rig) if run.oscillates else None
     if force is None or not rig.gauges:
         return
-    least, (share,) = min(one.full_scale_n for one in rig.gauges), table.GAUGE_FORCE.numbers
+    least, (share,) = min(gauge.full_scale_n for gauge in rig.gauges), table.GAUGE_FORCE.numbers
     if share * least < force <= least:
         text = (
             f"an estimated force of {force:.4g} N is above {share:.0%} of the gauges' "
@@ -114,8 +114,8 @@ def bus_finding(rig: RigFile) -> Iterator[PlanFinding]:
     if bus is None:
         return
     plans = [plan for part in rig.hardware.parts() for plan in part.nodes()]
-    layouts = [one for plan in plans for pdos in plan.layouts() for one in pdos]
-    load = load_of(bus, Counter(one.size for one in layouts), len(plans))
+    layouts = [pdo for plan in plans for pdos in plan.layouts() for pdo in pdos]
+    load = load_of(bus, Counter(layout.size for layout in layouts), len(plans))
     (largest,) = table.BUS.numbers
     verdict = PlanVerdict.NOTE if load <= largest else PlanVerdict.REFUSE
     text = (

@@ -25,13 +25,13 @@ def runs_of(
         combine = snake if turns else all_of
         return expand(entry, tables.defaults, oscillator, channels, combine)
 
-    runs = in_order([made(one) for one in tables.runs], tables.order)
+    runs = in_order([made(run) for run in tables.runs], tables.order)
     if tables.control is not None:
         control = made(tables.control.entry())[0]
         runs = with_control(runs, control, tables.control.every)
     if tables.zero is not None:
         runs = with_zeros(runs, tables.zero)
-    return tuple(with_prompts(one) for one in runs)
+    return tuple(with_prompts(run) for run in runs)
 
 
 def in_order(entries: Sequence[Sequence[RunPlan]], order: OrderTable) -> list[RunPlan]:
@@ -54,7 +54,7 @@ def in_order(entries: Sequence[Sequence[RunPlan]], order: OrderTable) -> list[Ru
 
 def with_control(runs: Sequence[RunPlan], control: RunPlan, every: int) -> list[RunPlan]:
     """Repeat the control condition before, after every so many, and after the last oscillation."""
-    total = sum(one.kind is RunKind.OSCILLATION for one in runs)
+    total = sum(run.kind is RunKind.OSCILLATION for run in runs)
     result: list[RunPlan] = []
     done = repeats = 0
 
@@ -63,13 +63,13 @@ def with_control(runs: Sequence[RunPlan], control: RunPlan, every: int) -> list[
         repeats += 1
         result.append(replace(control, name=f"{control.name}-{repeats:02d}", repeat=repeats))
 
-    for one in runs:
-        if one.kind is not RunKind.OSCILLATION:
-            result.append(one)
+    for run in runs:
+        if run.kind is not RunKind.OSCILLATION:
+            result.append(run)
             continue
         if done == 0:
             repeat()
-        result.append(one)
+        result.append(run)
         done += 1
         if done % every == 0 or done == total:
             repeat()

@@ -117,10 +117,10 @@ def _faults(table: dict[str, Any], found: RigFileReading) -> Iterator[Fault]:
     if not runs:
         yield Fault((), "the plan has no runs; add a table [[runs]] for each motion")
     defaults = _part(Defaults, table, "defaults") or Defaults()
-    for number, one in enumerate(runs if isinstance(runs, list) else []):
-        entry = validate(PlanEntry, one, []) if isinstance(one, dict) else None
+    for number, run in enumerate(runs if isinstance(runs, list) else []):
+        entry = validate(PlanEntry, run, []) if isinstance(run, dict) else None
         if entry is not None:
-            yield from _entry_faults(one, entry, defaults, found, ("runs", number))
+            yield from _entry_faults(run, entry, defaults, found, ("runs", number))
     yield from _table_faults(table, found)
 
 
@@ -154,14 +154,14 @@ def _part(kind: type[T], table: dict[str, Any], key: str) -> T | None:
 
 def _size_faults(tables: PlanTables, channels: Sequence[str]) -> Iterator[Fault]:
     """Yield that there are too many runs, before there are."""
-    count = sum(run_count(one, tables.defaults, channels) for one in tables.runs)
+    count = sum(run_count(run, tables.defaults, channels) for run in tables.runs)
     if count > MOST_RUNS:
         message = f"asks for {count} runs; the limit is {MOST_RUNS}: make several plans of it"
         yield Fault(("runs",), message)
 
 
 def _name_faults(runs: tuple[RunPlan, ...]) -> Iterator[Fault]:
-    counts = Counter(one.name.casefold() for one in runs)
+    counts = Counter(run.name.casefold() for run in runs)
     for name, count in counts.items():
         if count > 1:
             yield Fault(

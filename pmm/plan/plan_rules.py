@@ -90,9 +90,6 @@ def _number_faults(entry: PlanEntry, place: Place) -> Iterator[Fault]:
                 if key == "loads_n":
                     asked += "; the sign of a load is that of its channel"
                 yield Fault((*place, key), f"has {value:g}, which should be {asked}")
-    if entry.known_mass is not None and entry.known_mass.mass_kg <= 0.0:
-        mass = entry.known_mass.mass_kg
-        yield Fault((*place, "known_mass", "mass_kg"), f"= {mass:g} should be above 0")
     if entry.kind is RunKind.PUSH and len(entry.loads_n) > 1:
         yield Fault((*place, "loads_n"), "should be one number: about how hard the push is")
     if entry.kind in (RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW) and 0.0 in entry.speeds_m_s:
@@ -109,10 +106,6 @@ def gate_faults(one: PlanEntry | Defaults, place: Place) -> Iterator[Fault]:
 
 def control_faults(control: ControlTable, place: Place) -> Iterator[Fault]:
     """Yield what is wrong with the control condition."""
-    if control.amplitude_m <= 0.0:
-        yield Fault((*place, "amplitude_m"), f"= {control.amplitude_m:g} should be above 0")
-    if control.speed_m_s < 0.0:
-        yield Fault((*place, "speed_m_s"), f"= {control.speed_m_s:g} should be 0 or more")
     for fault in _motion_faults(control.entry(), place):
         message = fault.message
         for many, single in _SINGLE.items():

@@ -2,11 +2,12 @@
 
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import ClassVar, TypeVar
+from typing import TypeVar
 
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.known_loads import KnownMass
 from hardware.description.setpoint import Medium
+from pmm.configuration import STRICT_TABLE
 
 T = TypeVar("T")
 
@@ -167,8 +168,7 @@ class PlanTables:
     control: ControlTable | None = None
     runs: tuple[PlanEntry, ...] = ()
 
-    # Holds for the classes of all tables: unknown keys, NaN and infinity are refused.
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+    __pydantic_config__ = STRICT_TABLE
 
 
 def first_of(value: T | None, default: T) -> T:

@@ -11,25 +11,10 @@ from pmm.plan.rig_tables import HANDED_ON, Gauge, RigTables
 
 SIMULATED: Final = "pmm-simulated"  # the simulated rig's name among the buses
 _OWN: Final = tuple(RigTables.__dataclass_fields__)
-_ABOVE_0: Final = (
-    "beam_m",
-    "carriage_acceleration_m_s2",
-    "depth_m",
-    "draught_m",
-    "flush_s",
-    "highest_speed_m_s",
-    "length_m",
-    "safe_load_n",
-    "stroke_m",
-    "velocity_m_s",
-    "acceleration_m_s2",
-    "width_m",
-)
 
 
 def table_faults(table: dict[str, Any]) -> Iterator[Fault]:
     """Yield what is wrong with the tables beside the devices; unknown ones are taken out."""
-    yield from _more_limits(table)
     yield from _unknown_tables(table)
     yield from _handed_on_faults(table)
 
@@ -68,17 +53,6 @@ def _analysis_faults(table: dict[str, Any]) -> Iterator[Fault]:
     inner: list[Fault] = []
     validate(ResolverSettings, table, inner)
     yield from (Fault(("analysis", *one.place), one.message) for one in inner)
-
-
-def _more_limits(table: Any, place: tuple[str | int, ...] = ()) -> Iterator[Fault]:
-    parts = table.items() if isinstance(table, dict) else enumerate(table)
-    for key, value in parts:
-        if key == "campaign" and not place:
-            continue
-        if isinstance(value, dict | list):
-            yield from _more_limits(value, (*place, key))
-        elif key in _ABOVE_0 and isinstance(value, int | float) and value <= 0:
-            yield Fault((*place, key), f"= {value:g} should be above 0")
 
 
 def point_at_simulation(devices: dict[str, Any], path: Path) -> None:

@@ -3,18 +3,17 @@
 import hashlib
 from collections.abc import Mapping
 from copy import deepcopy
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from hardware.description.body import Ship
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
 from hardware.rig_configuration import TABLES, RigConfiguration, read_rig
 from hardware.watch import WatchLimits
 from pmm.campaign.calibration import Calibration, read_calibration
-from pmm.campaign.oscillator_table import expand_preset
+from pmm.campaign.model_uncertainty import expand_preset
 from pmm.configuration import (
     Fault,
     as_error,
@@ -32,21 +31,15 @@ from pmm.plan.rig_checks import (
     table_faults,
 )
 from pmm.plan.rig_tables import (
-    Gauge,
-    HullEstimate,
-    Limits,
     ModesFile,
-    PhotocellOffset,
-    RecorderSettings,
     RigTables,
     StructuralMode,
-    TankTable,
 )
 
 
-@dataclass(frozen=True)
-class RigFile:
-    """A rig's file, read and checked.
+@dataclass(frozen=True, kw_only=True)
+class RigFile(RigTables):
+    """A rig's file, read and checked: its tables, and what goes with them.
 
     Attributes
     ----------
@@ -54,12 +47,10 @@ class RigFile:
         The devices, as :class:`hardware.rig.Rig` opens them.
     hardware_tables
         The tables that they were read from, paths of simulated rigs resolved.
-    model, hull
-        For the estimate of forces; ``None`` where the file does not say.
     gauges
         Ranges of the force channels: the file's, else those of the amplifiers.
     modes
-        Structural modes from a pluck test.
+        Structural modes from a pluck test, those of its file among them.
     calibration
         Of the gauges, from check weights; kept with every recording and applied in the analysis.
     tables, content
@@ -67,27 +58,14 @@ class RigFile:
         read from a file.
     realtime
         Whether cycles keep to the clock; a simulated rig runs free unless it is asked for.
-    campaign
-        Tables that are handed on to ``campaign.toml``.
     """
 
     path: Path
     sha256: str
-    oscillator: Oscillator
     hardware: RigConfiguration
     hardware_tables: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
-    name: str = "rig"
-    model: Ship | None = None
-    hull: HullEstimate | None = None
-    tank: TankTable | None = None
-    limits: Limits = field(default_factory=Limits)
-    gauges: tuple[Gauge, ...] = ()
-    modes: tuple[StructuralMode, ...] = ()
-    calibration: Calibration | None = None
-    photocell_offset: PhotocellOffset = field(default_factory=PhotocellOffset)
-    recorder: RecorderSettings = field(default_factory=RecorderSettings)
     realtime: bool = True
-    campaign: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    calibration: Calibration | None = None
     tables: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
     content: bytes = b""
 
@@ -100,7 +78,7 @@ class RigFile:
     @property
     def watched(self) -> WatchLimits:
         """What the rig watches in every cycle: highest frequency, safe loads."""
-        loads = {one.channel: one.safe_n for one in self.gauges}
+        loads = {gauge.channel: gauge.safe_n for gauge in self.gauges}
         return WatchLimits(self.oscillator.frequency_hz.high, MappingProxyType(loads))
 
     @property
@@ -167,11 +145,25 @@ def examine_rig(path: Path) -> RigFileReading:
     channels = None if hardware is None else channels_of(hardware)
     if faults or own is None or hardware is None:
         return RigFileReading(None, oscillator, channels, as_error(path, faults, original))
-    rig = _built(path, content, replace(own, modes=own.modes + modes), hardware, devices)
+    free = is_simulated(hardware)
     # As written: a table that is read again elsewhere is handed on untouched.
     kept = MappingProxyType(dict(original.get("campaign", {})))
-    tables = MappingProxyType(original)
-    rig = replace(rig, campaign=kept, calibration=calibration, tables=tables)
+    more = {
+        "gauges": own.gauges or gauges_of(hardware),
+        "modes": own.modes + modes,
+        "realtime": not free if own.realtime is None else own.realtime,
+        "campaign": kept,
+    }
+    rig = RigFile(
+        path=path,
+        sha256=hashlib.sha256(content).hexdigest(),
+        hardware=hardware,
+        hardware_tables=MappingProxyType(devices),
+        calibration=calibration,
+        tables=MappingProxyType(original),
+        content=content,
+        **(vars(own) | more),
+    )
     return RigFileReading(rig, oscillator, channels)
 
 
@@ -220,33 +212,6 @@ def _calibration(
         if name not in known
     ]
     return found
-
-
-def _built(
-    path: Path,
-    content: bytes,
-    own: RigTables,
-    hardware: RigConfiguration,
-    devices: Mapping[str, Any],
-) -> RigFile:
-    return RigFile(
-        path=path,
-        sha256=hashlib.sha256(content).hexdigest(),
-        content=content,
-        oscillator=own.oscillator,
-        hardware=hardware,
-        hardware_tables=MappingProxyType(dict(devices)),
-        name=own.name,
-        model=own.model,
-        hull=own.hull,
-        tank=own.tank,
-        limits=own.limits,
-        gauges=own.gauges or gauges_of(hardware),
-        modes=own.modes,
-        photocell_offset=own.reference,
-        recorder=own.recorder,
-        realtime=not is_simulated(hardware) if own.realtime is None else own.realtime,
-    )
 
 
 def is_simulated(hardware: RigConfiguration) -> bool:

@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import Any
 
 from hardware.description.body import Ship
 from hardware.description.oscillator import Oscillator
 from hardware.description.units import STANDARD_GRAVITY_M_S2
+from pmm.configuration import STRICT_TABLE
 
 Matrix = tuple[tuple[float, float], tuple[float, float]]
 _NONE: Matrix = ((0.0, 0.0), (0.0, 0.0))
@@ -153,8 +154,7 @@ class RigTables:
     recorder: RecorderSettings = field(default_factory=RecorderSettings)
     campaign: Mapping[str, Any] = field(default_factory=dict)
 
-    # Holds for the classes of all tables: unknown keys, NaN and infinity are refused.
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+    __pydantic_config__ = STRICT_TABLE
 
 
 @dataclass(frozen=True)
@@ -163,7 +163,7 @@ class ModesFile:
 
     modes: tuple[StructuralMode, ...] = ()
 
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+    __pydantic_config__ = STRICT_TABLE
 
 
 # What `[campaign]` may hold: tables of campaign.toml that say nothing about the test itself.

@@ -3,13 +3,12 @@
 import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import ClassVar
 
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.known_loads import KnownMass, LoadStep
 from hardware.description.setpoint import SetPoint
-from pmm.configuration import Fault, as_error, validate
+from pmm.configuration import STRICT_TABLE, Fault, as_error, validate
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +68,7 @@ class RunPlan:
     zero_after: str = ""
     entry: str = ""
 
-    __pydantic_config__: ClassVar = {"extra": "forbid"}
+    __pydantic_config__ = STRICT_TABLE
 
     @property
     def oscillates(self) -> bool:

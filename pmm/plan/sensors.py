@@ -23,9 +23,9 @@ _FRACTIONS: Final = frozenset("fd")  # struct codes of what is no count
 def dynamometers_table(rig: RigFile) -> dict[str, Any]:
     """Return ``[dynamometers]``: the gauges' full scales, and what the rig's file hands on."""
     ranges = {
-        GAUGES[one.channel]: {"full_scale_n": one.full_scale_n}
-        for one in rig.gauges
-        if one.channel in GAUGES
+        GAUGES[gauge.channel]: {"full_scale_n": gauge.full_scale_n}
+        for gauge in rig.gauges
+        if gauge.channel in GAUGES
     }
     return merged(ranges, rig.campaign.get("dynamometers", {}))
 
@@ -43,7 +43,7 @@ def acquisition_table(
     recorded
         The channels of the recordings.
     noise_rms
-        Of each record at rest, by channel (:func:`pmm.recorder.noise.white_noise_rms`).
+        Of each record at rest, by channel (:func:`pmm.recorder.recording.white_noise_rms`).
     """
     channels = {one.name: one for one in recorded}
     steps = resolutions(rig.hardware)
@@ -81,10 +81,10 @@ def _counting(part: RigPart) -> Iterator[Any]:
 
 def _whole_numbers(part: RigPart) -> Iterator[Entry]:
     for plan in part.nodes():
-        for one in plan.layouts()[0]:
-            codes = one.code.format.lstrip("<")
+        for layout in plan.layouts()[0]:
+            codes = layout.code.format.lstrip("<")
             yield from (
-                at for at, code in zip(one.entries, codes, strict=True) if code not in _FRACTIONS
+                at for at, code in zip(layout.entries, codes, strict=True) if code not in _FRACTIONS
             )
 
 

@@ -116,7 +116,7 @@ def _batch(data: mmap.mmap, buffer: Any, at: int, schema: Any, *, tagged: bool) 
         source = pa.BufferReader(buffer.slice(at))
         batch = pa.ipc.read_record_batch(pa.ipc.read_message(source), schema)
         batch.validate()
-        columns = [one.to_numpy() for one in batch.columns]
+        columns = [column.to_numpy() for column in batch.columns]
     except (pa.ArrowException, OSError, EOFError, ValueError):
         return None
     sync = columns[0]

@@ -4,7 +4,7 @@ import shutil
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import ClassVar, Final
+from typing import Final
 
 from hardware.errors import HardwareError, Reaction
 
@@ -16,7 +16,7 @@ _MEGA: Final = 1e6
 class DiskFullError(HardwareError):
     """No room for the recording: before a run, or while it is being written."""
 
-    reaction: ClassVar[Reaction] = Reaction.PROFILE_STOP
+    reaction = Reaction.PROFILE_STOP
 
     def __init__(self, message: str) -> None:
         super().__init__("recorder", message)

@@ -6,15 +6,8 @@ from typing import Any, Final
 
 from hardware.description.errors import DataError
 from hardware.description.flags import DAMAGED, Flag, Severity
-from pmm.recorder.files import (
-    HEADER,
-    MARKER,
-    RECORDING,
-    SAMPLES,
-    TEXTS,
-    contents_of,
-)
-from pmm.recorder.marker import read_marker, read_recovered
+from pmm.recorder.files import HEADER, MARKER, RECORDING, SAMPLES, TEXTS, contents_of
+from pmm.recorder.line_shapes import read_marker, read_recovered
 from pmm.recorder.recording import RunData, marker_is_whole
 
 _OTHER: Final = "its bytes are not those that were written"

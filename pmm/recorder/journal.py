@@ -91,7 +91,7 @@ class Journal:
     @property
     def size(self) -> int:
         """Bytes that are written."""
-        return sum(one.size for one in tuple(self._streams.values()))
+        return sum(stream.size for stream in tuple(self._streams.values()))
 
     @property
     def behind(self) -> int:
@@ -134,9 +134,9 @@ class Journal:
     def contents(self) -> dict[str, dict[str, int | str]]:
         """Return size and hash of each file that is not empty."""
         return {
-            name: {"bytes": one.size, "sha256": one.hash.hexdigest()}
-            for name, one in self._streams.items()
-            if one.size
+            name: {"bytes": stream.size, "sha256": stream.hash.hexdigest()}
+            for name, stream in self._streams.items()
+            if stream.size
         }
 
     def close(self) -> None:
@@ -166,8 +166,8 @@ class Journal:
             then()
 
     def _release(self) -> None:
-        for one in self._streams.values():
-            os.close(one.handle)
+        for stream in self._streams.values():
+            os.close(stream.handle)
         self._streams = {}
 
     def _named(self, error: Exception) -> DiskFullError | DataError:

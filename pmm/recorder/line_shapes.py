@@ -1,10 +1,13 @@
-"""What a line of each journal of text holds: JSON of another shape is damage, not data."""
+"""What a line of each journal of text and a marker hold: JSON of another shape is damage."""
 
+import json
 import math
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any, Final
 
-from pmm.recorder.files import CYCLES, EVENTS, HARMONICS, LINES, PULSES
+from hardware.description.flags import Flag
+from pmm.recorder.files import CYCLES, EVENTS, HARMONICS, LINES, MARKER, PULSES, RECOVERED
 
 Shape = Callable[[Any], bool]
 
@@ -112,3 +115,59 @@ _SHAPES: Final[Mapping[str, Shape]] = {
     LINES: _row(_whole, _text, _bytes),
     CYCLES: _row(_whole, _finite, _finite, _finite, _whole),
 }
+
+
+def as_line(value: Any) -> bytes:
+    """Return a value as a line."""
+    return json.dumps(value, separators=(",", ":")).encode() + b"\n"
+
+
+def read_lines(path: Path) -> tuple[list[Any], int]:
+    """Return the whole values of a journal, and how many bytes behind them are not whole.
+
+    A journal that is not there is an empty one.
+    """
+    if not path.exists():
+        return [], 0
+    data = path.read_bytes()
+    values: list[Any] = []
+    at = 0
+    while (end := data.find(b"\n", at)) >= 0:
+        try:
+            value = json.loads(data[at:end])
+        except (ValueError, RecursionError):
+            break
+        if not is_line_of(path.name, value):
+            break
+        values.append(value)
+        at = end + 1
+    return values, len(data) - at
+
+
+def read_marker(folder: Path) -> dict[str, Any] | None:
+    """Return what a run's marker says; ``None`` where there is none, or it cannot be one."""
+    found = _read(folder / MARKER)
+    return found if found is not None and is_marker(found) and _are_flags(found["flags"]) else None
+
+
+def read_recovered(folder: Path) -> dict[str, Any]:
+    """Return what an earlier recovery wrote; nothing where there was none, or it is damaged."""
+    found = _read(folder / RECOVERED)
+    whole = found is not None and is_recovered(found) and _are_flags(found["flags"])
+    return found if found is not None and whole else {}
+
+
+def _read(path: Path) -> dict[str, Any] | None:
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return None
+    return found if isinstance(found, dict) else None
+
+
+def _are_flags(told: list[Mapping[str, Any]]) -> bool:
+    try:
+        tuple(map(Flag.read, told))
+    except (ValueError, TypeError, KeyError):
+        return False
+    return True

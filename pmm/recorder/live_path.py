@@ -100,23 +100,25 @@ class LivePath:
         self.next = rig.number + 1
         self._sources: list[_Source] = []
         row = 0
-        for one in sampled_devices(rig):
-            self._sources.append(_Source(one, slice(row, row + len(one.channels)), rig.number))
-            row += len(one.channels)
-            one.take()
+        for sampled_device in sampled_devices(rig):
+            self._sources.append(
+                _Source(sampled_device, slice(row, row + len(sampled_device.channels)), rig.number)
+            )
+            row += len(sampled_device.channels)
+            sampled_device.take()
         self._pulses()
 
     def step(self) -> Taken:
         """Take what the rig's cycle brought; call it once after each."""
         number = self._rig.number
-        for one in self._sources:
-            one.listen(number)
-        complete = min((one.last for one in self._sources), default=number)
+        for source in self._sources:
+            source.listen(number)
+        complete = min((source.last for source in self._sources), default=number)
         stop = max(number - PATIENCE_CYCLES, min(complete, number))
         first, self.next = self.next, max(stop + 1, self.next)
         values = np.full((len(self.channels), self.next - first), math.nan)
-        for one in self._sources:
-            one.write(first, values)
+        for source in self._sources:
+            source.write(first, values)
         return Taken(first, values, self._pulses())
 
     def _pulses(self) -> tuple[Pulse, ...]:
@@ -171,7 +173,7 @@ def sampled_devices(rig: Rig) -> tuple[Sampled, ...]:
 
 def header_channels(rig: Rig) -> tuple[Channel, ...]:
     """Return the recorded channels in the order of their samples' rows."""
-    return tuple(c for one in sampled_devices(rig) for c in one.channels)
+    return tuple(c for sampled_device in sampled_devices(rig) for c in sampled_device.channels)
 
 
 def as_record(reading: Harmonics) -> dict[str, Any]:

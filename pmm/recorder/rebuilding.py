@@ -13,10 +13,10 @@ from hardware.description.flags import Flag, Severity
 from pmm.recorder.decoding import decode
 from pmm.recorder.disk import DiskFullError, free_bytes
 from pmm.recorder.files import BUS, LINES, PULSES, SAMPLES, set_aside
+from pmm.recorder.line_shapes import as_line
 from pmm.recorder.live_path import Taken, joined
 from pmm.recorder.recording import RunData, marker_is_whole
 from pmm.recorder.samples import SampleWriter
-from pmm.recorder.texts import as_line
 from pmm.whole_file import write_whole
 
 
@@ -28,10 +28,7 @@ def rebuild(
     The samples are decoded by the same code as in the run, so they are the same bit by bit; those
     that are whole stay. The bytes of a damaged ``samples.arrows`` are kept under another name.
 
-    Returns
-    -------
-    tuple
-        What was done, and the names of the files that were made.
+    It returns what was done, and the names of the files that were made.
 
     Raises
     ------

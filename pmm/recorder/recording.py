@@ -32,10 +32,8 @@ from pmm.recorder.files import (
 )
 from pmm.recorder.header import RunHeader
 from pmm.recorder.lateness import CycleStatistics
-from pmm.recorder.marker import read_marker
-from pmm.recorder.noise import white_noise_rms
+from pmm.recorder.line_shapes import read_lines, read_marker
 from pmm.recorder.samples import JournalSamples, counts, read_header, read_samples
-from pmm.recorder.texts import read_lines
 from pmm.whole_file import sync_folder
 
 _OPEN, _CLOSED = "gate open", "hold"  # states of run control, as its events have them
@@ -69,7 +67,7 @@ class RunData:
     @property
     def pulses_s(self) -> FloatArray:
         """Times of the photocell's pulses, in order."""
-        return np.array([one[1] for one in self.texts[PULSES]], dtype=np.float64)
+        return np.array([text[1] for text in self.texts[PULSES]], dtype=np.float64)
 
     @property
     def cycles(self) -> CycleStatistics | None:
@@ -158,7 +156,7 @@ def marker_text(
         found[key] = len(run.texts[name])
     found["lines"] = len(run.texts[LINES])
     found["cycles"] = asdict(run.cycles) if run.cycles else None
-    found["flags"] = [asdict(one) for one in flags]
+    found["flags"] = [asdict(flag) for flag in flags]
     found |= _noise_at_rest(run)
     found |= {"files": contents}
     return json.dumps({**found, _SUM: _sum(found)}, indent=1)
@@ -181,7 +179,7 @@ def _noise_at_rest(run: RunData) -> dict[str, Any]:
     if run.header.kind != RunKind.ZERO or run.samples is None:
         return {}
     found = white_noise_rms(run.samples[:, :])
-    names = (one.name for one in run.header.channels)
+    names = (channel.name for channel in run.header.channels)
     pairs = zip(names, found, strict=True)
     return {NOISE: {name: float(rms) for name, rms in pairs if np.isfinite(rms)}}
 
@@ -240,7 +238,9 @@ def _provenance(run: RunData) -> dict[str, str]:
         "plan": header.plan_json,
         "outcome": str(run.marker["outcome"]) if run.marker else "not closed",
         "configuration_sha256": json.dumps(dict(header.configuration_sha256)),
-        "readings": json.dumps({name: asdict(one) for name, one in header.readings.items()}),
+        "readings": json.dumps(
+            {name: asdict(reading) for name, reading in header.readings.items()}
+        ),
     }
     return found | _gate(run) | (run.cycles.as_text() if run.cycles else {})
 
@@ -256,11 +256,33 @@ def _gate(run: RunData) -> dict[str, str]:
 def _gate_by_time(run: RunData) -> dict[str, Any]:
     """Return the gate of an oscillation without pulses: whole periods, wherever one begins."""
     point = run.header.set_point
-    events = (one for one in run.texts[EVENTS] if one["kind"] == "state")
-    times = {one["text"]: float(one["time_s"]) for one in events}
+    events = (text for text in run.texts[EVENTS] if text["kind"] == "state")
+    times = {event["text"]: float(event["time_s"]) for event in events}
     if run.header.photocell or point is None or not {_OPEN, _CLOSED} <= set(times):
         return {}
     # The cycle in which it closed is open to its end.
     open_s = times[_CLOSED] - times[_OPEN] + 1.0 / run.header.sample_rate_hz
     periods = math.floor(open_s * point.frequency_hz) - 1
     return {"opened_s": times[_OPEN], "periods": periods} if periods > 0 else {}
+
+
+def white_noise_rms(samples: FloatArray) -> FloatArray:
+    """Return the standard deviation of each channel's white noise.
+
+    From the differences of neighbouring samples, which are blind to a zero that wanders and to
+    waves that are long against a sample; missing samples are passed over.
+
+    The result has the shape ``(channels,)``; NaN where a channel has no two samples in a row.
+
+    Parameters
+    ----------
+    samples
+        Shape ``(channels, n)``.
+    """
+    steps = np.diff(samples, axis=1) ** 2
+    known = np.isfinite(steps)
+    count = known.sum(axis=1)
+    total = np.where(known, steps, 0.0).sum(axis=1)
+    found = np.full(len(samples), np.nan)
+    np.divide(total, 2.0 * count, out=found, where=count > 0)
+    return np.asarray(np.sqrt(found))

@@ -26,7 +26,7 @@ from pmm.recorder.files import (
     is_run,
     set_aside,
 )
-from pmm.recorder.marker import read_recovered
+from pmm.recorder.line_shapes import read_recovered
 from pmm.recorder.rebuilding import rebuild
 from pmm.recorder.recording import RunData, convert, read_run
 from pmm.recorder.samples import SampleWriter, counts

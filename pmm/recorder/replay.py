@@ -65,7 +65,7 @@ class Replay:
 
         A resolver that got its samples in other blocks rounds its sums in another way.
         """
-        times = [one.time_s for one in self.pulses[: len(self.recorded_pulses_s)]]
+        times = [pulse.time_s for pulse in self.pulses[: len(self.recorded_pulses_s)]]
         return (
             self.differing_samples == 0
             and times == self.recorded_pulses_s.tolist()
@@ -112,7 +112,7 @@ def _compare(
         again,
         recorded,
         int(np.sum(differing)),
-        tuple(one for each in taken for one in each.pulses),
+        tuple(pulse for each in taken for pulse in each.pulses),
         run.pulses_s,
         again_read,
         told,

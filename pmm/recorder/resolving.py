@@ -61,7 +61,7 @@ def _start_of(reading: Reading, run: RunData) -> int:
 
 
 def _armed(run: RunData) -> list[int]:
-    return [int(one["text"]) for one in run.texts[EVENTS] if one["kind"] == ARMED]
+    return [int(text["text"]) for text in run.texts[EVENTS] if text["kind"] == ARMED]
 
 
 def _gates(

@@ -35,10 +35,10 @@ from pmm.recorder.files import (
 from pmm.recorder.header import RunHeader
 from pmm.recorder.journal import Journal, Piece
 from pmm.recorder.lateness import CycleStatistics, Lateness
+from pmm.recorder.line_shapes import as_line
 from pmm.recorder.recording import convert, marker_text, read_run
 from pmm.recorder.samples import Piece as SamplePiece
 from pmm.recorder.samples import SampleWriter
-from pmm.recorder.texts import as_line
 from pmm.whole_file import write_whole
 
 _SHARE: Final = 0.5  # of flush_s: what is left of it is for the disk

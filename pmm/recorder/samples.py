@@ -33,13 +33,13 @@ class SampleWriter:
 
         self._arrow = pa
         fields = [pa.field(SYNC, pa.int64())]
-        for one in header.channels:
-            about = {"units": one.unit, "source": header.sources.get(one.name, "")}
-            if one.full_scale is not None:
-                about["full_scale"] = repr(one.full_scale)
-            for key, value in header.calibration.get(one.name, {}).items():
+        for channel in header.channels:
+            about = {"units": channel.unit, "source": header.sources.get(channel.name, "")}
+            if channel.full_scale is not None:
+                about["full_scale"] = repr(channel.full_scale)
+            for key, value in header.calibration.get(channel.name, {}).items():
                 about[key] = repr(value)
-            fields.append(pa.field(one.name, pa.float64(), metadata=about))
+            fields.append(pa.field(channel.name, pa.float64(), metadata=about))
         about_all = {_HEADER_KEY: header.to_json().encode(), batches.KEY: batches.KIND}
         self._schema = pa.schema(fields, metadata=about_all)
         self._head = bytes(self._schema.serialize())

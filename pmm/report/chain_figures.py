@@ -92,7 +92,9 @@ def traces(
     elapsed_s = time_s - origin_s
     kept = (elapsed_s > -0.1 * period_s) & (elapsed_s < (_SHOWN_PERIODS + 0.1) * period_s)
     values = {
-        one.name: run[one.name][kept] for one in chain.signals if one.sampled and one.name in run
+        signal.name: run[signal.name][kept]
+        for signal in chain.signals
+        if signal.sampled and signal.name in run
     }
     return Traces(elapsed_s[kept], values, edges_s - origin_s)
 
@@ -219,13 +221,7 @@ def _legend(figure: "Figure", *, with_effect: bool) -> None:
 def save_chain_figure(
     campaign: Campaign, run: Run, effects: Sequence[Effect], seed: int, folder: Path
 ) -> list[Path]:
-    """Write the figure of one run of a campaign as ``<run>-chain.svg`` and ``.png``.
-
-    Returns
-    -------
-    list of Path
-        The files written.
-    """
+    """Write the figure of one run of a campaign as ``<run>-chain.svg`` and ``.png``."""
     figure = run_figure(campaign, run, effects, seed)
     return write_figure(figure, folder, f"{run.name}-chain")
 
@@ -247,6 +243,6 @@ def run_figure(campaign: Campaign, run: Run, effects: Sequence[Effect], seed: in
     changed = None
     if effects:
         changed = simulated(*switch_on(effects, rig, run.set_point, place_in(campaign, run)))
-    names = ", ".join(one.name for one in effects)
+    names = ", ".join(effect.name for effect in effects)
     title = f"{run.name}: {run.frequency_hz:g} Hz, {1e3 * run.eccentricity_m:g} mm"
     return chain_figure(nominal, changed, 1.0 / run.frequency_hz, title, names)

@@ -101,12 +101,12 @@ def _series(
 def _label(found: CampaignCoefficients, rows: Sequence[int]) -> str:
     """Return the method, with the motion where it is of one amplitude and that is the same."""
     entries = [found.entries[k] for k in rows]
-    methods = " or ".join(dict.fromkeys(one.method for one in entries))
+    methods = " or ".join(dict.fromkeys(entry.method for entry in entries))
     motions = {
-        amplitudes(one.translation_amplitude_m, one.rotation_amplitude_rad).partition(",")[0]
-        for one in entries
+        amplitudes(entry.translation_amplitude_m, entry.rotation_amplitude_rad).partition(",")[0]
+        for entry in entries
     }
-    several = any(len(one.runs) > 2 for one in entries) or len(motions) > 1
+    several = any(len(entry.runs) > 2 for entry in entries) or len(motions) > 1
     return methods if several else f"{methods}, {motions.pop()}"
 
 
@@ -126,14 +126,16 @@ def _draw_references(
     """Draw the tables' values at the measured frequencies; return them."""
     unit = next(entry.unit for entry in found.entries if entry.name == name)
     rows = [
-        one
-        for one in found.references
-        if one.name == name and one.unit == unit and abs(one.speed_m_s - speed_m_s) < 1e-9
+        reference
+        for reference in found.references
+        if reference.name == name
+        and reference.unit == unit
+        and abs(reference.speed_m_s - speed_m_s) < 1e-9
     ]
-    tables = list(dict.fromkeys(one.reference for one in rows))[:most]
+    tables = list(dict.fromkeys(row.reference for row in rows))[:most]
     for number, table in enumerate(tables):
-        own = sorted({(one.frequency_hz, one.expected) for one in rows if one.reference == table})
+        own = sorted({(row.frequency_hz, row.expected) for row in rows if row.reference == table})
         at, expected = zip(*own, strict=True)
         style = _DASHES[number % len(_DASHES)]
         panel.plot(at, expected, style, marker="_", color=TRACE, ms=9.0, label=table)
-    return [one.expected for one in rows if one.reference in tables]
+    return [row.expected for row in rows if row.reference in tables]

@@ -67,7 +67,7 @@ def _way(found: CampaignCoefficients, k: int) -> str:
     entry = found.entries[k]
     at = entry.frequency_hz
     choices = found.choices_of(entry.name, entry.runs)
-    forms = [one.fitted for one in choices if one.runs == entry.runs]
+    forms = [choice.fitted for choice in choices if choice.runs == entry.runs]
     return ", ".join((entry.method, *forms, *([f"{frequency(at)} Hz"] if at > 0.0 else [])))
 
 

@@ -96,10 +96,10 @@ def conclusion(found: CampaignCoefficients) -> tuple[Content, ...]:
         forms.setdefault((choice.load, choice.message), []).extend(choice.runs)
     lines = [f"form    {load} of {joined(runs)}: {said}" for (load, said), runs in forms.items()]
     if found.checks:
-        agree = sum(one.agrees for one in found.checks)
+        agree = sum(check.agrees for check in found.checks)
         lines.append(f"checks  {agree} of {len(found.checks)} between runs agree")
-    apart = [one.message for one in found.checks if not one.agrees]
-    apart += [one.message for one in found.outliers]
+    apart = [check.message for check in found.checks if not check.agrees]
+    apart += [outlier.message for outlier in found.outliers]
     return (
         recommended_table(found),
         Text(("", *lines)),
@@ -118,7 +118,7 @@ def _data(outcome: CampaignOutcome) -> dict[str, Any]:
         "budgets": [budget(found, k) for k in range(len(found.entries))],
         "stated": outcome.stated,
         "body": outcome.body,
-        "runs": [{key: getattr(one, key) for key in told} for one in outcome.runs],
+        "runs": [{key: getattr(run, key) for key in told} for run in outcome.runs],
         "failed": outcome.failed,
         "not_recorded": outcome.not_recorded,
         "left_out": outcome.left_out,
@@ -127,8 +127,8 @@ def _data(outcome: CampaignOutcome) -> dict[str, Any]:
 
 def _summary(outcome: CampaignOutcome) -> dict[str, str]:
     found = outcome.result
-    agree = sum(one.agrees for one in found.checks)
-    outside = sum(not one.within for one in found.references)
+    agree = sum(check.agrees for check in found.checks)
+    outside = sum(not reference.within for reference in found.references)
     rows = {
         "campaign": ", ".join(outcome.names),
         "runs": f"{len(outcome.cycles)} used, {len(outcome.failed)} could not be",
@@ -206,9 +206,9 @@ def _findings(found: CampaignCoefficients) -> Iterator[Content]:
     yield Table("Repeats that stand off", _OUTLIERS, found.outliers, titled=True)
     yield Table("What these runs do not tell", missing, found.missing, titled=True)
     yield from _beside(found)
-    for kind in dict.fromkeys(one.kind for one in found.checks):
-        rows = [one for one in found.checks if one.kind == kind]
-        agree = sum(one.agrees for one in rows)
+    for kind in dict.fromkeys(check.kind for check in found.checks):
+        rows = [check for check in found.checks if check.kind == kind]
+        agree = sum(row.agrees for row in rows)
         name = f"Checks in SI units, {kind}: {agree} of {len(rows)} agree"
         yield Table(name, _CHECKS, rows, titled=True, folded=agree == len(rows))
 

@@ -82,7 +82,7 @@ def _transmission(kind: int) -> str:
 def _identity(one: _Node) -> str:
     node = one.node
     parts = (node.vendor, node.product, node.revision, node.serial)
-    return " ".join("-" if one is None else f"{one:X}" for one in parts)
+    return " ".join("-" if part is None else f"{part:X}" for part in parts)
 
 
 _NODES: Final[tuple[Column[_Node], ...]] = (
@@ -119,7 +119,7 @@ def _last(heard: Heard) -> str:
 
 def scan_document(found: Survey, wrong: Sequence[str]) -> Document:
     """Return who answers; ``wrong`` is what is missing or does not fit."""
-    nodes = [_Node(one, found.names.get(one.node_id, "")) for one in found.nodes]
+    nodes = [_Node(node, found.names.get(node.node_id, "")) for node in found.nodes]
     heard = Table("Ports", _HEARD, tuple(found.heard.items()), "ports", by=lambda row: row[0])
     return _document("scan", Table("Nodes", _NODES, nodes, "nodes"), heard, Data("wrong", wrong))
 

@@ -100,12 +100,12 @@ _EFFECTS: Final[tuple[Column[type[Effect]], ...]] = (
     word("stage", "stage"),
     word("what it is", "title"),
     Column(None, _description, "description"),
-    Column(None, lambda kind: [asdict(one) for one in kind.parameters()], "parameters"),
+    Column(None, lambda kind: [asdict(parameter) for parameter in kind.parameters()], "parameters"),
     Column(
         "parameters: typical (low to high)",
         lambda kind: "\n".join(
-            f"{one.name} = {one.typical:g} ({one.plausible}) {one.unit}"
-            for one in kind.parameters()
+            f"{parameter.name} = {parameter.typical:g} ({parameter.plausible}) {parameter.unit}"
+            for parameter in kind.parameters()
         ),
     ),
 )
@@ -195,7 +195,7 @@ def _beside(lines: Lines) -> Iterator[str]:
 def _data(shown: EffectAtSetPoint) -> dict[str, Any]:
     kind = type(shown.effect)
     return {
-        **{one.key: one.value(kind) for one in _EFFECTS if one.key},
+        **{effect.key: effect.value(kind) for effect in _EFFECTS if effect.key},
         "values": asdict(shown.effect),
         "set_point": shown.set_point,
         "theory": _orders(shown.theory),

@@ -26,8 +26,7 @@ from pmm.evaluation.control_chart import Chart
 from pmm.evaluation.evaluation import Evaluation
 from pmm.evaluation.rig_tests import GaugeResponse, GaugeZeros, RungMode
 from pmm.report.coefficients_document import conclusion
-from pmm.report.control_chart import chart_figure
-from pmm.report.slow_tests import drift_figure, resistance_figure, restoring_figure
+from pmm.report.slow_tests import chart_figure, drift_figure, resistance_figure, restoring_figure
 
 SCHEMA: Final = "pmm-evaluation-1"
 _ZEROS: Final[tuple[Column[GaugeZeros], ...]] = (
@@ -87,12 +86,12 @@ def evaluation_document(found: Evaluation) -> Document:
         Data("tows", water.tows),
         *(() if derivatives is None else conclusion(derivatives)),
         Data("derivatives", derivatives and to_dict(derivatives)),
-        Text([_verdict(one) for one in found.charts]),
+        Text([_verdict(chart) for chart in found.charts]),
         Data("control", found.charts),
         Data("in_control", found.in_control),
         Data("notes", found.notes),
         Data("failed", found.failed),
-        Text([str(one) for one in found.files], "files"),
+        Text([str(file) for file in found.files], "files"),
     )
     return Document("", "tests of rig and model", (Section("", told),), SCHEMA)
 

@@ -61,7 +61,7 @@ def analysis_document(
         ]),
     )  # fmt: skip
     sections = (
-        *(run_section(one, level) for one in runs),
+        *(run_section(run, level) for run in runs),
         *(doubt_section(path, flags) for path, flags in doubts),
         Section("", data),
     )
@@ -107,7 +107,7 @@ def run_section(rows: RunRows, level: float) -> Section:
 
 def harmonics_document(analyses: Sequence[Analysis], name: str) -> Document:
     """Return what a page says of analyses: tables of all gates, figures of each first one."""
-    sections = [_page_section(one, f"run{k}") for k, one in enumerate(analyses, start=1)]
+    sections = [_page_section(analyse, f"run{k}") for k, analyse in enumerate(analyses, start=1)]
     first = Section("", (Text((_INTRODUCTION,)),))
     last = Section("How to read the numbers", (Text((_READING,), faint=True),))
     return Document(name, "harmonics", (first, *sections, last), "")
@@ -115,7 +115,7 @@ def harmonics_document(analyses: Sequence[Analysis], name: str) -> Document:
 
 def _page_section(analysis: Analysis, anchor: str) -> Section:
     rows = run_rows(analysis, file=analysis.recording.name, level=PAGE_LEVEL)
-    drawn = (replace(one, name=f"{anchor}-{one.name}") for one in figures(analysis))
+    drawn = (replace(figure, name=f"{anchor}-{figure.name}") for figure in figures(analysis))
     return Section(
         plain(analysis.recording.name),
         (
@@ -146,11 +146,14 @@ def _provenance(analysis: Analysis) -> list[tuple[str, str]]:
     ]
     point = recording.set_point
     if point is not None:
-        told += [(f"set-point, {one.name}", str(getattr(point, one.name))) for one in fields(point)]
+        told += [
+            (f"set-point, {field.name}", str(getattr(point, field.name))) for field in fields(point)
+        ]
     told += [(f"recording, {key}", str(value)) for key, value in recording.provenance.items()]
     settings = analysis.settings
     return told + [
-        (f"setting, {one.name}", _plain(getattr(settings, one.name))) for one in fields(settings)
+        (f"setting, {field.name}", _plain(getattr(settings, field.name)))
+        for field in fields(settings)
     ]
 
 

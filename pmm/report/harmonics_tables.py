@@ -66,7 +66,7 @@ def gate_tables(rows: RunRows, level: float) -> Iterator[Content]:
             f"Gate {k} of {len(rows.gates)}: {counted(gate.periods, 'period')} from "
             f"{gate.opened_s:.3f} s to {gate.closed_s:.3f} s, {gate.frequency_hz:.6g} Hz"
         )
-        told = [row for one in gate.channels for row in _channel_rows(one)]
+        told = [row for channel in gate.channels for row in _channel_rows(channel)]
         notes = (
             _rests_on(gate, level),
             *((_OPEN,) if any(one.phase == "open" for one in told) else ()),

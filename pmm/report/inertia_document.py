@@ -252,10 +252,15 @@ def _model(outcome: Outcome) -> Iterator[Content]:
 
 
 def _checks(outcome: Outcome) -> Iterator[Content]:
-    yield Notes([Note(one.verdict, one.message) for one in outcome.comparisons])
+    yield Notes(
+        [Note(comparison.verdict, comparison.message) for comparison in outcome.comparisons]
+    )
     targets = (("quantity", "name"), ("target", "target"), ("tolerance", "tolerance"),
                ("verdict", "verdict"))  # fmt: skip
-    rows = [{key: getattr(one, own) for key, own in targets} for one in outcome.comparisons]
+    rows = [
+        {key: getattr(comparison, own) for key, own in targets}
+        for comparison in outcome.comparisons
+    ]
     yield Data("targets", rows)
     yield Text(outcome.notes, "notes")
     yield Notes(flag_notes(outcome.flags))

@@ -60,25 +60,25 @@ def matrix_figure(plan: Plan, rig: RigFile) -> "Figure":
 def _groups(runs: Sequence[RunPlan]) -> list[tuple[str, list[RunPlan]]]:
     """Return the oscillations of each motion, medium and speed."""
     groups: dict[str, list[RunPlan]] = {}
-    for one in runs:
-        if one.oscillates:
-            speed = one.set_point.carriage_speed_m_s
-            where = "in air" if one.kind.in_air else f"U = {speed:g} m/s"
-            groups.setdefault(f"{one.motion}, {where}", []).append(one)
+    for run in runs:
+        if run.oscillates:
+            speed = run.set_point.carriage_speed_m_s
+            where = "in air" if run.kind.in_air else f"U = {speed:g} m/s"
+            groups.setdefault(f"{run.motion}, {where}", []).append(run)
     return list(groups.items())
 
 
 def _panel(axes: "Axes", title: str, runs: Sequence[RunPlan], rig: RigFile) -> None:
     axes.set_title(title, loc="left")
     for kind, (marker, colour, size) in _MARKS.items():
-        points = Counter(_point(one) for one in runs if one.kind is kind)
+        points = Counter(_point(run) for run in runs if run.kind is kind)
         _marks(axes, points, marker, color=colour, markersize=size, markerfacecolor="none",
                markeredgewidth=1.2, label=str(kind))  # fmt: skip
         for (x, y), count in points.items():
             if count > 1:
                 axes.annotate(f"{count} x", (x, y), (0, 6), textcoords="offset points",
                               ha="center", fontsize=7.5, color=colour)  # fmt: skip
-    refused = {_point(one): 1 for one in runs if any(_refused(one, rig))}
+    refused = {_point(run): 1 for run in runs if any(_refused(run, rig))}
     _marks(axes, refused, "x", color=FIT, markersize=9.0, markeredgewidth=1.8, label="refused")
 
 
@@ -95,7 +95,9 @@ def _point(run: RunPlan) -> tuple[float, float]:
 
 
 def _refused(run: RunPlan, rig: RigFile) -> Iterator[bool]:
-    return (one.verdict is PlanVerdict.REFUSE for one in limit_findings(run, rig))
+    return (
+        limit_finding.verdict is PlanVerdict.REFUSE for limit_finding in limit_findings(run, rig)
+    )
 
 
 def _finish(
@@ -105,7 +107,7 @@ def _finish(
     rig: RigFile,
 ) -> None:
     """Set the common scales, draw the limits and name what is drawn, once."""
-    points = [_point(one) for _, runs in groups for one in runs]
+    points = [_point(run) for _, runs in groups for run in runs]
     if not points:
         panels[0].set_title("no oscillations", loc="left")
         return
@@ -115,7 +117,7 @@ def _finish(
     across = min(_ACROSS, len(groups))
     for number, panel in enumerate(panels[: len(groups)]):
         _limit_lines(panel, rig, np.geomspace(lowest, highest, _POINTS), largest)
-        handles |= {str(one.get_label()): one for one in panel.get_lines()}
+        handles |= {str(get_line.get_label()): get_line for get_line in panel.get_lines()}
         if number % across == 0:
             panel.set_ylabel("amplitude [mm], half the stroke")
         if number + across >= len(groups):

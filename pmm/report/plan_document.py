@@ -165,7 +165,7 @@ def show_document(plan: Plan, rig: RigFile) -> Document:
         Data("operator", plan.operator),
         Data("sha256", plan.sha256),
         Data("duration_s", total),
-        Data("runs", [{**one.data, **_peaks(one, rig)} for one in rows]),
+        Data("runs", [{**row.data, **_peaks(row, rig)} for row in rows]),
     )
     return Document("", "runs of a plan", (Section("", told),), SHOW_SCHEMA)
 

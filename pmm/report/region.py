@@ -32,15 +32,12 @@ def region_factor(
     ``nu ((1 - level)^(-2 / d) - 1)``. For large nu that is ``-2 ln(1 - level)``, chi-squared with 2
     degrees; it always exceeds Student's t of a single part, because both are covered at once.
 
+    It is infinite where d is not above 0 (two periods, say): they span no region.
+
     Parameters
     ----------
     one_variance
         Whether the covariance is one variance times the unit matrix.
-
-    Returns
-    -------
-    float
-        Infinite where d is not above 0 (two periods, say): they span no region.
     """
     below = degrees_of_freedom - (0.0 if one_variance else 1.0)
     if not below > 0.0:
@@ -53,17 +50,14 @@ def region_factor(
 def confidence_ellipse(covariance: FloatArray, factor: float) -> Ellipse | None:
     """Return the confidence ellipse of a phasor.
 
+    It is ``None`` where too few periods, or a covariance that is not known, span no region.
+
     Parameters
     ----------
     covariance
         Of ``(S_n, C_n)``, shape ``(2, 2)``.
     factor
         See :func:`region_factor`.
-
-    Returns
-    -------
-    Ellipse or None
-        None where too few periods, or a covariance that is not known, span no region.
     """
     if not (np.isfinite(factor) and np.isfinite(covariance).all()):
         return None

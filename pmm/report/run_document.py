@@ -18,7 +18,7 @@ def run_document(job: RunJob, found: RunReport, *, dry_run: bool) -> Document:
         Data("plan", job.plan.path),
         Data("folder", job.folder),
         Data("dry_run", dry_run),
-        Data("planned", [one.name for one in job.runs]),
+        Data("planned", [run.name for run in job.runs]),
         Data("findings", job.findings),
         Data("changes", job.changes),
         Data("fault", found.fault or None),
@@ -29,7 +29,7 @@ def run_document(job: RunJob, found: RunReport, *, dry_run: bool) -> Document:
 
 def complete_runs(found: RunReport) -> int:
     """Return how many runs are complete."""
-    return sum(one.outcome == RunEnd.COMPLETE for one in found.outcomes)
+    return sum(outcome.outcome == RunEnd.COMPLETE for outcome in found.outcomes)
 
 
 def _said(job: RunJob, found: RunReport, *, dry_run: bool) -> list[str]:
@@ -38,10 +38,10 @@ def _said(job: RunJob, found: RunReport, *, dry_run: bool) -> list[str]:
     if not job.runs:
         return [f"{job.folder}: all runs are complete"]
     lines = [
-        outcome_line(one)
-        for one in found.outcomes
-        if one.outcome != RunEnd.COMPLETE
-        and not (found.fault and one.reason == found.fault)  # that is the error
+        outcome_line(outcome)
+        for outcome in found.outcomes
+        if outcome.outcome != RunEnd.COMPLETE
+        and not (found.fault and outcome.reason == found.fault)  # that is the error
     ]
     return [*lines, f"{complete_runs(found)} of {len(job.runs)} runs complete in {job.folder}"]
 

@@ -17,8 +17,8 @@ from sim.effects.effect import Effect
 from sim.effects.situation import Situation
 from sim.effects.switching import switch_on
 from sim.rig import SimulatedRig
+from sim.run import steady_run
 from sim.signals import recorded
-from sim.solve.periodic import steady_run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -87,7 +87,7 @@ def signature_grid(effect: Effect, rig: SimulatedRig, set_point: SetPoint) -> Si
             found[key][place] = phasor(changed, *key) - own
             stated[key][place] = theory.get(key, 0.0)
     kept = [key for key in keys if _is_there(found[key], stated[key], size[key[0]])]
-    signals = {one.name: one.unit for one in rig.chain(set_point).signals}
+    signals = {signal.name: signal.unit for signal in rig.chain(set_point).signals}
     return SignatureGrid(
         frequencies,
         amplitudes,
@@ -124,8 +124,8 @@ def signature_figure(effect: Effect, grid: SignatureGrid, title: str) -> "Figure
         axes = figure.subplots(len(keys), 2, squeeze=False, sharex=True)
         for row, key in zip(axes, keys, strict=True):
             _draw_row(row, key, grid, circles=effect.repeats)
-        for one in axes[-1]:
-            one.set_xlabel("frequency (Hz)")
+        for axis in axes[-1]:
+            axis.set_xlabel("frequency (Hz)")
         _legend(figure, grid, circles=effect.repeats)
     return figure
 
@@ -204,17 +204,14 @@ def save_signature_figure(
 ) -> list[Path]:
     """Write the figure of an effect as ``<name>-signature.svg`` and ``.png``.
 
-    Returns
-    -------
-    list of Path
-        The files written; none where the effect changes no harmonic.
+    The files written; none where the effect changes no harmonic.
     """
     grid = signature_grid(effect, rig, set_point)
     if not grid.simulated:
         return []
     values = ", ".join(
-        f"{one.name} = {getattr(effect, one.name):g}{'' if one.unit == '1' else f' {one.unit}'}"
-        for one in effect.parameters()
+        f"{own.name} = {getattr(effect, own.name):g}{'' if own.unit == '1' else f' {own.unit}'}"
+        for own in effect.parameters()
     )
     figure = signature_figure(effect, grid, values)
     return write_figure(figure, folder, f"{effect.name}-signature")

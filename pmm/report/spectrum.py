@@ -69,12 +69,10 @@ def spectrum_figure(analysis: Analysis, reading_index: int = 0) -> "Figure":
 def gate_spectrum(analysis: Analysis, reading: Harmonics) -> tuple[FloatArray, FloatArray, int]:
     """Return the lines of a gate's longest stretch without missing samples.
 
-    Returns
-    -------
-    frequency_hz, amplitude, periods
-        Shapes ``(lines,)`` and ``(channels, lines)``, in each channel's unit; the number of whole
-        periods m that the lines rest on. The first line is 1/(m T), the last one lies below the
-        Nyquist frequency and a little above the highest harmonic.
+    The results are frequency_hz, amplitude, periods: their shapes are ``(lines,)`` and ``(channels,
+    lines)``, in each channel's unit; the number of whole periods m that the lines rest on. The
+    first line is 1/(m T), the last one lies below the Nyquist frequency and a little above the
+    highest harmonic.
     """
     gate = gate_sums(analysis, reading)
     sound = np.isfinite(gate.moment).all(axis=(1, 2))
@@ -119,10 +117,7 @@ def leakage(orders: FloatArray, reading: Harmonics) -> FloatArray:
     That of a plain gate is :func:`analysis.resolver.leakage.boxcar_leakage`. A Hann taper adds half
     of each neighbouring bin: ``sinc(u) + sinc(u - 1) / 2 + sinc(u + 1) / 2`` in place of ``sinc``.
 
-    Returns
-    -------
-    numpy.ndarray
-        Part of a vibration's amplitude, shape ``(orders, N)``.
+    Part of a vibration's amplitude, shape ``(orders, N)``.
     """
     if reading.estimator != HANN:
         return boxcar_leakage(orders, reading.periods, reading.order)

@@ -10,7 +10,7 @@ from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.files import HEADER, RECORDING, is_run
 from pmm.recorder.header import RunHeader
-from pmm.recorder.marker import read_marker
+from pmm.recorder.line_shapes import read_marker
 from pmm.recorder.recording import NOISE
 from pmm.recorder.run_recorder import RunEnd
 from pmm.run.run_origin import KEPT, Sources, check_unchanged
@@ -26,7 +26,7 @@ def folder_of(plan: Plan, folder: str, output: str | None) -> Path:
 
 def done_runs(folder: Path, runs: Sequence[RunPlan]) -> tuple[str, ...]:
     """Return the names of the runs that are recorded and complete."""
-    return tuple(one.name for one in runs if _outcome(folder / one.name) == RunEnd.COMPLETE)
+    return tuple(run.name for run in runs if _outcome(folder / run.name) == RunEnd.COMPLETE)
 
 
 def chosen_runs(
@@ -56,14 +56,14 @@ def kept_runs(
     plan: Plan, rig: RigFile, folder: Path, runs: Sequence[RunPlan]
 ) -> tuple[FinishedRun, ...]:
     """Return the runs of the folder that stay as they are when some are made."""
-    made = {one.name for one in runs}
-    return tuple(one for one in finished_runs(folder, plan, rig) if one.plan.name not in made)
+    made = {run.name for run in runs}
+    return tuple(run for run in finished_runs(folder, plan, rig) if run.plan.name not in made)
 
 
 def _wanted_runs(
     plan: Plan, folder: Path, only: Sequence[str], *, resume: bool
 ) -> tuple[RunPlan, ...]:
-    wanted = tuple(one for one in plan.runs if not only or one.name in only)
+    wanted = tuple(run for run in plan.runs if not only or run.name in only)
     if resume:
         done = done_runs(folder, wanted)
         return tuple(one for one in wanted if one.name not in done)
@@ -141,7 +141,7 @@ def check_names(plan: Plan, only: Sequence[str]) -> None:
     """
     from difflib import get_close_matches
 
-    known = [one.name for one in plan.runs]
+    known = [run.name for run in plan.runs]
     for name in only:
         if name not in known:
             near = get_close_matches(name, known, n=3, cutoff=0.4)

@@ -122,4 +122,4 @@ class Closer:
 
     def ended(self, run: RunPlan) -> bool:
         """Return whether a run has ended, however."""
-        return any(one.run == run.name for one in self.outcomes)
+        return any(outcome.run == run.name for outcome in self.outcomes)

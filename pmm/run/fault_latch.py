@@ -41,7 +41,7 @@ class FaultLatch:
     def take_worse(self, error: HardwareError) -> None:
         """Stop more quickly if what was found in a fault asks for more than the fault did."""
         faults = self._conduct.rig.faults
-        if all(one.reaction < error.reaction for one in faults):
+        if all(fault.reaction < error.reaction for fault in faults):
             self._alarms.add(str(error))
             self._conduct.rig.latch(error)
 

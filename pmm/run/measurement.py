@@ -223,16 +223,16 @@ class Measurement:
     def _heard(self, readings: Sequence[Harmonics]) -> None:
         if self._resolving is not None:
             self._tell_spikes(self._resolving)
-        for one in readings:
-            self.reading = one
-            self._keep(one)
+        for reading in readings:
+            self.reading = reading
+            self._keep(reading)
 
     def _tell_spikes(self, resolving: GateResolver) -> None:
-        for one in resolving.resolver.spikes():
-            channel = self.channels[one.row]
-            at_s = resolving.start_s + one.number / self._rate_hz
+        for spike in resolving.resolver.spikes():
+            channel = self.channels[spike.row]
+            at_s, size = resolving.start_s + spike.number / self._rate_hz, spike.spike.size
             text = (
-                f"{channel.name}: a spike of {one.spike.size:+.4g} {channel.unit} at {at_s:.6g} s "
+                f"{channel.name}: a spike of {size:+.4g} {channel.unit} at {at_s:.6g} s "
                 "was taken out of the live readings; the recording has it"
             )
             self.note("spike", Severity.WARNING, text)

@@ -112,7 +112,7 @@ class Interrupts:
 
 def _known(names: Sequence[str]) -> list[signal.Signals]:
     """Return the signals of these names that the system has."""
-    return [signal.Signals[one] for one in names if one in signal.Signals.__members__]
+    return [signal.Signals[name] for name in names if name in signal.Signals.__members__]
 
 
 def standard_input() -> Answers:

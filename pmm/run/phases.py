@@ -11,10 +11,9 @@ from analysis.resolver.weights import REACH
 from hardware.description.kinds import RunKind
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.live_path import PATIENCE_CYCLES, LivePath
-from pmm.run.conduct import Conduct
+from pmm.run.conduct import Conduct, check_frequency, check_standing
 from pmm.run.errors import PulseOverdueError
 from pmm.run.gate import GateState
-from pmm.run.shaft_checks import check_frequency, check_standing
 from pmm.run.states import State
 
 _OVERDUE_TURNS: Final = 4.5  # beyond the limit of the photocells' own drivers
@@ -35,10 +34,10 @@ def _homing(c: Conduct) -> State | None:
     axes = [one for one in (c.rig.eccentricity, c.rig.phase) if one is not None]
     if not c.told:
         c.told = True
-        for one in axes:
-            if not one.homed:
-                one.home()
-    ready = all(one.homed and not one.moving for one in axes)
+        for axis in axes:
+            if not axis.homed:
+                axis.home()
+    ready = all(axis.homed and not axis.moving for axis in axes)
     return State.SETTING if ready else None
 
 

@@ -17,7 +17,7 @@ class PushRecord:
     """Collects the samples of a push test."""
 
     def __init__(self, channels: Sequence[Channel]) -> None:
-        self._rows = [i for i, one in enumerate(channels) if one.unit in _FORCE_UNITS]
+        self._rows = [i for i, channel in enumerate(channels) if channel.unit in _FORCE_UNITS]
         self._channels = tuple(channels[i] for i in self._rows)
         self._parts: tuple[list[FloatArray], ...] = ([], [], [])  # before, during, after the push
         self._part = 0
@@ -44,7 +44,7 @@ class PushRecord:
             If it is not; the message names the fix.
         """
         rest, pushed = (np.hstack(part) if part else np.empty((0, 0)) for part in self._parts[:2])
-        names = [one.name for one in self._channels]
+        names = [channel.name for channel in self._channels]
         try:
             found = judge(
                 self._channels,

@@ -43,9 +43,9 @@ def needles(
     widths = half_widths(last) if last is not None else np.full(len(channels), math.nan)
     return tuple(
         ChannelReading(
-            one.name, one.unit, float(row[0]), float(row[1]), float(row[2]), float(width)
+            channel.name, channel.unit, float(row[0]), float(row[1]), float(row[2]), float(width)
         )
-        for one, row, width in zip(channels, now.coefficients, widths, strict=True)
+        for channel, row, width in zip(channels, now.coefficients, widths, strict=True)
     )
 
 
@@ -74,8 +74,10 @@ class Means:
         spread = np.sqrt(squares / max(freedom, 1) / self._count)
         widths = student_factor(freedom) * spread
         return tuple(
-            ChannelReading(one.name, one.unit, float(mean), 0.0, 0.0, float(width), final=True)
-            for one, mean, width in zip(self._channels, means, widths, strict=True)
+            ChannelReading(
+                channel.name, channel.unit, float(mean), 0.0, 0.0, float(width), final=True
+            )
+            for channel, mean, width in zip(self._channels, means, widths, strict=True)
         )
 
 

@@ -121,7 +121,7 @@ class RecorderFactory:
         return DiskWatch(self.folder, per_s, reserve, self._look)
 
     def _header(self, run: RunPlan) -> RunHeader:
-        rig, offset = self.rig, self.rig_file.photocell_offset
+        rig, offset = self.rig, self.rig_file.reference
         return RunHeader(
             run_name=run.name,
             channels=header_channels(rig),
@@ -135,7 +135,11 @@ class RecorderFactory:
             | provenance_of(self.rig_file.calibration)
             | provenance_of_departures(self._departures),
             readings=self._readings(),
-            sources={c.name: one.name for one in sampled_devices(rig) for c in one.channels},
+            sources={
+                c.name: sampled_device.name
+                for sampled_device in sampled_devices(rig)
+                for c in sampled_device.channels
+            },
             photocell=rig.photocell is not None,
             first_sync=rig.number + 1,
             rig_tables=self.rig_file.hardware_tables,
@@ -149,7 +153,7 @@ class RecorderFactory:
 
     def _readings(self) -> dict[str, Reading]:
         axes = {"eccentricity": self.rig.eccentricity, "phase": self.rig.phase}
-        found = {name: one.reading for name, one in axes.items() if one is not None}
+        found = {name: axis.reading for name, axis in axes.items() if axis is not None}
         return {name: one for name, one in found.items() if one is not None}
 
 

@@ -76,7 +76,7 @@ class RunControl:
         executor: Executor | None = None,
     ) -> None:
         self.rig, self.runs = rig, tuple(runs)
-        self._numbers = {one.name: number for number, one in enumerate(self.runs, 1)}
+        self._numbers = {run.name: number for number, run in enumerate(self.runs, 1)}
         self.taken: Taken | None = None
         self.free_bytes: Callable[[], int | None] = lambda: None
         self._clock, self._view = clock, view
@@ -254,7 +254,7 @@ class RunControl:
 
     @property
     def _left(self) -> list[RunPlan]:
-        return [one for one in self.runs if not self._closer.ended(one)]
+        return [run for run in self.runs if not self._closer.ended(run)]
 
     def _start(self) -> None:
         if self._closer.busy:

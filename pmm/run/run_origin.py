@@ -19,7 +19,7 @@ from hardware.description.body import DIMENSIONS
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.campaign.calibrated_recording import CARRIED
 from pmm.campaign.calibration import as_table
-from pmm.campaign.oscillator_table import expand_preset
+from pmm.campaign.model_uncertainty import expand_preset
 from pmm.configuration import place_text, read_toml
 from pmm.places import Place
 from pmm.plan.campaign_writer import FinishedRun
@@ -57,7 +57,7 @@ class Sources:
 
     def __init__(self, folder: Path, plan: Plan, rig: RigFile) -> None:
         self._folder, self._plan, self._rig = folder, plan, rig
-        self._planned = {one.name: one for one in plan.runs}
+        self._planned = {run.name: run for run in plan.runs}
 
     def made(self, header: RunHeader, run: RunPlan) -> RunOrigin:
         """Return what a recorded run was made from.

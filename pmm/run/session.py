@@ -115,8 +115,8 @@ def run_job(
         runs = chosen_runs(
             plan, rig_file, folder, only, resume=resume, accept_changes=accept_changes
         )
-        chosen = {"", *(one.name for one in runs)}
-        findings = tuple(one for one in findings if one.run in chosen)
+        chosen = {"", *(run.name for run in runs)}
+        findings = tuple(finding for finding in findings if finding.run in chosen)
         changes = tuple(change_lines(kept_runs(plan, rig_file, folder, runs)))
         real_time = rig_file.realtime or real_time
         yield RunJob(plan, rig_file, folder, runs, findings, real_time, changes)

@@ -1,6 +1,6 @@
 """What each column of a recording does, whatever it is called and wherever it stands."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Final
@@ -120,3 +120,34 @@ def _pulses(recording: Recording, values: FloatArray, line: SharedLine) -> bool:
     if apart_s.size < 2 or np.std(apart_s) > _EVEN * np.mean(apart_s):
         return False
     return bool(abs(float(np.mean(apart_s)) * line.frequency_hz - 1.0) < SAME_TIME)
+
+
+_STANDS: Final = 0.02  # of a run's amplitude: what moves no more in any column stands
+_TIMELESS: Final = 0.2  # the same where nothing keeps time either
+
+
+def at_rest(watched: Sequence[RecordingBehaviour]) -> list[bool]:
+    """Tell of each recording whether it is one at rest.
+
+    Judged by the columns that carry the line of the recording with the cleanest one: at rest none
+    of them moves by more than a small part of its amplitude there.
+    """
+    timed = [one for one in watched if one.line is not None and not one.line.doubt]
+    if not timed:
+        return [False] * len(watched)
+    cleanest = min(timed, key=lambda one: one.line.beside if one.line else 1.0)
+    amplitudes = {
+        name: abs(column.part.first)
+        for name, column in cleanest.columns.items()
+        if column.part.carried
+    }
+    return [_stands(one, amplitudes, in_time=one in timed) for one in watched]
+
+
+def _stands(one: RecordingBehaviour, amplitudes: dict[str, float], *, in_time: bool) -> bool:
+    moved = [
+        one.columns[name].spread / amplitude
+        for name, amplitude in amplitudes.items()
+        if name in one.columns
+    ]
+    return bool(moved) and max(moved) < (_STANDS if in_time else _TIMELESS)

@@ -21,11 +21,11 @@ def as_columns(
     """Return the channels, sure or not, and the columns with the line that keep their names."""
     found: list[FoundColumn] = []
     for kind, channels in ((DISPLACEMENT, DISPLACEMENTS), (FORCE, FORCES)):
-        found += _of_struts([one for one in roles if one.kind is kind], channels)
+        found += _of_struts([role for role in roles if role.kind is kind], channels)
     found += [
-        FoundColumn(one.kind.name, one.column, doubt=one.doubt)
-        for one in roles
-        if one.kind not in (DISPLACEMENT, FORCE)
+        FoundColumn(role.kind.name, role.column, doubt=role.doubt)
+        for role in roles
+        if role.kind not in (DISPLACEMENT, FORCE)
     ]
     found = [_with_unit(one, running) for one in found]
     found.sort(key=lambda one: CHANNELS.index(one.name))
@@ -33,7 +33,7 @@ def as_columns(
 
 
 def _of_struts(roles: Sequence[ColumnRole], channels: Sequence[str]) -> Iterator[FoundColumn]:
-    doubts = {one.column: one.doubt for one in roles}
+    doubts = {role.column: role.doubt for role in roles}
     names = words.struts_in_order(list(doubts))
     told = [words.says(name, words.FORE) - words.says(name, words.AFT) for name in names]
     if told == [0, 0]:  # what is sure is no worse for being called the first
@@ -48,7 +48,9 @@ def by_order_of_names(columns: Sequence[FoundColumn]) -> bool:
     return any(
         len(pair) == 2 and not any(words.says(name, (*words.FORE, *words.AFT)) for name in pair)
         for channels in (DISPLACEMENTS, FORCES)
-        for pair in [[one.column for one in columns if one.name in channels and not one.doubt]]
+        for pair in [
+            [column.column for column in columns if column.name in channels and not column.doubt]
+        ]
     )
 
 

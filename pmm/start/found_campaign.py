@@ -121,14 +121,14 @@ class FoundCampaign:
 
     def notes(self) -> Iterator[str]:
         """Yield what is not sure and what was not found, a line each."""
-        for one in self.columns:
-            if one.doubt:
-                yield f"not sure, commented out: {one.name} = {one.column!r}: {one.doubt}"
-        doubts = {one.name: one.doubt for one in self.runs}
+        for column in self.columns:
+            if column.doubt:
+                yield f"not sure, commented out: {column.name} = {column.column!r}: {column.doubt}"
+        doubts = {run.name: run.doubt for run in self.runs}
         doubts |= {one.name: one.doubt for one in self.at_rest}
         for name, doubt in doubts.items():
             if doubt:
                 yield f"not sure, commented out: {name}: {doubt}"
-        for key in dict.fromkeys(key for one in self.runs for key in one.remarks):
-            missing = sum(key in one.remarks for one in self.runs)
+        for key in dict.fromkeys(key for run in self.runs for key in run.remarks):
+            missing = sum(key in run.remarks for run in self.runs)
             yield f"not in the recordings, put it in: {key} of {missing} of {len(self.runs)} runs"

@@ -96,10 +96,10 @@ def _campaign(task: StartTask) -> Draft:
 def _widened(plane: str, runs: Sequence[FoundRun]) -> dict[str, tuple[float, float]]:
     """Return the preset's ranges made wide enough for what was recorded."""
     preset = PRESETS[f"{plane}-1963"]
-    runs = [one for one in runs if not one.doubt]
+    runs = [run for run in runs if not run.doubt]
     wanted = {
-        "frequency_hz": ([one.frequency_hz for one in runs], preset.frequency_hz),
-        "eccentricity_m": ([1e-3 * one.eccentricity_mm for one in runs], preset.eccentricity_m),
+        "frequency_hz": ([run.frequency_hz for run in runs], preset.frequency_hz),
+        "eccentricity_m": ([1e-3 * run.eccentricity_mm for run in runs], preset.eccentricity_m),
     }
     return {
         key: (min(*values, limits.low), float(f"{1.1 * max(*values, limits.high):.2g}"))

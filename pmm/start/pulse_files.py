@@ -21,15 +21,12 @@ def stem_of(path: Path) -> str:
 def pulse_files(paths: Sequence[Path]) -> str:
     """Return how the files of pulses beside recordings are called, ``{stem}`` for the recording.
 
+    It is empty where most recordings have none beside them that holds increasing times and no more.
+
     Parameters
     ----------
     paths
         Recordings, files of pulses among them or not.
-
-    Returns
-    -------
-    str
-        Empty where most recordings have none beside them that holds increasing times and no more.
     """
     tails = sorted({tail for path in paths for tail in _tails(path)})
     for tail in tails:

@@ -16,8 +16,7 @@ from hardware.description.channels import CARRIAGE_SPEED, DISPLACEMENTS, FORCES,
 from hardware.description.kinds import RunKind
 from hardware.description.setpoint import SetPoint
 from pmm.start import words
-from pmm.start.at_rest import at_rest
-from pmm.start.behaviour import RecordingBehaviour, watch
+from pmm.start.behaviour import RecordingBehaviour, at_rest, watch
 from pmm.start.channels import as_columns, by_order_of_names
 from pmm.start.found_campaign import (
     CHANNELS,
@@ -67,26 +66,26 @@ def find_campaign(paths: Sequence[Path], folder: Path) -> FoundCampaign:
     called = pulse_files(paths)
     paths = [path for path in paths if not called or not path.name.endswith(called[len(STEM) :])]
     looks = [_look(path) for path in paths]
-    rests = at_rest([one.watched for one in looks])
-    running = [one.watched for one, stands in zip(looks, rests, strict=True) if not stands]
+    rests = at_rest([look.watched for look in looks])
+    running = [look.watched for look, stands in zip(looks, rests, strict=True) if not stands]
     columns = as_columns(find_roles(running), running)
-    sure = {one.name: one for one in columns if not one.doubt}
+    sure = {column.name: column for column in columns if not column.doubt}
     names = dict(zip(paths, _names(paths), strict=True))
-    taken = {one.column for one in columns}
-    everything = dict.fromkeys(name for one in looks for name in one.watched.columns)
+    taken = {column.column for column in columns}
+    everything = dict.fromkeys(name for look in looks for name in look.watched.columns)
     edges_file = called if PHOTOCELL not in sure and _in_time(looks, called) else ""
-    pulses = PHOTOCELL in sure or bool(edges_file) or any(one.pulses for one in looks)
+    pulses = PHOTOCELL in sure or bool(edges_file) or any(look.pulses for look in looks)
     reference = _reference(columns, pulses)
     digits = 4 if reference or pulses or {SHAFT_ANGLE.name, DISPLACEMENTS[0]} & set(sure) else 6
     return FoundCampaign(
         runs=tuple(
-            _run(one, names[one.path], folder, sure, digits)
-            for one, stands in zip(looks, rests, strict=True)
+            _run(look, names[look.path], folder, sure, digits)
+            for look, stands in zip(looks, rests, strict=True)
             if not stands
         ),
         at_rest=tuple(
-            _rest(one, names[one.path], folder, sure)
-            for one, stands in zip(looks, rests, strict=True)
+            _rest(look, names[look.path], folder, sure)
+            for look, stands in zip(looks, rests, strict=True)
             if stands
         ),
         columns=tuple(columns),
@@ -94,7 +93,7 @@ def find_campaign(paths: Sequence[Path], folder: Path) -> FoundCampaign:
         by_order=by_order_of_names(columns),
         mapped=not all(find_reader(path).own_channels for path in paths),
         reference=reference,
-        sample_rate_hz=Counter(one.sample_rate_hz for one in looks).most_common(1)[0][0],
+        sample_rate_hz=Counter(look.sample_rate_hz for look in looks).most_common(1)[0][0],
         sensors=dict(_sensors(looks, rests, sure)),
         not_recorded=_without(columns),
         photocell=pulses,
@@ -106,7 +105,7 @@ def _in_time(looks: Sequence[_Look], called: str) -> bool:
     """Tell whether the pulses beside the runs come once in each period of theirs."""
     if not called:
         return False
-    timed = [(one.path, one.watched.line) for one in looks if one.watched.line is not None]
+    timed = [(look.path, look.watched.line) for look in looks if look.watched.line is not None]
     return bool(timed) and all(
         once_a_period(edges_beside(path, called) or (), line.frequency_hz) for path, line in timed
     )
@@ -137,18 +136,18 @@ def _names(paths: Sequence[Path]) -> list[str]:
 
 def _reference(columns: Iterable[FoundColumn], pulses: bool) -> str:
     """Return the channel that tells the phase where no channel does that is asked by itself."""
-    sure = {one.name for one in columns if not one.doubt}
+    sure = {column.name for column in columns if not column.doubt}
     if pulses or {SHAFT_ANGLE.name, DISPLACEMENTS[0]} & sure:
         return ""
     if DISPLACEMENTS[1] in sure:
         return DISPLACEMENTS[1]
-    guesses = (one.column for one in columns if one.doubt and one.name in DISPLACEMENTS)
+    guesses = (column.column for column in columns if column.doubt and column.name in DISPLACEMENTS)
     return next((name for name in guesses if name in sure), "")
 
 
 def _without(columns: Sequence[FoundColumn]) -> tuple[str, ...]:
     """Return the gauges that are not there beside one that is; what may be one is not said."""
-    seen = {one.name: one.doubt for one in columns if one.name in FORCES}
+    seen = {column.name: column.doubt for column in columns if column.name in FORCES}
     return tuple(name for name in FORCES if name not in seen) if "" in seen.values() else ()
 
 
@@ -164,14 +163,16 @@ def _run(
     speed_m_s, remarks = _speed_m_s(look, sure), {}
     if told is None:
         told = _PLACEHOLDER if line is None else _set_point(line.frequency_hz, phasors)
-        strut = next((one for one in DISPLACEMENTS if one in phasors), None)
+        strut = next(
+            (displacement for displacement in DISPLACEMENTS if displacement in phasors), None
+        )
         if line is None:
             remarks["frequency_hz"] = "NOT FOUND: put in what was set"
         if strut is None:
             remarks["eccentricity_mm"] = (
                 "NOT FOUND, since no displacement is sure: put in what was set"
             )
-        if not all(one in phasors for one in DISPLACEMENTS):
+        if not all(displacement in phasors for displacement in DISPLACEMENTS):
             remarks["strut_phase_deg"] = _NOT_SAID
         if speed_m_s is None:
             remarks["carriage_speed_m_s"] = f"{_NOT_SAID}; without it the carriage stands"
@@ -191,7 +192,7 @@ def _run(
 
 
 def _set_point(frequency_hz: float, phasors: dict[str, complex]) -> SetPoint:
-    aft, fore = (phasors.get(one) for one in DISPLACEMENTS)
+    aft, fore = (phasors.get(displacement) for displacement in DISPLACEMENTS)
     moved = aft if aft is not None else fore
     turned = fore / aft if aft and fore else 1.0
     return SetPoint(
@@ -230,14 +231,14 @@ def _sensors(
     for name, column in sure.items():
         if name not in CHANNELS:
             continue
-        holding = [one for one in looks if column.column in one.steps]
+        holding = [look for look in looks if column.column in look.steps]
         # A shaft that turns evenly is sampled at angles of a grid of its own.
         turns = name == SHAFT_ANGLE.name
         step = None if turns else smallest_step(one.steps[column.column] for one in holding)
         quiet = [
-            one.noise[column.column]
-            for one, stands in zip(looks, rests, strict=True)
-            if stands and column.column in one.noise
+            look.noise[column.column]
+            for look, stands in zip(looks, rests, strict=True)
+            if stands and column.column in look.noise
         ]
         found = {}
         if quiet:

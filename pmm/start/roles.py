@@ -129,9 +129,9 @@ def _total(odds: FloatArray, given: Mapping[int, int]) -> float:
 def _doubt(reasons: Sequence[Evidence], instead: Sequence[str]) -> str:
     if instead:
         return f"{' and '.join(instead)} may be it as well"
-    against = [one.said for one in reasons if one.odds < 0.0]
+    against = [reason.said for reason in reasons if reason.odds < 0.0]
     return "; ".join(against) or "nothing but " + " and ".join(
-        one.said for one in reasons if one.odds > 0.0
+        reason.said for reason in reasons if reason.odds > 0.0
     )
 
 

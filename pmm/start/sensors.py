@@ -18,10 +18,7 @@ _MOSTLY: Final = 0.95  # of the gaps so near: samples that were filled in lie be
 def step_of(values: FloatArray) -> float | None:
     """Return the step of numbers that lie on a grid, of a converter or of a file's digits.
 
-    Returns
-    -------
-    float or None
-        ``None`` where they lie on none, as those of full precision do, or are too few to tell.
+    It is ``None`` where they lie on none, as those of full precision do, or are too few to tell.
     """
     levels = np.unique(values[np.isfinite(values)])
     if levels.size < _FEWEST_LEVELS:

@@ -126,7 +126,9 @@ def _apart(lines: Sequence[SharedLine]) -> list[SharedLine]:
 
 
 def _judged(recording: Recording, line: SharedLine) -> tuple[SharedLine, float]:
-    names = [one for one in recording.channel_names if one != line.channel]
+    names = [
+        channel_name for channel_name in recording.channel_names if channel_name != line.channel
+    ]
     known = shares(recording, line.reference, names)
     others = tuple(sorted(one for one, share in known.items() if share.first > _SHARED))
     alike = max([_ALONE, *(share.first for share in known.values())])

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import lru_cache
-from typing import ClassVar, Final
+from typing import Final
 
 import numpy as np
 
@@ -44,7 +44,7 @@ class LowPass:
     kind: FilterKind = FilterKind.RC
     order: int = 1
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.cutoff_hz) and self.cutoff_hz > 0.0):
@@ -116,7 +116,7 @@ class BridgeCarrier:
     phase_error_rad: float = 0.0
     demodulated: bool = True
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def modulation(self, time_s: FloatArray) -> FloatArray | float:
         """Return what the signal is multiplied by."""

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -58,8 +58,8 @@ class Acquisition:
     carriage_speed: Digitiser | None = None
     force_x: Digitiser | None = None
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
-    name: ClassVar[str] = "acquisition"
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
+    name = "acquisition"
 
     @cached_property
     def lines(self) -> tuple[RecordedChannel, ...]:

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -11,7 +10,7 @@ from hardware.description.errors import ConfigurationError
 from sim import signals
 from sim.acquisition.crossings import quintic, root
 from sim.acquisition.noise import NoiseState, draw_normal, start_stream
-from sim.signals import Signal, Signals
+from sim.signals import Signals
 from sim.solve.period import Period, Spectra
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
 
@@ -67,14 +66,14 @@ class PhotocellStage:
     extra_every: int = 0
     extra_after_s: float = 0.01
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
-    name: ClassVar[str] = "photocell"
-    reads: ClassVar[tuple[Signal, ...]] = (
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
+    name = "photocell"
+    reads = (
         signals.SHAFT_ANGLE,
         signals.SHAFT_SPEED,
         signals.SHAFT_ACCELERATION,
     )
-    writes: ClassVar[tuple[Signal, ...]] = (signals.PHOTOCELL_EDGE_TIME,)
+    writes = (signals.PHOTOCELL_EDGE_TIME,)
 
     def start(self, sample_rate_hz: float, seed: int) -> PhotocellState:
         """Return the state before the first sample."""

@@ -20,7 +20,7 @@ from hardware.description.simulation_tables import (
     with_preset,
 )
 from hardware.driver import read_settings
-from sim.model.coefficients import HullCoefficients
+from sim.model.parameters import HullCoefficients
 from sim.model.water.radiation_file import RadiationFile
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 

@@ -2,12 +2,11 @@
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
 from sim import signals
-from sim.signals import Signal, Signals
+from sim.signals import Signals
 from sim.solve.period import Period, Spectra
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
 
@@ -20,7 +19,7 @@ class Fluctuation:
     frequency_hz: float
     phase_rad: float = 0.0
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
 
 @dataclass(frozen=True)
@@ -38,7 +37,7 @@ class CarriageSettings:
     speed_error: float = 0.0
     fluctuations: tuple[Fluctuation, ...] = ()
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
 
 @dataclass(frozen=True)
@@ -48,9 +47,9 @@ class Carriage:
     speed_m_s: float
     settings: CarriageSettings = CarriageSettings()
 
-    name: ClassVar[str] = "carriage"
-    reads: ClassVar[tuple[Signal, ...]] = ()
-    writes: ClassVar[tuple[Signal, ...]] = (signals.CARRIAGE_SPEED,)
+    name = "carriage"
+    reads = ()
+    writes = (signals.CARRIAGE_SPEED,)
 
     @property
     def mean_m_s(self) -> float:

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import ClassVar
 
 import numpy as np
 
@@ -39,7 +38,7 @@ class Gear:
     damping_n_m_s_rad: float = 20.0
     crank_inertia_kg_m2: float = 0.02
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def __post_init__(self) -> None:
         for key in ("backlash_rad", "stiffness_n_m_rad", "crank_inertia_kg_m2"):
@@ -60,16 +59,13 @@ def geared(motor: Motor | None, gear: Gear, added_inertia_kg_m2: float) -> Linea
 
     and the motor feels the same torque, less T.
 
+    Inputs: load torque T and c (N m). Outputs: angle (rad), speed (rad/s) and acceleration (rad/s2)
+    of the cranks; opening d_m - d of the gear (rad).
+
     Parameters
     ----------
     motor
         ``None`` for one that turns as it is told.
-
-    Returns
-    -------
-    LinearSystem
-        Inputs: load torque T and c (N m). Outputs: angle (rad), speed (rad/s) and acceleration
-        (rad/s2) of the cranks; opening d_m - d of the gear (rad).
     """
     front = _told() if motor is None else closed_loop(motor, 0.0)
     m, inertia = len(front.A), gear.crank_inertia_kg_m2 + added_inertia_kg_m2

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,8 +13,8 @@ from sim import signals
 from sim.drive.gear import geared
 from sim.drive.motor import Cogging, Guides, Motor, closed_loop, droop
 from sim.drive.prescribed_drive import SHAFT, DriveSettings, ShaftMotion, shaft_over
-from sim.signals import Signal, Signals
-from sim.solve.coupled_march import TORQUE_DEGREE, ShaftSystem
+from sim.drive.shaft_system import TORQUE_DEGREE, ShaftSystem
+from sim.signals import Signals
 from sim.solve.linear_system import Hold, LinearSystem, causal_hold
 from sim.solve.period import Period, Spectra
 from sim.solve.relaxation import Tail
@@ -45,9 +45,9 @@ class LoadedDrive:
     motor: Motor | None
     reflected_inertia_kg_m2: float = 0.0
 
-    name: ClassVar[str] = "drive"
-    reads: ClassVar[tuple[Signal, ...]] = (signals.LOAD_TORQUE,)
-    writes: ClassVar[tuple[Signal, ...]] = SHAFT
+    name = "drive"
+    reads = (signals.LOAD_TORQUE,)
+    writes = SHAFT
 
     def start(self, sample_rate_hz: float, seed: int) -> LoadedState:
         """Return the state before the first sample: no deviation yet."""

@@ -8,7 +8,7 @@ speed nothing deviates. Load is what the struts ask, and what the inertia asks d
 from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import ClassVar, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -32,7 +32,7 @@ class SpeedLoop:
     proportional: float = 0.0
     integral: float = 0.0
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Cogging:
     torque_n_m: float
     phase_rad: float = 0.0
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Guides:
     coulomb_n: float = 0.0
     viscous_n_s_m: float = 0.0
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
 
 class Motor(Hashable, Protocol):
@@ -113,7 +113,7 @@ class ShuntMotor:
     cogging: tuple[Cogging, ...] = ()
     guides: Guides = Guides()
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     @property
     def shaft_inertia_kg_m2(self) -> float:
@@ -154,7 +154,7 @@ class Servo:
     cogging: tuple[Cogging, ...] = ()
     guides: Guides = Guides()
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     @property
     def shaft_inertia_kg_m2(self) -> float:
@@ -173,10 +173,7 @@ class Servo:
 def closed_loop(motor: Motor, added_inertia_kg_m2: float) -> LinearSystem:
     """Return the closed loop from load torque to the shaft's deviation, by python-control.
 
-    Returns
-    -------
-    LinearSystem
-        Input: load torque (N m). Outputs: angle (rad), speed (rad/s), acceleration (rad/s2).
+    Input: load torque (N m). Outputs: angle (rad), speed (rad/s), acceleration (rad/s2).
     """
     return _closed(as_rows(np.hstack(motor.plant(added_inertia_kg_m2))), motor.loop)
 

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from hardware.description.arrays import FloatArray
 from sim import signals
 from sim.drive.gear import Gear
 from sim.drive.motor import Guides, Servo, ShuntMotor
-from sim.signals import Signal, Signals
+from sim.signals import Signals
 from sim.solve.period import Period, Spectra
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
 
@@ -51,7 +51,7 @@ class SpeedRipple:
     relative: float
     phase_rad: float = 0.0
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class DriveSettings:
     gear: Gear | None = None
     guides: Guides = field(default_factory=Guides)
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def frequency_hz(self, set_hz: float) -> float:
         """Return the frequency at which the shaft turns without load if ``set_hz`` is set."""
@@ -169,9 +169,9 @@ class ConstantSpeedDrive:
     frequency_hz: float
     settings: DriveSettings = DriveSettings()
 
-    name: ClassVar[str] = "drive"
-    reads: ClassVar[tuple[Signal, ...]] = ()
-    writes: ClassVar[tuple[Signal, ...]] = SHAFT
+    name = "drive"
+    reads = ()
+    writes = SHAFT
 
     def start(self, sample_rate_hz: float, seed: int) -> None:
         """Return no state: the motion follows from the time alone."""

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import ClassVar, Final
+from typing import Final
 
 import numpy as np
 
@@ -29,10 +29,10 @@ class AmplifierLag(Effect):
     other forms have the same lag at low frequencies.
     """
 
-    code: ClassVar[str] = "A1"
-    name: ClassVar[str] = "amplifier-lag"
-    title: ClassVar[str] = "Low-pass of the force amplifiers"
-    stage: ClassVar[StageName] = StageName.ACQUISITION
+    code = "A1"
+    name = "amplifier-lag"
+    title = "Low-pass of the force amplifiers"
+    stage = StageName.ACQUISITION
 
     cutoff_hz: float = parameter(10.0, 0.5, _HIGHEST_HZ, "Hz", "3 dB down", one_sign=OneSign.RATE)
     poles: float = parameter(

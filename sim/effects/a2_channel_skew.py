@@ -1,7 +1,6 @@
 """A2: channels that are scanned one after the other."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -21,10 +20,10 @@ class ChannelSkew(Effect):
     then late.
     """
 
-    code: ClassVar[str] = "A2"
-    name: ClassVar[str] = "channel-skew"
-    title: ClassVar[str] = "Sampling skew of the force channels"
-    stage: ClassVar[StageName] = StageName.ACQUISITION
+    code = "A2"
+    name = "channel-skew"
+    title = "Sampling skew of the force channels"
+    stage = StageName.ACQUISITION
 
     aft_s: float = parameter(0.0, -0.02, 0.02, "s", "delay of the aft force")
     fore_s: float = parameter(1e-3, -0.02, 0.02, "s", "delay of the fore force")

@@ -1,7 +1,6 @@
 """A3: a photocell whose mark is not where the shaft angle is zero."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -20,10 +19,10 @@ class PhotocellAngle(Effect):
     in-phase part and adds ``alpha S`` to the quadrature.
     """
 
-    code: ClassVar[str] = "A3"
-    name: ClassVar[str] = "photocell-angle"
-    title: ClassVar[str] = "Angular offset of the photocell's mark"
-    stage: ClassVar[StageName] = StageName.PHOTOCELL
+    code = "A3"
+    name = "photocell-angle"
+    title = "Angular offset of the photocell's mark"
+    stage = StageName.PHOTOCELL
 
     late_rad: float = parameter(0.01, -0.2, 0.2, "rad", "shaft angle at which the pulse comes")
 

@@ -1,7 +1,6 @@
 """A4: a photocell, or the logic behind it, that is slow."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -21,10 +20,10 @@ class PhotocellDelay(Effect):
     same filter each, the delay is negative.
     """
 
-    code: ClassVar[str] = "A4"
-    name: ClassVar[str] = "photocell-delay"
-    title: ClassVar[str] = "Delay of the photocell's pulse"
-    stage: ClassVar[StageName] = StageName.PHOTOCELL
+    code = "A4"
+    name = "photocell-delay"
+    title = "Delay of the photocell's pulse"
+    stage = StageName.PHOTOCELL
 
     delay_s: float = parameter(
         1e-3, -0.05, 0.05, "s", "from the mark to the pulse, beyond that of the channels"

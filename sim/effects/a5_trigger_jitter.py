@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -23,13 +22,13 @@ class TriggerJitter(Effect):
     the number of cycles.
     """
 
-    code: ClassVar[str] = "A5"
-    name: ClassVar[str] = "trigger-jitter"
-    title: ClassVar[str] = "Jitter of the photocell's pulses"
-    stage: ClassVar[StageName] = StageName.PHOTOCELL
-    repeats: ClassVar[bool] = False
-    by_chance: ClassVar[bool] = True
-    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (DeviationTrace.PERIODS, DeviationTrace.CYCLES)
+    code = "A5"
+    name = "trigger-jitter"
+    title = "Jitter of the photocell's pulses"
+    stage = StageName.PHOTOCELL
+    repeats = False
+    by_chance = True
+    shows_in = (DeviationTrace.PERIODS, DeviationTrace.CYCLES)
 
     jitter_rad: float = parameter(
         5e-3, 0.0, 0.1, "rad", "sigma, as an angle of the shaft", one_sign=OneSign.SCATTER

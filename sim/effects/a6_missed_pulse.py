@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import DeviationTrace, Effect, OneSign, Signature, StageName, parameter
@@ -20,12 +19,12 @@ class MissedPulse(Effect):
     obvious.
     """
 
-    code: ClassVar[str] = "A6"
-    name: ClassVar[str] = "missed-pulse"
-    title: ClassVar[str] = "Missed pulses of the photocell"
-    stage: ClassVar[StageName] = StageName.PHOTOCELL
-    repeats: ClassVar[bool] = False
-    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (DeviationTrace.PULSES,)
+    code = "A6"
+    name = "missed-pulse"
+    title = "Missed pulses of the photocell"
+    stage = StageName.PHOTOCELL
+    repeats = False
+    shows_in = (DeviationTrace.PULSES,)
 
     every: float = parameter(
         20.0,

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import ClassVar, Final
+from typing import Final
 
 import numpy as np
 
@@ -24,11 +24,11 @@ class LateGate(Effect):
     leaks into every other, slowly falling with their distance.
     """
 
-    code: ClassVar[str] = "A7"
-    name: ClassVar[str] = "late-gate"
-    title: ClassVar[str] = "Window of a non-integer number of cycles"
-    stage: ClassVar[StageName] = StageName.PHOTOCELL
-    repeats: ClassVar[bool] = False
+    code = "A7"
+    name = "late-gate"
+    title = "Window of a non-integer number of cycles"
+    stage = StageName.PHOTOCELL
+    repeats = False
 
     fraction: float = parameter(
         0.1,

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -33,14 +32,14 @@ class Hum(Effect):
     looks for it at the frequencies that mains have: a line elsewhere is something else.
     """
 
-    code: ClassVar[str] = "A8"
-    name: ClassVar[str] = "hum"
-    title: ClassVar[str] = "Hum of the mains, and its alias"
-    stage: ClassVar[StageName] = StageName.ACQUISITION
-    repeats: ClassVar[bool] = False
-    by_chance: ClassVar[bool] = True
-    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (DeviationTrace.BESIDE, DeviationTrace.CYCLES)
-    shown_by: ClassVar[tuple[FurtherMeasurement, ...]] = (
+    code = "A8"
+    name = "hum"
+    title = "Hum of the mains, and its alias"
+    stage = StageName.ACQUISITION
+    repeats = False
+    by_chance = True
+    shows_in = (DeviationTrace.BESIDE, DeviationTrace.CYCLES)
+    shown_by = (
         FurtherMeasurement.REST,
         FurtherMeasurement.INJECTION,
     )

@@ -9,8 +9,9 @@ from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature
 from sim.effects.situation import Situation
 from sim.effects.switching import switch_on
+from sim.periodic import SteadyState
 from sim.rig import SimulatedRig
-from sim.solve.periodic import SteadyState, steady_run
+from sim.run import steady_run
 
 # Of the nominal signal: a smaller change is none.
 SMALLEST: Final = 1e-6

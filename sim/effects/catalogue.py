@@ -74,10 +74,7 @@ def build_from(
 ) -> Effect:
     """Build an effect from its name and some of its parameters.
 
-    Raises
-    ------
-    ConfigurationError
-        As :func:`build` does.
+    It raises what :func:`build` raises.
     """
     kind = find(name, more)
     return kind(**{key: _setting(kind, key, value) for key, value in parameters.items()})

@@ -1,7 +1,6 @@
 """D1: a speed that varies over a revolution: eccentric gears, a joint."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -22,10 +21,10 @@ class SpeedRippleEffect(Effect):
     no pure sine: its double is beside it.
     """
 
-    code: ClassVar[str] = "D1"
-    name: ClassVar[str] = "speed-ripple"
-    title: ClassVar[str] = "Speed that varies over a revolution"
-    stage: ClassVar[StageName] = StageName.DRIVE
+    code = "D1"
+    name = "speed-ripple"
+    title = "Speed that varies over a revolution"
+    stage = StageName.DRIVE
 
     relative: float = parameter(
         0.005, 0.0, 0.03, "1", "amplitude of the speed over its mean", one_sign=OneSign.AMPLITUDE

@@ -1,7 +1,6 @@
 """D1b: a torque that varies with the shaft's angle, on a motor that yields to it."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -23,10 +22,10 @@ class TorqueCogging(Effect):
     Poles and slots make no pure sine: its double is beside it.
     """
 
-    code: ClassVar[str] = "D1b"
-    name: ClassVar[str] = "torque-cogging"
-    title: ClassVar[str] = "Torque that varies with the shaft's angle"
-    stage: ClassVar[StageName] = StageName.DRIVE
+    code = "D1b"
+    name = "torque-cogging"
+    title = "Torque that varies with the shaft's angle"
+    stage = StageName.DRIVE
 
     torque_n_m: float = parameter(
         0.5, 0.0, 20.0, "N m", "amplitude of the torque, at the crank", one_sign=OneSign.AMPLITUDE

@@ -1,7 +1,6 @@
 """D2: a mean speed that falls under load."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
 from sim.drive.motor import droop
@@ -20,11 +19,11 @@ class SpeedDroop(Effect):
     at twice the frequency, which is part of the prediction.
     """
 
-    code: ClassVar[str] = "D2"
-    name: ClassVar[str] = "speed-droop"
-    title: ClassVar[str] = "Mean speed that falls under load"
-    stage: ClassVar[StageName] = StageName.DRIVE
-    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (DeviationTrace.MOTION,)
+    code = "D2"
+    name = "speed-droop"
+    title = "Mean speed that falls under load"
+    stage = StageName.DRIVE
+    shows_in = (DeviationTrace.MOTION,)
 
     droop_rad_s_n_m: float = parameter(
         0.02,

@@ -1,7 +1,6 @@
 """D3: a speed that varies with the load over a revolution."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -22,11 +21,11 @@ class LoadRipple(Effect):
     of the torque. To first order in ``M e^2/J``. What holds the mean speed may swing, or creep.
     """
 
-    code: ClassVar[str] = "D3"
-    name: ClassVar[str] = "load-ripple"
-    title: ClassVar[str] = "Speed that varies with the load over a revolution"
-    stage: ClassVar[StageName] = StageName.DRIVE
-    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (DeviationTrace.MOTION,)
+    code = "D3"
+    name = "load-ripple"
+    title = "Speed that varies with the load over a revolution"
+    stage = StageName.DRIVE
+    shows_in = (DeviationTrace.MOTION,)
 
     inertia_kg_m2: float = parameter(
         5.0, 0.5, 1e6, "kg m2", "motor, gear and flywheel, at crank", one_sign=OneSign.MASS

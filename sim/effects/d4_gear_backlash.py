@@ -1,7 +1,7 @@
 """D4: backlash of the gear before the cranks."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar, Final
+from typing import Final
 
 import numpy as np
 
@@ -30,12 +30,12 @@ class GearBacklash(Effect):
     the gear, 1e7 N m/rad and more can be.
     """
 
-    code: ClassVar[str] = "D4"
-    name: ClassVar[str] = "gear-backlash"
-    title: ClassVar[str] = "Backlash of the gear before the cranks"
-    stage: ClassVar[StageName] = StageName.DRIVE
-    costly: ClassVar[bool] = True
-    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (DeviationTrace.SHAFT,)
+    code = "D4"
+    name = "gear-backlash"
+    title = "Backlash of the gear before the cranks"
+    stage = StageName.DRIVE
+    costly = True
+    shows_in = (DeviationTrace.SHAFT,)
 
     # The nominal gear does not give way at all. Beside it the clearance of a good gear shows, and
     # between teeth that the load hardly bends, before a flywheel: softer ones would have to explain

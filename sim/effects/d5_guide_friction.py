@@ -1,7 +1,6 @@
 """D5: friction of the struts' guides above the dynamometers."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
@@ -19,10 +18,10 @@ class GuideFriction(Effect):
     much at a typical motion.
     """
 
-    code: ClassVar[str] = "D5"
-    name: ClassVar[str] = "guide-friction"
-    title: ClassVar[str] = "Friction of the guides above the dynamometers"
-    stage: ClassVar[StageName] = StageName.DRIVE
+    code = "D5"
+    name = "guide-friction"
+    title = "Friction of the guides above the dynamometers"
+    stage = StageName.DRIVE
 
     friction_n: float = parameter(
         5.0, 0.0, 50.0, "N", "friction force at each strut", one_sign=OneSign.FRICTION

@@ -1,7 +1,6 @@
 """D6: a frequency that is not what was set, or a clock that is wrong."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
@@ -16,10 +15,10 @@ class SetFrequencyError(Effect):
     Analysed at the wrong frequency over N periods a harmonic is also sinc(n N d) as large.
     """
 
-    code: ClassVar[str] = "D6"
-    name: ClassVar[str] = "frequency-error"
-    title: ClassVar[str] = "Frequency not as set"
-    stage: ClassVar[StageName] = StageName.DRIVE
+    code = "D6"
+    name = "frequency-error"
+    title = "Frequency not as set"
+    stage = StageName.DRIVE
 
     relative: float = parameter(1e-3, -0.02, 0.02, "1", "real over set frequency, less 1")
 

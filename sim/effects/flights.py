@@ -74,17 +74,14 @@ def flight_harmonics(
 ) -> ComplexArray:
     """Return the harmonics of the places over a turn, ``x = Re sum X_n exp(i n th)``.
 
+    The result has the shape ``(POINTS/2 + 1, n)``.
+
     Parameters
     ----------
     pull
         Over the points of a turn, shape ``(POINTS, n)``.
     inertia
         At each point, ``(POINTS, n, n)``.
-
-    Returns
-    -------
-    ComplexArray
-        Shape ``(POINTS/2 + 1, n)``.
     """
     places = np.empty_like(pull)
     for _ in range(_TURNS):

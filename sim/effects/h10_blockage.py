@@ -1,7 +1,6 @@
 """H10: a tank that is narrow: the water flows past the model faster than the carriage runs."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
@@ -19,10 +18,10 @@ class Blockage(Effect):
     follow as well.
     """
 
-    code: ClassVar[str] = "H10"
-    name: ClassVar[str] = "blockage"
-    title: ClassVar[str] = "Blockage by a narrow tank"
-    stage: ClassVar[StageName] = StageName.MODEL
+    code = "H10"
+    name = "blockage"
+    title = "Blockage by a narrow tank"
+    stage = StageName.MODEL
 
     section_ratio: float = parameter(
         0.01,

@@ -1,7 +1,6 @@
 """H11: a carriage that runs faster, or slower, than it was told."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 from hardware.description import channels
 from hardware.description.setpoint import SetPoint
@@ -21,10 +20,10 @@ class CarriageSpeedError(Effect):
     1 m/s.
     """
 
-    code: ClassVar[str] = "H11"
-    name: ClassVar[str] = "carriage-speed"
-    title: ClassVar[str] = "Error of the carriage's mean speed"
-    stage: ClassVar[StageName] = StageName.CARRIAGE
+    code = "H11"
+    name = "carriage-speed"
+    title = "Error of the carriage's mean speed"
+    stage = StageName.CARRIAGE
 
     relative: float = parameter(0.003, -0.05, 0.05, "1", "d, relative to the speed")
     steady: float = parameter(

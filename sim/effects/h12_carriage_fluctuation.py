@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -31,14 +30,14 @@ class CarriageFluctuation(Effect):
     The speed's record has the line at W itself. A run at another speed moves it.
     """
 
-    code: ClassVar[str] = "H12"
-    name: ClassVar[str] = "carriage-fluctuation"
-    title: ClassVar[str] = "Fluctuation of the carriage's speed"
-    stage: ClassVar[StageName] = StageName.CARRIAGE
-    repeats: ClassVar[bool] = False
-    by_chance: ClassVar[bool] = True
+    code = "H12"
+    name = "carriage-fluctuation"
+    title = "Fluctuation of the carriage's speed"
+    stage = StageName.CARRIAGE
+    repeats = False
+    by_chance = True
     # A wave of few periods is a trend, too.
-    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (
+    shows_in = (
         DeviationTrace.BESIDE,
         DeviationTrace.CYCLES,
         DeviationTrace.TREND,

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import ClassVar, Self
+from typing import Self
 
 import numpy as np
 
@@ -36,19 +36,19 @@ class ResidualWaves(Effect):
     frequency, it is in the harmonic itself.
     """
 
-    code: ClassVar[str] = "H13"
-    name: ClassVar[str] = "residual-waves"
-    title: ClassVar[str] = "Waves left by the run before"
-    stage: ClassVar[StageName] = StageName.MODEL
-    repeats: ClassVar[bool] = False
-    by_chance: ClassVar[bool] = True
+    code = "H13"
+    name = "residual-waves"
+    title = "Waves left by the run before"
+    stage = StageName.MODEL
+    repeats = False
+    by_chance = True
     # A wave of few periods is a trend, too.
-    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (
+    shows_in = (
         DeviationTrace.BESIDE,
         DeviationTrace.CYCLES,
         DeviationTrace.TREND,
     )
-    shown_by: ClassVar[tuple[FurtherMeasurement, ...]] = (FurtherMeasurement.REST,)
+    shown_by = (FurtherMeasurement.REST,)
 
     force_n: float = parameter(
         3.0, 0.0, 100.0, "N", "amplitude when the run before has ended", one_sign=OneSign.AMPLITUDE

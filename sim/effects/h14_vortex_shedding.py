@@ -1,7 +1,7 @@
 """H14: vortices that the struts shed, and struts that ventilate."""
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar, Final, Self
+from typing import TYPE_CHECKING, Final, Self
 
 import numpy as np
 
@@ -34,10 +34,10 @@ class VortexShedding(Effect):
     it.
     """
 
-    code: ClassVar[str] = "H14"
-    name: ClassVar[str] = "vortex-shedding"
-    title: ClassVar[str] = "Vortex shedding and ventilation of the struts"
-    stage: ClassVar[StageName] = StageName.MODEL
+    code = "H14"
+    name = "vortex-shedding"
+    title = "Vortex shedding and ventilation of the struts"
+    stage = StageName.MODEL
 
     lift_n_s2_m2: float = parameter(
         0.5,

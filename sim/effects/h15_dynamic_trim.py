@@ -1,7 +1,6 @@
 """H15: a model that sinks and trims at speed, as far as its guides let it."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -22,10 +21,10 @@ class DynamicTrim(Effect):
     the speed, as much at 1 m/s.
     """
 
-    code: ClassVar[str] = "H15"
-    name: ClassVar[str] = "dynamic-trim"
-    title: ClassVar[str] = "Sinkage and trim at speed"
-    stage: ClassVar[StageName] = StageName.MODEL
+    code = "H15"
+    name = "dynamic-trim"
+    title = "Sinkage and trim at speed"
+    stage = StageName.MODEL
 
     load_n_s2_m2: float = parameter(2.0, -100.0, 100.0, "N s2/m2", "mean force over U^2")
     k1_n_s2_m3: float = parameter(100.0, -3000.0, 3000.0, "N s2/m3", "stiffness over U^2")

@@ -1,7 +1,6 @@
 """H1: an added mass that is not the one that was believed."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -20,10 +19,10 @@ class AddedMassError(Effect):
     Relative to the added mass at the run's frequency; the coupling of both motions is left.
     """
 
-    code: ClassVar[str] = "H1"
-    name: ClassVar[str] = "added-mass-error"
-    title: ClassVar[str] = "Added mass other than believed"
-    stage: ClassVar[StageName] = StageName.MODEL
+    code = "H1"
+    name = "added-mass-error"
+    title = "Added mass other than believed"
+    stage = StageName.MODEL
 
     translation: float = parameter(
         0.1,

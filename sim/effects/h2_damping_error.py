@@ -1,7 +1,6 @@
 """H2: a linear damping that is not the one that was believed."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -20,10 +19,10 @@ class DampingError(Effect):
     Relative to the damping at the run's frequency; the coupling of both motions is left.
     """
 
-    code: ClassVar[str] = "H2"
-    name: ClassVar[str] = "damping-error"
-    title: ClassVar[str] = "Linear damping other than believed"
-    stage: ClassVar[StageName] = StageName.MODEL
+    code = "H2"
+    name = "damping-error"
+    title = "Linear damping other than believed"
+    stage = StageName.MODEL
 
     translation: float = parameter(
         0.2,

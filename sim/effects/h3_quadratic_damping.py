@@ -1,7 +1,6 @@
 """H3: damping that grows with the square of the velocity: separation at bilges and keel."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -28,10 +27,10 @@ class QuadraticDamping(Effect):
     of 5/3; that of a round bilge grows with the amplitude.
     """
 
-    code: ClassVar[str] = "H3"
-    name: ClassVar[str] = "quadratic-damping"
-    title: ClassVar[str] = "Quadratic damping"
-    stage: ClassVar[StageName] = StageName.MODEL
+    code = "H3"
+    name = "quadratic-damping"
+    title = "Quadratic damping"
+    stage = StageName.MODEL
 
     translation_n_s2_m2: float = parameter(
         300.0,

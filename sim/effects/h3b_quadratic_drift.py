@@ -1,7 +1,7 @@
 """H3b: quadratic damping of a model that drifts, too: it stands askew, or there is a current."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -32,10 +32,10 @@ class QuadraticDrift(Effect):
     drift's. The effect brings its own quadratic damping: do not add that of H3 as well.
     """
 
-    code: ClassVar[str] = "H3b"
-    name: ClassVar[str] = "quadratic-drift"
-    title: ClassVar[str] = "Quadratic damping with a mean drift"
-    stage: ClassVar[StageName] = StageName.MODEL
+    code = "H3b"
+    name = "quadratic-drift"
+    title = "Quadratic damping with a mean drift"
+    stage = StageName.MODEL
 
     translation_n_s2_m2: float = parameter(
         300.0,

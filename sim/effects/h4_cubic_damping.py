@@ -1,7 +1,6 @@
 """H4: damping that grows with the third power of the velocity."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -27,10 +26,10 @@ class CubicDamping(Effect):
     to 3.5, whatever else there is.
     """
 
-    code: ClassVar[str] = "H4"
-    name: ClassVar[str] = "cubic-damping"
-    title: ClassVar[str] = "Cubic damping"
-    stage: ClassVar[StageName] = StageName.MODEL
+    code = "H4"
+    name = "cubic-damping"
+    title = "Cubic damping"
+    stage = StageName.MODEL
 
     translation_n_s3_m3: float = parameter(
         500.0,

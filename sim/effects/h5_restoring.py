@@ -1,7 +1,6 @@
 """H5: restoring that is not proportional: a flaring hull, a deck edge."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -23,10 +22,10 @@ class NonlinearRestoring(Effect):
     of a polynomial's two; they are as large at a typical motion.
     """
 
-    code: ClassVar[str] = "H5"
-    name: ClassVar[str] = "nonlinear-restoring"
-    title: ClassVar[str] = "Non-linear restoring"
-    stage: ClassVar[StageName] = StageName.MODEL
+    code = "H5"
+    name = "nonlinear-restoring"
+    title = "Non-linear restoring"
+    stage = StageName.MODEL
 
     k2_n_m2: float = parameter(5000.0, -1e5, 1e5, "N/m2", "quadratic part, in heave")
     k3_n_m3: float = parameter(50000.0, -2e6, 2e6, "N/m3", "cubic part, in heave")

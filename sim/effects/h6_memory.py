@@ -1,7 +1,7 @@
 """H6: a water that remembers: added mass and damping depend on the frequency."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar, Final
+from typing import Final
 
 import numpy as np
 
@@ -24,10 +24,10 @@ class Memory(Effect):
     a share of it fades more slowly, or sooner; the whole is as large at a typical frequency.
     """
 
-    code: ClassVar[str] = "H6"
-    name: ClassVar[str] = "memory"
-    title: ClassVar[str] = "Memory of the water"
-    stage: ClassVar[StageName] = StageName.MODEL
+    code = "H6"
+    name = "memory"
+    title = "Memory of the water"
+    stage = StageName.MODEL
 
     translation_n_m: float = parameter(
         200.0, 0.0, 50000.0, "N/m", "K of heave or sway", one_sign="waves only carry energy away"

@@ -1,7 +1,6 @@
 """H7: waves that come back from the tank's walls."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -29,10 +28,10 @@ class TankWalls(Effect):
     the walls take more of short waves.
     """
 
-    code: ClassVar[str] = "H7"
-    name: ClassVar[str] = "tank-walls"
-    title: ClassVar[str] = "Reflection from the tank's walls"
-    stage: ClassVar[StageName] = StageName.MODEL
+    code = "H7"
+    name = "tank-walls"
+    title = "Reflection from the tank's walls"
+    stage = StageName.MODEL
 
     breadth_m: float = parameter(4.2, 0.5, 50.0, "m", "of the tank", one_sign=OneSign.LENGTH)
     depth_m: float = parameter(2.5, 0.1, 20.0, "m", "of the water", one_sign=OneSign.LENGTH)

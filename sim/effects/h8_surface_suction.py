@@ -1,7 +1,6 @@
 """H8: suction that grows towards the free surface: a model that is not the same up and down."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -23,10 +22,10 @@ class SurfaceSuction(Effect):
     the cosine at order 2.
     """
 
-    code: ClassVar[str] = "H8"
-    name: ClassVar[str] = "surface-suction"
-    title: ClassVar[str] = "Asymmetry by the free surface"
-    stage: ClassVar[StageName] = StageName.MODEL
+    code = "H8"
+    name = "surface-suction"
+    title = "Asymmetry by the free surface"
+    stage = StageName.MODEL
 
     suction_n_s2_m2: float = parameter(5.0, -200.0, 200.0, "N s2/m2", "F: force at rest over U^2")
     rate_1_m: float = parameter(

@@ -1,7 +1,6 @@
 """H9: suction that grows towards the bottom of shallow water."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -25,10 +24,10 @@ class GroundSuction(Effect):
     long hull's sources, 3 of a couple of them.
     """
 
-    code: ClassVar[str] = "H9"
-    name: ClassVar[str] = "ground-suction"
-    title: ClassVar[str] = "Suction towards the bottom"
-    stage: ClassVar[StageName] = StageName.MODEL
+    code = "H9"
+    name = "ground-suction"
+    title = "Suction towards the bottom"
+    stage = StageName.MODEL
 
     suction_n_s2_m2: float = parameter(5.0, -200.0, 200.0, "N s2/m2", "F: force at rest over U^2")
     clearance_m: float = parameter(

@@ -1,11 +1,12 @@
 """Common parts of the water's effects: loads of changed coefficients, and motions at a point.
 
 No effect itself. Matrices are (force, moment) per (translation, rotation), as in
-:class:`sim.model.coefficients.HullCoefficients`.
+:class:`sim.model.parameters.HullCoefficients`.
 """
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,11 +14,14 @@ from hardware.description.arrays import ComplexArray, FloatArray
 from sim.effects.effect import Signature
 from sim.effects.situation import Situation
 from sim.effects.situation import at_struts as at_struts_of
-from sim.model.coefficients import HullCoefficients, Matrix
 from sim.model.force_law import ForceLaw
 from sim.model.law_point import Acting, Point
+from sim.model.water.hydrostatics import Matrix
 from sim.model.water.radiation import Radiation, constant
 from sim.rig import SimulatedRig
+
+if TYPE_CHECKING:
+    from sim.model.parameters import HullCoefficients
 
 HIGHEST = 3  # order that a signature names
 STRUTS = (Point.AFT, Point.FORE)

@@ -1,7 +1,6 @@
 """K1: a crank with a connecting rod of finite length in place of a yoke."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.crank import linkage_signature
@@ -23,10 +22,10 @@ class ConnectingRod(Effect):
     taken off, and the even harmonics change their sign.
     """
 
-    code: ClassVar[str] = "K1"
-    name: ClassVar[str] = "connecting-rod"
-    title: ClassVar[str] = "Crank with a connecting rod of finite length"
-    stage: ClassVar[StageName] = StageName.MECHANISM
+    code = "K1"
+    name = "connecting-rod"
+    title = "Crank with a connecting rod of finite length"
+    stage = StageName.MECHANISM
 
     rod_length_m: float = parameter(
         1.5,

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.crank import linkage_signature
@@ -18,10 +17,10 @@ class SlotTilt(Effect):
     No harmonics; in proportion to the amplitude, at all frequencies.
     """
 
-    code: ClassVar[str] = "K2"
-    name: ClassVar[str] = "slot-tilt"
-    title: ClassVar[str] = "Yoke's slot not square to the motion"
-    stage: ClassVar[StageName] = StageName.MECHANISM
+    code = "K2"
+    name = "slot-tilt"
+    title = "Yoke's slot not square to the motion"
+    stage = StageName.MECHANISM
 
     tilt_aft_rad: float = parameter(0.005, -0.02, 0.02, "rad", "tilt of the aft strut's slot")
     tilt_fore_rad: float = parameter(0.0, -0.02, 0.02, "rad", "tilt of the fore strut's slot")

@@ -1,7 +1,6 @@
 """K3: an eccentricity that is not what was set."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.crank import linkage_signature
@@ -14,10 +13,10 @@ from sim.rig import SimulatedRig
 class EccentricityError(Effect):
     """``Z_1 d`` whatever the amplitude: an intercept of both phases, in the ratio of Z."""
 
-    code: ClassVar[str] = "K3"
-    name: ClassVar[str] = "eccentricity-error"
-    title: ClassVar[str] = "Eccentricity of a strut not as set"
-    stage: ClassVar[StageName] = StageName.MECHANISM
+    code = "K3"
+    name = "eccentricity-error"
+    title = "Eccentricity of a strut not as set"
+    stage = StageName.MECHANISM
 
     error_aft_m: float = parameter(1e-4, -1e-3, 1e-3, "m", "added to the aft strut's eccentricity")
     error_fore_m: float = parameter(0.0, -1e-3, 1e-3, "m", "added to the fore strut's eccentricity")

@@ -1,7 +1,6 @@
 """K4: a phase between the struts that is not what was set."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.crank import linkage_signature
@@ -18,10 +17,10 @@ class StrutPhaseError(Effect):
     to pitch in quadrature, ``e sin(eps/2)``, and loses eps^2/8.
     """
 
-    code: ClassVar[str] = "K4"
-    name: ClassVar[str] = "strut-phase-error"
-    title: ClassVar[str] = "Phase between the struts not as set"
-    stage: ClassVar[StageName] = StageName.MECHANISM
+    code = "K4"
+    name = "strut-phase-error"
+    title = "Phase between the struts not as set"
+    stage = StageName.MECHANISM
 
     error_rad: float = parameter(0.005, -0.02, 0.02, "rad", "added to the fore strut's phase")
 

@@ -1,7 +1,6 @@
 """K5: the other end of a strut slides as the model turns, and so its angle is another."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -28,10 +27,10 @@ class Foreshortening(Effect):
     move alike.
     """
 
-    code: ClassVar[str] = "K5"
-    name: ClassVar[str] = "foreshortening"
-    title: ClassVar[str] = "The joint slides at its other end: sine for tangent of the angle"
-    stage: ClassVar[StageName] = StageName.MECHANISM
+    code = "K5"
+    name = "foreshortening"
+    title = "The joint slides at its other end: sine for tangent of the angle"
+    stage = StageName.MECHANISM
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the other joint."""

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -23,11 +22,11 @@ class JointPlay(Effect):
     ``-(4 h/pi) (1 - h/e)``; a third harmonic of about 0.4 h. Falls with the amplitude.
     """
 
-    code: ClassVar[str] = "K6"
-    name: ClassVar[str] = "joint-play"
-    title: ClassVar[str] = "Play in the struts' last joints, taken up against friction"
-    stage: ClassVar[StageName] = StageName.MECHANISM
-    taken_up: ClassVar[bool] = True
+    code = "K6"
+    name = "joint-play"
+    title = "Play in the struts' last joints, taken up against friction"
+    stage = StageName.MECHANISM
+    taken_up = True
 
     half_play_m: float = parameter(
         5e-5, 0.0, 1e-3, "m", "clearance to either side, h", one_sign=OneSign.PLAY

@@ -1,7 +1,7 @@
 """K6b: play in the last joint of the struts, where only forces take the model across it."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar, Final
+from typing import Final
 
 import numpy as np
 
@@ -30,12 +30,12 @@ class FreePlay(Effect):
     A rig whose gauges are rigid gets gauges that give way.
     """
 
-    code: ClassVar[str] = "K6b"
-    name: ClassVar[str] = "free-play"
-    title: ClassVar[str] = "Play in the struts' last joints, crossed by inertia"
-    stage: ClassVar[StageName] = StageName.MECHANISM
-    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (DeviationTrace.STEADY,)
-    taken_up: ClassVar[bool] = True
+    code = "K6b"
+    name = "free-play"
+    title = "Play in the struts' last joints, crossed by inertia"
+    stage = StageName.MECHANISM
+    shows_in = (DeviationTrace.STEADY,)
+    taken_up = True
 
     half_play_m: float = parameter(
         5e-5, 1e-7, 1e-3, "m", "clearance to either side, h", one_sign=OneSign.PLAY

@@ -1,7 +1,7 @@
 """K7: a drift (trim) angle is set in another way than is stated."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar, Final
+from typing import Final
 
 import numpy as np
 
@@ -30,10 +30,10 @@ class DriftArrangement(Effect):
     the drift and the amplitude, and with their product in the mean; nothing without a drift.
     """
 
-    code: ClassVar[str] = "K7"
-    name: ClassVar[str] = "drift-arrangement"
-    title: ClassVar[str] = "The drift angle is set in another way than is stated"
-    stage: ClassVar[StageName] = StageName.MECHANISM
+    code = "K7"
+    name = "drift-arrangement"
+    title = "The drift angle is set in another way than is stated"
+    stage = StageName.MECHANISM
 
     way: float = parameter(
         1.0,

@@ -1,7 +1,6 @@
 """M1: a dynamometer whose gain is not the one it was calibrated to."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -19,10 +18,10 @@ class GainError(Effect):
     A static check weight shows it; on one strut only, it couples heave and pitch.
     """
 
-    code: ClassVar[str] = "M1"
-    name: ClassVar[str] = "gain-error"
-    title: ClassVar[str] = "Gain error of the dynamometers"
-    stage: ClassVar[StageName] = StageName.DYNAMOMETERS
+    code = "M1"
+    name = "gain-error"
+    title = "Gain error of the dynamometers"
+    stage = StageName.DYNAMOMETERS
 
     aft: float = parameter(0.005, -0.05, 0.05, "1", "gain error of the aft dynamometer")
     fore: float = parameter(0.0, -0.05, 0.05, "1", "gain error of the fore dynamometer")

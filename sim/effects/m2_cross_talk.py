@@ -1,7 +1,6 @@
 """M2: a dynamometer that feels what another one, or the drag, is loaded with."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 from hardware.description.arrays import ComplexArray
 from hardware.description.setpoint import Medium, SetPoint
@@ -20,10 +19,10 @@ class CrossTalk(Effect):
     what both gauges feel of the drag, whose small part at twice the frequency is left out.
     """
 
-    code: ClassVar[str] = "M2"
-    name: ClassVar[str] = "cross-talk"
-    title: ClassVar[str] = "Cross-talk between the dynamometers, and from the drag"
-    stage: ClassVar[StageName] = StageName.DYNAMOMETERS
+    code = "M2"
+    name = "cross-talk"
+    title = "Cross-talk between the dynamometers, and from the drag"
+    stage = StageName.DYNAMOMETERS
 
     aft: float = parameter(0.01, -0.1, 0.1, "1", "what the aft gauge feels of the fore force")
     fore: float = parameter(0.01, -0.1, 0.1, "1", "what the fore gauge feels of the aft force")

@@ -1,7 +1,6 @@
 """M3: a dynamometer whose characteristic is curved."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
@@ -24,10 +23,10 @@ class QuadraticGauge(Effect):
     thin rings bend it oddly as well, ``F^3``.
     """
 
-    code: ClassVar[str] = "M3"
-    name: ClassVar[str] = "quadratic-gauge"
-    title: ClassVar[str] = "Quadratic non-linearity of the dynamometers"
-    stage: ClassVar[StageName] = StageName.DYNAMOMETERS
+    code = "M3"
+    name = "quadratic-gauge"
+    title = "Quadratic non-linearity of the dynamometers"
+    stage = StageName.DYNAMOMETERS
 
     curvature_1_n: float = parameter(
         2e-6, -1e-4, 1e-4, "1/N", "q of both gauges; 0.1 % of a full scale of 500 N is 2e-6"

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -30,10 +29,10 @@ class GaugeHysteresis(Effect):
     force once (Bouc, Wen): :mod:`sim.gauges.characteristic`.
     """
 
-    code: ClassVar[str] = "M4"
-    name: ClassVar[str] = "gauge-hysteresis"
-    title: ClassVar[str] = "Hysteresis of the dynamometers"
-    stage: ClassVar[StageName] = StageName.DYNAMOMETERS
+    code = "M4"
+    name = "gauge-hysteresis"
+    title = "Hysteresis of the dynamometers"
+    stage = StageName.DYNAMOMETERS
 
     beta_1_n: float = parameter(
         2e-6,

@@ -1,7 +1,6 @@
 """M5: a zero that is not zero."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -20,10 +19,10 @@ class ZeroOffset(Effect):
     only a record at rest tells them apart.
     """
 
-    code: ClassVar[str] = "M5"
-    name: ClassVar[str] = "zero-offset"
-    title: ClassVar[str] = "Zero offset of the dynamometers"
-    stage: ClassVar[StageName] = StageName.DYNAMOMETERS
+    code = "M5"
+    name = "zero-offset"
+    title = "Zero offset of the dynamometers"
+    stage = StageName.DYNAMOMETERS
 
     aft_n: float = parameter(0.3, -5.0, 5.0, "N", "offset of the aft dynamometer")
     fore_n: float = parameter(0.0, -5.0, 5.0, "N", "offset of the fore dynamometer")

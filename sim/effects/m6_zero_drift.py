@@ -1,7 +1,7 @@
 """M6: a zero that wanders off during a run."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar, Final
+from typing import Final
 
 import numpy as np
 
@@ -34,13 +34,13 @@ class ZeroDrift(Effect):
     new load settles; it drifts as far in half a minute.
     """
 
-    code: ClassVar[str] = "M6"
-    name: ClassVar[str] = "zero-drift"
-    title: ClassVar[str] = "Drift of the dynamometers' zero"
-    stage: ClassVar[StageName] = StageName.DYNAMOMETERS
-    repeats: ClassVar[bool] = False
-    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (DeviationTrace.TREND, DeviationTrace.MEAN)
-    shown_by: ClassVar[tuple[FurtherMeasurement, ...]] = (FurtherMeasurement.REST,)
+    code = "M6"
+    name = "zero-drift"
+    title = "Drift of the dynamometers' zero"
+    stage = StageName.DYNAMOMETERS
+    repeats = False
+    shows_in = (DeviationTrace.TREND, DeviationTrace.MEAN)
+    shown_by = (FurtherMeasurement.REST,)
 
     aft_n_s: float = parameter(1e-3, -0.2, 0.2, "N/s", "drift of the aft dynamometer")
     fore_n_s: float = parameter(0.0, -0.2, 0.2, "N/s", "drift of the fore dynamometer")

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import ClassVar, Final, Self
+from typing import Final, Self
 
 import numpy as np
 
@@ -30,12 +30,12 @@ class CampaignDrift(Effect):
     settles; it has drifted as far after the first half hour.
     """
 
-    code: ClassVar[str] = "M6b"
-    name: ClassVar[str] = "campaign-drift"
-    title: ClassVar[str] = "Drift of the dynamometers' zero over the campaign"
-    stage: ClassVar[StageName] = StageName.DYNAMOMETERS
-    repeats: ClassVar[bool] = False
-    shows_in: ClassVar[tuple[DeviationTrace, ...]] = (DeviationTrace.TREND, DeviationTrace.MEAN)
+    code = "M6b"
+    name = "campaign-drift"
+    title = "Drift of the dynamometers' zero over the campaign"
+    stage = StageName.DYNAMOMETERS
+    repeats = False
+    shows_in = (DeviationTrace.TREND, DeviationTrace.MEAN)
 
     aft_n_s: float = parameter(2e-4, -0.01, 0.01, "N/s", "drift of the aft dynamometer")
     fore_n_s: float = parameter(0.0, -0.01, 0.01, "N/s", "drift of the fore dynamometer")

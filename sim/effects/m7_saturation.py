@@ -1,7 +1,6 @@
 """M7: a dynamometer, or its amplifier, that stops at a largest force."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -23,10 +22,10 @@ class Saturation(Effect):
     :func:`sim.gauges.characteristic.limited`.
     """
 
-    code: ClassVar[str] = "M7"
-    name: ClassVar[str] = "saturation"
-    title: ClassVar[str] = "Saturation of the dynamometers"
-    stage: ClassVar[StageName] = StageName.DYNAMOMETERS
+    code = "M7"
+    name = "saturation"
+    title = "Saturation of the dynamometers"
+    stage = StageName.DYNAMOMETERS
 
     upper_n: float = parameter(
         100.0,

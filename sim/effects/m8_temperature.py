@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import ClassVar, Self
+from typing import Self
 
 import numpy as np
 
@@ -32,11 +32,11 @@ class Temperature(Effect):
     scatter. A hall that was heated settles; it is as warm after four hours.
     """
 
-    code: ClassVar[str] = "M8"
-    name: ClassVar[str] = "temperature"
-    title: ClassVar[str] = "Temperature: gain, zero, viscosity and density over the run order"
-    stage: ClassVar[StageName] = StageName.DYNAMOMETERS
-    changes_others: ClassVar[bool] = True
+    code = "M8"
+    name = "temperature"
+    title = "Temperature: gain, zero, viscosity and density over the run order"
+    stage = StageName.DYNAMOMETERS
+    changes_others = True
 
     rate_k_h: float = parameter(0.5, -3.0, 3.0, "K/h", "rise of the temperature", held=True)
     hours: float = parameter(

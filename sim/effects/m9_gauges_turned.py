@@ -1,7 +1,6 @@
 """M9: the dynamometers turn with the rig, and not with the model as is stated; or the other way."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -29,10 +28,10 @@ class GaugesTurned(Effect):
     struts move alike.
     """
 
-    code: ClassVar[str] = "M9"
-    name: ClassVar[str] = "gauges-turned"
-    title: ClassVar[str] = "The gauges turn with the rig for the model, or the model for the rig"
-    stage: ClassVar[StageName] = StageName.DYNAMOMETERS
+    code = "M9"
+    name = "gauges-turned"
+    title = "The gauges turn with the rig for the model, or the model for the rig"
+    stage = StageName.DYNAMOMETERS
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the gauges on the other one."""

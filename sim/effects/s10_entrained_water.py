@@ -1,7 +1,6 @@
 """S10: water that sloshes in the model."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -19,10 +18,10 @@ class EntrainedWater(Effect):
     It moves with the translation at the midpoint, through the water; the model is drained in air.
     """
 
-    code: ClassVar[str] = "S10"
-    name: ClassVar[str] = "entrained-water"
-    title: ClassVar[str] = "Water that sloshes in the model"
-    stage: ClassVar[StageName] = StageName.MODEL
+    code = "S10"
+    name = "entrained-water"
+    title = "Water that sloshes in the model"
+    stage = StageName.MODEL
 
     mass_kg: float = parameter(
         1.5, 0.0, 20.0, "kg", "mass of the water that sloshes", one_sign=OneSign.MASS

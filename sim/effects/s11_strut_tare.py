@@ -1,7 +1,6 @@
 """S11: struts and brackets below the dynamometers, which move and are wet like the model."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -20,10 +19,10 @@ class StrutTare(Effect):
     As the model's own; a run without the model shows it.
     """
 
-    code: ClassVar[str] = "S11"
-    name: ClassVar[str] = "strut-tare"
-    title: ClassVar[str] = "Struts and brackets below the dynamometers"
-    stage: ClassVar[StageName] = StageName.MODEL
+    code = "S11"
+    name = "strut-tare"
+    title = "Struts and brackets below the dynamometers"
+    stage = StageName.MODEL
 
     mass_kg: float = parameter(
         1.0, 0.0, 10.0, "kg", "mass of each strut below its dynamometer", one_sign=OneSign.MASS

@@ -1,7 +1,6 @@
 """S1: struts and dynamometers that give way."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -21,10 +20,10 @@ class GaugeCompliance(Effect):
     w_n after a knock, and a harmonic near w_n is magnified. Present in air.
     """
 
-    code: ClassVar[str] = "S1"
-    name: ClassVar[str] = "gauge-compliance"
-    title: ClassVar[str] = "Struts and dynamometers give way"
-    stage: ClassVar[StageName] = StageName.STRUCTURE
+    code = "S1"
+    name = "gauge-compliance"
+    title = "Struts and dynamometers give way"
+    stage = StageName.STRUCTURE
 
     stiffness_n_m: float = parameter(
         5e5, 2e4, 1e8, "N/m", "stiffness of each strut and gauge", one_sign=OneSign.SPRING

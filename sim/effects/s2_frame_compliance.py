@@ -1,7 +1,6 @@
 """S2: a carriage or frame that gives way to the force of both struts."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -19,10 +18,10 @@ class FrameCompliance(Effect):
     So it vanishes where the struts move against each other.
     """
 
-    code: ClassVar[str] = "S2"
-    name: ClassVar[str] = "frame-compliance"
-    title: ClassVar[str] = "Carriage or frame gives way"
-    stage: ClassVar[StageName] = StageName.STRUCTURE
+    code = "S2"
+    name = "frame-compliance"
+    title = "Carriage or frame gives way"
+    stage = StageName.STRUCTURE
 
     stiffness_n_m: float = parameter(
         5e6, 2e5, 1e9, "N/m", "stiffness of the frame", one_sign=OneSign.SPRING

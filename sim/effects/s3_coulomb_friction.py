@@ -1,7 +1,6 @@
 """S3: Coulomb friction below the dynamometer: seals, trim guides."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -26,10 +25,10 @@ class CoulombFriction(Effect):
     carries, and rubber rubs a little more the faster it slides, ``|v|^p``.
     """
 
-    code: ClassVar[str] = "S3"
-    name: ClassVar[str] = "coulomb-friction"
-    title: ClassVar[str] = "Coulomb friction below the dynamometer"
-    stage: ClassVar[StageName] = StageName.STRUCTURE
+    code = "S3"
+    name = "coulomb-friction"
+    title = "Coulomb friction below the dynamometer"
+    stage = StageName.STRUCTURE
 
     friction_n: float = parameter(
         0.3, 0.0, 5.0, "N", "friction force at each strut", one_sign=OneSign.FRICTION

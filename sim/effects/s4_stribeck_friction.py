@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -25,10 +24,10 @@ class StribeckFriction(Effect):
     the loss per cycle at p >> 1 is the same.
     """
 
-    code: ClassVar[str] = "S4"
-    name: ClassVar[str] = "stribeck-friction"
-    title: ClassVar[str] = "Friction that is larger near standstill"
-    stage: ClassVar[StageName] = StageName.STRUCTURE
+    code = "S4"
+    name = "stribeck-friction"
+    title = "Friction that is larger near standstill"
+    stage = StageName.STRUCTURE
 
     excess_n: float = parameter(
         0.15,

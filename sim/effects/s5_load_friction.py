@@ -3,7 +3,6 @@
 import math
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import ClassVar
 
 import numpy as np
 
@@ -27,10 +26,10 @@ class LoadDependentFriction(Effect):
     asperities bend (Dahl).
     """
 
-    code: ClassVar[str] = "S5"
-    name: ClassVar[str] = "load-friction"
-    title: ClassVar[str] = "Friction in proportion to the load on a guide"
-    stage: ClassVar[StageName] = StageName.STRUCTURE
+    code = "S5"
+    name = "load-friction"
+    title = "Friction in proportion to the load on a guide"
+    stage = StageName.STRUCTURE
 
     friction: float = parameter(
         0.02, 0.0, 0.3, "1", "coefficient of friction", one_sign=OneSign.FRICTION

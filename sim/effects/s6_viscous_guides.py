@@ -1,7 +1,7 @@
 """S6: viscous friction of guides below the dynamometer."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
@@ -23,10 +23,10 @@ class ViscousGuides(Effect):
     Kolloid-Zeitschrift 39, 1926).
     """
 
-    code: ClassVar[str] = "S6"
-    name: ClassVar[str] = "viscous-guides"
-    title: ClassVar[str] = "Viscous friction below the dynamometer"
-    stage: ClassVar[StageName] = StageName.STRUCTURE
+    code = "S6"
+    name = "viscous-guides"
+    title = "Viscous friction below the dynamometer"
+    stage = StageName.STRUCTURE
 
     viscous_n_s_m: float = parameter(
         2.0, 0.0, 50.0, "N s/m", "at each strut", one_sign=OneSign.DAMPING

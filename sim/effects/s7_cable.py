@@ -1,7 +1,7 @@
 """S7: a cable or umbilical between the model and the carriage."""
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -32,10 +32,10 @@ class Cable(Effect):
     stiffens with the cube of its way. Those are as large at a typical motion.
     """
 
-    code: ClassVar[str] = "S7"
-    name: ClassVar[str] = "cable"
-    title: ClassVar[str] = "Cable between model and carriage"
-    stage: ClassVar[StageName] = StageName.STRUCTURE
+    code = "S7"
+    name = "cable"
+    title = "Cable between model and carriage"
+    stage = StageName.STRUCTURE
 
     stiffness_n_m: float = parameter(5.0, 0.0, 100.0, "N/m", "stiffness", one_sign=OneSign.SPRING)
     rubbing_n_m: float = parameter(

@@ -1,7 +1,6 @@
 """S8: a model whose mass is not the one that was weighed."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
@@ -17,10 +16,10 @@ class MassError(Effect):
     What was not weighed may as well lie somewhere else.
     """
 
-    code: ClassVar[str] = "S8"
-    name: ClassVar[str] = "mass-error"
-    title: ClassVar[str] = "Model's mass not as weighed"
-    stage: ClassVar[StageName] = StageName.MODEL
+    code = "S8"
+    name = "mass-error"
+    title = "Model's mass not as weighed"
+    stage = StageName.MODEL
 
     relative: float = parameter(0.005, -0.05, 0.05, "1", "error relative to the model's mass")
     ahead: float = parameter(

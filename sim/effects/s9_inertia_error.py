@@ -1,7 +1,6 @@
 """S9: a model whose inertia or centre of gravity is not the one that was measured."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
@@ -17,10 +16,10 @@ class InertiaError(Effect):
     The static moment of dx is tared away with the model in place.
     """
 
-    code: ClassVar[str] = "S9"
-    name: ClassVar[str] = "inertia-error"
-    title: ClassVar[str] = "Model's inertia or centre of gravity not as measured"
-    stage: ClassVar[StageName] = StageName.MODEL
+    code = "S9"
+    name = "inertia-error"
+    title = "Model's inertia or centre of gravity not as measured"
+    stage = StageName.MODEL
 
     inertia_relative: float = parameter(
         0.01, -0.1, 0.1, "1", "error relative to the inertia about the midpoint"

@@ -11,9 +11,9 @@ from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.setpoint import Medium, SetPoint
 from sim import signals
 from sim.model.system import HullSystem
+from sim.periodic import SteadyState, steady_of
 from sim.rig import SimulatedRig
-from sim.solve.periodic import SteadyState, steady_run
-from sim.solve.sampled_period import steady_of
+from sim.run import steady_run
 from sim.stage import Stage
 
 # The forces of both struts, aft and fore, on their way: as they act, and as they are recorded.

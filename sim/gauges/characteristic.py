@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -76,7 +76,7 @@ class PowerLoop:
     power: float = 2.0
     swelling: float = 0.0
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def lag(self, force: FloatArray, branch: Branch) -> FloatArray:
         """Return what the reading lags by."""
@@ -107,7 +107,7 @@ class SaturatingLoop:
     distance_n: float
     reference_n: float
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def lag(self, force: FloatArray, branch: Branch) -> FloatArray:
         """Return what the reading lags by."""
@@ -138,7 +138,7 @@ class Curve:
     power: float
     odd: bool = False
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def added(self, force: FloatArray) -> FloatArray:
         """Return what is added to the force."""

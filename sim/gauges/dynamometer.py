@@ -1,16 +1,16 @@
 """The dynamometers: readings from the forces in the struts."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
 from hardware.description.arrays import FloatArray
 from sim import signals
 from sim.gauges.characteristic import Curve, Loop, LoopState, PowerLoop, follow, limited
-from sim.signals import Signal, Signals
+from sim.periodic import steady_by_samples
+from sim.signals import Signals
 from sim.solve.period import Period, Spectra
-from sim.solve.sampled_period import steady_by_samples
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
 
 DynamometerState: TypeAlias = tuple[LoopState | None, LoopState | None]
@@ -57,7 +57,7 @@ class Dynamometer:
     curves: tuple[Curve, ...] = ()
     loops: tuple[Loop, ...] = ()
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def read(
         self, state: LoopState | None, block: Block, force: FloatArray
@@ -128,10 +128,10 @@ class Dynamometers:
     cross_talk_aft: float = 0.0
     cross_talk_fore: float = 0.0
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
-    name: ClassVar[str] = "dynamometers"
-    reads: ClassVar[tuple[Signal, ...]] = (signals.FORCE_AFT, signals.FORCE_FORE)
-    writes: ClassVar[tuple[Signal, ...]] = (
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
+    name = "dynamometers"
+    reads = (signals.FORCE_AFT, signals.FORCE_FORE)
+    writes = (
         signals.DYNAMOMETER_FORCE_AFT,
         signals.DYNAMOMETER_FORCE_FORE,
     )

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import ClassVar, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim import signals
 from sim.mechanism.play import JointMotion, PlayState, follow_with_play
-from sim.signals import Signal, Signals
+from sim.signals import Signals
 from sim.solve.period import Period, Spectra
 from sim.stage import UNKNOWN_KEYS_REFUSED, Block
 
@@ -48,7 +48,7 @@ class Setting:
     rod_offset_m: float = 0.0
     half_play_m: float = 0.0
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
 
 @dataclass(frozen=True)
@@ -85,13 +85,13 @@ class Mechanism:
     aft: Setting = Setting()
     fore: Setting = Setting()
 
-    name: ClassVar[str] = "mechanism"
-    reads: ClassVar[tuple[Signal, ...]] = (
+    name = "mechanism"
+    reads = (
         signals.SHAFT_ANGLE,
         signals.SHAFT_SPEED,
         signals.SHAFT_ACCELERATION,
     )
-    writes: ClassVar[tuple[Signal, ...]] = _WRITES[0] + _WRITES[1]
+    writes = _WRITES[0] + _WRITES[1]
 
     def __post_init__(self) -> None:
         offset_m = max(abs(self.aft.rod_offset_m), abs(self.fore.rod_offset_m))
@@ -170,17 +170,14 @@ class Mechanism:
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return a strut's displacement and its first two derivatives by the crank angle.
 
+        The results are displacement, slope, curvature: in m, m/rad and m/rad^2.
+
         Parameters
         ----------
         angle
             Crank angle of this strut in radians, any shape.
         rod_offset_m
             By how much a rod's guide misses the crank's centre.
-
-        Returns
-        -------
-        displacement, slope, curvature
-            In m, m/rad and m/rad^2.
         """
         e = self.eccentricity_m
         sine, cosine = np.sin(angle), np.cos(angle)

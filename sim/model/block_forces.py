@@ -10,15 +10,15 @@ from hardware.description.errors import ConfigurationError
 from sim.model.forces import Instants, ModelMotion, law_forces
 from sim.model.law_point import Acting
 from sim.model.law_table import has_number
+from sim.model.model_march import Marching, course_of, march_model
 from sim.model.numbers import geometry_only
 from sim.model.system import LOAD_DEGREE, HullSystem
 from sim.solve.compilation import follow
 from sim.solve.linear_system import Hold
-from sim.solve.model_march import Marching, course_of, march_model
 from sim.solve.relaxation import Tail, relax
 
 if TYPE_CHECKING:
-    from sim.solve.march import Course
+    from sim.model.march import Course
 
 
 class HullState(NamedTuple):

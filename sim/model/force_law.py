@@ -112,7 +112,7 @@ class ForceLaw(ABC):
 
     strengths: ClassVar[tuple[str, ...]] = ()
     periodic: ClassVar[bool] = True
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     @property
     def corners(self) -> tuple[Corner, ...]:

@@ -13,7 +13,6 @@ much less than the amplitude. Or over a speed at which a film carries, as ``tanh
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -103,7 +102,7 @@ class Coulomb(NumberedLaw):
     film_m_s: float | None = None
 
     kernel = staticmethod(coulomb)
-    strengths: ClassVar[tuple[str, ...]] = ("coulomb_n", "uneven_n")
+    strengths = ("coulomb_n", "uneven_n")
 
     @property
     def corners(self) -> tuple[Corner, ...]:
@@ -141,7 +140,7 @@ class Stribeck(NumberedLaw):
     tail: float | None = None
 
     kernel = staticmethod(stribeck)
-    strengths: ClassVar[tuple[str, ...]] = ("excess_n",)
+    strengths = ("excess_n",)
 
     @property
     def corners(self) -> tuple[Corner, ...]:
@@ -170,7 +169,7 @@ class LoadFriction(NumberedLaw):
     presliding_m: float | None = None
 
     kernel = staticmethod(load_friction)
-    strengths: ClassVar[tuple[str, ...]] = ("friction",)
+    strengths = ("friction",)
 
     @property
     def corners(self) -> tuple[Corner, ...]:
@@ -193,7 +192,7 @@ class RubbingSpring(NumberedLaw):
     rubbing_n_m: float
 
     kernel = staticmethod(rubbing_spring)
-    strengths: ClassVar[tuple[str, ...]] = ("rubbing_n_m",)
+    strengths = ("rubbing_n_m",)
 
     @property
     def corners(self) -> tuple[Corner, ...]:

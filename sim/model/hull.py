@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import ClassVar, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,16 +12,15 @@ from hardware.description.arrays import FloatArray
 from hardware.description.struts import to_motion
 from sim import signals
 from sim.model.block_forces import BlockForces, HullState
-from sim.model.coefficients import HullCoefficients, mass_matrix
 from sim.model.forces import Instants
 from sim.model.hull_steady_state import HullSteady
+from sim.model.model_march import Marching, marching_of
 from sim.model.numbers import numbers_of, turns_with, weight_less_buoyancy
-from sim.model.parameters import ModelParameters
+from sim.model.parameters import HullCoefficients, ModelParameters, mass_matrix
 from sim.model.system import HullSystem
 from sim.model.water.radiation import constant
-from sim.signals import Signal, Signals
+from sim.signals import Signals
 from sim.solve.linear_system import Hold
-from sim.solve.model_march import Marching, marching_of
 from sim.solve.period import Period, Spectra
 from sim.solve.recurrence import fine_enough, last_period
 from sim.solve.relaxation import LONGEST_SWEEP
@@ -52,9 +51,9 @@ class Hull(ModelParameters):
     mounting are solved together.
     """
 
-    name: ClassVar[str] = "hull"
-    reads: ClassVar[tuple[Signal, ...]] = signals.MODEL_MOTION
-    writes: ClassVar[tuple[Signal, ...]] = (signals.FORCE_AFT, signals.FORCE_FORE, signals.FORCE_X)
+    name = "hull"
+    reads = signals.MODEL_MOTION
+    writes = (signals.FORCE_AFT, signals.FORCE_FORE, signals.FORCE_X)
 
     @property
     def system(self) -> HullSystem:

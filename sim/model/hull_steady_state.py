@@ -9,13 +9,13 @@ import numpy as np
 from hardware.description.arrays import ComplexArray
 from sim.model.forces import law_harmonics
 from sim.model.law_point import Acting
+from sim.model.model_march import periodic_laws
 from sim.model.system import HullSystem
-from sim.solve.model_march import periodic_laws
 from sim.solve.period import Period
 from sim.solve.relaxation import relax
 
 if TYPE_CHECKING:
-    from sim.solve.balance import LawBalance
+    from sim.model.balance import LawBalance
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +86,7 @@ class HullSteady:
         table = periodic_laws(self.acting, self.system)
         if table is None:
             return None
-        from sim.solve.balance import LawBalance
+        from sim.model.balance import LawBalance
 
         return LawBalance(table, self.give, self.impedance, self.period, self.speed_m_s)
 

@@ -17,7 +17,7 @@ steady state has no samples: there the law is integrated between its ``corners``
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar, Final, get_args
+from typing import Final, get_args
 
 import numpy as np
 
@@ -55,7 +55,7 @@ class Viscous(NumberedLaw):
     viscous_n_s_m: float
 
     kernel = staticmethod(_viscous)
-    strengths: ClassVar[tuple[str, ...]] = ("viscous_n_s_m",)
+    strengths = ("viscous_n_s_m",)
 
 
 def _quadratic(p: Parameters, at: LawInput) -> Value:
@@ -71,7 +71,7 @@ class Quadratic(NumberedLaw):
     drift_m_s: float = 0.0
 
     kernel = staticmethod(_quadratic)
-    strengths: ClassVar[tuple[str, ...]] = ("quadratic_n_s2_m2",)
+    strengths = ("quadratic_n_s2_m2",)
 
     @property
     def corners(self) -> tuple[Corner, ...]:
@@ -96,7 +96,7 @@ class Power(NumberedLaw):
     drift_m_s: float = 0.0
 
     kernel = staticmethod(_power)
-    strengths: ClassVar[tuple[str, ...]] = ("power_n",)
+    strengths = ("power_n",)
 
     @property
     def corners(self) -> tuple[Corner, ...]:
@@ -118,7 +118,7 @@ class Cubic(NumberedLaw):
     cubic_n_s3_m3: float
 
     kernel = staticmethod(_cubic)
-    strengths: ClassVar[tuple[str, ...]] = ("cubic_n_s3_m3",)
+    strengths = ("cubic_n_s3_m3",)
 
 
 def _spring(p: Parameters, at: LawInput) -> Value:
@@ -135,7 +135,7 @@ class Spring(NumberedLaw):
     preload_n: float = 0.0
 
     kernel = staticmethod(_spring)
-    strengths: ClassVar[tuple[str, ...]] = (
+    strengths = (
         "stiffness_n_m",
         "stiffness_n_m2",
         "stiffness_n_m3",
@@ -158,7 +158,7 @@ class Stiffening(NumberedLaw):
     even: bool = False
 
     kernel = staticmethod(_stiffening)
-    strengths: ClassVar[tuple[str, ...]] = ("stiffening_n",)
+    strengths = ("stiffening_n",)
 
     @property
     def corners(self) -> tuple[Corner, ...]:
@@ -180,7 +180,7 @@ class Proximity(NumberedLaw):
     reference_speed_m_s: float | None = None
 
     kernel = staticmethod(_proximity)
-    strengths: ClassVar[tuple[str, ...]] = ("proximity_n",)
+    strengths = ("proximity_n",)
 
 
 def _exponential(p: Parameters, at: LawInput) -> Value:
@@ -196,7 +196,7 @@ class Exponential(NumberedLaw):
     reference_speed_m_s: float | None = None
 
     kernel = staticmethod(_exponential)
-    strengths: ClassVar[tuple[str, ...]] = ("suction_n",)
+    strengths = ("suction_n",)
 
 
 def _tone(p: Parameters, at: LawInput) -> Value:
@@ -217,10 +217,10 @@ class Tone(NumberedLaw):
     tone_phase_rad: float = 0.0
     decay_s: float | None = None
 
-    periodic: ClassVar[bool] = False
+    periodic = False
 
     kernel = staticmethod(_tone)
-    strengths: ClassVar[tuple[str, ...]] = ("tone_n",)
+    strengths = ("tone_n",)
 
 
 # The laws that a configuration file can name, told apart by their keys.

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -42,7 +42,7 @@ class StrutJoint:
     preload_n: float = 0.0
     unlike: float = 0.0
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def __post_init__(self) -> None:
         if not (self.half_play_m > 0.0 and math.isfinite(self.preload_n)):
@@ -86,7 +86,7 @@ class Mounting:
     joint: StrutJoint | None = None
     gauge_unlike: float = 0.0
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def __post_init__(self) -> None:
         if not abs(self.gauge_unlike) < 1.0:

@@ -1,7 +1,6 @@
 """Sampling of the sensors: noise, drift and conversion of each, as in the towing tank."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -28,7 +27,7 @@ class SampledSensors:
     sensors: tuple[Sensor, ...]
     digitisers: tuple[Digitiser, ...]
 
-    name: ClassVar[str] = "acquisition"
+    name = "acquisition"
 
     @property
     def reads(self) -> tuple[Signal, ...]:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from math import ceil
-from typing import ClassVar, Final, Protocol
+from typing import Final, Protocol
 
 import numpy as np
 
@@ -92,7 +92,7 @@ class FreeBody:
 
     body: SwingingBody
 
-    name: ClassVar[str] = "body"
+    name = "body"
 
     @property
     def reads(self) -> tuple[Signal, ...]:

@@ -1,7 +1,6 @@
 """Free decay of a floating body: roll or heave."""
 
 from dataclasses import dataclass, field
-from typing import ClassVar
 
 import numpy as np
 
@@ -35,8 +34,8 @@ class Floating:
     resistance: Resistance = field(default_factory=Resistance)
     coordinate: Coordinate = ROLL
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
-    kind: ClassVar[int] = LINEAR
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
+    kind = LINEAR
 
     def __post_init__(self) -> None:
         if not (self.inertia + self.added_inertia > 0.0 and self.restoring > 0.0):

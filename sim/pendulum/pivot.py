@@ -2,17 +2,15 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import ClassVar
 
 import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from hardware.description.units import STANDARD_GRAVITY_M_S2
-from sim.pendulum.air import Air
 from sim.pendulum.body import LINEAR, PENDULUM
-from sim.pendulum.coordinates import ANGLE, Coordinate
-from sim.pendulum.resistance import Resistance
+from sim.pendulum.coordinates import ANGLE
+from sim.pendulum.resistance import Air, Resistance
 from sim.stage import UNKNOWN_KEYS_REFUSED
 
 
@@ -32,7 +30,7 @@ class RigidPart:
     lever_m: float
     inertia_kg_m2: float
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     @property
     def about_pivot_kg_m2(self) -> float:
@@ -53,7 +51,7 @@ class HangingWeight:
     mass_kg: float
     lever_m: float
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
 
 @dataclass(frozen=True)
@@ -83,8 +81,8 @@ class Pendulum:
     linear: bool = False
     gravity_m_s2: float = STANDARD_GRAVITY_M_S2
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
-    coordinates: ClassVar[tuple[Coordinate, ...]] = (ANGLE,)
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
+    coordinates = (ANGLE,)
 
     def __post_init__(self) -> None:
         if not (self.parts and self.total_mass_kg > 0.0 and self.restoring_n_m > 0.0):

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -39,8 +38,8 @@ class Release:
     displacement_scatter: tuple[float, ...] = ()
     rate_scatter: tuple[float, ...] = ()
 
-    name: ClassVar[str] = "release"
-    reads: ClassVar[tuple[Signal, ...]] = ()
+    name = "release"
+    reads = ()
 
     def __post_init__(self) -> None:
         n = len(self.coordinates)

@@ -1,13 +1,33 @@
-"""Forces on one coordinate alone: friction, damping, drag, and restoring beyond the linear."""
+"""What a body meets as it swings: resistance to its motion, and the air around it."""
 
 from dataclasses import dataclass, fields
-from typing import ClassVar
 
 import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim.stage import UNKNOWN_KEYS_REFUSED
+
+
+@dataclass(frozen=True)
+class Air:
+    """What the air does beside damping.
+
+    Attributes
+    ----------
+    buoyancy_ratio
+        Density of the air over the body's: g' = g (1 - ratio).
+    added_mass_ratio
+        Mass of air that moves along, over the body's mass.
+    added_inertia_ratio
+        The same for rotation, over the body's moments of inertia.
+    """
+
+    buoyancy_ratio: float = 0.0
+    added_mass_ratio: float = 0.0
+    added_inertia_ratio: float = 0.0
+
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
 
 @dataclass(frozen=True)
@@ -42,7 +62,7 @@ class Resistance:
     restoring_cubic: float = 0.0
     restoring_quintic: float = 0.0
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def __post_init__(self) -> None:
         for name in ("viscous", "quadratic", "cubic", "power", "exponent", "coulomb"):

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -81,7 +80,7 @@ class Sensors:
 
     sensors: tuple[Sensor, ...]
 
-    name: ClassVar[str] = "sensors"
+    name = "sensors"
 
     @property
     def reads(self) -> tuple[Signal, ...]:

@@ -2,17 +2,15 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import ClassVar
 
 import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from hardware.description.units import STANDARD_GRAVITY_M_S2
-from sim.pendulum.air import Air
 from sim.pendulum.body import LINEAR, SUSPENSION
-from sim.pendulum.coordinates import PITCH, SURGE, SWAY, YAW, Coordinate
-from sim.pendulum.resistance import Resistance
+from sim.pendulum.coordinates import PITCH, SURGE, SWAY, YAW
+from sim.pendulum.resistance import Air, Resistance
 from sim.stage import UNKNOWN_KEYS_REFUSED
 
 
@@ -59,8 +57,8 @@ class Suspension:
     linear: bool = False
     gravity_m_s2: float = STANDARD_GRAVITY_M_S2
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
-    coordinates: ClassVar[tuple[Coordinate, ...]] = (SURGE, SWAY, YAW, PITCH)
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
+    coordinates = (SURGE, SWAY, YAW, PITCH)
 
     def __post_init__(self) -> None:
         names = ("mass_kg", "line_length_m", "half_spacing_m", "depth_m")

@@ -1,1 +1,1 @@
-"""How the equations are solved: linear steps, harmonic balance, marches and sweeps."""
+"""What the stages are solved with: exact linear steps, sweeps, periods and compiled loops."""

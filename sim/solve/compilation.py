@@ -81,6 +81,8 @@ def _cache_folder(chosen: str) -> Path:
 def follow(step: FloatArray, forcing: FloatArray, state: FloatArray) -> FloatArray:
     """Return the states ``x_k = step x_(k-1) + forcing_k``.
 
+    The result has the shape ``(samples, n)``.
+
     Parameters
     ----------
     step
@@ -89,11 +91,6 @@ def follow(step: FloatArray, forcing: FloatArray, state: FloatArray) -> FloatArr
         Shape ``(samples, n)``.
     state
         The state before the first sample, shape ``(n,)``.
-
-    Returns
-    -------
-    FloatArray
-        Shape ``(samples, n)``.
     """
     states = np.empty((len(forcing) + 1, len(state)))
     states[0] = state

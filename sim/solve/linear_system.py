@@ -67,15 +67,12 @@ class Hold:
     def forcing(self, inputs: FloatArray) -> FloatArray:
         """Return what the inputs add to the state in each step.
 
+        The result has the shape ``(samples, n)``.
+
         Parameters
         ----------
         inputs
             Shape ``(past + samples, p)``.
-
-        Returns
-        -------
-        FloatArray
-            Shape ``(samples, n)``.
         """
         count = len(inputs) - self.past
         total: FloatArray = inputs[:count] @ self.weights[0].T

@@ -2,9 +2,6 @@
 
 import json
 import math
-import os
-import subprocess
-import sys
 import time
 from pathlib import Path
 
@@ -13,11 +10,11 @@ import pytest
 
 from analysis.recording import Recording
 from benchmarks.fuzz import worker
+from benchmarks.fuzz.__main__ import main
 from benchmarks.fuzz.board import PROMISES, Count, document, keep_counts, read_counts
 from benchmarks.fuzz.mutate import mutate
 from benchmarks.fuzz.promises import SilentNanError, check_finite, check_recording
 from benchmarks.fuzz.targets import TARGETS, opened
-from benchmarks.machine import ROOT
 from hardware.description.channels import Channel
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
@@ -95,15 +92,13 @@ def test_a_flag_of_the_channel_or_of_all_says_a_missing_value() -> None:
         check_recording(Recording("a", one.channels, values, 10.0, flags=(flag,)))
 
 
-def test_a_board_goes_on_where_it_was_left(tmp_path: Path) -> None:
+def test_a_board_goes_on_where_it_was_left(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     def run(share: str) -> str:
-        words = ["-m", "benchmarks.fuzz", "--share", share, "--only", "TOML: calibration"]
-        done = subprocess.run(
-            [sys.executable, *words, "--folder", str(tmp_path)],
-            cwd=ROOT, env=os.environ, capture_output=True, text=True, timeout=300, check=False,
-        )  # fmt: skip
-        assert done.returncode == 0, done.stdout + done.stderr
-        return done.stdout
+        words = ["--share", share, "--only", "TOML: calibration", "--folder", str(tmp_path)]
+        assert main(words) == 0
+        return capsys.readouterr().out
 
     assert "20 inputs" in run("0.002")
     assert "30 inputs" in run("0.003")

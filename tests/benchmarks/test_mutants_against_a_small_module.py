@@ -30,6 +30,7 @@ def house(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> House:
     (tmp_path / "room" / "small.py").write_text(SOURCE)
     (tmp_path / "test_small.py").write_text(TESTS)
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")  # these tests need none
     return House(tmp_path)
 
 

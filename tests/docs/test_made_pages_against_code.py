@@ -49,9 +49,7 @@ def test_a_message_that_the_code_has_not_is_refused(
     told = (DOCS / "errors.toml").read_text(encoding="utf-8")
     wrong = told.replace('text = "no such file"', 'text = "never said anywhere, by nobody"')
     (tmp_path / "errors.toml").write_text(wrong, encoding="utf-8")
-    types, texts = errors.error_types(), errors.templates()
-    monkeypatch.setattr(errors, "error_types", lambda: types)
-    monkeypatch.setattr(errors, "templates", lambda: texts)
+    errors.error_types(), errors.templates()  # kept: what is read next are the texts alone
     monkeypatch.setattr(errors, "HERE", tmp_path)
     with pytest.raises(SystemExit, match="never said anywhere"):
         errors.page()
@@ -78,6 +76,6 @@ def test_a_command_draws_what_the_gallery_says(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(gallery, "PICTURES", tmp_path)
-    missing = list(gallery.draw(lambda one: one.draws.endswith(".inertia_gates.gates_figure")))
+    missing = list(gallery.draw(lambda one: one.draws.endswith(".inertia_figures.gates_figure")))
     assert missing == []
     assert [path.suffix for path in tmp_path.iterdir()] == [".png"]

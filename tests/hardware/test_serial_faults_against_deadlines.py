@@ -9,7 +9,6 @@ import serial
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hardware.clock_fit import ClockFit
 from hardware.errors import (
     LineError,
     PhotocellDeadError,
@@ -21,6 +20,7 @@ from hardware.errors import (
     UnpluggedError,
 )
 from hardware.lines import TICK_MODULUS, LineKind, SerialLine, Unwrapped, decode, encode
+from hardware.photocell_serial import ClockFit
 from hardware.serial_port import PortSettings, SerialPort
 from tests.hardware.rigs import Talker, open_rig
 

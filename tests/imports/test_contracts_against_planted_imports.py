@@ -27,7 +27,7 @@ PLANTED = [
     ("The vocabulary knows nobody", "hardware/description/body.py", "import serial"),
     (
         "Analysis and simulation know no device but the simulated ones",
-        "analysis/uncertainty/",
+        "analysis/uncertainty/values.py",
         "import hardware.pacing",
     ),
     (
@@ -47,12 +47,20 @@ PLANTED = [
     ),
     ("Who knows the simulator is named here", "analysis/exchange/simman.py", "import sim.rig"),
     ("Who knows the simulator is named here", "pmm/doctor/host.py", "import sim.rig"),
-    ("No analysis builds on the gap diagnosis", "analysis/uncertainty/", "import analysis.gap"),
+    (
+        "No analysis builds on the gap diagnosis",
+        "analysis/uncertainty/values.py",
+        "import analysis.gap",
+    ),
     (
         "What drives a rig never reaches the simulator",
         "pmm/recorder/journal.py",
         "import analysis.gap.diagnose",
     ),
+    ("Within sim each link knows those before it", "sim/solve/relaxation.py", "import sim.rig"),
+    ("Within sim each link knows those before it", "sim/drive/gear.py", "import sim.coupled.march"),
+    ("Within sim each link knows those before it", "sim/gauges/dynamometer.py", "import sim.rig"),
+    ("The water knows no model in it", "sim/model/water/tank.py", "import sim.model.hull"),
     ("Within pmm imports go down only", "pmm/run/gate.py", "import pmm.console.pacing"),
     ("Within pmm imports go down only", "pmm/recorder/disk.py", "import pmm.campaign.calibration"),
 ]

@@ -18,7 +18,7 @@ from sim.model.law_point import Acting, Point
 from sim.model.laws import Quadratic
 from sim.model.mounting import Mounting
 from sim.model.water.force_laws import CrossFlow
-from sim.solve.periodic import steady_run
+from sim.run import steady_run
 
 BASE = """
 [oscillator]

@@ -10,9 +10,8 @@ from hardware.description.body import Body
 from hardware.description.oscillator import Oscillator, Plane, Range
 from hardware.description.setpoint import Medium, SetPoint
 from sim.acquisition.channels import Acquisition
-from sim.model.coefficients import HullCoefficients
-from sim.model.surge import SurgeForces
-from sim.model.water.force_laws import CrossFlow
+from sim.model.parameters import HullCoefficients
+from sim.model.water.force_laws import CrossFlow, SurgeForces
 from sim.rig import SimulatedRig
 from tests.exact.hull import polynomial
 from tests.exact.rig import ExactBody, ExactRig

@@ -16,9 +16,9 @@ from sim.drive.carriage import Carriage, CarriageSettings, Fluctuation
 from sim.drive.prescribed_drive import ConstantSpeedDrive, DriveSettings
 from sim.gauges.dynamometer import Dynamometer, Dynamometers
 from sim.mechanism.linkage import Mechanism, Setting
+from sim.periodic import steady_state
 from sim.signals import DYNAMOMETER_FORCE_AFT, DYNAMOMETER_FORCE_FORE, FORCE_AFT, FORCE_FORE
 from sim.solve.period import Period
-from sim.solve.periodic import steady_state
 from sim.stage import Block
 
 RATE = 200.0

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from hardware.description.setpoint import SetPoint
+from sim.model.balance import LawBalance
 from sim.model.force_law import ForceLaw, LawInput
 from sim.model.forces import Instants, ModelMotion, law_forces, law_harmonics
 from sim.model.friction import Coulomb, LoadFriction, RubbingSpring, Stribeck
@@ -19,7 +20,6 @@ from sim.model.numbers import corners_only, geometry_only
 from sim.model.system import HullSystem
 from sim.model.water.force_laws import CrossFlow
 from sim.rig import vertical_rig
-from sim.solve.balance import LawBalance
 from sim.solve.corners import nodes_between
 from sim.solve.period import Period
 

@@ -14,15 +14,15 @@ from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
 from sim.drive.motor import Servo, ShuntMotor, SpeedLoop, droop
 from sim.drive.prescribed_drive import DriveSettings
-from sim.model.coefficients import HullCoefficients
 from sim.model.friction import Coulomb
 from sim.model.law_point import Acting, Point
 from sim.model.laws import Cubic, Quadratic
 from sim.model.mounting import Mounting
+from sim.model.parameters import HullCoefficients
 from sim.rig import SimulatedRig, vertical_rig
+from sim.run import steady_run
 from sim.signals import Signals
 from sim.solve.compilation import follow_interpreted, follow_loop
-from sim.solve.periodic import steady_run
 from tests.exact.forces import state
 from tests.exact.rig import ExactRig
 

@@ -13,7 +13,7 @@ from sim.model.friction import Coulomb, LoadFriction, Stribeck
 from sim.model.law_point import Acting
 from sim.model.laws import Power
 from sim.rig import vertical_rig
-from sim.solve.periodic import steady_run
+from sim.run import steady_run
 
 RIG = vertical_rig().ideal()
 A, FREQUENCY, POINTS = 0.02, 0.7, 100_000

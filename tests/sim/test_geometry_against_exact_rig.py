@@ -15,8 +15,8 @@ from sim import signals
 from sim.drive.motor import Servo
 from sim.drive.prescribed_drive import DriveSettings
 from sim.model.mounting import Mounting
+from sim.periodic import steady_state
 from sim.solve.period import Period
-from sim.solve.periodic import steady_state
 from tests.exact.forces import at_rest
 from tests.exact.rig import ExactRig
 from tests.exact.run import cycle, readings

@@ -15,7 +15,7 @@ from sim.model.law_point import Acting, Point
 from sim.model.laws import Cubic, Exponential, Proximity, Quadratic, Spring, Viscous
 from sim.model.water.force_laws import CrossFlow
 from sim.rig import vertical_rig
-from sim.solve.periodic import steady_run
+from sim.run import steady_run
 
 RIG = vertical_rig().ideal()
 A, FREQUENCY = 0.03, 0.8

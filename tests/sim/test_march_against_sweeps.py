@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hardware.description.setpoint import SetPoint
+from sim.coupled import stage, steady_state
 from sim.drive.motor import Cogging, Guides, Servo
 from sim.model import hull
 from sim.model import hull_steady_state as hull_steady
@@ -31,11 +32,10 @@ from sim.model.laws import (
     Viscous,
 )
 from sim.model.mounting import Mounting
-from sim.model.surge import SurgeForces
-from sim.model.water.force_laws import CrossFlow
+from sim.model.water.force_laws import CrossFlow, SurgeForces
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
-from sim.solve import compilation, coupled, coupled_steady
-from sim.solve.periodic import steady_run
+from sim.run import steady_run
+from sim.solve import compilation
 
 EXAMPLES: list[ForceLaw] = [
     Viscous(3.0),
@@ -114,7 +114,7 @@ def test_march_gives_what_sweeps_do(laws: list[ForceLaw], motor: bool, cranks: b
         for swept in (False, True):
             if swept:
                 patch.setattr(hull, "marching_of", lambda *_: None)
-                patch.setattr(coupled, "coupled_march", lambda *_: None)
+                patch.setattr(stage, "coupled_march", lambda *_: None)
             chain = rig.chain(SET_POINT)
             found.append(chain.run(chain.start(200.0, 1), 400)[1])
     names = ("force_aft", "force_fore", "force_x", "shaft_speed", "displacement_fore")
@@ -143,7 +143,7 @@ def test_laws_swept_with_the_torque_are_those_balanced_for_each_torque(
     )
     rig = replace(rig, drive=replace(rig.drive, motor=Servo()))
     together = steady_run(rig, SetPoint(1.0, 0.02, 0.7)).spectra
-    monkeypatch.setattr(coupled_steady, "_with_swept_laws", lambda *_: None)
+    monkeypatch.setattr(steady_state, "_with_swept_laws", lambda *_: None)
     nested = steady_run(rig, SetPoint(1.0, 0.02, 0.7)).spectra
     for name in ("shaft_speed", "force_aft", "force_fore", "load_torque"):
         scale = np.abs(nested[name]).max()

@@ -21,10 +21,11 @@ from sim.model.law_point import Acting, Point
 from sim.model.laws import Cubic, Quadratic, Spring, Tone
 from sim.model.mounting import Mounting
 from sim.model.water.radiation import Radiation
+from sim.periodic import steady_state
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
+from sim.run import steady_run
 from sim.signals import Signals
 from sim.solve.period import Period
-from sim.solve.periodic import steady_run, steady_state
 
 SET_POINT = SetPoint(0.5, 0.03, 0.5, 1.0)
 RATE = 200.0

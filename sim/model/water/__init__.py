@@ -4,6 +4,5 @@
 * :mod:`sim.model.water.tables` reads added mass and damping over frequency;
 * :mod:`sim.model.water.memory` fits the state space to such a table;
 * :mod:`sim.model.water.tank` adds the tank's walls to it;
-* :mod:`sim.model.water.manoeuvring` turns manoeuvring derivatives into coefficients and force laws;
 * :mod:`sim.model.water.hydrostatics` gives the restoring coefficients.
 """

@@ -8,13 +8,10 @@ are closed forms, for v = V cos(phi), and serve as oracles.
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar, Final
+from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from hardware.description.arrays import FloatArray
-from hardware.description.errors import ConfigurationError
 from sim.solve.linear_system import Rows, as_rows
 from sim.stage import UNKNOWN_KEYS_REFUSED
 
@@ -37,7 +34,7 @@ class CrossFlow:
     cubic: Rows | None = None
     quadratic: Rows | None = None
 
-    __pydantic_config__: ClassVar = UNKNOWN_KEYS_REFUSED
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def scaled(self, factor: float) -> "CrossFlow":
         """Return loads that are larger by a factor."""
@@ -46,30 +43,6 @@ class CrossFlow:
 
 def _times(rows: Rows | None, factor: float) -> Rows | None:
     return None if rows is None else as_rows(np.array(rows) * factor)
-
-
-def cubic_loads(coefficients: ArrayLike, velocity: ArrayLike) -> FloatArray:
-    """Return force and moment of the cubic terms.
-
-    Parameters
-    ----------
-    coefficients
-        Shape ``(2, 4)``: rows force and moment, columns :data:`CUBIC_TERMS`.
-    velocity
-        Shape ``(2, ...)``.
-
-    Returns
-    -------
-    loads
-        Shape ``(2, ...)``.
-
-    Raises
-    ------
-    ConfigurationError
-        If the coefficients do not have this shape.
-    """
-    v, r = np.asarray(velocity, dtype=np.float64)
-    return _combined(coefficients, CUBIC_TERMS, np.stack([v**3, v * v * r, v * r * r, r**3]))
 
 
 def quadratic_describing_function(harmonic: int, drift_ratio: float = 0.0) -> float:
@@ -106,12 +79,27 @@ def _integral(e: float, n: int, end: float) -> float:
     )
 
 
-def _combined(coefficients: ArrayLike, names: tuple[str, ...], terms: FloatArray) -> FloatArray:
-    matrix = np.asarray(coefficients, dtype=np.float64)
-    if matrix.shape != (2, 4):
-        raise ConfigurationError(
-            f"coefficients have the shape {matrix.shape}; (2, 4) is needed: force and moment for "
-            f"{', '.join(names)}"
-        )
-    loads: FloatArray = np.tensordot(matrix, terms, 1)
-    return loads
+@dataclass(frozen=True)
+class SurgeForces:
+    """Force of the water along the model, ahead positive, by the motion through the water.
+
+    With the velocities u along the model and v across it and the rate of turn r (w and q in the
+    vertical plane):
+
+        X = x_u u + x_uu u abs(u) + x_vv v^2 + x_vr v r + x_rr r^2
+
+    Attributes
+    ----------
+    x_u, x_uu
+        Resistance, negative: N s/m and N s2/m2.
+    x_vv, x_vr, x_rr
+        N s2/m2, N s2/m and N s2.
+    """
+
+    x_u: float = 0.0
+    x_uu: float = 0.0
+    x_vv: float = 0.0
+    x_vr: float = 0.0
+    x_rr: float = 0.0
+
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED

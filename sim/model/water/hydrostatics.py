@@ -11,10 +11,13 @@ without the weight (:func:`sim.model.numbers.weight_less_buoyancy`). Sway and ya
 
 import math
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from hardware.description.errors import ConfigurationError
 from hardware.description.units import STANDARD_GRAVITY_M_S2
-from sim.model.water.manoeuvring import Matrix
+
+# Rows are force and moment, columns translation and rotation about the midpoint of the struts.
+Matrix: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
 
 @dataclass(frozen=True)

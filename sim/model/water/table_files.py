@@ -47,15 +47,12 @@ def read_heave_csv(
 ) -> RadiationTable:
     """Read a table of heave alone: one row a frequency, lines with ``#`` are comments.
 
+    It is of the vertical plane; what concerns pitch is zero.
+
     Parameters
     ----------
     added_mass, damping
         The columns (kg, kg/s) beside ``omega_rad_s``.
-
-    Returns
-    -------
-    table
-        In the vertical plane; what concerns pitch is zero.
 
     Raises
     ------

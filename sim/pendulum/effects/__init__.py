@@ -123,25 +123,6 @@ def _is_effect(value: Any) -> bool:
     return called and is_dataclass(value) and isinstance(getattr(value, "name", None), str)
 
 
-def effects_table() -> str:
-    """Return the catalogue as a table in Markdown, one row per effect."""
-    rows = [
-        "| effect | stage | parameters: plausible range (typical) | what it does | signature |",
-        "|---|---|---|---|---|",
-    ]
-    for effect in CATALOGUE:
-        known = [f"`{key}` {p.text} ({p.typical:g})" for key, p in plausible(effect).items()]
-        cells = (
-            f"`{effect.name}`",
-            effect.stage,
-            "; ".join(known) or "none",
-            effect.summary,
-            effect.signature,
-        )
-        rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
-    return "\n".join(rows) + "\n"
-
-
 def _near(name: str, known: list[str]) -> str:
     near = get_close_matches(name, known, n=3, cutoff=0.4)
     return f"; did you mean {', '.join(near)}?" if near else f" (known: {', '.join(known)})"

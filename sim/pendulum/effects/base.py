@@ -6,7 +6,7 @@ a coordinate are N or, for angles, N m. The nominal test has none of them on.
 
 import math
 from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, cast
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from hardware.description.errors import ConfigurationError
 from sim.pendulum.bench import PendulumBench
@@ -49,10 +49,10 @@ class PendulumEffect(Protocol):
         What it does, and how that shows in a record, in words and formulas.
     """
 
-    name: ClassVar[str]
-    stage: ClassVar[str]
-    summary: ClassVar[str]
-    signature: ClassVar[str]
+    name: str
+    stage: str
+    summary: str
+    signature: str
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""

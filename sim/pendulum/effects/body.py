@@ -7,7 +7,7 @@ that this coordinate has by itself; ``coordinate`` may be left empty where there
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, cast
+from typing import Any, cast
 
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.effects.base import parameter, resist, slope_to_restoring, small_swing
@@ -26,10 +26,10 @@ class BearingFriction:
     dead_zone: float = parameter("rad or m", 0.0, 0.02, 1e-4)
     coordinate: str = ""
 
-    name: ClassVar[str] = "bearing_friction"
-    stage: ClassVar[str] = "body"
-    summary: ClassVar[str] = "Coulomb friction that opposes sliding and holds at rest"
-    signature: ClassVar[str] = "amplitude falls by 4 dead zones a cycle, stops within one; T as is"
+    name = "bearing_friction"
+    stage = "body"
+    summary = "Coulomb friction that opposes sliding and holds at rest"
+    signature = "amplitude falls by 4 dead zones a cycle, stops within one; T as is"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -50,10 +50,10 @@ class ViscousDamping:
     damping_ratio: float = parameter("1", 0.0, 0.3, 0.002)
     coordinate: str = ""
 
-    name: ClassVar[str] = "viscous_damping"
-    stage: ClassVar[str] = "body"
-    summary: ClassVar[str] = "resistance in proportion to the rate"
-    signature: ClassVar[str] = "exp(-zeta w t); T = T0/sqrt(1 - zeta^2)"
+    name = "viscous_damping"
+    stage = "body"
+    summary = "resistance in proportion to the rate"
+    signature = "exp(-zeta w t); T = T0/sqrt(1 - zeta^2)"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -75,10 +75,10 @@ class QuadraticDrag:
     loss: float = parameter("1/rad or 1/m", 0.0, 10.0, 0.1)
     coordinate: str = ""
 
-    name: ClassVar[str] = "quadratic_drag"
-    stage: ClassVar[str] = "body"
-    summary: ClassVar[str] = "resistance |v| v of air or water"
-    signature: ClassVar[str] = "1/A grows by loss a cycle; log decrement in proportion to A"
+    name = "quadratic_drag"
+    stage = "body"
+    summary = "resistance |v| v of air or water"
+    signature = "1/A grows by loss a cycle; log decrement in proportion to A"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -99,10 +99,10 @@ class CubicRateDamping:
     loss: float = parameter("1/rad2 or 1/m2", 0.0, 100.0, 1.0)
     coordinate: str = ""
 
-    name: ClassVar[str] = "cubic_damping"
-    stage: ClassVar[str] = "body"
-    summary: ClassVar[str] = "resistance v^3, as in roll"
-    signature: ClassVar[str] = "1/A^2 grows by 2 loss a cycle; log decrement with A^2"
+    name = "cubic_damping"
+    stage = "body"
+    summary = "resistance v^3, as in roll"
+    signature = "1/A^2 grows by 2 loss a cycle; log decrement with A^2"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -130,10 +130,10 @@ class PowerDrag:
     amplitude: float = parameter("rad or m", 1e-4, 1.0, 0.1)
     coordinate: str = ""
 
-    name: ClassVar[str] = "power_drag"
-    stage: ClassVar[str] = "body"
-    summary: ClassVar[str] = "resistance |v|^(1 + beta)"
-    signature: ClassVar[str] = "A^-beta grows in proportion to time"
+    name = "power_drag"
+    stage = "body"
+    summary = "resistance |v|^(1 + beta)"
+    signature = "A^-beta grows in proportion to time"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -161,10 +161,10 @@ class AmplitudePeriod:
     slope: float = parameter("1/rad or 1/m", -0.5, 0.5, 0.02)
     coordinate: str = ""
 
-    name: ClassVar[str] = "amplitude_period"
-    stage: ClassVar[str] = "body"
-    summary: ClassVar[str] = "restoring that softens with |q| q"
-    signature: ClassVar[str] = "T = T0 (1 + slope A)"
+    name = "amplitude_period"
+    stage = "body"
+    summary = "restoring that softens with |q| q"
+    signature = "T = T0 (1 + slope A)"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -186,10 +186,10 @@ class CubicRestoring:
     cubic: float = parameter("1/rad2 or 1/m2", -5.0, 5.0, -0.5)
     coordinate: str = ""
 
-    name: ClassVar[str] = "nonlinear_restoring"
-    stage: ClassVar[str] = "body"
-    summary: ClassVar[str] = "a term q^3 of the restoring"
-    signature: ClassVar[str] = "T = T0 (1 - 3/8 cubic A^2)"
+    name = "nonlinear_restoring"
+    stage = "body"
+    summary = "a term q^3 of the restoring"
+    signature = "T = T0 (1 - 3/8 cubic A^2)"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -201,10 +201,10 @@ class CubicRestoring:
 class FiniteAmplitude:
     """Full geometry of a pivot or of two lines, in place of the motion of small swings."""
 
-    name: ClassVar[str] = "finite_amplitude"
-    stage: ClassVar[str] = "body"
-    summary: ClassVar[str] = "full geometry; a test has it unless its body was made linear"
-    signature: ClassVar[str] = "pivot and sway: T = T0 (1 + A^2/16); two lines: modes are coupled"
+    name = "finite_amplitude"
+    stage = "body"
+    summary = "full geometry; a test has it unless its body was made linear"
+    signature = "pivot and sway: T = T0 (1 + A^2/16); two lines: modes are coupled"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -229,14 +229,14 @@ class AirAround:
     added_mass_ratio: float = parameter("1", 0.0, 0.05, 0.002)
     added_inertia_ratio: float = parameter("1", 0.0, 0.05, 0.002)
 
-    name: ClassVar[str] = "air"
-    stage: ClassVar[str] = "body"
-    summary: ClassVar[str] = "g' = g (1 - buoyancy), more mass and inertia"
-    signature: ClassVar[str] = "T grows by half of buoyancy + added share, at any amplitude"
+    name = "air"
+    stage = "body"
+    summary = "g' = g (1 - buoyancy), more mass and inertia"
+    signature = "T grows by half of buoyancy + added share, at any amplitude"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on; a body afloat stays as it is."""
-        from sim.pendulum.air import Air
+        from sim.pendulum.resistance import Air
 
         if not hasattr(bench.body, "air"):
             return bench

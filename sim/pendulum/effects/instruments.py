@@ -6,7 +6,6 @@ An empty ``channel`` means every sensor of the test.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 from hardware.description.errors import ConfigurationError
 from sim.acquisition.channels import Digitiser
@@ -28,10 +27,10 @@ class WrongClock:
 
     clock_error: float = parameter("1", -0.01, 0.01, 1e-4)
 
-    name: ClassVar[str] = "wrong_clock"
-    stage: ClassVar[str] = "acquisition"
-    summary: ClassVar[str] = "all recorded times are the true ones times 1 + error"
-    signature: ClassVar[str] = "every period longer by the same share; inertia by twice that"
+    name = "wrong_clock"
+    stage = "acquisition"
+    summary = "all recorded times are the true ones times 1 + error"
+    signature = "every period longer by the same share; inertia by twice that"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -52,10 +51,10 @@ class SensorLag:
     lag_s: float = parameter("s", 0.0, 1.0, 0.05)
     channel: str = ""
 
-    name: ClassVar[str] = "sensor_lag"
-    stage: ClassVar[str] = "sensors"
-    summary: ClassVar[str] = "1/(1 + s lag)"
-    signature: ClassVar[str] = "amplitude / sqrt(1 + (w lag)^2), later by atan(w lag); T as is"
+    name = "sensor_lag"
+    stage = "sensors"
+    summary = "1/(1 + s lag)"
+    signature = "amplitude / sqrt(1 + (w lag)^2), later by atan(w lag); T as is"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -77,10 +76,10 @@ class SensorOffset:
     offset: float = parameter("rad or m", -0.1, 0.1, 1e-3)
     channel: str = ""
 
-    name: ClassVar[str] = "sensor_offset"
-    stage: ClassVar[str] = "sensors"
-    summary: ClassVar[str] = "a constant on top of the reading"
-    signature: ClassVar[str] = "mean of the record; static fits without offset are biased"
+    name = "sensor_offset"
+    stage = "sensors"
+    summary = "a constant on top of the reading"
+    signature = "mean of the record; static fits without offset are biased"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -102,10 +101,10 @@ class SensorGain:
     gain_error: float = parameter("1", -0.1, 0.1, 0.005)
     channel: str = ""
 
-    name: ClassVar[str] = "sensor_gain"
-    stage: ClassVar[str] = "sensors"
-    summary: ClassVar[str] = "the reading times 1 + error"
-    signature: ClassVar[str] = "static lever falls by the error; T as is"
+    name = "sensor_gain"
+    stage = "sensors"
+    summary = "the reading times 1 + error"
+    signature = "static lever falls by the error; T as is"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -131,10 +130,10 @@ class SensorNoise:
     drift_per_s: float = parameter("rad/s or m/s", -1e-3, 1e-3, 0.0)
     channel: str = ""
 
-    name: ClassVar[str] = "sensor_noise"
-    stage: ClassVar[str] = "acquisition"
-    summary: ClassVar[str] = "noise of each sample, independent, and a drift"
-    signature: ClassVar[str] = "white residual; scatter of T falls with record length^-3/2"
+    name = "sensor_noise"
+    stage = "acquisition"
+    summary = "noise of each sample, independent, and a drift"
+    signature = "white residual; scatter of T falls with record length^-3/2"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -163,10 +162,10 @@ class FlagWidth:
 
     flag_width_m: float = parameter("m", 1e-4, 0.1, 0.01)
 
-    name: ClassVar[str] = "flag_width"
-    stage: ClassVar[str] = "photogate"
-    summary: ClassVar[str] = "blocked while the flag is in the beam"
-    signature: ClassVar[str] = "edges lie width/speed apart; single edges are early or late"
+    name = "flag_width"
+    stage = "photogate"
+    summary = "blocked while the flag is in the beam"
+    signature = "edges lie width/speed apart; single edges are early or late"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -185,10 +184,10 @@ class GateOffset:
 
     beam_offset_m: float = parameter("m", -0.05, 0.05, 0.002)
 
-    name: ClassVar[str] = "gate_offset"
-    stage: ClassVar[str] = "photogate"
-    summary: ClassVar[str] = "the beam is not where the flag hangs"
-    signature: ClassVar[str] = "half-swings alternate by T/pi asin(offset/A), more as A falls"
+    name = "gate_offset"
+    stage = "photogate"
+    summary = "the beam is not where the flag hangs"
+    signature = "half-swings alternate by T/pi asin(offset/A), more as A falls"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -209,10 +208,10 @@ class MissedPassages:
 
     missed_share: float = parameter("1", 0.0, 0.3, 0.02)
 
-    name: ClassVar[str] = "missed_passages"
-    stage: ClassVar[str] = "photogate"
-    summary: ClassVar[str] = "both edges of a passage are lost, at random"
-    signature: ClassVar[str] = "gaps of two or more half-swings"
+    name = "missed_passages"
+    stage = "photogate"
+    summary = "both edges of a passage are lost, at random"
+    signature = "gaps of two or more half-swings"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -231,10 +230,10 @@ class GateJitter:
 
     jitter_rms_s: float = parameter("s", 0.0, 0.01, 1e-4)
 
-    name: ClassVar[str] = "gate_jitter"
-    stage: ClassVar[str] = "photogate"
-    summary: ClassVar[str] = "random delay of each edge"
-    signature: ClassVar[str] = "white scatter of passage times"
+    name = "gate_jitter"
+    stage = "photogate"
+    summary = "random delay of each edge"
+    signature = "white scatter of passage times"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""

@@ -1,7 +1,6 @@
 """Effects on a body that hangs on two lines, and on how it is let go."""
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -22,10 +21,10 @@ class LineStretch:
 
     stretch_ratio: float = parameter("1", 0.0, 0.05, 0.005)
 
-    name: ClassVar[str] = "line_stretch"
-    stage: ClassVar[str] = "body"
-    summary: ClassVar[str] = "l (1 + stretch) under load"
-    signature: ClassVar[str] = "T_y and T_s grow by stretch/2; k from their ratio as is"
+    name = "line_stretch"
+    stage = "body"
+    summary = "l (1 + stretch) under load"
+    signature = "T_y and T_s grow by stretch/2; k from their ratio as is"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -46,10 +45,10 @@ class LineCreep:
 
     creep_per_decade: float = parameter("1", 0.0, 0.02, 0.001)
 
-    name: ClassVar[str] = "line_creep"
-    stage: ClassVar[str] = "body"
-    summary: ClassVar[str] = "l (1 + creep log10(1 + t/60 s)), slowly enough to do no work"
-    signature: ClassVar[str] = "T drifts upwards by creep/2 a decade, whatever the amplitude"
+    name = "line_creep"
+    stage = "body"
+    summary = "l (1 + creep log10(1 + t/60 s)), slowly enough to do no work"
+    signature = "T drifts upwards by creep/2 a decade, whatever the amplitude"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -71,10 +70,10 @@ class OffLevel:
 
     pitch_rad: float = parameter("rad", -0.5, 0.5, 0.02)
 
-    name: ClassVar[str] = "off_level"
-    stage: ClassVar[str] = "body"
-    summary: ClassVar[str] = "I_zz = I_x sin^2 + I_z cos^2, and a product of inertia I_xz"
-    signature: ClassVar[str] = "k_y^2 falls by (k_z^2 - k_x^2) sin^2 pitch"
+    name = "off_level"
+    stage = "body"
+    summary = "I_zz = I_x sin^2 + I_z cos^2, and a product of inertia I_xz"
+    signature = "k_y^2 falls by (k_z^2 - k_x^2) sin^2 pitch"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -100,10 +99,10 @@ class YawPitchResonance:
     period_ratio: float = parameter("1", 0.9, 1.1, 1.0)
     pitch_seed_rad: float = parameter("rad", 0.0, 0.05, 0.002)
 
-    name: ClassVar[str] = "yaw_pitch_resonance"
-    stage: ClassVar[str] = "body"
-    summary: ClassVar[str] = "line length changed until T_y = ratio * T_1; exact motion"
-    signature: ClassVar[str] = "yaw and pitch exchange energy in slow beats; T_y is shifted"
+    name = "yaw_pitch_resonance"
+    stage = "body"
+    summary = "line length changed until T_y = ratio * T_1; exact motion"
+    signature = "yaw and pitch exchange energy in slow beats; T_y is shifted"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on.
@@ -160,10 +159,10 @@ class UnsteadyRelease:
 
     rate_rms: float = parameter("rad/s or m/s", 0.0, 0.2, 0.005)
 
-    name: ClassVar[str] = "unsteady_release"
-    stage: ClassVar[str] = "release"
-    summary: ClassVar[str] = "random rates at the release, from the run's seed"
-    signature: ClassVar[str] = "other modes and phases from run to run; sway in a yaw test"
+    name = "unsteady_release"
+    stage = "release"
+    summary = "random rates at the release, from the run's seed"
+    signature = "other modes and phases from run to run; sway in a yaw test"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""

@@ -6,7 +6,7 @@ catalogue: it needs the frequency of the test that it acts on.
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Final, cast
+from typing import TYPE_CHECKING, Any, Final, cast
 
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.body import SwingingBody
@@ -24,10 +24,10 @@ class StatedInertiaError:
 
     share: float = parameter("1", -0.3, 0.3, 0.01)
 
-    name: ClassVar[str] = "inertia"
-    stage: ClassVar[str] = "body"
-    summary: ClassVar[str] = "more inertia, the added one's included"
-    signature: ClassVar[str] = "T grows by half the share, at any amplitude"
+    name = "inertia"
+    stage = "body"
+    summary = "more inertia, the added one's included"
+    signature = "T grows by half the share, at any amplitude"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -50,10 +50,10 @@ class RestoringError:
 
     share: float = parameter("1", -0.3, 0.3, 0.01)
 
-    name: ClassVar[str] = "restoring"
-    stage: ClassVar[str] = "body"
-    summary: ClassVar[str] = "more restoring at any displacement"
-    signature: ClassVar[str] = "T falls by half the share, at any amplitude"
+    name = "restoring"
+    stage = "body"
+    summary = "more restoring at any displacement"
+    signature = "T falls by half the share, at any amplitude"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -73,10 +73,10 @@ class LineExcess:
 
     excess_m: float = parameter("m", -0.1, 0.1, 0.005)
 
-    name: ClassVar[str] = "line_excess"
-    stage: ClassVar[str] = "body"
-    summary: ClassVar[str] = "l + excess, the same for lines of any length"
-    signature: ClassVar[str] = "T grows by excess/(2 l): more with short lines"
+    name = "line_excess"
+    stage = "body"
+    summary = "l + excess, the same for lines of any length"
+    signature = "T grows by excess/(2 l): more with short lines"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -91,10 +91,10 @@ class SpacingError:
 
     half_spacing_error_m: float = parameter("m", -0.02, 0.02, 0.002)
 
-    name: ClassVar[str] = "spacing"
-    stage: ClassVar[str] = "body"
-    summary: ClassVar[str] = "d + error, the same for any spacing"
-    signature: ClassVar[str] = "T falls by error/d: more with narrow lines"
+    name = "spacing"
+    stage = "body"
+    summary = "d + error, the same for any spacing"
+    signature = "T falls by error/d: more with narrow lines"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -109,10 +109,10 @@ class ClampMass:
 
     share: float = parameter("1", 0.0, 0.3, 0.01)
 
-    name: ClassVar[str] = "clamp_mass"
-    stage: ClassVar[str] = "body"
-    summary: ClassVar[str] = "clamps of a share of the body's mass, at the lines' distance"
-    signature: ClassVar[str] = "k^2 moves towards d^2 by the share"
+    name = "clamp_mass"
+    stage = "body"
+    summary = "clamps of a share of the body's mass, at the lines' distance"
+    signature = "k^2 moves towards d^2 by the share"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
@@ -135,10 +135,10 @@ class LineTwist:
 
     stiffness_m: float = parameter("m", 0.0, 0.02, 5e-4)
 
-    name: ClassVar[str] = "line_twist"
-    stage: ClassVar[str] = "body"
-    summary: ClassVar[str] = "a restoring moment in yaw beside gravity's"
-    signature: ClassVar[str] = "T falls by stiffness l/(2 d^2): more with long and narrow lines"
+    name = "line_twist"
+    stage = "body"
+    summary = "a restoring moment in yaw beside gravity's"
+    signature = "T falls by stiffness l/(2 d^2): more with long and narrow lines"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on: a spacing of the same restoring in yaw."""
@@ -164,10 +164,10 @@ class ReleaseError:
     coordinate: str = ""
     omega_rad_s: float = 1.0
 
-    name: ClassVar[str] = "release"
-    stage: ClassVar[str] = "release"
-    summary: ClassVar[str] = "let go from elsewhere, or with a rate"
-    signature: ClassVar[str] = "amplitude and phase from the beginning on"
+    name = "release"
+    stage = "release"
+    summary = "let go from elsewhere, or with a rate"
+    signature = "amplitude and phase from the beginning on"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""

@@ -16,8 +16,7 @@ from analysis.resolver.settings import ResolverSettings
 from hardware.description.channels import FORCE_AFT, FORCE_FORE, FORCE_X
 from hardware.description.setpoint import SetPoint
 from sim.acquisition.channels import Digitiser
-from sim.model.surge import SurgeForces
-from sim.model.water.force_laws import CrossFlow
+from sim.model.water.force_laws import CrossFlow, SurgeForces
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.run import simulate
 

@@ -7,9 +7,9 @@ from analysis.coefficients.hull_coefficients import as_reported
 from analysis.coefficients.linear_fit import linear_fit
 from analysis.coefficients.names import Form
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
-from sim.model.water.manoeuvring import from_added_mass_and_damping
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from tests.analysis.coefficients.campaign import loaded, pure
+from tests.sim.manoeuvring import from_added_mass_and_damping
 
 RIGS = [vertical_rig().ideal(), horizontal_rig().ideal()]
 

@@ -28,8 +28,8 @@ from sim.effects.d2_speed_droop import SpeedDroop
 from sim.effects.effect import DeviationTrace, Effect
 from sim.effects.switching import switch_on
 from sim.rig import SimulatedRig
+from sim.run import steady_run
 from sim.solve.period import Period
-from sim.solve.periodic import steady_run
 from tests.analysis.gap.small import POINTS, problem_of, record
 
 USUAL = Tolerances()

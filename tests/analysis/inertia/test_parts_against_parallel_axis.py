@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from analysis.inertia.ballast import BallastTarget, Weight, place_ballast
-from analysis.inertia.parts import BodyPart, combine, inertia_about, part
+from analysis.inertia.parts import BodyPart, combine, part
 from analysis.uncertainty.estimate import Estimate, exactly
 from analysis.uncertainty.values import UncertainValues
 from hardware.description.errors import ConfigurationError, DataError
@@ -73,12 +73,6 @@ def test_covariance_against_monte_carlo() -> None:
     assert np.sqrt(np.diag(whole.uncertain.covariance())) == pytest.approx(
         np.sqrt(np.diag(seen)), rel=0.06, abs=1e-3
     )
-
-
-def test_inertia_about_another_point() -> None:
-    body = point("a", 2.0, 0.5, 0.0, 0.3)
-    roll, pitch, yaw = inertia_about(body, (0.0, 0.0, 0.0))
-    assert (roll.value, pitch.value, yaw.value) == pytest.approx((0.18, 0.68, 0.5))
 
 
 def test_impossible_parts_are_refused() -> None:

@@ -34,7 +34,6 @@ from analysis.inertia.inclining_test import (
 from analysis.inertia.modulation import remove_modulation
 from analysis.inertia.plane_inertia import plane_inertia
 from analysis.inertia.principal_axes import (
-    gyradius_off_level,
     inertia_ellipse,
     principal_angle,
     principal_axes,
@@ -229,12 +228,7 @@ def test_roll_from_tilts_is_as_sensitive_as_the_paper_says() -> None:
     assert found.budget.result.uncertainty == pytest.approx(7e-3, abs=0.7e-3)
 
 
-def test_level_and_ellipse() -> None:
-    assert gyradius_off_level(0.6, 1.1, 1.0, 0.0, 0.0) == pytest.approx(1.0)
-    assert gyradius_off_level(0.6, 1.1, 1.0, 0.2, 0.0) == pytest.approx(
-        gyradius_about(0.6, 1.0, 0.2)
-    )
-    assert gyradius_off_level(0.6, 1.1, 1.0, 0.0, math.pi / 2.0) == pytest.approx(1.1)
+def test_ellipse() -> None:
     ellipse = inertia_ellipse(0.5, 1.0, 0.0)
     assert np.hypot(*ellipse.T).max() == pytest.approx(2.0)
     assert np.hypot(*ellipse.T).min() == pytest.approx(1.0)

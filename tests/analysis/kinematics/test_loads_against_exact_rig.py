@@ -9,13 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from analysis.kinematics.projection import loads, readings
-from analysis.kinematics.rigid_body import inertia, weight, zero_readings
+from analysis.kinematics.rigid_body import inertia, weight
 from hardware.description.arrangement import Arrangement, DriftBy, Gauges
 from hardware.description.body import Body
 from hardware.description.errors import DataError
 from hardware.description.oscillator import Plane
 from tests.analysis.kinematics.exact import body_of, geometry_of, motion_of, rows, truth
-from tests.exact.forces import at_rest
 from tests.exact.rigs import ARRANGEMENTS, exact_rig
 
 RELATIVE = 1e-9
@@ -75,14 +74,3 @@ def test_an_x_gauge_is_asked_for_where_the_loads_depend_on_it(
     assert np.abs(wrong - whole[:2]).max() > 0.01  # newtons: it does depend on it
     with pytest.raises(DataError, match="force_x is missing"):
         loads(geometry, moved.line_rad, exact.readings[:2])
-
-
-@pytest.mark.parametrize("plane", Plane)
-@pytest.mark.parametrize("arrangement", ARRANGEMENTS, ids=lambda a: "-".join(vars(a).values()))
-def test_zero_runs_in_air_read_the_weight_at_the_drift(
-    plane: Plane, arrangement: Arrangement
-) -> None:
-    rig = exact_rig(plane, arrangement, rotation_rad=0.2, drift_rad=0.15)
-    rig = replace(rig, body=replace(rig.body, displaced_kg=0.0))
-    found = zero_readings(geometry_of(rig), body_of(rig.body))
-    assert found == pytest.approx(at_rest(rig), abs=1e-9)

@@ -62,7 +62,6 @@ def test_worked_arithmetic_by_monte_carlo() -> None:
 def test_a_bent_formula_is_caught() -> None:
     found = assess("square", lambda x: x * x, {"x": Estimate.of(0.1, 1.0)}, seed=2)
     assert not found.linear_good_enough
-    assert "does not hold" in found.message
     assert found.interval[0] >= 0.0
     assert found.interval[1] == pytest.approx(5.0, rel=0.1)
 

@@ -124,11 +124,11 @@ def test_several_processes_and_trials_give_the_same_numbers(campaign: Path) -> N
 
 def test_trials_are_those_of_the_analysis(campaign: Path) -> None:
     from analysis.coefficients.campaign import campaign_coefficients
-    from pmm.coefficients.settings import Settings
+    from pmm.coefficients.settings import CoefficientSettings
     from pmm.coefficients.workflow import coefficients_of, request_of
     from pmm.parallel import InThisProcess
 
-    settings = Settings(trials=6000, seed=2)
+    settings = CoefficientSettings(trials=6000, seed=2)
     found = coefficients_of([campaign], settings, InThisProcess(), lambda *_: None)
     own = campaign_coefficients(found.cycles, request_of(settings, found.stated))
     np.testing.assert_array_equal(found.result.values, own.values)
@@ -200,7 +200,7 @@ def test_a_hull_table_beside_the_values(campaign: Path, tmp_path: Path) -> None:
 
 
 def test_offsets_and_their_drift_are_taken_off_the_means(tmp_path: Path) -> None:
-    from pmm.coefficients.settings import Settings
+    from pmm.coefficients.settings import CoefficientSettings
     from pmm.coefficients.workflow import coefficients_of
     from pmm.parallel import InThisProcess
 
@@ -215,7 +215,7 @@ def test_offsets_and_their_drift_are_taken_off_the_means(tmp_path: Path) -> None
             f"duration_s = 10.0\nnumber = {1 + 3 * number}\n"
         )
     (tmp_path / "campaign.toml").write_text(text)
-    settings = Settings(wanted=("Z_wdot",))
+    settings = CoefficientSettings(wanted=("Z_wdot",))
     found = coefficients_of([tmp_path], settings, InThisProcess(), lambda *_: None)
     bare = (tmp_path / "campaign.toml").read_text()
     (tmp_path / "campaign.toml").write_text(

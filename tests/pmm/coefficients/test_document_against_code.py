@@ -9,8 +9,8 @@ from pmm.cli.coefficients import coefficients
 from pmm.cli.report import report
 from pmm.coefficients.settings import (
     AmplifierTable,
+    CoefficientSettings,
     ReferenceFile,
-    Settings,
     ShipTable,
     read_settings,
 )
@@ -28,7 +28,7 @@ def test_options() -> None:
 
 
 def test_keys() -> None:
-    for kind in (Settings, ShipTable, AmplifierTable, ReferenceFile):
+    for kind in (CoefficientSettings, ShipTable, AmplifierTable, ReferenceFile):
         for one in fields(kind):
             assert re.search(rf"\b{one.name}\b", PAGE), one.name
 

@@ -25,7 +25,7 @@ from hardware.description.body import Body
 from hardware.description.oscillator import Oscillator, Plane, Range
 from hardware.description.setpoint import SetPoint
 from sim.acquisition.channels import Digitiser
-from sim.model.surge import SurgeForces
+from sim.model.water.force_laws import SurgeForces
 from sim.rig import SimulatedRig
 from sim.run import simulate
 from tests.analysis.coefficients import kvlcc2

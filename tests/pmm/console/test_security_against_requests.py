@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from starlette.websockets import WebSocketDisconnect
 
-from pmm.console.command_log import COMMANDS
+from pmm.console.actions import COMMANDS
 from tests.pmm.console.serving import EXAMPLES, OWN, SESSION, served
 
 TOKEN = "a token of more than sixteen"  # noqa: S105 - the test's own

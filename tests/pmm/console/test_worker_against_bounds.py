@@ -13,11 +13,15 @@ from typing import Any
 
 import pytest
 
-from pmm.console.messages import QueuedPlan
-from pmm.console.packing import pack, unpack
+from pmm.console.messages import QueuedPlan, pack, unpack
 from pmm.console.plans import Plans
-from pmm.console.worker_process import BusyError, NotWorkedOutError, WorkerProcess, WorkLimits
-from pmm.console.workers import Shared
+from pmm.console.worker_process import (
+    BusyError,
+    NotWorkedOutError,
+    Shared,
+    WorkerProcess,
+    WorkLimits,
+)
 from pmm.plan.rig_file import read_rig_file
 from tests.pmm.console.chromium import plan, rig_in
 

@@ -15,7 +15,7 @@ from sim.effects.agreement import mismatch
 from sim.effects.catalogue import build, catalogue, load_file, user_effects
 from sim.effects.switching import switch_on
 from sim.rig import vertical_rig
-from sim.solve.periodic import steady_run
+from sim.run import steady_run
 from tests.sim.effects.against_theory import at_small_angles
 
 PAGE = Path(__file__).parents[3] / "docs" / "effects.md"

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim.model.water.manoeuvring import Derivatives, PrimeSystem, from_added_mass_and_damping
 from tests.pmm.gap.rigs import run
+from tests.sim.manoeuvring import Derivatives, PrimeSystem, from_added_mass_and_damping
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 FEW = ("--effects", "coulomb-friction")

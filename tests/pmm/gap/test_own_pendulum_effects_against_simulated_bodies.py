@@ -103,7 +103,7 @@ def test_wrong_requests_are_one_line(options: list[str], said: str) -> None:
         ("_, restoring = small", "_, restoring = 1 / 0, small", "of your own: ZeroDivisionError"),
         ("self.quintic * restoring", "float('nan')", "what it does to record roll is not a number"),
         ('"quintic_restoring"', '"inertia"', "inertia: the catalogue has an effect of that name"),
-        ("    name: ", "    label: ", "defines no effect"),
+        ("    name = ", "    label = ", "defines no effect"),
     ],
 )
 def test_a_fault_in_ones_own_is_said(own: Path, old: str, new: str, said: str) -> None:

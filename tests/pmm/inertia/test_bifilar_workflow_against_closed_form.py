@@ -96,7 +96,7 @@ def test_no_workflow_without_a_tare(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("gone", "message"),
     [
-        ("known_inertia_kg_m2 =", "known_inertia_kg_m2 is missing: the known body's"),
+        ("known_inertia_kg_m2 =", "known_inertia_kg_m2 is missing"),
         ("mass_kg = 60.0\nu_mass_kg", "needs mass_kg, of all that hung"),
         ("yaw =", "the test comes before the known body"),
     ],

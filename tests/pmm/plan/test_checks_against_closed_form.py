@@ -228,7 +228,9 @@ def test_a_plan_beyond_the_rig_is_refused_with_every_run_value_and_limit() -> No
 
 
 def test_what_cannot_be_checked_is_said() -> None:
-    bare = RigFile(Path("rig.toml"), "0", VERTICAL_1963, read_rig({}))
+    bare = RigFile(
+        path=Path("rig.toml"), sha256="0", oscillator=VERTICAL_1963, hardware=read_rig({})
+    )
     found = check_plan(_plan(run(speed_m_s=1.0)), bare)
     missing = [f.message for f in found if f.quantity == "not checked"]
     for table in ("[model]", "model.length_m", "[tank]", "[[modes]]", "[[gauges]]", "limits.vel"):

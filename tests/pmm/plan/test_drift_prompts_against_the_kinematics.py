@@ -11,7 +11,7 @@ from analysis.kinematics.motion import Driven, motion
 from hardware.description.arrangement import Arrangement, DriftBy, Joint
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Plane
 from hardware.description.setpoint import SetPoint
-from pmm.plan.drift_prompt import drift_prompt
+from pmm.run.surroundings import drift_prompt
 
 HALF = 0.5
 

@@ -19,7 +19,7 @@ from pmm.plan.campaign_writer import FinishedRun, write_campaign
 from pmm.plan.plan import read_plan_and_rig
 from pmm.plan.rig_file import RigFile
 from pmm.plan.sensors import acquisition_table, resolutions
-from pmm.recorder.noise import white_noise_rms
+from pmm.recorder.recording import white_noise_rms
 from sim.acquisition.channels import Digitiser
 from tests.pmm.plan.plans import EXAMPLES, HEAVE, RIG_TEXT, write_plan
 

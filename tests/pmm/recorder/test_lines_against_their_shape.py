@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from pmm.recorder.line_shapes import read_lines
 from pmm.recorder.recording import read_run
 from pmm.recorder.recovery import recover
 from pmm.recorder.run_recorder import RunRecorder
-from pmm.recorder.texts import read_lines
 from tests.pmm.recorder.recorded import fed, header
 
 JOURNALS = {

@@ -8,7 +8,7 @@ import pytest
 from hardware.description.errors import DataError
 from pmm.recorder.files import HEADER, MARKER, RECORDING, RECOVERED
 from pmm.recorder.header import RunHeader
-from pmm.recorder.marker import read_marker, read_recovered
+from pmm.recorder.line_shapes import read_marker, read_recovered
 from pmm.recorder.recovery import recover
 from pmm.recorder.run_recorder import RunEnd, RunRecorder
 from tests.pmm.recorder.recorded import fed, header

@@ -13,14 +13,7 @@ from hardware.description.channels import Channel
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 from hardware.roles import Pulse, Reading
-from pmm.recorder.files import (
-    HEADER,
-    MARKER,
-    RECORDING,
-    RECOVERED,
-    STREAMS,
-    RunExistsError,
-)
+from pmm.recorder.files import HEADER, MARKER, RECORDING, RECOVERED, STREAMS, RunExistsError
 from pmm.recorder.header import LiveSettings, RunHeader
 from pmm.recorder.lateness import Lateness
 from pmm.recorder.recovery import recover, runs_in

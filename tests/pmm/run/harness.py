@@ -16,7 +16,8 @@ from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
 from pmm.campaign.calibration import Calibration
 from pmm.plan.plan import Plan
-from pmm.plan.rig_file import Gauge, RecorderSettings, RigFile
+from pmm.plan.rig_file import RigFile
+from pmm.plan.rig_tables import Gauge, RecorderSettings
 from pmm.plan.run_plan import RunPlan
 from pmm.run.journal import Taps
 from pmm.run.recorder_factory import RecorderFactory

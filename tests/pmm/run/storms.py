@@ -153,7 +153,13 @@ class Storm:
         self._drives = [(n, one) for n, one in nodes if isinstance(one, SimulatedDrive)]
         self._shaft = dict(self._drives)["shaft"]
         self.watch = PowerWatch(self.world)
-        file = RigFile(Path("rig.toml"), "0" * 64, VERTICAL_1963, configuration, realtime=False)
+        file = RigFile(
+            path=Path("rig.toml"),
+            sha256="0" * 64,
+            oscillator=VERTICAL_1963,
+            hardware=configuration,
+            realtime=False,
+        )
         with running(name, self.world):
             rig = Rig(configuration, self._now, FreeRunning(), absent)
             with rig:

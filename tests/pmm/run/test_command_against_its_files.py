@@ -14,7 +14,7 @@ import pytest
 from analysis.readers import read_recording
 from pmm.recorder.recording import read_run
 from sim.devices.bench_file import read_bench
-from sim.solve.periodic import steady_run
+from sim.run import steady_run
 from tests.pmm.run.processes import READINGS, full_disk, pmm, written_plan
 from tests.sim.devices.benches import ROOT
 

@@ -10,7 +10,7 @@ import pytest
 
 from analysis.readers import read_recording
 from hardware.errors import NotReadyError
-from pmm.plan.rig_file import Gauge
+from pmm.plan.rig_tables import Gauge
 from pmm.recorder.disk import DiskFullError
 from pmm.recorder.recording import read_run
 from pmm.run.states import Command, RunStateError, State

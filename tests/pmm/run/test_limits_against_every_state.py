@@ -3,7 +3,7 @@
 import pytest
 
 from hardware.errors import NotReadyError
-from pmm.plan.rig_file import Gauge
+from pmm.plan.rig_tables import Gauge
 from pmm.run.states import Command, State
 from sim.devices.faults import inject
 from tests.pmm.run.harness import bench, oscillation

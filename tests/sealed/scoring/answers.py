@@ -5,8 +5,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, ClassVar, Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
+from pmm.configuration import STRICT_TABLE
 from pmm.gap.answer import SCHEMA as ANSWER_SCHEMA
 from tests.sealed.scoring.files import checked, read_json
 from tests.sealed.scoring.keys import Truth, forces
@@ -26,7 +27,7 @@ class Predicted:
     in_phase: tuple[float, ...]
     quadrature: tuple[float, ...]
 
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+    __pydantic_config__ = STRICT_TABLE
 
 
 Forecast: TypeAlias = Mapping[str, Mapping[str, Predicted]]
@@ -41,7 +42,7 @@ class Interval:
     low: float
     high: float
 
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+    __pydantic_config__ = STRICT_TABLE
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ class Named:
     name: str
     parameters: Mapping[str, Interval] = field(default_factory=dict)
 
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+    __pydantic_config__ = STRICT_TABLE
 
 
 @dataclass(frozen=True)
@@ -84,7 +85,7 @@ class Answer:
     failed: str = ""
     seconds: float | None = None
 
-    __pydantic_config__: ClassVar = {"extra": "forbid", "allow_inf_nan": False}
+    __pydantic_config__ = STRICT_TABLE
 
     @property
     def said(self) -> str:

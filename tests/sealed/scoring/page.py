@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-from pmm.document.inline import inline_svg
-from pmm.document.page import write_template
+from pmm.document.page import inline_svg, write_template
 from pmm.document.style import render
 from pmm.version import provenance
 from tests.sealed.scoring.figure import score_figure

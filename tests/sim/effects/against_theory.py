@@ -13,7 +13,7 @@ from hardware.description.setpoint import SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.effects.agreement import mismatch, phasor
 from sim.effects.effect import Effect
-from sim.model.coefficients import HullCoefficients
+from sim.model.parameters import HullCoefficients
 from sim.rig import SimulatedRig
 from sim.solve.linear_system import as_rows
 

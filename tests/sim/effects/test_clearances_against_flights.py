@@ -14,7 +14,7 @@ from sim.effects.k6_joint_play import JointPlay
 from sim.effects.k6b_free_play import FreePlay
 from sim.effects.switching import switch_on
 from sim.rig import SimulatedRig, vertical_rig
-from sim.solve.periodic import steady_run
+from sim.run import steady_run
 from tests.sim.effects.against_theory import at_small_angles
 
 RIG = vertical_rig().ideal()

@@ -18,7 +18,7 @@ from sim.effects.d5_guide_friction import GuideFriction
 from sim.effects.d6_frequency_error import SetFrequencyError
 from sim.effects.effect import Effect
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
-from sim.solve.periodic import steady_run
+from sim.run import steady_run
 from tests.sim.effects.against_theory import at_small_angles
 
 PHASES = (0.0, np.pi / 3.0, np.pi)

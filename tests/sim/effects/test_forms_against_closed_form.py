@@ -29,7 +29,7 @@ from sim.effects.switching import switch_on
 from sim.model.force_law import LawInput
 from sim.model.laws import Spring, Stiffening
 from sim.rig import SimulatedRig, vertical_rig
-from sim.solve.periodic import steady_run
+from sim.run import steady_run
 from sim.stage import Block
 
 RIG = vertical_rig().ideal()

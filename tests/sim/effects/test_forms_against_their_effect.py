@@ -17,7 +17,7 @@ from sim.effects.effect import Effect, parameter
 from sim.effects.k6b_free_play import FreePlay
 from sim.effects.switching import switch_on
 from sim.rig import horizontal_rig
-from sim.solve.periodic import steady_run
+from sim.run import steady_run
 from tests.sim.effects.in_time import in_time
 
 RIG = horizontal_rig().ideal()

@@ -35,7 +35,7 @@ from sim.model.law_point import Acting, Point
 from sim.model.laws import Quadratic
 from sim.model.mounting import Mounting
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
-from sim.solve.periodic import steady_run
+from sim.run import steady_run
 from tests.sim.effects.against_theory import at_small_angles, mismatch
 from tests.sim.effects.in_time import between, in_time, lines
 

@@ -18,7 +18,7 @@ from sim.effects.k6_joint_play import JointPlay
 from sim.effects.k7_drift_arrangement import DriftArrangement
 from sim.effects.m9_gauges_turned import GaugesTurned
 from sim.effects.situation import Situation
-from sim.model.surge import SurgeForces
+from sim.model.water.force_laws import SurgeForces
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from tests.sim.effects.against_theory import at_small_angles, mismatch
 

@@ -28,7 +28,7 @@ from sim.model.law_point import Acting, Point
 from sim.model.laws import LAWS
 from sim.model.water.force_laws import CrossFlow
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
-from sim.solve.periodic import steady_run
+from sim.run import steady_run
 from tests.sim.effects.against_theory import at_small_angles
 from tests.sim.effects.in_time import by_cycles, in_time
 

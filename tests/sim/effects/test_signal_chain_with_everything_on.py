@@ -16,8 +16,7 @@ from sim.effects.m7_saturation import Saturation
 from sim.effects.situation import Situation
 from sim.effects.switching import switch_on
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
-from sim.run import simulate
-from sim.solve.periodic import steady_run
+from sim.run import simulate, steady_run
 from tests.sim.effects.in_time import between, in_time
 
 KINDS = [kind for kind in catalogue().values() if kind.code[0] in "MAH"]

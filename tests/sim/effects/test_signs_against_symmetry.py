@@ -14,7 +14,7 @@ from sim.effects.k1_connecting_rod import ConnectingRod
 from sim.effects.k6b_free_play import FreePlay
 from sim.mechanism.linkage import Mechanism
 from sim.rig import vertical_rig
-from sim.solve.periodic import steady_run
+from sim.run import steady_run
 from tests.sim.effects.against_theory import small_angles
 from tests.sim.effects.in_time import between, in_time
 

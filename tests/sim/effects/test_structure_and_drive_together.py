@@ -11,7 +11,7 @@ from sim.effects.effect import Effect
 from sim.effects.situation import Situation
 from sim.effects.switching import switch_on
 from sim.rig import vertical_rig
-from sim.solve.periodic import steady_run
+from sim.run import steady_run
 
 SET_POINT = SetPoint(0.7, 0.03, 1.0)
 KEYS = [(name, order) for name in ("force_aft", "force_fore") for order in range(6)]

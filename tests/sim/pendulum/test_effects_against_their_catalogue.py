@@ -13,11 +13,30 @@ from sim.pendulum.benches import (
     bifilar_bench,
     decay_bench,
 )
-from sim.pendulum.effects import CATALOGUE, effects_table, make_effect
+from sim.pendulum.effects import CATALOGUE, make_effect
 from sim.pendulum.effects.base import plausible
 from sim.pendulum.record import record
 
 PAGE = Path(__file__).parents[3] / "docs" / "pendulums.md"
+
+
+def effects_table() -> str:
+    """Return the catalogue as a table in Markdown, one row per effect."""
+    rows = [
+        "| effect | stage | parameters: plausible range (typical) | what it does | signature |",
+        "|---|---|---|---|---|",
+    ]
+    for effect in CATALOGUE:
+        known = [f"`{key}` {p.text} ({p.typical:g})" for key, p in plausible(effect).items()]
+        cells = (
+            f"`{effect.name}`",
+            effect.stage,
+            "; ".join(known) or "none",
+            effect.summary,
+            effect.signature,
+        )
+        rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+    return "\n".join(rows) + "\n"
 
 
 def test_the_page_holds_the_table_of_the_classes() -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hardware.description.errors import ConfigurationError
-from sim.model.water.manoeuvring import (
+from tests.sim.manoeuvring import (
     Derivatives,
     PrimeSystem,
     added_mass_and_damping,

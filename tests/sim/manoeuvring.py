@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from hardware.description.errors import ConfigurationError
+from sim.model.water.hydrostatics import Matrix
 
-Matrix: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 Powers: TypeAlias = tuple[tuple[int, int], tuple[int, int]]
 
 

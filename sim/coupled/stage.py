@@ -2,23 +2,24 @@
 
 The three parts are the same as in an open chain. The drive's linear part answers exactly to the
 load torque between samples; torque, motion and forces are then solved sample by sample
-(:mod:`sim.solve.coupled_march`). What that does not know is swept over the block until it fits
+(:mod:`sim.coupled.march`). What that does not know is swept over the block until it fits
 (:mod:`sim.solve.relaxation`), so that any part, changed by whatever effect, can be inside.
 """
 
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
 from sim import signals
+from sim.coupled.march import coupled_march
+from sim.coupled.steady_state import CoupledSteady
 from sim.drive.loaded_drive import LoadedDrive, LoadedState
 from sim.drive.prescribed_drive import SHAFT
+from sim.drive.shaft_system import TORQUE_DEGREE
 from sim.signals import Signal, Signals
-from sim.solve.coupled_march import TORQUE_DEGREE, coupled_march
-from sim.solve.coupled_steady import CoupledSteady
 from sim.solve.period import Period, Spectra
 from sim.solve.recurrence import fine_enough, last_period, substeps
 from sim.solve.relaxation import LONGEST_SWEEP, relax
@@ -37,8 +38,8 @@ class Coupled:
     mechanism: Stage[Any]
     hull: Stage[Any]
 
-    name: ClassVar[str] = "drive"
-    reads: ClassVar[tuple[Signal, ...]] = (signals.CARRIAGE_SPEED,)
+    name = "drive"
+    reads = (signals.CARRIAGE_SPEED,)
 
     @property
     def parts(self) -> tuple[Stage[Any], ...]:

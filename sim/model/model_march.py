@@ -1,4 +1,4 @@
-"""The model on its mounting, made ready for the compiled march (:mod:`sim.solve.march`)."""
+"""The model on its mounting, made ready for the compiled march (:mod:`sim.model.march`)."""
 
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from hardware.description.arrays import FloatArray
+from sim.drive.shaft_system import ShaftLoop
 from sim.model.law_point import Acting
 from sim.model.law_table import LawTable, has_number, table_of
 from sim.model.system import LOAD_DEGREE, HullSystem
@@ -13,15 +14,14 @@ from sim.solve.compilation import available
 from sim.solve.linear_system import Hold
 
 if TYPE_CHECKING:
-    from sim.drive.shaft_loop import Linkages, ShaftLoop
-    from sim.solve.march import Course, ModelLoop
+    from sim.model.march import Course, ModelLoop
 
 _NOTHING_KEPT = (
     Hold(np.zeros((0, 0)), np.zeros((2, 0, 6))),
     Hold(np.zeros((0, 0)), np.zeros((LOAD_DEGREE + 1, 0, 4))),
 )
 LOADS = 6  # f, g, and what the gauges give back in their clearance: two of each
-OUTPUTS = 10  # as in sim.solve.broyden
+OUTPUTS = 10  # as in sim.model.broyden
 
 
 class Marching(NamedTuple):
@@ -65,7 +65,7 @@ def marching_of(
 
 
 def _model(system: HullSystem, step_s: float) -> "ModelLoop":
-    from sim.solve.march import ModelLoop
+    from sim.model.march import ModelLoop
 
     by_motion, by_load = system.holds(step_s) if system.states else _NOTHING_KEPT
     by_struts, by_states, by_loads = system.model_maps
@@ -115,7 +115,7 @@ def course_of(
     scale
         What a change of (f, g) counts relative to, shape ``(4,)``.
     """
-    from sim.solve.march import Course
+    from sim.model.march import Course
 
     count = len(time_s)
     size = np.concatenate([scale, scale[:2]])[:loads]
@@ -133,7 +133,7 @@ def course_of(
 
 def march_model(marching: Marching, course: "Course") -> FloatArray | None:
     """Fill in states and loads; return the outputs, or ``None`` if a sample does not settle."""
-    from sim.solve.march import march
+    from sim.model.march import march
 
     columns = OUTPUTS if course.given.shape[1] == LOADS else OUTPUTS - 2
     outputs = np.empty((len(course.given), columns))
@@ -143,12 +143,10 @@ def march_model(marching: Marching, course: "Course") -> FloatArray | None:
 
 
 @lru_cache(maxsize=1)
-def _undriven() -> "tuple[ShaftLoop, Linkages]":
+def _undriven() -> tuple[ShaftLoop, FloatArray]:
     """Return a shaft that drives nothing, and its linkages."""
-    from sim.drive.shaft_loop import Linkages, ShaftLoop
-
     flat, deep = np.zeros((0, 0)), np.zeros((0, 0, 0))
     shaft = ShaftLoop(
         False, flat, deep, flat, flat, flat, flat, flat, flat, flat, np.zeros(4), flat, np.zeros(3)
     )  # fmt: skip
-    return shaft, Linkages(np.zeros((2, 5)))
+    return shaft, np.zeros((2, 5))

@@ -1,7 +1,7 @@
 """The unknown loads and torques of one sample, solved by Broyden's method.
 
 The estimate of the slope goes on from sample to sample, so that few evaluations are needed. Called
-by :mod:`sim.solve.march`, which says how it is loaded.
+by :mod:`sim.model.march`, which says how it is loaded.
 
 ``work`` holds, a row each: the outputs without this sample, but with its struts where no shaft
 drives them (0), its outputs (1), its motion of
@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from hardware.description.arrays import FloatArray
-from sim.drive.shaft_loop import strut_motion
+from sim.mechanism.compiled_linkage import strut_motion
 from sim.model.compiled_laws import law_force
 from sim.solve.compilation import compile_loop
 

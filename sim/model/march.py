@@ -2,7 +2,7 @@
 
 What a sample leaves open are the loads of model and mounting and the torques at the shaft. All
 else follows from them by matrices that are the same for every sample, so that one evaluation is a
-few dozen multiplications and the laws. They are solved by :mod:`sim.solve.broyden`.
+few dozen multiplications and the laws. They are solved by :mod:`sim.model.broyden`.
 
 Loaded when the first such loop runs, because numba is. Without numba the functions are Python: the
 same numbers, slowly. Arrays are handed on whole, with the row that is meant: numba counts every
@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from hardware.description.arrays import FloatArray
-from sim.drive.shaft_loop import Linkages, ShaftLoop
+from sim.drive.shaft_system import ShaftLoop
+from sim.model.broyden import add_struts, settle
 from sim.model.law_table import LawTable
-from sim.solve.broyden import add_struts, settle
 from sim.solve.compilation import compile_loop
 
 
@@ -216,7 +216,7 @@ def march(
     table: LawTable,
     course: Course,
     shaft: ShaftLoop,
-    links: Linkages,
+    links: FloatArray,
     outputs: FloatArray,
 ) -> int:
     """Solve all samples; return the number of one that does not settle, or -1.
@@ -254,7 +254,7 @@ def march(
             add_struts(struts, k, work, 0)
         settled = settle(
             laws, hull, by_speed, gap, instants, step_s, given, struts, scale, driven, told,
-            by_torque, numbers, cogging, shaft_gap, links.rows, k, unknown, slope, work, room,
+            by_torque, numbers, cogging, shaft_gap, links, k, unknown, slope, work, room,
         )  # fmt: skip
         if not settled:
             return k

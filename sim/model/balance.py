@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 
 from hardware.description.arrays import ComplexArray, FloatArray
+from sim.model.law_response import respond
 from sim.model.law_table import LawTable
 from sim.model.numbers import corners_only, geometry_only, without_corners
 from sim.solve.anderson_mixing import mix
 from sim.solve.compilation import compile_loop
 from sim.solve.corners import gauss
-from sim.solve.law_response import respond
 from sim.solve.period import Period
 from sim.solve.relaxation import MOST_SWEEPS, ROUNDING, STALLED, TOLERANCE
 

@@ -10,9 +10,9 @@ from sim import signals
 from sim.drive.loaded_drive import LoadedDrive
 from sim.model.hull import Hull
 from sim.model.hull_steady_state import HullSteady
+from sim.periodic import steady_of
 from sim.solve.period import Period, Spectra
 from sim.solve.relaxation import relax
-from sim.solve.sampled_period import steady_of
 from sim.stage import Stage
 
 _STRUTS = ("force_aft", "force_fore")

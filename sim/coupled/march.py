@@ -1,4 +1,4 @@
-"""Drive, mechanism and model made ready for the compiled march (:mod:`sim.solve.march`)."""
+"""Drive, mechanism and model made ready for the compiled march (:mod:`sim.model.march`)."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -9,48 +9,21 @@ import numpy as np
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim import signals
-from sim.drive.prescribed_drive import SHAFT, DriveSettings, ShaftMotion
+from sim.drive.prescribed_drive import SHAFT, ShaftMotion
+from sim.drive.shaft_system import TORQUE_DEGREE, ShaftLoop, ShaftSystem
 from sim.mechanism.linkage import Mechanism
 from sim.model.block_forces import HullState, marched_state
 from sim.model.hull import Hull
 from sim.model.law_table import has_number
+from sim.model.model_march import OUTPUTS, Marching, marching_of
 from sim.signals import Signals
 from sim.solve.linear_system import LinearSystem, causal_hold
-from sim.solve.model_march import OUTPUTS, Marching, marching_of
 from sim.stage import Block, Stage
 
 if TYPE_CHECKING:
     from typing import Any
 
-    from sim.drive.shaft_loop import ShaftLoop
-    from sim.solve.march import Course
-
-TORQUE_DEGREE = 3  # of the polynomial by which the torque goes on between samples
-
-
-@dataclass(frozen=True, eq=False)
-class ShaftSystem:
-    """What the march needs of a drive.
-
-    Attributes
-    ----------
-    system
-        From the torques (load, and what a gear with a clearance gives back) to angle, speed and
-        acceleration beyond what the drive is told; with a clearance, its opening too.
-    inertia_kg_m2, reflected_inertia_kg_m2
-        Of the shaft; and what is solved as part of it.
-    gap
-        Stiffness and half clearance of the gear, or zeros.
-    """
-
-    settings: DriveSettings
-    frequency_hz: float
-    system: LinearSystem
-    inertia_kg_m2: float
-    reflected_inertia_kg_m2: float
-    friction: tuple[float, float]
-    cogging: tuple[tuple[float, float, float], ...]
-    gap: tuple[float, float]
+    from sim.model.march import Course
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,8 +56,8 @@ class CoupledMarch:
         ConfigurationError
             If the sample is one of a gear with backlash: sweeps cannot solve it either.
         """
-        from sim.drive.shaft_loop import linkages_of
-        from sim.solve.march import march
+        from sim.mechanism.compiled_linkage import linkages_of
+        from sim.model.march import march
 
         told = self.shaft.settings.commanded(self.shaft.frequency_hz, self.block.time_s)
         known = 1 if states is None else 0
@@ -137,8 +110,7 @@ class CoupledMarch:
         _, motion = self.mechanism.run(None, self.block, told.signals)
         return np.column_stack([motion["lever_aft"], motion["lever_fore"]])
 
-    def _shaft_loop(self, told: ShaftMotion) -> "ShaftLoop":
-        from sim.drive.shaft_loop import ShaftLoop
+    def _shaft_loop(self, told: ShaftMotion) -> ShaftLoop:
 
         shaft, count = self.shaft, self.block.count
         hold = _hold(shaft.system, 1.0 / self.block.sample_rate_hz)
