@@ -79,7 +79,7 @@ def background(problem: Problem, looked: Sequence[Looked], sought: BoolArray) ->
         wide,
         Kernel.of(cells, each, scale),
         Shapes.of(shown, scale, problem.nuisances),
-        dict(_own(stack, nominal / stack.uncertainty, scale)),
+        dict(_own(stack, scale)),
         dict(_behind(stack)),
         dict(_kinds(stack)),
     )
@@ -172,14 +172,15 @@ def _instrument(channel: str, kind: str) -> str:
     return (StageName.DYNAMOMETERS if gauge else StageName.ACQUISITION).value
 
 
-def _own(stack: Stack, nominal: FloatArray, scale: FloatArray) -> Iterator[tuple[str, FloatArray]]:
-    """Yield by run what a gain and a zero of its own change of each force."""
+def _own(stack: Stack, scale: FloatArray) -> Iterator[tuple[str, FloatArray]]:
+    """Yield by run what a gain and a zero of its own change of each force, as it was measured."""
+    measured = stack.values / stack.uncertainty
     for number, run in enumerate(stack.runs):
         columns = []
         for channel in FORCES:
             here = np.array([one.channel == channel for one in stack.components])
             here &= stack.run == number
             mean = here & np.array([one.part is Part.MEAN for one in stack.components])
-            columns.append(np.where(here & stack.steady, nominal, 0.0))
+            columns.append(np.where(here & stack.steady, measured, 0.0))
             columns.append(np.where(mean, scale, 0.0))
         yield run.name, np.column_stack(columns)
