@@ -31,7 +31,7 @@ _TRIALS = 5_000
 
 def run(quick: bool, report: Report) -> Outcome:
     """Make the recordings, then read and solve them every way."""
-    runs, seconds = (20, 20.0) if quick else (1000, 60.0)
+    runs, seconds = (8, 20.0) if quick else (1000, 60.0)
     with tempfile.TemporaryDirectory() as place:
         report(f"writing {runs} recordings")
         folder = make_campaign(Path(place), runs, seconds)
@@ -172,7 +172,7 @@ def _same(folder: Path, quick: bool, report: Report) -> tuple[list[Row], float]:
     """Solve a small campaign on every engine, with Monte Carlo; a Dask worker is killed."""
     folder.mkdir()
     make_campaign(folder, 8 if quick else _SMALL, 20.0)
-    settings = CoefficientSettings(trials=10_000, seed=3)
+    settings = CoefficientSettings(trials=1_000 if quick else 10_000, seed=3)
     report("one process, two, and a cluster")
     alone = coefficients_of([folder], settings, InThisProcess(), lambda *_: None).result
     rows: list[Row] = []

@@ -102,19 +102,37 @@ def console(rig: Path, output: Path, *options: str) -> Iterator[Console]:
 class Browser:
     """A Chromium."""
 
-    def __init__(
-        self, profile: Path, width: int = 1400, height: int = 900, *, insecure: bool = False
-    ) -> None:
+    def __init__(self, profile: Path) -> None:
         options = webdriver.ChromeOptions()
-        options.accept_insecure_certs = insecure
+        options.accept_insecure_certs = True  # tests sign their own
         options.binary_location = str(CHROMIUM)
         for one in ("headless=new", "no-sandbox", "disable-gpu", "disable-background-networking"):
             options.add_argument(f"--{one}")
         options.add_argument(f"--user-data-dir={profile}")
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
         self.driver = webdriver.Chrome(options=options, service=Service(str(DRIVER)))
+        self.resize(1400, 900)
+
+    def resize(self, width: int, height: int) -> None:
+        """Make the window that is looked at larger or smaller."""
         size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+
+    @contextmanager
+    def window(self) -> Iterator["Browser"]:
+        """Look at a window of its own; it takes cookies and complaints with it when it closes."""
+        first = self.driver.current_window_handle
+        self.driver.switch_to.new_window("window")
+        self.resize(1400, 900)
+        try:
+            yield self
+        finally:
+            for handle in set(self.driver.window_handles) - {first}:
+                self.driver.switch_to.window(handle)
+                self.driver.close()
+            self.driver.switch_to.window(first)
+            self.driver.execute_cdp_cmd("Network.clearBrowserCookies", {})
+            self.complaints()
 
     def open(self, address: str) -> None:
         """Open the console's page and wait for its first data."""
@@ -168,11 +186,9 @@ class Browser:
 
 
 @contextmanager
-def browser(
-    profile: Path, width: int = 1400, height: int = 900, *, insecure: bool = False
-) -> Iterator[Browser]:
-    """A browser with a profile of its own; an insecure one takes any certificate."""
-    made = Browser(profile, width, height, insecure=insecure)
+def browser(profile: Path) -> Iterator[Browser]:
+    """A browser with a profile of its own."""
+    made = Browser(profile)
     try:
         yield made
     finally:

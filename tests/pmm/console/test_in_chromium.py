@@ -29,10 +29,12 @@ def _needles(page: Browser) -> list[float]:
     return [float(page.text(f"{card} .{part} b")) for part in ("in-phase", "quadrature")]
 
 
-def test_needles_settle_where_the_analysis_ends(rig: Path, tmp_path: Path) -> None:
+def test_needles_settle_where_the_analysis_ends(
+    rig: Path, tmp_path: Path, chromium: Browser
+) -> None:
     with (
         console(rig, tmp_path / "out", *FAST) as one,
-        browser(tmp_path / "profile") as page,
+        chromium.window() as page,
     ):
         page.open(one.address)
         page.run("document.getElementById('plan-text').value = arguments[0]", "[[runz]]")
@@ -60,10 +62,12 @@ def test_needles_settle_where_the_analysis_ends(rig: Path, tmp_path: Path) -> No
     assert [json.loads(line)["action"] for line in lines.splitlines()] == ["command"]
 
 
-def test_stops_quickly_comes_back_and_shows_what_was_missed(rig: Path, tmp_path: Path) -> None:
+def test_stops_quickly_comes_back_and_shows_what_was_missed(
+    rig: Path, tmp_path: Path, chromium: Browser
+) -> None:
     with (
         console(rig, tmp_path / "out", *FAST) as one,
-        browser(tmp_path / "profile") as page,
+        chromium.window() as page,
     ):
         page.open(one.address)
         page.queue(plan("long", periods=400))
@@ -82,11 +86,12 @@ def test_stops_quickly_comes_back_and_shows_what_was_missed(rig: Path, tmp_path:
         assert not page.complaints()
 
 
-def test_an_alarm_is_shown_and_reset(rig: Path, tmp_path: Path) -> None:
+def test_an_alarm_is_shown_and_reset(rig: Path, tmp_path: Path, chromium: Browser) -> None:
     with (
         console(rig, tmp_path / "out", *FAST) as one,
-        browser(tmp_path / "profile", width=390, height=844) as page,
+        chromium.window() as page,
     ):
+        page.resize(390, 844)
         page.open(one.address)
         page.queue(plan("overload", frequency_hz=2.0, periods=20))
         page.press("start")
@@ -105,10 +110,12 @@ def test_an_alarm_is_shown_and_reset(rig: Path, tmp_path: Path) -> None:
         assert page.run("return document.documentElement.scrollWidth") <= 390
 
 
-def test_a_second_browser_only_watches_until_it_takes_over(rig: Path, tmp_path: Path) -> None:
+def test_a_second_browser_only_watches_until_it_takes_over(
+    rig: Path, tmp_path: Path, chromium: Browser
+) -> None:
     with (
         console(rig, tmp_path / "out", *FAST) as one,
-        browser(tmp_path / "first") as first,
+        chromium.window() as first,
         browser(tmp_path / "second") as second,
     ):
         first.open(one.address)
@@ -129,7 +136,7 @@ def test_a_second_browser_only_watches_until_it_takes_over(rig: Path, tmp_path: 
 
 
 def test_a_page_from_elsewhere_is_refused_and_beyond_here_a_token_is_asked(
-    rig: Path, tmp_path: Path
+    rig: Path, tmp_path: Path, chromium: Browser
 ) -> None:
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
@@ -144,7 +151,7 @@ def test_a_page_from_elsewhere_is_refused_and_beyond_here_a_token_is_asked(
             console(
                 rig, tmp_path / "out", "--host", "127.0.0.2", "--token-file", str(token)
             ) as one,
-            browser(tmp_path / "profile") as page,
+            chromium.window() as page,
         ):
             page.driver.get(one.address)
             assert page.driver.current_url == f"{one.address}login"

@@ -4,10 +4,12 @@ import re
 import socket
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import pytest
+from starlette.testclient import WebSocketTestSession
+from starlette.websockets import WebSocketDisconnect
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
@@ -15,21 +17,17 @@ from pmm.console import limits
 from pmm.console.limits import MOST_HALF_SENT, MOST_STREAMS, REQUEST_S, YOUNG_S
 from tests.pmm.console.chromium import console, rig_in
 from tests.pmm.console.raw import SESSION, Address, address_of, answer
+from tests.pmm.console.serving import OWN, served
 
 DOCS = Path(__file__).parents[3] / "docs" / "console.md"
 STOP = {"command": "quick stop"}
 
 
-@contextmanager
-def _console(folder: Path) -> Iterator[Address]:
-    with console(rig_in(folder / "rig"), folder / "out", "--speed", "4") as one:
-        yield address_of(one.address)
-
-
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Address]:
-    with _console(tmp_path_factory.mktemp("console")) as one:
-        yield one
+    folder = tmp_path_factory.mktemp("console")
+    with console(rig_in(folder / "rig"), folder / "out") as one:
+        yield address_of(one.address)
 
 
 def _stream(address: Address, session: str) -> ClientConnection:
@@ -92,16 +90,20 @@ def _trickle_until_it_is_ended(one: socket.socket) -> None:
 
 
 def test_one_page_more_than_the_limit_is_told_so(tmp_path: Path) -> None:
-    with _console(tmp_path) as address, ExitStack() as held:
-        for number in range(MOST_STREAMS):
-            held.enter_context(_stream(address, f"{number:032d}"))
-        with _stream(address, SESSION) as stream:
-            code, reason = _farewell(stream)
-        assert code == 1013
-        assert f"{MOST_STREAMS} pages are open" in reason
-        assert address.ask(address.post("/api/command", STOP))[0] == 200
-        with _stream(address, f"{0:032d}") as stream:  # it has control
-            assert '"type":"snapshot"' in str(stream.recv(timeout=60.0))
+    with served(tmp_path) as one, ExitStack() as held:
+
+        def stream(session: str) -> WebSocketTestSession:
+            path = f"{one.stream}?session={session}"
+            return held.enter_context(one.browser.websocket_connect(path, headers={"origin": OWN}))
+
+        first, *_ = [stream(f"{number:032d}") for number in range(MOST_STREAMS)]
+        with pytest.raises(WebSocketDisconnect) as refused:
+            stream(SESSION).receive_json()
+        assert refused.value.code == 1013
+        assert f"{MOST_STREAMS} pages are open" in refused.value.reason
+        assert one.post("/api/command", STOP)[0] == 200
+        first.close()
+        assert stream(f"{0:032d}").receive_json()["type"] == "snapshot"  # it has control
 
 
 def test_every_limit_is_in_the_one_table() -> None:

@@ -5,15 +5,18 @@ from pathlib import Path
 import pytest
 
 from benchmarks.console_source import CHANNELS, Source
-from tests.pmm.console.chromium import browser, needed
+from tests.pmm.console.chromium import Browser, needed
 
 pytestmark = needed
 GAUGES = [f"force_{k:02d}" for k in range(CHANNELS)]
 
 
 @pytest.mark.parametrize(("width", "height"), [(1400, 900), (390, 844)])
-def test_all_gauges_fit_and_any_can_be_seen_large(tmp_path: Path, width: int, height: int) -> None:
-    with Source(tmp_path) as source, browser(tmp_path / "profile", width, height) as page:
+def test_all_gauges_fit_and_any_can_be_seen_large(
+    tmp_path: Path, chromium: Browser, width: int, height: int
+) -> None:
+    with Source(tmp_path) as source, chromium.window() as page:
+        page.resize(width, height)
         page.open(source.address)
         source.wait(0.5)
         assert page.run(_SHOWN) == GAUGES

@@ -9,7 +9,7 @@ import pytest
 from analysis.readers import read_recording
 from analysis.resolver.analysis import analyse
 from analysis.resolver.settings import ResolverSettings
-from tests.pmm.console.chromium import Browser, browser, console, needed, rig_in
+from tests.pmm.console.chromium import Browser, console, needed, rig_in
 
 pytestmark = needed
 FAST = ("--speed", "6")
@@ -45,10 +45,10 @@ def _harmonics(page: Browser, run: str, gauge: str) -> list[list[float]]:
     return [[float(n) for n in re.findall(NUMBER, " ".join(row[2:]))] for row in rows[start:][:3]]
 
 
-def test_all_that_an_operator_looks_for_is_there(tmp_path: Path) -> None:
+def test_all_that_an_operator_looks_for_is_there(tmp_path: Path, chromium: Browser) -> None:
     with (
         console(rig_in(tmp_path / "rig"), tmp_path / "out", *FAST) as one,
-        browser(tmp_path / "profile") as page,
+        chromium.window() as page,
     ):
         page.open(one.address)
         assert page.text("#gate-name") == "closed"
@@ -95,7 +95,9 @@ def test_all_that_an_operator_looks_for_is_there(tmp_path: Path) -> None:
         assert told == pytest.approx(wanted, abs=0.06 * float(widths[k : k + 2].max()))
 
 
-def test_pages_of_gap_and_inertia_open_beside_the_console(tmp_path: Path) -> None:
+def test_pages_of_gap_and_inertia_open_beside_the_console(
+    tmp_path: Path, chromium: Browser
+) -> None:
     campaign = tmp_path / "out" / "earlier"
     (campaign.parent / "inertia").mkdir(parents=True)
     campaign.mkdir()
@@ -105,19 +107,20 @@ def test_pages_of_gap_and_inertia_open_beside_the_console(tmp_path: Path) -> Non
     (campaign.parent / "inertia" / "hull.svg").write_text(drawing, encoding="utf-8")
     with (
         console(rig_in(tmp_path / "rig"), tmp_path / "out", *FAST) as one,
-        browser(tmp_path / "profile") as page,
+        chromium.window() as page,
     ):
         page.open(one.address)
         page.until(lambda: "gap" in page.text("#pages-list"), "pages")
+        console_page, there = page.driver.current_window_handle, {*page.driver.window_handles}
         for label, shown in (("earlier: gap", "gap"), ("inertia: hull", "ellipse")):
             page.run(
                 "[...document.querySelectorAll('#pages-list a')]"
                 ".find((one) => one.textContent === arguments[0]).click()",
                 label,
             )
-            console_page = page.driver.current_window_handle
-            page.until(lambda: len(page.driver.window_handles) == 2, "a page")
-            page.driver.switch_to.window(page.driver.window_handles[1])
+            page.until(lambda: len(page.driver.window_handles) > len(there), "a page")
+            (opened,) = {*page.driver.window_handles} - there
+            page.driver.switch_to.window(opened)
             page.until(lambda shown=shown: shown in page.driver.page_source, label)  # type: ignore[misc]
             if shown == "gap":
                 assert page.driver.title == "gap page of null"  # an origin of its own
@@ -126,10 +129,12 @@ def test_pages_of_gap_and_inertia_open_beside_the_console(tmp_path: Path) -> Non
         assert page.text("#state-name").endswith("idle")
 
 
-def test_keys_alone_reach_every_command_and_no_text_is_too_pale(tmp_path: Path) -> None:
+def test_keys_alone_reach_every_command_and_no_text_is_too_pale(
+    tmp_path: Path, chromium: Browser
+) -> None:
     with (
         console(rig_in(tmp_path / "rig"), tmp_path / "out", *FAST) as one,
-        browser(tmp_path / "profile") as page,
+        chromium.window() as page,
     ):
         page.open(one.address)
         page.queue(PLAN)

@@ -55,6 +55,7 @@ def test_runs_go_on_to_their_end_and_are_recorded_whole(tmp_path: Path) -> None:
         _until(lambda: not any(_lives(process) for process in left), "end of the server's helpers")
     assert len(left) > 1  # the one that works coefficients out
     assert "the web server has ended; the rig runs on" in one.said
+    assert "warning: --host" not in one.said  # of this machine only
     for name in ("run-f1-a20", "run-f1.1-a20"):
         reading = analyse(
             read_recording(folder / name / "run.nc"), settings=ResolverSettings()
