@@ -2,12 +2,15 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Final
 
 import numpy as np
 
 from analysis.gap.fit import Problem
 from analysis.gap.where import CHAIN, Gap, Walk, gap_of, left_by_step, step_of, strained
 from hardware.description.arrays import FloatArray
+
+_TOLD: Final = 2  # numbers that are out of their tolerance
 
 
 @dataclass(frozen=True)
@@ -53,8 +56,10 @@ class StepRow:
     @property
     def largest(self) -> str:
         """The largest number, and what is out of its tolerance."""
-        off = [f"{name} off by {units:+.1f} tolerances" for name, units in self.strained.items()]
-        return "; ".join([self.worst, *off])
+        most = sorted(self.strained.items(), key=lambda one: -abs(one[1]))
+        off = [f"{name} off by {units:+.1f} tolerances" for name, units in most[:_TOLD]]
+        more = [f"{len(most) - _TOLD} more"] if len(most) > _TOLD else []
+        return "; ".join([self.worst, *off, *more])
 
 
 def step_row(one: Gap) -> StepRow:
