@@ -236,6 +236,12 @@ def test_the_most_probable_answer_is_what_is_said(report: GapReport) -> None:
 # Diagnoses of simulated rigs
 
 
+@pytest.fixture(autouse=True)
+def wide(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A terminal so wide that no cell folds."""
+    monkeypatch.setattr("pmm.cli.screen.WIDE", 240)
+
+
 def shown(rig: Path, page: Path, *options: str) -> Shown:
     text = run("gap", rig, *options, "--page", page)
     assert text.exit_code == 0, text.output
