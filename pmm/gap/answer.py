@@ -71,11 +71,13 @@ def _summing_to_one(shares: Mapping[str, float]) -> dict[str, float]:
 
 
 def effect_rows(fit: Fit) -> Iterator[dict[str, Any]]:
-    """Yield each effect with its parameters and their 95 % intervals."""
+    """Yield each effect with its parameters and their 95 % intervals, in the catalogue's form."""
     spread = np.sqrt(np.diagonal(fit.posterior.covariance))
     at = 0
     for candidate in fit.candidates:
-        parameters = {name: _fixed(value) for name, value in candidate.held.items()}
+        forms = {one.name for one in candidate.kind.parameters() if one.forms}
+        held = {name: value for name, value in candidate.held.items() if name not in forms}
+        parameters = {name: _fixed(value) for name, value in held.items()}
         for axis in candidate.axes:
             unit, wide = float(fit.units[at]), _TWO_SIDED * float(spread[at])
             values = [axis.value(unit), axis.value(unit - wide), axis.value(unit + wide)]

@@ -2,11 +2,12 @@
 
 import json
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from hardware.description.errors import ConfigurationError
 from pmm.recorder.campaign_owner import own_campaign
+from sim.effects.effect import Effect
 
 
 @dataclass(frozen=True)
@@ -34,6 +35,12 @@ class Added:
         )
         parameters = f"parameters = {{ {values} }}\n" if values else ""
         return f'\n[[effects]]\nname = "{self.name}"\n{parameters}'
+
+
+def stated(effect: Effect) -> dict[str, float]:
+    """Return an effect's parameters, without those of forms that it does not have."""
+    forms = {one.name: one.typical for one in effect.parameters() if one.forms}
+    return {key: value for key, value in asdict(effect).items() if forms.get(key) != value}
 
 
 def append_effects(path: Path, effects: Sequence[Added], read: Callable[[Path], object]) -> Path:

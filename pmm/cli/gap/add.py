@@ -41,12 +41,10 @@ def add(campaign: str, effect: str | None, jobs: int | None, as_json: bool, **ch
     from pmm.parallel import one_thread
 
     one_thread()  # the matrices are small: threads would wait for each other
-    from dataclasses import asdict
-
     from hardware.description.errors import ConfigurationError
     from pmm.campaign.file_names import CAMPAIGN_FILE
     from pmm.cli.screen import pasted
-    from pmm.gap.appending import Added
+    from pmm.gap.appending import Added, stated
     from pmm.gap.load import campaign_of
 
     looks, folder = Looks(**chosen), Path(campaign)
@@ -58,7 +56,7 @@ def add(campaign: str, effect: str | None, jobs: int | None, as_json: bool, **ch
         _refuse_twice(path, (effect,))
     found = _effects(_examined(looks, path, effect, jobs), effect)
     _refuse_twice(path, [one.name for one in found])
-    added = [Added(one.name, asdict(one)) for one in found]
+    added = [Added(one.name, stated(one)) for one in found]
     files = [word for one in looks.files for word in ("--effects", one)]
     again = pasted("gap", campaign, *files)
     add_and_say(path, added, campaign_of, again=again, schema=_SCHEMA, as_json=as_json)

@@ -24,6 +24,7 @@ from tests.sealed.generator.rig import CHANNELS, DITHER, Record, Rig, Run
 from tests.sealed.generator.told import further_truth
 from tests.sealed.generator.toml import table
 from tests.sealed.generator.water import table_text
+from tests.sealed.generator.worlds import stated
 
 FOREIGN_SHARE = 0.2
 
@@ -154,7 +155,7 @@ def case_text(case: Case) -> str:
     }
     parts = [
         table('schema = "sealed-case-1"', {"sensors": list(rig.sensors)}),
-        table("[tolerances]", STATED),
+        table("[tolerances]", STATED | stated(case.campaign.world)),
         table("[rig]", can),
     ]
     for run, regime in zip(case.campaign.held_out, REGIMES, strict=True):

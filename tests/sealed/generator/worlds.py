@@ -83,3 +83,8 @@ def world(name: str) -> World:
         frozenset(key for key, row in draws.items() if row.get("log")),
         {key: float(row[name]) for key, row in tolerances.items() if name in row},
     )
+
+
+def stated(world: World) -> dict[str, float]:
+    """Return what the staff of a world's rigs say of what is always on: nothing of what is not."""
+    return dict.fromkeys(table()["tolerances"], 0.0) | dict(world.tolerances)
