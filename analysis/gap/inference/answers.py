@@ -82,7 +82,7 @@ def answers(given: Considered, beside: Background) -> Answers:
     """
     odds, count = ODDS, max(given.count, 1)
     share = given.concealed / count
-    none = odds.none + odds.single * share + odds.pair * share**2
+    none = odds.none + odds.single * share * (1.0 + odds.further * share)
     small, large, any_size = _even(_SMALL), _even(~_SMALL), _any_size()
     each_odd = odds.mistake / max(len(beside.own), 1)
     logs = {
@@ -140,8 +140,7 @@ def _located(
 
 def prior(size: int, count: int) -> float:
     """Return the prior probability of one set of effects of some size, out of a catalogue's."""
-    of_size = (ODDS.single, ODDS.pair, ODDS.triple)[min(size, 3) - 1]
-    return of_size / max(math.comb(count, size), 1)
+    return ODDS.single * ODDS.further ** (size - 1) / max(math.comb(count, size), 1)
 
 
 def weight(found: Sequence[Evidence]) -> float:

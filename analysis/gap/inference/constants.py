@@ -1,6 +1,6 @@
 """Every number that decides, with its unit and where it comes from.
 
-``docs/gap-constants.md`` has how much the score moves when each is halved or doubled. Tolerances in
+``docs/gap-calibration.md`` has how much the score moves when each is halved or doubled. Tolerances in
 physical units are not among them: they are the user's (:mod:`analysis.gap.tolerances`).
 """
 
@@ -48,15 +48,14 @@ class Odds:
     """Prior probabilities; the catalogue's share is spread evenly over its effects.
 
     Whoever asks has a reason to: one campaign in eight has no gap. Of the gaps one in five is such
-    that no catalogue knows it, one in ten is two effects, one in ninety three; in one campaign of
-    sixteen coefficients are off by more than anybody thought, and in as many a single run went
-    wrong.
+    that no catalogue knows it, and where one effect is, in one of seven cases a further one is too;
+    in one campaign of sixteen coefficients are off by more than anybody thought, and in as many a
+    single run went wrong.
     """
 
     none: float = 0.12
     single: float = 0.61
-    pair: float = 0.09
-    triple: float = 0.01
+    further: float = 0.15
     unknown: float = 0.18
     mistake: float = 0.06
 
