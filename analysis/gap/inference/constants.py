@@ -1,7 +1,7 @@
 """Every number that decides, with its unit and where it comes from.
 
-``docs/gap-calibration.md`` has how much the score moves when each is halved or doubled. Tolerances in
-physical units are not among them: they are the user's (:mod:`analysis.gap.tolerances`).
+``docs/gap-calibration.md`` lists them. Tolerances in physical units are not among them: they are
+the user's (:mod:`analysis.gap.tolerances`).
 """
 
 from dataclasses import dataclass
