@@ -72,6 +72,21 @@ class Considered:
     concealed: int
     triples: Sequence[Hypothesis] = ()
 
+    @property
+    def sets(self) -> Sequence[Hypothesis]:
+        """All that was fitted."""
+        return (*self.singles, *self.pairs, *self.triples)
+
+    @property
+    def nothing(self) -> float:
+        """The prior probability of no effect, or of one that these runs do not show."""
+        share = self.concealed / max(self.count, 1)
+        return ODDS.none + ODDS.single * share * (1.0 + ODDS.further * share)
+
+    def log_prior(self, answer: str) -> float:
+        """Return the log of the prior probability of a named answer."""
+        return math.log(prior(len(effects_in(answer)), self.count))
+
 
 def answers(given: Considered, beside: Background) -> Answers:
     """Weigh every hypothesis.
@@ -80,48 +95,55 @@ def answers(given: Considered, beside: Background) -> Answers:
     particular form: small ones only where nothing is there, or coefficients or one run are what
     differs, visible ones where something unknown is, any beside a named effect.
     """
-    odds, count = ODDS, max(given.count, 1)
-    share = given.concealed / count
-    none = odds.none + odds.single * share * (1.0 + odds.further * share)
-    small, large, any_size = _even(_SMALL), _even(~_SMALL), _any_size()
-    each_odd = odds.mistake / max(len(beside.own), 1)
-    logs = {
-        NONE: _log_weight(beside.none(), small, none),
-        COEFFICIENTS: _log_weight(beside.coefficients(), small, odds.mistake),
+    named = {answer_of(one.names): beside.named(one) for one in given.sets}
+    logs = {name: weight(found) + given.log_prior(name) for name, found in named.items()}
+    odd = _odd_runs(beside)
+    both = _beside_odd_runs(given, beside, logs, odd)
+    stages = _of_unknown(beside.unknown(), SHAPED * ODDS.unknown)
+    kinds = _of_unknown(beside.alone(), (1.0 - SHAPED) * ODDS.unknown)
+    logs |= {name: _sum([logs[name], *own.values()]) for name, own in both.items()}
+    logs |= {
+        NONE: _log_weight(beside.none(), _even(_SMALL), given.nothing),
+        COEFFICIENTS: _log_weight(beside.coefficients(), _even(_SMALL), ODDS.mistake),
+        UNKNOWN: _sum([*stages.values(), *kinds.values()]),
+        ODD_RUN: _sum(list(odd.values())),
     }
-    found: dict[str, list[Evidence]] = {}
-    priors: dict[str, float] = {}
-    for one in (*given.singles, *given.pairs, *given.triples):
-        name = answer_of(one.names)
-        found[name], priors[name] = beside.named(one), prior(len(one.names), count)
-        logs[name] = _log_weight(_evidences(found[name]), any_size, priors[name])
-    odd = {run: _log_weight(one, _seen(one), each_odd) for run, one in beside.odd_runs().items()}
-    leading = sorted(given.singles, key=lambda one: -logs[answer_of(one.names)])
-    beside_odd = {
-        (answer_of(one.names), run): _log_weight(
-            beside.named_beside(one, run), large, each_odd * priors[answer_of(one.names)]
-        )
-        for one in leading[:_LEADING]
-        for run in sorted(odd, key=lambda run: -odd[run])[:_ODDEST]
-    }
-    for (name, _), log in beside_odd.items():
-        logs[name] = float(np.logaddexp(logs[name], log))
-    stages = _of_unknown(beside.unknown(), SHAPED * odds.unknown)
-    kinds = _of_unknown(beside.alone(), (1.0 - SHAPED) * odds.unknown)
-    logs[UNKNOWN] = _sum([*stages.values(), *kinds.values()])
-    logs[ODD_RUN] = _sum(list(odd.values()))
     total = _sum(list(logs.values()))
-    located = _located(stages, kinds, beside)
+    runs = {
+        run: [log, *(own[run] for own in both.values() if run in own)] for run, log in odd.items()
+    }
     return Answers(
         {name: math.exp(log - total) for name, log in logs.items()},
-        located,
-        {
-            run: math.exp(_sum([log, *(b for (_, r), b in beside_odd.items() if r == run)]) - total)
-            for run, log in odd.items()
-        },
-        {name: _above(found[name], any_size) for name in found},
-        {name: max(ones, key=lambda one: one.log_evidence) for name, ones in found.items()},
+        _located(stages, kinds, beside),
+        {run: math.exp(_sum(every) - total) for run, every in runs.items()},
+        {name: _above(found) for name, found in named.items()},
+        {name: max(ones, key=lambda one: one.log_evidence) for name, ones in named.items()},
     )
+
+
+def _odd_runs(beside: Background) -> dict[str, float]:
+    """Return the log weight of each run being odd."""
+    each = ODDS.mistake / max(len(beside.own), 1)
+    return {run: _log_weight(one, _seen(one), each) for run, one in beside.odd_runs().items()}
+
+
+def _beside_odd_runs(
+    given: Considered, beside: Background, logs: Mapping[str, float], odd: Mapping[str, float]
+) -> dict[str, dict[str, float]]:
+    """Return by single effect and run the log weight of both, of those that lead."""
+    each = math.log(ODDS.mistake / max(len(beside.own), 1))
+    leading = sorted(given.singles, key=lambda one: -logs[answer_of(one.names)])[:_LEADING]
+    oddest = sorted(odd, key=lambda run: -odd[run])[:_ODDEST]
+    return {
+        name: {
+            run: _log_weight(beside.named_beside(one, run), _even(~_SMALL), 1.0)
+            + each
+            + given.log_prior(name)
+            for run in oddest
+        }
+        for one in leading
+        for name in [answer_of(one.names)]
+    }
 
 
 def _located(
@@ -167,9 +189,9 @@ def _evidences(found: Sequence[Evidence]) -> FloatArray:
     return np.array([one.log_evidence for one in found])
 
 
-def _above(found: Sequence[Evidence], sizes: FloatArray) -> float:
+def _above(found: Sequence[Evidence]) -> float:
     """Return the part of a named answer's weight at deviations larger than is tolerated."""
-    logs = ETA * _evidences(found) + np.log(sizes)
+    logs = ETA * _evidences(found)
     return float(np.exp(np.logaddexp.reduce(logs[~_SMALL]) - np.logaddexp.reduce(logs)))
 
 
