@@ -135,7 +135,7 @@ def _holds(found: Diagnosis, said: str) -> None:
     assert found.best is not None
     assert put_in.name in found.answers.best.split("+")
     (row,) = [one for one in effect_rows(found.best) if one["name"] == put_in.name]
-    for key, value in asdict(put_in).items():
-        told = row["parameters"][key]
+    for key, told in row["parameters"].items():
+        value = asdict(put_in)[key]
         wider = 0.25 * (told["high"] - told["low"])
         assert told["low"] - wider <= value <= told["high"] + wider, (key, told)
