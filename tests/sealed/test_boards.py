@@ -3,6 +3,7 @@
 import ast
 import hashlib
 import json
+import re
 import shutil
 import tomllib
 from dataclasses import replace
@@ -54,7 +55,8 @@ def test_no_case_folder_leads_to_its_key(board: Path) -> None:
         assert not path.is_symlink()
         if path.suffix == ".toml":
             text = path.read_text()
-            assert not [word for word in words if word in text], path
+            said = [word for word in words if re.search(rf"(?<!\w){re.escape(word)}(?!\w)", text)]
+            assert not said, path  # hum_n is a tolerance
 
 
 def _read(folder: Path, run: dict[str, object], campaign: dict[str, object]) -> Recording:
