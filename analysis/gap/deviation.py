@@ -15,8 +15,7 @@ from analysis.gap.components import SETTLING, TRENDS, Component, Part, Stack
 from analysis.gap.fit import Problem
 from analysis.gap.inference.evidence import Background, Kind
 from analysis.gap.inference.kernel import Kernel
-from analysis.gap.inference.shapes import Looked as Shown
-from analysis.gap.inference.shapes import Shapes
+from analysis.gap.inference.shapes import Shapes, SignatureOfEffect
 from analysis.gap.look import Looked
 from analysis.gap.observe import SPEED
 from hardware.description.arrays import BoolArray, FloatArray
@@ -66,7 +65,7 @@ def background(problem: Problem, looked: Sequence[Looked], sought: BoolArray) ->
     wide = np.zeros(columns.shape[1], dtype=bool)
     wide[: len(sought)] = sought
     shown = [
-        Shown(one.name, one.fit.stages[0], one.fit.signature, one.fit.columns)
+        SignatureOfEffect(one.name, one.fit.stages[0], one.fit.signature, one.fit.columns)
         for one in looked
         if one.fit is not None
     ]

@@ -1,7 +1,7 @@
 """Fit hypotheses through the simulator: effects where they physically act, coefficients free."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Protocol
 
@@ -14,7 +14,7 @@ from analysis.gap.forward import Simulator
 from analysis.gap.free import Free
 from analysis.gap.gaussian import Nuisances, Posterior, any_size, misfit, posterior
 from analysis.gap.inference.answers import answer_of
-from analysis.gap.inference.hypothesis import Evidence, Hypothesis, within
+from analysis.gap.inference.hypothesis import within
 from hardware.description.arrays import BoolArray, FloatArray
 
 
@@ -289,40 +289,6 @@ def joined(problem: Compared, first: Fit, second: Fit) -> Fit:
         np.hstack((first.columns, second.columns)),
         first.signature + second.signature,
     )
-
-
-def with_forms(problem: Problem, fit: Fit) -> Fit:
-    """Return a fit with what the other forms of its effects change, where they repeat."""
-    if not fit.repeats or fit.is_costly:
-        return fit
-    simulator, effects = problem.simulator, fit.effects
-    base = simulator.predict(effects)
-    found = [np.zeros((len(base), 0))]
-    for number, one in enumerate(effects):
-        rest = [other for at_, other in enumerate(effects) if at_ != number]
-        for form in one.forms():
-            changed = simulator.predict((*rest, form))
-            found.append(problem.whitened(changed - base)[:, None])
-    return replace(fit, forms=np.hstack(found))
-
-
-def hypothesis(problem: Compared, fit: Fit) -> Hypothesis:
-    """Return a fit as one equation weighs it, against the rig as it is stated."""
-    return Hypothesis(
-        fit.names,
-        fit.linearised(problem.stated),
-        fit.columns,
-        fit.forms,
-        bounds(fit.candidates),
-        fit.sizes,
-        fit.reaches,
-    )
-
-
-def settled(fit: Fit, found: Evidence) -> Fit:
-    """Return a fit whose parameters are as they are beside what suits it best."""
-    signature = fit.signature + fit.columns @ (found.units - fit.units)
-    return replace(fit, units=found.units, signature=signature, posterior=found.posterior)
 
 
 def _slope(

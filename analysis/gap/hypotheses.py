@@ -8,10 +8,11 @@ from typing import Final
 import numpy as np
 
 from analysis.gap.deviation import background
-from analysis.gap.fit import Fit, Problem, hypothesis, settled, with_forms
+from analysis.gap.fit import Fit, Problem
 from analysis.gap.free import Free
 from analysis.gap.gaussian import null_evidence
 from analysis.gap.inference.answers import Answers, Considered, answers
+from analysis.gap.linear_hypothesis import hypothesis, settled, with_forms
 from analysis.gap.look import HIDDEN, Looked
 from analysis.gap.screen import shown, worth_a_look
 from analysis.gap.search import LEADERS, Engine, alone_again, fitted, looked_at, paired

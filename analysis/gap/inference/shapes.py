@@ -19,7 +19,7 @@ _LEAST: Final = 0.03  # of an effect's largest direction, below which one is rou
 
 
 @dataclass(frozen=True, eq=False)
-class Looked:
+class SignatureOfEffect:
     """What a first look at an effect shows.
 
     Attributes
@@ -58,7 +58,9 @@ class Shapes:
     alike: dict[str, frozenset[str]]
 
     @classmethod
-    def of(cls, looked: Sequence[Looked], scale: FloatArray, tolerances: Nuisances) -> "Shapes":
+    def of(
+        cls, looked: Sequence[SignatureOfEffect], scale: FloatArray, tolerances: Nuisances
+    ) -> "Shapes":
         """Learn from first looks at effects.
 
         Parameters
@@ -105,7 +107,7 @@ def _directions(changes: FloatArray, scale: FloatArray) -> FloatArray:
     return np.asarray(left[:, kept] * values[kept], np.float64)
 
 
-def _alike(looked: Sequence[Looked], tolerances: Nuisances) -> dict[str, frozenset[str]]:
+def _alike(looked: Sequence[SignatureOfEffect], tolerances: Nuisances) -> dict[str, frozenset[str]]:
     if not looked:
         return {}
     names, signatures = [one.name for one in looked], np.column_stack([o.signature for o in looked])

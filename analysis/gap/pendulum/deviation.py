@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from analysis.gap.inference.evidence import Background, Kind
 from analysis.gap.inference.kernel import Kernel
-from analysis.gap.inference.shapes import Looked as Shown
-from analysis.gap.inference.shapes import Shapes
+from analysis.gap.inference.shapes import Shapes, SignatureOfEffect
 from analysis.gap.look import Looked
 from analysis.gap.pendulum.causes import DAMPED, LINES, READ, RESTORED
 from analysis.gap.pendulum.problem import Problem
@@ -43,7 +42,7 @@ def background(problem: Problem, looked: Sequence[Looked]) -> Background:
     scale = units(problem) / problem.uncertainty
     columns = problem.nuisances.columns
     shown = [
-        Shown(one.name, one.fit.stages[0], one.fit.signature, one.fit.columns)
+        SignatureOfEffect(one.name, one.fit.stages[0], one.fit.signature, one.fit.columns)
         for one in looked
         if one.fit is not None
     ]

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from analysis.gap.candidate import Candidate
-from analysis.gap.fit import Fit, at, hypothesis, inside, nothing, settled
+from analysis.gap.fit import Fit, at, inside, nothing
 from analysis.gap.gaussian import null_evidence
 from analysis.gap.inference.answers import (
     UNKNOWN,
@@ -21,6 +21,7 @@ from analysis.gap.inference.answers import (
 )
 from analysis.gap.inference.constants import ODDS
 from analysis.gap.inference.evidence import Background
+from analysis.gap.linear_hypothesis import hypothesis, settled
 from analysis.gap.look import HIDDEN, Looked, best_look
 from analysis.gap.pendulum.deviation import background
 from analysis.gap.pendulum.problem import Problem

@@ -9,11 +9,12 @@ from hypothesis import strategies as st
 
 from analysis.gap.components import GapRun, Stack
 from analysis.gap.deviation import background, likeness, units
-from analysis.gap.fit import at, hypothesis
+from analysis.gap.fit import at
 from analysis.gap.inference.constants import FORMS, PLAIN, STRANGE, TAUS, TOLERATED, VISIBLE, WIDE
 from analysis.gap.inference.evidence import Background
 from analysis.gap.inference.gram import Weighted
 from analysis.gap.inference.kernel import Kernel
+from analysis.gap.linear_hypothesis import hypothesis
 from analysis.gap.look import look
 from hardware.description.arrays import BoolArray, FloatArray
 from sim.effects.catalogue import find
