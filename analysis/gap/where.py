@@ -153,11 +153,6 @@ def _with_measured(problem: Problem, plain: Gap, what: str, rows: BoolArray) -> 
     return []
 
 
-def remaining(problem: Problem, residual: FloatArray) -> FloatArray:
-    """Return what the free numbers leave of a whitened difference."""
-    return residual - problem.nuisances.columns @ problem.nuisances.fitted(residual)
-
-
 def left_by_step(problem: Problem, residual: FloatArray) -> FloatArray:
     """Return what the free numbers leave, each step judged by itself and those upstream of it."""
     found = np.zeros_like(residual)

@@ -13,7 +13,7 @@ import numpy as np
 
 from analysis.gap.components import STEADY_PARTS
 from analysis.gap.fit import Fit, Problem
-from analysis.gap.gaussian import misfit, posterior
+from analysis.gap.gaussian import posterior
 from analysis.gap.regimes import Regime
 from hardware.description.arrays import BoolArray, FloatArray
 
@@ -32,14 +32,11 @@ class Predicted:
     left
         Measured minus predicted in u, shape ``(withheld,)``: u holds the measurement's uncertainty
         and that of what was fitted to the other runs.
-    log_density
-        Of the withheld observations given the others.
     """
 
     regime: Regime
     rows: BoolArray
     left: FloatArray
-    log_density: float
 
 
 @dataclass(frozen=True)
@@ -79,10 +76,7 @@ def _one(problem: Problem, fit: Fit | None, regime: Regime) -> Predicted:
     both = np.hstack((problem.nuisances.columns, columns))
     inverse = np.linalg.inv(np.eye(both.shape[1]) + both[~out].T @ both[~out])
     spread = np.sqrt(1.0 + np.einsum("ij,jk,ik->i", both[rows], inverse, both[rows]))
-    density = _evidence(problem, residual, columns, np.ones_like(out)) - _evidence(
-        problem, residual, columns, ~out
-    )
-    return Predicted(regime, rows, rest[rows] / spread, density)
+    return Predicted(regime, rows, rest[rows] / spread)
 
 
 def linear_model(problem: Problem, fit: Fit | None) -> tuple[FloatArray, FloatArray]:
@@ -91,17 +85,6 @@ def linear_model(problem: Problem, fit: Fit | None) -> tuple[FloatArray, FloatAr
     if fit is None:
         return residual, np.zeros((len(residual), 0))
     return fit.linearised(residual), fit.columns
-
-
-def _evidence(
-    problem: Problem, residual: FloatArray, columns: FloatArray, rows: BoolArray
-) -> float:
-    part = problem.nuisances.among(rows)
-    found = posterior(residual[rows], columns[rows], part)
-    cost = misfit(residual[rows] - columns[rows] @ found.mean, part) + float(
-        found.mean @ found.mean
-    )
-    return -0.5 * (cost + part.log_determinant) + found.log_volume
 
 
 def gap_of(left: FloatArray, noise: float = 0.0) -> float:

@@ -174,7 +174,7 @@ def test_a_gap_of_nothing_is_nothing_within_its_noise() -> None:
     rows = np.ones(200, dtype=bool)
     pairs = [
         [
-            Predicted(Regime("chosen", str(run), (run,)), rows, size * noise, 0.0)
+            Predicted(Regime("chosen", str(run), (run,)), rows, size * noise)
             for size, noise in ((5.0, drawn), (0.9, drawn))
         ]
         for run in range(4)
