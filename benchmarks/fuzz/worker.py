@@ -2,7 +2,6 @@
 
 import json
 import re
-import resource
 import signal
 import sys
 import tempfile
@@ -18,6 +17,7 @@ from benchmarks.fuzz.board import PROMISES
 from benchmarks.fuzz.mutate import mutate
 from benchmarks.fuzz.promises import REFUSED, SilentNanError
 from benchmarks.fuzz.targets import TARGETS, Read, opened
+from benchmarks.peak import peak_bytes
 
 LONGEST_S: Final = 5.0
 _MOST_BYTES: Final = 1e9
@@ -77,7 +77,7 @@ def _told(read: Read, data: bytes) -> tuple[dict[str, Any], str]:
     if told.get("broken") == _HANG:
         started = time.monotonic()
         told, kind = _outcome(read, data)
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    peak = peak_bytes()
     if peak > _MOST_BYTES and not told.get("broken"):
         told = {"broken": _MEMORY, "said": f"{peak / 1e9:.2f} GB"}
     return {**told, "took_s": time.monotonic() - started}, kind
