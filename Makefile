@@ -25,6 +25,7 @@ $(VENV)/.bench: EXTRAS := fast,dev,bench
 $(VENV)/.sealed: EXTRAS := fast,dev,peers
 $(VENV)/.user $(VENV)/.dev $(VENV)/.docs $(VENV)/.bench $(VENV)/.sealed: pyproject.toml constraints.txt
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip uninstall -qqq --yes pmm  # its name before, whose entry points would stay
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[$(EXTRAS)]"
 	@touch $(VENV)/.user $(if $(findstring dev,$(EXTRAS)),$(VENV)/.dev) $@
 

@@ -1,1 +1,5 @@
 """Recordings in, numbers out."""
+
+from planar_motion_mechanism import refuse_intruders
+
+refuse_intruders()

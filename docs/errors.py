@@ -30,6 +30,7 @@ class ErrorType:
 
 def sources() -> Iterator[Path]:
     """Return the program's sources."""
+    yield HERE.parent / "planar_motion_mechanism.py"
     for room in ROOMS:
         yield from sorted((HERE.parent / room).rglob("*.py"))
 

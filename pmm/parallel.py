@@ -30,6 +30,7 @@ from typing import Any, Final, TypeVar
 
 from analysis.threads import SETTING, cores
 from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.version import installing
 
 T = TypeVar("T")
 S = TypeVar("S")
@@ -237,7 +238,7 @@ def _cluster(address: str, module: str) -> Iterator[Executor]:
         distributed: Any = import_module("distributed")
     except ImportError:
         raise ConfigurationError(
-            "--scheduler needs the extra 'cluster': pip install 'pmm[cluster]'"
+            f"--scheduler needs the extra 'cluster': {installing('cluster')}"
         ) from None
     try:
         client = distributed.Client(address, timeout=_TIMEOUT, set_as_default=False, name="pmm")

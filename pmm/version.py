@@ -6,15 +6,10 @@ import subprocess
 from pathlib import Path
 from typing import Final
 
-from hardware.description.version import version_of
+from hardware.description.version import program, version_of
 
 _PACKAGES: Final = ("numpy", "scipy", "h5netcdf", "matplotlib")
 _BESIDE: Final = ("NumPy", "SciPy", "numba", "python-can", "canopen")
-
-
-def program() -> str:
-    """Return name and version."""
-    return f"pmm {version_of('pmm')}"
 
 
 def version_line() -> str:

@@ -5,3 +5,7 @@
 * :mod:`sim.chain` runs stages in order, whole or in blocks, and keeps every signal between them;
 * the stages themselves are one file each.
 """
+
+from planar_motion_mechanism import refuse_intruders
+
+refuse_intruders()

@@ -12,7 +12,7 @@ from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 from hardware.description.setpoint import SetPoint
-from hardware.description.version import version_of
+from hardware.description.version import program
 from sim import signals
 from sim.periodic import SteadyState, steady_state
 from sim.rig import SimulatedRig
@@ -211,7 +211,7 @@ def _provenance(rig: SimulatedRig, seed: int, settling_periods: int) -> dict[str
     """Return what it takes to simulate the same run again, text to text."""
     return {
         "origin": "simulated",
-        "simulator": f"pmm {version_of('pmm')}",
+        "simulator": program(),
         "seed": str(seed),
         "settling_periods": str(settling_periods),
         "rig": json.dumps(asdict(rig), default=_as_list),

@@ -17,6 +17,7 @@ from analysis.readers.text_source import Progress
 from analysis.recording import Recording
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
+from hardware.description.version import installing
 
 
 def foreign_reader(
@@ -40,8 +41,7 @@ def foreign_reader(
     def recording(path: Path, columns: ColumnMap, name: str, _: Progress) -> Recording:
         if package is not None and find_spec(package) is None:
             raise ConfigurationError(
-                f"{path}: reading {kind.upper()} needs the extra {kind!r}: "
-                f"pip install 'pmm[{kind}]'"
+                f"{path}: reading {kind.upper()} needs the extra {kind!r}: {installing(kind)}"
             )
         content = read_foreign(path, kind, f"{read.__module__}:{read.__qualname__}")
         return _recording_of(content, path, columns, name, kind)

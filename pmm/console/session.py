@@ -11,6 +11,7 @@ from pathlib import Path
 from socket import socket
 from typing import Final
 
+from hardware.description.version import program
 from hardware.pacing import RealTime
 from pmm.console.answers import BrowserAnswers
 from pmm.console.link import Link
@@ -25,7 +26,6 @@ from pmm.run.journal import Taps
 from pmm.run.operator import Interrupts
 from pmm.run.recorder_factory import utc_now
 from pmm.run.session import keep_time, tapped_rig
-from pmm.version import program
 
 _WINDOW_S: Final = 10.0  # of the statistics of the loop's cycles
 _JOIN_S: Final = 10.0

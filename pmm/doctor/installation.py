@@ -6,6 +6,8 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Final
 
+from hardware.description.version import installing
+from planar_motion_mechanism import DISTRIBUTION
 from pmm.doctor.findings import MachineFinding, MachineStatus
 from pmm.doctor.machine import Machine
 
@@ -24,6 +26,7 @@ def check_installation(machine: Machine) -> Iterator[MachineFinding]:
     """Look at Python, the libraries that are asked for, and what makes loops fast."""
     yield _python(machine)
     yield from _libraries(machine)
+    yield from _files(machine)
     yield _compiled(machine)
     for group, name in _NEEDED:
         if not entry_points(group=group, name=name):
@@ -70,6 +73,14 @@ def _libraries(machine: Machine) -> Iterator[MachineFinding]:
         )
 
 
+def _files(machine: Machine) -> Iterator[MachineFinding]:
+    changed = list(machine.changed_files())
+    if changed:
+        told = f"{len(changed)} differ from what was installed, first {changed[0]}"
+        cure = f"{_INSTALL} --force-reinstall --no-deps {DISTRIBUTION}"
+        yield MachineFinding(_AREA, "own files", MachineStatus.FAULT, told, cure)
+
+
 def _numbers(text: str) -> tuple[int, ...]:
     return tuple(int(part) for part in re.findall(r"\d+", text.split("+")[0])[:3])
 
@@ -79,9 +90,7 @@ def _compiled(machine: Machine) -> MachineFinding:
     found = machine.installed("numba")
     if found is None:
         told = "not installed: loops that go from sample to sample are interpreted, which is slow"
-        return MachineFinding(
-            _AREA, what, MachineStatus.WARNING, told, "python -m pip install 'pmm[fast]'"
-        )
+        return MachineFinding(_AREA, what, MachineStatus.WARNING, told, installing("fast"))
     folder = Path(machine.compiled_in) if machine.compiled_in else machine.home / "sim"
     if not machine.may_write(folder):
         told = f"{found}, but {folder} cannot be written to: compiled anew in every process"

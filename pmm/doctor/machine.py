@@ -4,13 +4,14 @@ import ctypes
 import os
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 from typing import Final
 
 from hardware.serial_port import PluggedPort, plugged_ports
+from planar_motion_mechanism import DISTRIBUTION, changed_files
 from pmm.real_time import may_lock_memory
 from pmm.recorder.disk import free_bytes
 
@@ -31,7 +32,7 @@ def installed(package: str) -> str | None:
 def requirements() -> Sequence[str]:
     """Return what the installed package asks for, as its metadata has it; empty if it is not."""
     try:
-        return requires("pmm") or ()
+        return requires(DISTRIBUTION) or ()
     except PackageNotFoundError:
         return ()
 
@@ -108,6 +109,7 @@ class Machine:
     home: Path = Path(__file__).parents[2]
     compiled_in: str | None = os.environ.get("NUMBA_CACHE_DIR")
     requirements: Callable[[], Sequence[str]] = requirements
+    changed_files: Callable[[], Iterable[str]] = changed_files
     installed: Callable[[str], str | None] = installed
     ports: Callable[[], Sequence[PluggedPort]] = plugged_ports
     may_use: Callable[[str], bool] = may_use

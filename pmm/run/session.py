@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from hardware.description.errors import DataError
+from hardware.description.version import program
 from hardware.driver import Prompt
 from hardware.pacing import FreeRunning, Pacer, RealTime
 from hardware.rig import Rig
@@ -37,7 +38,6 @@ from pmm.run.run_control import RunControl, View
 from pmm.run.run_origin import change_lines
 from pmm.run.states import Command, RunStateError
 from pmm.run.status import RunOutcome
-from pmm.version import program
 
 Ask = Callable[[], str]  # what the operator is asked now; empty if nothing
 

@@ -12,7 +12,7 @@ from hardware.description import dataset as schema
 from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
-from hardware.description.version import version_of
+from hardware.description.version import program
 from sim import signals
 from sim.pendulum.bench import PendulumBench
 from sim.signals import Signals
@@ -119,7 +119,7 @@ def record(
     truth = bench.body.truth
     provenance = {
         "origin": "simulated",
-        "simulator": f"pmm {version_of('pmm')}",
+        "simulator": program(),
         "test": test,
         "seed": str(seed),
         "truth": json.dumps(truth),

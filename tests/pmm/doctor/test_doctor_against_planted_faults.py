@@ -44,6 +44,7 @@ def sound(root: Path) -> Machine:
         synchronised=lambda: True,
         worst_lateness_s=lambda: 1e-4,
         monotonic_resolution_s=lambda: 1e-9,
+        changed_files=lambda: (),
     )
 
 
@@ -66,6 +67,9 @@ PLANTED: dict[str, tuple[dict[str, Any], str, str]] = {
         {"installed": lambda name: "4.4.9" if name == "python-can" else "5.0"},
         "python-can",
         "python-can[multicast]>=4.5",
+    ),
+    "own file overwritten": (
+        {"changed_files": lambda: ("sim/rig.py",)}, "own files", "--force-reinstall"
     ),
     "old Python": ({"python": (3, 10)}, "Python", "3.11"),
     "port without permission": (
@@ -101,7 +105,10 @@ WARNED: dict[str, tuple[dict[str, Any], str]] = {
     "memory that may not be locked": ({"may_lock_memory": lambda: False}, "memlock unlimited"),
     "late timer": ({"worst_lateness_s": lambda: 0.02}, "power saving"),
     "little space": ({"free_bytes": lambda folder: 1_000_000_000}, "make room"),
-    "no numba": ({"installed": lambda name: None if name == "numba" else "5.0"}, "pmm[fast]"),
+    "no numba": (
+        {"installed": lambda name: None if name == "numba" else "5.0"},
+        "planar-motion-mechanism[fast]",
+    ),
     "no cache": ({"may_write": lambda folder: folder.name == "runs"}, "NUMBA_CACHE_DIR"),
 }
 
