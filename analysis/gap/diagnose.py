@@ -40,6 +40,8 @@ class Settings:
         What the rig can do next; ``None`` proposes nothing.
     moved
         By how many tolerances the rig was moved from what is stated, by name.
+    free
+        What is left free, about what is stated; if empty, about the rig that is given.
     """
 
     catalogue: Mapping[str, type[Effect]]
@@ -49,6 +51,7 @@ class Settings:
     choices: Choices | None = None
     reference_channel: str | None = None
     moved: Mapping[str, float] = field(default_factory=dict)
+    free: tuple[Free, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +123,7 @@ def diagnose(
     """
     if len(runs) < 3:
         raise DataError(f"{len(runs)} runs: a diagnosis needs 3 or more")
-    free = free_numbers(rig, settings.tolerances)
+    free = settings.free or free_numbers(rig, settings.tolerances)
     problem = problem_of(rig, runs, settings, free)
     progress("walking along the chain")
     walked = walk(problem)

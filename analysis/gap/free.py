@@ -84,7 +84,7 @@ class Free:
 
 
 def free_numbers(rig: SimulatedRig, tolerances: Tolerances) -> tuple[Free, ...]:
-    """Return what is left free for a rig; what has no tolerance is not."""
+    """Return what is left free for a rig as it is stated; what has no tolerance is not."""
     every = (*_coefficients(rig, tolerances), *_settings(rig, tolerances))
     return tuple(one for one in every if one.deviation > 0.0)
 
@@ -100,10 +100,10 @@ def _coefficients(rig: SimulatedRig, tolerances: Tolerances) -> Iterator[Free]:
 
 def _of_matrix(rig: SimulatedRig, term: str, tolerances: Tolerances) -> Iterator[Free]:
     matrix = np.abs(np.array(getattr(rig.water, term), dtype=np.float64))
-    # Where a table or nothing at all states what the water does, the body says what is much.
     if term != "restoring":
-        own, body = np.diagonal(matrix), (rig.body.mass_kg, rig.body.inertia_kg_m2)
-        matrix = np.diag(np.where(own > 0.0, own, body))
+        own = np.diagonal(matrix + np.abs(_remembered(rig, term)))
+        # Where nothing states what the water does, the body says what is much.
+        matrix = np.diag(np.where(own > 0.0, own, (rig.body.mass_kg, rig.body.inertia_kg_m2)))
     for row in range(2):
         for column in range(2):
             scale = float(np.sqrt(matrix[row, row] * matrix[column, column]))
@@ -111,6 +111,15 @@ def _of_matrix(rig: SimulatedRig, term: str, tolerances: Tolerances) -> Iterator
             weight = own if row == column else tolerances.coupling_relative
             name = f"{_TERMS[term]}{row + 1}{column + 1}"
             yield Free(name, weight * scale, _adding(term, row, column))
+
+
+def _remembered(rig: SimulatedRig, term: str) -> FloatArray:
+    """Return what the water's memory adds to a matrix in the middle of the rig's frequencies."""
+    if rig.radiation is None:
+        return np.zeros((2, 2))
+    span = rig.oscillator.frequency_hz
+    middle = 2.0 * math.pi * math.sqrt(span.low * span.high)
+    return np.asarray(getattr(rig.radiation, term)(middle), np.float64)
 
 
 def _adding(term: str, row: int, column: int) -> Change:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from analysis.gap.components import GapRun, Stack
 from analysis.gap.doubt import Doubt
 from analysis.gap.forward import Simulator
+from analysis.gap.free import free_numbers
 from analysis.gap.odd_harmonics import of_first_harmonics
 from analysis.gap.odd_records import of_records, of_scatter
 from analysis.gap.recentre import Recentred, recentred
@@ -61,9 +62,10 @@ def judged(
     ConfigurationError
         If the rig cannot run what was recorded.
     """
+    stated = Recentred(rig, free_numbers(rig, tolerances))
     found = doubts(rig, runs, on, reference_channel)
     if any(one.run == "" for one in found):
-        return Recentred(rig), found
+        return stated, found
     bad = {one.run for one in found}
     good = [run for run in runs if run.name not in bad]
     fitted = [some for some in (good, runs) if len(some) >= _FEW]
@@ -71,4 +73,4 @@ def judged(
     for some in fitted if bad else fitted[:1]:
         there = recentred(rig, some, tolerances, on, reference_channel)
         tried.append((there, doubts(there.rig, runs, on, reference_channel)))
-    return min(tried, key=lambda one: len(one[1])) if tried else (Recentred(rig), found)
+    return min(tried, key=lambda one: len(one[1])) if tried else (stated, found)

@@ -36,6 +36,8 @@ class Recentred:
     ----------
     rig
         The one that was given where the campaign fits what is stated.
+    free
+        What is left free, with the tolerances of what is stated.
     units
         By how many prior deviations each coefficient was moved; empty where none was.
     moved
@@ -43,6 +45,7 @@ class Recentred:
     """
 
     rig: SimulatedRig
+    free: tuple[Free, ...]
     units: Mapping[str, float] = field(default_factory=dict)
     moved: Mapping[str, float] = field(default_factory=dict)
 
@@ -85,6 +88,7 @@ def _result(rig: SimulatedRig, free: Sequence[Free], total: FloatArray) -> Recen
     pairs = [(one, float(unit)) for one, unit in zip(free, total, strict=True) if unit]
     return Recentred(
         rig,
+        tuple(free),
         {one.name: unit for one, unit in pairs},
         {one.name: unit * one.deviation for one, unit in pairs},
     )

@@ -42,15 +42,20 @@ def smooth_changes(
 def _ways(stack: Stack, per_octave: float, per_speed: float) -> list[FloatArray]:
     """Return the ways in which a coefficient changes over the runs, each ``(observations,)``.
 
-    Over frequency a Gaussian process with a length of an octave, by its eigenvectors; over speed in
-    proportion to it, and nothing where the carriage stands.
+    Over frequency a Gaussian process with a length of an octave and a slope that is continuous
+    (Matern, 3/2), by its eigenvectors: damping by waves has a peak about an octave wide. Over speed
+    in proportion to it. A carriage that stands is off by its whole speed, either way: flow past the
+    model is another flow.
     """
     octaves = np.log2([run.set_point.frequency_hz for run in stack.runs])
-    values, vectors = np.linalg.eigh(np.exp(-0.5 * (octaves[:, None] - octaves) ** 2))
+    apart = math.sqrt(3.0) * np.abs(octaves[:, None] - octaves)
+    values, vectors = np.linalg.eigh((1.0 + apart) * np.exp(-apart))
     pairs = zip(values, vectors.T, strict=True)
     shapes = [math.sqrt(value) * one for value, one in pairs if value > _LEAST * values[-1]]
     speeds = np.array([run.set_point.carriage_speed_m_s for run in stack.runs])
     moving = speeds > 0.0
-    faster = np.where(moving, speeds / (speeds[moving].mean() if moving.any() else 1.0) - 1.0, 0.0)
-    rows = [per_octave * one for one in shapes] + [per_speed * faster]
+    middle = speeds[moving].mean() if moving.any() else 1.0
+    faster = np.where(moving, speeds / middle - 1.0, 0.0)
+    standing = np.where(moving, 0.0, float(moving.any()))
+    rows = [per_octave * one for one in shapes] + [per_speed * one for one in (faster, standing)]
     return [one[stack.run] for one in rows if one.any()]

@@ -13,7 +13,7 @@ from analysis.gap.components import Part, Stack
 from analysis.gap.diagnose import Diagnosis
 from analysis.gap.fit import Fit, Problem
 from analysis.gap.forecast import forecast, further, planned
-from analysis.gap.free import Free, free_numbers
+from analysis.gap.free import Free
 from analysis.gap.measurements import INJECTED_HZ
 from analysis.gap.polynomial import polynomial, polynomial_ahead
 from analysis.gap.propose import Proposal
@@ -21,7 +21,6 @@ from analysis.gap.tolerances import Tolerances
 from hardware.description.arrays import FloatArray
 from pmm.gap.case import HeldOut
 from sim.effects.effect import FurtherMeasurement
-from sim.rig import SimulatedRig
 
 SCHEMA: Final = "sealed-answer-1"
 _TWO_SIDED = 1.96
@@ -30,7 +29,7 @@ _TWO_SIDED = 1.96
 def answer(
     name: str,
     diagnosis: Diagnosis,
-    rig: SimulatedRig,
+    free: Sequence[Free],
     held_out: Sequence[HeldOut],
     tolerances: Tolerances,
 ) -> dict[str, Any]:
@@ -40,12 +39,11 @@ def answer(
     ----------
     name
         Of the case.
-    rig
-        The rig that the diagnosis began with.
+    free
+        What is left free, about what is stated.
     held_out
         Runs whose outcome is to be foretold.
     """
-    free = free_numbers(rig, tolerances)
     named = named_answer(diagnosis)
     best = named.best
     foretold = _Foretold(diagnosis.problem, named, held_out, free, tolerances)

@@ -15,7 +15,7 @@ from analysis.gap.description import Description, describe
 from analysis.gap.diagnose import Diagnosis, diagnose
 from analysis.gap.fit import Fit, Problem, at
 from analysis.gap.forward import Simulator
-from analysis.gap.free import Free, free_numbers, tolerated
+from analysis.gap.free import Free, tolerated
 from analysis.gap.inference.answers import NONE
 from analysis.gap.marginal import Marginal, marginals
 from analysis.gap.noise import pooled
@@ -189,7 +189,7 @@ def examine(
     try_own(more, there.rig, ready.fitted)
     found = diagnose(there.rig, ready.fitted, ready.settings, executor, progress)
     progress("predicting withheld runs")
-    free = free_numbers(there.rig, tolerances)
+    free = there.free
     judgement = _judged(found, ready.fitted, ready.withheld, free, tolerances)
     return Examined(ready, free, found, judgement, marginals(found), known)
 

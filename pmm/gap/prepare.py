@@ -108,6 +108,7 @@ def prepare(
         choices=case.choices(campaign),
         reference_channel=loaded.reference_channel,
         moved=there.units,
+        free=there.free,
     )
     for one in loaded.at_rest:
         (withheld if one.name in held_out else fitted).append(one)

@@ -9,7 +9,6 @@ import numpy as np
 
 from analysis.gap.diagnose import problem_of
 from analysis.gap.fit import Problem
-from analysis.gap.free import free_numbers
 from analysis.gap.mains import MAINS_HZ
 from analysis.gap.verdict import coefficient_shift
 from pmm.document.content import Document, Section, Table, Text, number, word
@@ -107,8 +106,8 @@ def tolerance_document(folder: Path, options: Options) -> Document:
 
 def _rows(ready: Prepared, file: Path) -> Iterator[ToleranceRow]:
     tolerances, stated = ready.case.tolerances, stated_tolerances(file)
-    free = free_numbers(ready.there.rig, tolerances)
-    moved = _shown(problem_of(ready.there.rig, ready.fitted, ready.settings, free))
+    problem = problem_of(ready.there.rig, ready.fitted, ready.settings, ready.there.free)
+    moved = _shown(problem)
     for one in fields(tolerances):
         told = one.metadata
         where = f"stated in {stated[one.name][1]}" if one.name in stated else ""

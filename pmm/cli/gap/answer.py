@@ -160,5 +160,5 @@ def diagnosed(folder: Path, left_out: tuple[str, ...] = ()) -> dict[str, Any]:
     ready = prepare(folder, known)
     found = diagnose(ready.there.rig, ready.fitted, ready.settings)
     return answer_of(
-        folder.name, found, ready.there.rig, ready.case.held_out, ready.case.tolerances
+        folder.name, found, ready.there.free, ready.case.held_out, ready.case.tolerances
     )

@@ -21,6 +21,7 @@ from sim.effects.switching import switch_on
 from sim.rig import SimulatedRig
 from sim.run import simulate
 
+USUAL = Tolerances()
 POINTS = (
     SetPoint(0.5, 0.02, 0.0, 1.0),
     SetPoint(1.0, 0.02, 0.0, 1.0),
@@ -70,10 +71,12 @@ def one_run(
 
 
 def problem_of(
-    rig: SimulatedRig, runs: Sequence[GapRun], reference_channel: str | None = None
+    rig: SimulatedRig,
+    runs: Sequence[GapRun],
+    reference_channel: str | None = None,
+    tolerances: Tolerances = USUAL,
 ) -> Problem:
     """Return the problem that a diagnosis holds its hypotheses against."""
-    tolerances = Tolerances()
     free = free_numbers(rig, tolerances)
     stack = Stack.of(pooled(runs, rig, tolerances))
     simulator = Simulator(rig, stack, reference_channel=reference_channel)

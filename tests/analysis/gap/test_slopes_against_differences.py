@@ -9,10 +9,12 @@ from analysis.gap.candidate import candidates
 from analysis.gap.components import STEADY_PARTS, GapRun
 from analysis.gap.fit import at, built
 from analysis.gap.free import Free, free_numbers
+from analysis.gap.gaussian import misfit
 from analysis.gap.tolerances import Tolerances
 from sim.effects.catalogue import find
+from sim.model.water.radiation import constant
 from sim.rig import SimulatedRig
-from tests.analysis.gap.small import problem_of
+from tests.analysis.gap.small import POINTS, USUAL, problem_of, record
 
 
 @pytest.mark.parametrize("name", ["coulomb-friction", "quadratic-damping", "amplifier-lag"])
@@ -55,3 +57,35 @@ def test_water_that_a_table_states_has_coefficients_to_be_free(rig: SimulatedRig
     assert found["a11"] == pytest.approx(Tolerances().added_mass_relative * rig.body.mass_kg)
     assert found["a22"] == pytest.approx(Tolerances().added_mass_relative * rig.body.inertia_kg_m2)
     assert found["b11"] == pytest.approx(Tolerances().damping_relative * rig.water.damping[0][0])
+
+
+def test_a_memory_counts_as_what_is_believed(rig: SimulatedRig) -> None:
+    """Whether added mass stands in the hull or in its memory, a tolerance of it is the same."""
+    added = rig.water.added_mass
+    lent = replace(
+        rig,
+        water=replace(rig.water, added_mass=((0.0, 0.0), (0.0, 0.0))),
+        radiation=constant(added),
+    )
+    stated, found = (
+        {one.name: one.deviation for one in free_numbers(each, Tolerances())}
+        for each in (rig, lent)
+    )
+    assert found == pytest.approx(stated)
+
+
+def test_water_is_other_where_the_carriage_stands(rig: SimulatedRig) -> None:
+    """Damping a tenth higher in the runs at rest alone is one tolerance of it."""
+    still = tuple(replace(one, carriage_speed_m_s=0.0) for one in POINTS[:2])
+    moving = tuple(replace(one, carriage_speed_m_s=1.0) for one in POINTS[:2])
+    damping = tuple(tuple(1.1 * one for one in row) for row in rig.water.damping)
+    other = replace(rig, water=replace(rig.water, damping=damping))
+
+    def left(at_rest: SimulatedRig, tolerances: Tolerances) -> float:
+        runs = (*record(at_rest, (), 5, still), *record(rig, (), 6, moving))
+        problem = problem_of(rig, runs, tolerances=tolerances)
+        return misfit(problem.residual, problem.nuisances)
+
+    usual = left(rig, USUAL)
+    assert left(other, USUAL) < usual + 5.0
+    assert left(other, replace(USUAL, damping_per_speed=0.0)) > usual + 100.0
