@@ -7,7 +7,7 @@ from io import StringIO
 from itertools import product
 from pathlib import Path
 
-from analysis.gap.diagnose import diagnose
+from analysis.gap.judge.diagnosis import diagnose
 from benchmarks.outcome import Benchmark, Outcome, Report
 from pmm.cli import cli
 from pmm.gap.prepare import prepare

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Final
 
-from analysis.gap.diagnose import Diagnosis, Settings, diagnose
+from analysis.gap.judge.diagnosis import Diagnosis, Settings, diagnose
 from benchmarks.outcome import Benchmark, Outcome, Report
 from pmm.gap.load import unlimited
 from sim.effects.catalogue import catalogue

@@ -6,7 +6,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 
-from analysis.gap.tolerances import Tolerances
+from analysis.gap.forward.tolerances import Tolerances
 from analysis.readers import ColumnMap
 from analysis.resolver.reference_choice import ReferenceChoice
 from analysis.resolver.settings import ResolverSettings

@@ -8,16 +8,17 @@ from typing import Any, Final
 
 import numpy as np
 
-from analysis.gap.answer import NamedAnswer, named_answer, predicted_shrinkage
-from analysis.gap.components import Part, Stack
-from analysis.gap.diagnose import Diagnosis
-from analysis.gap.fit import Fit, Problem
-from analysis.gap.forecast import forecast, further, planned
-from analysis.gap.free import Free
-from analysis.gap.measurements import INJECTED_HZ
-from analysis.gap.polynomial import polynomial, polynomial_ahead
-from analysis.gap.propose import Proposal
-from analysis.gap.tolerances import Tolerances
+from analysis.gap.design.forecast import forecast, further, planned
+from analysis.gap.design.measurements import INJECTED_HZ
+from analysis.gap.design.proposals import Proposal
+from analysis.gap.forward.free_numbers import Free
+from analysis.gap.forward.problem import Problem
+from analysis.gap.forward.tolerances import Tolerances
+from analysis.gap.judge.answer import NamedAnswer, named_answer, predicted_shrinkage
+from analysis.gap.judge.diagnosis import Diagnosis
+from analysis.gap.observe.components import Part, Stack
+from analysis.gap.search.fit import Fit
+from analysis.gap.search.polynomial import polynomial, polynomial_ahead
 from hardware.description.arrays import FloatArray
 from pmm.gap.case import HeldOut
 from sim.effects.effect import FurtherMeasurement

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from analysis.gap.at_rest import run_at_rest
-from analysis.gap.components import GapRun
+from analysis.gap.observe.at_rest import run_at_rest
+from analysis.gap.observe.components import GapRun
 from analysis.recording import Recording
 from hardware.description.channels import DISPLACEMENTS
 from hardware.description.errors import DataError, PmmError

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from analysis.gap.propose import Choices
-from analysis.gap.tolerances import Tolerances
+from analysis.gap.design.proposals import Choices
+from analysis.gap.forward.tolerances import Tolerances
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium

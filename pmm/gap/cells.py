@@ -6,9 +6,9 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.components import TRENDS, Component, Part
-from analysis.gap.fit import Problem
-from analysis.gap.where import left_by_step, step_of
+from analysis.gap.forward.problem import Problem
+from analysis.gap.locate.walk import left_by_step, step_of
+from analysis.gap.observe.components import TRENDS, Component, Part
 from hardware.description.arrays import FloatArray
 
 HARMONIC: Final = "harmonic"

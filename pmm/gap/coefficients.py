@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.free import tolerated
+from analysis.gap.forward.free_numbers import tolerated
 from hardware.description.arrays import FloatArray
 from pmm.gap.examine import Examined
 from pmm.gap.hull_report import HULL, Convention, Reported, reported

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import Final
 
-from analysis.gap.description import Description
+from analysis.gap.judge.description import Description
 from pmm.document.content import Data, Document, Figure, Note, Notes, Section, Table, Text
 from pmm.gap import figures
 from pmm.gap.conclusion import EFFECT, Conclusion

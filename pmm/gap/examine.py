@@ -10,20 +10,21 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.components import GapRun, Stack
-from analysis.gap.description import Description, describe
-from analysis.gap.diagnose import Diagnosis, diagnose
-from analysis.gap.fit import Fit, Problem, at
-from analysis.gap.forward import Simulator
-from analysis.gap.free import Free, tolerated
+from analysis.gap.forward.free_numbers import Free, tolerated
+from analysis.gap.forward.noise import pooled
+from analysis.gap.forward.problem import Problem
+from analysis.gap.forward.simulator import Simulator
+from analysis.gap.forward.tolerances import Tolerances
 from analysis.gap.inference.answers import NONE
-from analysis.gap.marginal import Marginal, marginals
-from analysis.gap.noise import pooled
-from analysis.gap.polynomial import polynomial
-from analysis.gap.recentre import Recentred, repeating_only
-from analysis.gap.regimes import Regime, chosen_regime, regimes
-from analysis.gap.tolerances import Tolerances
-from analysis.gap.withheld import Predicted, gap_of, predict_withheld, shrinkage
+from analysis.gap.judge.description import Description, describe
+from analysis.gap.judge.diagnosis import Diagnosis, diagnose
+from analysis.gap.judge.marginal import Marginal, marginals
+from analysis.gap.judge.withheld import Predicted, gap_of, predict_withheld, shrinkage
+from analysis.gap.observe.components import GapRun, Stack
+from analysis.gap.observe.regimes import Regime, chosen_regime, regimes
+from analysis.gap.quality.recentring import Recentred, repeating_only
+from analysis.gap.search.fit import Fit, at
+from analysis.gap.search.polynomial import polynomial
 from hardware.description.arrays import FloatArray
 from pmm.campaign.campaign import Campaign
 from pmm.gap.conclusion import EFFECT, Conclusion, Weighing, verdict_of

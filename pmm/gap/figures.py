@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analysis.gap.description import ForceMap
-from analysis.gap.where import CHAIN
+from analysis.gap.judge.description import ForceMap
+from analysis.gap.locate.walk import CHAIN
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import plain
 from pmm.document.style import PALETTE, TRACE, drawing

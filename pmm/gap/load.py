@@ -6,9 +6,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
 
-from analysis.gap.components import GapRun
-from analysis.gap.observe import Observed, observe
-from analysis.gap.sensors import as_recorded, resolved
+from analysis.gap.observe.components import GapRun
+from analysis.gap.observe.observation import Observed, observe
+from analysis.gap.observe.sensors import as_recorded, resolved
 from analysis.recording import Recording
 from hardware.description.errors import ConfigurationError, PmmError
 from hardware.description.flags import Flag

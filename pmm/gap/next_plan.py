@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import Any, Final
 
-from analysis.gap.measurements import REST_S
-from analysis.gap.propose import Proposal, dead_weight
+from analysis.gap.design.measurements import REST_S
+from analysis.gap.design.proposals import Proposal, dead_weight
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.setpoint import Medium
 from pmm.toml_text import toml_table, toml_value

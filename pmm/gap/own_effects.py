@@ -7,8 +7,8 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from analysis.gap.components import GapRun, Stack
-from analysis.gap.forward import Simulator
+from analysis.gap.forward.simulator import Simulator
+from analysis.gap.observe.components import GapRun, Stack
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, PmmError
 from sim.effects.catalogue import catalogue, find, user_effects

@@ -4,11 +4,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from analysis.gap.fit import Fit
 from analysis.gap.inference.answers import COEFFICIENTS, NONE, ODD_RUN, UNKNOWN, Answers
 from analysis.gap.pendulum.diagnose import Diagnosis
 from analysis.gap.pendulum.search import named
 from analysis.gap.pendulum.verdict import CAUSE, UNTOLD, Verdict
+from analysis.gap.search.fit import Fit
 
 _SHOWN: Final = 8  # answers
 _LEAST: Final = 1e-4  # probability that is worth a row

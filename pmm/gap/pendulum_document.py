@@ -4,12 +4,12 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any, Final
 
-from analysis.gap.fit import Fit
 from analysis.gap.inference.answers import COEFFICIENTS, NONE, effects_in
 from analysis.gap.pendulum.diagnose import Diagnosis
 from analysis.gap.pendulum.search import named
 from analysis.gap.pendulum.verdict import Law
 from analysis.gap.pendulum.withheld import Foretold
+from analysis.gap.search.fit import Fit
 from pmm.document.content import (
     Column,
     Content,

@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from analysis.gap.candidate import Candidate
+from analysis.gap.forward.candidate import Candidate
 from analysis.gap.pendulum.causes import cause, causes_for
 from analysis.gap.pendulum.diagnose import Diagnosis, diagnose_trials
 from analysis.gap.pendulum.problem import Problem

@@ -6,12 +6,12 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.fit import nothing
 from analysis.gap.inference.answers import NONE, ODD_RUN, UNKNOWN
 from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING
 from analysis.gap.pendulum.diagnose import Diagnosis
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.verdict import TOLD_APART, Law, open_laws, remainder
+from analysis.gap.search.fit import nothing
 from analysis.inertia.spread import cause_statement
 from pmm.gap.pendulum_conclusion import PendulumConclusion, conclusion_of, parameters
 from pmm.gap.words import OUTSIDE

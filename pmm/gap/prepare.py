@@ -6,11 +6,11 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Final
 
-from analysis.gap.components import GapRun
-from analysis.gap.diagnose import Settings
-from analysis.gap.observe import COMPARED
-from analysis.gap.quality import doubts, judged
-from analysis.gap.recentre import Recentred
+from analysis.gap.judge.diagnosis import Settings
+from analysis.gap.observe.components import GapRun
+from analysis.gap.observe.observation import COMPARED
+from analysis.gap.quality.recentring import Recentred
+from analysis.gap.quality.recordings import doubts, judged
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag
 from pmm.campaign.campaign import Campaign

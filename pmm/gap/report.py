@@ -5,14 +5,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from analysis.gap.description import Description
-from analysis.gap.fit import Fit
-from analysis.gap.marginal import Marginal
-from analysis.gap.propose import Proposal
-from analysis.gap.twins import coefficient_error, separating_measurements
-from analysis.gap.verdict import coefficient_shift, coefficient_twins
-from analysis.gap.where import FAR, left_by_step
-from analysis.gap.withheld import Predicted, gap_of, shrinkage
+from analysis.gap.design.proposals import Proposal
+from analysis.gap.judge.confounded import coefficient_error, separating_measurements
+from analysis.gap.judge.description import Description
+from analysis.gap.judge.marginal import Marginal
+from analysis.gap.judge.verdict import coefficient_shift, coefficient_twins
+from analysis.gap.judge.withheld import Predicted, gap_of, shrinkage
+from analysis.gap.locate.walk import FAR, left_by_step
+from analysis.gap.search.fit import Fit
 from hardware.description.arrays import FloatArray
 from pmm.gap.answer import effect_rows, next_run
 from pmm.gap.cells import Cell, heat_cells

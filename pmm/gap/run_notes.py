@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from typing import Final
 
-from analysis.gap.sensors import heard_rms
-from analysis.gap.withheld import gap_of
+from analysis.gap.judge.withheld import gap_of
+from analysis.gap.observe.sensors import heard_rms
 from pmm.gap.examine import Examined
 
 NOTED: Final = 2.0  # times: a specification's noise is often meant as a largest one

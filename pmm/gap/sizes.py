@@ -7,9 +7,9 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.components import TRENDS, Component, GapRun, Part, Stack
-from analysis.gap.fit import Fit
-from analysis.gap.where import FORCE, MOTION, SHAFT, step_of
+from analysis.gap.locate.walk import FORCE, MOTION, SHAFT, step_of
+from analysis.gap.observe.components import TRENDS, Component, GapRun, Part, Stack
+from analysis.gap.search.fit import Fit
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import CARRIAGE_SPEED, DISPLACEMENTS, FORCES, SHAFT_ANGLE
 from pmm.document.labels import display

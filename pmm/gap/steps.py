@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.fit import Problem
-from analysis.gap.where import CHAIN, Gap, Walk, gap_of, left_by_step, step_of, strained
+from analysis.gap.forward.problem import Problem
+from analysis.gap.locate.walk import CHAIN, Gap, Walk, gap_of, left_by_step, step_of, strained
 from hardware.description.arrays import FloatArray
 
 _TOLD: Final = 2  # numbers that are out of their tolerance

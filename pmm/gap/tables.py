@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
-from analysis.gap.marginal import Marginal
+from analysis.gap.judge.marginal import Marginal
 from pmm.document.content import Column, Table, data_only, number, word
 from pmm.document.notation import NOT_KNOWN, percent, written
 from pmm.gap.coefficients import CoefficientRow

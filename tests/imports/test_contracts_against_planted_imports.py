@@ -19,6 +19,11 @@ KINDS = {"forbidden": ForbiddenContract, "layers": LayersContract, "protected": 
 
 # Contract, the file that is planted in, and what is planted there.
 PLANTED = [
+    (
+        "Within the gap diagnosis each room builds on those before it",
+        "analysis/gap/observe/components.py",
+        "import analysis.gap.search.fit",
+    ),
     ("Imports go down only", "sim/run.py", "import analysis.reading_limits"),
     ("Imports go down only", "hardware/rest.py", "import pmm.places"),
     ("A wheel needs no tests, benchmarks or pages", "pmm/places.py", "import tests.clusters"),
@@ -55,7 +60,7 @@ PLANTED = [
     (
         "What drives a rig never reaches the simulator",
         "pmm/recorder/journal.py",
-        "import analysis.gap.diagnose",
+        "import analysis.gap.judge.diagnosis",
     ),
     ("Within sim each link knows those before it", "sim/solve/relaxation.py", "import sim.rig"),
     ("Within sim each link knows those before it", "sim/drive/gear.py", "import sim.coupled.march"),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from analysis.gap.components import Component, GapRun, Observation, Part
+from analysis.gap.observe.components import Component, GapRun, Observation, Part
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
 from sim.effects.catalogue import catalogue

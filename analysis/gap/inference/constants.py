@@ -1,7 +1,7 @@
 """Every number that decides, with its unit and where it comes from.
 
 ``docs/gap-calibration.md`` lists them. Tolerances in physical units are not among them: they are
-the user's (:mod:`analysis.gap.tolerances`).
+the user's (:mod:`analysis.gap.forward.tolerances`).
 """
 
 from dataclasses import dataclass

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.gap.gaussian import Posterior, any_size
+from analysis.gap.inference.gaussian import Posterior, any_size
 from analysis.gap.inference.gram import Reduced
 from hardware.description.arrays import BoolArray, FloatArray
 

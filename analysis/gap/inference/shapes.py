@@ -11,8 +11,8 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.gaussian import Nuisances
 from analysis.gap.inference.constants import ALIKE, PLAIN, STRANGE
+from analysis.gap.inference.gaussian import Nuisances
 from hardware.description.arrays import BoolArray, FloatArray
 
 _LEAST: Final = 0.03  # of an effect's largest direction, below which one is rounding

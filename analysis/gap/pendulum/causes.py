@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any, Final
 
-from analysis.gap.candidate import Axis, Candidate, axis_of
+from analysis.gap.forward.candidate import Axis, Candidate, axis_of
 from analysis.gap.pendulum.problem import Tolerance
 from analysis.gap.pendulum.trial import Trial
 from hardware.description.errors import ConfigurationError

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from analysis.gap.inference.evidence import Background, Kind
 from analysis.gap.inference.kernel import Kernel
 from analysis.gap.inference.shapes import Shapes, SignatureOfEffect
-from analysis.gap.look import Looked
 from analysis.gap.pendulum.causes import DAMPED, LINES, READ, RESTORED
 from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.swings import KINDS
+from analysis.gap.search.first_look import Looked
 from hardware.description.arrays import BoolArray, FloatArray
 
 _OWN: Final = 0.2  # share of a deviation's variance that is each record's own

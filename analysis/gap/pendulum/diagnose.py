@@ -5,8 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
-from analysis.gap.candidate import Candidate
-from analysis.gap.fit import Fit
+from analysis.gap.forward.candidate import Candidate
 from analysis.gap.inference.answers import effects_in
 from analysis.gap.pendulum.causes import DAMPING, causes_for
 from analysis.gap.pendulum.further import Proposal, Reach, propose
@@ -27,6 +26,7 @@ from analysis.gap.pendulum.verdict import (
     where,
 )
 from analysis.gap.pendulum.withheld import Regime, foretell
+from analysis.gap.search.fit import Fit
 
 _ASKED: Final = 10.0  # ln weight behind the best law within which the withheld swings are asked too
 

@@ -7,11 +7,11 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.fit import Fit, at
-from analysis.gap.gaussian import Nuisances, posterior
+from analysis.gap.inference.gaussian import Nuisances, posterior
 from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.trial import Trial
+from analysis.gap.search.fit import Fit, at
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim.pendulum.effects.base import small_swing, suspension_of

@@ -7,9 +7,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.candidate import Candidate
-from analysis.gap.fit import built
-from analysis.gap.gaussian import Nuisances
+from analysis.gap.forward.candidate import Candidate
+from analysis.gap.forward.problem import built
+from analysis.gap.inference.gaussian import Nuisances
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.trial import FURTHER, TURNED, Trial
 from hardware.description.arrays import BoolArray, FloatArray
@@ -41,7 +41,7 @@ class Tolerance:
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """Records of releases beside their simulation: :class:`analysis.gap.fit.Compared`.
+    """Records of releases beside their simulation: :class:`analysis.gap.forward.problem.Compared`.
 
     Attributes
     ----------

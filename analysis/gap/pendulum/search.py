@@ -7,9 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.candidate import Candidate
-from analysis.gap.fit import Fit, at, inside, nothing
-from analysis.gap.gaussian import null_evidence
+from analysis.gap.forward.candidate import Candidate
 from analysis.gap.inference.answers import (
     UNKNOWN,
     Answers,
@@ -21,12 +19,14 @@ from analysis.gap.inference.answers import (
 )
 from analysis.gap.inference.constants import ODDS
 from analysis.gap.inference.evidence import Background
-from analysis.gap.linear_hypothesis import hypothesis, settled
-from analysis.gap.look import HIDDEN, Looked, best_look
+from analysis.gap.inference.gaussian import null_evidence
 from analysis.gap.pendulum.deviation import background
 from analysis.gap.pendulum.problem import Problem
-from analysis.gap.refine import refine
-from analysis.gap.search import Engine, fitted, paired, widened
+from analysis.gap.search.engine import Engine, fitted, paired, widened
+from analysis.gap.search.first_look import HIDDEN, Looked, best_look
+from analysis.gap.search.fit import Fit, at, inside, nothing
+from analysis.gap.search.linear_hypothesis import hypothesis, settled
+from analysis.gap.search.refinement import refine
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.gap.fit import Fit
 from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.search import fit
+from analysis.gap.search.fit import Fit
 from hardware.description.errors import PmmError
 
 _ROUNDS = 3

@@ -10,13 +10,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.gap.candidate import Candidate
-from analysis.gap.fit import Fit, built, nothing
+from analysis.gap.forward.candidate import Candidate
+from analysis.gap.forward.problem import built
 from analysis.gap.pendulum.causes import cause
 from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.search import fit, named
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.trial import Trial
+from analysis.gap.search.fit import Fit, nothing
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
 from sim.pendulum.bench import PendulumBench

@@ -7,15 +7,15 @@ from typing import Any, Final
 
 import numpy as np
 
-from analysis.gap.candidate import Candidate
-from analysis.gap.fit import Fit, expected_evidence, joined, nothing
-from analysis.gap.gaussian import Nuisances
+from analysis.gap.forward.candidate import Candidate
 from analysis.gap.inference.answers import COEFFICIENTS, NONE, ODD_RUN, UNKNOWN, effects_in
+from analysis.gap.inference.gaussian import Nuisances
 from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING, STIFFNESS
 from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.search import Weighed, fit, named
 from analysis.gap.pendulum.settle import Settled
 from analysis.gap.pendulum.swings import KINDS
+from analysis.gap.search.fit import Fit, expected_evidence, joined, nothing
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
 from sim.pendulum.effects import body

@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.gap.fit import Fit, at, nothing
-from analysis.gap.gaussian import Nuisances, posterior
+from analysis.gap.inference.gaussian import Nuisances, posterior
 from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.search import fit, named
 from analysis.gap.pendulum.trial import Trial
+from analysis.gap.search.fit import Fit, at, nothing
 from hardware.description.arrays import BoolArray, FloatArray
 
 _DRAWS = 400

@@ -151,7 +151,7 @@ def answer_one(task: CaseTask) -> Answered:
 
 def diagnosed(folder: Path, left_out: tuple[str, ...] = ()) -> dict[str, Any]:
     """Return the answer to a case's folder, with some effects taken out of the catalogue."""
-    from analysis.gap.diagnose import diagnose
+    from analysis.gap.judge.diagnosis import diagnose
     from pmm.gap.answer import answer as answer_of
     from pmm.gap.prepare import prepare
     from sim.effects.catalogue import catalogue

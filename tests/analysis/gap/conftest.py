@@ -2,7 +2,7 @@
 
 import pytest
 
-from analysis.gap.components import GapRun
+from analysis.gap.observe.components import GapRun
 from pmm.gap.load import unlimited
 from sim.rig import SimulatedRig, vertical_rig
 from tests.analysis.gap.small import record

@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from dataclasses import fields
 
-from analysis.gap.fit import Problem
-from analysis.gap.gaussian import left_over
+from analysis.gap.forward.problem import Problem
+from analysis.gap.inference.gaussian import left_over
 from hardware.description.errors import PmmError
 from sim.effects.catalogue import catalogue
 from sim.effects.effect import Effect

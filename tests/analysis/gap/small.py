@@ -4,13 +4,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from analysis.gap.components import GapRun, Stack
-from analysis.gap.fit import Problem
-from analysis.gap.forward import Simulator
-from analysis.gap.free import free_numbers, tolerated
-from analysis.gap.noise import pooled
-from analysis.gap.observe import observe
-from analysis.gap.tolerances import Tolerances
+from analysis.gap.forward.free_numbers import free_numbers, tolerated
+from analysis.gap.forward.noise import pooled
+from analysis.gap.forward.problem import Problem
+from analysis.gap.forward.simulator import Simulator
+from analysis.gap.forward.tolerances import Tolerances
+from analysis.gap.observe.components import GapRun, Stack
+from analysis.gap.observe.observation import observe
 from analysis.readers.dataset import from_dataset
 from analysis.resolver.reference_choice import ReferenceChoice
 from hardware.description.setpoint import Medium, SetPoint

@@ -2,9 +2,9 @@
 
 import pytest
 
-from analysis.gap.diagnose import Diagnosis, Settings, diagnose
-from analysis.gap.observe import SPEED
-from analysis.gap.where import CARRIAGE
+from analysis.gap.judge.diagnosis import Diagnosis, Settings, diagnose
+from analysis.gap.locate.walk import CARRIAGE
+from analysis.gap.observe.observation import SPEED
 from sim.effects.catalogue import build, find
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import record

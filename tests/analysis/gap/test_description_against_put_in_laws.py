@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from analysis.gap.components import GapRun
-from analysis.gap.description import describe
-from analysis.gap.fit import Problem
-from analysis.gap.polynomial import components_of, polynomial, scaled_motion
-from analysis.gap.regimes import regimes
-from analysis.gap.sparse_law import LIBRARY
-from analysis.gap.withheld import gap_of, predict_withheld
+from analysis.gap.forward.problem import Problem
+from analysis.gap.judge.description import describe
+from analysis.gap.judge.sparse_law import LIBRARY
+from analysis.gap.judge.withheld import gap_of, predict_withheld
+from analysis.gap.observe.components import GapRun
+from analysis.gap.observe.regimes import regimes
+from analysis.gap.search.polynomial import components_of, polynomial, scaled_motion
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import problem_of
 

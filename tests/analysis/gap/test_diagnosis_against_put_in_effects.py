@@ -6,14 +6,14 @@ from dataclasses import asdict, replace
 import numpy as np
 import pytest
 
-from analysis.gap.components import STEADY_PARTS
-from analysis.gap.diagnose import Diagnosis, Settings, diagnose
-from analysis.gap.forecast import forecast, further, planned
-from analysis.gap.free import free_numbers
+from analysis.gap.design.forecast import forecast, further, planned
+from analysis.gap.forward.free_numbers import free_numbers
+from analysis.gap.forward.tolerances import Tolerances
 from analysis.gap.inference.answers import NONE, UNKNOWN
-from analysis.gap.sensors import as_recorded
-from analysis.gap.tolerances import Tolerances
-from analysis.gap.verdict import coefficient_twins
+from analysis.gap.judge.diagnosis import Diagnosis, Settings, diagnose
+from analysis.gap.judge.verdict import coefficient_twins
+from analysis.gap.observe.components import STEADY_PARTS
+from analysis.gap.observe.sensors import as_recorded
 from analysis.resolver.reference_choice import ReferenceChoice
 from hardware.description.channels import SHAFT_ANGLE
 from hardware.description.setpoint import SetPoint

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.gap.components import GapRun, Part
-from analysis.gap.observe import observe
+from analysis.gap.observe.components import GapRun, Part
+from analysis.gap.observe.observation import observe
 from analysis.readers.dataset import from_dataset
 from analysis.recording import Recording
 from hardware.description.channels import FORCES

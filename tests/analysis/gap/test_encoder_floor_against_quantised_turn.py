@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from analysis.gap.noise import ENCODER_RAD, encoder_floor_rad
+from analysis.gap.forward.noise import ENCODER_RAD, encoder_floor_rad
 from hardware.description.arrays import FloatArray
 from sim.acquisition.channels import Digitiser
 

@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import multivariate_normal
 
-from analysis.gap.gaussian import (
+from analysis.gap.inference.constants import VISIBLE
+from analysis.gap.inference.gaussian import (
     Nuisances,
     any_size,
     cosine,
@@ -18,8 +19,7 @@ from analysis.gap.gaussian import (
     posterior,
     rooted,
 )
-from analysis.gap.inference.constants import VISIBLE
-from analysis.gap.polynomial import log_evidence
+from analysis.gap.search.polynomial import log_evidence
 
 COUNT = 9
 SHARED = 0.5 * COUNT * np.log(2.0 * np.pi)

@@ -8,14 +8,15 @@ from functools import partial
 import numpy as np
 import pytest
 
-from analysis.gap.candidate import candidates
-from analysis.gap.components import Component, GapRun, Observation, Part, Stack
-from analysis.gap.fit import Problem, at
-from analysis.gap.forecast import next_place, planned
-from analysis.gap.free import free_numbers
-from analysis.gap.measurements import INJECTED_HZ, measured_besides
-from analysis.gap.propose import OSCILLATION, Choices, Proposal, proposals, set_points
-from analysis.gap.tolerances import Tolerances
+from analysis.gap.design.forecast import next_place, planned
+from analysis.gap.design.measurements import INJECTED_HZ, measured_besides
+from analysis.gap.design.proposals import OSCILLATION, Choices, Proposal, proposals, set_points
+from analysis.gap.forward.candidate import candidates
+from analysis.gap.forward.free_numbers import free_numbers
+from analysis.gap.forward.problem import Problem
+from analysis.gap.forward.tolerances import Tolerances
+from analysis.gap.observe.components import Component, GapRun, Observation, Part, Stack
+from analysis.gap.search.fit import at
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium, SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2 as G_M_S2

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.gap.components import TRENDS, Component, GapRun, Part
-from analysis.gap.observe import observe
-from analysis.gap.where import BESIDE, walk
+from analysis.gap.locate.walk import BESIDE, walk
+from analysis.gap.observe.components import TRENDS, Component, GapRun, Part
+from analysis.gap.observe.observation import observe
 from analysis.readers.dataset import from_dataset
 from hardware.description.channels import FORCES
 from hardware.description.setpoint import SetPoint

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from analysis.gap.components import GapRun, Observation
-from analysis.gap.sensors import heard_rms
-from analysis.gap.spectrum import Lines, loudness, quiet_lines
+from analysis.gap.observe.components import GapRun, Observation
+from analysis.gap.observe.sensors import heard_rms
+from analysis.gap.observe.spectrum import Lines, loudness, quiet_lines
 from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis.gap.diagnose import Diagnosis, Settings, diagnose
 from analysis.gap.inference.answers import COEFFICIENTS, NAMELESS, NONE, UNKNOWN
-from analysis.gap.marginal import LEAST, Marginal, by_effect, marginals, of_any
-from analysis.gap.verdict import ALIKE
+from analysis.gap.judge.diagnosis import Diagnosis, Settings, diagnose
+from analysis.gap.judge.marginal import LEAST, Marginal, by_effect, marginals, of_any
+from analysis.gap.judge.verdict import ALIKE
 from sim.effects.catalogue import build, find
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import record

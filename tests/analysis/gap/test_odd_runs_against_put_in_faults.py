@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.gap.components import GapRun, Part
-from analysis.gap.diagnose import Diagnosis, Settings, diagnose
 from analysis.gap.inference.answers import COEFFICIENTS, NONE, ODD_RUN
+from analysis.gap.judge.diagnosis import Diagnosis, Settings, diagnose
+from analysis.gap.observe.components import GapRun, Part
 from hardware.description.channels import FORCES
 from hardware.description.setpoint import SetPoint
 from sim.effects.catalogue import build, find

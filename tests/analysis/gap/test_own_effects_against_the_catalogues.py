@@ -7,16 +7,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis.gap.candidate import candidates
-from analysis.gap.components import GapRun
-from analysis.gap.fit import Fit, Problem, at
-from analysis.gap.free import free_numbers
-from analysis.gap.hypotheses import COEFFICIENTS
-from analysis.gap.look import Looked
-from analysis.gap.propose import Choices, proposals
-from analysis.gap.screen import worth_a_look
-from analysis.gap.search import Engine, fitted
-from analysis.gap.tolerances import Tolerances
+from analysis.gap.design.proposals import Choices, proposals
+from analysis.gap.forward.candidate import candidates
+from analysis.gap.forward.free_numbers import free_numbers
+from analysis.gap.forward.problem import Problem
+from analysis.gap.forward.tolerances import Tolerances
+from analysis.gap.locate.traces import worth_a_look
+from analysis.gap.observe.components import GapRun
+from analysis.gap.search.engine import Engine, fitted
+from analysis.gap.search.first_look import Looked
+from analysis.gap.search.fit import Fit, at
+from analysis.gap.search.hypotheses import COEFFICIENTS
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
 from sim.effects.catalogue import catalogue, find, load_file

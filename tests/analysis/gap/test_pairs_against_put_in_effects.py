@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from analysis.gap.candidate import candidates
-from analysis.gap.diagnose import Settings, diagnose
-from analysis.gap.look import look
+from analysis.gap.forward.candidate import candidates
+from analysis.gap.judge.diagnosis import Settings, diagnose
+from analysis.gap.search.first_look import look
 from sim.effects.catalogue import build, catalogue, find
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import problem_of, record

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.gap.observe import Observed, observe
-from analysis.gap.phase import choose_phase
+from analysis.gap.observe.observation import Observed, observe
+from analysis.gap.observe.phase import choose_phase
 from analysis.readers.dataset import from_dataset
 from analysis.recording import Recording
 from analysis.resolver.reference_choice import ReferenceChoice

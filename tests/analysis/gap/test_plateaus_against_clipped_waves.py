@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis.gap.plateau import plateau
+from analysis.gap.observe.plateau import plateau
 from hardware.description.arrays import FloatArray
 
 COUNT, PERIODS = 1600, 10

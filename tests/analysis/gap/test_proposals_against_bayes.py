@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis.gap.candidate import candidates
-from analysis.gap.components import GapRun
-from analysis.gap.fit import at
-from analysis.gap.free import free_numbers
-from analysis.gap.propose import Choices, proposals, set_points
-from analysis.gap.tolerances import Tolerances
-from analysis.gap.worth import ENOUGH, Worth, by_itself, gained
+from analysis.gap.design.information_gain import ENOUGH, Worth, by_itself, gained
+from analysis.gap.design.proposals import Choices, proposals, set_points
+from analysis.gap.forward.candidate import candidates
+from analysis.gap.forward.free_numbers import free_numbers
+from analysis.gap.forward.tolerances import Tolerances
+from analysis.gap.observe.components import GapRun
+from analysis.gap.search.fit import at
 from hardware.description.arrays import FloatArray
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium, SetPoint

@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.gap.components import GapRun, Part
-from analysis.gap.doubt import Doubt
-from analysis.gap.plateau import Plateau
-from analysis.gap.quality import doubts, judged
-from analysis.gap.tolerances import Tolerances
+from analysis.gap.forward.tolerances import Tolerances
+from analysis.gap.observe.components import GapRun, Part
+from analysis.gap.observe.plateau import Plateau
+from analysis.gap.quality.finding import Doubt
+from analysis.gap.quality.recordings import doubts, judged
 from sim.effects.catalogue import build
 from sim.effects.measurement import with_force_channels
 from sim.rig import SimulatedRig

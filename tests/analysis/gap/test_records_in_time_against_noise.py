@@ -3,14 +3,15 @@
 import numpy as np
 import pytest
 
-from analysis.gap.components import Component, Part, Stack
-from analysis.gap.fit import Problem, most_probable
-from analysis.gap.forward import DRAWS, Simulator
-from analysis.gap.free import free_numbers, tolerated
-from analysis.gap.look import look
-from analysis.gap.noise import pooled
-from analysis.gap.powers import grown
-from analysis.gap.tolerances import Tolerances
+from analysis.gap.forward.free_numbers import free_numbers, tolerated
+from analysis.gap.forward.noise import pooled
+from analysis.gap.forward.powers import grown
+from analysis.gap.forward.problem import Problem
+from analysis.gap.forward.simulator import DRAWS, Simulator
+from analysis.gap.forward.tolerances import Tolerances
+from analysis.gap.observe.components import Component, Part, Stack
+from analysis.gap.search.first_look import look
+from analysis.gap.search.fit import most_probable
 from sim.effects.a5_trigger_jitter import TriggerJitter
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import record

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from analysis.gap.components import Component, GapRun, Observation, Part, Stack
-from analysis.gap.free import references_rad
+from analysis.gap.forward.free_numbers import references_rad
+from analysis.gap.observe.components import Component, GapRun, Observation, Part, Stack
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
 

@@ -7,9 +7,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis.gap.components import Component, GapRun, Observation, Part, Stack
-from analysis.gap.regimes import contrasts, regimes
-from analysis.gap.withheld import predict_withheld
+from analysis.gap.judge.withheld import predict_withheld
+from analysis.gap.observe.components import Component, GapRun, Observation, Part, Stack
+from analysis.gap.observe.regimes import contrasts, regimes
 from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.campaign import CampaignRun
 from sim.rig import SimulatedRig

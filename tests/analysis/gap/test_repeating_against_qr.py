@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from analysis.gap.components import STEADY_PARTS, Part
-from analysis.gap.observe import observe
-from analysis.gap.spectrum import repeating
+from analysis.gap.observe.components import STEADY_PARTS, Part
+from analysis.gap.observe.observation import observe
+from analysis.gap.observe.spectrum import repeating
 from analysis.readers.dataset import from_dataset
 from hardware.description.setpoint import SetPoint
 from sim.rig import SimulatedRig

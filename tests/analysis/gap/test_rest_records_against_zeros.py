@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from analysis.coefficients.corrections import ZERO_BLOCKS
-from analysis.gap.at_rest import run_at_rest
-from analysis.gap.components import GapRun, Part, Stack
-from analysis.gap.diagnose import Diagnosis, Settings, diagnose
-from analysis.gap.fit import expected_evidence
-from analysis.gap.forecast import planned
-from analysis.gap.forward import Simulator
-from analysis.gap.regimes import regimes
+from analysis.gap.design.forecast import planned
+from analysis.gap.forward.simulator import Simulator
+from analysis.gap.judge.diagnosis import Diagnosis, Settings, diagnose
+from analysis.gap.observe.at_rest import run_at_rest
+from analysis.gap.observe.components import GapRun, Part, Stack
+from analysis.gap.observe.regimes import regimes
+from analysis.gap.search.fit import expected_evidence
 from analysis.readers.dataset import from_dataset
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis.gap.spectrum import Lines, levels, loudness
+from analysis.gap.observe.spectrum import Lines, levels, loudness
 
 
 def records(log_powers: list[float], seed: int, count: int = 60) -> list[Lines]:

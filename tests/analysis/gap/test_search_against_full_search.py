@@ -7,21 +7,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.gap.candidate import Candidate, candidates
-from analysis.gap.components import GapRun, Part, Stack
-from analysis.gap.fit import Problem, at
-from analysis.gap.forward import Simulator
-from analysis.gap.free import free_numbers, tolerated, with_coefficients
-from analysis.gap.gaussian import left_over
-from analysis.gap.look import look, smaller
-from analysis.gap.noise import pooled
-from analysis.gap.prefix import Solved
-from analysis.gap.refine import refine
-from analysis.gap.regimes import Regime
-from analysis.gap.screen import shown, worth_a_look
-from analysis.gap.together import together
-from analysis.gap.tolerances import Tolerances
-from analysis.gap.withheld import Predicted, shrinkage
+from analysis.gap.forward.candidate import Candidate, candidates
+from analysis.gap.forward.free_numbers import free_numbers, tolerated, with_coefficients
+from analysis.gap.forward.noise import pooled
+from analysis.gap.forward.problem import Problem
+from analysis.gap.forward.simulator import Simulator
+from analysis.gap.forward.stages import Solved
+from analysis.gap.forward.tolerances import Tolerances
+from analysis.gap.inference.gaussian import left_over
+from analysis.gap.judge.withheld import Predicted, shrinkage
+from analysis.gap.locate.traces import shown, worth_a_look
+from analysis.gap.observe.components import GapRun, Part, Stack
+from analysis.gap.observe.regimes import Regime
+from analysis.gap.search.first_look import look, smaller
+from analysis.gap.search.fit import at
+from analysis.gap.search.joint import together
+from analysis.gap.search.refinement import refine
 from hardware.description.errors import ConfigurationError
 from sim.effects.catalogue import build, find
 from sim.effects.d2_speed_droop import SpeedDroop

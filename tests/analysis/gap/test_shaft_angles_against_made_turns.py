@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from analysis.gap.shaft_angle import turns_per_period, unwrapped
+from analysis.gap.observe.shaft_angle import turns_per_period, unwrapped
 from analysis.recording import Recording
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import FORCE_AFT, SHAFT_ANGLE

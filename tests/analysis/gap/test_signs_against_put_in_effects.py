@@ -4,9 +4,9 @@ from dataclasses import asdict
 
 import pytest
 
-from analysis.gap.components import GapRun
-from analysis.gap.diagnose import Settings, diagnose
-from analysis.gap.fit import Problem
+from analysis.gap.forward.problem import Problem
+from analysis.gap.judge.diagnosis import Settings, diagnose
+from analysis.gap.observe.components import GapRun
 from sim.effects.a2_channel_skew import ChannelSkew
 from sim.effects.catalogue import find
 from sim.rig import SimulatedRig

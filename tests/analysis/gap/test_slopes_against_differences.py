@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.gap.candidate import candidates
-from analysis.gap.components import STEADY_PARTS, GapRun
-from analysis.gap.fit import at, built
-from analysis.gap.free import Free, free_numbers
-from analysis.gap.gaussian import misfit
-from analysis.gap.tolerances import Tolerances
+from analysis.gap.forward.candidate import candidates
+from analysis.gap.forward.free_numbers import Free, free_numbers
+from analysis.gap.forward.problem import built
+from analysis.gap.forward.tolerances import Tolerances
+from analysis.gap.inference.gaussian import misfit
+from analysis.gap.observe.components import STEADY_PARTS, GapRun
+from analysis.gap.search.fit import at
 from sim.effects.catalogue import find
 from sim.model.water.radiation import constant
 from sim.rig import SimulatedRig

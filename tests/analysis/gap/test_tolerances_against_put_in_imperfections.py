@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.gap.components import GapRun, Part, Stack
-from analysis.gap.forward import Simulator
-from analysis.gap.free import free_numbers, tolerated
-from analysis.gap.mains import hum_columns
-from analysis.gap.noise import pooled
-from analysis.gap.tolerances import Tolerances
-from analysis.gap.where import TIMING, walk
+from analysis.gap.forward.free_numbers import free_numbers, tolerated
+from analysis.gap.forward.mains import hum_columns
+from analysis.gap.forward.noise import pooled
+from analysis.gap.forward.simulator import Simulator
+from analysis.gap.forward.tolerances import Tolerances
+from analysis.gap.locate.walk import TIMING, walk
+from analysis.gap.observe.components import GapRun, Part, Stack
 from sim.effects.catalogue import build
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import POINTS, problem_of, record

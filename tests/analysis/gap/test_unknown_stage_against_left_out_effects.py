@@ -2,7 +2,7 @@
 
 import pytest
 
-from analysis.gap.diagnose import Settings, diagnose
+from analysis.gap.judge.diagnosis import Settings, diagnose
 from sim.effects.catalogue import build, find
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import record

@@ -6,10 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.gap.components import GapRun, Part
-from analysis.gap.fed import MEASURED_MOTION, MEASURED_SHAFT, Fed, fed
-from analysis.gap.gaussian import Nuisances
-from analysis.gap.where import (
+from analysis.gap.inference.gaussian import Nuisances
+from analysis.gap.locate.measured_input import MEASURED_MOTION, MEASURED_SHAFT, Fed, fed
+from analysis.gap.locate.walk import (
     FORCE_BY_SHAFT,
     FORCE_FED,
     MOTION,
@@ -18,6 +17,7 @@ from analysis.gap.where import (
     Walk,
     walk,
 )
+from analysis.gap.observe.components import GapRun, Part
 from hardware.description.channels import DISPLACEMENTS, FORCES, SHAFT_ANGLE
 from sim.acquisition.amplifier import LowPass
 from sim.acquisition.channels import Digitiser

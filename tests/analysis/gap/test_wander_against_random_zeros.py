@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.gap.components import Component, GapRun, Observation, Part
-from analysis.gap.wander import wander, wandered
+from analysis.gap.observe.components import Component, GapRun, Observation, Part
+from analysis.gap.observe.wander import wander, wandered
 from hardware.description.channels import FORCES
 from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.campaign import CampaignRun

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from analysis.gap.components import GapRun
-from analysis.gap.diagnose import Settings, diagnose
-from analysis.gap.fit import Problem
-from analysis.gap.gaussian import left_over
+from analysis.gap.forward.problem import Problem
 from analysis.gap.inference.answers import NONE
+from analysis.gap.inference.gaussian import left_over
+from analysis.gap.judge.diagnosis import Settings, diagnose
+from analysis.gap.observe.components import GapRun
 from sim.effects.catalogue import build, find
 from sim.effects.effect import Effect
 from sim.rig import SimulatedRig

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from analysis.gap.where import CHAIN
+from analysis.gap.locate.walk import CHAIN
 from pmm.cli import cli
 from pmm.cli.gap import gap
 from pmm.gap.document import SCHEMA

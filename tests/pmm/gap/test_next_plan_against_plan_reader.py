@@ -7,7 +7,7 @@ from shutil import copy
 import pytest
 from click.testing import CliRunner
 
-from analysis.gap.propose import Proposal
+from analysis.gap.design.proposals import Proposal
 from hardware.description.kinds import RunKind
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.cli import cli

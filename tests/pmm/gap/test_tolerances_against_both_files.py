@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from analysis.gap.tolerances import Tolerances
+from analysis.gap.forward.tolerances import Tolerances
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.campaign_file import read_campaign
 from pmm.gap.case import read_case, stated_tolerances

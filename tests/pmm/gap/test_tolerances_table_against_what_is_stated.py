@@ -8,12 +8,12 @@ from typing import Any
 
 import pytest
 
-from analysis.gap.always_on import always_on
-from analysis.gap.components import Stack
-from analysis.gap.forward import Simulator
-from analysis.gap.free import free_numbers
-from analysis.gap.noise import pooled
-from analysis.gap.tolerances import Tolerances
+from analysis.gap.forward.always_on import always_on
+from analysis.gap.forward.free_numbers import free_numbers
+from analysis.gap.forward.noise import pooled
+from analysis.gap.forward.simulator import Simulator
+from analysis.gap.forward.tolerances import Tolerances
+from analysis.gap.observe.components import Stack
 from pmm.gap.load import load_campaign
 from pmm.gap.tolerance_document import NUMBERS
 from tests.pmm.gap.rigs import made, run

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from analysis.gap.components import Component, Part
+from analysis.gap.observe.components import Component, Part
 from sim.effects.catalogue import catalogue
 from tests.sealed.peers.scene import scene
 from tests.sealed.peers.sheet import NONE, sheet

@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import Component, GapRun, Stack
-from analysis.gap.fit import Problem
-from analysis.gap.forecast import forecast, further, planned
-from analysis.gap.forward import Simulator
-from analysis.gap.free import free_numbers, tolerated
-from analysis.gap.noise import pooled
+from analysis.gap.design.forecast import forecast, further, planned
+from analysis.gap.forward.free_numbers import free_numbers, tolerated
+from analysis.gap.forward.noise import pooled
+from analysis.gap.forward.problem import Problem
+from analysis.gap.forward.simulator import Simulator
+from analysis.gap.observe.components import Component, GapRun, Stack
 from hardware.description.arrays import FloatArray
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.gap.answer import harmonics

@@ -13,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import Component, Part
+from analysis.gap.observe.components import Component, Part
 from tests.sealed.peers.scene import Remainder, scene
 from tests.sealed.peers.sheet import NONE, UNKNOWN, sheet
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.components import Part
+from analysis.gap.observe.components import Part
 from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
 from tests.sealed.peers.scene import Remainder, Scene

@@ -7,15 +7,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis.gap.components import GapRun, Stack
-from analysis.gap.deviation import background, likeness, units
-from analysis.gap.fit import at
 from analysis.gap.inference.constants import FORMS, PLAIN, STRANGE, TAUS, TOLERATED, VISIBLE, WIDE
 from analysis.gap.inference.evidence import Background
 from analysis.gap.inference.gram import Weighted
 from analysis.gap.inference.kernel import Kernel
-from analysis.gap.linear_hypothesis import hypothesis
-from analysis.gap.look import look
+from analysis.gap.observe.components import GapRun, Stack
+from analysis.gap.search.deviation import background, likeness, units
+from analysis.gap.search.first_look import look
+from analysis.gap.search.fit import at
+from analysis.gap.search.linear_hypothesis import hypothesis
 from hardware.description.arrays import BoolArray, FloatArray
 from sim.effects.catalogue import find
 from sim.rig import SimulatedRig

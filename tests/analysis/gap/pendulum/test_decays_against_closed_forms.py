@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from analysis.gap.candidate import Candidate
-from analysis.gap.gaussian import misfit
+from analysis.gap.forward.candidate import Candidate
+from analysis.gap.inference.gaussian import misfit
 from analysis.gap.pendulum.causes import cause, causes_for, tolerance
 from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.search import fit, weigh

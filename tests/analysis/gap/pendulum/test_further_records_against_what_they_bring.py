@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.gap.fit import Fit
 from analysis.gap.pendulum.causes import cause, tolerance
 from analysis.gap.pendulum.further import Proposal, Reach, propose
 from analysis.gap.pendulum.problem import Problem
 from analysis.gap.pendulum.search import fit
 from analysis.gap.pendulum.swings import Windows, cut_into_windows, scatter, swings_of_samples
 from analysis.gap.pendulum.trial import Trial
+from analysis.gap.search.fit import Fit
 from hardware.description.errors import ConfigurationError
 from sim.pendulum.benches import bifilar_bench, decay_bench
 from sim.pendulum.effects import body, make_effect, setup

@@ -10,7 +10,7 @@ from analysis.gap.pendulum.verdict import TOLD_APART, Law, open_laws
 from analysis.inertia.spread import cause_statement
 
 if TYPE_CHECKING:
-    from analysis.gap.fit import Fit
+    from analysis.gap.search.fit import Fit
 
 
 @dataclass

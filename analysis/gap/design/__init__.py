@@ -1,0 +1,1 @@
+"""Which run or measurement to make next."""

@@ -1,0 +1,174 @@
+"""What an answer expects of runs that have not been made, or that nobody has looked at."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from analysis.gap.forward.free_numbers import Free, tolerated
+from analysis.gap.forward.problem import Problem
+from analysis.gap.forward.tolerances import Tolerances
+from analysis.gap.observe.components import STEADY_PARTS, GapRun, Observation, Stack
+from analysis.gap.search.fit import Fit, at
+from analysis.gap.search.joint import signature_on
+from hardware.description.arrays import FloatArray
+from hardware.description.errors import PmmError
+from hardware.description.setpoint import SetPoint
+from sim.effects.campaign import CampaignRun
+
+LEAST_FORM: Final = 0.05  # of itself, by which any effect's signature is off on a real rig
+
+
+@dataclass(frozen=True, eq=False)
+class Forecast:
+    """The distribution that an answer predicts, given the campaign.
+
+    Attributes
+    ----------
+    mean
+        Departure from the nominal simulation in sigma, shape ``(observations,)``.
+    root
+        Times its transpose it is the covariance of what all runs share, ``(observations, k)``.
+    own
+        The same of each run's own frequency and phase reference, and of the loudness of its noise.
+    form
+        The same of the effect's own form, by about as much as it is off.
+    """
+
+    mean: FloatArray
+    root: FloatArray
+    own: FloatArray
+    form: FloatArray
+
+    @property
+    def whole(self) -> FloatArray:
+        """Root of the covariance of a run that will be made, without the noise."""
+        return np.hstack((self.root, self.own, self.form))
+
+    def values(self, there: Problem) -> FloatArray:
+        """Return the predicted components in their own units."""
+        simulator = there.simulator
+        return simulator.nominal + self.mean * simulator.stack.uncertainty
+
+
+def next_place(problem: Problem) -> CampaignRun:
+    """Return when the next run would be made: as long after the last one as they are apart."""
+    stack = problem.simulator.stack
+    began_s = np.sort([run.place.since_start_s for run in stack.turning])
+    lapse_s = float(np.median(np.diff(began_s))) if len(began_s) > 1 else 0.0
+    last = max(stack.turning, key=lambda run: run.place.since_start_s)
+    waited_s = last.place.waited_s
+    return CampaignRun(len(stack.runs), float(began_s[-1]) + lapse_s, waited_s, last.set_point)
+
+
+def planned(
+    problem: Problem, set_point: SetPoint, number: int, place: CampaignRun | None = None
+) -> GapRun:
+    """Return a run that has not been made, with the noise of the nearest one that has.
+
+    Parameters
+    ----------
+    place
+        When it would be made; nobody knows if not given, and it is as when the campaign began.
+    """
+    made = problem.simulator.stack.turning
+    near = min(
+        made, key=lambda run: abs(math.log(run.set_point.frequency_hz / set_point.frequency_hz))
+    )
+    kept = [at for at, one in enumerate(near.observed.components) if one.part in STEADY_PARTS]
+    parts = tuple(near.observed.components[at] for at in kept)
+    longer = set_point.frequency_hz / near.set_point.frequency_hz
+    noise = near.observed.uncertainty[kept] * math.sqrt(longer)
+    there = place or CampaignRun(len(made) + number, 0.0, 0.0, made[-1].set_point)
+    observed = Observation(parts, np.zeros(len(parts)), noise)
+    return replace(
+        near, name=f"further {number}", set_point=set_point, place=there, observed=observed
+    )
+
+
+def further(
+    problem: Problem, runs: Sequence[GapRun], free: Sequence[Free], tolerances: Tolerances
+) -> Problem:
+    """Return the same problem at further runs."""
+    simulator = replace(problem.simulator, stack=Stack.of(runs))
+    nuisances = tolerated(simulator, free, tolerances)
+    return Problem(simulator, nuisances, tuple(free))
+
+
+def forecast(
+    problem: Problem, there: Problem, fit: Fit | None, columns_ahead: FloatArray | None = None
+) -> Forecast:
+    """Return what an answer predicts at further runs; ``None`` is the answer "no gap".
+
+    Coefficients and settings are as the campaign fits them; frequency and noise are each run's own,
+    and the effect has a form of its own.
+
+    Parameters
+    ----------
+    columns_ahead
+        At the further runs, of a fit that has no effects to be simulated.
+    """
+    count = len(problem.free)
+    if fit is not None and columns_ahead is not None:
+        ahead = _Ahead(columns_ahead @ fit.units, columns_ahead)
+    else:
+        ahead = _Ahead.of(problem, there, fit)
+    effect = np.zeros((len(problem.residual), 0)) if fit is None else fit.columns
+    shared = np.hstack((problem.nuisances.columns, effect[:, : ahead.columns.shape[1]]))
+    # A root of the posterior's covariance by the precision's eigenvectors: no eigenvalue is below
+    # the prior's 1, however well the campaign tells some numbers and not others.
+    precision, turn = np.linalg.eigh(np.eye(shared.shape[1]) + shared.T @ shared)
+    spread = turn / np.sqrt(np.maximum(precision, 1.0))
+    residual = problem.residual - (0.0 if fit is None else fit.signature)
+    fitted = spread @ (spread.T @ (shared.T @ residual))
+    own = problem.nuisances.columns.shape[1]
+    kept = np.r_[np.arange(count), own + np.arange(ahead.columns.shape[1])]
+    wide = there.nuisances.columns
+    known = np.hstack((wide[:, :count], ahead.columns))
+    root = np.transpose(np.linalg.qr(spread[kept].T)[1])
+    mean = ahead.signature + known @ fitted[kept]
+    found = Forecast(mean, known @ root, wide[:, count:], np.zeros((len(mean), 0)))
+    if fit is None:
+        return found
+    # What the coefficients make up for, they make up for in any form.
+    alone = mean - forecast(problem, there, None).mean
+    return replace(found, form=_of_form(there, alone, LEAST_FORM))
+
+
+def _of_form(there: Problem, signature: FloatArray, share: float) -> FloatArray:
+    """Return what the effect's own form may change: of each harmonic of a channel some share."""
+    kinds = [(one.channel, one.order) for one in there.simulator.stack.components]
+    own = [
+        share * np.where([one == kind for one in kinds], signature, 0.0)
+        for kind in dict.fromkeys(kinds)
+    ]
+    return np.column_stack([one for one in own if one.any()] or [np.zeros((len(signature), 0))])
+
+
+@dataclass(frozen=True, eq=False)
+class _Ahead:
+    """An effect's signature and columns at further runs; empty where it cannot be run there."""
+
+    signature: FloatArray
+    columns: FloatArray
+
+    @classmethod
+    def of(cls, problem: Problem, there: Problem, fit: Fit | None) -> "_Ahead":
+        if fit is not None:
+            try:
+                found = at(there, fit.candidates, fit.units)
+                return cls(_on_fitted_rig(problem, there, fit, found), found.columns)
+            except PmmError:
+                pass
+        count = len(there.nuisances.columns)
+        return cls(np.zeros(count), np.zeros((count, 0)))
+
+
+def _on_fitted_rig(problem: Problem, there: Problem, fit: Fit, found: Fit) -> FloatArray:
+    """Return the signature at further runs on the rig as the campaign fits its coefficients."""
+    if not any(one.repeats for one in fit.candidates):
+        return found.signature
+    shared = problem.nuisances.fitted(problem.residual - fit.signature)[: len(there.numbers)]
+    return signature_on(there, there.numbers, shared, fit, fit.units)

@@ -1,0 +1,113 @@
+"""What a further run is worth: the log odds that the right answer gains over all others."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Final
+
+import numpy as np
+
+from analysis.gap.forward.problem import Problem
+from analysis.gap.search.fit import Fit
+from hardware.description.arrays import FloatArray
+
+Leading = Sequence[tuple[Fit | None, float]]
+"""The leading answers with their probabilities; ``None`` for no gap."""
+
+ENOUGH: Final = 20.0  # log odds beyond which more is worth no more
+_NEVER: Final = 1e-300  # least share, for its logarithm
+
+
+@dataclass(frozen=True)
+class Worth:
+    """What a run gains.
+
+    Attributes
+    ----------
+    gain
+        Expected log odds that the right answer gains over all others, at most ``ENOUGH``.
+    uncapped
+        The same where more than enough counts.
+    """
+
+    gain: float
+    uncapped: float
+
+    @classmethod
+    def of(cls, shares: Sequence[float], odds: FloatArray) -> "Worth":
+        """Return the worth of a run; see :func:`gained`."""
+        return cls(gained(shares, odds), gained(shares, odds, np.inf))
+
+    @property
+    def order(self) -> tuple[float, float]:
+        """To sort by, best first: as it is said, and what is said alike by how clearly it tells."""
+        return -round(self.gain, 1), -round(self.uncapped, 1)
+
+
+def gained(shares: Sequence[float], odds: FloatArray, enough: float = ENOUGH) -> float:
+    """Return the log odds that the right answer gains over all others, over which it may be.
+
+    Parameters
+    ----------
+    shares
+        How probable each answer is, shape ``(answers,)``; they need not sum to 1.
+    odds
+        Expected log odds between each two of the answers after a run, ``(answers, answers)``.
+    enough
+        Log odds between two answers beyond which more is worth no more.
+    """
+    if len(shares) < 2:
+        return 0.0
+    others = np.tile(np.log(np.maximum(shares, _NEVER)), (len(shares), 1))
+    np.fill_diagonal(others, -np.inf)
+    left = others - np.minimum(odds, enough)
+    # As logarithms: of what is thrown far, no number would be left.
+    gain = np.logaddexp.reduce(others, axis=1) - np.logaddexp.reduce(left, axis=1)
+    return float(np.average(gain, weights=shares))
+
+
+def apart(means: FloatArray, roots: Sequence[FloatArray]) -> FloatArray:
+    """Return the expected log odds between each two answers after a run, by symmetric divergence.
+
+    Parameters
+    ----------
+    means
+        What each answer predicts, shape ``(observations, answers)``.
+    roots
+        The root of its covariance without the noise, shape ``(observations, any)``.
+    """
+    squares = np.zeros((means.shape[1], means.shape[1]))
+    for number, whole in enumerate(roots):
+        root = whole[:, whole.any(axis=0)]  # frequency and noise are each run's own
+        away = means - means[:, number, None]
+        towards = np.linalg.solve(np.eye(root.shape[1]) + root.T @ root, root.T @ away)
+        squares[number] = np.sum(away * (away - root @ towards), axis=0)
+    return 0.25 * (squares + squares.T)
+
+
+def by_itself(problem: Problem, kind: str, leading: Leading) -> FloatArray:
+    """Return the log odds between answers by what does not repeat and shows in a measurement.
+
+    It shows there as it does in a run of the campaign, at mean: in the scatter, the trends and what
+    lies between the harmonics, beside the noise levels that are free.
+    """
+    stack = problem.simulator.stack
+    rows = ~stack.steady
+    told = [_named(fit, kind) for fit, _ in leading]
+    shown = [
+        fit.signature[rows] if fit is not None and names else np.zeros(int(rows.sum()))
+        for (fit, _), names in zip(leading, told, strict=True)
+    ]
+    free = problem.nuisances.among(rows)
+    odds = np.zeros((len(told), len(told)))
+    for i, j in combinations(range(len(told)), 2):
+        if told[i] != told[j]:
+            away = shown[i] - shown[j]
+            odds[i, j] = odds[j, i] = 0.5 * away @ free.whiten(away) / len(stack.turning)
+    return np.minimum(odds, ENOUGH)
+
+
+def _named(fit: Fit | None, kind: str) -> set[str]:
+    """Return the effects of an answer that do not repeat and show in a measurement."""
+    parts = () if fit is None else fit.candidates
+    return {one.name for one in parts if kind in one.kind.shown_by}

@@ -1,0 +1,261 @@
+"""Which run to make next: the one that is expected to tell the leading answers apart.
+
+A run tells two answers apart by what they predict differently there, each with its own parameters
+known no better than the campaign knows them, and with the coefficients free as always: whether it
+is an oscillation, one with a dead weight that takes up play, or a measurement of another kind. What
+does not repeat (hum, a drift) shows in those of them that its effect names, by itself. A run is
+worth the log odds that whichever answer is right gains over all others together: a rival that it
+does not touch is left standing, however far it throws the rest.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import islice, product
+from typing import Final
+
+import numpy as np
+
+from analysis.gap.design.forecast import forecast, further, next_place, planned
+from analysis.gap.design.information_gain import Leading, Worth, apart, by_itself
+from analysis.gap.design.measurements import BESIDES, INJECTED_HZ, measured_besides
+from analysis.gap.forward.free_numbers import Free
+from analysis.gap.forward.problem import Problem
+from analysis.gap.forward.simulator import Simulator
+from analysis.gap.forward.tolerances import Tolerances
+from analysis.gap.observe.components import GapRun
+from analysis.gap.observe.regimes import describe
+from hardware.description.errors import PmmError
+from hardware.description.oscillator import Range
+from hardware.description.setpoint import Medium, SetPoint
+from hardware.description.units import STANDARD_GRAVITY_M_S2
+from sim.effects.campaign import CampaignRun
+from sim.effects.effect import FurtherMeasurement
+from sim.signals import FORCE_AFT, FORCE_FORE
+
+NO_GAP: Final = "no gap"
+OSCILLATION: Final = "oscillation"
+_PRELOADED: Final = 6  # of the oscillations that can be made so, each with a dead weight
+_ABOVE: Final = 1.25  # of a dead weight over the force that would lift it
+_SAID: Final[Mapping[str, str]] = {
+    FurtherMeasurement.REST: "a record at rest",
+    FurtherMeasurement.CHECK_WEIGHT: "a check weight of {:g} N on the {} dynamometer",
+    FurtherMeasurement.INJECTION: f"a sine of {{:g}} N at {INJECTED_HZ:g} Hz into all force "
+    "amplifiers in place of the bridges",
+}
+_FREQUENCIES: Final = 3
+_RADII: Final = 2
+
+
+@dataclass(frozen=True)
+class Choices:
+    """What a rig can do next.
+
+    Attributes
+    ----------
+    special
+        What can be measured besides; ``PRELOAD`` is a weight on the model while it oscillates.
+    """
+
+    frequency_hz: Range
+    eccentricity_m: Range
+    strut_phase_rad: tuple[float, ...] = (0.0, math.pi / 2.0, math.pi)
+    carriage_speed_m_s: tuple[float, ...] = (0.0,)
+    media: tuple[Medium, ...] = (Medium.WATER, Medium.AIR)
+    drift_rad: tuple[float, ...] = (0.0,)
+    special: tuple[FurtherMeasurement, ...] = tuple(FurtherMeasurement)
+    force_limit_n: float = math.inf
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """A run, and what it is expected to be worth.
+
+    Attributes
+    ----------
+    kind
+        ``"oscillation"``, or a measurement besides.
+    force_n
+        Of an oscillation the dead weight on the model, 0 for none; the check weight; the amplitude
+        of the sine.
+    gain
+        Log odds that the right one of the leading answers is expected to gain, at most ``ENOUGH``.
+    between
+        Those answers, by name, ``"no gap"`` among them.
+    strut
+        ``"aft"`` or ``"fore"``, whose dynamometer a check weight is put on.
+    """
+
+    kind: str
+    set_point: SetPoint | None
+    force_n: float
+    gain: float
+    between: tuple[str, ...] = ()
+    strut: str = ""
+
+    def __str__(self) -> str:
+        if self.set_point is not None:
+            weight = f", with {dead_weight(self.force_n)}" if self.force_n else ""
+            return describe(self.set_point) + weight
+        return _SAID[self.kind].format(self.force_n, self.strut)
+
+
+def dead_weight(force_n: float) -> str:
+    """Say what takes up play, whichever plane the model moves in."""
+    return f"a dead weight of {force_n:g} N on the model (on a cord where it moves sideways)"
+
+
+@dataclass(frozen=True, eq=False)
+class _Choice:
+    """Something to do next, and the record that it makes."""
+
+    kind: str
+    set_point: SetPoint | None
+    force_n: float
+    run: GapRun
+    strut: str = ""
+
+
+def proposals(
+    problem: Problem,
+    leading: Leading,
+    choices: Choices,
+    free: Sequence[Free],
+    tolerances: Tolerances,
+) -> tuple[Proposal, ...]:
+    """Return runs in the order of what they are worth."""
+    place = next_place(problem)
+    weighed = partial(_weighed, problem, leading, free=free, tolerances=tolerances)
+    found = sorted(weighed(tuple(_oscillations(problem, choices, place))), key=_order)
+    plays = any(one.kind.taken_up for fit, _ in leading if fit for one in fit.candidates)
+    if plays and FurtherMeasurement.PRELOAD in choices.special:
+        bare = [one for one, _ in found]
+        pressed = _preloaded(problem.simulator, bare, choices)
+        found += weighed(tuple(islice(pressed, _PRELOADED)))
+    found += weighed(tuple(_measurements(problem, choices, place)))
+    answers = tuple(NO_GAP if fit is None else " and ".join(fit.names) for fit, _ in leading)
+    return tuple(
+        Proposal(one.kind, one.set_point, one.force_n, worth.gain, answers, one.strut)
+        for one, worth in sorted(found, key=_order)
+    )
+
+
+def _order(weighed: tuple[_Choice, Worth]) -> tuple[float, ...]:
+    """Sort by worth, and where that is the same by how gently the model is moved."""
+    one, worth = weighed
+    point = one.set_point
+    return *worth.order, 0.0 if point is None else point.eccentricity_m * point.frequency_hz
+
+
+def _oscillations(problem: Problem, choices: Choices, place: CampaignRun) -> Iterator[_Choice]:
+    for number, point in enumerate(set_points(choices)):
+        run = planned(problem, point, number, place)
+        if _largest_force_n(problem.simulator, [run]) < choices.force_limit_n:
+            yield _Choice(OSCILLATION, point, 0.0, run)
+
+
+def _preloaded(
+    simulator: Simulator, turning: Sequence[_Choice], choices: Choices
+) -> Iterator[_Choice]:
+    """Yield oscillations with a weight on the model that keeps both struts pressed one way.
+
+    Each strut carries half of it, and half of what its mass takes to be moved along.
+    """
+    for one in turning:
+        largest_n = _largest_force_n(simulator, [one.run])
+        swing = _swing(one.run.set_point)
+        weight_n = _pressing_n(largest_n, swing)
+        if weight_n > 0.0 and largest_n + 0.5 * weight_n * (1.0 + swing) < choices.force_limit_n:
+            yield replace(one, force_n=weight_n, run=replace(one.run, preload_n=weight_n))
+
+
+def _swing(point: SetPoint) -> float:
+    """Return the struts' largest acceleration over that of gravity."""
+    omega_rad_s = 2.0 * math.pi * point.frequency_hz
+    return omega_rad_s**2 * point.eccentricity_m / STANDARD_GRAVITY_M_S2
+
+
+def _pressing_n(largest_n: float, swing: float) -> float:
+    """Return the weight W of which W/2 less its own inertia is more than the struts' force.
+
+    Infinite where the weight itself would be thrown off, or its cord go slack.
+    """
+    if swing >= 1.0:
+        return math.inf
+    least_n = 2.0 * _ABOVE * largest_n / (1.0 - swing)
+    weight_n = _readable(least_n)
+    return weight_n if weight_n >= least_n else _readable(1.05 * least_n)
+
+
+def _measurements(problem: Problem, choices: Choices, place: CampaignRun) -> Iterator[_Choice]:
+    force_n = _readable(_largest_force_n(problem.simulator, problem.simulator.stack.turning))
+    for kind, strut in BESIDES:
+        if kind in choices.special:
+            size_n = 0.0 if kind is FurtherMeasurement.REST else force_n
+            run = measured_besides(problem, kind, place, size_n, strut)
+            if run is not None:
+                yield _Choice(kind, None, size_n, run, strut)
+
+
+def _readable(force_n: float) -> float:
+    return float(f"{force_n:.2g}")
+
+
+def _weighed(
+    problem: Problem,
+    leading: Leading,
+    some: Sequence[_Choice],
+    free: Sequence[Free],
+    tolerances: Tolerances,
+) -> Iterator[tuple[_Choice, Worth]]:
+    """Yield each choice with what it is worth."""
+    if not some:
+        return
+    there = further(problem, [one.run for one in some], free, tolerances)
+    told = [forecast(problem, there, fit) for fit, _ in leading]
+    shares = [share for _, share in leading]
+    for number, one in enumerate(some):
+        rows = there.simulator.stack.run == number
+        means = np.column_stack([forecasted.mean[rows] for forecasted in told])
+        odds = apart(means, [forecasted.whole[rows] for forecasted in told])
+        odds = odds + by_itself(problem, one.kind, leading)
+        yield one, Worth.of(shares, odds)
+
+
+def set_points(choices: Choices) -> Iterator[SetPoint]:
+    """Yield what a rig can do, in steps; in numbers of three digits, as people set them."""
+    frequencies = _steps(choices.frequency_hz, _FREQUENCIES, 8.0)
+    radii = _steps(choices.eccentricity_m, _RADII, 5.0)
+    speeds, phases = choices.carriage_speed_m_s, choices.strut_phase_rad
+    for frequency, radius, phase, speed, medium, drift in product(
+        frequencies, radii, phases, speeds, choices.media, choices.drift_rad
+    ):
+        if (medium is Medium.WATER or not speed) and (speed or not drift):
+            yield SetPoint(frequency, radius, phase, speed, medium, drift)
+
+
+def _steps(span: Range, count: int, ratio: float) -> tuple[float, ...]:
+    """Return equal ratios down from the largest, each once: a rig may have one frequency only."""
+    values = np.geomspace(max(span.low, span.high / ratio), span.high, count)
+    return tuple(dict.fromkeys(_settable(float(one), span) for one in values))
+
+
+def _settable(value: float, span: Range) -> float:
+    return min(max(float(f"{value:.3g}"), span.low), span.high)
+
+
+def _largest_force_n(simulator: Simulator, runs: Sequence[GapRun]) -> float:
+    """Return the largest first harmonic of either strut's force, as the rig is believed to be.
+
+    Both struts count, whichever of them is recorded. Infinite where it cannot be simulated.
+    """
+    try:
+        return max((_force_n(simulator, run) for run in runs), default=0.0)
+    except PmmError:
+        return math.inf
+
+
+def _force_n(simulator: Simulator, run: GapRun) -> float:
+    spectra = simulator.state(run, simulator.on).spectra
+    return max(abs(complex(spectra[one.name][1])) for one in (FORCE_AFT, FORCE_FORE))

@@ -1,0 +1,115 @@
+"""What is always on in a good rig, as columns: ripple, a shaft that gives way, drift, hum.
+
+Each is at the size of its tolerance; what is beyond it is named as out of tolerance.
+"""
+
+import math
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+
+from analysis.gap.forward.mains import hum_columns
+from analysis.gap.forward.simulator import Simulator
+from analysis.gap.forward.tolerances import Tolerances
+from analysis.gap.observe.components import GapRun, Part, Stack
+from hardware.description.arrays import FloatArray
+from hardware.description.channels import FORCES
+from sim import signals
+from sim.effects.d1_speed_ripple import SpeedRippleEffect
+from sim.effects.effect import Effect
+from sim.effects.m8_temperature import Temperature
+from sim.effects.situation import STRUT_FORCES
+
+_STEP: Final = 0.1  # of a tolerance
+_PHASES: Final = {"sine": 0.0, "cosine": 0.5 * math.pi}
+_LOAD: Final = "load ripple"
+
+Named = Iterator[tuple[str, FloatArray]]
+
+
+def is_of_drive(name: str) -> bool:
+    """Tell whether a tolerance is one of how evenly the shaft turns."""
+    return "ripple" in name
+
+
+def always_on(simulator: Simulator, base: FloatArray, tolerances: Tolerances) -> Named:
+    """Yield names, and what a tolerance of each changes, in sigma, shape ``(observations,)``.
+
+    Parameters
+    ----------
+    base
+        What repeats with the shaft without any of it, shape ``(observations,)``.
+    """
+    ripples = {1: tolerances.ripple_1_relative, 2: tolerances.ripple_2_relative}
+    load = tolerances.load_ripple_1_kg_m2 if simulator.rig.drive.motor is None else 0.0
+    twice: dict[str, FloatArray] = {}
+    for order, relative in ripples.items():
+        for phase, angle_rad in _PHASES.items():
+            wanted = relative or (load if order == 2 else 0.0)
+            if wanted > 0.0:
+                ripple = SpeedRippleEffect(_STEP * wanted, float(order), angle_rad)
+                column = _change(simulator, base, ripple)
+                twice |= {phase: column / wanted} if order == 2 else {}
+                yield from [(f"ripple {order} {phase}", column)] if relative else ()
+    if load > 0.0:
+        yield _LOAD, load * _of_load(simulator, twice)
+    if tolerances.warming_k_h > 0.0:
+        warming = Temperature(rate_k_h=_STEP * tolerances.warming_k_h)
+        yield "warming", _change(simulator, base, warming)
+    if tolerances.warming_n_s > 0.0:
+        yield from _drifts(simulator.stack, tolerances.warming_n_s)
+    if tolerances.hum_n > 0.0:
+        yield from hum_columns(simulator.stack, tolerances.hum_n)
+
+
+def _change(simulator: Simulator, base: FloatArray, effect: Effect) -> FloatArray:
+    """Return what ten times an effect changes."""
+    found = (simulator.steady((effect,)) - base) / _STEP / simulator.stack.uncertainty
+    return np.asarray(found, np.float64)
+
+
+def _of_load(simulator: Simulator, twice: dict[str, FloatArray]) -> FloatArray:
+    """Return what a shaft changes on whose inertia of 1 kg m2 the load acts, to first order.
+
+    The load's torque T, twice a revolution, moves it by ``T/(J (2 w)^2)``: a ripple of the second
+    order in each run.
+
+    Parameters
+    ----------
+    twice
+        What a ripple of the second order and of 1 changes, by its phase.
+    """
+    stack = simulator.stack
+    ripples = np.array([_ripple(simulator, run) if run.turns else 0j for run in stack.runs])
+    own = ripples[stack.run]
+    return np.asarray(twice["sine"] * own.real + twice["cosine"] * own.imag, np.float64)
+
+
+def _ripple(simulator: Simulator, run: GapRun) -> complex:
+    """Return the ripple that a run's load gives a shaft of 1 kg m2: size and phase."""
+    state = simulator.state(run, simulator.on)
+    period = state.period
+    angle_rad = np.arange(period.points) * 2.0 * math.pi / period.points
+    turn = np.exp(1j * np.outer(angle_rad, np.arange(period.orders + 1)))
+    power = np.zeros(period.points)
+    for force, motion in zip(STRUT_FORCES, signals.STRUT_MOTIONS, strict=True):
+        pair = (state.spectra[force], state.spectra[motion[1].name])
+        power += np.prod([(turn @ one).real for one in pair], axis=0)
+    omega = 2.0 * math.pi * period.frequency_hz
+    start = np.exp(-2j * simulator.rig.drive.initial_angle_rad)
+    torque = 2.0 * np.mean(power / omega * np.exp(-2j * angle_rad)) * start
+    return complex(2j * torque / (2.0 * omega) ** 2)
+
+
+def _drifts(stack: Stack, drift_n_s: float) -> Named:
+    """Yield what zeros change that drift alike in each record, a column for each force."""
+    frequency_hz = np.array([run.set_point.frequency_hz for run in stack.runs])
+    middle_s = [run.lead_s + 0.5 * run.periods / run.set_point.frequency_hz for run in stack.runs]
+    times_s = {Part.MEAN: np.array(middle_s), Part.TREND: 1.0 / frequency_hz}
+    for channel in FORCES:
+        column = np.zeros(len(stack.components))
+        for at, one in enumerate(stack.components):
+            if one.channel == channel and one.part in times_s:
+                column[at] = drift_n_s * times_s[one.part][stack.run[at]]
+        yield f"drift {channel.removeprefix('force_')}", column / stack.uncertainty

@@ -1,0 +1,190 @@
+"""How well each component is known: the scatter of one run is few numbers, that of all is not.
+
+A run of six periods knows its own scatter to 30 %; taken at its word it calls small deviations
+large or large ones small. The noise of a channel is much the same in all runs, so each run's own
+variance is drawn towards what the lines between the harmonics of all runs say, at the run's own
+level where runs differ (:mod:`analysis.gap.observe.spectrum`), or, where there are none, the
+scatter of all runs. No mean and no trend is known better than the zero's wander between records at
+rest allows, or its tolerance where there are none.
+"""
+
+import math
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from analysis.gap.forward.simulator import DRAWS
+from analysis.gap.forward.tolerances import Tolerances
+from analysis.gap.observe.components import SETTLING, STEADY_PARTS, TRENDS, Component, GapRun, Part
+from analysis.gap.observe.spectrum import Loudness, levels, loudness
+from analysis.gap.observe.wander import wander, wandered
+from hardware.description.channels import SHAFT_ANGLE
+from sim.acquisition.channels import Digitiser
+from sim.rig import SimulatedRig
+
+# Of the first harmonic of the channel: what a simulation by harmonics does not promise to hold.
+SIMULATION: Final = 3e-6
+# Of an encoder whose steps nobody stated: they do not average out of a shaft that turns evenly.
+ENCODER_RAD: Final = 3e-5
+_FREEDOM = 12.0  # numbers by which the usual scatter of the cycles is known
+_LINES_FREEDOM = 60.0  # and the usual power between the harmonics
+# What is simulated in time has noise of its own, as large as the record's in each of its draws.
+RECORDS: Final = (1.0 + 1.0 / DRAWS) ** 0.5
+_POOLED: Final = frozenset({*STEADY_PARTS, *TRENDS})
+_OF_HARMONICS: Final = frozenset({Part.IN_PHASE, Part.QUADRATURE, *SETTLING})
+
+
+def pooled(runs: Sequence[GapRun], rig: SimulatedRig, tolerances: Tolerances) -> tuple[GapRun, ...]:
+    """Return the runs with uncertainties that borrow strength from each other.
+
+    The rig's encoder says what its steps leave in the shaft's harmonics.
+    """
+    usual = Usual.of(runs)
+    encoder_rad = encoder_floor_rad(rig.acquisition.shaft_angle)
+    wandering = wander(rig, runs, tolerances.wander)
+    return tuple(wandered(_with(run, usual, encoder_rad), wandering) for run in runs)
+
+
+@dataclass(frozen=True, eq=False)
+class ChannelNoise:
+    """What lies between the harmonics of one channel.
+
+    Attributes
+    ----------
+    together
+        Of all runs.
+    own
+        By run, the logarithm of its power over what all runs say, and its variance.
+    """
+
+    together: Loudness
+    own: Mapping[str, tuple[float, float]]
+
+
+def channel_noise(runs: Sequence[GapRun]) -> dict[str, ChannelNoise]:
+    """Return what the lines of all runs say of each channel that has enough of them."""
+    names = dict.fromkeys(name for run in runs for name in run.observed.quiet)
+    found = {}
+    for name in names:
+        seen = [run for run in runs if name in run.observed.quiet]
+        lines = [run.observed.quiet[name] for run in seen]
+        together = loudness(lines)
+        if together is not None:
+            own = levels(lines, together)
+            each = zip(own.values, own.variances, strict=True)
+            by_run = dict(zip((run.name for run in seen), each, strict=True))
+            found[name] = ChannelNoise(together, by_run)
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class Usual:
+    """What the runs together say of each channel's noise.
+
+    Attributes
+    ----------
+    loud
+        By channel, from the lines between the harmonics.
+    scatter
+        By channel and kind, from the scatter of the cycles: as a power density.
+    """
+
+    loud: Mapping[str, ChannelNoise]
+    scatter: Mapping[tuple[str, Part, int], float]
+
+    @classmethod
+    def of(cls, runs: Sequence[GapRun]) -> "Usual":
+        """Ask all runs."""
+        densities: dict[tuple[str, Part, int], list[float]] = defaultdict(list)
+        for run in runs:
+            for key, density in _densities(run):
+                densities[key].append(density)
+        return cls(
+            channel_noise(runs),
+            {key: float(np.median(values)) for key, values in densities.items()},
+        )
+
+    def variance(self, one: Component, run: GapRun) -> tuple[float, float] | None:
+        """Return a component's usual variance, and how many numbers it is known by."""
+        share = _share(one.part, run)
+        if one.channel in self.loud:
+            # A trend is half a wave over the whole record.
+            order = one.order or (0.5 / run.periods if one.part is Part.TREND else 0)
+            heard = self.loud[one.channel]
+            density = heard.together.at(order * run.set_point.frequency_hz)
+            twice = one.part in _OF_HARMONICS
+            level, variance = heard.own.get(run.name, (0.0, 0.0))
+            freedom = 1.0 / (1.0 / _LINES_FREEDOM + 0.5 * variance)
+            return density * math.exp(level) * share * (2.0 if twice else 1.0), freedom
+        key = _kind(one)
+        return (self.scatter[key] * share, _FREEDOM) if key in self.scatter else None
+
+
+def _kind(one: Component) -> tuple[str, Part, int]:
+    """Return the class within which noise is alike: mean, trend, low orders, high orders."""
+    alone = one.part in (Part.MEAN, Part.TREND)
+    return one.channel, one.part if alone else Part.IN_PHASE, min(one.order, 2)
+
+
+def _share(part: Part, run: GapRun) -> float:
+    """Return the variance of a component per power density of white noise, in Hz.
+
+    That of a line through the periods' means, for a trend per period.
+    """
+    frequency_hz, count = run.set_point.frequency_hz, run.periods
+    if part in TRENDS:
+        return 12.0 * frequency_hz / (count * (count**2 - 1.0))
+    return frequency_hz / count
+
+
+def _densities(run: GapRun) -> list[tuple[tuple[str, Part, int], float]]:
+    seen = run.observed
+    return [
+        (_kind(one), float(sigma**2) / _share(one.part, run))
+        for one, sigma in zip(seen.components, seen.uncertainty, strict=True)
+        if one.part in _POOLED and one.channel and np.isfinite(sigma)
+    ]
+
+
+def _with(run: GapRun, usual: Usual, encoder_rad: float) -> GapRun:
+    seen = run.observed
+    own_freedom = max(run.periods - 2.0, 0.0)
+    uncertainty = seen.uncertainty.copy()
+    for at, one in enumerate(seen.components):
+        known = usual.variance(one, run) if one.part in _POOLED else None
+        if known is not None:
+            theirs, many = known
+            own = uncertainty[at] ** 2 if np.isfinite(uncertainty[at]) else 0.0
+            freedom = own_freedom if own else 0.0
+            variance = (freedom * own + many * theirs) / (freedom + many)
+            if one.part in SETTLING:  # pulses that scatter move harmonics, not what lies between
+                variance = max(variance, own)
+            floor = 0.0 if one.part in TRENDS else _floor(run, one.channel, encoder_rad)
+            uncertainty[at] = np.sqrt(variance + floor**2)
+        if one.part not in (*STEADY_PARTS, *SETTLING):
+            uncertainty[at] *= RECORDS
+    return replace(run, observed=replace(seen, uncertainty=uncertainty))
+
+
+def _floor(run: GapRun, channel: str, encoder_rad: float) -> float:
+    if channel == SHAFT_ANGLE.name:
+        return encoder_rad
+    seen = run.observed
+    parts = [seen.value(channel, part, 1) for part in (Part.IN_PHASE, Part.QUADRATURE)]
+    return SIMULATION * math.hypot(*parts) if np.isfinite(parts).all() else 0.0
+
+
+def encoder_floor_rad(encoder: Digitiser | None) -> float:
+    """Return the largest line that an encoder's steps leave in an even turn, in rad.
+
+    The error of rounding to steps of q is a saw of first amplitude q / pi; noise of standard
+    deviation s ahead of it leaves exp(-2 pi² s² / q²) of it (Widrow and Kollár 2008, the
+    characteristic function of the quantiser's input at 2 pi / q).
+    """
+    if encoder is None or not encoder.resolution:
+        return ENCODER_RAD
+    dither = encoder.noise_rms / encoder.resolution
+    return encoder.resolution / math.pi * math.exp(-2.0 * (math.pi * dither) ** 2)

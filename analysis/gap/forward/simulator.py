@@ -1,0 +1,258 @@
+"""The simulator asked for what the recordings show, with any effects on.
+
+What repeats with the shaft comes from the exact periodic steady state, at about half a millisecond
+a run. What does not (jitter, missed pulses, hum, drift) is simulated in time and observed as a
+recording is; only what such effects change is taken from there, with and without them on the same
+noise. What noise does by itself is taken from several draws of it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.forward.powers import on_noise
+from analysis.gap.forward.stages import Solved
+from analysis.gap.observe.at_rest import record_at_rest, steady_at_rest
+from analysis.gap.observe.components import GapRun, Layout, Observation, Part, Stack
+from analysis.gap.observe.observation import observe
+from analysis.resolver.reference_choice import ReferenceChoice
+from hardware.description.arrays import ComplexArray, FloatArray
+from hardware.description.channels import FORCES
+from hardware.description.setpoint import SetPoint
+from hardware.description.units import STANDARD_GRAVITY_M_S2
+from sim.effects.effect import Effect
+from sim.effects.switching import switch_on
+from sim.model.law_point import Acting
+from sim.model.laws import Spring
+from sim.periodic import SteadyState
+from sim.rig import SimulatedRig
+from sim.solve.period import Period
+
+Records = dict[tuple[str, tuple[Effect, ...], int], FloatArray]
+
+ORDERS: Final = 8  # of a steady state, and points of its period
+POINTS: Final = 64
+_SEED: Final = 20091
+_SETTLING: Final = 3
+DRAWS: Final = 4  # of the noise: one may be odd, and would be so in every campaign
+_APART: Final = 100  # seeds between two draws, more than a campaign has runs
+
+
+@dataclass(frozen=True, eq=False)
+class Simulator:
+    """A rig as it is believed to be, asked for the runs of a campaign.
+
+    Attributes
+    ----------
+    on
+        Effects that are known and always on.
+    reference_channel
+        The channel whose fundamental is phase 0; ``None`` for the photocell.
+    frequency_ratio
+        At which every run is made, over the frequency that was set.
+    solved
+        Stages that were solved already; shared by all that are made from this one.
+    """
+
+    rig: SimulatedRig
+    stack: Stack
+    on: tuple[Effect, ...] = ()
+    reference_channel: str | None = None
+    frequency_ratio: float = 1.0
+    solved: Solved = field(default_factory=Solved, repr=False)
+    # Runs that were simulated in time, by name, what does not repeat, and draw; of this rig alone.
+    _records: Records = field(default_factory=dict, init=False, repr=False)
+
+    @cached_property
+    def nominal(self) -> FloatArray:
+        """What the simulation says without any further effect, shape ``(observations,)``."""
+        return self.predict(())
+
+    def with_rig(self, rig: SimulatedRig) -> "Simulator":
+        """Return the simulator of another rig."""
+        return replace(self, rig=rig)
+
+    def among(self, numbers: NDArray[np.intp]) -> "Simulator":
+        """Return the simulator of some of the runs, with what is simulated of them already."""
+        found = replace(self, stack=Stack.of([self.stack.runs[at] for at in numbers]))
+        found._records.update(self._records)
+        return found
+
+    def predict(self, effects: Sequence[Effect]) -> FloatArray:
+        """Return every component of every run, shape ``(observations,)``.
+
+        Raises
+        ------
+        ConfigurationError
+            If an effect cannot act on this rig.
+        """
+        alike = all(one.repeats for one in effects)
+        parts = [
+            self._run(number, effects) if alike else self._not_repeating(number, effects)
+            for number in range(len(self.stack.runs))
+        ]
+        return np.concatenate(parts)
+
+    def _run(self, number: int, effects: Sequence[Effect]) -> FloatArray:
+        run = self.stack.runs[number]
+        steady = self._steady(run, (*self.on, *effects))
+        repeats = run.observed.layout.steady
+        return steady if repeats.all() else np.where(repeats, steady, self._usual(number))
+
+    def _not_repeating(self, number: int, effects: Sequence[Effect]) -> FloatArray:
+        """Return what repeats with the effects that do, and on it what the others change alone."""
+        run = self.stack.runs[number]
+        moving = tuple(one for one in effects if not one.repeats)
+        sure = tuple(one for one in moving if not one.by_chance)
+        steady = self._steady(run, (*self.on, *(one for one in effects if one.repeats)))
+        if sure and run.applied is None:  # of what is done to a standing rig, what repeats is told
+            steady = steady + self._record(number, sure) - self._record(number)
+        repeats = run.observed.layout.steady
+        if repeats.all():
+            return steady
+        alone, base = self._record(number, moving), self._record(number)
+        noisy = on_noise(run.observed.components, alone, base, self._usual(number))
+        return np.where(repeats, steady, noisy)
+
+    def steady(self, effects: Sequence[Effect]) -> FloatArray:
+        """Return the components that repeat with the shaft; 0 for all others."""
+        on = (*self.on, *effects)
+        return np.concatenate([self._steady(run, on) for run in self.stack.runs])
+
+    def _record(self, number: int, moving: tuple[Effect, ...] = (), draw: int = 0) -> FloatArray:
+        run, seed = self.stack.runs[number], _SEED + _APART * draw
+        key = (run.name, moving, draw)
+        if key not in self._records:
+            self._records[key] = self._in_time(run, (*self.on, *moving), seed)
+        return self._records[key]
+
+    def _usual(self, number: int) -> FloatArray:
+        """Return what a run shows in time without what does not repeat, as noise has it at mean."""
+        draws = [self._record(number, (), draw) for draw in range(DRAWS)]
+        return np.asarray(np.mean(draws, axis=0), np.float64)
+
+    def state(self, run: GapRun, effects: Sequence[Effect]) -> SteadyState:
+        """Return the steady state of a run that turns, with these effects and no others."""
+        return self._state(*self._set(run, effects))
+
+    def _state(self, rig: SimulatedRig, set_point: SetPoint) -> SteadyState:
+        period = Period(set_point.frequency_hz, ORDERS, POINTS)
+        return self.solved.steady_state(rig.chain(set_point), period)
+
+    def _steady(self, run: GapRun, effects: Sequence[Effect]) -> FloatArray:
+        rig, set_point = self._set(run, effects)
+        if run.turns:
+            state = self._state(rig, set_point)
+            steady = read_steady(state, run.observed.layout, run.set_point, self.reference_channel)
+        else:
+            steady = steady_at_rest(rig, set_point, run)
+        middle_s = run.lead_s + 0.5 * run.periods / run.set_point.frequency_hz
+        return steady + _drifted(rig, run.observed, middle_s)
+
+    def _set(self, run: GapRun, effects: Sequence[Effect]) -> tuple[SimulatedRig, SetPoint]:
+        frequency_hz = run.set_point.frequency_hz * self.frequency_ratio
+        told = replace(run.set_point, frequency_hz=frequency_hz)
+        return switch_on(*_preloaded(effects, self.rig, run), told, run.place)
+
+    def _in_time(self, run: GapRun, effects: Sequence[Effect], seed: int) -> FloatArray:
+        from analysis.readers.dataset import from_dataset
+        from sim.run import simulate
+
+        acting, believed = _preloaded(effects, self.rig, run)
+        rig, set_point = switch_on(acting, believed, run.set_point, run.place)
+        if not run.turns:
+            seen = record_at_rest(rig, set_point, run, seed + run.place.index)
+            return align(seen, run.observed)
+        # The run has been made: whatever the strut may carry, it did.
+        oscillator = replace(rig.oscillator, force_per_strut_n=float("inf"))
+        dataset = simulate(
+            replace(rig, oscillator=oscillator),
+            set_point,
+            periods=run.periods,
+            settling_periods=_SETTLING,
+            sample_rate_hz=run.sample_rate_hz,
+            seed=seed + run.place.index,
+            name=run.name,
+        )
+        record = replace(from_dataset(dataset), set_point=run.set_point)
+        phase = ReferenceChoice(channel=self.reference_channel)
+        found = observe(record, phase, wanted={one.part for one in run.observed.components})
+        later_s = run.lead_s - found.lead_s
+        return align(found.observation, run.observed) + _drifted(rig, run.observed, later_s)
+
+
+def _preloaded(
+    effects: Sequence[Effect], rig: SimulatedRig, run: GapRun
+) -> tuple[Sequence[Effect], SimulatedRig]:
+    """Return the rig with a run's dead weight on the model, and the effects that it leaves.
+
+    The weight hangs at the midpoint between the struts, and its mass moves with the model: the
+    moments of the model's own mass and inertia about that point stay as they are.
+    """
+    if not run.preload_n:
+        return effects, rig
+    weight = Acting(Spring(preload_n=run.preload_n))
+    left = [one for one in effects if not one.taken_up]
+    body, mass_kg = rig.body, rig.body.mass_kg + run.preload_n / STANDARD_GRAVITY_M_S2
+    share = body.mass_kg / mass_kg
+    heavier = replace(body, mass_kg=mass_kg, cg_x_m=share * body.cg_x_m, cg_z_m=share * body.cg_z_m)
+    return left, replace(rig, body=heavier, forces=(*rig.forces, weight))
+
+
+def _drifted(rig: SimulatedRig, measured: Observation, later_s: float) -> FloatArray:
+    """Return what the forces' zeros drift by in some time, as a change of their means."""
+    gauges = zip(FORCES, (rig.dynamometers.aft, rig.dynamometers.fore), strict=True)
+    drift = {
+        name: (gauge.zero_drift_n_s + _stated_drift(rig, name)) * later_s for name, gauge in gauges
+    }
+    means = [one.part is Part.MEAN for one in measured.components]
+    return np.array([drift.get(one.channel, 0.0) for one in measured.components]) * means
+
+
+def _stated_drift(rig: SimulatedRig, channel: str) -> float:
+    how = getattr(rig.acquisition, channel)
+    return 0.0 if how is None else float(how.drift_per_s)
+
+
+def align(simulated: Observation, measured: Observation) -> FloatArray:
+    """Return a simulated observation's values in the order of a measured one's components.
+
+    Where the simulated record does not have one, for want of lines or of a period, it is as it was
+    measured: what cannot be compared is no gap.
+    """
+    at = dict(zip(simulated.components, simulated.values, strict=True))
+    pairs = zip(measured.components, measured.values, strict=True)
+    return np.array([at.get(one, value) for one, value in pairs])
+
+
+def read_steady(
+    state: SteadyState,
+    layout: Layout,
+    set_point: SetPoint,
+    reference_channel: str | None,
+) -> FloatArray:
+    """Return a steady state's components as the resolver would find them; 0 for what has none.
+
+    Parameters
+    ----------
+    set_point
+        What the run was told to do: its frequency is what the measured one is held against.
+    """
+    ratio = float(np.log(state.period.frequency_hz / set_point.frequency_hz))
+    values = layout.read(state.spectra, turned(state, reference_channel))
+    return values + ratio * layout.frequency
+
+
+def turned(state: SteadyState, reference_channel: str | None) -> ComplexArray:
+    """Return by what each order is turned for time to count from the phase reference."""
+    if reference_channel is None:
+        return np.exp(state.period.s * state.reference_s)
+    first = state.spectra[f"recorded_{reference_channel}"][1]
+    # A sin(theta + phi) has X_1 = -i A exp(i phi): turned back by phi it is in phase.
+    phase = float(np.angle(first * 1j))
+    orders: ComplexArray = np.exp(-1j * phase * np.arange(len(state.period.s)))
+    return orders

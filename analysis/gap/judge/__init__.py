@@ -1,0 +1,1 @@
+"""What the weighed hypotheses mean, and how far the gap shrinks on withheld runs."""

@@ -1,0 +1,68 @@
+"""Effects that no oscillation tells apart, or hardly one, and the measurement that does.
+
+The classes of a campaign are computed from its own runs (:mod:`analysis.gap.judge.verdict`); this
+table only says what to measure once a class has more than one member.
+"""
+
+from collections.abc import Sequence
+from itertools import combinations
+from typing import Final
+
+_REST = "a record at rest, before and after: an offset stays, friction does not"
+_WEIGHT = "a check weight: a gain shows in it, jitter does not"
+_INJECTION = "a sine fed into all force amplifiers in place of the bridges"
+_AIR = "the same runs in air, without the water's part"
+_PRELOAD = "the same run with a dead weight that takes up the play"
+_SPEED = "the same runs at another speed"
+_LOOSE = "the same run with the cable disconnected"
+_SLOW = "a record at rest over the same time: a drift goes on, waves die out"
+
+_SEPARATED: Final = {
+    frozenset(pair): how
+    for how, pairs in {
+        _REST: [("zero-offset", "coulomb-friction"), ("zero-offset", "surface-suction")],
+        _WEIGHT: [
+            ("gain-error", "trigger-jitter"),
+            ("gain-error", "eccentricity-error"),
+            ("gain-error", "cross-talk"),
+        ],
+        _INJECTION: [
+            ("amplifier-lag", "channel-skew"),
+            ("amplifier-lag", "photocell-delay"),
+            ("channel-skew", "photocell-delay"),
+            ("amplifier-lag", "viscous-guides"),
+        ],
+        _AIR: [
+            ("mass-error", "added-mass-error"),
+            ("inertia-error", "added-mass-error"),
+            ("mass-error", "gauge-compliance"),
+            ("viscous-guides", "damping-error"),
+            ("guide-friction", "damping-error"),
+            ("cable", "mass-error"),
+            ("coulomb-friction", "quadratic-damping"),
+            ("gauge-hysteresis", "quadratic-damping"),
+        ],
+        _SPEED: [("dynamic-trim", "restoring-error"), ("carriage-speed", "damping-error")],
+        _LOOSE: [("cable", "coulomb-friction"), ("cable", "nonlinear-restoring")],
+        _PRELOAD: [
+            ("joint-play", "gear-backlash"),
+            ("free-play", "joint-play"),
+            ("free-play", "speed-ripple"),
+        ],
+        _SLOW: [("zero-drift", "residual-waves"), ("zero-drift", "temperature")],
+    }.items()
+    for pair in pairs
+}
+
+_COEFFICIENTS: Final = {"a": "added-mass-error", "b": "damping-error", "c": "restoring-error"}
+
+
+def coefficient_error(name: str) -> str:
+    """Return what an error of a coefficient, ``a11`` or ``c12``, is called among the pairs."""
+    return _COEFFICIENTS.get(name[:1], name)
+
+
+def separating_measurements(names: Sequence[str]) -> tuple[str, ...]:
+    """Return what to measure to tell the members of a class apart; empty where nothing is known."""
+    found = [_SEPARATED.get(frozenset(pair), "") for pair in combinations(sorted(names), 2)]
+    return tuple(dict.fromkeys(one for one in found if one))

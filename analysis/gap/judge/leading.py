@@ -1,0 +1,23 @@
+"""The answers that a further run has to tell apart."""
+
+from typing import Final
+
+from analysis.gap.inference.answers import NAMELESS
+from analysis.gap.search.fit import Fit
+from analysis.gap.search.hypotheses import Weighed
+
+_MOST: Final = 4
+_DOUBTED: Final = 0.05  # least share of a rival: odds are overconfident
+
+
+def leading(weighed: Weighed) -> list[tuple[Fit | None, float]]:
+    """Return the most probable answer, those that share no effect with it, and no gap at last.
+
+    Each with its probability; ``None`` stands for no gap, and for what nobody knows.
+    """
+    shares, fits = weighed.answers.by_answer, weighed.ranked
+    others = [one for one in fits[1:] if not {*one.names} & {*fits[0].names}]
+    ones: list[tuple[Fit | None, float]] = [
+        (one, max(shares[one.answer], _DOUBTED)) for one in [*fits[:1], *others][:_MOST]
+    ]
+    return [*ones, (None, max(sum(shares[name] for name in NAMELESS), _DOUBTED))]

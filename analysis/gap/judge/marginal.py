@@ -1,0 +1,95 @@
+"""How probable each effect is, whatever else is there too, and what these runs tell from it."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from analysis.gap.forward.problem import Problem
+from analysis.gap.inference.answers import effects_in
+from analysis.gap.inference.gaussian import misfit, posterior
+from analysis.gap.judge.diagnosis import Diagnosis
+from analysis.gap.judge.verdict import ALIKE, beside_rest, equivalents
+from analysis.gap.search.fit import Fit
+from hardware.description.errors import PmmError
+
+LEAST: Final = 0.01  # probability that is worth a class
+_MOST: Final = 6  # effects
+
+
+@dataclass(frozen=True)
+class Marginal:
+    """One effect in any answer.
+
+    Attributes
+    ----------
+    probability
+        Of all answers with the effect.
+    size_sigma
+        Of its signature in the best of them, beside the other effect of a pair, in sigma after the
+        free numbers have taken what they may; infinite where it cannot be simulated apart.
+    alike
+        What these runs cannot tell from it there, with the sigma left.
+    class_probability
+        Of all answers with any of these; NaN where its size is below ``ALIKE``, so that its absence
+        passes for it as well.
+    """
+
+    name: str
+    stage: str
+    probability: float
+    size_sigma: float
+    alike: Mapping[str, float]
+    class_probability: float
+
+
+def by_effect(by_answer: Mapping[str, float]) -> dict[str, float]:
+    """Return the probability of each effect in any answer, most probable first.
+
+    Parameters
+    ----------
+    by_answer
+        Probabilities of answers, as :class:`analysis.gap.inference.answers.Answers` has them.
+    """
+    names = {name for answer in by_answer for name in effects_in(answer)}
+    shares = {name: of_any(by_answer, [name]) for name in names}
+    return dict(sorted(shares.items(), key=lambda one: (-one[1], one[0])))
+
+
+def of_any(by_answer: Mapping[str, float], names: Sequence[str]) -> float:
+    """Return the probability of all answers with any of some effects, each counted once."""
+    wanted = set(names)
+    found = math.fsum(share for one, share in by_answer.items() if wanted & {*effects_in(one)})
+    return min(found, 1.0)
+
+
+def marginals(found: Diagnosis) -> tuple[Marginal, ...]:
+    """Return the effects that are not out of the question, most probable first."""
+    shares = found.answers.by_answer
+    fits = found.weighed.ranked
+    leading = [name for name, share in by_effect(shares).items() if share > LEAST][:_MOST]
+    best = {name: next(one for one in fits if name in one.names) for name in leading}
+    return tuple(_marginal(found, name, fit) for name, fit in best.items())
+
+
+def _marginal(found: Diagnosis, name: str, fit: Fit) -> Marginal:
+    shares = found.answers.by_answer
+    number = fit.names.index(name)
+    stage = fit.candidates[number].stage
+    size = _size(found.problem, fit, number)
+    probability = of_any(shares, [name])
+    if size < ALIKE:
+        return Marginal(name, stage, probability, size, {}, math.nan)
+    looked = [one.fit for one in found.weighed.looked if one.fit is not None]
+    alike = dict(equivalents(found.problem, fit, looked)[name])
+    return Marginal(name, stage, probability, size, alike, of_any(shares, [name, *alike]))
+
+
+def _size(problem: Problem, fit: Fit, number: int) -> float:
+    """Return what the rest of a fit and the free numbers leave of one effect's signature."""
+    try:
+        own, beside = beside_rest(problem, fit, number)
+    except PmmError:
+        return math.inf
+    left = own - beside @ posterior(own, beside, problem.nuisances).mean
+    return math.sqrt(max(misfit(left, problem.nuisances), 0.0))

@@ -1,0 +1,1 @@
+"""Where along the chain a gap lies, and what the remainder looks like."""

@@ -1,0 +1,1 @@
+"""Recordings in, everything that a diagnosis compares out."""

@@ -1,0 +1,106 @@
+"""The point about which a diagnosis is linear: the coefficients that the campaign itself fits.
+
+Where a campaign says 40 kg of added mass and the water says 75, nothing is linear about the 40; so
+the rig is moved to what fits best, by steps. The tolerances stay about what is stated.
+
+Only added mass and damping are moved. Mass, inertia and restoring are known beforehand: where they
+seem to be many tolerances off, something else is there, and moving them would hide it.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+import numpy as np
+
+from analysis.gap.forward.free_numbers import Free, free_numbers, tolerated, with_coefficients
+from analysis.gap.forward.noise import pooled
+from analysis.gap.forward.simulator import Simulator
+from analysis.gap.forward.tolerances import Tolerances
+from analysis.gap.observe.components import STEADY_PARTS, GapRun, Observation, Stack
+from hardware.description.arrays import FloatArray
+from hardware.description.errors import PmmError
+from sim.effects.effect import Effect
+from sim.rig import SimulatedRig
+
+_STEPS: Final = 5
+_LONGEST: Final = 4.0
+_SETTLED: Final = 0.3  # prior deviations: a smaller step changes no slope
+
+
+@dataclass(frozen=True)
+class Recentred:
+    """A rig moved to the coefficients that a campaign fits.
+
+    Attributes
+    ----------
+    rig
+        The one that was given where the campaign fits what is stated.
+    free
+        What is left free, with the tolerances of what is stated.
+    units
+        By how many prior deviations each coefficient was moved; empty where none was.
+    moved
+        The same in each coefficient's own unit.
+    """
+
+    rig: SimulatedRig
+    free: tuple[Free, ...]
+    units: Mapping[str, float] = field(default_factory=dict)
+    moved: Mapping[str, float] = field(default_factory=dict)
+
+
+def recentred(
+    rig: SimulatedRig,
+    runs: Sequence[GapRun],
+    tolerances: Tolerances,
+    on: Sequence[Effect] = (),
+    reference_channel: str | None = None,
+) -> Recentred:
+    """Move a rig to the coefficients that fit."""
+    free = free_numbers(rig, tolerances)
+    stack = Stack.of([repeating_only(one) for one in pooled(runs, rig, tolerances)])
+    simulator = Simulator(rig, stack, tuple(on), reference_channel)
+    owned = np.array([one.is_sought for one in free])
+    total = np.zeros(len(free))
+    for _ in range(_STEPS):
+        step = np.where(owned, _step(simulator, free, tolerances, total), 0.0)
+        if np.abs(step).max(initial=0.0) < _SETTLED:
+            break
+        try:
+            there = with_coefficients(rig, free, list(total + step))
+            Simulator(there, simulator.stack, simulator.on, reference_channel).steady(())
+        except PmmError:
+            break
+        total, simulator = total + step, simulator.with_rig(there)
+    return _result(simulator.rig, free, total)
+
+
+def repeating_only(run: GapRun) -> GapRun:
+    """Return a run without what does not repeat with the shaft: coefficients do not change that."""
+    seen = run.observed
+    kept = [at for at, one in enumerate(seen.components) if one.part in STEADY_PARTS]
+    parts = tuple(seen.components[at] for at in kept)
+    return replace(run, observed=Observation(parts, seen.values[kept], seen.uncertainty[kept]))
+
+
+def _result(rig: SimulatedRig, free: Sequence[Free], total: FloatArray) -> Recentred:
+    pairs = [(one, float(unit)) for one, unit in zip(free, total, strict=True) if unit]
+    return Recentred(
+        rig,
+        tuple(free),
+        {one.name: unit for one, unit in pairs},
+        {one.name: unit * one.deviation for one, unit in pairs},
+    )
+
+
+def _step(
+    simulator: Simulator, free: Sequence[Free], tolerances: Tolerances, total: FloatArray
+) -> FloatArray:
+    """Return how far to go on from where the rig is, the tolerances about what is stated."""
+    stack = simulator.stack
+    nuisances = tolerated(simulator, free, tolerances)
+    left = (stack.values - simulator.steady(())) / stack.uncertainty
+    stated = left + nuisances.columns[:, : len(free)] @ total
+    units = nuisances.fitted(stated)[: len(free)] - total
+    return np.asarray(units * min(1.0, _LONGEST / max(float(np.abs(units).max()), 1e-12)))

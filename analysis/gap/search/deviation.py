@@ -1,0 +1,185 @@
+"""What stands beside every hypothesis of a campaign: how large, and how alike from run to run.
+
+A deviation is alike for runs that are alike in frequency, amplitude, strut phase, speed, medium and
+drift; each run has a part of its own.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.forward.problem import Problem
+from analysis.gap.inference.evidence import Background, Kind
+from analysis.gap.inference.kernel import Kernel
+from analysis.gap.inference.shapes import Shapes, SignatureOfEffect
+from analysis.gap.observe.components import SETTLING, TRENDS, Component, Part, Stack
+from analysis.gap.observe.observation import SPEED
+from analysis.gap.search.first_look import Looked
+from hardware.description.arrays import BoolArray, FloatArray
+from hardware.description.channels import DISPLACEMENTS, FORCES
+from hardware.description.setpoint import Medium, SetPoint
+from sim.effects.effect import StageName
+
+_OWN: Final = 0.2  # share of a cell's variance that is every run's own
+_DRIFT_RAD: Final = 0.1  # of drift, after which runs are hardly alike
+_HARMONIC: Final = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE, *TRENDS)
+# What a deviation of 1 is of what has no harmonics: an e-fold of noise, every pulse; of the
+# frequency, which is known to 1e-4, a hundredth.
+_UNITS: Final = {Part.FREQUENCY: 0.01}
+_FLOORS: Final = dict.fromkeys(DISPLACEMENTS, 1e-3) | dict.fromkeys(FORCES, 1.0)  # m, N
+_FLOOR: Final = 0.01  # rad of a shaft that turns evenly; m/s of a carriage
+# Where something shows that acts at a stage: in its own channels, and in those behind it.
+_BEHIND: Final = {
+    StageName.MECHANISM: (*DISPLACEMENTS, *FORCES),
+    StageName.CARRIAGE: (SPEED, *FORCES),
+    **dict.fromkeys((StageName.STRUCTURE, StageName.MODEL, StageName.DYNAMOMETERS), FORCES),
+}
+# Something in the instruments shows in one channel alone, by the kind of its numbers.
+_KINDS: Final = {
+    **dict.fromkeys((Part.MEAN, Part.IN_PHASE, Part.QUADRATURE), "harmonics"),
+    Part.TREND: "means",
+    **dict.fromkeys(SETTLING, "trends"),
+    Part.CYCLE_SCATTER: "scatter",
+    Part.PERIOD_SCATTER: "scatter",
+    Part.BETWEEN: "lines",
+    Part.LINE: "lines",
+}
+
+
+def background(problem: Problem, looked: Sequence[Looked], sought: BoolArray) -> Background:
+    """Return what stands beside every hypothesis of a campaign.
+
+    Parameters
+    ----------
+    looked
+        First looks at the effects of the catalogue.
+    sought
+        Which of the free numbers such a test is made to find, shape ``(free,)``.
+    """
+    stack, nominal = problem.simulator.stack, problem.simulator.nominal
+    scale = units(stack, nominal) / stack.uncertainty
+    columns = problem.nuisances.columns
+    wide = np.zeros(columns.shape[1], dtype=bool)
+    wide[: len(sought)] = sought
+    shown = [
+        SignatureOfEffect(one.name, one.fit.stages[0], one.fit.signature, one.fit.columns)
+        for one in looked
+        if one.fit is not None
+    ]
+    cells = _cells(stack)
+    alike = likeness([run.set_point for run in stack.runs])
+    each = [alike[np.ix_(stack.run[rows], stack.run[rows])] for rows in cells]
+    return Background(
+        problem.stated,
+        columns,
+        wide,
+        Kernel.of(cells, each, scale),
+        Shapes.of(shown, scale, problem.nuisances),
+        dict(_own(stack, scale)),
+        dict(_behind(stack)),
+        dict(_kinds(stack)),
+    )
+
+
+def likeness(set_points: Sequence[SetPoint]) -> FloatArray:
+    """Return how alike a deviation is between runs, shape ``(runs, runs)``; 1 on the diagonal."""
+    places = np.array([_place(one) for one in set_points])
+    distance = np.sum((places[:, None, :] - places[None, :, :]) ** 2, axis=2)
+    shared = (1.0 - _OWN) * np.exp(-0.5 * distance)
+    return np.asarray(shared + _OWN * np.eye(len(places)))
+
+
+def _place(one: SetPoint) -> tuple[float, ...]:
+    return (
+        math.log(one.frequency_hz),
+        math.log(max(one.eccentricity_m, 1e-6)),
+        math.cos(one.strut_phase_rad),
+        math.sin(one.strut_phase_rad),
+        one.carriage_speed_m_s,
+        2.0 * (one.medium is Medium.AIR),
+        one.drift_rad / _DRIFT_RAD,
+    )
+
+
+def _cells(stack: Stack) -> list[NDArray[np.intp]]:
+    places: dict[Component, list[int]] = {}
+    for at, one in enumerate(stack.components):
+        places.setdefault(one, []).append(at)
+    return [np.array(rows) for rows in places.values()]
+
+
+def units(stack: Stack, nominal: FloatArray) -> FloatArray:
+    """Return how large a deviation of 1 is at each observation, in the observation's unit.
+
+    Of a channel its predicted first harmonic, root mean square over the campaign, over the order;
+    of a mean the same; of a change per period that over the periods.
+
+    Parameters
+    ----------
+    nominal
+        What the simulation says, shape ``(observations,)``.
+    """
+    squares: dict[str, list[float]] = {}
+    for one, value in zip(stack.components, nominal, strict=True):
+        first = one.part in (Part.IN_PHASE, Part.QUADRATURE) and one.order == 1
+        standing = one.part is Part.MEAN and one.channel not in (*FORCES, *DISPLACEMENTS)
+        if first or standing:
+            squares.setdefault(one.channel, []).append(float(value) ** 2)
+    runs = max(len(stack.turning), 1)
+    sizes = {name: math.sqrt(sum(found) / runs) for name, found in squares.items()}
+    out = np.ones(len(stack.components))
+    for at, one in enumerate(stack.components):
+        if one.part in _HARMONIC:
+            size = max(sizes.get(one.channel, 0.0), _FLOORS.get(one.channel, _FLOOR))
+            out[at] = size / max(one.order, 1)
+            if one.part in TRENDS:
+                out[at] /= max(stack.runs[stack.run[at]].periods, 1)
+        else:
+            out[at] = _UNITS.get(one.part, 1.0)
+    return out
+
+
+def _behind(stack: Stack) -> Iterator[tuple[str, BoolArray]]:
+    """Yield by stage where something that acts there may show; everywhere if nothing is said."""
+    for stage in StageName:
+        channels = _BEHIND.get(stage)
+        yield (
+            stage.value,
+            np.array([channels is None or one.channel in channels for one in stack.components]),
+        )
+
+
+def _kinds(stack: Stack) -> Iterator[tuple[str, Kind]]:
+    """Yield where something unknown may show alone: in one channel, by kind, or in all alike."""
+    channels = np.array([one.channel for one in stack.components])
+    kinds = np.array([_KINDS.get(one.part, "timing") for one in stack.components])
+    for channel in dict.fromkeys(channels.tolist()):
+        for kind in dict.fromkeys(kinds[channels == channel].tolist()):
+            rows = (channels == channel) & (kinds == kind)
+            yield f"{channel} {kind}".strip(), Kind(rows, (_instrument(channel, kind),))
+    every = tuple(one.value for one in StageName)
+    yield "all", Kind(np.ones(len(channels), dtype=bool), every)
+
+
+def _instrument(channel: str, kind: str) -> str:
+    if not channel:
+        return StageName.PHOTOCELL.value
+    gauge = channel in FORCES and kind in ("harmonics", "means")
+    return (StageName.DYNAMOMETERS if gauge else StageName.ACQUISITION).value
+
+
+def _own(stack: Stack, scale: FloatArray) -> Iterator[tuple[str, FloatArray]]:
+    """Yield by run what a gain and a zero of its own change of each force, as it was measured."""
+    measured = stack.values / stack.uncertainty
+    for number, run in enumerate(stack.runs):
+        columns = []
+        for channel in FORCES:
+            here = np.array([one.channel == channel for one in stack.components])
+            here &= stack.run == number
+            mean = here & np.array([one.part is Part.MEAN for one in stack.components])
+            columns.append(np.where(here & stack.steady, measured, 0.0))
+            columns.append(np.where(mean, scale, 0.0))
+        yield run.name, np.column_stack(columns)

@@ -1,0 +1,191 @@
+"""A first look at an effect: linearised in the simulator, from where it may be as large as the gap.
+
+An effect that is a thousand times too large is no straight line down to the one that is there; so a
+look begins where the effect is about as large as what there is to explain.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from analysis.gap.forward.candidate import Candidate, candidates
+from analysis.gap.forward.powers import grown
+from analysis.gap.forward.problem import Compared, Problem
+from analysis.gap.inference.gaussian import left_over, misfit, null_evidence
+from analysis.gap.search.fit import Fit, at, bounds, expected_evidence, inside, most_probable, moved
+from hardware.description.arrays import FloatArray
+from hardware.description.errors import PmmError
+from sim.effects.effect import Effect
+
+_MUCH: Final = 4.0  # times what there is to explain, from which a look begins nearer
+_SEEN: Final = 10.0  # chi-square that there is to explain, at least
+_HOPELESS: Final = 20.0  # log evidence under "no gap": a straight line has gone astray
+_APPROACHES: Final = 3
+_ALIKE: Final = 2.0  # times what there is to explain, within which an effect is about as large
+_HALVINGS: Final = 6
+_LEAST_POWER: Final = 0.2
+HIDDEN: Final = 2.0  # sigma of a typical signature below which records cannot show an effect
+_SIZES: Final = tuple(float(share) for share in np.geomspace(0.01, 10.0, 25))  # of the typical one
+
+
+@dataclass(frozen=True, eq=False)
+class Looked:
+    """What a first look at one effect gave: a linearised fit, or why there is none.
+
+    Attributes
+    ----------
+    expected
+        Log evidence that the first step promises.
+    visible
+        Size of the signature in sigma, after the nuisances have taken their part: as it typically
+        is, or as these recordings ask for, whichever is larger.
+    """
+
+    name: str
+    fit: Fit | None
+    expected: float = -math.inf
+    visible: float = 0.0
+    reason: str = ""
+
+
+def look(problem: Problem, kind: type[Effect]) -> Looked:
+    """Linearise an effect at its typical values, from each of its starts, and keep the best."""
+    return best_look(problem, kind.name, _starts(problem, kind))
+
+
+def best_look(
+    problem: Compared, name: str, starts: Sequence[tuple[Candidate, FloatArray]]
+) -> Looked:
+    """Linearise an effect at each of some starts, and keep the best."""
+    best, most, reason = None, -math.inf, ""
+    for one, start in starts:
+        try:
+            fit = at(problem, (one,), start, roughly=True)
+            fit = _near(problem, fit) if one.repeats else fit
+        except PmmError as error:
+            reason = str(error)
+            continue
+        expected = expected_evidence(problem, fit)
+        if best is None or expected > most:
+            best, most = fit, expected
+    if best is None:
+        return Looked(name, None, reason=reason)
+    steps = (best.signature, best.columns @ most_probable(best))
+    visible = max(left_over(one, problem.nuisances) for one in steps)
+    return Looked(name, best, most, visible)
+
+
+def _starts(problem: Problem, kind: type[Effect]) -> list[tuple[Candidate, FloatArray]]:
+    """Return where looks at an effect begin; the most promising one of what is costly."""
+    frequencies = [run.set_point.frequency_hz for run in problem.simulator.stack.turning]
+    ones = list(candidates(kind, sorted(set(frequencies))))
+    if kind.repeats:
+        return [(one, one.start) for one in ones]
+    found = [_sized(problem, one) for one in ones]
+    first = min(range(len(ones)), key=lambda at: found[at][0])
+    return [(ones[first], found[first][1])]
+
+
+def _sized(problem: Problem, one: Candidate) -> tuple[float, FloatArray]:
+    """Return what an effect leaves that has to be simulated in time, at the size that leaves least.
+
+    Its powers go with the square of its size, and their logarithms are compared: from one record
+    follows what any size changes, where a straight line would soon go astray.
+    """
+    simulator = problem.simulator
+    try:
+        change = simulator.predict((one.effect(one.start),)) - simulator.nominal
+    except PmmError:
+        return math.inf, one.start
+    found = []
+    # What has a sign is linear; tiny steps of it would drown in the digitiser's.
+    powers = one.axes and all(axis.parameter.low >= 0.0 for axis in one.axes)
+    for share in _SIZES if powers else (1.0,):
+        units = inside((one,), share * one.start)
+        left = problem.residual - problem.whitened(grown(simulator.stack.components, change, share))
+        found.append((misfit(left, problem.nuisances) + float(units @ units), share))
+    cost, share = min(found)
+    return cost, inside((one,), share * one.start)
+
+
+def _near(problem: Compared, fit: Fit) -> Fit:
+    """Return a first look from where the effect is about as large as what there is to explain.
+
+    A backlash that is a thousand times too large is no straight line down to the one that is there.
+    """
+    if not len(fit.units):
+        return fit
+    none = null_evidence(problem.residual, problem.nuisances)
+    chi_square = misfit(problem.residual, problem.nuisances)
+    wanted = math.sqrt(max(chi_square - len(problem.residual), _SEEN))
+    if not any(one.is_size for one in fit.axes):
+        return _along_any(problem, fit, wanted)
+    # Seen from far too large, a phase is known far too well.
+    straight = all(one.is_size for one in fit.axes)
+    near = fit
+    for _ in range(_APPROACHES):
+        ratio = left_over(near.signature, problem.nuisances) / wanted
+        if ratio < _MUCH:
+            break
+        if straight and expected_evidence(problem, near) > none - _HOPELESS:
+            return fit
+        near = moved(problem, near, smaller(problem, near, 1.0 / ratio))
+    return fit if near is fit or ratio > _MUCH**2 else at(problem, fit.candidates, near.units)
+
+
+def _along_any(problem: Compared, fit: Fit, wanted: float) -> Fit:
+    """Return the most promising first look, of those from where one parameter alone was moved.
+
+    None of them is a size: a droop and an inertia both make a drive yield less, and one of the two
+    may do so in a form that has nothing of what there is to explain.
+    """
+    if left_over(fit.signature, problem.nuisances) < _MUCH * wanted:
+        return fit
+    ways = [_along(problem, fit, wanted, axis) for axis in range(len(fit.units))]
+    return max(
+        (one for one in ways if one is not None),
+        key=lambda one: expected_evidence(problem, one),
+        default=fit,
+    )
+
+
+def _along(problem: Compared, fit: Fit, wanted: float, axis: int) -> Fit | None:
+    """Return a look from where one parameter makes the effect as large as wanted, if it can."""
+    weighted = problem.nuisances.whiten(fit.signature)
+    rises = float(weighted @ fit.columns[:, axis]) / max(float(weighted @ weighted), 1e-12)
+    if not rises:
+        return None
+    low, high = bounds(fit.candidates)[:, axis]
+    share = wanted / left_over(fit.signature, problem.nuisances)
+    large, small = float(fit.units[axis]), float(low if rises > 0.0 else high)
+    units, ratio = fit.units.copy(), math.inf
+    units[axis] = min(max(large + math.log(share) / rises, low), high)
+    for _ in range(_HALVINGS):
+        ratio = left_over(moved(problem, fit, units).signature, problem.nuisances) / wanted
+        large, small = (units[axis], small) if ratio > 1.0 else (large, units[axis])
+        if 1.0 / _ALIKE < ratio < _ALIKE or large == small:
+            break
+        units[axis] = 0.5 * (large + small)
+    return at(problem, fit.candidates, units) if ratio < _MUCH**2 else None
+
+
+def smaller(problem: Compared, fit: Fit, share: float) -> FloatArray:
+    """Return parameters at which a signature is about a share of what it is.
+
+    By the power with which it goes with its sizes, all together; or, where a parameter can't be
+    zero, with the one that changes it most.
+    """
+    weighted = problem.nuisances.whiten(fit.signature)
+    slopes = weighted @ fit.columns / max(float(weighted @ fit.signature), 1e-12)
+    sizes = np.array([one.is_size for one in fit.axes], dtype=bool)
+    units = fit.units.copy()
+    power = float(slopes[sizes] @ units[sizes])
+    if power > _LEAST_POWER:
+        units[sizes] *= share ** (1.0 / power)
+        return inside(fit.candidates, units)
+    at_most = int(np.argmax(np.where(sizes, 0.0, np.abs(slopes))))
+    units[at_most] += math.log(share) / (slopes[at_most] or math.inf)
+    return inside(fit.candidates, units)

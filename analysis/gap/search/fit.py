@@ -1,0 +1,229 @@
+"""Fit hypotheses through the simulator: effects where they physically act, coefficients free."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.gap.forward.candidate import STEP, Axis, Candidate, least_step
+from analysis.gap.forward.problem import Compared, built
+from analysis.gap.inference.answers import answer_of
+from analysis.gap.inference.gaussian import Posterior, any_size, misfit, posterior
+from analysis.gap.inference.hypothesis import within
+from hardware.description.arrays import BoolArray, FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """One hypothesis, fitted.
+
+    Attributes
+    ----------
+    candidates
+        One for a single effect, two for a pair.
+    units
+        The parameters in units of their priors, shape ``(p,)``.
+    columns
+        Change of the observations per prior unit there, in sigma, shape ``(observations, p)``.
+    signature
+        What the effect changes there, in sigma.
+    cost
+        Chi-square that is left, coefficients fitted too, and that of the parameters' priors.
+    shared
+        Log determinant of the nuisances.
+    forms
+        What the other forms of its effects' families change, in sigma, ``(observations, any)``.
+    """
+
+    candidates: tuple[Candidate, ...]
+    units: FloatArray
+    columns: FloatArray
+    signature: FloatArray
+    cost: float
+    posterior: Posterior
+    shared: float
+    forms: FloatArray
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The effects' names."""
+        return tuple(one.name for one in self.candidates)
+
+    @property
+    def answer(self) -> str:
+        """The effects in alphabetical order, as an answer names them."""
+        return answer_of(self.names)
+
+    @property
+    def stages(self) -> tuple[str, ...]:
+        """Where each effect acts."""
+        return tuple(one.stage for one in self.candidates)
+
+    @property
+    def log_evidence(self) -> float:
+        """Natural log of the density of the data by Laplace, but for a constant that all share."""
+        return -0.5 * (self.cost + self.shared) + self.log_volume
+
+    @cached_property
+    def log_volume(self) -> float:
+        """Log of what is left of the priors' volume, whatever the scale of the effects' sizes."""
+        return self.posterior.log_volume + any_size(self.posterior, self.sizes, self.reaches)
+
+    @property
+    def sizes(self) -> list[BoolArray]:
+        """Which parameters are sizes, for each effect, shape ``(p,)``; those share their scale."""
+        sizes = np.array([one.is_size for one in self.axes], dtype=bool)
+        return [sizes & (self.whose == number) for number in range(len(self.candidates))]
+
+    @property
+    def reaches(self) -> list[float]:
+        """Largest plausible standard deviation of each effect's sizes, in prior deviations."""
+        return [one.reach for one in self.candidates]
+
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """The free parameters of all effects, in the order of ``units``."""
+        return tuple(axis for one in self.candidates for axis in one.axes)
+
+    @property
+    def whose(self) -> NDArray[np.intp]:
+        """Number of the effect that each parameter belongs to, shape ``(p,)``."""
+        counts = [len(one.axes) for one in self.candidates]
+        return np.repeat(np.arange(len(counts)), counts)
+
+    @property
+    def repeats(self) -> bool:
+        """Whether all effects repeat with the shaft."""
+        return all(one.repeats for one in self.candidates)
+
+    @property
+    def is_costly(self) -> bool:
+        """Whether one of the effects is run in time until it repeats."""
+        return any(one.costly for one in self.candidates)
+
+    @property
+    def effects(self) -> tuple[Any, ...]:
+        """The effects with the fitted parameters."""
+        return built(self.candidates, self.units)
+
+    def linearised(self, residual: FloatArray) -> FloatArray:
+        """Return the residual that belongs to the effect linearised where it was fitted."""
+        return residual - self.signature + self.columns @ self.units
+
+
+def inside(parts: Sequence[Candidate], units: FloatArray) -> FloatArray:
+    """Return parameters drawn back into their plausible ranges."""
+    low, high = bounds(parts)
+    return np.asarray(np.clip(units, low, high), np.float64)
+
+
+def bounds(parts: Sequence[Candidate]) -> FloatArray:
+    """Return the plausible ranges of all parameters in prior units, shape ``(2, p)``."""
+    return np.concatenate([np.empty((2, 0)), *(one.bounds for one in parts)], axis=1)
+
+
+def most_probable(fit: Fit) -> FloatArray:
+    """Return the most probable parameters within the plausible ranges, to first order."""
+    return within(fit.posterior, bounds(fit.candidates))
+
+
+def at(
+    problem: Compared, parts: tuple[Candidate, ...], units: FloatArray, *, roughly: bool = False
+) -> Fit:
+    """Linearise a hypothesis at some parameters and weigh it.
+
+    Parameters
+    ----------
+    roughly
+        Take an effect of one size as proportional to it: no further simulation for the slope.
+
+    Raises
+    ------
+    PmmError
+        If the simulator cannot run it.
+    """
+    signature = problem.signature(parts, units)
+    slopes = (
+        [signature / units[0]]
+        if roughly and is_sized(parts, units)
+        else [_slope(problem, parts, units, signature, axis) for axis in range(len(units))]
+    )
+    columns = np.column_stack(slopes) if slopes else np.zeros((len(signature), 0))
+    return weighed_at(problem, parts, units, columns, signature)
+
+
+def is_sized(parts: tuple[Candidate, ...], units: FloatArray) -> bool:
+    """Tell whether a hypothesis has one parameter, and that one is the size of its signature."""
+    axes = [axis for one in parts for axis in one.axes]
+    sized = len(axes) == 1 and axes[0].centre == 0.0 and not axes[0].is_log
+    return sized and parts[0].repeats and abs(float(units[0])) > STEP
+
+
+def nothing(problem: Compared) -> Fit:
+    """Return the hypothesis of no effect."""
+    none = np.zeros_like(problem.residual)
+    return weighed_at(problem, (), np.empty(0), none[:, None][:, :0], none)
+
+
+def weighed_at(
+    problem: Compared,
+    parts: tuple[Candidate, ...],
+    units: FloatArray,
+    columns: FloatArray,
+    signature: FloatArray,
+) -> Fit:
+    """Weigh a hypothesis whose columns and signature are known."""
+    left = problem.residual - signature
+    found = posterior(left + columns @ units, columns, problem.nuisances)
+    cost = misfit(left, problem.nuisances) + float(units @ units)
+    shared = problem.nuisances.log_determinant
+    return Fit(parts, units, columns, signature, cost, found, shared, columns[:, :0])
+
+
+def joined(problem: Compared, first: Fit, second: Fit) -> Fit:
+    """Put two linearised hypotheses together as if their effects did not act on each other."""
+    return weighed_at(
+        problem,
+        first.candidates + second.candidates,
+        np.concatenate((first.units, second.units)),
+        np.hstack((first.columns, second.columns)),
+        first.signature + second.signature,
+    )
+
+
+def _slope(
+    problem: Compared, parts: tuple[Candidate, ...], units: FloatArray, base: FloatArray, axis: int
+) -> FloatArray:
+    step = max(least_step(parts, axis), 0.1 * abs(float(units[axis])))
+    for sign in (1.0, -1.0):
+        aside = units.copy()
+        aside[axis] += sign * step
+        kept = inside(parts, aside)
+        if abs(kept[axis] - units[axis]) > 0.5 * step:
+            change = problem.signature(parts, kept) - base
+            return np.asarray(change / (kept[axis] - units[axis]), np.float64)
+    return np.zeros_like(base)
+
+
+def expected_evidence(problem: Compared, fit: Fit) -> float:
+    """Return the evidence that one step from here promises, kept within the plausible ranges.
+
+    For a first look at many effects: it takes no further simulation.
+    """
+    cost = linear_cost(problem, fit, most_probable(fit))
+    return -0.5 * (cost + fit.shared) + fit.log_volume
+
+
+def linear_cost(problem: Compared, fit: Fit, units: FloatArray) -> float:
+    """Return what a fit would cost at other parameters, to first order."""
+    left = fit.linearised(problem.residual) - fit.columns @ units
+    return misfit(left, problem.nuisances) + float(units @ units)
+
+
+def moved(problem: Compared, fit: Fit, units: FloatArray) -> Fit:
+    """Return the fit at other parameters, with the slopes that it has."""
+    signature = problem.signature(fit.candidates, units)
+    return weighed_at(problem, fit.candidates, units, fit.columns, signature)
