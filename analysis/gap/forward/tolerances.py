@@ -40,10 +40,16 @@ class Tolerances:
         0.05, "1/octave", "smooth change of damping with frequency", "panel tables of ships"
     )
     added_mass_per_speed: float = _usual(
-        0.03, "1", "change of added mass as the speed is doubled", "tests at several Froude numbers"
+        0.03,
+        "1",
+        "change of added mass as the speed is doubled, or is none",
+        "tests at several Froude numbers",
     )
     damping_per_speed: float = _usual(
-        0.1, "1", "change of damping as the speed is doubled", "tests at several Froude numbers"
+        0.1,
+        "1",
+        "change of damping as the speed is doubled, or is none",
+        "tests at several Froude numbers",
     )
     mass_relative: float = _usual(0.002, "1", "mass of the model", "scales of a workshop")
     inertia_relative: float = _usual(0.01, "1", "inertia of the model", "swing and bifilar tests")
