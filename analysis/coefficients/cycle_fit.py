@@ -198,27 +198,38 @@ def _weights(problem: CycleProblem, first: FloatArray) -> FloatArray:
     for row, _ in problem.rows:
         slope = problem.residual_slopes(first, row)
         for k, cycle in enumerate(problem.cycles):
-            whole[k, :, row] = _variance(problem, cycle, slope[k])
+            whole[k, :, row] = residual_variance(problem, cycle, slope[k])
     if not np.isfinite(whole).all():
         return np.ones_like(whole)
     own = np.array([_fewest(cycle) for cycle in problem.cycles])[:, None, None]
-    shrunk = _trusted(whole, own)
+    shrunk = trusted(whole, own, whole.mean(axis=0))
     floor = 1e-9 * np.abs(problem.parts).max() + 1e-300
     return np.asarray(1.0 / np.maximum(np.sqrt(shrunk), floor))
 
 
-def _variance(problem: CycleProblem, cycle: BodyCycle, slope: FloatArray) -> FloatArray:
-    """Of one load's residuals by a cycle's scatter: the mean of both parts of each order."""
+def residual_variance(
+    problem: CycleProblem, cycle: BodyCycle, slope: FloatArray, *sources: Contribution
+) -> FloatArray:
+    """Return the variance of one load's residuals: the mean of both parts of each order.
+
+    Parameters
+    ----------
+    slope
+        :meth:`CycleProblem.residual_slopes` of this load and cycle.
+    sources
+        Of the scatter; all of the cycle's where none is given.
+    """
     variance = np.zeros(len(slope))
-    for source in cycle.hull.phasors.real.contributions:
+    for source in sources or cycle.hull.phasors.real.contributions:
         variance += ((slope @ problem.scatter(cycle, source)) ** 2).sum(axis=1)
     numbers = problem.real.reshape(-1, 2)
     return np.asarray((variance.reshape(-1, 2) * numbers).sum(axis=1) / numbers.sum(axis=1))
 
 
-def _trusted(variance: FloatArray, degrees_of_freedom: FloatArray) -> FloatArray:
+def trusted(variance: FloatArray, degrees_of_freedom: FloatArray, mean: FloatArray) -> FloatArray:
+    """Return variances shrunk towards their mean, the more so the fewer periods they come from."""
     trust = 1.0 / (1.0 + _POOLED_FREEDOM / np.maximum(degrees_of_freedom, 1e-9))
-    return np.asarray(trust * variance + (1.0 - trust) * variance.mean(axis=0))
+    return np.asarray(trust * variance + (1.0 - trust) * mean)
 
 
 def _fewest(cycle: BodyCycle) -> float:

@@ -66,7 +66,7 @@ def linear_fit(cycles: Sequence[BodyCycle], form: Form, stated: StatedUncertaint
     if not columns:
         raise DataError(mixture_run(cycles, form, moved))
     places = tuple(place for place in PLACES if place.column in columns)
-    terms = tuple(Term(place.row, (_FACTORS[place.column][place.inertial],)) for place in places)
+    terms = tuple(map(term_at, places))
     names = tuple(name_of(place, cycles[0].plane, form) for place in places)
     fit = fit_terms(cycles, terms, names, FIRST, form=form, stated=stated)
     retained = _retained(cycles, moved, places, fit.values)
@@ -77,6 +77,11 @@ def linear_fit(cycles: Sequence[BodyCycle], form: Form, stated: StatedUncertaint
         *_neglected(cycles, form, columns, moved),
     )
     return LinearFit(fit, places, retained, misfit, flags)
+
+
+def term_at(place: Place) -> Term:
+    """Return the term whose coefficient stands at a place."""
+    return Term(place.row, (_FACTORS[place.column][place.inertial],))
 
 
 def lacking_places(cycles: Sequence[BodyCycle], form: Form) -> list[tuple[str, str]]:

@@ -12,7 +12,7 @@ import numpy as np
 from analysis.kinematics.cycle import INSTANTS
 from analysis.kinematics.geometry import Geometry
 from analysis.kinematics.motion import Driven, motion
-from analysis.kinematics.projection import ROWS, loads, readings
+from analysis.kinematics.projection import ROWS, check_surge_spared, load_matrix
 from hardware.description.arrays import FloatArray
 
 
@@ -42,11 +42,11 @@ class Tare:
         still = np.zeros((*np.shape(geometry.drift_rad)[:-1], 2, 1))
         there = motion(geometry, Driven(still, still, still))
         line = motion(geometry, moved).line_rad
-        turned = []
-        for load in np.eye(len(ROWS))[..., None]:
-            read = readings(geometry, there.line_rad, load)[..., :gauges, :]
-            turned.append(loads(geometry, line, read * np.ones(line.shape[-1])))
-        return cls(there.across_m[..., 0], np.stack(turned, axis=-3))
+        if gauges < len(ROWS):
+            check_surge_spared(geometry)
+        read = np.linalg.inv(load_matrix(geometry, there.line_rad))[..., :gauges, :]
+        turned = (load_matrix(geometry, line)[..., :gauges, :gauges] @ read).swapaxes(-1, -2)
+        return cls(there.across_m[..., 0], np.moveaxis(turned, -3, -1))
 
     @classmethod
     def stacked(cls, several: Sequence["Tare"]) -> "Tare":

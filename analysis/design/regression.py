@@ -1,0 +1,303 @@
+"""What each run that could be made would tell of each coefficient, by the fit's own equations.
+
+With the terms' columns A of :class:`analysis.coefficients.cycle_model.CycleProblem`, the variance R
+of the residuals' harmonics and the fit's own weights W, a run adds to the sums of each fit that it
+is part of, and the coefficients' covariance is
+
+    N = sum A' W A    Q = sum A' W R W A    G = sum A' W s    N^-1 (Q + G G') N^-1
+
+where s is what one standard uncertainty of each stated quantity (mass, lag, gain ...) does to the
+residuals. R is ``V_1 / T + V_r``: what one second leaves over the measured time, and what a repeat
+differs by. W is not ``R^-1``: of few periods the fit trusts the runs' mean variance more than each
+one's own (:func:`analysis.coefficients.cycle_fit.trusted`).
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from analysis.coefficients.body_cycle import BodyCycle
+from analysis.coefficients.cycle_fit import FIRST, HIGHER, residual_variance, trusted
+from analysis.coefficients.cycle_model import CycleProblem
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
+from analysis.design.belief import ORDERS, Belief, believed_cycles
+from analysis.design.noise import Noise
+from hardware.description.arrays import FloatArray, IntArray
+from hardware.description.setpoint import SetPoint
+
+_AT_ONCE: Final = 500  # cycles: some 100 MB
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A run that could be made.
+
+    Attributes
+    ----------
+    periods
+        That are measured; what settles is not among them.
+    cost_s
+        Of tank time: waiting, setting, settling and the carriage's way back in it.
+    """
+
+    point: SetPoint
+    periods: int
+    cost_s: float
+
+    @property
+    def measured_s(self) -> float:
+        """Time that is measured."""
+        return self.periods / self.point.frequency_hz
+
+    @property
+    def freedom(self) -> float:
+        """Degrees of freedom of the periods' own scatter."""
+        return max(self.periods - 1.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Target:
+    """How well a coefficient has to be known.
+
+    Attributes
+    ----------
+    standard_uncertainty
+        In the coefficient's unit.
+    band_hz
+        Frequencies at each of which it has to be met, by the runs of one frequency and speed; all
+        runs together tell it where there is none.
+    """
+
+    name: str
+    standard_uncertainty: float
+    band_hz: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Regression:
+    """A fit of one load by some of the candidates, each coefficient over what is wanted of it.
+
+    Attributes
+    ----------
+    names
+        Of its terms, p of them.
+    members
+        Places of its candidates, shape ``(n,)``.
+    normals, meats
+        What each adds to N and Q, shape ``(n, p, p)``.
+    pulls
+        What each adds to G, shape ``(n, p, s)``.
+    wanted
+        Standard uncertainty that is wanted of each term; infinite where none is.
+    where
+        Which runs it is of, in words; empty for all.
+    """
+
+    names: tuple[str, ...]
+    members: IntArray
+    normals: FloatArray
+    meats: FloatArray
+    pulls: FloatArray
+    wanted: FloatArray
+    where: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """Which candidates are fitted together with which terms of one load.
+
+    Attributes
+    ----------
+    row
+        0 force, 1 moment.
+    places
+        Of the terms among those of the belief.
+    orders
+        Harmonics that are fitted.
+    members
+        Places of the candidates.
+    wanted
+        Standard uncertainty that is wanted, by name.
+    where
+        Frequency and speed of the runs; empty for all runs.
+    """
+
+    row: int
+    places: tuple[int, ...]
+    orders: tuple[int, ...]
+    members: IntArray
+    wanted: Mapping[str, float]
+    where: str
+
+
+@dataclass(frozen=True, eq=False)
+class Told:
+    """Of all motions: columns, variances and slopes of one load's residuals.
+
+    Shapes ``(m, 2 orders, p)``, ``(m, 2 orders)`` twice, ``(m, 2 orders, s)``.
+    """
+
+    columns: FloatArray
+    after_1_s: FloatArray
+    of_repeats: FloatArray
+    slopes: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Prospects:
+    """Candidates, and what is known of each of their motions.
+
+    Attributes
+    ----------
+    motion
+        Which motion each candidate has, shape ``(n,)``.
+    """
+
+    candidates: tuple[Candidate, ...]
+    belief: Belief
+    motion: IntArray
+    told: Mapping[int, Told]
+
+    def regressions(
+        self, targets: Sequence[Target], like: Sequence[int] = ()
+    ) -> tuple[Regression, ...]:
+        """Return the regressions that targets ask for, as :func:`fits_of` has them.
+
+        Parameters
+        ----------
+        like
+            Candidates on whose mean variance the weights lean, as the fit's do on that of its runs;
+            all by default.
+        """
+        return tuple(
+            self._regression(fit, like) for fit in fits_of(self.candidates, targets, self.belief)
+        )
+
+    def _regression(self, fit: Fit, like: Sequence[int]) -> Regression:
+        names = tuple(list(self.belief.values)[k] for k in fit.places)
+        wanted = np.array([fit.wanted.get(name, np.inf) for name in names])
+        own, told = self.motion[fit.members], self.told[fit.row]
+        numbers = [2 * HIGHER.index(n) + part for n in fit.orders for part in (0, 1)]
+        some = [self.candidates[k] for k in fit.members]
+        time = np.array([one.measured_s for one in some])[:, None]
+        variance = told.after_1_s[own][:, numbers] / time + told.of_repeats[own][:, numbers]
+        freedom = np.array([one.freedom for one in some])[:, None]
+        place = {candidate: k for k, candidate in enumerate(fit.members)}
+        leant_on = [place[one] for one in like if one in place] or slice(None)
+        weights = 1.0 / trusted(variance, freedom, variance[leant_on].mean(axis=0))
+        columns = told.columns[own][:, numbers][..., list(fit.places)]
+        weighted = (columns * weights[..., None]).swapaxes(-1, -2)
+        spread = (columns * (weights * np.sqrt(variance))[..., None]).swapaxes(-1, -2)
+        return Regression(
+            names,
+            fit.members,
+            weighted @ columns,
+            spread @ spread.swapaxes(-1, -2),
+            weighted @ told.slopes[own][:, numbers],
+            wanted,
+            fit.where,
+        )
+
+
+def prospects(
+    candidates: Sequence[Candidate], belief: Belief, noise: Noise, stated: StatedUncertainties
+) -> Prospects:
+    """Return what is known of runs that could be made.
+
+    Raises
+    ------
+    DataError
+        If a candidate cannot be reached, or its loads not be told.
+    """
+    points = list(dict.fromkeys(candidate.point for candidate in candidates))
+    places = {point: k for k, point in enumerate(points)}
+    motion = np.array([places[candidate.point] for candidate in candidates])
+    return Prospects(tuple(candidates), belief, motion, _told(points, belief, noise, stated))
+
+
+def fits_of(
+    candidates: Sequence[Candidate], targets: Sequence[Target], belief: Belief
+) -> Iterator[Fit]:
+    """Yield the fits that targets ask for: of all runs, and of those of each frequency and speed.
+
+    Without a target all terms of all runs are asked for.
+    """
+    whole = {one.name: one.standard_uncertainty for one in targets if one.band_hz is None}
+    if whole or not targets:
+        every = np.arange(len(candidates))
+        yield from _by_load(every, whole, belief, max(term.degree for term in belief.terms))
+    kinds: dict[tuple[float, float], list[int]] = {}
+    for k, one in enumerate(candidates):
+        if one.point.drift_rad == 0.0:
+            key = (one.point.frequency_hz, one.point.carriage_speed_m_s)
+            kinds.setdefault(key, []).append(k)
+    for (frequency, speed), members in sorted(kinds.items()):
+        some = {
+            one.name: one.standard_uncertainty
+            for one in targets
+            if one.band_hz is not None and one.band_hz[0] <= frequency <= one.band_hz[1]
+        }
+        if some:
+            where = f"{frequency:g} Hz, {speed:g} m/s"
+            yield from _by_load(np.array(members), some, belief, 1, where)
+
+
+def _by_load(
+    members: IntArray, wanted: Mapping[str, float], belief: Belief, degree: int, where: str = ""
+) -> Iterator[Fit]:
+    """Yield the fit of each load that is asked for, with terms of up to some degree."""
+    names = list(belief.values)
+    for row in sorted({term.row for term in belief.terms}):
+        places = tuple(
+            k for k, term in enumerate(belief.terms) if term.row == row and term.degree <= degree
+        )
+        if places and (not wanted or any(names[k] in wanted for k in places)):
+            orders = HIGHER if degree > 1 else FIRST
+            yield Fit(row, places, orders, members, wanted, where)
+
+
+def _told(
+    points: Sequence[SetPoint], belief: Belief, noise: Noise, stated: StatedUncertainties
+) -> dict[int, Told]:
+    pieces: dict[int, list[Told]] = {}
+    for first in range(0, len(points), _AT_ONCE):
+        cycles = _of_a_second(points[first : first + _AT_ONCE], belief, noise)
+        for row, piece in _of_cycles(cycles, belief, stated):
+            pieces.setdefault(row, []).append(piece)
+    return {
+        row: Told(*(np.concatenate([getattr(one, key) for one in some])
+                     for key in Told.__dataclass_fields__))
+        for row, some in pieces.items()
+    }  # fmt: skip
+
+
+def _of_a_second(points: Sequence[SetPoint], belief: Belief, noise: Noise) -> list[BodyCycle]:
+    """Return runs' cycles with the scatter of one second each, and of a repeat."""
+    names = [f"run {k}" for k in range(len(points))]
+    scatter = [
+        noise.scatter(name, point.frequency_hz, point.frequency_hz)
+        for name, point in zip(names, points, strict=True)
+    ]
+    return [noise.repeating(one) for one in believed_cycles(names, points, belief, scatter)]
+
+
+def _of_cycles(
+    cycles: Sequence[BodyCycle], belief: Belief, stated: StatedUncertainties
+) -> Iterator[tuple[int, Told]]:
+    even = np.ones((len(cycles), len(HIGHER), 3))
+    problem = CycleProblem(tuple(cycles), belief.terms, HIGHER, even, ORDERS, belief.form)
+    acting = np.flatnonzero(stated.vector)
+    spread = [problem.sensitivity(cycle)[:, acting] * stated.vector[acting] for cycle in cycles]
+    for row, _ in problem.rows:
+        slopes = problem.residual_slopes(belief.vector, row)
+        variances = np.zeros((2, len(cycles), len(HIGHER)))
+        for k, (cycle, slope) in enumerate(zip(cycles, slopes, strict=True)):
+            for n, source in enumerate(cycle.hull.phasors.real.contributions):
+                variances[n, k] = residual_variance(problem, cycle, slope, source)
+        after, repeats = np.repeat(variances, 2, axis=-1)
+        yield (
+            row,
+            Told(problem.nominal[0], after, repeats, np.einsum("kbn,kns->kbs", slopes, spread)),
+        )

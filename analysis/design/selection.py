@@ -1,0 +1,245 @@
+"""The runs that are worth their time: greedy choice, then exchange.
+
+What is brought down is the sum over all targets of ``ln(u / wanted)``, as far as it is above 0 (a
+c-optimal design for each of them); without targets the logarithm of the determinant of all
+coefficients' covariance (D-optimal: V. V. Fedorov, Theory of Optimal Experiments, 1972). Runs are
+taken by what they bring per second of tank time until all targets are met or the time is used up;
+then each is left out or exchanged where that keeps what was reached and saves time.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from analysis.design.regression import Prospects, Regression, Target
+from hardware.description.arrays import BoolArray, FloatArray, IntArray
+
+MOST_RUNS: Final = 200
+_NOTHING: Final = 1e-6  # of a natural logarithm: less is no gain
+_FAINT: Final = 1e-9  # of a candidate's typical information: keeps a normal matrix regular
+_PASSES: Final = 2  # through all runs that are chosen, for an exchange
+_ROUNDS: Final = 4  # of the search, for the weights
+_AIM: Final = 0.99  # of what is wanted: the weights are those of the round before
+
+
+@dataclass(frozen=True)
+class Selection:
+    """Which candidates to make.
+
+    Attributes
+    ----------
+    chosen
+        Places of the candidates, most telling for their time first; one that is to be repeated
+        stands more than once.
+    met
+        Whether all targets are expected to be met by them.
+    """
+
+    chosen: tuple[int, ...]
+    met: bool
+
+
+class _State:
+    """The sums of one regression over the runs that are chosen so far."""
+
+    def __init__(self, regression: Regression, count: int) -> None:
+        self.regression = regression
+        typical = np.einsum("npp->p", regression.normals) / max(len(regression.members), 1)
+        self.normal = np.diag(_FAINT * typical + 1e-300)
+        self.meat = self.normal.copy()
+        self.pull = np.zeros(regression.pulls.shape[1:])
+        self.place = np.full(count, -1)
+        self.place[regression.members] = np.arange(len(regression.members))
+
+    def add(self, candidate: int, times: float = 1.0) -> None:
+        """Take a candidate in, or out again with ``times = -1``."""
+        k = self.place[candidate]
+        if k >= 0:
+            self.normal += times * self.regression.normals[k]
+            self.meat += times * self.regression.meats[k]
+            self.pull += times * self.regression.pulls[k]
+
+    def losses(self, places: IntArray | None = None) -> FloatArray:
+        """Return the criterion with each of some members besides, ``(n,)``; of none: ``(1,)``."""
+        normal, meat, pull = self.normal[None], self.meat[None], self.pull[None]
+        if places is not None:
+            normal = normal + self.regression.normals[places]
+            meat = meat + self.regression.meats[places]
+            pull = pull + self.regression.pulls[places]
+        return criterion(self.regression.wanted, normal, meat, pull)
+
+
+def criterion(
+    wanted: FloatArray, normal: FloatArray, meat: FloatArray, pull: FloatArray
+) -> FloatArray:
+    """Return how far the sums of some sets of runs are from what is wanted, ``(n,)``.
+
+    Parameters
+    ----------
+    normal, meat, pull
+        N, Q and G of :mod:`analysis.design.regression`, shapes ``(n, p, p)`` and ``(n, p, s)``.
+    """
+    scale = 1.0 / np.sqrt(np.einsum("npp->np", normal))
+    scaled = normal * scale[:, :, None] * scale[:, None, :]
+    asked = np.flatnonzero(np.isfinite(wanted))
+    if not len(asked):
+        spread = 0.5 * np.linalg.slogdet(meat * scale[:, :, None] * scale[:, None, :])[1]
+        return np.asarray(np.log(scale).sum(axis=1) + spread - np.linalg.slogdet(scaled)[1])
+    sides = np.zeros((len(normal), normal.shape[1], len(asked)))
+    sides[:, asked, np.arange(len(asked))] = scale[:, asked]
+    columns = np.linalg.solve(scaled, sides) * scale[:, :, None]
+    variance = (columns * (meat @ columns)).sum(axis=1)
+    variance += ((pull.swapaxes(-1, -2) @ columns) ** 2).sum(axis=1)
+    short = 0.5 * np.log(np.maximum(variance, 1e-300)) - np.log(_AIM * wanted[asked])
+    return np.asarray(np.maximum(short, 0.0).sum(axis=1))
+
+
+def covariance(regression: Regression, chosen: Sequence[int]) -> FloatArray:
+    """Return what the chosen candidates leave of the coefficients, shape ``(p, p)``."""
+    state = _State(regression, 1 + max((*regression.members, *chosen), default=0))
+    for candidate in chosen:
+        state.add(candidate)
+    scale = 1.0 / np.sqrt(np.diagonal(state.normal))
+    inverse = np.linalg.inv(state.normal * np.outer(scale, scale)) * np.outer(scale, scale)
+    return np.asarray(inverse @ (state.meat + state.pull @ state.pull.T) @ inverse)
+
+
+def select(
+    prospects: Prospects,
+    targets: Sequence[Target],
+    time_s: float = math.inf,
+    made: Sequence[int] = (),
+) -> Selection:
+    """Return the runs that meet all targets in little time.
+
+    The weights of a fit depend on which runs it has, so that the search begins anew from what it
+    found, with the weights of that.
+
+    Parameters
+    ----------
+    time_s
+        That may be used for them.
+    made
+        Candidates that are made already, or in any case; they cost nothing more.
+    """
+    costs = np.array([one.cost_s for one in prospects.candidates])
+    chosen: list[int] = []
+    for _ in range(_ROUNDS):
+        regressions = prospects.regressions(targets, (*made, *chosen))
+        search = _Search(regressions, costs, time_s, made, chosen)
+        if chosen and search.met:
+            break
+        search.grow()
+        search.exchange()
+        if chosen == search.chosen:
+            break
+        chosen = search.chosen
+    return Selection(tuple(search.in_order()), search.met)
+
+
+class _Search:
+    def __init__(
+        self,
+        regressions: Sequence[Regression],
+        costs: FloatArray,
+        time_s: float,
+        made: Sequence[int],
+        chosen: Sequence[int],
+    ) -> None:
+        self.costs, self.time_s = costs, time_s
+        self.chosen = list(chosen)
+        self.targeted = any(np.isfinite(one.wanted).any() for one in regressions)
+        self.states = [_State(one, len(costs)) for one in regressions]
+        for candidate in (*made, *chosen):
+            self._add(candidate)
+
+    def _add(self, candidate: int, times: float = 1.0) -> None:
+        for state in self.states:
+            state.add(candidate, times)
+
+    @property
+    def used_s(self) -> float:
+        """Tank time of what is chosen."""
+        return float(self.costs[self.chosen].sum())
+
+    @property
+    def missing(self) -> float:
+        """The criterion as it stands."""
+        return float(sum(state.losses()[0] for state in self.states))
+
+    @property
+    def met(self) -> bool:
+        """Whether all targets are expected to be met."""
+        return self.targeted and self.missing <= 0.0
+
+    def gains(self, asked: BoolArray) -> FloatArray:
+        """Return by how much each candidate would bring the criterion down; 0 if not asked for.
+
+        Parameters
+        ----------
+        asked
+            Which candidates are, shape ``(n,)``, as the result.
+        """
+        gains = np.zeros(len(self.costs))
+        for state in self.states:
+            now = state.losses()[0]
+            if self.targeted and now <= 0.0:
+                continue
+            members = state.regression.members
+            own = np.flatnonzero(asked[members])
+            gains[members[own]] += now - state.losses(own)
+        return gains
+
+    def grow(self) -> None:
+        """Take runs in until the targets are met, nothing helps or the time is used up."""
+        while len(self.chosen) < MOST_RUNS and not self.met:
+            gains = self.gains(self.costs <= self.time_s - self.used_s)
+            best = int(np.argmax(gains / self.costs))
+            if not gains[best] > _NOTHING:
+                break
+            self.chosen.append(best)
+            self._add(best)
+
+    def exchange(self) -> None:
+        """Leave out or exchange runs while that saves time or brings the criterion down."""
+        for _ in range(_PASSES):
+            before = (self.met, self.used_s, self.missing)
+            for candidate in sorted(set(self.chosen), key=lambda one: -self.costs[one]):
+                self._exchanged(candidate)
+            if before == (self.met, self.used_s, self.missing):
+                return
+
+    def _exchanged(self, candidate: int) -> None:
+        """Put in place of one run nothing, or what does better."""
+        was, own_s = self.missing, float(self.costs[candidate])
+        met = self.met
+        self.chosen.remove(candidate)
+        self._add(candidate, -1.0)
+        if self.met:
+            return
+        gains = self.gains(self.costs <= (own_s if met else self.time_s - self.used_s))
+        after = self.missing - gains
+        best = candidate
+        if met:
+            cheap = (after <= 0.0) & (self.costs < own_s)
+            best = int(np.argmin(np.where(cheap, self.costs, np.inf))) if cheap.any() else best
+        elif after.min() < was - _NOTHING:
+            best = int(np.argmin(after))
+        self.chosen.append(best)
+        self._add(best)
+
+    def in_order(self) -> list[int]:
+        """Return the chosen runs, at each place the one that brings most for its time."""
+        left, ordered = list(self.chosen), []
+        for candidate in left:
+            self._add(candidate, -1.0)
+        while left:
+            gains = self.gains(np.isin(np.arange(len(self.costs)), left))
+            best = max(left, key=lambda one: (gains[one] / self.costs[one], -self.costs[one]))
+            left.remove(best)
+            ordered.append(best)
+            self._add(best)
+        return ordered
