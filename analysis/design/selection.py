@@ -1,7 +1,8 @@
 """The runs that are worth their time: greedy choice, then exchange.
 
 What is brought down is the sum over all targets of ``ln(u / wanted)``, as far as it is above 0 (a
-c-optimal design for each of them); without targets the logarithm of the determinant of all
+c-optimal design for each of them), where a term without a target is asked for no more than the fit
+needs to tell it from the others; without targets the logarithm of the determinant of all
 coefficients' covariance (D-optimal: V. V. Fedorov, Theory of Optimal Experiments, 1972). Runs are
 taken by what they bring per second of tank time until all targets are met or the time is used up;
 then each is left out or exchanged where that keeps what was reached and saves time.
@@ -22,6 +23,7 @@ _NOTHING: Final = 1e-6  # of a natural logarithm: less is no gain
 _FAINT: Final = 1e-9  # of a candidate's typical information: keeps a normal matrix regular
 _PASSES: Final = 2  # through all runs that are chosen, for an exchange
 _ROUNDS: Final = 4  # of the search, for the weights
+_TOLD: Final = 3.0  # a term without a target has this many times the scatter of a usual run
 _AIM: Final = 0.99  # of what is wanted: the weights are those of the round before
 
 
@@ -50,6 +52,10 @@ class _State:
         typical = np.einsum("npp->p", regression.normals) / max(len(regression.members), 1)
         self.normal = np.diag(_FAINT * typical + 1e-300)
         self.meat = self.normal.copy()
+        with np.errstate(divide="ignore"):
+            self.wanted = np.where(
+                np.isfinite(regression.wanted), _AIM * regression.wanted, _TOLD / np.sqrt(typical)
+            )
         self.pull = np.zeros(regression.pulls.shape[1:])
         self.place = np.full(count, -1)
         self.place[regression.members] = np.arange(len(regression.members))
@@ -69,32 +75,22 @@ class _State:
             normal = normal + self.regression.normals[places]
             meat = meat + self.regression.meats[places]
             pull = pull + self.regression.pulls[places]
-        return criterion(self.regression.wanted, normal, meat, pull)
+        return self._criterion(normal, meat, pull)
 
-
-def criterion(
-    wanted: FloatArray, normal: FloatArray, meat: FloatArray, pull: FloatArray
-) -> FloatArray:
-    """Return how far the sums of some sets of runs are from what is wanted, ``(n,)``.
-
-    Parameters
-    ----------
-    normal, meat, pull
-        N, Q and G of :mod:`analysis.design.regression`, shapes ``(n, p, p)`` and ``(n, p, s)``.
-    """
-    scale = 1.0 / np.sqrt(np.einsum("npp->np", normal))
-    scaled = normal * scale[:, :, None] * scale[:, None, :]
-    asked = np.flatnonzero(np.isfinite(wanted))
-    if not len(asked):
-        spread = 0.5 * np.linalg.slogdet(meat * scale[:, :, None] * scale[:, None, :])[1]
-        return np.asarray(np.log(scale).sum(axis=1) + spread - np.linalg.slogdet(scaled)[1])
-    sides = np.zeros((len(normal), normal.shape[1], len(asked)))
-    sides[:, asked, np.arange(len(asked))] = scale[:, asked]
-    columns = np.linalg.solve(scaled, sides) * scale[:, :, None]
-    variance = (columns * (meat @ columns)).sum(axis=1)
-    variance += ((pull.swapaxes(-1, -2) @ columns) ** 2).sum(axis=1)
-    short = 0.5 * np.log(np.maximum(variance, 1e-300)) - np.log(_AIM * wanted[asked])
-    return np.asarray(np.maximum(short, 0.0).sum(axis=1))
+    def _criterion(self, normal: FloatArray, meat: FloatArray, pull: FloatArray) -> FloatArray:
+        """Return how far several sums N, Q and G are from what is wanted, ``(n,)``."""
+        scale = 1.0 / np.sqrt(np.einsum("npp->np", normal))
+        scaled = normal * scale[:, :, None] * scale[:, None, :]
+        targeted = np.isfinite(self.regression.wanted)
+        if not targeted.any():
+            spread = 0.5 * np.linalg.slogdet(meat * scale[:, :, None] * scale[:, None, :])[1]
+            return np.asarray(np.log(scale).sum(axis=1) + spread - np.linalg.slogdet(scaled)[1])
+        inverse = np.linalg.inv(scaled) * scale[:, :, None] * scale[:, None, :]
+        variance = (inverse * (meat @ inverse)).sum(axis=1)
+        common = ((pull.swapaxes(-1, -2) @ inverse) ** 2).sum(axis=1)
+        variance += np.where(targeted, common, 0.0)
+        short = 0.5 * np.log(np.maximum(variance, 1e-300)) - np.log(self.wanted)
+        return np.asarray(np.maximum(short, 0.0).sum(axis=1))
 
 
 def covariance(regression: Regression, chosen: Sequence[int]) -> FloatArray:

@@ -10,13 +10,14 @@ from pmm.cli.options import JSON
 
 @click.group(cls=CommandGroup, kind="action")
 def plan() -> None:
-    """Check and show a plan of runs, before the rig moves.
+    """Design, check and show a plan of runs, before the rig moves.
 
     A plan (docs/plans.md) names its rig (docs/rig-file.md). Exit status: 0 the rig can run it, 1 it
     cannot, 2 a file is wrong.
 
     \b
     pmm plan check examples/vertical/plan.toml
+    pmm plan design examples/horizontal/design.toml --output designed.toml
     """  # noqa: D301
 
 
@@ -64,3 +65,42 @@ def show(file: str, plot: str | None, as_json: bool) -> None:
         figures = write_figure(matrix_figure(read, rig), Path(plot), f"{read.name}-matrix")
     if not as_json:
         say(*figures, pasted("plan", "check", file))
+
+
+@plan.command()
+@click.argument("file", metavar="DESIGN.toml")
+@click.option("--output", metavar="PLAN.toml", help="Write the plan there.")
+@click.option("--overwrite", is_flag=True, help="Replace a plan that is there.")
+@click.option("--plot", metavar="FOLDER", help="Draw uncertainty against time there.")
+@JSON
+def design(file: str, output: str | None, overwrite: bool, plot: str | None, as_json: bool) -> None:
+    """Choose the runs that make coefficients as well known as is asked.
+
+    Exit status: 0 all targets are expected to be met, 1 not all, 2 a file is wrong.
+    """
+    from pmm.cli.files import check_files, check_folder
+    from pmm.cli.screen import doing, pasted, say
+    from pmm.cli.screen import show as tell
+    from pmm.design.design_file import read_design
+    from pmm.design.designing import design as designed
+    from pmm.design.plan_writer import plan_text
+    from pmm.document.style import write_figures
+    from pmm.report.design_document import design_document
+    from pmm.whole_file import write_whole
+
+    check_files({"--output": output}, [("the design", Path(file))], overwrite=overwrite)
+    if plot is not None:
+        check_folder(Path(plot), "--plot")
+    read = read_design(Path(file))
+    with doing("looking at what each run would tell"):
+        found = designed(read)
+    target = None if output is None else Path(output)
+    document = design_document(read, found, target)
+    tell(document, as_json=as_json)
+    figures = [] if plot is None else write_figures(document.figures, Path(plot), read.name)
+    if target is not None:
+        write_whole(target, plan_text(read, found, target))
+    if not as_json:
+        say(*figures, *([] if target is None else [pasted("plan", "check", target)]))
+    if not found.met:
+        click.get_current_context().exit(1)

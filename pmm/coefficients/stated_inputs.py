@@ -175,8 +175,8 @@ def stated_of(
     """
     set_points = StatedUncertainties(**(_of_set_points(campaign.runs) if motion_asked else {}))
     known = [
-        *(StatedUncertainties(**_of_model(one)) for one in models),
-        *map(_of_gauges, calibrations),
+        *map(of_model, models),
+        *map(of_gauges, calibrations),
     ]
     by_files = largest([set_points, *known])
     own, other = settings.uncertainty, by_files
@@ -196,10 +196,12 @@ def _stated(vector: FloatArray, freedom: float) -> StatedUncertainties:
     return StatedUncertainties(**found, inertia_degrees_of_freedom=freedom)
 
 
-def _of_model(model: ModelUncertainty) -> dict[str, float]:
+def of_model(model: ModelUncertainty) -> StatedUncertainties:
+    """Return what is uncertain of the body that is taken off."""
     freedom = model.inertia_degrees_of_freedom
     found = {name: getattr(model, name) for name in _BODY}
-    return found | {"inertia_degrees_of_freedom": freedom if np.isfinite(freedom) else 0.0}
+    known = freedom if np.isfinite(freedom) else 0.0
+    return StatedUncertainties(**found, inertia_degrees_of_freedom=known)
 
 
 def _of_set_points(runs: Sequence[Run]) -> dict[str, float]:
@@ -210,7 +212,7 @@ def _of_set_points(runs: Sequence[Run]) -> dict[str, float]:
     }
 
 
-def _of_gauges(one: Calibration) -> StatedUncertainties:
+def of_gauges(one: Calibration) -> StatedUncertainties:
     """Return what a calibration leaves open, of the struts' gauges that it was made of."""
     rows = {name: one.channels.index(name) for name in FORCES if name in one.channels}
     spread = one.force_uncertainty

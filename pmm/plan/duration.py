@@ -46,8 +46,8 @@ def run_s(run: RunPlan, before: RunPlan | None, rig: RigFile) -> float:
 
 def duration_rows(runs: Sequence[RunPlan], rig: RigFile) -> tuple[float, ...]:
     """Return how long each run takes at most, in seconds, made in this order."""
-    before = (None, *runs[:-1])
-    return tuple(run_s(run, last, rig) for run, last in zip(runs, before, strict=True))
+    before = (None, *runs)
+    return tuple(run_s(run, last, rig) for run, last in zip(runs, before, strict=False))
 
 
 def _setting_s(run: RunPlan, before: RunPlan | None, rig: RigFile) -> float:

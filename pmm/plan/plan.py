@@ -81,6 +81,54 @@ def read_plan_and_rig(path: str | Path) -> tuple[Plan, RigFile]:
     """
     path = Path(path)
     original, content = read_toml_and_bytes(path)
+    found = examine_plan(original, path)
+    faults, tables, rig = list(found.faults), found.tables, found.rig.rig
+    runs: tuple[RunPlan, ...] = ()
+    if tables is not None and not faults and rig is not None:
+        runs = runs_of(tables, rig.oscillator, found.channels)
+        faults += _name_faults(runs)
+    errors = [as_error(path, faults, original)] if faults else []
+    errors += [found.rig.error] if found.rig.error is not None else []
+    if errors or tables is None or rig is None:
+        raise ConfigurationError("\n".join(map(str, errors)))
+    sha256 = hashlib.sha256(content).hexdigest()
+    name = tables.name or path.resolve().parent.name
+    return Plan(name, path, found.rig_path, runs, tables.operator, sha256, content), rig
+
+
+@dataclass(frozen=True)
+class PlanReading:
+    """What could be made of a plan's tables and of the rig that they name.
+
+    Attributes
+    ----------
+    tables
+        ``None`` where they have errors that do not let them be had.
+    faults
+        All errors of the tables; those of the rig's file are the rig's.
+    """
+
+    tables: PlanTables | None
+    rig_path: Path
+    rig: RigFileReading
+    faults: tuple[Fault, ...]
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """The rig's force channels, as far as they could be read."""
+        return self.rig.channels or ()
+
+
+def examine_plan(original: dict[str, Any], path: Path) -> PlanReading:
+    """Read a plan's tables as far as they go.
+
+    Parameters
+    ----------
+    original
+        Left as it is.
+    path
+        Of the plan: its rig is named from there.
+    """
     table = deepcopy(original)
     faults: list[Fault] = []
     expand_units(table, faults)
@@ -88,20 +136,9 @@ def read_plan_and_rig(path: str | Path) -> tuple[Plan, RigFile]:
     rig_path = _rig_path(path, table)
     found = examine_rig(rig_path)
     faults += _faults(table, found)
-    runs: tuple[RunPlan, ...] = ()
     if tables is not None and not faults and found.rig is not None:
-        channels = found.channels or ()
-        faults += _size_faults(tables, channels)
-        runs = () if faults else runs_of(tables, found.rig.oscillator, channels)
-        faults += _name_faults(runs)
-    errors = [as_error(path, faults, original)] if faults else []
-    errors += [found.error] if found.error is not None else []
-    if errors or tables is None or found.rig is None:
-        raise ConfigurationError("\n".join(map(str, errors)))
-    sha256 = hashlib.sha256(content).hexdigest()
-    name = tables.name or path.resolve().parent.name
-    plan = Plan(name, path, rig_path, runs, tables.operator, sha256, content)
-    return plan, found.rig
+        faults += _size_faults(tables, found.channels or ())
+    return PlanReading(tables, rig_path, found, tuple(faults))
 
 
 def _rig_path(path: Path, table: dict[str, Any]) -> Path:

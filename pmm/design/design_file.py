@@ -1,0 +1,231 @@
+"""Reading ``design.toml``: a plan whose runs are to be chosen from a grid.
+
+Its tables are those of a plan (what ``[[runs]]`` holds is made in any case) with ``[[grid]]``,
+matrices of runs to choose from, and the tables of :mod:`pmm.design.design_tables`.
+"""
+
+from collections.abc import Iterator
+from copy import deepcopy
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from analysis.coefficients.names import PLACES, Form, name_of
+from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainties
+from analysis.coefficients.terms import SURGE
+from analysis.design.belief import Belief
+from analysis.design.noise import Noise
+from analysis.design.regression import Candidate, Target
+from hardware.description.errors import ConfigurationError
+from hardware.description.kinds import RunKind
+from hardware.description.setpoint import Medium
+from pmm.campaign.model_uncertainty import take_uncertainty
+from pmm.coefficients.stated_inputs import largest, of_gauges, of_model
+from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
+from pmm.design.design_tables import DesignTables
+from pmm.design.grid import Grid, candidate_of, grid_of
+from pmm.design.targets import targets_of
+from pmm.plan.expansion import all_of, expand
+from pmm.plan.ordering import runs_of
+from pmm.plan.plan import PlanReading, examine_plan
+from pmm.plan.plan_tables import PlanTables
+from pmm.plan.rig_file import RigFile
+from pmm.plan.run_plan import RunPlan
+
+_OWN: Final = ("grid", "believed", "targets", "noise", "stated", "limits")
+
+
+@dataclass(frozen=True, eq=False)
+class DesignFile:
+    """A design's file, read and checked.
+
+    Attributes
+    ----------
+    name
+        Of the campaign.
+    plan_table
+        Of a plan without the runs that are to be chosen, as it is written.
+    rig_path
+        Where the rig's file lies.
+    fixed
+        Runs that are made in any case, zero and control runs among them.
+    made
+        Those of them that tell of the coefficients.
+    """
+
+    name: str
+    path: Path
+    plan_table: dict[str, Any]
+    rig_path: Path
+    rig: RigFile
+    tables: PlanTables
+    fixed: tuple[RunPlan, ...]
+    made: tuple[Candidate, ...]
+    grid: Grid
+    belief: Belief
+    noise: Noise
+    stated: StatedUncertainties
+    targets: tuple[Target, ...]
+    time_s: float
+
+
+def read_design(path: Path) -> DesignFile:
+    """Read a design and the rig that it names.
+
+    Raises
+    ------
+    ConfigurationError
+        If a file cannot be read, or for all that is wrong in both: keys, types, runs that the rig
+        does not have, targets that name no coefficient or are none, and a grid of which the rig
+        can make no run.
+    """
+    original = read_toml(path)
+    own: dict[str, Any] = {key: original[key] for key in _OWN if key in original and key != "grid"}
+    plan_table = {key: one for key, one in original.items() if key not in _OWN}
+    grid, places = _grid_entries(original.get("grid"))
+    fixed = plan_table.get("runs", [])
+    count = len(fixed) if isinstance(fixed, list) else 0
+    whole = {**plan_table, "runs": [*fixed, *grid] if isinstance(fixed, list) else fixed}
+    found = examine_plan(whole, path)
+    faults = [_placed(fault, count, places) for fault in found.faults]
+    if not grid:
+        faults.append(Fault(("grid",), "is missing; add a table [[grid]] of runs to choose from"))
+    faults += limit_faults(own)
+    tables = validate(DesignTables, own, faults)
+    rig = found.rig.rig
+    if faults or tables is None or rig is None or found.tables is None:
+        errors = [as_error(path, faults, original)] if faults else []
+        errors += [found.rig.error] if found.rig.error is not None else []
+        raise ConfigurationError("\n".join(map(str, errors)))
+    return _design(path, plan_table, found, rig, found.tables, tables, count, original)
+
+
+def _grid_entries(given: Any) -> tuple[list[dict[str, Any]], list[int]]:
+    """Return a table for each number of periods, and of which entry of the grid each is."""
+    tables: list[dict[str, Any]] = []
+    places: list[int] = []
+    for number, entry in enumerate(given if isinstance(given, list) else []):
+        periods = entry.get("periods") if isinstance(entry, dict) else None
+        for one in periods if isinstance(periods, list) else [periods]:
+            table = deepcopy(entry)
+            tables.append(table | ({} if one is None else {"periods": one}))
+            places.append(number)
+    return tables, places
+
+
+def _placed(fault: Fault, fixed: int, places: list[int]) -> Fault:
+    """Return a fault where the design's file has it: an entry behind the fixed is the grid's."""
+    place = fault.place
+    if len(place) > 1 and place[0] == "runs" and isinstance(place[1], int) and place[1] >= fixed:
+        return Fault(("grid", places[place[1] - fixed], *place[2:]), fault.message)
+    return fault
+
+
+def _design(
+    path: Path,
+    plan_table: dict[str, Any],
+    found: PlanReading,
+    rig: RigFile,
+    plan: PlanTables,
+    tables: DesignTables,
+    fixed_entries: int,
+    original: dict[str, Any],
+) -> DesignFile:
+    entries = plan.runs
+    kept = PlanTables(
+        plan.name, plan.rig, plan.operator, plan.defaults, plan.order, plan.zero, plan.control,
+        entries[:fixed_entries],
+    )  # fmt: skip
+    fixed = runs_of(kept, rig.oscillator, found.channels)
+    could = [
+        run
+        for entry in entries[fixed_entries:]
+        for run in expand(entry, plan.defaults, rig.oscillator, found.channels, all_of)
+    ]
+    faults = list(_grid_faults(could))
+    belief = _belief(tables, rig, faults)
+    grid = grid_of(could, rig, tables.limits, plan.zero)
+    if could and not grid.runs:
+        why = ", ".join(f"{what} ({count})" for what, count in grid.left_out.items())
+        faults.append(Fault(("grid",), f"has no run that may be made; left out for: {why}"))
+    targets: tuple[Target, ...] = ()
+    if belief is not None and not faults:
+        points = [run.set_point for run in grid.runs]
+        targets = targets_of(tables.targets, belief, points, faults)
+    hours = tables.limits.time_h
+    if not targets and hours is None and not faults:
+        faults.append(Fault(("targets",), "are missing, and so is limits.time_h; give either"))
+    if faults or belief is None:
+        raise as_error(path, faults, original)
+    made = tuple(candidate_of(run, rig, None) for run in fixed if _tells(run))
+    return DesignFile(
+        plan.name or path.resolve().parent.name, path, plan_table, found.rig_path, rig, kept,
+        fixed, made, grid, belief, _noise(tables, rig), _stated(tables, rig), targets,
+        np.inf if hours is None else 3600.0 * hours,
+    )  # fmt: skip
+
+
+def _tells(run: RunPlan) -> bool:
+    kinds = (RunKind.OSCILLATION, RunKind.CONTROL)
+    return run.kind in kinds and run.set_point.medium is Medium.WATER
+
+
+def _grid_faults(runs: list[RunPlan]) -> Iterator[Fault]:
+    kinds = sorted({str(run.kind) for run in runs if run.kind is not RunKind.OSCILLATION})
+    if kinds:
+        yield Fault(
+            ("grid",),
+            f"holds runs of the kind {', '.join(kinds)}; only oscillations in water are chosen "
+            "from, others belong to [[runs]]",
+        )
+
+
+def _belief(tables: DesignTables, rig: RigFile, faults: list[Fault]) -> Belief | None:
+    """Return what is believed; faults are noted."""
+    plane = rig.oscillator.plane
+    if rig.model is None:
+        faults.append(Fault((), "needs the model's mass and inertia: [model] of the rig's file"))
+        return None
+    values = dict(tables.believed)
+    if not values and rig.hull is not None:
+        kinds = (rig.hull.damping, rig.hull.added_mass)
+        values = {
+            name_of(place, plane, Form.MANOEUVRING): -kinds[place.inertial][place.row][place.column]
+            for place in PLACES
+        }
+    if not values:
+        faults.append(Fault(("believed",), "is missing, and the rig's file has no [hull]"))
+        return None
+    form = Form.SEAKEEPING if all(name[0] in "ab" for name in values) else Form.MANOEUVRING
+    restoring = np.zeros((2, 2)) if rig.hull is None else np.array(rig.hull.restoring)
+    belief = Belief(rig.oscillator, rig.model, values, form, restoring)
+    try:
+        surge = [n for n, term in zip(values, belief.terms, strict=True) if term.row == SURGE]
+    except ConfigurationError as error:
+        faults.append(Fault(("believed",), f"holds {error}"))
+        return None
+    if surge:
+        text = f"holds {', '.join(surge)}; runs are chosen for force and moment, not for X"
+        faults.append(Fault(("believed",), text))
+    return belief
+
+
+def _noise(tables: DesignTables, rig: RigFile) -> Noise:
+    one = tables.noise
+    rate_hz = rig.sample_rate_hz if one.sample_rate_hz is None else one.sample_rate_hz
+    return Noise(one.force_n, rate_hz, one.displacement_m, one.corner_hz, one.repeat_relative)
+
+
+def _stated(tables: DesignTables, rig: RigFile) -> StatedUncertainties:
+    """Return what is stated; where it says nothing, what the rig's file knows."""
+    model = take_uncertainty(dict(rig.campaign), [])
+    known = [StatedUncertainties()]
+    known += [] if model is None else [of_model(model)]
+    known += [] if rig.calibration is None else [of_gauges(rig.calibration)]
+    by_file, own = largest(known), tables.stated
+    vector = np.where(own.vector == 0.0, by_file.vector, own.vector)
+    freedom = (own if own.inertia_kg_m2 else by_file).inertia_degrees_of_freedom
+    values = dict(zip(STATED, vector.tolist(), strict=True))
+    return StatedUncertainties(**values, inertia_degrees_of_freedom=freedom)

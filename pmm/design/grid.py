@@ -1,0 +1,88 @@
+"""The runs that could be made: of a grid's combinations those that rig and field allow.
+
+A candidate is judged by the checks of ``pmm plan check``, one by one: what is refused, or warned
+of, is no candidate, and neither is what the design's own limits exclude.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import chain
+
+from analysis.design.regression import Candidate
+from pmm.design.design_tables import DesignLimits
+from pmm.plan import check_table as table
+from pmm.plan.condition_checks import condition_findings
+from pmm.plan.duration import run_s
+from pmm.plan.field_checks import field_findings
+from pmm.plan.findings import PlanFinding, PlanVerdict
+from pmm.plan.limits import limit_findings
+from pmm.plan.plan_tables import ZeroTable
+from pmm.plan.rig_file import RigFile
+from pmm.plan.run_plan import RunPlan
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Candidates and the runs that they are.
+
+    Attributes
+    ----------
+    runs, candidates
+        Of the same places.
+    left_out
+        How many runs each check left out, the first that did counting, by its quantity.
+    """
+
+    runs: tuple[RunPlan, ...]
+    candidates: tuple[Candidate, ...]
+    left_out: dict[str, int]
+
+
+def grid_of(
+    runs: Sequence[RunPlan], rig: RigFile, limits: DesignLimits, zero: ZeroTable | None
+) -> Grid:
+    """Return the candidates among some runs."""
+    kept: list[RunPlan] = []
+    left_out: Counter[str] = Counter()
+    conditions: dict[object, str] = {}
+    for run in runs:
+        if run.set_point not in conditions:
+            conditions[run.set_point] = next(_excluding(condition_findings(run, rig), limits), "")
+        own = chain(limit_findings(run, rig), field_findings(run, rig))
+        why = conditions[run.set_point] or next(_excluding(own, limits), "")
+        if why:
+            left_out[why] += 1
+        else:
+            kept.append(run)
+    return Grid(tuple(kept), tuple(candidate_of(run, rig, zero) for run in kept), dict(left_out))
+
+
+def candidate_of(run: RunPlan, rig: RigFile, zero: ZeroTable | None) -> Candidate:
+    """Return a run with what it costs: its pause and ramps, and its part of the zero runs."""
+    share = 0.0 if zero is None else zero.duration_s / zero.every
+    return Candidate(run.set_point, run.periods, run_s(run, None, rig) + share)
+
+
+def _excluding(found: Iterable[PlanFinding], limits: DesignLimits) -> Iterator[str]:
+    """Yield the quantities for which a run is no candidate."""
+    for one in found:
+        warned = one.verdict is PlanVerdict.WARN and limits.advised
+        if one.verdict is PlanVerdict.REFUSE or warned or _beyond(one, limits):
+            yield one.quantity
+
+
+def _beyond(one: PlanFinding, limits: DesignLimits) -> bool:
+    """Whether a run's number is beyond the design's own limit."""
+    limited = {
+        table.ANGLE_TO_FLOW.quantity: limits.angle_to_flow_deg,
+        table.REDUCED.quantity: limits.w_l_u,
+        table.TAU_SWAY.quantity: limits.w_u_g,
+        table.TAU_HEAVE.quantity: limits.w_u_g,
+    }
+    limited |= {
+        table.ROTATION.quantity.format(rotation=word): limits.rotation_deg
+        for word in ("yaw", "pitch")
+    }
+    limit = limited.get(one.quantity)
+    return limit is not None and one.value > limit

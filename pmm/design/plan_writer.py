@@ -1,0 +1,58 @@
+"""The runs that were chosen as a plan that ``pmm plan check`` and ``pmm run`` take."""
+
+import os
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, Final
+
+from hardware.description.kinds import Motion
+from pmm.design.design_file import DesignFile
+from pmm.design.designing import Design, Step
+from pmm.document.notation import clock
+from pmm.toml_text import toml_table, toml_value
+
+_TABLES: Final = ("defaults", "order", "zero", "control")
+
+
+def plan_text(file: DesignFile, design: Design, target: Path) -> str:
+    """Return the plan: what the design says of order and zeros, its own runs, and those chosen.
+
+    Parameters
+    ----------
+    target
+        Where it is to lie: the rig is named from there.
+    """
+    return "\n".join(_parts(file, design, target))
+
+
+def _parts(file: DesignFile, design: Design, target: Path) -> Iterator[str]:
+    table = file.plan_table
+    rig = os.path.relpath(file.rig_path.resolve(), target.resolve().parent)
+    head = {"name": file.name, "rig": Path(rig).as_posix(), "operator": table.get("operator")}
+    yield f"# Written by pmm plan design from {file.path.name}: docs/plan-design.md\n" + "".join(
+        f"{key} = {toml_value(value)}\n" for key, value in head.items() if value is not None
+    )
+    yield from (toml_table(name, table[name]) for name in _TABLES if name in table)
+    yield from (toml_table("runs", one, array=True) for one in table.get("runs", []))
+    for number, step in enumerate(design.steps, 1):
+        yield f"# until {clock(step.time_s)}\n" + toml_table(
+            "runs", _entry(step, number), array=True
+        )
+
+
+def _entry(step: Step, number: int) -> Mapping[str, Any]:
+    run, point = step.run, step.run.set_point
+    return {
+        "motion": str(run.motion),
+        "name": f"{run.entry}-{number:02d}",
+        "frequencies_hz": point.frequency_hz,
+        "amplitudes_m": point.eccentricity_m,
+        "strut_phases_rad": point.strut_phase_rad if run.motion is Motion.PHASE else None,
+        "speeds_m_s": point.carriage_speed_m_s or None,
+        "drifts_rad": point.drift_rad or None,
+        "periods": run.periods,
+        "settling_periods": run.settling_periods,
+        "pause_s": run.pause_before_s,
+        "repeats": step.repeats,
+        "prompt": run.prompts[0] if run.prompts else None,
+    }

@@ -1,0 +1,188 @@
+"""What ``pmm plan design`` shows: what each run buys, and how well each coefficient is known."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any, Final
+
+from analysis.design.expectation import Expected
+from pmm.design.design_file import DesignFile
+from pmm.design.designing import Design, Step
+from pmm.document.content import (
+    Column,
+    Data,
+    Document,
+    Figure,
+    Note,
+    Notes,
+    Section,
+    Table,
+    Text,
+    number,
+    word,
+)
+from pmm.document.notation import clock, counted, percent, written
+from pmm.report.design_figure import design_figure
+
+SCHEMA: Final = "pmm-plan-design-1"
+_FROM_NOTHING: Final = 1e3  # times as well known: the run determines it, and not the one before
+_CAPTION: Final = (
+    "Standard uncertainty that is expected of each coefficient over what is asked for (without "
+    "targets, over its value), against tank time; a target is met below 1."
+)
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A step in its place, with what it buys."""
+
+    number: int
+    step: Step
+    buys: str
+
+    @property
+    def run(self) -> str:
+        """Motion and settings in words."""
+        point = self.step.run.set_point
+        words = [str(self.step.run.motion), f"{point.frequency_hz:g} Hz"]
+        words.append(f"{1e3 * point.eccentricity_m:.4g} mm")
+        if self.step.run.motion == "phase":
+            words.append(f"phase {math.degrees(point.strut_phase_rad):.4g} deg")
+        if point.carriage_speed_m_s:
+            words.append(f"{point.carriage_speed_m_s:g} m/s")
+        if point.drift_rad:
+            words.append(f"drift {math.degrees(point.drift_rad):.3g} deg")
+        return ", ".join(words)
+
+
+_STEPS: Final[tuple[Column[_Row], ...]] = (
+    number("", "number"),
+    word("run", "run"),
+    Column("periods", lambda row: row.step.run.periods, number=True),
+    Column("times", lambda row: row.step.repeats, number=True),
+    Column("ends at", lambda row: row.step.time_s, written=clock, number=True),
+    word("buys most of", "buys"),
+)
+_KNOWN: Final[tuple[Column[Expected], ...]] = (
+    word("coefficient", "name"),
+    word("at", "where"),
+    number("believed", "believed", written(".4g")),
+    word("unit", "unit"),
+    number("asked for", "wanted", written(".3g")),
+    number("expected", "standard_uncertainty", written(".3g")),
+    Column("of the value", lambda one: _relative(one), written=percent(".3g"), number=True),
+    Column("most of it from", lambda one: next(iter(one.shares), "")),
+    Column("met", lambda one: "" if math.isnan(one.wanted) else "yes" if one.met else "no"),
+)
+
+
+def design_document(file: DesignFile, design: Design, target: Path | None) -> Document:
+    """Return what a design found.
+
+    Parameters
+    ----------
+    target
+        Where the plan is written; nowhere if ``None``.
+    """
+    rows = [
+        _Row(place, step, _buys(before, step.known))
+        for place, (before, step) in enumerate(
+            zip(((), *(one.known for one in design.steps)), design.steps, strict=False), 1
+        )
+    ]
+    contents = (
+        Text((_said(file, design), "")),
+        Table("Runs", _STEPS, rows),
+        Table("Coefficients", _KNOWN, design.known, titled=True),
+        Notes([Note("warning", one) for one in design.why], key="unmet"),
+        Notes([Note("note", one) for one in _left_out(file)]),
+        Figure("uncertainty", _CAPTION, partial(design_figure, file.name, design)),
+        Data("plan", target),
+        Data("rig", file.rig_path),
+        Data("possible", design.met),
+        Data("candidates", len(file.grid.runs)),
+        Data("left_out", file.grid.left_out),
+        Data("steps", [_step_data(step) for step in design.steps]),
+        Data("coefficients", [_known_data(one) for one in design.known]),
+    )
+    return Document("", "design of a plan", (Section("", contents),), SCHEMA)
+
+
+def _said(file: DesignFile, design: Design) -> str:
+    runs = sum(step.repeats for step in design.steps)
+    time = clock(design.steps[-1].time_s) if design.steps else clock(0.0)
+    ends = (
+        "no target was given: all coefficients together, in the time"
+        if not file.targets
+        else "all targets are expected to be met"
+        if design.met
+        else f"{counted(len(design.why), 'target')} cannot be met"
+    )
+    return (
+        f"{file.name}: {counted(runs, 'run')} of {counted(len(file.grid.runs), 'candidate')}, "
+        f"{time} in all, without handwork; {ends}"
+    )
+
+
+def _left_out(file: DesignFile) -> list[str]:
+    """Return how many runs of the grid are no candidates, by what they are left out for."""
+    return [
+        f"{counted(count, 'run')} of the grid left out for the {what}"
+        for what, count in sorted(file.grid.left_out.items(), key=lambda item: -item[1])
+    ]
+
+
+def _relative(one: Expected) -> float:
+    return one.standard_uncertainty / abs(one.believed) if one.believed else math.inf
+
+
+def _buys(before: Sequence[Expected], after: Sequence[Expected]) -> str:
+    """Return the coefficient whose uncertainty a step lowers most, and from what to what."""
+    was = {(one.name, one.where): one.standard_uncertainty for one in before}
+    best, gain = "", 0.0
+    for one in after:
+        old, new = was.get((one.name, one.where), math.inf), one.standard_uncertainty
+        if not math.isfinite(new) or (one.met and old <= one.wanted):
+            continue
+        own = math.log(old / new) if math.isfinite(old) else math.log(_FROM_NOTHING)
+        if own > gain:
+            start = f"{old:.3g}" if math.isfinite(old) else "unknown"
+            where = f" at {one.where}" if one.where else ""
+            best, gain = f"{one.name}{where}: {start} to {new:.3g} {one.unit}", own
+    return best
+
+
+def _step_data(step: Step) -> dict[str, Any]:
+    point = step.run.set_point
+    return {
+        "motion": str(step.run.motion),
+        "frequency_hz": point.frequency_hz,
+        "eccentricity_m": point.eccentricity_m,
+        "strut_phase_rad": point.strut_phase_rad,
+        "carriage_speed_m_s": point.carriage_speed_m_s,
+        "drift_rad": point.drift_rad,
+        "periods": step.run.periods,
+        "repeats": step.repeats,
+        "time_s": step.time_s,
+        "standard_uncertainties": [_finite(one.standard_uncertainty) for one in step.known],
+    }
+
+
+def _known_data(one: Expected) -> dict[str, Any]:
+    return {
+        "name": one.name,
+        "where": one.where,
+        "unit": one.unit,
+        "believed": one.believed,
+        "wanted": _finite(one.wanted),
+        "standard_uncertainty": _finite(one.standard_uncertainty),
+        "shares": dict(one.shares),
+        "met": one.met,
+        "message": one.message,
+    }
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None

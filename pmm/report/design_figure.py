@@ -1,0 +1,55 @@
+"""Expected uncertainty of each coefficient against tank time."""
+
+import math
+from typing import TYPE_CHECKING
+
+from analysis.design.expectation import Expected
+from pmm.design.designing import Design
+from pmm.document.style import PALETTE, TRACE, drawing
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_STYLES = ("-", "--", ":", "-.")
+
+
+def design_figure(name: str, design: Design) -> "Figure":
+    """Draw a line for each coefficient: uncertainty over what is asked for, run by run."""
+    with drawing():
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(7.2, 4.2), layout="constrained")
+        axes = figure.subplots()
+        hours = [step.time_s / 3600.0 for step in design.steps]
+        for k, last in enumerate(design.known):
+            ratios = [_ratio(step.known[k]) if _same(step.known, k, last) else math.nan
+                      for step in design.steps]  # fmt: skip
+            label = f"{last.name} at {last.where}" if last.where else last.name
+            colour, style = PALETTE[k % len(PALETTE)], _STYLES[k // len(PALETTE) % len(_STYLES)]
+            axes.plot(hours, ratios, style, color=colour, marker="o", markersize=2.5, label=label)
+        axes.axhline(1.0, color=TRACE, linewidth=1.4)
+        axes.set_yscale("log")
+        axes.yaxis.set_major_formatter(_plain)
+        axes.yaxis.set_minor_formatter(_plain)
+        axes.set_xlabel("tank time [h]")
+        targeted = any(math.isfinite(one.wanted) for one in design.known)
+        over = "what is asked for" if targeted else "the believed value"
+        axes.set_ylabel(f"expected standard uncertainty over {over}")
+        if design.known:
+            figure.legend(loc="outside right upper", ncols=1 + len(design.known) // 17)
+        figure.suptitle(f"{name}: what the runs are expected to tell")
+    return figure
+
+
+def _plain(value: float, _: float) -> str:
+    return f"{value:g}"
+
+
+def _same(known: tuple[Expected, ...], k: int, last: Expected) -> bool:
+    return k < len(known) and (known[k].name, known[k].where) == (last.name, last.where)
+
+
+def _ratio(one: Expected) -> float:
+    scale = one.wanted if math.isfinite(one.wanted) else abs(one.believed)
+    ratio = one.standard_uncertainty / scale if scale else math.nan
+    return ratio if math.isfinite(ratio) else math.nan
