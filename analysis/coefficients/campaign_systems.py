@@ -49,7 +49,7 @@ def without_dimensions(
         uncertain = uncertain.plus("density_relative", -uncertain.values * stated.density_relative)
     if stated.speed_m_s > 0.0 and any(system.speed_m_s > 0.0 for system in systems):
         pairs = zip(coefficients.entries, systems, strict=True)
-        powers = np.array([_speed_power(coefficients, entry, own) for entry, own in pairs])
+        powers = np.array([speed_power(coefficients, entry, own) for entry, own in pairs])
         speeds = np.array([system.speed_m_s or np.inf for system in systems])
         parts = -uncertain.values * powers * stated.speed_m_s / speeds
         uncertain = uncertain.plus("speed_m_s", parts)
@@ -69,7 +69,7 @@ def with_dimensions(coefficients: CampaignCoefficients, system: System) -> Campa
     factors = np.array(
         [_factor(coefficients, e, s) for e, s in zip(coefficients.entries, systems, strict=True)]
     )
-    units = tuple(_term(coefficients, entry).unit for entry in coefficients.entries)
+    units = tuple(term_of_entry(coefficients, entry).unit for entry in coefficients.entries)
     return _scaled(coefficients, factors, DIMENSIONAL, units)
 
 
@@ -88,7 +88,7 @@ def common_name(systems: Sequence[Normalisation]) -> str:
     return re.sub(r"U = [^ ]+ m/s", "U = the carriage's", names[0]) if names else DIMENSIONAL
 
 
-def _term(coefficients: CampaignCoefficients, entry: CoefficientEntry) -> Term:
+def term_of_entry(coefficients: CampaignCoefficients, entry: CoefficientEntry) -> Term:
     """Return a coefficient of either form as a term: ``a35`` is that of a rotation's rate."""
     try:
         return term_of(entry.name, coefficients.plane)
@@ -101,14 +101,14 @@ def _term(coefficients: CampaignCoefficients, entry: CoefficientEntry) -> Term:
 def _factor(
     coefficients: CampaignCoefficients, entry: CoefficientEntry, system: Normalisation
 ) -> float:
-    return system.term_factor(_term(coefficients, entry))
+    return system.term_factor(term_of_entry(coefficients, entry))
 
 
-def _speed_power(
+def speed_power(
     coefficients: CampaignCoefficients, entry: CoefficientEntry, system: Normalisation
 ) -> float:
     """Power of the speed in what the value is divided by."""
-    term = _term(coefficients, entry)
+    term = term_of_entry(coefficients, entry)
     return 2.0 - term.degree - term.rates if system.speed_m_s > 0.0 else 0.0
 
 

@@ -8,8 +8,10 @@ system                A is divided by     B is divided by
 ====================  ==================  ====================
 prime                 rho/2 L^3           rho/2 L^2 U
 MMG                   rho/2 L^2 d         rho/2 L d U
-seakeeping            rho V               rho V sqrt(g/L)
+seakeeping, bis       rho V               rho V sqrt(g/L)
 ====================  ==================  ====================
+
+Seakeeping and Norrbin's bis system are the same where the model's own mass is rho V (mu = 1).
 """
 
 import math
@@ -104,8 +106,9 @@ def seakeeping(
     volume_m3: float,
     density_kg_m3: float,
     gravity_m_s2: float = STANDARD_GRAVITY_M_S2,
+    name: str = "seakeeping",
 ) -> Normalisation:
-    """Return the seakeeping system: a/(rho V) and b sqrt(L/g)/(rho V).
+    """Return the seakeeping system: a/(rho V) and b sqrt(L/g)/(rho V); by another name, bis.
 
     Raises
     ------
@@ -119,8 +122,8 @@ def seakeeping(
         gravity_m_s2=gravity_m_s2,
     )
     mass = density_kg_m3 * volume_m3
-    name = f"seakeeping (rho V, V = {volume_m3:g} m3, L = {length_m:g} m)"
-    return Normalisation(name, length_m, mass, mass * math.sqrt(gravity_m_s2 / length_m))
+    told = f"{name} (rho V, V = {volume_m3:g} m3, L = {length_m:g} m)"
+    return Normalisation(told, length_m, mass, mass * math.sqrt(gravity_m_s2 / length_m))
 
 
 def _positive(**values: float) -> None:

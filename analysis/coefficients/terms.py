@@ -1,8 +1,8 @@
 """Terms of a manoeuvring model: ``Y_vvr`` is the coefficient of v v r in Y, without factorials.
 
 A name is a load, an underscore and factors: velocities (``u``, ``v``, ``r`` or ``u``, ``w``,
-``q``), their rates (``vdot``, ``rdot``) and sizes (``|v|``, ``|r|``); ``0`` alone is the constant.
-X takes the same.
+``q``), their rates (``vdot``, ``rdot``) and sizes (``|v|``, ``|r|``); ``0`` alone is the
+constant, which others write ``*``. X takes the same.
 """
 
 import re
@@ -18,7 +18,7 @@ AHEAD_LETTER = "u"
 VELOCITY_LETTERS = {Plane.VERTICAL: "wq", Plane.HORIZONTAL: "vr"}
 SURGE = 2  # row of X
 
-_WORD = re.compile(r"(\w)_((?:[a-z]dot|\|[a-z]\||[a-z])+|0)")
+_WORD = re.compile(r"(\w)_((?:[a-z]dot|\|[a-z]\||[a-z])+|[0*])")
 _FACTOR = re.compile(r"[a-z]dot|\|[a-z]\||[a-z]")
 
 

@@ -15,6 +15,7 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
 from pmm.campaign.model_uncertainty import ModelUncertainty
 from pmm.campaign.runs import AtRest, RecordedWith, Run, nearest_run
+from pmm.campaign.water import TankWater
 from pmm.configuration import STRICT_TABLE
 from sim.acquisition.channels import Acquisition
 from sim.acquisition.photocell import PhotocellStage
@@ -85,6 +86,8 @@ class Campaign:
         means are forces as they stand and no zero runs are needed.
     tolerances
         What the simulation and the rig's settings may be off by: no gap within them.
+    water
+        What the model was tested in; ``None`` where the file does not say.
     """
 
     name: str = "campaign"
@@ -113,6 +116,7 @@ class Campaign:
     at_rest: tuple[AtRest, ...] = ()
     tared: bool = False
     tolerances: Tolerances = field(default_factory=Tolerances)
+    water: TankWater | None = None
 
     __pydantic_config__ = STRICT_TABLE
 

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from pmm.coefficients.workflow import CampaignOutcome
 
 FEW_RUNS = 24  # below it starting processes costs more than they save
-SYSTEMS = ("dimensional", "prime", "mmg", "seakeeping")
+SYSTEMS = ("dimensional", "prime", "mmg", "seakeeping", "bis")
+NAMES = ("plain", "abkowitz", "gertler-hagen")
 FORMS = ("manoeuvring", "seakeeping")
 # What `pmm coefficients` and `pmm report` have in common.
 SHARED = with_options(
@@ -35,6 +36,10 @@ SHARED = with_options(
     ),
     click.option("--form", type=click.Choice(FORMS), help="Names and signs.  [manoeuvring]"),
     click.option("--system", type=click.Choice(SYSTEMS), help="Units.  [dimensional]"),
+    click.option("--names", type=click.Choice(NAMES), help="Whose names and factors.  [plain]"),
+    click.option(
+        "--with-mass", is_flag=True, help="Quote Y_r - m U and N_r - m x_G U (Z_q + m U ...)."
+    ),
     click.option(
         "--inertia",
         metavar="model|dry|TOML",
@@ -88,6 +93,7 @@ def coefficients(as_json: bool, **options: Any) -> None:
 
     \b
     pmm coefficients campaign/ --plot plots --system prime
+    pmm coefficients campaign/ --system prime --names abkowitz --with-mass
     pmm coefficients campaign/ --uncertainty monte-carlo --jobs 2 --json
 
     Exit status: 0 done; 1 the data say no (a run that cannot be used, a wanted coefficient that

@@ -56,7 +56,7 @@ def write_deliverables(outcome: CampaignOutcome, folder: Path, *, overwrite: boo
         raise DataError("no run oscillates: there is no cycle to deliver")
     rates = {one.name: one.sample_rate_hz for one in outcome.runs}
     periods = {one.name: one.periods for one in outcome.runs}
-    body, ship = outcome.body, outcome.settings.ship
+    body, ship, water = outcome.body, outcome.settings.ship, outcome.water
     for cycle in moving:
         description = SimmanDescription(
             run=cycle.name,
@@ -66,8 +66,8 @@ def write_deliverables(outcome: CampaignOutcome, folder: Path, *, overwrite: boo
             mass_kg=None if body is None else body.mass_kg,
             inertia_kg_m2=None if body is None else body.inertia_kg_m2,
             cg_x_m=None if body is None else body.cg_x_m,
-            water_temperature_deg_c=ship.water_temperature_deg_c,
-            density_kg_m3=ship.density_kg_m3,
+            water_temperature_deg_c=None if water is None else water.temperature_deg_c,
+            density_kg_m3=ship.density,
             logging_rate_hz=rates[cycle.name],
             periods=periods[cycle.name],
         )

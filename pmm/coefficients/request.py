@@ -5,15 +5,17 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
+from analysis.coefficients.campaign_quoting import Carried, quoted
 from analysis.coefficients.names import Form
+from analysis.coefficients.quoting import Names
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.coefficients.references import beside, check_systems, read_references
 from pmm.coefficients.settings import DRY, MODEL, CoefficientSettings, ReferenceFile, System
-from pmm.coefficients.systems import in_system
+from pmm.coefficients.systems import in_system, system_of
 from pmm.coefficients.workflow import CampaignOutcome
 
-_PLAIN: Final = ("form", "level", "seed", "system", "inertia", "wanted", "leave_out")
+_PLAIN: Final = ("with_mass", "form", "level", "seed", "system", "inertia", "wanted", "leave_out")
 
 
 def merged(
@@ -25,6 +27,8 @@ def merged(
         given["form"] = Form(given["form"])
     if "system" in given:
         given["system"] = System(given["system"])
+    if options["names"]:
+        given["names"] = Names(options["names"])
     inertia = given.get("inertia", MODEL)
     if inertia not in (MODEL, DRY) and not Path(inertia).is_file():
         raise ConfigurationError(
@@ -74,7 +78,30 @@ def finished(outcome: CampaignOutcome, settings: CoefficientSettings) -> Campaig
     references = read_references(settings.references, found.plane, found.form)
     check_systems(references, settings.system)
     found = beside(found, references, System.DIMENSIONAL)
-    found, flags = in_system(found, settings.system, settings.ship, outcome.body, outcome.stated)
+    found, flags = in_system(
+        found, settings.system, outcome.settings.ship, outcome.body, outcome.stated
+    )
     if settings.system is not System.DIMENSIONAL:
         found = beside(found, references, settings.system)
+    found = quoted(found, settings.quoting, _carried(outcome, settings))
     return replace(outcome, result=found, left_out=(*outcome.left_out, *flags))
+
+
+def _carried(outcome: CampaignOutcome, settings: CoefficientSettings) -> Carried:
+    """Return the mass that is quoted with the coefficients, and the table's system.
+
+    Raises
+    ------
+    ConfigurationError
+        If the mass is asked for and not known.
+    """
+    if not settings.with_mass:
+        return Carried()
+    if outcome.body is None:
+        raise ConfigurationError(
+            "--with-mass needs the model's mass, which dry runs do not tell; take --inertia model"
+        )
+    plain = settings.system is System.DIMENSIONAL
+    system = None if plain else system_of(settings.system, outcome.settings.ship, outcome.body)
+    arm = outcome.body.cg_x_m - settings.point_ahead_m
+    return Carried(outcome.body.mass_kg, arm, system, outcome.stated)

@@ -1,13 +1,15 @@
 """``coefficients.toml``: what a campaign's recordings do not tell and its coefficients need."""
 
 from copy import deepcopy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Any, Final
 
 from analysis.coefficients.names import Form
+from analysis.coefficients.quoting import Names, Quoting
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
+from analysis.water import Water
 from hardware.description.errors import ConfigurationError
 from hardware.description.toml import is_number
 from hardware.description.units import STANDARD_GRAVITY_M_S2
@@ -17,6 +19,7 @@ SETTINGS_FILE: Final = "coefficients.toml"
 MODEL: Final = "model"
 DRY: Final = "dry"
 
+_FRESH_KG_M3: Final = 998.8
 _PAIR = "should be two rows of two numbers"
 
 
@@ -27,6 +30,7 @@ class System(StrEnum):
     PRIME = "prime"
     MMG = "mmg"
     SEAKEEPING = "seakeeping"
+    BIS = "bis"
 
 
 @dataclass(frozen=True)
@@ -37,6 +41,8 @@ class ShipTable:
     ----------
     volume_m3
         Displaced; ``None`` takes the mass over the density.
+    density_kg_m3
+        Of the water; ``None`` takes the campaign's ``[water]``, or 998.8 where there is none.
     scale
         Ship over model; for a description alone.
     """
@@ -44,10 +50,20 @@ class ShipTable:
     length_m: float | None = None
     draught_m: float | None = None
     volume_m3: float | None = None
-    density_kg_m3: float = 998.8
+    density_kg_m3: float | None = None
     gravity_m_s2: float = STANDARD_GRAVITY_M_S2
     scale: float | None = None
-    water_temperature_deg_c: float | None = None
+
+    @property
+    def density(self) -> float:
+        """The density, kg/m3; that of fresh water of 17 degrees Celsius where nobody says."""
+        return _FRESH_KG_M3 if self.density_kg_m3 is None else self.density_kg_m3
+
+    def within(self, water: Water | None) -> "ShipTable":
+        """Return the table with a water's density where it states none itself."""
+        if water is None or self.density_kg_m3 is not None:
+            return self
+        return replace(self, density_kg_m3=water.density_kg_m3)
 
 
 @dataclass(frozen=True)
@@ -99,6 +115,8 @@ class CoefficientSettings:
     ----------
     form, wanted, level, system
         As in :class:`analysis.coefficients.campaign_plan.Request`, and the table's system.
+    names, with_mass
+        How the table is quoted, as in :class:`analysis.coefficients.quoting.Quoting`.
     inertia
         ``"model"`` (the campaign's own table), ``"dry"`` (its runs in air), or a file that
         ``pmm inertia`` wrote; ``None`` takes the model, else dry runs.
@@ -123,6 +141,8 @@ class CoefficientSettings:
     wanted: tuple[str, ...] = ()
     level: float = 0.95
     system: System = System.DIMENSIONAL
+    names: Names = Names.PLAIN
+    with_mass: bool = False
     inertia: str | None = None
     harmonics: int = 7
     leave_out: tuple[str, ...] = ()
@@ -140,6 +160,11 @@ class CoefficientSettings:
     references: tuple[ReferenceFile, ...] = ()
 
     __pydantic_config__ = STRICT_TABLE
+
+    @property
+    def quoting(self) -> Quoting:
+        """How the table is quoted."""
+        return Quoting(self.names, self.with_mass)
 
 
 def read_settings(path: Path) -> CoefficientSettings:

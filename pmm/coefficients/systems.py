@@ -16,7 +16,10 @@ _NEEDS = {
     System.PRIME: ("length_m",),
     System.MMG: ("length_m", "draught_m"),
     System.SEAKEEPING: ("length_m",),
+    System.BIS: ("length_m",),
 }
+
+BY_GRAVITY = (System.SEAKEEPING, System.BIS)
 
 
 def in_system(
@@ -35,9 +38,9 @@ def in_system(
     """
     if system is System.DIMENSIONAL:
         return found, ()
-    by_speed = system_of(system, ship, body)
-    if system is System.SEAKEEPING:
-        return without_dimensions(found, by_speed, stated), ()
+    by_speed, flags = system_of(system, ship, body), _assumed(ship)
+    if system in BY_GRAVITY:
+        return without_dimensions(found, by_speed, stated), flags
     moving = [k for k, entry in enumerate(found.entries) if entry.speed_m_s > 0.0]
     if not moving:
         raise ConfigurationError(
@@ -45,11 +48,21 @@ def in_system(
             "--system seakeeping or dimensional"
         )
     left = len(found.entries) - len(moving)
-    flags: tuple[Flag, ...] = ()
     if left:
         text = f"{left} values at rest have no meaning in the system {system} and are left out"
-        flags = (Flag("at_rest_left_out", Severity.NOTE, text),)
+        flags = (*flags, Flag("at_rest_left_out", Severity.NOTE, text))
     return without_dimensions(found.taken(moving), by_speed, stated), flags
+
+
+def _assumed(ship: ShipTable) -> tuple[Flag, ...]:
+    """Return what is said where nobody stated the water's density."""
+    if ship.density_kg_m3 is not None:
+        return ()
+    text = (
+        f"the water's density is not stated and taken as {ship.density:g} kg/m3: write [water] in "
+        f"the campaign file, or density_kg_m3 in the table [ship] of {SETTINGS_FILE}"
+    )
+    return (Flag("density_assumed", Severity.WARNING, text),)
 
 
 def check_dimensions(system: System, ship: ShipTable) -> None:
@@ -83,13 +96,13 @@ def system_of(system: System, ship: ShipTable, body: Body | None) -> BySpeed:
     check_dimensions(system, ship)
     volume = ship.volume_m3
     if volume is None and body is not None:
-        volume = body.mass_kg / ship.density_kg_m3
-    if system is System.SEAKEEPING and volume is None:
+        volume = body.mass_kg / ship.density
+    if system in BY_GRAVITY and volume is None:
         _refuse(system, ["volume_m3"])
-    length, density = ship.length_m or 0.0, ship.density_kg_m3
+    length, density = ship.length_m or 0.0, ship.density
     if system is System.PRIME:
         return lambda speed: prime(length, speed, density)
     if system is System.MMG:
         return lambda speed: mmg(length, ship.draught_m or 0.0, speed, density)
-    by_gravity = seakeeping(length, volume or 0.0, density, ship.gravity_m_s2)
+    by_gravity = seakeeping(length, volume or 0.0, density, ship.gravity_m_s2, str(system))
     return lambda _: by_gravity

@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from analysis.coefficients.body_cycle import BodyCycle
@@ -19,6 +19,7 @@ from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.campaign.plausibility import implausible
 from pmm.campaign.runs import nearest_run
+from pmm.campaign.water import TankWater, common_water
 from pmm.coefficients.reading import read_cycle, read_zero
 from pmm.coefficients.settings import CoefficientSettings
 from pmm.coefficients.solving import Progress, solve_campaign
@@ -48,6 +49,10 @@ class CampaignOutcome:
         What was read, zeros and dry runs included.
     flags
         About runs, by the run's name.
+    settings
+        As they were given, with the density of the campaigns' water where they state none.
+    water
+        That of the campaigns.
     """
 
     names: tuple[str, ...]
@@ -61,6 +66,7 @@ class CampaignOutcome:
     stated: StatedUncertainties
     body: Body | None
     settings: CoefficientSettings
+    water: TankWater | None
 
     @property
     def noticed(self) -> tuple[Flag, ...]:
@@ -131,6 +137,8 @@ def coefficients_of(
     campaigns = [(folder, read_campaign(folder / CAMPAIGN_FILE)) for folder in folders]
     _check_names(campaigns)
     _check_left_out(settings.leave_out, [campaign for _, campaign in campaigns])
+    water = common_water([campaign.water for _, campaign in campaigns])
+    settings = replace(settings, ship=settings.ship.within(water))
     parts = [
         _read(folder, campaign, settings, executor, progress, hashed=hashed)
         for folder, campaign in campaigns
@@ -158,6 +166,7 @@ def coefficients_of(
         stated,
         parts[0].body,
         settings,
+        water,
     )
 
 

@@ -6,7 +6,7 @@ matrices of runs to choose from, and the tables of :mod:`pmm.design.design_table
 
 from collections.abc import Iterator
 from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -134,10 +134,7 @@ def _design(
     original: dict[str, Any],
 ) -> DesignFile:
     entries = plan.runs
-    kept = PlanTables(
-        plan.name, plan.rig, plan.operator, plan.defaults, plan.order, plan.zero, plan.control,
-        entries[:fixed_entries],
-    )  # fmt: skip
+    kept = replace(plan, runs=entries[:fixed_entries])
     fixed = runs_of(kept, rig.oscillator, found.channels)
     could = [
         run

@@ -11,7 +11,7 @@ from pmm.design.designing import Design, Step
 from pmm.document.notation import clock
 from pmm.toml_text import toml_table, toml_value
 
-_TABLES: Final = ("defaults", "order", "zero", "control")
+_TABLES: Final = ("water", "defaults", "order", "zero", "control")
 
 
 def plan_text(file: DesignFile, design: Design, target: Path) -> str:

@@ -14,7 +14,7 @@ from analysis.coefficients.normalisation import DIMENSIONAL, Normalisation
 from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.coefficients.settings import CoefficientSettings, System
-from pmm.coefficients.systems import system_of
+from pmm.coefficients.systems import BY_GRAVITY, system_of
 from sim.rig import SimulatedRig
 
 # Added mass and damping by rows, about the midpoint between the struts.
@@ -97,7 +97,7 @@ def reported(
     systems: dict[State, Normalisation] = {}
     if settings.system is not System.DIMENSIONAL:
         by_speed = system_of(settings.system, settings.ship, rig.body)
-        by_gravity = settings.system is System.SEAKEEPING
+        by_gravity = settings.system in BY_GRAVITY
         systems = {one: by_speed(one[0]) for one in states if by_gravity or one[0] > 0.0}
     name = common_name(tuple(systems.values())) if systems else DIMENSIONAL
     found = {

@@ -1,7 +1,7 @@
 """From a campaign's folder to what is diagnosed: the same for one campaign and for a board."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Final
@@ -11,6 +11,7 @@ from analysis.gap.observe.components import GapRun
 from analysis.gap.observe.observation import COMPARED
 from analysis.gap.quality.recentring import Recentred
 from analysis.gap.quality.recordings import doubts, judged
+from analysis.water import Water
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag
 from pmm.campaign.campaign import Campaign
@@ -88,7 +89,8 @@ def prepare(
     """
     file = campaign_file(folder)
     _check_sensors(sensors)
-    campaign, case, reporting = campaign_of(file), read_case(file), _reporting(file.parent)
+    campaign, case = campaign_of(file), read_case(file)
+    reporting = _reporting(file.parent, campaign.water)
     held_out = held_out_runs(campaign, hold_out)
     on = campaign.effects_on(more or {})
     progress("reading")
@@ -119,8 +121,9 @@ def prepare(
     )
 
 
-def _reporting(folder: Path) -> CoefficientSettings:
+def _reporting(folder: Path, water: Water | None) -> CoefficientSettings:
     found, _ = settings_of(folder, None)
+    found = replace(found, ship=found.ship.within(water))
     check_dimensions(found.system, found.ship)
     return found
 

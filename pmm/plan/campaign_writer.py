@@ -77,6 +77,9 @@ def _tables(folder: Path, plan: Plan, rig: RigFile, done: Sequence[FinishedRun])
         yield toml_table("model", body)
     if rig.hull is not None:
         yield toml_table("hull", asdict(rig.hull))
+    if plan.water is not None:
+        depth = None if rig.tank is None else rig.tank.depth_m
+        yield toml_table("water", {**asdict(plan.water), "depth_m": depth})
     offset = {key: one for key, one in asdict(rig.reference).items() if one}
     if offset:
         yield toml_table("reference", offset)

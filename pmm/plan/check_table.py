@@ -141,6 +141,20 @@ ANGLE_TO_FLOW: Final = Check(
     "the drift angle beta, or the angle of attack; coefficients hold within it",
     _ONLY_STATED,
 )
+FROUDE: Final = Check(
+    "Froude number Fn = U / sqrt(g L)",
+    f"note; {_NONE}",
+    _ITTC,
+    "waves are those of the ship at the same number",
+    _ONLY_STATED,
+)
+REYNOLDS: Final = Check(
+    "Reynolds number Re = U L / nu",
+    f"note; {_NONE}",
+    f"{_ITTC}; nu by ITTC 7.5-02-01-03",
+    "friction is that of the ship at the same number only",
+    _ONLY_STATED,
+)
 TURNING: Final = Check(
     "{rate}' = {rate} L / U",
     f"note; {_NONE}",
@@ -286,8 +300,8 @@ CALIBRATION: Final = Check(
 
 CHECKS: Final = (
     FREQUENCY, AMPLITUDE, STROKE, STRUT_PHASE, VELOCITY, ACCELERATION, STRUT_FORCE, GAUGE_FORCE,
-    LOAD, SPEED, WAY, BUS, ROTATION, ANGLE_TO_FLOW, TURNING, REDUCED_SWAY, REDUCED_YAW, REDUCED,
-    WAVE_FREQUENCY, TAU_SWAY, TAU_HEAVE, ECHO, REACH, KEEL, BLOCKAGE, DEPTH, DEPTH_FROUDE,
-    TANK_MODE, STRUCTURE, CYCLES, SETTLING, SAMPLING, CALIBRATION,
+    LOAD, SPEED, WAY, BUS, ROTATION, ANGLE_TO_FLOW, FROUDE, REYNOLDS, TURNING, REDUCED_SWAY,
+    REDUCED_YAW, REDUCED, WAVE_FREQUENCY, TAU_SWAY, TAU_HEAVE, ECHO, REACH, KEEL, BLOCKAGE,
+    DEPTH, DEPTH_FROUDE, TANK_MODE, STRUCTURE, CYCLES, SETTLING, SAMPLING, CALIBRATION,
 )  # fmt: skip
 """In the order of the page."""

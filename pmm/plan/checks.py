@@ -35,7 +35,7 @@ def check_plan(plan: Plan, rig: RigFile, today: date | None = None) -> tuple[Pla
         found += [
             *limit_findings(run, rig),
             *field_findings(run, rig),
-            *condition_findings(run, rig),
+            *condition_findings(run, rig, plan.water),
         ]
     ranks = list(PlanVerdict)
     return tuple(sorted(found, key=lambda one: ranks.index(one.verdict)))
@@ -70,6 +70,9 @@ def _expired(rig: RigFile, today: date | None) -> Iterator[PlanFinding]:
 def _not_checked(plan: Plan, rig: RigFile) -> Iterator[PlanFinding]:
     """Yield what the rig's file does not say, and which checks are missing for it."""
     model, towed = rig.model, any(run.set_point.carriage_speed_m_s for run in plan.runs)
+    if towed and plan.water is None:
+        message = f"{plan.path.name} has no [water]: the Reynolds number is not checked"
+        yield PlanFinding(PlanVerdict.NOTE, "not checked", math.nan, math.nan, "", message)
     turning = any(run.oscillates for run in plan.runs)
     for absent, table, what in (
         (turning and model is None, "[model]", "forces are"),
@@ -77,7 +80,7 @@ def _not_checked(plan: Plan, rig: RigFile) -> Iterator[PlanFinding]:
         (
             towed and (model is None or model.length_m is None),
             "model.length_m",
-            "w L / U, w sqrt(L / g), turning and the reach to the walls are",
+            "Fn, Re, w L / U, w sqrt(L / g), turning and the reach to the walls are",
         ),
         (rig.tank is None, "[tank]", "tank length, speed, walls, depth and tank modes are"),
         (

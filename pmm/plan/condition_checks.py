@@ -12,6 +12,7 @@ import numpy as np
 
 from analysis.kinematics.geometry import Geometry
 from analysis.kinematics.motion import Driven, MotionWaves, motion
+from analysis.water import Water, froude_number, reynolds_number
 from hardware.description import kinds
 from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2
@@ -45,7 +46,9 @@ class _Condition(NamedTuple):
     verdict: PlanVerdict = PlanVerdict.NOTE
 
 
-def condition_findings(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
+def condition_findings(
+    run: RunPlan, rig: RigFile, water: Water | None = None
+) -> Iterator[PlanFinding]:
     """Yield the numbers of a run in water that are not nothing."""
     if run.kind.in_air or not (run.oscillates or run.set_point.carriage_speed_m_s):
         return
@@ -53,6 +56,7 @@ def condition_findings(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
     made = motion_of(run, rig)
     for one in (
         *_of_motion(run, made),
+        *_of_speed(run, rig, water),
         *_of_waves(run, rig, made),
         *_of_depth(run, rig),
         *_of_room(rig, made),
@@ -85,11 +89,24 @@ def _of_motion(run: RunPlan, made: MotionWaves) -> Iterator[_Condition]:
         yield _Condition(table.ANGLE_TO_FLOW, math.degrees(float(np.abs(beta).max())))
 
 
+def _of_speed(run: RunPlan, rig: RigFile, water: Water | None) -> Iterator[_Condition]:
+    speed, model = run.set_point.carriage_speed_m_s, rig.model
+    if not speed or model is None or model.length_m is None:
+        return
+    yield _Condition(table.FROUDE, froude_number(speed, model.length_m, _gravity(rig)))
+    if water is not None:
+        yield _Condition(table.REYNOLDS, reynolds_number(speed, model.length_m, water))
+
+
+def _gravity(rig: RigFile) -> float:
+    return STANDARD_GRAVITY_M_S2 if rig.tank is None else rig.tank.gravity_m_s2
+
+
 def _of_waves(run: RunPlan, rig: RigFile, made: MotionWaves) -> Iterator[_Condition]:
     speed, omega = run.set_point.carriage_speed_m_s, omega_of(run)
     if not speed:
         return
-    gravity = STANDARD_GRAVITY_M_S2 if rig.tank is None else rig.tank.gravity_m_s2
+    gravity = _gravity(rig)
     tau = omega * speed / gravity
     yield _tau(tau, rig.oscillator.plane)
     if rig.model is None or rig.model.length_m is None:
@@ -120,7 +137,7 @@ def _of_depth(run: RunPlan, rig: RigFile) -> Iterator[_Condition]:
     tank, model, speed = rig.tank, rig.model, run.set_point.carriage_speed_m_s
     if tank is None or tank.depth_m is None:
         return
-    froude = speed / math.sqrt(tank.gravity_m_s2 * tank.depth_m)
+    froude = froude_number(speed, tank.depth_m, tank.gravity_m_s2)
     yield _below(table.DEPTH_FROUDE, froude, table.DEPTH_FROUDE.numbers[0])
     if model is None or model.draught_m is None:
         return

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
+from analysis.water import Water
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.file_names import campaign_name_faults, no_file_name
 from pmm.configuration import Fault, Place, as_error, limit_faults, read_toml_and_bytes, validate
@@ -47,6 +48,8 @@ class Plan:
         Of the plan's file.
     content
         That file, as it was read; empty for a plan that was not read from one.
+    water
+        What the tank is filled with; ``None`` where the plan does not say.
     """
 
     name: str
@@ -56,6 +59,7 @@ class Plan:
     operator: str
     sha256: str
     content: bytes = b""
+    water: Water | None = None
 
 
 def read_plan(path: str | Path) -> Plan:
@@ -93,7 +97,8 @@ def read_plan_and_rig(path: str | Path) -> tuple[Plan, RigFile]:
         raise ConfigurationError("\n".join(map(str, errors)))
     sha256 = hashlib.sha256(content).hexdigest()
     name = tables.name or path.resolve().parent.name
-    return Plan(name, path, found.rig_path, runs, tables.operator, sha256, content), rig
+    kept = (tables.operator, sha256, content, tables.water)
+    return Plan(name, path, found.rig_path, runs, *kept), rig
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TypeVar
 
+from analysis.water import Water
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.known_loads import KnownMass
 from hardware.description.setpoint import Medium
@@ -157,6 +158,8 @@ class PlanTables:
     ----------
     rig
         The rig's file, its path from this one.
+    water
+        What the tank is filled with on the day; ``None`` where the file does not say.
     """
 
     name: str = ""
@@ -166,6 +169,7 @@ class PlanTables:
     order: OrderTable = field(default_factory=OrderTable)
     zero: ZeroTable | None = None
     control: ControlTable | None = None
+    water: Water | None = None
     runs: tuple[PlanEntry, ...] = ()
 
     __pydantic_config__ = STRICT_TABLE

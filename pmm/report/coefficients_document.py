@@ -44,6 +44,7 @@ from pmm.report.coefficient_tables import (
     frequency,
     recommended_table,
 )
+from pmm.report.conditions import conditions_table
 
 SCHEMA: Final = "pmm-coefficients-1"
 _LIKELIHOOD = (
@@ -55,13 +56,13 @@ _LIKELIHOOD = (
 def coefficients_document(outcome: CampaignOutcome) -> Document:
     """Return what ``pmm coefficients`` shows; ``docs/coefficients-command.md`` has the keys."""
     found = outcome.result
-    used = counted(len(outcome.cycles), "run")
+    used, noticed = counted(len(outcome.cycles), "run"), Notes(flag_notes(outcome.noticed))
     return Document(
         ", ".join(outcome.names),
         "coefficients",
         (
             Section("", (Text((f"{used}, {found.plane}, {found.form} form",)),)),
-            Section("", (*conclusion(found), Notes(flag_notes(outcome.noticed)))),
+            Section("", (*conclusion(found), conditions_table(outcome), noticed)),
             Section("", (*_beside(found), *alternatives_tables(found))),
             Section("", tuple(Data(key, value) for key, value in _data(outcome).items())),
         ),
@@ -77,7 +78,7 @@ def report_document(outcome: CampaignOutcome) -> Document:
         ", ".join(outcome.names),
         "coefficients",
         (
-            Section("", (pairs("Summary", _summary(outcome)),)),
+            Section("", (pairs("Summary", _summary(outcome)), conditions_table(outcome))),
             Section("Coefficients", (recommended_table(found), *alternatives_tables(found))),
             Section("Figures", tuple(figures(found))),
             Section("What was found", tuple(_findings(found))),

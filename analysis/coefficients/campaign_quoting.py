@@ -1,0 +1,179 @@
+"""A campaign's table as others quote it, and back: factors, shifts by the mass, names."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from analysis.coefficients.campaign_records import CoefficientEntry, ReferenceRow
+from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
+from analysis.coefficients.campaign_systems import System, speed_power, term_of_entry
+from analysis.coefficients.names import Form
+from analysis.coefficients.normalisation import Normalisation
+from analysis.coefficients.quoting import Quoting
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
+from analysis.coefficients.terms import term_of
+from analysis.uncertainty.values import UncertainValues
+from hardware.description.arrays import FloatArray
+from hardware.description.errors import ConfigurationError
+
+
+@dataclass(frozen=True)
+class Carried:
+    """The mass that is quoted with the coefficients, and what they were divided by.
+
+    Attributes
+    ----------
+    cg_x_m
+        Ahead of the point that the coefficients are about.
+    system
+        Of the table; ``None`` where it is in SI units.
+    stated
+        Uncertainties of mass, centre of gravity, speed and density: the same inputs act again.
+    """
+
+    mass_kg: float = 0.0
+    cg_x_m: float = 0.0
+    system: System | None = None
+    stated: StatedUncertainties = field(default_factory=StatedUncertainties)
+
+
+def quoted(
+    found: CampaignCoefficients, quoting: Quoting, carried: Carried = Carried()
+) -> CampaignCoefficients:
+    """Return the campaign as it is quoted; tables beside it were held against what it was.
+
+    Raises
+    ------
+    ConfigurationError
+        If it is in the seakeeping form, which nobody quotes otherwise.
+    """
+    if quoting == Quoting():
+        return found
+    if found.form is not Form.MANOEUVRING:
+        raise ConfigurationError(
+            "--names and --with-mass are of manoeuvring derivatives; take --form manoeuvring"
+        )
+    factors, shifts = _map(found, quoting, carried)
+    said = found.normalisation + quoting.told(found.plane)
+    changed = _changed(found, factors, shifts, _slopes(found, shifts, carried), quoting.name)
+    rows = tuple(_row(one, found, quoting, carried) for one in found.references)
+    return replace(changed, normalisation=said, references=rows)
+
+
+def as_products(
+    found: CampaignCoefficients, quoting: Quoting, carried: Carried = Carried()
+) -> CampaignCoefficients:
+    """Return the campaign in coefficients of products: the inverse of :func:`quoted`.
+
+    Tables beside it are left out.
+    """
+    plain = replace(
+        found,
+        normalisation=found.normalisation.removesuffix(quoting.told(found.plane)),
+        references=(),
+    )
+    factors, shifts = _map(found, quoting, carried)
+    slopes = {key: -one / factors for key, one in _slopes(found, shifts, carried).items()}
+    return _changed(
+        plain,
+        1.0 / factors,
+        -shifts / factors,
+        slopes,
+        lambda name: quoting.own_name(name, found.plane),
+    )
+
+
+def _map(
+    found: CampaignCoefficients, quoting: Quoting, carried: Carried
+) -> tuple[FloatArray, FloatArray]:
+    """Return factor and shift of each entry, in the table's system."""
+    factors, shifts = [], []
+    for entry in found.entries:
+        term = term_of_entry(found, entry)
+        factors.append(quoting.factor(term))
+        shift = quoting.mass_shift(
+            term, found.plane, carried.mass_kg, carried.cg_x_m, entry.speed_m_s
+        )
+        system = _system(carried, entry.speed_m_s)
+        shifts.append(shift / system.term_factor(term) if system and shift else shift)
+    return np.array(factors), np.array(shifts)
+
+
+def _system(carried: Carried, speed_m_s: float) -> Normalisation | None:
+    return None if carried.system is None else carried.system(speed_m_s)
+
+
+def _slopes(
+    found: CampaignCoefficients, shifts: FloatArray, carried: Carried
+) -> dict[str, FloatArray]:
+    """Return what each stated input does to the shifts, per standard deviation."""
+    stated, moments = carried.stated, np.array([_is_moment(one) for one in found.entries])
+    speeds = np.array([one.speed_m_s or np.inf for one in found.entries])
+    powers = np.zeros(len(shifts))
+    if carried.system is not None:
+        powers = np.array(
+            [speed_power(found, one, carried.system(one.speed_m_s)) if shift else 0.0
+             for one, shift in zip(found.entries, shifts, strict=True)]
+        )  # fmt: skip
+    arm = carried.cg_x_m or np.inf
+    own = {
+        "mass_kg": shifts * stated.mass_kg / (carried.mass_kg or np.inf),
+        "cg_x_m": np.where(moments, shifts / arm, 0.0) * stated.cg_x_m,
+        "speed_m_s": shifts * (1.0 - powers) / speeds * stated.speed_m_s,
+        "density_relative": -shifts * stated.density_relative * (carried.system is not None),
+    }
+    return {key: one for key, one in own.items() if one.any()}
+
+
+def _is_moment(entry: CoefficientEntry) -> bool:
+    return entry.name[0] in "NM"
+
+
+def _changed(
+    found: CampaignCoefficients,
+    factors: FloatArray,
+    shifts: FloatArray,
+    slopes: dict[str, FloatArray],
+    name: Callable[[str], str],
+) -> CampaignCoefficients:
+    uncertain = UncertainValues(
+        found.values * factors + shifts,
+        tuple(
+            replace(one, parts=one.parts * factors[one.rows][:, None])
+            for one in found.uncertain.contributions
+        ),
+    )
+    for label, parts in slopes.items():
+        uncertain = uncertain.plus(label, parts)
+    trials = found.trials
+    return replace(
+        found,
+        entries=tuple(replace(one, name=name(one.name)) for one in found.entries),
+        uncertain=uncertain,
+        trials=TrialColumns(
+            trials.count,
+            trials.standard_uncertainty * factors,
+            trials.low * factors + shifts,
+            trials.high * factors + shifts,
+        ),
+    )
+
+
+def _row(
+    row: ReferenceRow, found: CampaignCoefficients, quoting: Quoting, carried: Carried
+) -> ReferenceRow:
+    term = term_of(row.name, found.plane)
+    factor = quoting.factor(term)
+    shift = quoting.mass_shift(term, found.plane, carried.mass_kg, carried.cg_x_m, row.speed_m_s)
+    if shift and (system := _system(carried, row.speed_m_s)):
+        shift /= system.term_factor(term)
+    return replace(
+        row,
+        name=quoting.name(row.name),
+        measured=row.measured * factor + shift,
+        half_width=row.half_width * factor,
+        expected=row.expected * factor + shift,
+        difference=row.difference * factor,
+        allowance=row.allowance * factor,
+    )
