@@ -1,0 +1,128 @@
+"""Ships under one helm order until something happens to each: all of them at once.
+
+A fixed step of Runge and Kutta's fourth order, cut short where the rudder comes to rest and where
+the event lies, so that no step goes across a corner of either.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from analysis.manoeuvring.ship import PSI, R, Ship, U
+from hardware.description.arrays import FloatArray
+
+Event = Callable[[FloatArray], FloatArray]
+"""Of a state: rises through 0 where the phase ends."""
+_SECANTS = 6  # the step is short and the event smooth in it: digits of a double
+
+
+@dataclass(frozen=True)
+class Moment:
+    """Where n ships are: time in s and rudder in rad, ``(n,)``, and state, ``(6, n)``."""
+
+    time_s: FloatArray
+    state: FloatArray
+    rudder_rad: FloatArray
+
+
+@dataclass
+class Log:
+    """What is kept of every step of the first ships, for figures."""
+
+    ships: int = 40
+    moments: list[Moment] = field(default_factory=list)
+
+    def keep(self, moment: Moment) -> None:
+        """Add a moment of the first ships."""
+        few = slice(self.ships)
+        self.moments.append(
+            Moment(moment.time_s[few], moment.state[:, few], moment.rudder_rad[few])
+        )
+
+
+def approach(ship: Ship) -> Moment:
+    """Return straight course at the approach speed."""
+    state = np.zeros((6, ship.count))
+    state[U] = ship.approach_m_s
+    return Moment(np.zeros(ship.count), state, np.zeros(ship.count))
+
+
+def heading_beyond(target_rad: float, side: float) -> Event:
+    """Return the event that the heading passes an angle to starboard (side 1) or port (-1)."""
+    return lambda state: side * (state[PSI] - target_rad)
+
+
+def turning_back(side: float) -> Event:
+    """Return the event that a turn to starboard (side 1) or port (-1) comes to rest."""
+    return lambda state: -side * state[R]
+
+
+def march(
+    ship: Ship,
+    start: Moment,
+    order_rad: float,
+    until: Event | None,
+    longest_s: float,
+    step_s: float,
+    log: Log | None = None,
+) -> Moment:
+    """Return where the ships are at the event; without an event, after ``longest_s``.
+
+    Ships that do not come to the event in that time are NaN from there on.
+    """
+    now, running = start, ~np.isnan(start.time_s)
+    if log is not None and not log.moments:
+        log.keep(start)
+    ends = start.time_s + longest_s
+    while running.any():
+        way = order_rad - now.rudder_rad
+        rate = np.sign(way) * math.radians(ship.rudder.rate_deg_s)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            reach = np.where(way != 0.0, np.abs(way / rate), np.inf)
+        lasts = np.minimum(np.minimum(step_s, reach), ends - now.time_s)
+        lasts = np.where(running, lasts, 0.0)
+        moved = _stepped(ship, now, rate, lasts)
+        if until is not None:
+            hit = running & (until(moved) >= 0.0) & (until(now.state) < 0.0)
+            if hit.any():
+                lasts = np.where(hit, _when(ship, now, rate, lasts, until), lasts)
+                moved = _stepped(ship, now, rate, lasts)
+            running = running & ~hit
+        arrived = lasts == reach
+        rudder = np.where(arrived, order_rad, now.rudder_rad + rate * lasts)
+        now = Moment(now.time_s + lasts, moved, rudder)
+        late = running & (now.time_s >= ends)
+        if until is not None and late.any():
+            now = Moment(
+                np.where(late, np.nan, now.time_s), np.where(late, np.nan, now.state), rudder
+            )
+        running = running & ~late
+        if log is not None:
+            log.keep(now)
+    return now
+
+
+def _stepped(ship: Ship, now: Moment, rate: FloatArray, lasts: FloatArray) -> FloatArray:
+    def rates(state: FloatArray, share: float) -> FloatArray:
+        return ship.rates(state, now.rudder_rad + share * lasts * rate)
+
+    first = rates(now.state, 0.0)
+    second = rates(now.state + 0.5 * lasts * first, 0.5)
+    third = rates(now.state + 0.5 * lasts * second, 0.5)
+    fourth = rates(now.state + lasts * third, 1.0)
+    return np.asarray(now.state + lasts / 6.0 * (first + 2.0 * second + 2.0 * third + fourth))
+
+
+def _when(ship: Ship, now: Moment, rate: FloatArray, lasts: FloatArray, until: Event) -> FloatArray:
+    """Return how long each step lasts until the event, by secants."""
+    before, after = np.zeros_like(lasts), lasts
+    value, last = until(now.state), until(_stepped(ship, now, rate, lasts))
+    for _ in range(_SECANTS):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            better = after - last * (after - before) / (last - value)
+        better = np.where(np.isfinite(better), np.clip(better, 0.0, lasts), after)
+        before, after, value = after, better, last
+        last = until(_stepped(ship, now, rate, after))
+    return np.asarray(after)

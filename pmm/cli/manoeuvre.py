@@ -1,0 +1,66 @@
+"""``pmm manoeuvre``: what a ship with these derivatives does."""
+
+from pathlib import Path
+
+import click
+
+from pmm.cli.options import DEFAULT_LEVEL, JSON, PLOT, probability
+
+DEFAULT_DRAWS = 500
+
+
+@click.command()
+@click.argument("file", metavar="SHIP.toml")
+@PLOT
+@click.option(
+    "--trials",
+    type=click.IntRange(min=0),
+    default=DEFAULT_DRAWS,
+    show_default=True,
+    metavar="N",
+    help="Draws of the derivatives behind the intervals; 0 for none.",
+)
+@click.option(
+    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of the draws."
+)
+@click.option(
+    "--level",
+    type=float,
+    default=DEFAULT_LEVEL,
+    show_default=True,
+    callback=probability,
+    metavar="P",
+    help="Probability of the intervals.",
+)
+@JSON
+def manoeuvre(
+    file: str, plot: str | None, trials: int, seed: int, level: float, as_json: bool
+) -> None:
+    """Predict turning circles, zig-zags, spiral and stability of a ship.
+
+    SHIP.toml (docs/manoeuvre.md) names the hull's derivatives, of a campaign by what `pmm
+    coefficients --json` printed or stated, and states propeller and rudder. Every quantity has an
+    interval from draws of the derivatives, and stands beside IMO MSC.137(76).
+
+    \b
+    pmm manoeuvre examples/manoeuvre/kvlcc2.toml --plot plots
+
+    Exit status: 0 done, also where a criterion is not met; 1 the coefficients cannot be read; 2 the
+    request was wrong (a derivative missing, no revolutions that keep the speed).
+    """  # noqa: D301
+    from pmm.cli.files import check_folder
+    from pmm.cli.screen import messages, show
+    from pmm.document.style import write_figures
+    from pmm.manoeuvre.prediction import predict
+    from pmm.manoeuvre.ship_file import read_ship
+    from pmm.report.manoeuvre_document import figures, manoeuvre_document
+
+    if plot is not None:
+        check_folder(Path(plot), "--plot")
+    console = messages()
+    with console.status("reading") as status:
+        found = predict(read_ship(Path(file)), trials, seed, level, status.update)
+    show(manoeuvre_document(found), as_json=as_json)
+    if plot is not None:
+        written = write_figures(figures(found), Path(plot), "manoeuvre")
+        console.print(f"written: {len(written)} figures in {plot}")

@@ -1,0 +1,178 @@
+"""All manoeuvres of a ship, each quantity with its interval and what IMO asks of it."""
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from analysis.manoeuvring import imo
+from analysis.manoeuvring.hull import HullLoads
+from analysis.manoeuvring.manoeuvres import (
+    Spiral,
+    Turn,
+    ZigZag,
+    scale_s,
+    spiral,
+    turning_circle,
+    zigzag,
+)
+from analysis.manoeuvring.march import Log
+from analysis.manoeuvring.ship import Ship
+from analysis.manoeuvring.stability import Straight, straight_course
+from hardware.description.arrays import FloatArray
+from pmm.manoeuvre.derivatives import hull_of
+from pmm.manoeuvre.ship_file import ShipFile
+
+SIDES = {"starboard": 1.0, "port": -1.0}
+_HELM, _SPIRAL_LARGEST, _SPIRAL_STEP = (math.radians(one) for one in (35.0, 20.0, 5.0))
+_SPIRAL_SHIPS = 101
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One quantity of the values themselves and of the draws.
+
+    Attributes
+    ----------
+    low, high
+        Ends of the interval, from the draws; NaN without any.
+    full_scale, full_scale_unit
+        At the ship's size by Froude; NaN where it is the same.
+    limit
+        Of IMO MSC.137(76); NaN where there is none.
+    within
+        Share of the draws that keep to it.
+    failed
+        Draws in which the manoeuvre did not come to its end.
+    """
+
+    manoeuvre: str
+    name: str
+    unit: str
+    value: float
+    low: float
+    high: float
+    full_scale: float
+    full_scale_unit: str
+    limit: float
+    within: float
+    failed: int
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """A ship's manoeuvres; index 0 of every array is that of the values themselves."""
+
+    file: ShipFile
+    ship: Ship
+    level: float
+    turns: dict[str, Turn]
+    zigzags: dict[tuple[str, int], ZigZag]
+    spiral: Spiral
+    straight: Straight
+    logs: dict[str, Log]
+
+    @cached_property
+    def length_over_speed_s(self) -> float:
+        """L/U of the approach at full scale, s."""
+        return scale_s(self.ship) * math.sqrt(self.file.scale)
+
+    @cached_property
+    def quantities(self) -> tuple[Quantity, ...]:
+        """All quantities, in the order of the page."""
+        return tuple(self._quantities())
+
+    def _quantities(self) -> Iterator[Quantity]:
+        for side, turn in self.turns.items():
+            what = f"turning circle 35°, {side}"
+            yield self._of(what, "advance", "L", turn.advance, imo.ADVANCE)
+            yield self._of(what, "transfer", "L", turn.transfer)
+            yield self._of(what, "tactical diameter", "L", turn.tactical_diameter, imo.TACTICAL)
+            yield self._of(what, "steady diameter", "L", turn.steady_diameter)
+            yield self._of(what, "steady speed / approach", "1", turn.steady_speed)
+            yield self._of(what, "steady drift", "°", np.degrees(turn.steady_drift_rad))
+        first = imo.first_overshoot_deg(self.length_over_speed_s)
+        limits = {
+            (10, 0): first,
+            (10, 1): imo.second_overshoot_deg(self.length_over_speed_s),
+            (20, 0): imo.OVERSHOOT_20,
+        }
+        for (side, angle), one in self.zigzags.items():
+            what = f"zig-zag {angle}/{angle}, {side}"
+            if angle == 10:
+                yield self._of(what, "initial turning", "L", one.initial_turning, imo.INITIAL)
+            for k, values in enumerate(one.overshoots_rad):
+                name = f"overshoot {k + 1}"
+                limit = limits.get((angle, k), math.nan)
+                yield self._of(what, name, "°", np.degrees(values), limit)
+        straight = self.straight
+        yield self._of("spiral", "r' loop at rudder 0", "1", self.spiral.height)
+        yield self._of("straight course", "C' of the bare hull", "1", straight.criterion)
+        yield self._of("straight course", "C' with rudder", "1", straight.with_rudder)
+        yield self._of("straight course", "largest root L/U", "1", straight.root)
+
+    def _of(
+        self, manoeuvre: str, name: str, unit: str, values: FloatArray, limit: float = math.nan
+    ) -> Quantity:
+        draws = values[1:]
+        good = draws[np.isfinite(draws)]
+        tail = 0.5 * (1.0 - self.level)
+        low, high = np.quantile(good, (tail, 1.0 - tail)) if good.size else (np.nan, np.nan)
+        scaled = unit == "L"
+        length = self.ship.hull.length_m * self.file.scale
+        return Quantity(
+            manoeuvre,
+            name,
+            unit,
+            float(values[0]),
+            float(low),
+            float(high),
+            float(values[0]) * length if scaled else math.nan,
+            "m" if scaled else "",
+            limit,
+            float(np.mean(draws <= limit)) if draws.size and math.isfinite(limit) else math.nan,
+            int(draws.size - good.size),
+        )
+
+
+def predict(file: ShipFile, trials: int, seed: int, level: float, progress: Progress) -> Prediction:
+    """Return all manoeuvres of a ship and of as many draws of its derivatives.
+
+    It raises what :func:`pmm.manoeuvre.derivatives.hull_of` raises, and ``ConfigurationError`` if
+    no revolutions keep the approach speed.
+    """
+    ship = ship_of(file, trials, seed)
+    logs, turns, zigzags = {}, {}, {}
+    for side, sign in SIDES.items():
+        progress(f"turning circle to {side}")
+        logs[side] = Log()
+        turns[side] = turning_circle(ship, sign * _HELM, logs[side])
+    for angle in (10, 20):
+        for side, sign in SIDES.items():
+            progress(f"zig-zag {angle}/{angle} to {side}")
+            size = math.radians(angle)
+            log = logs.setdefault(f"{angle}", Log()) if side == "starboard" else None
+            zigzags[side, angle] = zigzag(ship, sign * size, size, 2, log)
+    progress("spiral")
+    few = replace(ship, hull=_first(ship.hull, _SPIRAL_SHIPS))
+    found = spiral(few, _SPIRAL_LARGEST, _SPIRAL_STEP)
+    straight = straight_course(ship)
+    return Prediction(file, ship, level, turns, zigzags, found, straight, logs)
+
+
+def ship_of(file: ShipFile, trials: int, seed: int) -> Ship:
+    """Return the ship of a file's values, and behind it those of the draws.
+
+    It raises what :func:`pmm.manoeuvre.derivatives.hull_of` raises.
+    """
+    hull, body = hull_of(file, trials, np.random.default_rng(seed)), file.ship
+    mass = (body.mass_kg, body.inertia_kg_m2, body.cg_x_m)
+    return Ship(hull, file.propeller, file.rudder, *mass, file.speed_m_s)
+
+
+def _first(hull: HullLoads, count: int) -> HullLoads:
+    return replace(hull, values={name: one[:count] for name, one in hull.values.items()})

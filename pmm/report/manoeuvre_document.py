@@ -1,0 +1,126 @@
+"""What ``pmm manoeuvre`` shows: quantities with intervals and criteria, and pictures."""
+
+import math
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Final
+
+from pmm.document.content import Column, Data, Document, Figure, Section, Table, Text, word
+from pmm.document.notation import NOT_KNOWN, counted, written
+from pmm.manoeuvre.prediction import Prediction, Quantity
+from pmm.report.manoeuvre_figures import spiral_figure, turning_figure, zigzag_figure
+
+SCHEMA: Final = "pmm-manoeuvre-1"
+_CAPTIONS: Final = {
+    "turning": "Turning circles with 35 degrees of rudder, in ship's lengths from where the rudder "
+    "was laid; thin lines are draws of the derivatives.",
+    "zigzag": "Heading (and rudder, dashed) of the zig-zags over time; thin lines are draws.",
+    "spiral": "Rate of turn over rudder angle, the rudder going to port and coming back.",
+}
+_SURE: Final = 0.975
+
+
+def manoeuvre_document(found: Prediction) -> Document:
+    """Return what was predicted; ``docs/manoeuvre.md`` has the keys."""
+    return Document(
+        found.file.name,
+        "manoeuvres",
+        (
+            Section("", (Text(tuple(_head(found))), _table(found), _criteria(found))),
+            Section("Figures", tuple(figures(found))),
+            Section("", (Data("rate_hz", float(found.ship.rate_hz[0])),)),
+        ),
+        SCHEMA,
+    )
+
+
+def figures(found: Prediction) -> Iterator[Figure]:
+    """Yield every figure."""
+    draws: dict[str, Callable[[Prediction], object]] = {
+        "turning": turning_figure,
+        "zigzag": zigzag_figure,
+        "spiral": spiral_figure,
+    }
+    for name, draw in draws.items():
+        yield Figure(name, _CAPTIONS[name], partial(draw, found))  # type: ignore[arg-type]
+
+
+def _head(found: Prediction) -> Iterator[str]:
+    file, draws = found.file, found.ship.count - 1
+    yield (
+        f"approach at {file.speed_m_s:g} m/s, propeller held at "
+        f"{float(found.ship.rate_hz[0]):.4g} 1/s, which keeps that speed with this resistance: the "
+        "model's own point of self-propulsion"
+    )
+    if file.scale != 1.0:
+        yield (
+            f"full scale by Froude's law, {file.scale:g} times as long: the friction of the model "
+            "and the load of its propeller are those of the model, a ship's rudder has less race"
+        )
+    yield f"intervals from {counted(draws, 'draw')} of the derivatives; propeller and rudder stated"
+
+
+def _value(one: Quantity) -> str:
+    return f"{one.value:.4g}"
+
+
+def _interval(one: Quantity) -> str:
+    return f"{one.low:.4g} to {one.high:.4g}" if math.isfinite(one.low) else NOT_KNOWN
+
+
+def _full(one: Quantity) -> str:
+    shown = math.isfinite(one.full_scale)
+    return f"{one.full_scale:.4g} {one.full_scale_unit}" if shown else ""
+
+
+def _table(found: Prediction) -> Table[Quantity]:
+    columns: tuple[Column[Quantity], ...] = (
+        Column("manoeuvre", lambda one: one.manoeuvre, "manoeuvre", once=True),
+        word("quantity", "name"),
+        word("unit", "unit"),
+        Column("value", lambda one: one.value, "value", written=written(".4g"), number=True),
+        Column(f"{100.0 * found.level:g} % interval", _interval, number=True),
+        Column("at full scale", _full, number=True),
+        *(
+            Column[Quantity](None, partial(_key, key), key)
+            for key in ("low", "high", "full_scale", "full_scale_unit", "limit", "within", "failed")
+        ),
+    )
+    failed = max(one.failed for one in found.quantities)
+    notes = (f"Up to {failed} draws did not come to the end of a manoeuvre.",) if failed else ()
+    name = "Manoeuvres"
+    return Table(name, columns, found.quantities, "quantities", titled=True, notes=notes)
+
+
+def _key(key: str, one: Quantity) -> object:
+    return getattr(one, key)
+
+
+def _criteria(found: Prediction) -> Table[Quantity]:
+    columns: tuple[Column[Quantity], ...] = (
+        Column("criterion", lambda one: f"{one.name}, {one.manoeuvre}"),
+        word("unit", "unit"),
+        Column("value", _value, number=True),
+        Column("limit", lambda one: f"{one.limit:.4g}", number=True),
+        Column("", _verdict),
+        Column("draws within", lambda one: one.within, written=_share, number=True),
+    )
+    rows = [one for one in found.quantities if math.isfinite(one.limit)]
+    notes = (
+        f"L/V = {found.length_over_speed_s:.3g} s at full scale sets the limits of the 10/10 "
+        "zig-zag.",
+    )
+    name = "IMO MSC.137(76)"
+    return Table(name, columns, rows, titled=True, notes=notes)
+
+
+def _share(share: float) -> str:
+    return f"{100.0 * share:.1f} %" if math.isfinite(share) else NOT_KNOWN
+
+
+def _verdict(one: Quantity) -> str:
+    if not math.isfinite(one.value):
+        return "NOT REACHED"
+    sure = not math.isfinite(one.within) or one.within >= _SURE or one.within <= 1.0 - _SURE
+    said = "within" if one.value <= one.limit else "BEYOND"
+    return said if sure else f"{said}, not sure"

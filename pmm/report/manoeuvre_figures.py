@@ -1,0 +1,99 @@
+"""Figures of a ship's manoeuvres: tracks, zig-zags and spiral, with draws of its derivatives."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from analysis.manoeuvring.march import Log
+from analysis.manoeuvring.ship import PSI, X, Y
+from hardware.description.arrays import FloatArray
+from pmm.document.style import PALETTE, drawing
+from pmm.manoeuvre.prediction import SIDES, Prediction
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_FAINT = 0.18
+
+
+def turning_figure(found: Prediction) -> "Figure":
+    """Draw the tracks of both turning circles, advance up and starboard to the right."""
+    from matplotlib.figure import Figure
+
+    length = found.ship.hull.length_m
+    with drawing():
+        figure = Figure(figsize=(9.0, 4.6), layout="constrained")
+        axes = figure.add_subplot()
+        for colour, side in zip(PALETTE, SIDES, strict=False):
+            _, states, _ = _histories(found.logs[side])
+            across, ahead = states[:, Y] / length, states[:, X] / length
+            _lines(axes, across, ahead, colour, side)
+            turn = found.turns[side]
+            sign = SIDES[side]
+            marks = (sign * turn.transfer[0], sign * turn.tactical_diameter[0])
+            heights = (turn.advance[0], np.interp(np.pi, sign * states[:, PSI, 0], ahead[:, 0]))
+            axes.plot(marks, heights, "o", color=colour, markersize=4.0)
+        axes.set_aspect("equal")
+        axes.set_xlabel("to starboard (L)")
+        axes.set_ylabel("ahead (L)")
+        axes.legend(loc="lower right")
+        figure.suptitle(f"{found.file.name}: turning circles, 35° of rudder")
+    return figure
+
+
+def zigzag_figure(found: Prediction) -> "Figure":
+    """Draw heading and rudder of both zig-zags that begin to starboard."""
+    from matplotlib.figure import Figure
+
+    unit = found.ship.hull.length_m / found.ship.approach_m_s
+    with drawing():
+        figure = Figure(figsize=(9.0, 6.0), layout="constrained")
+        for place, angle in enumerate((10, 20), 1):
+            axes = figure.add_subplot(2, 1, place)
+            times, states, rudders = _histories(found.logs[f"{angle}"])
+            _lines(axes, times / unit, np.degrees(states[:, PSI]), PALETTE[0], "heading")
+            rudder = np.degrees(rudders[:, 0])
+            axes.plot(times[:, 0] / unit, rudder, "--", color=PALETTE[1], label="rudder")
+            axes.set_title(f"{angle}/{angle}", loc="left")
+            axes.set_ylabel("angle (°)")
+            axes.legend(loc="lower left")
+        axes.set_xlabel("time (L/U)")
+        figure.suptitle(f"{found.file.name}: zig-zags")
+    return figure
+
+
+def spiral_figure(found: Prediction) -> "Figure":
+    """Draw the spiral: both ways of the rudder, with the interval of each angle."""
+    from matplotlib.figure import Figure
+
+    spiral, tail = found.spiral, 0.5 * (1.0 - found.level)
+    rudder = np.degrees(spiral.rudder_rad)
+    with drawing():
+        figure = Figure(figsize=(7.0, 4.5), layout="constrained")
+        axes = figure.add_subplot()
+        ways = (("to port", spiral.down, PALETTE[0], ">-"), ("back", spiral.up, PALETTE[1], "<-"))
+        for label, rates, colour, style in ways:
+            axes.plot(rudder, rates[:, 0], style, color=colour, markersize=4.0, label=label)
+            if rates.shape[1] > 1:
+                low, high = np.quantile(rates[:, 1:], (tail, 1.0 - tail), axis=1)
+                axes.fill_between(rudder, low, high, color=colour, alpha=_FAINT, linewidth=0.0)
+        axes.axhline(0.0, color="black", linewidth=0.6)
+        axes.axvline(0.0, color="black", linewidth=0.6)
+        axes.set_xlabel("rudder (°, positive turns to starboard)")
+        axes.set_ylabel("r' = r L / U")
+        axes.legend(loc="upper left")
+        figure.suptitle(f"{found.file.name}: spiral")
+    return figure
+
+
+def _histories(log: Log) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return times ``(k, n)``, states ``(k, 6, n)`` and rudder angles ``(k, n)``."""
+    times = np.array([one.time_s for one in log.moments])
+    states = np.array([one.state for one in log.moments])
+    return times, states, np.array([one.rudder_rad for one in log.moments])
+
+
+def _lines(axes: "Axes", x: FloatArray, y: FloatArray, colour: str, label: str) -> None:
+    axes.plot(x[:, 1:], y[:, 1:], color=colour, alpha=_FAINT, linewidth=0.6)
+    axes.plot(x[:, 0], y[:, 0], color=colour, linewidth=1.6, label=label)

@@ -1,0 +1,185 @@
+"""Manoeuvres against SciPy's integrator on the equations of the paper, written out once more."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+
+from analysis.manoeuvring import imo
+from analysis.manoeuvring.hull import HullLoads
+from analysis.manoeuvring.manoeuvres import spiral, turning_circle, zigzag
+from analysis.manoeuvring.ship import Ship
+from analysis.manoeuvring.stability import straight_course
+from analysis.manoeuvring.steering import Propeller
+from hardware.description.errors import ConfigurationError
+from tests.analysis.manoeuvring import kvlcc2
+
+RATE = math.radians(kvlcc2.RATE)
+
+
+class Helm:
+    """One ship under SciPy: rudder laid at its rate, then held, until a heading or a turn back."""
+
+    def __init__(self) -> None:
+        self.state = np.array([kvlcc2.U0, 0.0, 0.0, 0.0, 0.0, 0.0])
+        self.delta = 0.0
+
+    def until(self, order: float, event) -> np.ndarray:  # type: ignore[no-untyped-def]
+        sign = math.copysign(1.0, order - self.delta)
+        start, lasts = self.delta, abs(order - self.delta) / RATE
+        for moving, span in ((True, lasts), (False, 1000.0)):
+            if span == 0.0:
+                continue
+
+            def rates(t: float, y: np.ndarray, moving: bool = moving) -> np.ndarray:
+                return kvlcc2.rates(y, start + sign * RATE * t if moving else order)
+
+            def at(t: float, y: np.ndarray) -> float:
+                return float(event(y))
+
+            at.terminal, at.direction = True, 1.0  # type: ignore[attr-defined]
+            found = solve_ivp(
+                rates, (0.0, span), self.state, "DOP853", events=at, rtol=1e-10, atol=1e-12
+            )
+            self.state = found.y[:, -1]
+            self.delta = start + sign * RATE * found.t[-1] if moving else order
+            if found.status == 1:
+                return self.state
+        raise AssertionError("the event did not come")
+
+
+def test_rates_are_those_of_the_paper() -> None:
+    draw, ship = np.random.default_rng(5), kvlcc2.ship()
+    for _ in range(20):
+        state = np.array([1.0, *draw.uniform(-0.3, 0.3, 1), *draw.uniform(-0.1, 0.1, 1), 0, 0, 1.0])
+        delta = float(draw.uniform(-0.6, 0.6))
+        found = ship.rates(state[:, None], np.array([delta]))[:, 0]
+        np.testing.assert_allclose(found, kvlcc2.rates(state, delta), rtol=1e-11, atol=1e-14)
+    assert ship.rate_hz[0] == pytest.approx(kvlcc2.N, rel=1e-12)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_turning_circle(side: float) -> None:
+    order, helm = side * math.radians(35.0), Helm()
+    quarter = helm.until(order, lambda y: side * y[5] - 0.5 * math.pi)
+    half = helm.until(order, lambda y: side * y[5] - math.pi)
+    found = turning_circle(kvlcc2.ship(), order)
+    for value, expected in (
+        (found.advance, quarter[3]),
+        (found.transfer, side * quarter[4]),
+        (found.tactical_diameter, side * half[4]),
+    ):
+        assert value[0] == pytest.approx(expected / kvlcc2.L, rel=1e-6)
+
+
+@pytest.mark.parametrize(("degrees", "side"), [(10.0, 1.0), (20.0, -1.0)])
+def test_zigzag(degrees: float, side: float) -> None:
+    size, helm, way = math.radians(degrees), Helm(), side
+    helm.until(way * size, lambda y: way * y[5] - size)
+    expected = []
+    for _ in range(2):
+        order = -way * size
+        top = helm.until(order, lambda y, way=way: -way * y[2])
+        expected.append(way * top[5] - size)
+        helm.until(order, lambda y, way=way: -way * y[5] - size)
+        way = -way
+    found = zigzag(kvlcc2.ship(), side * size, size)
+    np.testing.assert_allclose(found.overshoots_rad[:, 0], expected, rtol=1e-6)
+
+
+def test_stability_is_that_of_the_derivatives_and_of_the_papers_equations() -> None:
+    c, unit = kvlcc2.HULL, 0.5 * kvlcc2.RHO * kvlcc2.L**2 * kvlcc2.D
+    m = kvlcc2.MASS / unit
+    arm = m * kvlcc2.X_G / kvlcc2.L
+    expected = c["Y_v"] * (c["N_r"] - arm) - c["N_v"] * (c["Y_r"] - kvlcc2.M_X - m)
+    found = straight_course(kvlcc2.ship())
+    assert found.criterion[0] == pytest.approx(expected, rel=1e-5)
+    still = np.array([kvlcc2.U0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    matrix = np.zeros((2, 2))
+    for k, row in enumerate((1, 2)):
+        way = np.zeros(6)
+        way[row] = 1e-6
+        change = kvlcc2.rates(still + way, 0.0) - kvlcc2.rates(still - way, 0.0)
+        matrix[:, k] = change[1:3] / 2e-6
+    root = np.linalg.eigvals(matrix).real.max() * kvlcc2.L / kvlcc2.U0
+    assert found.root[0] == pytest.approx(root, rel=1e-4)
+    assert (found.root[0] > 0.0) == (found.with_rudder[0] < 0.0)
+
+
+def alike(ship: Ship) -> Ship:
+    """The ship with the same propeller and rudder to either side."""
+    rudder = replace(ship.rudder, straightening_plus=0.5, straightening_minus=0.5)
+    propeller = replace(ship.propeller, wake_c2_plus=1.4, wake_c2_minus=1.4)
+    return replace(ship, rudder=rudder, propeller=propeller)
+
+
+def test_port_mirrors_starboard() -> None:
+    ship, order = alike(kvlcc2.ship()), math.radians(35.0)
+    starboard, port = turning_circle(ship, order), turning_circle(ship, -order)
+    for name in ("advance", "transfer", "tactical_diameter", "steady_drift_rad"):
+        assert getattr(port, name)[0] == pytest.approx(getattr(starboard, name)[0], rel=1e-9)
+    found = spiral(ship, math.radians(5.0), math.radians(5.0))
+    np.testing.assert_allclose(found.up, -found.down[::-1], atol=2e-3)
+
+
+@given(st.floats(2.0, 100.0))
+@settings(max_examples=3)
+def test_a_ship_of_another_size_does_the_same_by_froude(scale: float) -> None:
+    small = kvlcc2.ship()
+    hull = replace(small.hull, length_m=kvlcc2.L * scale, area_m2=small.hull.area_m2 * scale**2)
+    propeller = replace(small.propeller, diameter_m=kvlcc2.D_P * scale)
+    rudder = replace(
+        small.rudder, area_m2=kvlcc2.A_R * scale**2, height_m=kvlcc2.H_R * scale,
+        rate_deg_s=kvlcc2.RATE / math.sqrt(scale),
+    )  # fmt: skip
+    large = Ship(
+        hull, propeller, rudder, small.mass_kg * scale**3, small.inertia_kg_m2 * scale**5,
+        small.cg_x_m * scale, small.approach_m_s * math.sqrt(scale),
+    )  # fmt: skip
+    assert large.rate_hz[0] == pytest.approx(small.rate_hz[0] / math.sqrt(scale))
+    turns = [turning_circle(one, math.radians(35.0)) for one in (small, large)]
+    assert turns[1].tactical_diameter[0] == pytest.approx(turns[0].tactical_diameter[0], rel=1e-9)
+
+
+def test_many_ships_at_once_are_each_as_one() -> None:
+    """Three ships with other derivatives, turned together and one by one."""
+    values = {name: np.repeat(one, 3) for name, one in kvlcc2.terms().items()}
+    values["Y_v"] = values["Y_v"] * np.array([1.0, 1.1, 0.9])
+    together = zigzag(kvlcc2.ship(values), 0.2, 0.2).overshoots_rad
+    for k in range(3):
+        alone = kvlcc2.ship({name: one[k : k + 1] for name, one in values.items()})
+        found = zigzag(alone, 0.2, 0.2).overshoots_rad[:, 0]
+        np.testing.assert_allclose(together[:, k], found, rtol=1e-12)
+
+
+def test_a_ship_that_does_not_turn_has_no_circle() -> None:
+    """Stable on straight course, and a rudder that hardly does anything."""
+    ship = kvlcc2.ship(kvlcc2.terms(N_v=0.0))
+    stuck = replace(ship, rudder=replace(ship.rudder, slope=1e-9))
+    found = turning_circle(alike(stuck), math.radians(35.0), step=1.0)
+    assert np.isnan(found.advance[0])
+    assert np.isnan(found.steady_diameter[0])
+
+
+@pytest.mark.parametrize(
+    ("seconds", "first", "second"),
+    [(5.0, 10.0, 25.0), (10.0, 10.0, 25.0), (20.0, 15.0, 32.5), (30.0, 20.0, 40.0),
+     (60.0, 20.0, 40.0)],
+)  # fmt: skip
+def test_limits_of_the_resolution(seconds: float, first: float, second: float) -> None:
+    assert imo.first_overshoot_deg(seconds) == first
+    assert imo.second_overshoot_deg(seconds) == second
+
+
+def test_what_is_missing_or_cannot_be_is_said() -> None:
+    values = kvlcc2.terms()
+    del values["X_udot"]
+    with pytest.raises(ConfigurationError, match="no X_udot: a turning ship needs them"):
+        HullLoads(7.0, 3.0, 1000.0, values)
+    weak = Propeller(0.216, (-0.1, 0.0, 0.0), 0.2, 0.4)
+    with pytest.raises(ConfigurationError, match="no revolutions balance a resistance of"):
+        _ = replace(kvlcc2.ship(), propeller=weak).rate_hz

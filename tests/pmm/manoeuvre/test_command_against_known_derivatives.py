@@ -1,0 +1,137 @@
+"""``pmm manoeuvre``: measured and stated derivatives, intervals, and what it refuses."""
+
+import json
+import math
+import re
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from analysis.coefficients.campaign_records import HIGHER_ORDER, CoefficientEntry
+from analysis.coefficients.campaign_result import CampaignCoefficients, no_trials
+from analysis.coefficients.exchange import to_dict
+from analysis.coefficients.names import Form
+from analysis.manoeuvring.manoeuvres import turning_circle
+from analysis.uncertainty.values import Contribution, UncertainValues
+from hardware.description.oscillator import Plane
+from pmm.cli import cli
+from pmm.manoeuvre.prediction import ship_of
+from pmm.manoeuvre.ship_file import ShipBody, ShipFile, StatedHull, read_ship
+
+ROOT = Path(__file__).parents[3]
+EXAMPLE = ROOT / "examples" / "manoeuvre" / "kvlcc2.toml"
+TEXT = EXAMPLE.read_text(encoding="utf-8")
+DEGREES = math.radians(1.0)
+MEASURED = ("Y_v", "Y_r", "N_v", "N_r")
+
+
+def _run(*arguments: str) -> tuple[int, str]:
+    ran = CliRunner().invoke(cli, ["manoeuvre", *arguments])
+    return ran.exit_code, ran.output
+
+
+def _written(folder: Path, text: str) -> str:
+    path = folder / "ship.toml"
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+def test_the_json_has_every_quantity_with_its_interval_and_criterion() -> None:
+    status, output = _run(str(EXAMPLE), "--trials", "40", "--json")
+    assert status == 0, output
+    found = json.loads(output[output.index("{") :])
+    assert found["schema"] == "pmm-manoeuvre-1"
+    rows = {(one["manoeuvre"], one["name"]): one for one in found["quantities"]}
+    advance = rows["turning circle 35°, starboard", "advance"]
+    assert advance["low"] < advance["value"] < advance["high"]
+    assert advance["full_scale"] == pytest.approx(advance["value"] * 7.0 * 45.714)
+    assert (advance["limit"], advance["within"]) == (4.5, 1.0)
+    assert rows["zig-zag 10/10, port", "overshoot 1"]["limit"] == 20.0
+    assert rows["turning circle 35°, port", "transfer"]["limit"] is None
+
+
+def test_draws_spread_as_the_slope_says() -> None:
+    """One uncertain derivative: the spread of the advance against its slope by differences."""
+    file, spread = read_ship(EXAMPLE), 0.004
+
+    def advance(value: float, uncertainty: float, trials: int) -> np.ndarray:
+        hull = StatedHull("mmg", file.hull.values | {"Y_v": value}, {"Y_v": uncertainty})
+        ship = ship_of(_with(file, hull=hull), trials, 1)
+        return turning_circle(ship, 35.0 * DEGREES, step=0.1).advance
+
+    value = file.hull.values["Y_v"]
+    ends = [advance(value + change, 0.0, 0)[0] for change in (spread, -spread)]
+    found = float(np.std(advance(value, spread, 300)[1:]))
+    assert found == pytest.approx(abs(ends[0] - ends[1]) / 2.0, rel=0.15)
+
+
+def _with(file: ShipFile, **change: object) -> ShipFile:
+    told = {one.name: getattr(file, one.name) for one in fields(ShipFile)}
+    return ShipFile(**(told | change))  # type: ignore[arg-type]
+
+
+def _campaign(file: ShipFile) -> CampaignCoefficients:
+    """What a campaign at twice the speed would report of four derivatives, with one covariance."""
+    ship, speed = file.ship, 2.0 * file.speed_m_s
+    half = 0.5 * file.water.density_kg_m3 * ship.length_m * ship.draught_m * speed
+    units = dict(zip(MEASURED, (1.0, ship.length_m, ship.length_m, ship.length_m**2), strict=True))
+    entries = tuple(
+        CoefficientEntry(name, "", HIGHER_ORDER, 0.2, speed, 0.1, 0.1, ("a",), math.nan, 1.0)
+        for name in MEASURED
+    )
+    values = np.array([file.hull.values[name] * half * units[name] for name in MEASURED])
+    parts = 0.02 * values[:, None]  # all of them 2 % off together
+    uncertain = UncertainValues(values, (Contribution("gauge", np.inf, np.arange(4), parts),))
+    return CampaignCoefficients(
+        Form.MANOEUVRING, Plane.HORIZONTAL, "dimensional", 0.95, entries, uncertain, no_trials(4)
+    )
+
+
+def test_measured_derivatives_are_made_without_dimensions_and_keep_what_they_share(
+    tmp_path: Path,
+) -> None:
+    file = read_ship(EXAMPLE)
+    measured = tmp_path / "coefficients.json"
+    measured.write_text(json.dumps({"coefficients": to_dict(_campaign(file))}))
+    rest = {name: one for name, one in file.hull.values.items() if name not in MEASURED}
+    mixed = _with(file, hull=StatedHull("mmg", rest), coefficients=str(measured))
+    found = ship_of(mixed, 50, 2).hull.values
+    first = found["Y_v"] / file.hull.values["Y_v"]
+    for name in MEASURED:
+        drawn = found[name] / file.hull.values[name]
+        assert drawn[0] == pytest.approx(1.0, rel=1e-12)
+        np.testing.assert_allclose(drawn, first, rtol=1e-12)
+    assert np.std(drawn[1:]) == pytest.approx(0.02, rel=0.3)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "status", "said"),
+    [
+        ("X_udot = -0.022\n", "", 2, "no X_udot: a turning ship needs them"),
+        ("X_0 = -0.022", "X_0 = 0.022", 2, "no revolutions balance a resistance"),
+        ("wake = 0.40", "wak = 0.40", 2, "propeller.wak is not a known key; did you mean wake?"),
+        ("temperature_deg_c = 15.0", "temperature_deg_c = 55.0", 2, "outside 0 to 40 degrees"),
+        ('system = "mmg"', 'system = "bis"', 2, "hull.system should be one of mmg, prime"),
+        ("N_rrr = -0.013", "N_rpr = -0.013", 2, "hull.values.N_rpr is no derivative"),
+        ("N_r = 0.0010", "N_rr = 0.0010", 2, "N_rr has no value in [hull.values]"),
+        ("# coefficients =", "coefficients =", 1, "not what `pmm coefficients --json` printed"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_is_refused_by_a_sentence(
+    tmp_path: Path, old: str, new: str, status: int, said: str
+) -> None:
+    assert old in TEXT
+    found, output = _run(_written(tmp_path, TEXT.replace(old, new)), "--trials", "0")
+    assert (found, said in " ".join(output.split())) == (status, True), output
+
+
+def test_the_page_names_every_key() -> None:
+    page = (ROOT / "docs" / "manoeuvre.md").read_text(encoding="utf-8")
+    file = read_ship(EXAMPLE)
+    kinds = (ShipFile, ShipBody, type(file.propeller), type(file.rudder))
+    for kind in kinds:
+        for one in fields(kind):
+            assert re.search(rf"\b{one.name}\b", page), one.name
