@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from analysis.inertia.series import Series, UsablePart
+from analysis.inertia.series import SWINGING_UNITS, Series, UsablePart
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
@@ -147,7 +147,10 @@ def strongest_axis(chosen: Series, others: tuple[Series, ...]) -> tuple[Flag, ..
     """Flag a channel beside which another of the same unit swings more at the same time.
 
     For records with several axes (a phone's three rates): the wanted axis is the strongest one.
+    What has no unit is not compared: metres of travel say nothing of degrees of roll.
     """
+    if chosen.unit not in SWINGING_UNITS:
+        return ()
     own = float(np.nanstd(chosen.values))
     stronger = [
         other

@@ -6,15 +6,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.inertia.elementary_functions import jacobian
-from analysis.uncertainty.estimate import Estimate, joint, require_positive
+from analysis.uncertainty.estimate import Estimate, exactly, joint, require_positive
 from analysis.uncertainty.values import UncertainValues, stacked
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 
-NAMES = ("mass_kg", "x_m", "y_m", "z_m", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz")
+PRODUCTS = ("ixy_kg_m2", "ixz_kg_m2", "iyz_kg_m2")
+NAMES = ("mass_kg", "x_m", "y_m", "z_m", "ixx_kg_m2", "iyy_kg_m2", "izz_kg_m2", *PRODUCTS)
 _SIZE = len(NAMES)
 # What a part is made of.
-MADE_OF = ("mass_kg", "x_m", "y_m", "z_m", "k_roll_m", "k_pitch_m", "k_yaw_m")
+MADE_OF = ("mass_kg", "x_m", "y_m", "z_m", "k_roll_m", "k_pitch_m", "k_yaw_m", *PRODUCTS)
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,12 @@ class BodyPart:
         return roll, pitch, yaw
 
     @property
+    def products(self) -> tuple[Estimate, Estimate, Estimate]:
+        """``Ixy``, ``Ixz``, ``Iyz`` about the own centre of gravity (sums), kg m2."""
+        xy, xz, yz = (self._estimate(k, "kg m2") for k in (7, 8, 9))
+        return xy, xz, yz
+
+    @property
     def gyradii(self) -> tuple[Estimate, Estimate, Estimate]:
         """Roll, pitch and yaw gyradius, m; the covariance with the mass is in them."""
         mass, slope = float(self.parameters[0]), np.zeros((3, _SIZE))
@@ -72,12 +79,15 @@ class BodyPart:
         return Estimate(self.uncertain.taken([k]), unit)
 
 
+_NO_PRODUCTS = (exactly(0.0, "kg m2"), exactly(0.0, "kg m2"), exactly(0.0, "kg m2"))
+
+
 def part(
     name: str,
     mass: Estimate,
     position: tuple[Estimate, Estimate, Estimate],
     gyradii: tuple[Estimate, Estimate, Estimate],
-    products_kg_m2: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    products: tuple[Estimate, Estimate, Estimate] = _NO_PRODUCTS,
 ) -> BodyPart:
     """Make a part from mass, centre of gravity and gyradii.
 
@@ -85,8 +95,8 @@ def part(
     ----------
     gyradii
         Roll, pitch, yaw; 0 for a point mass. Their products with the mass tie inertia to mass.
-    products_kg_m2
-        ``Ixy``, ``Ixz``, ``Iyz``, without uncertainty.
+    products
+        ``Ixy``, ``Ixz``, ``Iyz``: sums, kg m2.
 
     Raises
     ------
@@ -96,11 +106,10 @@ def part(
     require_positive(f"part {name!r}", mass_kg=mass.value)
     if any(gyradius.value < 0.0 for gyradius in gyradii):
         raise ConfigurationError(f"part {name!r}: a gyradius below 0; give its magnitude")
-    inputs = joint((mass, *position, *gyradii))
+    inputs = joint((mass, *position, *gyradii, *products))
 
     def turn(given: FloatArray) -> FloatArray:
-        inertia = given[0] * given[4:7] ** 2
-        return np.concatenate([given[:4], inertia, np.array(products_kg_m2)])
+        return np.concatenate([given[:4], given[0] * given[4:7] ** 2, given[7:]])
 
     at = inputs.values
     return BodyPart(name, inputs.carried(np.asarray(turn(at)), jacobian(turn, at)))

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.uncertainty.estimate import Estimate, joint
+from analysis.uncertainty.redundancy import Redundancy, best_fit
 from analysis.uncertainty.values import UncertainValues, stacked
 from hardware.description.errors import DataError
 
@@ -26,13 +27,12 @@ class PlaneInertia:
     ----------
     uncertain
         Ixx, Izz, Ixz (``sum m x z``), kg m2, shape ``(3,)``.
-    chi_squared, degrees_of_freedom
-        How well more than three axes agree; 0 over 0 for three.
+    redundancy
+        How more than three axes agree. Where they do not, the scatter is in ``uncertain``.
     """
 
     uncertain: UncertainValues
-    chi_squared: float
-    degrees_of_freedom: int
+    redundancy: Redundancy
 
     def estimate(self, index: int) -> Estimate:
         """Return Ixx (0), Izz (1) or Ixz (2)."""
@@ -54,7 +54,12 @@ class PlaneInertia:
         return replace(self, uncertain=whole.carried(factor.value * values, slope))
 
 
-def plane_inertia(about: Sequence[Estimate], angles: Sequence[Estimate]) -> PlaneInertia:
+IN_PLANE = ("ixx_kg_m2", "izz_kg_m2", "ixz_kg_m2")
+
+
+def plane_inertia(
+    about: Sequence[Estimate], angles: Sequence[Estimate], *, results: Sequence[str] = IN_PLANE
+) -> PlaneInertia:
     """Fit the plane's inertia to that about several axes in it.
 
     Parameters
@@ -63,6 +68,8 @@ def plane_inertia(about: Sequence[Estimate], angles: Sequence[Estimate]) -> Plan
         Inertia about each axis through the centre of gravity, kg m2.
     angles
         Of each axis, from body z towards body x, rad; 0 is yaw, a quarter turn roll.
+    results
+        Names of what is fitted.
 
     Raises
     ------
@@ -87,10 +94,11 @@ def plane_inertia(about: Sequence[Estimate], angles: Sequence[Estimate]) -> Plan
     rough = np.linalg.lstsq(matrix, measured, rcond=None)[0]
     slope = 2.0 * s * c * (rough[0] - rough[1]) - 2.0 * rough[2] * (c * c - s * s)
     seen = whole.carried(measured, np.hstack([np.eye(phi.size), -np.diag(slope)]))
-    weight = 1.0 / np.maximum(seen.standard_uncertainty, 1e-12 * np.abs(measured))
-    fitted = seen.mapped(np.linalg.pinv(matrix * weight[:, None]) * weight)
-    left = weight * (measured - matrix @ fitted.values)
-    return PlaneInertia(fitted, float(left @ left), phi.size - 3)
+    names = [f"axis at {angle:.4g} deg" for angle in np.degrees(phi)]
+    fitted, redundancy = best_fit(
+        matrix, seen, what="inertia in the centre plane", results=results, data=names
+    )
+    return PlaneInertia(fitted, redundancy)
 
 
 def inertias_at(xx: float, zz: float, xz: float, angle_rad: float) -> tuple[float, float]:

@@ -1,6 +1,6 @@
 """From one record to its periods, and from several records to one period with its scatter.
 
-series -> usable part -> checks -> fit -> parts of the record -> period at no amplitude
+series -> usable part -> one regime -> checks -> fit -> parts of it -> period at no amplitude
 """
 
 from collections.abc import Sequence
@@ -15,6 +15,7 @@ from analysis.inertia.amplitude import (
 from analysis.inertia.checks import check_amplitude_effect, check_record
 from analysis.inertia.damped_fit import DampedFit, fit_damped
 from analysis.inertia.local_periods import LocalPeriods, local_periods
+from analysis.inertia.regime import of_one_regime
 from analysis.inertia.repeats import KnownScatter, Repeated, combine_runs, single_run
 from analysis.inertia.series import Series, UsablePart, usable_part
 from analysis.uncertainty.estimate import Estimate
@@ -75,7 +76,11 @@ def analyse_record(series: Series, *, modes: int = 1, pendulum: bool = False) ->
         fit does not settle.
     """
     part = usable_part(series)
-    flags = [*part.series.flags, *check_record(part)]
+    flags = list(part.series.flags)
+    if modes == 1:
+        part, changed = of_one_regime(series, part)
+        flags += changed
+    flags += check_record(part)
     time_s, values = part.series.time_s, part.series.values
     fit = fit_damped(time_s, values, modes=modes, where=series.where)
     flags += fit.flags
@@ -119,4 +124,9 @@ def from_runs(
     if len(runs) == 1 and known_scatter is None:
         only = runs[0].modes[mode]
         return single_run(only.local, only.at_no_amplitude.period, what=what)
-    return combine_runs([run.period(mode) for run in runs], known_scatter=known_scatter, what=what)
+    return combine_runs(
+        [run.period(mode) for run in runs],
+        known_scatter=known_scatter,
+        what=what,
+        names=[run.part.series.name for run in runs],
+    )

@@ -7,12 +7,13 @@ alone: one run needs the scatter known from elsewhere, or that between its own p
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from analysis.inertia.local_periods import LocalPeriods
 from analysis.uncertainty.estimate import Estimate, joint
+from analysis.uncertainty.redundancy import Redundancy, best_fit, scattered_fit
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 
@@ -29,6 +30,8 @@ class Repeated:
         Standard deviation of a single run; NaN for one run.
     fit_uncertainty
         Root mean square of the runs' own errors.
+    redundancy
+        How the runs agree; none for one run.
     """
 
     estimate: Estimate
@@ -36,6 +39,7 @@ class Repeated:
     scatter: float
     fit_uncertainty: float
     flags: tuple[Flag, ...] = ()
+    redundancy: tuple[Redundancy, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -50,7 +54,11 @@ class KnownScatter:
 
 
 def combine_runs(
-    runs: Sequence[Estimate], *, known_scatter: KnownScatter | None = None, what: str = "period"
+    runs: Sequence[Estimate],
+    *,
+    known_scatter: KnownScatter | None = None,
+    what: str = "period",
+    names: Sequence[str] = (),
 ) -> Repeated:
     """Combine runs of the same set-up.
 
@@ -60,6 +68,8 @@ def combine_runs(
         Value of each run with its fit's error.
     known_scatter
         Pooled with that of these runs by degrees of freedom; needed where there is one run only.
+    names
+        Of the runs; their numbers without.
 
     Raises
     ------
@@ -78,9 +88,35 @@ def combine_runs(
     mean = Estimate(joint(runs).mapped(np.full((1, len(runs)), 1.0 / len(runs))), runs[0].unit)
     between = Estimate.of(mean.value, spread / math.sqrt(len(runs)), mean.unit, freedom)
     estimate = mean if own > spread else between
-    return Repeated(
-        estimate, tuple(values.tolist()), scatter, own, _scatter_flags(what, spread, own)
-    )
+    found: tuple[Redundancy, ...] = ()
+    if len(runs) > 1:
+        agreement = _agreement(runs, known_scatter, what, names)
+        wide, cause = (
+            (1.0, "") if own > spread else (_over(spread, own), "the scatter between runs")
+        )
+        by_fits = (len(runs) - 1) * _over(scatter, own) ** 2
+        chi_squared = agreement.chi_squared if known_scatter else by_fits
+        found = (replace(agreement, chi_squared=chi_squared, widening=wide, cause=cause),)
+    flags = (*_scatter_flags(what, spread, own), *(flag for one in found for flag in one.flags()))
+    return Repeated(estimate, tuple(values.tolist()), scatter, own, flags, found)
+
+
+def _over(scatter: float, own: float) -> float:
+    return scatter / own if own > 0.0 else math.nan
+
+
+def _agreement(
+    runs: Sequence[Estimate], known: KnownScatter | None, what: str, names: Sequence[str]
+) -> Redundancy:
+    """Return how runs agree: by the scatter known from elsewhere, or by their own."""
+    matrix = np.ones((len(runs), 1))
+    labels = names or [f"run {k}" for k in range(1, len(runs) + 1)]
+    results = ("period_s" if runs[0].unit == "s" else "ratio",)
+    if known is None:
+        values = np.array([run.value for run in runs])
+        return scattered_fit(matrix, values, what=what, results=results, data=labels)
+    seen = joint(Estimate.of(one.value, known.value, "s", known.degrees_of_freedom) for one in runs)
+    return best_fit(matrix, seen, what=what, results=results, data=labels)[1]
 
 
 def _pooled(scatter: float, freedom: int, known: KnownScatter | None) -> tuple[float, float]:

@@ -110,6 +110,8 @@ class UsablePart:
         At its ends, in the record's unit.
     noise_rms
         Standard deviation of what changes from sample to sample.
+    floor
+        Amplitude at which the record is taken to have died out.
     because
         In words, why it starts and ends there.
     """
@@ -119,7 +121,17 @@ class UsablePart:
     first_amplitude: float
     last_amplitude: float
     noise_rms: float
+    floor: float
     because: str
+
+    def cut(self, start_s: float, stop_s: float, because: str) -> "UsablePart":
+        """Return less of it, and why."""
+        chosen = cut(self.series, start_s, stop_s)
+        size = max(round(self.period_s * chosen.sample_rate_hz), 4)
+        first, last = _end_amplitudes(_envelope(chosen.values, size), 0, chosen.values.size, size)
+        return replace(
+            self, series=chosen, first_amplitude=first, last_amplitude=last, because=because
+        )
 
 
 def series_from_recording(recording: Recording, channel: str) -> Series:
@@ -189,7 +201,6 @@ def usable_part(series: Series) -> UsablePart:
     last = first + int(after[0]) if after.size else series.values.size - 1
     start_s, stop_s = (series.start_s + k / series.sample_rate_hz for k in (first, last))
     chosen = cut(series, start_s, stop_s)
-    ends = np.clip([first + size // 2, last - size // 2], 0, envelope.size - 1)
     how = "falls below the limit" if after.size else "is still there at the record's end"
     because = (
         f"from {start_s:.4g} s (after the largest swing, {top:.3g} {series.unit}) to "
@@ -197,9 +208,14 @@ def usable_part(series: Series) -> UsablePart:
     )
     flags = _gap_flags(chosen, size)
     chosen = replace(chosen, flags=(*chosen.flags, *flags))
-    return UsablePart(
-        chosen, period, float(envelope[ends[0]]), float(envelope[ends[1]]), noise, because
-    )
+    ends = _end_amplitudes(envelope, first, last, size)
+    return UsablePart(chosen, period, *ends, noise, floor, because)
+
+
+def _end_amplitudes(envelope: FloatArray, first: int, last: int, size: int) -> tuple[float, float]:
+    """Return the amplitude half a period within either end."""
+    ends = np.clip([first + size // 2, last - size // 2], 0, envelope.size - 1)
+    return float(envelope[ends[0]]), float(envelope[ends[1]])
 
 
 def _noise(values: FloatArray) -> float:

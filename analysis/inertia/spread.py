@@ -7,12 +7,13 @@ little: a cause is named only if, fitted to all but one of them, it predicts the
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 
 from analysis.uncertainty.estimate import Estimate, joint
+from analysis.uncertainty.redundancy import Redundancy, best_fit
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
@@ -92,50 +93,52 @@ class Spread:
     ----------
     gyradius
         Weighted mean; where they disagree its uncertainty is that of the unexplained spread.
-    chi_squared, probability
-        Of the agreement, with geometries less 1 degrees of freedom.
+    redundancy
+        How they agree, with geometries less 1 degrees of freedom.
     causes
         Likeliest first; empty where they agree.
     """
 
     gyradius: Estimate
-    chi_squared: float
-    probability: float
-    agree: bool
+    redundancy: Redundancy
     causes: tuple[SpreadCause, ...]
     flags: tuple[Flag, ...]
 
 
-def compare_geometries(geometries: Sequence[SuspensionGyradius]) -> Spread:
+def compare_geometries(
+    geometries: Sequence[SuspensionGyradius], *, result: str = "k_yaw_m"
+) -> Spread:
     """Compare the gyradii of one body on several suspensions.
+
+    Parameters
+    ----------
+    result
+        Name of the gyradius.
 
     Raises
     ------
     DataError
         For fewer than two geometries.
     """
-    from scipy.stats import chi2
-
     if len(geometries) < 2:
         raise DataError(f"{len(geometries)} geometry; at least 2 are needed to compare")
     values = np.array([geometry.gyradius.value for geometry in geometries])
-    weights = np.array([1.0 / geometry.gyradius.uncertainty**2 for geometry in geometries])
     gyradii = joint(geometry.gyradius for geometry in geometries)
-    mean = Estimate(gyradii.mapped(weights[None] / weights.sum()), "m")
-    first = np.ones((values.size - 1, 1))
-    apart = gyradii.mapped(np.hstack([-first, np.eye(values.size - 1)]))
-    misfit = float(apart.values @ np.linalg.solve(apart.covariance(), apart.values))
-    probability = float(chi2.sf(misfit, values.size - 1))
-    if probability >= DISAGREE:
-        return Spread(mean, misfit, probability, True, (), ())
-    scatter = float(values.std(ddof=1))
+    mean, found = best_fit(
+        np.ones((values.size, 1)),
+        gyradii,
+        what=f"{result} by several suspensions",
+        results=(result,),
+        data=[geometry.name for geometry in geometries],
+    )
+    if found.agree:
+        return Spread(Estimate(mean, "m"), found, (), ())
+    own = Estimate(mean, "m").uncertainty / found.widening
+    scatter = max(float(values.std(ddof=1)), own)
     causes = _causes(geometries) if values.size > 2 else ()
-    estimate = Estimate.of(
-        float(values.mean()), max(scatter, mean.uncertainty), "m", float(values.size - 1)
-    )
-    return Spread(
-        estimate, misfit, probability, False, causes, (_flag(values, misfit, causes, scatter),)
-    )
+    estimate = Estimate.of(float(values.mean()), scatter, "m", float(values.size - 1))
+    wider = replace(found, widening=scatter / own, cause="the spread between the suspensions")
+    return Spread(estimate, wider, causes, (_flag(values, found, causes, scatter),))
 
 
 def _shapes(d: FloatArray, line: FloatArray, k: float) -> dict[str, tuple[str, FloatArray]]:
@@ -191,7 +194,7 @@ def _left_out(matrix: FloatArray, target: FloatArray) -> FloatArray:
 
 
 def _flag(
-    values: FloatArray, misfit: float, causes: tuple[SpreadCause, ...], scatter: float
+    values: FloatArray, found: Redundancy, causes: tuple[SpreadCause, ...], scatter: float
 ) -> Flag:
     why = ""
     if causes:
@@ -203,7 +206,7 @@ def _flag(
         )
     message = (
         f"the gyradii range from {values.min():.4f} to {values.max():.4f} m, beyond their "
-        f"uncertainties (chi-squared {misfit:.4g} over {values.size - 1}): an unexplained spread "
-        f"of {scatter:.2g} m, which is taken for the uncertainty{why}"
+        f"uncertainties (chi-squared {found.chi_squared:.4g} over {found.degrees_of_freedom}): an "
+        f"unexplained spread of {scatter:.2g} m, which is taken for the uncertainty{why}"
     )
     return Flag("unexplained_spread", Severity.WARNING, message)

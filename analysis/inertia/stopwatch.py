@@ -1,11 +1,13 @@
 """Periods by stopwatch: times of counted swings."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.uncertainty.estimate import Estimate
+from analysis.inertia.repeats import Repeated
+from analysis.uncertainty.estimate import Estimate, joint
+from analysis.uncertainty.redundancy import scattered_fit
 from hardware.description.errors import DataError
 
 REACTION_S = 0.1  # standard deviation of a person's start and stop together
@@ -20,8 +22,11 @@ class StopwatchReading:
 
 
 def stopwatch_period(
-    readings: tuple[StopwatchReading, ...], *, reaction_s: float = REACTION_S
-) -> Estimate:
+    readings: tuple[StopwatchReading, ...],
+    *,
+    reaction_s: float = REACTION_S,
+    what: str = "stopwatch",
+) -> Repeated:
     """Return the period of one swing.
 
     Several readings give their mean and the scatter between them; a single one rests on the
@@ -51,10 +56,26 @@ def stopwatch_period(
             f"stopwatch reading {worst + 1}: {periods[worst]:.4g} s a swing against {usual:.4g} s "
             f"of the others: {off[worst]:.2g} swings over {swings[worst]:.0f}; miscounted?"
         )
-    reaction = float(reaction_s * math.sqrt((1.0 / swings**2).sum()) / swings.size)
-    if periods.size < 2:
-        return Estimate.of(usual, reaction, "s")
-    scatter = float(periods.std(ddof=1)) / math.sqrt(periods.size)
-    if scatter > reaction:
-        return Estimate.of(float(periods.mean()), scatter, "s", float(periods.size - 1))
-    return Estimate.of(float(periods.mean()), reaction, "s")
+    own = [
+        Estimate.of(float(period), reaction_s / count, "s")
+        for period, count in zip(periods, swings, strict=True)
+    ]
+    mean = Estimate(joint(own).mapped(np.full((1, len(own)), 1.0 / len(own))), "s")
+    if len(own) < 2:
+        return Repeated(mean, (usual,), math.nan, mean.uncertainty)
+    names = [f"reading {k}" for k in range(1, len(own) + 1)]
+    found = scattered_fit(
+        np.ones((len(own), 1)), periods, what=what, results=("period_s",), data=names
+    )
+    reactions = np.array([one.uncertainty for one in own])
+    chi_squared = float((((periods - mean.value) / reactions) ** 2).sum())
+    scatter = float(periods.std(ddof=1))
+    between = scatter / math.sqrt(periods.size)
+    estimate, wide, cause = mean, 1.0, ""
+    if between > mean.uncertainty:
+        estimate = Estimate.of(mean.value, between, "s", float(periods.size - 1))
+        wide, cause = between / mean.uncertainty, "the scatter between readings"
+    found = replace(found, chi_squared=chi_squared, widening=wide, cause=cause)
+    return Repeated(
+        estimate, tuple(periods.tolist()), scatter, own[0].uncertainty, found.flags(), (found,)
+    )

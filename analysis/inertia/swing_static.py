@@ -7,18 +7,19 @@ Gravity cancels. F1 has no offset; F2, with one, is the better.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from analysis.inertia.elementary_functions import Value
 from analysis.uncertainty.budget import derived
-from analysis.uncertainty.estimate import Estimate, difference, exactly, require_positive
+from analysis.uncertainty.estimate import Estimate, exactly, joint, require_positive
+from analysis.uncertainty.redundancy import Redundancy, best_fit, scattered_fit
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 
-DISAGREE = 0.01  # probability under which series are said to differ
+_MOMENT = ("first_moment_kg_m",)
 
 
 @dataclass(frozen=True)
@@ -69,13 +70,13 @@ class StaticResult:
         One fit to all readings; its uncertainty grows by the scatter between the series.
     alone
         Each series by itself.
-    disagreeing
-        Names of the series that differ from the others.
+    redundancy
+        How the readings scatter about the pooled fit, and how the levers agree.
     """
 
     pooled: StaticMoment
     alone: tuple[StaticMoment, ...]
-    disagreeing: tuple[str, ...]
+    redundancy: tuple[Redundancy, ...]
     flags: tuple[Flag, ...]
 
 
@@ -96,9 +97,9 @@ def fit_static(series: Sequence[LeverSeries], *, with_offset: bool = True) -> St
         _check(levers)
     pooled = _fit(series, with_offset)
     alone = tuple(_fit([levers], with_offset) for levers in series)
-    disagreeing = _disagreeing(series, alone, with_offset)
-    flags = _flags(series, alone, disagreeing)
-    return StaticResult(_widened(pooled, alone), alone, disagreeing, flags)
+    wider, between = _between_levers(pooled, alone)
+    found = (_readings(series, with_offset), *between)
+    return StaticResult(wider, alone, found, _flags(series, found))
 
 
 def distance(moment: Estimate, mass_kg: Estimate) -> Estimate:
@@ -165,38 +166,37 @@ def _fit(series: Sequence[LeverSeries], with_offset: bool) -> StaticMoment:
     )
 
 
-def _disagreeing(
-    series: Sequence[LeverSeries], alone: tuple[StaticMoment, ...], with_offset: bool
-) -> tuple[str, ...]:
-    """Name the series whose moment differs from that of all the others together."""
-    if len(series) < 2:
-        return ()
-    names = []
-    for k, moment in enumerate(series):
-        others = [other for j, other in enumerate(series) if j != k]
-        rest = _fit(others, with_offset).moment
-        apart = difference(alone[k].moment, rest)
-        if abs(apart.value) > apart.half_width(1.0 - DISAGREE / len(series)):
-            names.append((abs(apart.value) / apart.uncertainty, moment.name))
-    return tuple(name for _, name in sorted(names, reverse=True))
+def _readings(series: Sequence[LeverSeries], with_offset: bool) -> Redundancy:
+    """Return how the readings scatter about the pooled fit."""
+    matrix, tangent = _columns(series, with_offset)
+    names = [f"{one.name} with {weight:g} kg" for one in series for weight in one.weight_kg]
+    what = f"tilts under weights ({', '.join(one.name for one in series)})"
+    found = scattered_fit(matrix, tangent, what=what, results=_MOMENT, data=names)
+    return found.of(_MOMENT, lambda unknowns: 1.0 / unknowns[..., :1])
 
 
-def _widened(pooled: StaticMoment, alone: tuple[StaticMoment, ...]) -> StaticMoment:
-    """Let the scatter between series into the uncertainty, where it is the larger."""
+def _between_levers(
+    pooled: StaticMoment, alone: tuple[StaticMoment, ...]
+) -> tuple[StaticMoment, tuple[Redundancy, ...]]:
+    """Let the scatter between levers into the uncertainty, where it is the larger."""
     if len(alone) < 2:
-        return pooled
-    values = np.array([moment.moment.value for moment in alone])
-    between = float(values.std(ddof=1)) / np.sqrt(values.size)
+        return pooled, ()
+    moments = joint(one.moment for one in alone)
+    names = [one.series[0] for one in alone]
+    ones = np.ones((len(alone), 1))
+    _, found = best_fit(ones, moments, what="levers", results=_MOMENT, data=names)
+    between = float(moments.values.std(ddof=1)) / np.sqrt(len(alone))
     own = pooled.moment
-    if between <= own.uncertainty:
-        return pooled
-    moment = Estimate.of(own.value, float(between), own.unit, float(values.size - 1))
-    return StaticMoment(moment, pooled.offset_rad, pooled.residual_rms_rad, pooled.series)
+    wider = between > own.uncertainty
+    if wider:
+        moment = Estimate.of(own.value, float(between), own.unit, float(len(alone) - 1))
+        pooled = replace(pooled, moment=moment)
+    widening = float(between / own.uncertainty) if wider and own.uncertainty > 0.0 else 1.0
+    cause = "the scatter between the levers" if wider else ""
+    return pooled, (replace(found, widening=widening, cause=cause),)
 
 
-def _flags(
-    series: Sequence[LeverSeries], alone: tuple[StaticMoment, ...], disagreeing: tuple[str, ...]
-) -> tuple[Flag, ...]:
+def _flags(series: Sequence[LeverSeries], redundancy: tuple[Redundancy, ...]) -> tuple[Flag, ...]:
     flags = []
     if len({levers.lever_m for levers in series}) < 2:
         message = (
@@ -204,12 +204,5 @@ def _flags(
             "not be seen (one was by 8 %); measure at a second lever"
         )
         flags.append(Flag("single_lever", Severity.WARNING, message))
-    if disagreeing:
-        values = ", ".join(f"{moment.series[0]} {moment.moment.value:.5g} kg m" for moment in alone)
-        what = ", ".join(map(repr, disagreeing))
-        message = (
-            f"series {what} differ from the others beyond chance ({values}); check lever and "
-            "weights of these, or measure them again"
-        )
-        flags.append(Flag("series_disagree", Severity.WARNING, message))
+    flags += [flag for one in redundancy for flag in one.flags()]
     return tuple(flags)

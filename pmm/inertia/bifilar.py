@@ -3,10 +3,13 @@
 from collections.abc import Iterator, Mapping
 from itertools import combinations
 
+import numpy as np
+
 from analysis.inertia.bifilar import yaw_from_period
 from analysis.inertia.spread import SuspensionGyradius, compare_geometries
-from analysis.uncertainty.estimate import Estimate, difference
+from analysis.uncertainty.estimate import Estimate, difference, joint
 from analysis.uncertainty.monte_carlo import Assessment
+from analysis.uncertainty.redundancy import Redundancy, best_fit
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
@@ -14,6 +17,7 @@ from pmm.inertia.air import without_air
 from pmm.inertia.bifilar_axes import plane_axes
 from pmm.inertia.bifilar_tables import BifilarTable
 from pmm.inertia.bifilar_workflow import workflow
+from pmm.inertia.hanging import hung
 from pmm.inertia.lines import line_share, yaw_off_lines
 from pmm.inertia.outcome import (
     Finding,
@@ -42,15 +46,18 @@ def run(path: str) -> Outcome:
     """
     job = read_job(path, BifilarTable)
     table = job.table
-    hung = [hang(job, one) for one in table.suspensions]
-    findings = [finding for one in hung for finding in _findings(one, several=len(hung) > 1)]
-    flags = [*flags_of(table), *(flag for one in hung for flag in one.flags)]
-    periods = [runs for one in hung for runs in one.periods]
+    tests = [hang(job, one) for one in table.suspensions]
+    findings = [finding for one in tests for finding in _findings(one, several=len(tests) > 1)]
+    flags = [*flags_of(table), *(flag for one in tests for flag in one.flags)]
+    periods = [runs for one in tests for runs in one.periods]
     notes: list[str] = []
-    gyradii, used = _results(table, hung, findings, flags, notes)
+    found: list[Redundancy] = []
+    gyradii, used = _results(table, tests, findings, flags, notes, found)
     notes += _air_notes(table, gyradii)
-    axes = _tilts(job, gyradii, used, findings, periods, flags)
-    step = workflow(job, hung, findings, flags, periods)
+    axes = _tilts(job, gyradii, used, findings, periods, flags, found)
+    step = workflow(job, tests, findings, flags, periods)
+    centre = hung(table, findings, flags)
+    found += [centre.redundancy] if centre else []
     body, missing = properties(
         table.name,
         table.model,
@@ -58,6 +65,7 @@ def run(path: str) -> Outcome:
         take_off=table.take_off,
         budgets=[one.budget for one in used.values()],
         flags=flags,
+        centre=centre,
     )
     if body is not None and table.take_off:
         findings += _own_findings(body.mass, body.gyradii)
@@ -74,6 +82,7 @@ def run(path: str) -> Outcome:
         tuple(notes),
         step,
         axes=axes,
+        redundancy=tuple(found),
     )
 
 
@@ -111,6 +120,7 @@ def _results(
     findings: list[Finding],
     flags: list[Flag],
     notes: list[str],
+    redundancy: list[Redundancy],
 ) -> tuple[dict[str, Estimate], dict[str, Assessment]]:
     """Return each axis' gyradius: of the chosen method, over all suspensions that have it."""
     gyradii: dict[str, Estimate] = {}
@@ -128,17 +138,15 @@ def _results(
                 )
                 for one, found in chosen
             ]
-            spread = compare_geometries(rows)
+            spread = compare_geometries(rows, result=f"k_{axis}_m")
             gyradii[axis] = spread.gyradius
             flags += spread.flags
-            notes.append(
-                f"{axis}: {len(rows)} suspensions {'agree' if spread.agree else 'disagree'} "
-                f"(probability {spread.probability:.2g})"
-            )
+            redundancy.append(spread.redundancy)
         findings[:] = [one for one in findings if one.name != f"k_{axis}_m"]
         whole = used[axis] if len(chosen) == 1 else None
         findings.append(Finding(f"k_{axis}_m", f"{axis} gyradius", gyradii[axis], whole))
     flags += [flag for one in hung for flag in _between_methods(one)]
+    redundancy += [found for one in hung for found in _methods(one)]
     if len([key for key in hung[0].found if key.startswith("yaw")]) > 1 and "yaw" in used:
         method = next(key for key, one in hung[0].found.items() if one is used["yaw"])
         notes.append(f"the {method} is the result (method in the file chooses another)")
@@ -160,6 +168,15 @@ def _between_methods(one: Suspended) -> Iterator[Flag]:
             yield Flag("methods_disagree", Severity.WARNING, message)
 
 
+def _methods(one: Suspended) -> Iterator[Redundancy]:
+    """Yield how the yaw gyradii of several methods agree."""
+    own = {key: found.result for key, found in one.found.items() if key.startswith("yaw by")}
+    if len(own) > 1:
+        ones, whole = np.ones((len(own), 1)), joint(own.values())
+        what = f"{one.table.name}: yaw gyradius by several methods"
+        yield best_fit(ones, whole, what=what, results=("k_yaw_m",), data=list(own))[1]
+
+
 def _chosen(table: BifilarTable, one: Suspended, axis: str) -> Assessment | None:
     """Return the method's that the file names, or else the surest."""
     if axis != "yaw":
@@ -177,6 +194,7 @@ def _tilts(
     findings: list[Finding],
     periods: list[PeriodRuns],
     flags: list[Flag],
+    redundancy: list[Redundancy],
 ) -> PlaneAxes | None:
     """Roll from tilted yaw tests, where it was not measured, and the principal axes."""
     table, level = job.table, gyradii.get("yaw")
@@ -201,8 +219,11 @@ def _tilts(
         gyradius = without_air(table, own).result
         angle = one.angle
         tests.append((angle, gyradius))
-    found, axes = plane_axes(level, gyradii.get("roll"), tests, table.monte_carlo_seed + 30)
+    seed = table.monte_carlo_seed + 30
+    found, axes, agreement = plane_axes(level, gyradii.get("roll"), tests, seed)
     findings += found
+    redundancy += agreement
+    flags += [flag for one in agreement for flag in one.flags()]
     for row in found:
         if row.name == "k_roll_m" and row.assessment is not None:
             gyradii["roll"], used["roll"] = row.estimate, row.assessment

@@ -1,10 +1,13 @@
 """Roll from tilted yaw tests, and the principal axes in the centre plane."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from analysis.inertia.elementary_functions import Value
+import numpy as np
+
+from analysis.inertia.elementary_functions import Value, arctan, cos, sqrt
+from analysis.inertia.plane_inertia import plane_inertia
 from analysis.inertia.principal_axes import (
     principal_angle,
     principal_axes,
@@ -13,8 +16,9 @@ from analysis.inertia.principal_axes import (
     roll_from_tilts,
 )
 from analysis.uncertainty.budget import Formula
-from analysis.uncertainty.estimate import Estimate
+from analysis.uncertainty.estimate import Estimate, exactly
 from analysis.uncertainty.monte_carlo import assess
+from analysis.uncertainty.redundancy import Redundancy
 from hardware.description.errors import ConfigurationError
 from pmm.inertia.outcome import Finding, PlaneAxes, assessed
 from pmm.inertia.sources import AngledPeriod
@@ -44,8 +48,8 @@ def plane_axes(
     roll: Estimate | None,
     tests: Sequence[tuple[Estimate, Estimate]],
     seed: int,
-) -> tuple[list[Finding], PlaneAxes]:
-    """Return the findings and the ellipse.
+) -> tuple[list[Finding], PlaneAxes, tuple[Redundancy, ...]]:
+    """Return the findings, the ellipse, and how tests agree that are more than three.
 
     Parameters
     ----------
@@ -60,6 +64,8 @@ def plane_axes(
         If the roll gyradius is not known and only one tilted test is there.
     """
     points = ((0.0, level), *((angle.value, gyradius) for angle, gyradius in tests))
+    if len(tests) + (roll is not None) > 2:
+        return _from_many(level, roll, tests, seed)
     if roll is not None:
         (angle, tilted), *_ = tests
         found = principal_axes(roll, level, tilted, angle, seed=seed)
@@ -67,7 +73,7 @@ def plane_axes(
         rows = [assessed(n, _WORDS[n], one) for n, one in zip(_WORDS, trio, strict=True)]
         values = [one.budget.result.value for one in trio]
         points = (*points, (0.5 * math.pi, roll))
-        return rows, PlaneAxes(values[1], values[2], values[0], points)
+        return rows, PlaneAxes(values[1], values[2], values[0], points), ()
     if len(tests) < 2:
         raise ConfigurationError(
             "one tilted yaw test alone tells nothing; measure roll by itself, or tilt a second time"
@@ -89,7 +95,66 @@ def plane_axes(
     psi, px, pz = (
         one.assessment.budget.result.value for one in rows[1:] if one.assessment is not None
     )
-    return rows, PlaneAxes(px, pz, psi, points)
+    return rows, PlaneAxes(px, pz, psi, points), ()
+
+
+def _from_many(
+    level: Estimate,
+    roll: Estimate | None,
+    tests: Sequence[tuple[Estimate, Estimate]],
+    seed: int,
+) -> tuple[list[Finding], PlaneAxes, tuple[Redundancy, ...]]:
+    """Fit the squares of all gyradii in the plane (eqs 3 and 4 for any number of axes)."""
+    rows = [(exactly(0.0, "rad"), level), *tests]
+    if roll is not None:
+        rows.append((exactly(0.5 * math.pi, "rad"), roll))
+    squares = [one.following(one.value**2, 2.0 * one.value) for _, one in rows]
+    plane = plane_inertia(squares, [angle for angle, _ in rows], results=_SQUARES)
+    inputs = {name: plane.estimate(k) for k, name in enumerate(_SQUARES)}
+    formulas = _OF_SQUARES if roll is None else _OF_SQUARES[1:]
+    findings = [
+        assessed(name, words, assess(name, formula, inputs, unit=unit, seed=seed + k))
+        for k, (name, words, unit, formula) in enumerate(formulas)
+    ]
+    psi, px, pz = (one.estimate.value for one in findings[-3:])
+    points = tuple((angle.value, gyradius) for angle, gyradius in rows)
+    found = plane.redundancy.of(("k_roll_m", "k_yaw_m"), lambda one: np.sqrt(one[..., :2]))
+    return findings, PlaneAxes(px, pz, psi, points), (found,)
+
+
+_SQUARES = ("roll_square_m2", "yaw_square_m2", "product_m2")
+
+
+def _roll_of(roll_square_m2: Value, **_others: Value) -> Value:
+    return sqrt(roll_square_m2)
+
+
+def _psi_of(roll_square_m2: Value, yaw_square_m2: Value, product_m2: Value) -> Value:
+    return 0.5 * arctan(2.0 * product_m2 / (yaw_square_m2 - roll_square_m2))
+
+
+def _px_of(**squares: Value) -> Value:
+    return sqrt(_principal(squares)[0])
+
+
+def _pz_of(**squares: Value) -> Value:
+    return sqrt(_principal(squares)[1])
+
+
+def _principal(squares: Mapping[str, Value]) -> tuple[Value, Value]:
+    """Return both principal squares, each near its own axis."""
+    double = 2.0 * _psi_of(**squares)
+    middle = 0.5 * (squares["roll_square_m2"] + squares["yaw_square_m2"])
+    half = 0.5 * (squares["yaw_square_m2"] - squares["roll_square_m2"]) / cos(double)
+    return middle - half, middle + half
+
+
+_OF_SQUARES: tuple[tuple[str, str, str, Formula], ...] = (
+    ("k_roll_m", "roll gyradius by tilted yaw tests", "m", _roll_of),
+    ("psi_rad", _WORDS["psi_rad"], "rad", _psi_of),
+    ("k_px_m", _WORDS["k_px_m"], "m", _px_of),
+    ("k_pz_m", _WORDS["k_pz_m"], "m", _pz_of),
+)
 
 
 def _psi(

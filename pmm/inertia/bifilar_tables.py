@@ -6,6 +6,7 @@ from typing import Any, Literal
 
 from pmm.inertia.air import air_rules
 from pmm.inertia.bifilar_axes import TiltedTable
+from pmm.inertia.hanging import hanging_rules
 from pmm.inertia.job_table import JobTable
 from pmm.inertia.lines import line_rules
 from pmm.inertia.reading import one_of, together
@@ -126,6 +127,7 @@ class BifilarTable(JobTable):
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         """At least one suspension, each with a name of its own; the workflow's order is kept."""
         yield from air_rules(table)
+        yield from hanging_rules(table)
         yield from line_rules(table)
         yield from _workflow_rules(table)
         rows = table.get("suspensions")

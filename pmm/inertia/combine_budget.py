@@ -6,17 +6,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from analysis.inertia.elementary_functions import sqrt
-from analysis.inertia.parts import MADE_OF, combined
+from analysis.inertia.parts import MADE_OF, PRODUCTS, combined
 from analysis.uncertainty.budget import Formula, sensitivities
 from analysis.uncertainty.monte_carlo import Assessment, assess
 from hardware.description.arrays import FloatArray
 from pmm.inertia.properties import AXES, PartTable
+from pmm.inertia.stated_values import unit_of
 
 if TYPE_CHECKING:
     from analysis.uncertainty.estimate import Estimate
 
 _TRIALS = 50_000  # of up to seven inputs a part
-_PLACES = {"cg_x_m": 1, "cg_y_m": 2, "cg_z_m": 3}  # rows of the whole
+_ROWS = {"cg_x_m": 1, "cg_y_m": 2, "cg_z_m": 3} | {key: k for k, key in enumerate(PRODUCTS, 7)}
 _GYRADII = {f"k_{axis}_m": 4 + k for k, axis in enumerate(AXES)}
 
 Put = Callable[[Mapping[str, Any]], FloatArray]
@@ -27,8 +28,8 @@ def combined_budgets(
 ) -> dict[str, Assessment]:
     """Return the budget, with a Monte Carlo, of each result that an input's doubt reaches.
 
-    They go by the result's name: ``cg_x_m`` ... ``k_yaw_m``. The inputs are called ``part.key``,
-    those of what is taken off ``less part.key``.
+    They go by the result's name: ``cg_x_m`` ... ``k_yaw_m``, ``ixy_kg_m2`` and so on. The inputs
+    are called ``part.key``, those of what is taken off ``less part.key``.
     """
     tables = [*parts, *without]
     labels = _labels([one.name for one in parts], [f"less {one.name}" for one in without])
@@ -40,7 +41,7 @@ def combined_budgets(
         return {}
     put = _putting(tables, labels, np.array([1.0] * len(parts) + [-1.0] * len(without)))
     whole = put({})
-    reached = [*_PLACES, *(key for key, row in _GYRADII.items() if whole[row] > 0.0)]
+    reached = [*_ROWS, *(key for key, row in _GYRADII.items() if whole[row] > 0.0)]
     found = {key: _assessed(key, _reading(put, key), inputs) for key in reached}
     return {key: one for key, one in found.items() if one is not None}
 
@@ -51,7 +52,7 @@ def _assessed(key: str, formula: Formula, inputs: "Mapping[str, Estimate]") -> A
     felt = {name: inputs[name] for name, slope in zip(inputs, slopes, strict=True) if slope != 0.0}
     if not felt:
         return None
-    return assess(key, formula, felt, unit="m", trials=_TRIALS)
+    return assess(key, formula, felt, unit=unit_of(key)[0], trials=_TRIALS)
 
 
 def _labels(parts: list[str], without: list[str]) -> list[str]:
@@ -69,12 +70,12 @@ def _putting(tables: Sequence[PartTable], labels: Sequence[str], signs: FloatArr
     def put(given: Mapping[str, Any]) -> FloatArray:
         shape = np.broadcast_shapes(*(np.shape(value) for value in given.values()))
         rows = np.empty((len(tables), 10, *shape))
-        for row, label, table, own in zip(rows, labels, tables, read, strict=True):
+        for row, label, own in zip(rows, labels, read, strict=True):
             values = [given.get(f"{label}.{key}", own[key]) for key in MADE_OF]
             row[:4] = np.broadcast_arrays(*values[:4], row[0])[:4]
-            for k, gyradius in enumerate(values[4:], start=4):
+            for k, gyradius in enumerate(values[4:7], start=4):
                 row[k] = values[0] * gyradius**2
-            for k, product in enumerate(table.products_kg_m2, start=7):
+            for k, product in enumerate(values[7:], start=7):
                 row[k] = product
         return combined(rows, signs)
 
@@ -86,8 +87,8 @@ def _reading(put: Put, key: str) -> Formula:
 
     def formula(**given: Any) -> Any:
         whole = put(given)
-        if key in _PLACES:
-            return whole[_PLACES[key]]
+        if key in _ROWS:
+            return whole[_ROWS[key]]
         return sqrt(whole[_GYRADII[key]] / whole[0])
 
     return formula

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from hardware.description.oscillator import Plane
 from pmm.configuration import STRICT_TABLE
 from pmm.inertia.air import AirTable
+from pmm.inertia.hanging import HangingTable
 from pmm.inertia.outcome import TargetTable
 from pmm.inertia.properties import ModelTable, PartTable
 
@@ -15,6 +16,8 @@ class JobTable:
 
     Attributes
     ----------
+    hanging
+        Plumb lines, which give the model's ``cg_x_m`` and ``cg_z_m``.
     take_off
         What moved too and is no part of the model.
     targets
@@ -29,6 +32,7 @@ class JobTable:
     air_density_kg_m3: float = 0.0
     body_density_kg_m3: float | None = None
     entrained_air: AirTable | None = None
+    hanging: HangingTable | None = None
     model: ModelTable = field(default_factory=ModelTable)
     take_off: tuple[PartTable, ...] = ()
     targets: tuple[TargetTable, ...] = ()

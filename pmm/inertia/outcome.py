@@ -4,10 +4,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 
+from analysis.inertia.parts import BodyPart
 from analysis.inertia.result import Comparison, InertiaResult, compare_with_target
 from analysis.inertia.swing_static import LeverSeries, StaticResult
 from analysis.uncertainty.estimate import Estimate
 from analysis.uncertainty.monte_carlo import Assessment
+from analysis.uncertainty.redundancy import Redundancy
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
@@ -86,6 +88,10 @@ class Outcome:
         For which a campaign's ``[model]`` is written.
     notes
         Lines to be read beside the tables.
+    redundancy
+        How data agree that are more than the unknowns, beside what the periods have.
+    tensor
+        Of bodies put together: mass, centre of gravity and all six inertias with their covariance.
     next_step
         Of the guided workflow.
     statics
@@ -111,6 +117,14 @@ class Outcome:
     line_errors: Mapping[str, Sequence[tuple[float, float]]] | None = None
     statics: tuple[StaticTest, ...] = ()
     placements: tuple[tuple[str, float, float, float, float], ...] = ()
+    redundancy: tuple[Redundancy, ...] = ()
+    tensor: BodyPart | None = None
+
+    @property
+    def agreements(self) -> tuple[Redundancy, ...]:
+        """How data agree, those of each period first; where more are there than are needed."""
+        every = (*(found for one in self.periods for found in one.redundancy), *self.redundancy)
+        return tuple(one for one in every if one.degrees_of_freedom)
 
     @property
     def budgeted(self) -> tuple[tuple[Finding, Assessment], ...]:

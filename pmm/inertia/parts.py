@@ -1,16 +1,17 @@
 """``pmm inertia combine`` and ``ballast``: bodies put together, taken off, and weights placed."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from analysis.inertia.ballast import BallastTarget, Weight, place_ballast
-from analysis.inertia.parts import BodyPart, combine
+from analysis.inertia.parts import PRODUCTS, BodyPart, combine, part
 from analysis.inertia.plane_inertia import inertias_at
 from analysis.inertia.result import InertiaResult
 from analysis.uncertainty.estimate import Estimate, exactly
 from analysis.uncertainty.monte_carlo import Assessment
+from hardware.description.arrays import FloatArray
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
 from pmm.configuration import STRICT_TABLE
@@ -111,14 +112,13 @@ def run_combine(path: str) -> Outcome:
         If the file is wrong, or no mass would be left.
     """
     table = read_job(path, CombineJob).table
-    whole = combine(
-        table.name,
-        [one.part() for one in table.parts],
-        without=[one.part() for one in table.without],
-    )
+    parts, without = ([one.part() for one in tables] for tables in (table.parts, table.without))
+    whole = combine(table.name, parts, without=without)
     findings = _budgeted(_findings(whole), combined_budgets(table.parts, table.without))
     bare = sorted(without_uncertainty(table))
-    flags = _exact(bare)
+    centres = (one.centre for one in (*table.parts, *table.without))
+    found = tuple(one.redundancy for one in centres if one is not None)
+    flags = (*_exact(bare), *(flag for one in found for flag in one.flags()))
     body = _body(table.name, whole, flags)
     checks = compare(findings, table.targets)
     return Outcome(
@@ -130,6 +130,8 @@ def run_combine(path: str) -> Outcome:
         plane=table.plane,
         comparisons=checks,
         axes=_axes(whole),
+        redundancy=found,
+        tensor=whole,
     )
 
 
@@ -177,14 +179,12 @@ def run_ballast(path: str) -> Outcome:
     found = place_ballast(base, weights, target, seed=table.seed)
     rows = [found.positions_m[k] for k in range(len(weights))]
     placed = [
-        PartTable(
+        part(
             one.name,
-            one.mass_kg,
-            x_m=float(place[0]),
-            y_m=float(place[1]),
-            z_m=float(place[2]),
-            **{f"k_{axis}_m": k for axis, k in zip(AXES, one.gyradii_m, strict=True)},
-        ).part()
+            exactly(one.mass_kg, "kg"),
+            _exactly(place),
+            _exactly(one.gyradii_m),
+        )
         for one, place in zip(weights, rows, strict=True)
     ]
     whole = combine(table.name, [base, *placed])
@@ -206,6 +206,11 @@ def run_ballast(path: str) -> Outcome:
     )
 
 
+def _exactly(three: Sequence[float] | FloatArray) -> tuple[Estimate, Estimate, Estimate]:
+    x, y, z = (exactly(float(value), "m") for value in three)
+    return x, y, z
+
+
 def _infeasible(message: str) -> Flag:
     return Flag("not_feasible", Severity.VOID, message)
 
@@ -225,6 +230,10 @@ def _findings(whole: BodyPart) -> tuple[Finding, ...]:
         rows.append(Finding(f"k_{axis}_m", f"{axis} gyradius", value))
     for axis, value in zip(AXES, whole.inertia, strict=True):
         rows.append(Finding(f"i_{axis}_kg_m2", f"{axis} inertia about the CG", value))
+    for key, value in zip(PRODUCTS, whole.products, strict=True):
+        rows.append(
+            Finding(key, f"product of inertia about the CG, sum m {key[1]} {key[2]}", value)
+        )
     return tuple(rows)
 
 

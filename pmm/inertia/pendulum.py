@@ -11,8 +11,10 @@ from analysis.inertia.elementary_functions import Value, sqrt
 from analysis.inertia.record import RecordAnalysis
 from analysis.uncertainty.estimate import Estimate
 from analysis.uncertainty.monte_carlo import Assessment, assess
+from analysis.uncertainty.redundancy import Redundancy
 from hardware.description.oscillator import Plane
 from pmm.inertia.air import air_rules, without_air
+from pmm.inertia.hanging import hanging_rules, hung
 from pmm.inertia.job_table import JobTable
 from pmm.inertia.outcome import (
     Finding,
@@ -63,11 +65,12 @@ class PendulumJob(JobTable):
         """The depth, a second axis that gives it, or a torsion rod; or the period alone."""
         yield from one_of(table, "depth_m", "second", "torsion", needed=False)
         yield from air_rules(table)
+        yield from hanging_rules(table)
         rod = table.get("torsion")
         several = isinstance(rod, dict) and rod.get("axes")
         if several and "period" in table:
             yield "period", "and torsion.axes are both given; each axis has its own"
-        elif not several and "period" not in table:
+        elif not several and "period" not in table and (rod or "hanging" not in table):
             yield "period", "is missing"
         if rod is not None and "entrained_air" in table:
             yield "entrained_air", "is for swings; it is not taken off a torsion rod's inertia"
@@ -85,7 +88,10 @@ def run(path: str) -> Outcome:
     table = job.table
     periods: list[PeriodRuns] = []
     swung = _swing(job, periods)
-    flags = once([*flags_of(table), *(flag for one in periods for flag in one.flags)])
+    findings, told = list(swung.findings), [*flags_of(table)]
+    centre = hung(table, findings, told)
+    told += [flag for one in periods for flag in one.flags]
+    flags = once([*told, *(flag for one in swung.redundancy for flag in one.flags())])
     gyradii: dict[str, Estimate] = (
         {} if swung.gyradius is None else {table.axis: swung.gyradius.result}
     )
@@ -96,20 +102,22 @@ def run(path: str) -> Outcome:
         take_off=table.take_off,
         budgets=[swung.gyradius.budget] if swung.gyradius else [],
         flags=flags,
+        centre=centre,
     )
     planes = {"pitch": Plane.VERTICAL, "yaw": Plane.HORIZONTAL}
     return Outcome(
         "pendulum",
         table.name,
-        swung.findings,
+        tuple(findings),
         flags,
         tuple(periods),
         body,
         missing,
         table.plane or planes.get(table.axis),
-        compare(swung.findings, table.targets),
+        compare(findings, table.targets),
         swung.notes,
         axes=swung.axes,
+        redundancy=(*swung.redundancy, *((centre.redundancy,) if centre else ())),
     )
 
 
@@ -121,6 +129,7 @@ class _Swung:
     gyradius: Assessment | None = None
     axes: PlaneAxes | None = None
     notes: tuple[str, ...] = ()
+    redundancy: tuple[Redundancy, ...] = ()
 
 
 def _swing(job: Job[PendulumJob], periods: list[PeriodRuns]) -> _Swung:
@@ -130,6 +139,8 @@ def _swing(job: Job[PendulumJob], periods: list[PeriodRuns]) -> _Swung:
         return _on_rod(job, table.torsion, periods)
     if table.depth_m is not None or table.second is not None:
         return _on_axis(job, periods)
+    if table.period is None:
+        return _Swung(())
     _period(job, periods, pendulum=False)
     note = "no depth_m, second or torsion is given: period and decay are all that follows"
     return _Swung(tuple(decay_findings(periods[0])), notes=(note,))
@@ -170,9 +181,10 @@ def _on_rod(job: Job[PendulumJob], torsion: TorsionTable, periods: list[PeriodRu
     rod, findings = stiffness(job, torsion, periods, seed)
     mass = given_or_none(table.model, "mass_kg", "model")
     if torsion.axes:
-        plane = in_plane(job, torsion.axes, rod, periods)
+        plane = in_plane(job, torsion, rod, periods)
         found = (*findings, *plane.findings())
-        return _Swung(found, axes=None if mass is None else plane.ellipse(mass))
+        axes = None if mass is None else plane.ellipse(mass)
+        return _Swung(found, axes=axes, redundancy=(plane.inertia.redundancy,))
     about = about_rod(rod, _period(job, periods, pendulum=False), seed + 1)
     findings.append(_about(table, about))
     if mass is None:

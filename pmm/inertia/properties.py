@@ -2,19 +2,24 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from analysis.inertia.corrections import square_frame
+from analysis.inertia.elementary_functions import Value, sqrt
+from analysis.inertia.hanging import HangingCentre
 from analysis.inertia.parts import MADE_OF, BodyPart, combine, part
 from analysis.inertia.result import InertiaResult
-from analysis.uncertainty.budget import Budget
+from analysis.uncertainty.budget import Budget, derived
 from analysis.uncertainty.estimate import Estimate, exactly
 from hardware.description.flags import Flag
+from pmm.inertia.correlations import CorrelationTable, correlated, correlation_rules
+from pmm.inertia.hanging import HangingTable
 from pmm.inertia.reading import one_of
 from pmm.inertia.stated_values import given, given_or_none
 
 AXES = ("roll", "pitch", "yaw")
-_PLACES = {"cg_x_m": "x_m", "cg_z_m": "z_m"}  # a result's name -> a part's
+_MOMENTS = ("ixx_kg_m2", "iyy_kg_m2", "izz_kg_m2")
 
 
 @dataclass(frozen=True)
@@ -22,7 +27,9 @@ class PartTable:
     """A rigid body: mass, place from a common datum, gyradii about its own centre of gravity.
 
     ``x_m`` is forward, ``y_m`` to starboard and ``z_m`` down; a gyradius of 0 is a point mass's.
-    Products of inertia are sums, ``ixy = sum m x y``, about the own centre of gravity.
+    ``ixx_kg_m2`` ... may stand in place of gyradii; they and the products, which are sums,
+    ``ixy = sum m x y``, are about the own centre of gravity. ``hanging`` gives ``x_m`` and ``z_m``
+    by plumb lines.
     ``square_half_side_m`` makes it a level square frame of thin bars, in place of gyradii.
     """
 
@@ -43,40 +50,67 @@ class PartTable:
     u_k_yaw_m: float = 0.0
     square_half_side_m: float | None = None
     u_square_half_side_m: float = 0.0
+    ixx_kg_m2: float | None = None
+    u_ixx_kg_m2: float = 0.0
+    iyy_kg_m2: float | None = None
+    u_iyy_kg_m2: float = 0.0
+    izz_kg_m2: float | None = None
+    u_izz_kg_m2: float = 0.0
     ixy_kg_m2: float = 0.0
+    u_ixy_kg_m2: float = 0.0
     ixz_kg_m2: float = 0.0
+    u_ixz_kg_m2: float = 0.0
     iyz_kg_m2: float = 0.0
+    u_iyz_kg_m2: float = 0.0
+    correlations: tuple[CorrelationTable, ...] = ()
+    hanging: HangingTable | None = None
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-        """A square frame's gyradii follow from its side."""
-        for axis in AXES:
-            yield from one_of(table, "square_half_side_m", f"k_{axis}_m", needed=False)
+        """One way to each inertia and to the centre of gravity; correlations that can be."""
+        for axis, moment in zip(AXES, _MOMENTS, strict=True):
+            for key in (f"k_{axis}_m", moment):
+                yield from one_of(table, "square_half_side_m", key, needed=False)
+            yield from one_of(table, f"k_{axis}_m", moment, needed=False)
+        for key in ("x_m", "z_m"):
+            yield from one_of(table, "hanging", key, needed=False)
+        yield from correlation_rules(table)
 
-    @property
-    def products_kg_m2(self) -> tuple[float, float, float]:
-        """``Ixy``, ``Ixz``, ``Iyz``."""
-        return self.ixy_kg_m2, self.ixz_kg_m2, self.iyz_kg_m2
+    @cached_property
+    def centre(self) -> HangingCentre | None:
+        """The centre of gravity by plumb lines, where it is given so."""
+        return None if self.hanging is None else self.hanging.centre(f"{self.name}: plumb lines")
 
     def measured(self) -> dict[str, Estimate]:
-        """Return mass, place and gyradii by :data:`MADE_OF`."""
-        values = (given(self, key) for key in MADE_OF[:4])
-        return dict(zip(MADE_OF, (*values, *self._gyradii()), strict=True))
+        """Return mass, place, gyradii and products by :data:`MADE_OF`."""
+        own = correlated(self, self.correlations)
+        found = {key: own.get(key) or given(self, key) for key in MADE_OF}
+        if self.centre is not None:
+            found |= {"x_m": self.centre.x, "z_m": self.centre.z}
+        for axis, moment in zip(AXES, _MOMENTS, strict=True):
+            if getattr(self, moment) is not None:
+                inputs = {"about": own.get(moment) or given(self, moment), "mass": found["mass_kg"]}
+                found[f"k_{axis}_m"] = derived("k", _gyradius, "m", **inputs)
+        if self.square_half_side_m is not None:
+            keys = (f"k_{axis}_m" for axis in AXES)
+            found |= zip(keys, self._square(given(self, "square_half_side_m")), strict=True)
+        return found
 
     def part(self) -> BodyPart:
         """Return it with its covariance."""
-        mass, x, y, z, roll, pitch, yaw = self.measured().values()
-        return part(self.name, mass, (x, y, z), (roll, pitch, yaw), self.products_kg_m2)
+        mass, x, y, z, roll, pitch, yaw, *products = self.measured().values()
+        xy, xz, yz = products
+        return part(self.name, mass, (x, y, z), (roll, pitch, yaw), (xy, xz, yz))
 
-    def _gyradii(self) -> tuple[Estimate, Estimate, Estimate]:
-        side = given_or_none(self, "square_half_side_m")
-        if side is None:
-            roll, pitch, yaw = (given(self, f"k_{axis}_m") for axis in AXES)
-            return roll, pitch, yaw
+    def _square(self, side: Estimate) -> tuple[Estimate, Estimate, Estimate]:
         level, upright = (
             side.following(value, value / side.value) for value in square_frame(side.value, 0.0)
         )
         return level, level, upright
+
+
+def _gyradius(about: Value, mass: Value) -> Value:
+    return sqrt(about / mass)
 
 
 @dataclass(frozen=True)
@@ -99,6 +133,7 @@ def properties(
     take_off: Sequence[PartTable] = (),
     budgets: Sequence[Budget] = (),
     flags: Sequence[Flag] = (),
+    centre: HangingCentre | None = None,
     cg_z: Estimate | None = None,
 ) -> tuple[InertiaResult | None, tuple[str, ...]]:
     """Return the mass properties, or the keys that are missing for them.
@@ -109,10 +144,12 @@ def properties(
         By axis, of what hung: with the parts to take off.
     take_off
         Parts that hung there and are not the model's, from the same datum.
-    cg_z
+    centre, cg_z
         Measured, in place of the file's.
     """
     mass, x, z = (given_or_none(model, key, "model") for key in ("mass_kg", "cg_x_m", "cg_z_m"))
+    if centre is not None:
+        x, z = centre.x, centre.z
     z = cg_z or z
     known = {"mass_kg": mass, "cg_x_m": x, "cg_z_m": z}
     missing = tuple(f"model.{key}" for key, value in known.items() if value is None)

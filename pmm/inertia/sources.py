@@ -16,6 +16,7 @@ from analysis.inertia.stopwatch import StopwatchReading, stopwatch_period
 from analysis.readers import read_recording
 from analysis.uncertainty.budget import derived
 from analysis.uncertainty.estimate import Estimate
+from analysis.uncertainty.redundancy import Redundancy
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 from pmm.inertia.channels import chosen_series, true_angles
@@ -126,6 +127,8 @@ class PeriodRuns:
         Slow over fast period, where two oscillations are in each record.
     records, whole, gates
         What was analysed, for figures; ``whole`` is each record with what was not used of it.
+    redundancy
+        How repeated runs agree.
     """
 
     where: str
@@ -137,6 +140,7 @@ class PeriodRuns:
     whole: tuple[Series, ...] = ()
     gates: tuple[tuple[Passages, PassageFit], ...] = ()
     flags: tuple[Flag, ...] = ()
+    redundancy: tuple[Redundancy, ...] = ()
 
     @property
     def period(self) -> Estimate:
@@ -173,10 +177,12 @@ def read_period(
     if source.gates:
         return _from_gates(job, source, where)
     if source.stopwatch:
-        period = stopwatch_period(source.stopwatch, reaction_s=source.reaction_s)
-        single = tuple(one.duration_s / one.swings for one in source.stopwatch)
-        how = f"stopwatch, {len(single)} readings"
-        return PeriodRuns(where, how, (period,), (single,))
+        timed = stopwatch_period(source.stopwatch, reaction_s=source.reaction_s, what=where)
+        how = f"stopwatch, {len(timed.runs)} readings"
+        return PeriodRuns(
+            where, how, (timed.estimate,), (timed.runs,), flags=timed.flags,
+            redundancy=timed.redundancy,
+        )  # fmt: skip
     value = source.period_s if source.period_s is not None else 0.0
     freedom = source.period_degrees_of_freedom or float("inf")
     return PeriodRuns(where, "given", (Estimate.of(value, source.u_period_s, "s", freedom),))
@@ -209,6 +215,7 @@ def _from_records(
         tuple(runs),
         tuple(whole),
         flags=tuple(flags),
+        redundancy=tuple(found for one in repeated for found in one.redundancy),
     )
 
 
@@ -242,16 +249,27 @@ def _from_gates(job: Job[Any], source: PeriodSource, where: str) -> PeriodRuns:
         seen = passages(events)
         fits.append((seen, fit_passages(seen)))
         flags += [*events.flags, *seen.flags]
+    found: tuple[Redundancy, ...] = ()
     periods = [_demodulated(seen) if source.remove_modulation else fit.period for seen, fit in fits]
     if len(periods) == 1 and source.known_scatter is None:
         estimate, flag = _single_gate_run(*fits[0], periods[0], where)
         flags.append(flag)
     else:
-        joined = combine_runs(periods, known_scatter=source.known_scatter, what=where)
-        estimate, flags = joined.estimate, [*flags, *joined.flags]
+        joined = combine_runs(
+            periods, known_scatter=source.known_scatter, what=where, names=source.gates
+        )
+        estimate, flags, found = joined.estimate, [*flags, *joined.flags], joined.redundancy
     single = tuple(period.value for period in periods)
     how = f"light gates, {len(fits)} run{'s' if len(fits) > 1 else ''}"
-    return PeriodRuns(where, how, (estimate,), (single,), gates=tuple(fits), flags=tuple(flags))
+    return PeriodRuns(
+        where,
+        how,
+        (estimate,),
+        (single,),
+        gates=tuple(fits),
+        flags=tuple(flags),
+        redundancy=found,
+    )
 
 
 def _demodulated(seen: Passages) -> Estimate:

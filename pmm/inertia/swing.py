@@ -4,8 +4,9 @@ Static fits give first moments, records give periods; :mod:`analysis.inertia.swi
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from analysis.inertia.hanging import HangingCentre
 from analysis.inertia.result import InertiaResult
 from analysis.inertia.swing import (
     SwingInertia,
@@ -17,9 +18,11 @@ from analysis.inertia.swing_static import distance
 from analysis.inertia.two_pivots import PivotTest, check_two_pivots
 from analysis.inertia.workflow import Step
 from analysis.uncertainty.estimate import difference, exactly
+from analysis.uncertainty.redundancy import Redundancy
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
 from pmm.inertia.air import without_air
+from pmm.inertia.hanging import hung
 from pmm.inertia.outcome import Finding, Outcome, StaticTest, assessed, compare, once
 from pmm.inertia.properties import properties
 from pmm.inertia.reading import Job, read_job
@@ -58,7 +61,8 @@ def run(path: str) -> Outcome:
     flags = [*flags_of(table), *(flag for one in states.values() for flag in one.flags)]
     notes: list[str] = []
     _two_pivots(table, states, findings, notes, flags)
-    body, missing = _model(table, states, findings, flags)
+    centre = hung(table, findings, flags)
+    body, missing = _model(table, states, findings, flags, centre)
     step = _workflow(table, states, findings, flags)
     return Outcome(
         "swing",
@@ -73,7 +77,17 @@ def run(path: str) -> Outcome:
         (*notes, *(line for one in states.values() for line in _lever_notes(one))),
         step,
         statics=tuple(one.static for one in states.values() if one.static is not None),
+        redundancy=(
+            *(found for one in states.values() for found in _agreements(one)),
+            *((centre.redundancy,) if centre else ()),
+        ),
     )
+
+
+def _agreements(one: _Measured) -> Iterator[Redundancy]:
+    """Yield how a state's tilts and levers agree."""
+    for found in one.static.result.redundancy if one.static is not None else ():
+        yield replace(found, what=f"{one.key}: {found.what}")
 
 
 def _lever_notes(one: _Measured) -> Iterator[str]:
@@ -161,6 +175,7 @@ def _model(
     states: Mapping[str, _Measured],
     findings: list[Finding],
     flags: list[Flag],
+    centre: HangingCentre | None,
 ) -> tuple[InertiaResult | None, tuple[str, ...]]:
     if "loaded" not in states:
         return None, ("a table [loaded]",)
@@ -201,6 +216,7 @@ def _model(
         take_off=table.take_off,
         budgets=[one.budget for one in parts],
         flags=found.flags,
+        centre=centre,
         cg_z=cg_z,
     )
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from analysis.inertia.swing_static import LeverSeries
 from pmm.inertia.air import air_rules
+from pmm.inertia.hanging import hanging_rules
 from pmm.inertia.job_table import JobTable
 from pmm.inertia.properties import ModelTable
 from pmm.inertia.reading import one_of, together
@@ -114,6 +115,7 @@ class SwingTable(JobTable):
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         """A loaded swing needs the model's mass; the workflow's order is kept."""
         yield from air_rules(table)
+        yield from hanging_rules(table)
         model = table.get("model", {})
         if "loaded" in table and isinstance(model, dict) and "mass_kg" not in model:
             yield "model", "needs mass_kg, for the inertia of what is on the swing"

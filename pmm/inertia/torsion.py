@@ -1,13 +1,13 @@
 """A body on a torsion rod: inertia about one axis, or in a plane from several."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from analysis.inertia.compound_pendulum import torsional_inertia, torsional_stiffness
 from analysis.inertia.elementary_functions import Value, sqrt
-from analysis.inertia.plane_inertia import PlaneInertia, inertias_at, plane_inertia
+from analysis.inertia.plane_inertia import IN_PLANE, PlaneInertia, inertias_at, plane_inertia
 from analysis.uncertainty.budget import derived
 from analysis.uncertainty.estimate import Estimate, exactly
 from analysis.uncertainty.monte_carlo import Assessment, assess
@@ -38,18 +38,27 @@ class TorsionAxis(AngledPeriod):
 
 @dataclass(frozen=True)
 class TorsionTable:
-    """The rod, by its stiffness or by a bar on it; ``axes`` for inertia in the x-z plane."""
+    """The rod, by its stiffness or by a bar on it; ``axes`` for inertia in the x-z plane.
+
+    ``u_common_angle`` is the standard uncertainty that all axes' angles share: that of the level
+    or the datum from which they are measured.
+    """
 
     stiffness_n_m_rad: float | None = None
     u_stiffness_n_m_rad: float = 0.0
     bar: BarTable | None = None
     axes: tuple[TorsionAxis, ...] = ()
+    u_common_angle_deg: float = 0.0
+    u_common_angle_rad: float = 0.0
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         """One way to the stiffness; in a plane, three axes or more."""
         yield from one_of(table, "stiffness_n_m_rad", "bar")
+        yield from one_of(table, "u_common_angle_deg", "u_common_angle_rad", needed=False)
         axes = table.get("axes")
+        if not axes and {"u_common_angle_deg", "u_common_angle_rad"} & set(table):
+            yield "u_common_angle", "is of several axes; add [[torsion.axes]]"
         if isinstance(axes, list) and len(axes) < 3:
             yield "axes", f"are {len(axes)}; roll, yaw and their product need three or more"
 
@@ -94,7 +103,7 @@ class TorsionPlane:
 
     def findings(self) -> Iterator[Finding]:
         """Yield roll, yaw and product of inertia, and the principal axis."""
-        for k, (name, what) in enumerate(_IN_PLANE.items()):
+        for k, (name, what) in enumerate(zip(IN_PLANE, _WORDS, strict=True)):
             yield Finding(name, what, self.inertia.estimate(k))
         yield Finding("psi_rad", "principal x axis, from body x", self.inertia.principal_angle)
 
@@ -119,11 +128,7 @@ class TorsionPlane:
         return PlaneAxes(roll, yaw, psi, measured)
 
 
-_IN_PLANE = {
-    "ixx_kg_m2": "roll inertia",
-    "izz_kg_m2": "yaw inertia",
-    "ixz_kg_m2": "product of inertia, sum m x z",
-}
+_WORDS = ("roll inertia", "yaw inertia", "product of inertia, sum m x z")
 
 
 def _gyradius(inertia: Estimate, mass: Estimate) -> Estimate:
@@ -131,7 +136,7 @@ def _gyradius(inertia: Estimate, mass: Estimate) -> Estimate:
 
 
 def in_plane(
-    job: Job[Any], axes: Sequence[TorsionAxis], rod: Estimate, periods: list[PeriodRuns]
+    job: Job[Any], torsion: TorsionTable, rod: Estimate, periods: list[PeriodRuns]
 ) -> TorsionPlane:
     """Return the inertia in the x-z plane from several axes.
 
@@ -142,10 +147,11 @@ def in_plane(
     """
     stiff = exactly(rod.value, rod.unit)  # its own uncertainty is a factor that all axes share
     angles, about = [], []
-    for number, one in enumerate(axes, 1):
+    common = torsion.u_common_angle_rad + math.radians(torsion.u_common_angle_deg)
+    for number, one in enumerate(torsion.axes, 1):
         runs = read_period(job, one, f"torsion.axes[{number}]")
         periods.append(runs)
-        angles.append(one.angle)
+        angles.append(one.angle.widened(common, label="torsion.common_angle"))
         inputs = {"stiffness_n_m_rad": stiff, "period_s": runs.period}
         about.append(derived("I", torsional_inertia, "kg m2", **inputs))
     found = plane_inertia(about, angles).scaled(rod.following(1.0, 1.0 / rod.value))

@@ -6,6 +6,7 @@ from typing import Any, Final
 
 from analysis.inertia.amplitude import PowerDecay
 from analysis.inertia.forms import SwingForm
+from analysis.inertia.parts import NAMES, BodyPart
 from analysis.inertia.result import budget_rows, estimate_numbers
 from analysis.uncertainty.budget import BudgetShare
 from analysis.uncertainty.estimate import Estimate
@@ -30,6 +31,7 @@ from pmm.document.notation import rounded, written
 from pmm.inertia.fits import FormFit
 from pmm.inertia.outcome import Finding, Outcome
 from pmm.inertia.sources import PeriodRuns
+from pmm.report.agreement import agreement_table
 from pmm.report.inertia_figures import figures
 
 SCHEMA: Final = "pmm-inertia-1"
@@ -120,6 +122,7 @@ def document(outcome: Outcome, fits: Sequence[FormFit] | None = None) -> Documen
             Section("Periods", tuple(_periods(outcome.periods))),
             Section("Fits", tuple(_fits(fits))),
             Section("Results", (results, *_numbers(outcome))),
+            Section("Agreement", (agreement_table(outcome.agreements),)),
             Section("Budgets", tuple(_budgets(outcome))),
             Section("Model", tuple(_model(outcome))),
             Section("Checks", tuple(_checks(outcome))),
@@ -181,9 +184,15 @@ def _numbers(outcome: Outcome) -> Iterator[Data]:
     yield Data("job", outcome.job)
     yield Data("name", outcome.name)
     yield Data("model", None if outcome.body is None else outcome.body.numbers())
+    yield Data("tensor", None if outcome.tensor is None else _tensor(outcome.tensor))
     yield Data("next_step", outcome.next_step)
     flags = ({"code": f.code, "severity": f.severity, "message": f.message} for f in outcome.flags)
     yield Data("flags", list(flags))
+
+
+def _tensor(whole: BodyPart) -> dict[str, Any]:
+    own = whole.uncertain
+    return {"names": NAMES, "values": own.values.tolist(), "covariance": own.covariance().tolist()}
 
 
 def _budgets(outcome: Outcome) -> Iterator[Content]:

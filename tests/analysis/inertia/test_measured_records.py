@@ -51,7 +51,7 @@ def test_four_geometries_of_one_rod() -> None:
     spread = rods()
     assert 0.338 < spread.gyradius.value < 0.348
     # the geometries disagree, and that is said, with the likeliest cause, which is not proven
-    assert not spread.agree
+    assert not spread.redundancy.agree
     assert spread.flags[0].code == "unexplained_spread"
     assert spread.causes[0].explains
     assert 0.5 < spread.causes[0].predicts < 0.8

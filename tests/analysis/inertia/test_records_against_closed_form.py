@@ -227,12 +227,21 @@ def test_few_passages_cannot_be_extrapolated() -> None:
         fit_passages(passages(timer(16)))
 
 
+TIMES = (56.9, 57.0, 56.95, 56.97, 56.92, 57.9)
+
+
 def test_stopwatch() -> None:
-    single = stopwatch_period((StopwatchReading(20, 56.92),))
+    single = stopwatch_period((StopwatchReading(20, 56.92),)).estimate
     assert single.value == pytest.approx(2.846)
     assert single.uncertainty == pytest.approx(0.005)
     several = stopwatch_period(tuple(StopwatchReading(20, s) for s in (56.9, 57.6, 56.4, 57.3)))
-    assert several.degrees_of_freedom == pytest.approx(3.0)
+    assert several.estimate.degrees_of_freedom == pytest.approx(3.0)
+    (agreement,) = several.redundancy
+    # each reading is of 0.1 s
+    assert agreement.chi_squared == pytest.approx(100.0 * np.var([56.9, 57.6, 56.4, 57.3]) * 4.0)
+    assert agreement.stands_out == ()
+    wild = stopwatch_period(tuple(StopwatchReading(20, s) for s in TIMES))
+    assert wild.redundancy[0].stands_out == ("reading 6",)
     with pytest.raises(DataError, match="too few swings"):
         stopwatch_period((StopwatchReading(2, 5.0),))
     with pytest.raises(DataError, match="miscounted"):
@@ -252,6 +261,9 @@ def test_a_fits_own_error_alone_never_leaves() -> None:
     assert found.estimate.uncertainty == pytest.approx(0.0082, abs=1e-4)
     assert found.estimate.degrees_of_freedom == pytest.approx(2.0)
     assert found.flags[0].code == "scatter_exceeds_fit"
+    (agreement,) = found.redundancy
+    assert agreement.widening == pytest.approx(142.0, rel=0.01)
+    assert agreement.without[0] == pytest.approx([7.28435])
     with pytest.raises(DataError, match="a fit's own error alone is no uncertainty"):
         combine_runs(runs[:1])
     known = combine_runs(runs[:1], known_scatter=KnownScatter(0.0142, 6.0))
@@ -259,3 +271,12 @@ def test_a_fits_own_error_alone_never_leaves() -> None:
     assert known.estimate.degrees_of_freedom == pytest.approx(6.0)
     pooled = combine_runs(runs, known_scatter=KnownScatter(0.0142, 6.0))
     assert pooled.estimate.degrees_of_freedom == pytest.approx(8.0)
+
+
+@pytest.mark.parametrize(("unit", "flagged"), [("rad/s", True), ("", False), ("1", False)])
+def test_only_what_has_one_unit_is_compared(unit: str, flagged: bool) -> None:
+    """Metres of travel beside degrees of roll, both without a unit, say nothing of each other."""
+    time = np.arange(500) / 50.0
+    roll = Series("run", "roll", unit, 50.0, 0.0, np.sin(time))
+    travel = Series("run", "travel", unit, 50.0, 0.0, 7.0 * time)
+    assert bool(strongest_axis(roll, (travel,))) is flagged

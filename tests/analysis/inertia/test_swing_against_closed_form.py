@@ -39,7 +39,7 @@ def test_two_levers_with_an_offset() -> None:
     below = distance(found.pooled.moment, exactly(MASS, "kg"))
     assert below.value == pytest.approx(DEPTH, abs=1e-4)
     assert found.pooled.offset_rad.value == pytest.approx(1e-3, abs=2e-5)
-    assert found.disagreeing == ()
+    assert all(one.agree for one in found.redundancy)
     assert found.flags == ()
     without = fit_static(both, with_offset=False)
     assert distance(without.pooled.moment, exactly(MASS, "kg")).value < DEPTH - 1e-3
@@ -52,8 +52,8 @@ def test_a_series_that_disagrees_is_named_and_widens_the_uncertainty() -> None:
         series("C3", 0.20, 1.1, 9),
     ]
     found = fit_static(three)
-    assert found.disagreeing[0] == "C2"
-    assert "series_disagree" in {flag.code for flag in found.flags}
+    assert found.redundancy[1].stands_out == ("C2",)
+    assert "data_disagree" in {flag.code for flag in found.flags}
     clean = fit_static([three[0], three[2]])
     assert found.pooled.moment.uncertainty > 5.0 * clean.pooled.moment.uncertainty
 

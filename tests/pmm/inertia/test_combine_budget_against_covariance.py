@@ -40,7 +40,8 @@ def test_a_square_frames_gyradii_err_together() -> None:
 
 def test_shares_add_up_and_name_part_and_key(keelboat: Outcome) -> None:
     found = {one.name: assessment for one, assessment in keelboat.budgeted}
-    assert set(found) == {"cg_x_m", "cg_z_m", "k_roll_m", "k_pitch_m", "k_yaw_m"}
+    gyradii = {"k_roll_m", "k_pitch_m", "k_yaw_m"}
+    assert set(found) == {"cg_x_m", "cg_z_m", "ixz_kg_m2"} | gyradii
     for one in found.values():
         assert sum(line.share for line in one.budget.shares) == pytest.approx(1.0)
         assert one.linear_good_enough
