@@ -35,6 +35,7 @@ NAMES = (
     "faults",
     "coefficients",
     "exact",
+    "plan_design",
     "campaign",
     "sealed",
     "gap",
