@@ -194,12 +194,12 @@ def _run(run: RunPlan, duration_s: float) -> dict[str, Any]:
 
 
 def is_plan(path: Path) -> bool:
-    """Whether a file is a plan, right or wrong: it names a rig and has runs."""
+    """Whether a file is a plan, right or wrong: it names a rig and has runs, none to choose."""
     try:
         table = read_toml(path)
     except PmmError:
         return False
-    return "runs" in table and "rig" in table and "oscillator" not in table
+    return {"runs", "rig"} <= set(table) and not {"oscillator", "grid"} & set(table)
 
 
 def _size(path: Path) -> int:
