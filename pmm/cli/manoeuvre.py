@@ -40,26 +40,35 @@ def manoeuvre(
 
     SHIP.toml (docs/manoeuvre.md) names the hull's derivatives, of a campaign by what `pmm
     coefficients --json` printed or stated, and states propeller and rudder. Every quantity has an
-    interval from draws of the derivatives, and stands beside IMO MSC.137(76).
+    interval from draws of the derivatives, and stands beside IMO MSC.137(76). Of a body below the
+    surface (plane = "vertical") it says up to which speed it keeps depth.
 
     \b
     pmm manoeuvre examples/manoeuvre/kvlcc2.toml --plot plots
+    pmm manoeuvre examples/manoeuvre/submerged.toml
 
     Exit status: 0 done, also where a criterion is not met; 1 the coefficients cannot be read; 2 the
     request was wrong (a derivative missing, no revolutions that keep the speed).
     """  # noqa: D301
+    from hardware.description.errors import ConfigurationError
     from pmm.cli.files import check_folder
     from pmm.cli.screen import messages, show
     from pmm.document.style import write_figures
     from pmm.manoeuvre.prediction import predict
-    from pmm.manoeuvre.ship_file import read_ship
-    from pmm.report.manoeuvre_document import figures, manoeuvre_document
+    from pmm.manoeuvre.ship_file import SubmergedFile, read_ship
+    from pmm.manoeuvre.submerged import depth_keeping
+    from pmm.report.manoeuvre_document import depth_document, figures, manoeuvre_document
 
     if plot is not None:
         check_folder(Path(plot), "--plot")
-    console = messages()
+    console, read = messages(), read_ship(Path(file))
+    if isinstance(read, SubmergedFile):
+        if plot is not None:
+            raise ConfigurationError("--plot: a body below the surface has no figures")
+        show(depth_document(depth_keeping(read, trials, seed, level)), as_json=as_json)
+        return
     with console.status("reading") as status:
-        found = predict(read_ship(Path(file)), trials, seed, level, status.update)
+        found = predict(read, trials, seed, level, status.update)
     show(manoeuvre_document(found), as_json=as_json)
     if plot is not None:
         written = write_figures(figures(found), Path(plot), "manoeuvre")

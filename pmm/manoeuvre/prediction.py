@@ -22,7 +22,9 @@ from analysis.manoeuvring.march import Log
 from analysis.manoeuvring.ship import Ship
 from analysis.manoeuvring.stability import Straight, straight_course
 from hardware.description.arrays import FloatArray
-from pmm.manoeuvre.derivatives import hull_of
+from hardware.description.oscillator import Plane
+from pmm.manoeuvre.derivatives import derivatives_of
+from pmm.manoeuvre.quantity import Quantity, Size, quantity_of
 from pmm.manoeuvre.ship_file import ShipFile
 
 SIDES = {"starboard": 1.0, "port": -1.0}
@@ -30,37 +32,6 @@ _HELM, _SPIRAL_LARGEST, _SPIRAL_STEP = (math.radians(one) for one in (35.0, 20.0
 _SPIRAL_SHIPS = 101
 
 Progress = Callable[[str], None]
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """One quantity of the values themselves and of the draws.
-
-    Attributes
-    ----------
-    low, high
-        Ends of the interval, from the draws; NaN without any.
-    full_scale, full_scale_unit
-        At the ship's size by Froude; NaN where it is the same.
-    limit
-        Of IMO MSC.137(76); NaN where there is none.
-    within
-        Share of the draws that keep to it.
-    failed
-        Draws in which the manoeuvre did not come to its end.
-    """
-
-    manoeuvre: str
-    name: str
-    unit: str
-    value: float
-    low: float
-    high: float
-    full_scale: float
-    full_scale_unit: str
-    limit: float
-    within: float
-    failed: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,32 +89,15 @@ class Prediction:
     def _of(
         self, manoeuvre: str, name: str, unit: str, values: FloatArray, limit: float = math.nan
     ) -> Quantity:
-        draws = values[1:]
-        good = draws[np.isfinite(draws)]
-        tail = 0.5 * (1.0 - self.level)
-        low, high = np.quantile(good, (tail, 1.0 - tail)) if good.size else (np.nan, np.nan)
-        scaled = unit == "L"
-        length = self.ship.hull.length_m * self.file.scale
-        return Quantity(
-            manoeuvre,
-            name,
-            unit,
-            float(values[0]),
-            float(low),
-            float(high),
-            float(values[0]) * length if scaled else math.nan,
-            "m" if scaled else "",
-            limit,
-            float(np.mean(draws <= limit)) if draws.size and math.isfinite(limit) else math.nan,
-            int(draws.size - good.size),
-        )
+        size = Size(self.ship.hull.length_m * self.file.scale, "m") if unit == "L" else None
+        return quantity_of(manoeuvre, name, unit, values, self.level, size, limit)
 
 
 def predict(file: ShipFile, trials: int, seed: int, level: float, progress: Progress) -> Prediction:
     """Return all manoeuvres of a ship and of as many draws of its derivatives.
 
-    It raises what :func:`pmm.manoeuvre.derivatives.hull_of` raises, and ``ConfigurationError`` if
-    no revolutions keep the approach speed.
+    It raises what :func:`ship_of` raises, and ``ConfigurationError`` if no revolutions keep the
+    approach speed.
     """
     ship = ship_of(file, trials, seed)
     logs, turns, zigzags = {}, {}, {}
@@ -167,9 +121,13 @@ def predict(file: ShipFile, trials: int, seed: int, level: float, progress: Prog
 def ship_of(file: ShipFile, trials: int, seed: int) -> Ship:
     """Return the ship of a file's values, and behind it those of the draws.
 
-    It raises what :func:`pmm.manoeuvre.derivatives.hull_of` raises.
+    It raises what :func:`pmm.manoeuvre.derivatives.derivatives_of` raises, and
+    ``ConfigurationError`` if a derivative is missing.
     """
-    hull, body = hull_of(file, trials, np.random.default_rng(seed)), file.ship
+    body, generator = file.ship, np.random.default_rng(seed)
+    values = derivatives_of(file, Plane.HORIZONTAL, trials, generator)
+    area = body.length_m * (body.draught_m if file.hull.system == "mmg" else body.length_m)
+    hull = HullLoads(body.length_m, area, file.water.density_kg_m3, values)
     mass = (body.mass_kg, body.inertia_kg_m2, body.cg_x_m)
     return Ship(hull, file.propeller, file.rudder, *mass, file.speed_m_s)
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
+from analysis.coefficients.normalisation import Normalisation, mmg, prime
 from analysis.coefficients.terms import term_of
 from analysis.manoeuvring.steering import Propeller, Rudder
 from analysis.water import Water
@@ -78,9 +79,75 @@ class ShipFile:
 
     __pydantic_config__ = STRICT_TABLE
 
+    def system_at(self, speed_m_s: float) -> Normalisation:
+        """Return the system of the derivatives at a speed."""
+        ship, density = self.ship, self.water.density_kg_m3
+        if self.hull.system == "mmg":
+            return mmg(ship.length_m, ship.draught_m, speed_m_s, density)
+        return prime(ship.length_m, speed_m_s, density)
 
-def read_ship(path: Path) -> ShipFile:
-    """Read a ship's file; the file that it names lies beside it.
+
+@dataclass(frozen=True)
+class BodyTable:
+    """A body below the surface, as heavy as its water: about the point of its derivatives.
+
+    Attributes
+    ----------
+    inertia_kg_m2
+        About the transverse axis through that point.
+    centre_distance_m
+        By which the centre of gravity lies below that of buoyancy.
+    """
+
+    length_m: float
+    mass_kg: float
+    inertia_kg_m2: float
+    centre_distance_m: float
+    cg_x_m: float = 0.0
+
+
+@dataclass(frozen=True)
+class PlaneTable:
+    """A pair of planes: force down and moment, bow up, per radian, in the prime system."""
+
+    force: float
+    moment: float
+
+
+@dataclass(frozen=True)
+class SubmergedFile:
+    """The whole file of a body below the surface; keys as in :class:`ShipFile`.
+
+    Attributes
+    ----------
+    plane
+        ``"vertical"``.
+    planes
+        By name: those whose speed of reversal is wanted.
+    """
+
+    plane: str
+    speed_m_s: float
+    water: Water
+    body: BodyTable
+    name: str = "body"
+    scale: float = 1.0
+    coefficients: str | None = None
+    coefficients_speed_m_s: float | None = None
+    hull: StatedHull = field(default_factory=lambda: StatedHull("prime"))
+    planes: dict[str, PlaneTable] = field(default_factory=dict)
+
+    __pydantic_config__ = STRICT_TABLE
+
+    def system_at(self, speed_m_s: float) -> Normalisation:
+        """Return the prime system at a speed."""
+        return prime(self.body.length_m, speed_m_s, self.water.density_kg_m3)
+
+
+def read_ship(path: Path) -> ShipFile | SubmergedFile:
+    """Read a ship's file, or that of a body below the surface (``plane = "vertical"``).
+
+    The file that it names lies beside it.
 
     Raises
     ------
@@ -88,28 +155,33 @@ def read_ship(path: Path) -> ShipFile:
         For unknown keys, wrong types and impossible values: all errors of the file in one message.
     """
     table = read_toml(path)
+    below = "plane" in table
     faults: list[Fault] = list(limit_faults(table))
     seen = deepcopy(table)
     if isinstance(seen.get("coefficients"), str):
         seen["coefficients"] = str(path.parent / seen["coefficients"])
-    found = validate(ShipFile, seen, faults)
-    faults += _hull_faults(table.get("hull"))
+    kind: type[ShipFile | SubmergedFile] = SubmergedFile if below else ShipFile
+    found = validate(kind, seen, faults)
+    if below and table["plane"] != Plane.VERTICAL:
+        faults.append(Fault(("plane",), "should be vertical, or left out for a ship"))
+    plane = Plane.VERTICAL if below else Plane.HORIZONTAL
+    faults += _hull_faults(table.get("hull"), plane, ("prime",) if below else SYSTEMS)
     if found is None or faults:
         raise as_error(path, faults, table)
     return found
 
 
-def _hull_faults(hull: Any) -> list[Fault]:
+def _hull_faults(hull: Any, plane: Plane, systems: tuple[str, ...]) -> list[Fault]:
     if not isinstance(hull, dict):
         return []
     faults = []
-    if hull.get("system", "mmg") not in SYSTEMS:
-        faults.append(Fault(("hull", "system"), f"should be one of {', '.join(SYSTEMS)}"))
+    if hull.get("system", systems[0]) not in systems:
+        faults.append(Fault(("hull", "system"), f"should be one of {', '.join(systems)}"))
     values = hull.get("values", {})
     for part in ("values", "uncertainty"):
         for name in hull.get(part, {}) if isinstance(hull.get(part), dict) else ():
             try:
-                term_of(name, Plane.HORIZONTAL)
+                term_of(name, plane)
             except ConfigurationError as error:
                 faults.append(Fault(("hull", part, name), f"is no derivative: {error}"))
             if part == "uncertainty" and name not in values:

@@ -7,7 +7,9 @@ from typing import Final
 
 from pmm.document.content import Column, Data, Document, Figure, Section, Table, Text, word
 from pmm.document.notation import NOT_KNOWN, counted, written
-from pmm.manoeuvre.prediction import Prediction, Quantity
+from pmm.manoeuvre.prediction import Prediction
+from pmm.manoeuvre.quantity import Quantity
+from pmm.manoeuvre.submerged import DepthKeeping
 from pmm.report.manoeuvre_figures import spiral_figure, turning_figure, zigzag_figure
 
 SCHEMA: Final = "pmm-manoeuvre-1"
@@ -73,7 +75,28 @@ def _full(one: Quantity) -> str:
     return f"{one.full_scale:.4g} {one.full_scale_unit}" if shown else ""
 
 
-def _table(found: Prediction) -> Table[Quantity]:
+def depth_document(found: DepthKeeping) -> Document:
+    """Return what was found of a body below the surface."""
+    file = found.file
+    head = (
+        f"roots at {file.speed_m_s:g} m/s; weight and buoyancy are taken as equal",
+        f"intervals from {counted(found.draws, 'draw')} of the derivatives",
+    )
+    contents = (Text(head), _table(found), Text(tuple(_said(found))))
+    return Document(file.name, "depth keeping", (Section("", contents),), SCHEMA)
+
+
+def _said(found: DepthKeeping) -> Iterator[str]:
+    index, critical = found.quantities[:2]
+    if not math.isfinite(critical.value):
+        yield "stable at every speed" if index.value > 0.0 else "stable at no speed"
+    elif index.value < 0.0:
+        yield f"stable below {critical.value:.4g} m/s, where its weight rights it; not above"
+    else:
+        yield f"stable above {critical.value:.4g} m/s alone"
+
+
+def _table(found: Prediction | DepthKeeping) -> Table[Quantity]:
     columns: tuple[Column[Quantity], ...] = (
         Column("manoeuvre", lambda one: one.manoeuvre, "manoeuvre", once=True),
         word("quantity", "name"),
@@ -87,7 +110,8 @@ def _table(found: Prediction) -> Table[Quantity]:
         ),
     )
     failed = max(one.failed for one in found.quantities)
-    notes = (f"Up to {failed} draws did not come to the end of a manoeuvre.",) if failed else ()
+    left = f"Up to {failed} draws are in no interval: they came to no end, or have no such speed."
+    notes = (left,) if failed else ()
     name = "Manoeuvres"
     return Table(name, columns, found.quantities, "quantities", titled=True, notes=notes)
 

@@ -19,10 +19,20 @@ from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.oscillator import Plane
 from pmm.cli import cli
 from pmm.manoeuvre.prediction import ship_of
-from pmm.manoeuvre.ship_file import ShipBody, ShipFile, StatedHull, read_ship
+from pmm.manoeuvre.ship_file import (
+    BodyTable,
+    PlaneTable,
+    ShipBody,
+    ShipFile,
+    StatedHull,
+    SubmergedFile,
+    read_ship,
+)
+from pmm.manoeuvre.submerged import body_of
 
 ROOT = Path(__file__).parents[3]
 EXAMPLE = ROOT / "examples" / "manoeuvre" / "kvlcc2.toml"
+SUBMERGED = EXAMPLE.with_name("submerged.toml")
 TEXT = EXAMPLE.read_text(encoding="utf-8")
 DEGREES = math.radians(1.0)
 MEASURED = ("Y_v", "Y_r", "N_v", "N_r")
@@ -128,10 +138,52 @@ def test_what_cannot_be_is_refused_by_a_sentence(
     assert (found, said in " ".join(output.split())) == (status, True), output
 
 
+def test_a_body_below_the_surface_keeps_depth_up_to_its_critical_speed() -> None:
+    status, output = _run(str(SUBMERGED), "--trials", "200", "--json")
+    assert status == 0, output
+    rows = {one["name"]: one for one in json.loads(output)["quantities"]}
+    critical = rows["critical speed"]
+    assert critical["low"] < critical["value"] < critical["high"]
+    assert critical["full_scale"] == pytest.approx(critical["value"] * math.sqrt(20.0))
+    body = body_of(read_ship(SUBMERGED), 0, 0)  # type: ignore[arg-type]
+    assert body.root(critical["value"])[0] == pytest.approx(0.0, abs=1e-9)
+    assert rows["reversal speed"]["value"] < critical["value"]
+    status, output = _run(str(SUBMERGED), "--trials", "0")
+    assert f"stable below {critical['value']:.4g} m/s" in output
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('plane = "vertical"', 'plane = "horizontal"', "plane should be vertical, or left out"),
+        ("M_qdot = -0.0008\n", "", "no M_qdot: stability in the vertical plane needs them"),
+        ("Z_q = -0.0060", "Y_r = -0.0060", "hull.values.Y_r is no derivative"),
+        ('system = "prime"', 'system = "mmg"', "hull.system should be one of prime"),
+    ],
+)
+def test_what_a_body_cannot_be_is_refused(tmp_path: Path, old: str, new: str, said: str) -> None:
+    text = SUBMERGED.read_text(encoding="utf-8")
+    assert old in text
+    status, output = _run(_written(tmp_path, text.replace(old, new, 1)), "--trials", "0")
+    assert (status, said in " ".join(output.split())) == (2, True), output
+
+
+def test_coefficients_of_the_other_plane_are_refused(tmp_path: Path) -> None:
+    found = to_dict(_campaign(read_ship(EXAMPLE)))  # type: ignore[arg-type]
+    (tmp_path / "coefficients.json").write_text(json.dumps({"coefficients": found}))
+    text = SUBMERGED.read_text(encoding="utf-8").replace("# coefficients =", "coefficients =")
+    status, output = _run(_written(tmp_path, text))
+    assert status == 2
+    assert "needed are those of the vertical plane in SI units" in " ".join(output.split())
+
+
 def test_the_page_names_every_key() -> None:
     page = (ROOT / "docs" / "manoeuvre.md").read_text(encoding="utf-8")
     file = read_ship(EXAMPLE)
-    kinds = (ShipFile, ShipBody, type(file.propeller), type(file.rudder))
+    kinds = (
+        ShipFile, ShipBody, SubmergedFile, BodyTable, PlaneTable,
+        type(file.propeller), type(file.rudder),
+    )  # fmt: skip
     for kind in kinds:
         for one in fields(kind):
             assert re.search(rf"\b{one.name}\b", page), one.name

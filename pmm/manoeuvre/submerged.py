@@ -1,0 +1,53 @@
+"""A body below the surface: whether it keeps depth, up to which speed, and its planes' reversal."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.manoeuvring.depth import SubmergedBody
+from hardware.description.oscillator import Plane
+from hardware.description.units import STANDARD_GRAVITY_M_S2
+from pmm.manoeuvre.derivatives import derivatives_of
+from pmm.manoeuvre.quantity import Quantity, Size, quantity_of
+from pmm.manoeuvre.ship_file import SubmergedFile
+
+
+@dataclass(frozen=True)
+class DepthKeeping:
+    """What was found of a body, with an interval each."""
+
+    file: SubmergedFile
+    level: float
+    draws: int
+    quantities: tuple[Quantity, ...]
+
+
+def depth_keeping(file: SubmergedFile, trials: int, seed: int, level: float) -> DepthKeeping:
+    """Return the stability of a body, and of as many draws of its derivatives.
+
+    It raises what :func:`pmm.manoeuvre.derivatives.derivatives_of` raises, and
+    ``ConfigurationError`` if a derivative is missing.
+    """
+    body = body_of(file, trials, seed)
+    speed, root = file.speed_m_s, math.sqrt(file.scale)
+    knots = Size(root, "m/s")
+    time = body.length_m / speed
+    found = [
+        quantity_of("depth", "index G_v", "1", body.index, level),
+        quantity_of("depth", "critical speed", "m/s", body.critical_speed_m_s, level, knots),
+        quantity_of("depth", "largest root L/U", "1", body.root(speed) * time, level),
+    ]
+    for name, one in file.planes.items():
+        speeds = body.reversal_speed_m_s(one.force, one.moment)
+        found.append(quantity_of(f"planes {name}", "reversal speed", "m/s", speeds, level, knots))
+    return DepthKeeping(file, level, trials, tuple(found))
+
+
+def body_of(file: SubmergedFile, trials: int, seed: int) -> SubmergedBody:
+    """Return the body of a file's values, and behind it those of the draws."""
+    own = file.body
+    values = derivatives_of(file, Plane.VERTICAL, trials, np.random.default_rng(seed))
+    righting = own.mass_kg * STANDARD_GRAVITY_M_S2 * own.centre_distance_m
+    mass = (own.mass_kg, own.inertia_kg_m2, own.cg_x_m)
+    return SubmergedBody(own.length_m, file.water.density_kg_m3, *mass, righting, values)
