@@ -39,6 +39,7 @@ NAMES = (
     "campaign",
     "sealed",
     "gap",
+    "evidence",
     "campaign_boards",
     "signs",
 )
