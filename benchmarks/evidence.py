@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from analysis.gap.forward.problem import Problem, built
+from analysis.gap.forward.problem import Problem
 from analysis.gap.inference.gaussian import null_evidence, scales
 from analysis.gap.search.engine import Engine, fitted, looked_at
 from analysis.gap.search.fit import Fit, bounds

@@ -76,7 +76,7 @@ def _examined(folder: Path, options: Options) -> Row:
 
 def _said(report: GapReport) -> Row:
     said = report.conclusion
-    share = said.weighing.shares.get(said.likeliest, 0.0)
+    share = next(iter(said.weighing.shares.values()), 0.0)  # the most probable comes first
     # A pair says of no single effect that it is the one.
     stated = {one for name in said.names for one in (name, *said.weighing.alike.get(name, ()))}
     return {
