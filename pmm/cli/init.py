@@ -27,6 +27,7 @@ _NEXT = {
     ),
     "swing": (("inertia", "swing", "{}/swing.toml"),),
     "bifilar": (("inertia", "bifilar", "{}/bifilar.toml"),),
+    "ship": (("manoeuvre", "{}/ship.toml"),),
 }
 _COMMON = (
     click.option("--output", metavar="FOLDER", default=".", show_default=True,
@@ -51,6 +52,7 @@ def init() -> None:
     pmm init rig --output my-rig            a rig and a plan; simulated until you name a bus
     pmm init campaign run1.csv run2.csv     recordings of another system
     pmm init swing, pmm init bifilar        a pendulum test
+    pmm init ship                           a free ship, for its manoeuvres
     """  # noqa: D301
 
 
@@ -125,6 +127,19 @@ def swing(**options: Any) -> None:
 def bifilar(**options: Any) -> None:
     """Write bifilar.toml: yaw on two lines, from records or stopwatch periods."""
     _write("bifilar", options)
+
+
+@_job(
+    _number("--length-m", "M", "Of the model."),
+    _number("--draught-m", "M", "Of the model."),
+    _number("--mass-kg", "KG", "Of the model."),
+    _number("--inertia-kg-m2", "KG_M2", "About the vertical axis through the derivatives' point."),
+    _number("--speed-m-s", "M_S", "Of the approach."),
+    _number("--scale", "N", "Ship over model."),
+)
+def ship(**options: Any) -> None:
+    """Write ship.toml: derivatives, propeller and rudder of a free ship."""
+    _write("ship", options)
 
 
 def _write(job: str, options: dict[str, Any]) -> None:

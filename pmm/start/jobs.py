@@ -19,6 +19,7 @@ FILES: Final[Mapping[str, tuple[str, ...]]] = {
     "campaign": ("campaign.toml",),
     "swing": ("swing.toml",),
     "bifilar": ("bifilar.toml",),
+    "ship": ("ship.toml",),
 }
 
 
@@ -125,9 +126,22 @@ def _inertia(task: StartTask) -> Draft:
     return Draft({name: render(name, task.values(records=near))}, trial)
 
 
+def _ship(task: StartTask) -> Draft:
+    from pmm.manoeuvre.prediction import ship_of
+    from pmm.manoeuvre.ship_file import ShipFile, read_ship
+
+    def trial(tried: Path) -> None:
+        read = read_ship(tried / "ship.toml")
+        if isinstance(read, ShipFile):
+            _ = ship_of(read, 0, 0).rate_hz
+
+    return Draft({"ship.toml": render("ship.toml", task.values())}, trial)
+
+
 _DRAFTS: Final[Mapping[str, Callable[[StartTask], Draft]]] = {
     "rig": _rig,
     "campaign": _campaign,
     "swing": _inertia,
     "bifilar": _inertia,
+    "ship": _ship,
 }

@@ -98,11 +98,21 @@ BIFILAR: Final = (
     StartQuestion("line_m", "Length of the lines [m]", 3.477, lowest=0.0),
     StartQuestion("mass_kg", "Mass of what hangs on them [kg]", 603.2, lowest=0.0),
 )
+SHIP: Final = (
+    NAME,
+    StartQuestion("length_m", "Length of the model [m]", 2.5, lowest=0.0),
+    StartQuestion("draught_m", "Its draught [m]", 0.1625, lowest=0.0),
+    StartQuestion("mass_kg", "Its mass [kg]", 149.0, lowest=0.0),
+    StartQuestion("inertia_kg_m2", "Its inertia about the vertical axis [kg m2]", 59.0, lowest=0.0),
+    StartQuestion("speed_m_s", "Speed of the approach [m/s]", 0.7, lowest=0.0),
+    StartQuestion("scale", "Ship over model", 128.0, lowest=0.0),
+)
 JOBS: Final[Mapping[str, Sequence[StartQuestion]]] = {
     "rig": RIG,
     "campaign": CAMPAIGN,
     "swing": SWING,
     "bifilar": BIFILAR,
+    "ship": SHIP,
 }
 
 

@@ -14,6 +14,7 @@ ELSEWHERE = {
     "decay": "tests/pmm/gap/test_pendulum_command_against_simulated_bodies.py",
     "foreign": "tests/examples/test_foreign_campaign_against_what_it_was_made_of.py",
     "gap": "tests/pmm/gap/test_gap_command_against_its_page.py",
+    "manoeuvre": "tests/pmm/manoeuvre/test_command_against_known_derivatives.py",
     "manual": "tests/pmm/plan/test_commands_against_examples.py",
     "recordings": "tests/analysis/readers/test_examples_against_their_recipe.py",
 }

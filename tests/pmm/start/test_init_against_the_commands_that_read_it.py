@@ -109,6 +109,15 @@ def test_an_inertia_file_gives_a_number(tmp_path: Path, job: str) -> None:
     assert json.loads(found.stdout)["results"]
 
 
+def test_a_ship_turns(tmp_path: Path) -> None:
+    assert pmm("init", "ship", "--yes", "--output", tmp_path).exit_code == 0
+    found = pmm("manoeuvre", tmp_path / "ship.toml", "--trials", "0", "--json")
+    assert found.exit_code == 0, found.stderr
+    rows = json.loads(found.stdout)["quantities"]
+    advance = next(one for one in rows if one["name"] == "advance")
+    assert 1.0 < advance["value"] < 6.0
+
+
 def test_records_of_a_swing_are_named_from_the_file(tmp_path: Path) -> None:
     records = sorted((EXAMPLES / "inertia").glob("swing-*.csv.gz"))
     made = pmm("init", "swing", "--yes", "--output", tmp_path, *records)
@@ -127,7 +136,7 @@ def test_questions_are_asked_and_answered(tmp_path: Path) -> None:
     assert all(question.text in made.stderr for question in JOBS["rig"])
 
 
-@pytest.mark.parametrize("job", ["rig", "campaign", "swing", "bifilar"])
+@pytest.mark.parametrize("job", ["rig", "campaign", "swing", "bifilar", "ship"])
 def test_nothing_is_written_over_without_force(tmp_path: Path, job: str) -> None:
     pmm("init", job, "--yes", "--output", tmp_path)
     before = {path: path.read_bytes() for path in tmp_path.iterdir()}
