@@ -33,6 +33,8 @@ class Expected:
     ----------
     where
         Frequency and speed that it holds at; empty where all runs tell it.
+    value
+        Of the fit: what is believed, or what was measured; NaN where the runs do not determine it.
     wanted
         Standard uncertainty that is wanted; NaN where none is.
     standard_uncertainty
@@ -47,6 +49,7 @@ class Expected:
     where: str
     unit: str
     believed: float
+    value: float
     wanted: float
     standard_uncertainty: float
     shares: Mapping[str, float]
@@ -118,6 +121,7 @@ def _rows(
             fit.where,
             belief.terms[k].unit,
             belief.values[names[k]],
+            np.nan if found is None else float(found.values[place]),
             fit.wanted.get(names[k], np.nan),
             np.inf if found is None else float(found.standard_uncertainty[place]),
             {} if found is None else _gathered(found.shares(place)),

@@ -39,7 +39,8 @@ class Candidate:
     periods
         That are measured; what settles is not among them.
     cost_s
-        Of tank time: waiting, setting, settling and the carriage's way back in it.
+        Of tank time: waiting, setting, settling and the carriage's way back in it; infinite for a
+        run that is made already, or is none to choose.
     """
 
     point: SetPoint

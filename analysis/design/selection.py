@@ -185,7 +185,7 @@ class _Search:
             if self.targeted and now <= 0.0:
                 continue
             members = state.regression.members
-            own = np.flatnonzero(asked[members])
+            own = np.flatnonzero((asked & np.isfinite(self.costs))[members])
             gains[members[own]] += now - state.losses(own)
         return gains
 

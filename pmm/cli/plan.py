@@ -69,12 +69,28 @@ def show(file: str, plot: str | None, as_json: bool) -> None:
 
 @plan.command()
 @click.argument("file", metavar="DESIGN.toml")
+@click.option(
+    "--after",
+    metavar="CAMPAIGN",
+    multiple=True,
+    help="Go on from the runs that this folder holds; repeatable.",
+)
 @click.option("--output", metavar="PLAN.toml", help="Write the plan there.")
 @click.option("--overwrite", is_flag=True, help="Replace a plan that is there.")
 @click.option("--plot", metavar="FOLDER", help="Draw uncertainty against time there.")
 @JSON
-def design(file: str, output: str | None, overwrite: bool, plot: str | None, as_json: bool) -> None:
+def design(
+    file: str,
+    after: tuple[str, ...],
+    output: str | None,
+    overwrite: bool,
+    plot: str | None,
+    as_json: bool,
+) -> None:
     """Choose the runs that make coefficients as well known as is asked.
+
+    With --after what was measured is told, and the runs that are still to be made; where nothing
+    is left to do no plan is written.
 
     Exit status: 0 all targets are expected to be met, 1 not all, 2 a file is wrong.
     """
@@ -92,9 +108,15 @@ def design(file: str, output: str | None, overwrite: bool, plot: str | None, as_
     if plot is not None:
         check_folder(Path(plot), "--plot")
     read = read_design(Path(file))
+    if after:
+        from pmm.coefficients.request import campaign_folder
+        from pmm.design.measured import after as going_on
+
+        with doing("reading what was measured"):
+            read = going_on(read, [campaign_folder(one) for one in after])
     with doing("looking at what each run would tell"):
         found = designed(read)
-    target = None if output is None else Path(output)
+    target = Path(output) if output is not None and found.steps else None
     document = design_document(read, found, target)
     tell(document, as_json=as_json)
     figures = [] if plot is None else write_figures(document.figures, Path(plot), read.name)

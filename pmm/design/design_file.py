@@ -12,6 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.names import PLACES, Form, name_of
 from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainties
 from analysis.coefficients.terms import SURGE
@@ -25,7 +26,7 @@ from pmm.campaign.model_uncertainty import take_uncertainty
 from pmm.coefficients.stated_inputs import largest, of_gauges, of_model
 from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
 from pmm.design.design_tables import DesignTables
-from pmm.design.grid import Grid, candidate_of, grid_of
+from pmm.design.grid import Grid, grid_of
 from pmm.design.targets import targets_of
 from pmm.plan.expansion import all_of, expand
 from pmm.plan.ordering import runs_of
@@ -52,7 +53,11 @@ class DesignFile:
     fixed
         Runs that are made in any case, zero and control runs among them.
     made
-        Those of them that tell of the coefficients.
+        Those of them that tell of the coefficients, or runs that were made before.
+    time_s
+        That the runs to be chosen may take.
+    cycles
+        Of the runs that were made before, as they were measured; none where none was.
     """
 
     name: str
@@ -69,6 +74,7 @@ class DesignFile:
     stated: StatedUncertainties
     targets: tuple[Target, ...]
     time_s: float
+    cycles: tuple[BodyCycle, ...] = ()
 
 
 def read_design(path: Path) -> DesignFile:
@@ -156,7 +162,7 @@ def _design(
         faults.append(Fault(("targets",), "are missing, and so is limits.time_h; give either"))
     if faults or belief is None:
         raise as_error(path, faults, original)
-    made = tuple(candidate_of(run, rig, None) for run in fixed if _tells(run))
+    made = tuple(Candidate(run.set_point, run.periods, np.inf) for run in fixed if _tells(run))
     return DesignFile(
         plan.name or path.resolve().parent.name, path, plan_table, found.rig_path, rig, kept,
         fixed, made, grid, belief, _noise(tables, rig), _stated(tables, rig), targets,

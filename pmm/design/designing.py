@@ -2,15 +2,18 @@
 
 import math
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import accumulate
+from typing import Final
 
 from analysis.design.expectation import REPEATS, SCATTER, Expected, expected, made_up
-from analysis.design.regression import Candidate, prospects
+from analysis.design.regression import prospects
 from analysis.design.selection import select
 from pmm.design.design_file import DesignFile
 from pmm.plan.duration import duration_rows
 from pmm.plan.run_plan import RunPlan
+
+_HARDER: Final = (1.0, 1.1, 1.25, 1.5, 2.0)  # times as much is asked for
 
 
 @dataclass(frozen=True)
@@ -41,6 +44,8 @@ class Design:
     ----------
     steps
         One for each set of settings.
+    now
+        What is known of each coefficient before the first of them.
     known
         What is expected of each coefficient after all of them.
     why
@@ -48,6 +53,7 @@ class Design:
     """
 
     steps: tuple[Step, ...]
+    now: tuple[Expected, ...]
     known: tuple[Expected, ...]
     why: tuple[str, ...]
 
@@ -65,36 +71,54 @@ def design(file: DesignFile) -> Design:
     DataError
         If a run of the grid cannot be reached, or its loads not be told without an X gauge.
     """
+    now = _known(file)
+    chosen: list[tuple[int, int]] = []
+    if not (now and file.targets and all(one.met for one in now)):
+        chosen = _chosen(file)
+    steps = _steps(file, chosen)
+    after = steps[-1].known if steps else now
+    used_s = sum(file.grid.candidates[k].cost_s * repeats for k, repeats in chosen)
+    why = tuple(_why(one, file, used_s) for one in after if not one.met)
+    return Design(steps, now, after, why)
+
+
+def _chosen(file: DesignFile) -> list[tuple[int, int]]:
+    """Return the places of the runs to make, each with its number of repeats.
+
+    Where the runs that were made ought to do by what is believed, and do not, more is asked for.
+    """
     candidates = (*file.grid.candidates, *file.made)
-    first = len(file.grid.candidates)
     known = prospects(candidates, file.belief, file.noise, file.stated)
-    made = range(first, len(candidates))
-    found = select(known, file.targets, file.time_s, tuple(made))
-    counts = Counter(found.chosen)
-    steps = _steps(file, list(counts.items()))
-    after = steps[-1].known if steps else _known(file, file.made)
-    used_up = sum(candidates[k].cost_s for k in found.chosen)
-    why = tuple(_why(one, file, used_up) for one in after if not one.met)
-    return Design(steps, after, why)
+    made = tuple(range(len(file.grid.candidates), len(candidates)))
+    for harder in _HARDER:
+        asked = [
+            replace(one, standard_uncertainty=one.standard_uncertainty / harder)
+            for one in file.targets
+        ]
+        found = select(known, asked, file.time_s, made)
+        if found.chosen:
+            break
+    return list(Counter(found.chosen).items())
 
 
-def _known(file: DesignFile, runs: tuple[Candidate, ...]) -> tuple[Expected, ...]:
-    if not runs:
+def _known(file: DesignFile) -> tuple[Expected, ...]:
+    """Return what the runs that were made tell, or will tell that are made in any case."""
+    if not file.made:
         return ()
-    cycles = made_up(runs, file.belief, file.noise)
-    return expected(runs, cycles, file.targets, file.belief, file.stated)
+    cycles = file.cycles or made_up(file.made, file.belief, file.noise)
+    return expected(file.made, cycles, file.targets, file.belief, file.stated)
 
 
 def _steps(file: DesignFile, chosen: list[tuple[int, int]]) -> tuple[Step, ...]:
-    """Return the steps: the runs made in any case come before them."""
+    """Return the steps: the runs that were made, or are made in any case, come before them."""
     order = [*file.made]
     ends = []
     for candidate, repeats in chosen:
         order += [file.grid.candidates[candidate]] * repeats
         ends.append(len(order))
-    if not order:
+    if not chosen:
         return ()
-    cycles = made_up(order, file.belief, file.noise)
+    cycles = [*file.cycles, *made_up(order[len(file.cycles) :], file.belief, file.noise)]
     start_s = math.fsum(duration_rows(file.fixed, file.rig))
     costs = [file.grid.candidates[k].cost_s * repeats for k, repeats in chosen]
     return tuple(

@@ -55,10 +55,10 @@ def grid_of(
             left_out[why] += 1
         else:
             kept.append(run)
-    return Grid(tuple(kept), tuple(candidate_of(run, rig, zero) for run in kept), dict(left_out))
+    return Grid(tuple(kept), tuple(_candidate(run, rig, zero) for run in kept), dict(left_out))
 
 
-def candidate_of(run: RunPlan, rig: RigFile, zero: ZeroTable | None) -> Candidate:
+def _candidate(run: RunPlan, rig: RigFile, zero: ZeroTable | None) -> Candidate:
     """Return a run with what it costs: its pause and ramps, and its part of the zero runs."""
     share = 0.0 if zero is None else zero.duration_s / zero.every
     return Candidate(run.set_point, run.periods, run_s(run, None, rig) + share)

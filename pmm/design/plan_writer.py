@@ -34,7 +34,7 @@ def _parts(file: DesignFile, design: Design, target: Path) -> Iterator[str]:
     )
     yield from (toml_table(name, table[name]) for name in _TABLES if name in table)
     yield from (toml_table("runs", one, array=True) for one in table.get("runs", []))
-    for number, step in enumerate(design.steps, 1):
+    for number, step in enumerate(design.steps, 1 + len(file.cycles)):
         yield f"# until {clock(step.time_s)}\n" + toml_table(
             "runs", _entry(step, number), array=True
         )

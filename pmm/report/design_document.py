@@ -76,6 +76,14 @@ _KNOWN: Final[tuple[Column[Expected], ...]] = (
     Column("most of it from", lambda one: next(iter(one.shares), "")),
     Column("met", lambda one: "" if math.isnan(one.wanted) else "yes" if one.met else "no"),
 )
+_MEASURED: Final[tuple[Column[Expected], ...]] = (
+    word("coefficient", "name"),
+    word("at", "where"),
+    number("measured", "value", written(".4g")),
+    number("standard uncertainty", "standard_uncertainty", written(".3g")),
+    *_KNOWN[2:5],
+    _KNOWN[-1],
+)
 
 
 def design_document(file: DesignFile, design: Design, target: Path | None) -> Document:
@@ -89,13 +97,15 @@ def design_document(file: DesignFile, design: Design, target: Path | None) -> Do
     rows = [
         _Row(place, step, _buys(before, step.known))
         for place, (before, step) in enumerate(
-            zip(((), *(one.known for one in design.steps)), design.steps, strict=False), 1
+            zip((design.now, *(one.known for one in design.steps)), design.steps, strict=False), 1
         )
     ]
+    done = bool(file.cycles) and not design.steps
     contents = (
         Text((_said(file, design), "")),
+        Table("Known so far", _MEASURED, design.now if file.cycles else (), titled=True),
         Table("Runs", _STEPS, rows),
-        Table("Coefficients", _KNOWN, design.known, titled=True),
+        Table("Coefficients", _KNOWN, () if done else design.known, titled=True),
         Notes([Note("warning", one) for one in design.why], key="unmet"),
         Notes([Note("note", one) for one in _left_out(file)]),
         Figure("uncertainty", _CAPTION, partial(design_figure, file.name, design)),
@@ -104,6 +114,8 @@ def design_document(file: DesignFile, design: Design, target: Path | None) -> Do
         Data("possible", design.met),
         Data("candidates", len(file.grid.runs)),
         Data("left_out", file.grid.left_out),
+        Data("runs_made", len(file.cycles)),
+        Data("known", [_known_data(one) for one in design.now]),
         Data("steps", [_step_data(step) for step in design.steps]),
         Data("coefficients", [_known_data(one) for one in design.known]),
     )
@@ -120,6 +132,8 @@ def _said(file: DesignFile, design: Design) -> str:
         if design.met
         else f"{counted(len(design.why), 'target')} cannot be met"
     )
+    if file.cycles and not design.steps and design.met:
+        return f"{file.name}: {counted(len(file.cycles), 'run')} made; all targets are met by them"
     return (
         f"{file.name}: {counted(runs, 'run')} of {counted(len(file.grid.runs), 'candidate')}, "
         f"{time} in all, without handwork; {ends}"
@@ -176,6 +190,7 @@ def _known_data(one: Expected) -> dict[str, Any]:
         "where": one.where,
         "unit": one.unit,
         "believed": one.believed,
+        "value": _finite(one.value),
         "wanted": _finite(one.wanted),
         "standard_uncertainty": _finite(one.standard_uncertainty),
         "shares": dict(one.shares),
