@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from analysis.coefficients.campaign_records import CoefficientEntry, ReferenceRow
+from analysis.coefficients.campaign_records import ReferenceRow
 from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
 from analysis.coefficients.campaign_systems import System, speed_power, term_of_entry
 from analysis.coefficients.names import Form
@@ -54,9 +54,10 @@ def quoted(
         raise ConfigurationError(
             "--names and --with-mass are of manoeuvring derivatives; take --form manoeuvring"
         )
-    factors, shifts = _map(found, quoting, carried)
+    factors, shifts = _factors(found, quoting), _shifts(found, quoting, carried)
     said = found.normalisation + quoting.told(found.plane)
-    changed = _changed(found, factors, shifts, _slopes(found, shifts, carried), quoting.name)
+    slopes = _slopes(found, quoting, carried)
+    changed = _changed(found, factors, shifts, slopes, quoting.name)
     rows = tuple(_row(one, found, quoting, carried) for one in found.references)
     return replace(changed, normalisation=said, references=rows)
 
@@ -73,8 +74,8 @@ def as_products(
         normalisation=found.normalisation.removesuffix(quoting.told(found.plane)),
         references=(),
     )
-    factors, shifts = _map(found, quoting, carried)
-    slopes = {key: -one / factors for key, one in _slopes(found, shifts, carried).items()}
+    factors, shifts = _factors(found, quoting), _shifts(found, quoting, carried)
+    slopes = {key: -one / factors for key, one in _slopes(found, quoting, carried).items()}
     return _changed(
         plain,
         1.0 / factors,
@@ -84,20 +85,21 @@ def as_products(
     )
 
 
-def _map(
-    found: CampaignCoefficients, quoting: Quoting, carried: Carried
-) -> tuple[FloatArray, FloatArray]:
-    """Return factor and shift of each entry, in the table's system."""
-    factors, shifts = [], []
+def _factors(found: CampaignCoefficients, quoting: Quoting) -> FloatArray:
+    return np.array([quoting.factor(term_of_entry(found, one)) for one in found.entries])
+
+
+def _shifts(found: CampaignCoefficients, quoting: Quoting, carried: Carried) -> FloatArray:
+    """Return what is added to each entry, in the table's system."""
+    shifts = []
     for entry in found.entries:
         term = term_of_entry(found, entry)
-        factors.append(quoting.factor(term))
         shift = quoting.mass_shift(
             term, found.plane, carried.mass_kg, carried.cg_x_m, entry.speed_m_s
         )
         system = _system(carried, entry.speed_m_s)
         shifts.append(shift / system.term_factor(term) if system and shift else shift)
-    return np.array(factors), np.array(shifts)
+    return np.array(shifts)
 
 
 def _system(carried: Carried, speed_m_s: float) -> Normalisation | None:
@@ -105,10 +107,12 @@ def _system(carried: Carried, speed_m_s: float) -> Normalisation | None:
 
 
 def _slopes(
-    found: CampaignCoefficients, shifts: FloatArray, carried: Carried
+    found: CampaignCoefficients, quoting: Quoting, carried: Carried
 ) -> dict[str, FloatArray]:
     """Return what each stated input does to the shifts, per standard deviation."""
-    stated, moments = carried.stated, np.array([_is_moment(one) for one in found.entries])
+    stated, shifts = carried.stated, _shifts(found, quoting, carried)
+    heavier = replace(carried, mass_kg=carried.mass_kg + stated.mass_kg)
+    ahead = replace(carried, cg_x_m=carried.cg_x_m + stated.cg_x_m)
     speeds = np.array([one.speed_m_s or np.inf for one in found.entries])
     powers = np.zeros(len(shifts))
     if carried.system is not None:
@@ -116,18 +120,13 @@ def _slopes(
             [speed_power(found, one, carried.system(one.speed_m_s)) if shift else 0.0
              for one, shift in zip(found.entries, shifts, strict=True)]
         )  # fmt: skip
-    arm = carried.cg_x_m or np.inf
     own = {
-        "mass_kg": shifts * stated.mass_kg / (carried.mass_kg or np.inf),
-        "cg_x_m": np.where(moments, shifts / arm, 0.0) * stated.cg_x_m,
+        "mass_kg": _shifts(found, quoting, heavier) - shifts,
+        "cg_x_m": _shifts(found, quoting, ahead) - shifts,
         "speed_m_s": shifts * (1.0 - powers) / speeds * stated.speed_m_s,
         "density_relative": -shifts * stated.density_relative * (carried.system is not None),
     }
     return {key: one for key, one in own.items() if one.any()}
-
-
-def _is_moment(entry: CoefficientEntry) -> bool:
-    return entry.name[0] in "NM"
 
 
 def _changed(

@@ -164,12 +164,15 @@ def test_what_is_quoted_comes_back(names, mass, plane, divided, values) -> None:
     )
 
 
+@pytest.mark.parametrize("arm", [-3.7, 0.0])
 @pytest.mark.parametrize("divided", [False, True])
 @pytest.mark.parametrize("plane", list(Plane))
-def test_the_uncertainty_of_the_mass_is_that_of_another_mass(plane: Plane, divided: bool) -> None:
+def test_the_uncertainty_of_the_mass_is_that_of_another_mass(
+    plane: Plane, divided: bool, arm: float
+) -> None:
     """Each stated input moved by a thousandth of itself, against the slope that is carried."""
     names = ("Y_r", "N_r") if plane is Plane.HORIZONTAL else ("Z_q", "M_q")
-    base = Carried(1.7e7, -3.7, system if divided else None)
+    base = Carried(1.7e7, arm, system if divided else None)
     zero = campaign(dict.fromkeys(names, 0.0), plane)
 
     def at(carried: Carried, speed: float = SPEED_M_S, density: float = DENSITY) -> np.ndarray:
