@@ -29,6 +29,7 @@ NAMES = (
     "latency",
     "crowd",
     "inertia",
+    "comparison",
     "recorder",
     "kill",
     "soak",

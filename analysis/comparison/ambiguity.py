@@ -1,0 +1,107 @@
+"""Whether the lag could be another: a motion of one frequency fits as well a period later."""
+
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from analysis.comparison.fit import Fit, Model, NothingInCommonError, Problem, fit
+
+_SURE: Final = 5.0  # standard deviations by which another lag must fit worse to be rejected
+_TURNS: Final = 8
+
+
+def least_lag(problem: Problem, best: Fit, most_lag_s: float) -> tuple[Model, float | None]:
+    """Return the model that fits best, and the period by which its lag may be off, if any.
+
+    Lags a period earlier and later are tried on the same samples. Where one fits as well, the lag
+    nearest to zero with a positive gain is taken.
+    """
+    period_s = _period(problem, best, most_lag_s)
+    if period_s is None:
+        return best.model, None
+    for _ in range(_TURNS):
+        best = _inside(problem, best, period_s)
+        limit = _limit(best)
+        beside = [_moved(problem, best, turns * period_s) for turns in (-1.0, 1.0, -0.5, 0.5)]
+        growth = [_growth(best, one) for one in beside]
+        if min(growth) < -limit:
+            better = beside[int(np.argmin(growth))]
+            if better is None:
+                break
+            best = better
+            continue
+        model = best.model
+        if min(growth[:2]) > limit:
+            return model, None
+        if model.gains[0] < 0.0 and min(growth[2:]) <= limit:
+            half = beside[2 + int(np.argmin(growth[2:]))]
+            model = model if half is None else half.model
+        lags = [one.model.alignment.lag_s for one in beside[:2] if one is not None]
+        period_s = (max(lags) - min(lags)) / 2.0 if len(lags) == 2 else period_s  # as it fits best
+        turns = round(model.alignment.lag_s / period_s)
+        where = replace(model.alignment, lag_s=model.alignment.lag_s - turns * period_s)
+        return replace(model, alignment=where), period_s
+    return best.model, None
+
+
+def _limit(best: Fit) -> float:
+    """Return by how much sums of squares of two lags may differ by chance.
+
+    The first channel's noise is another one at another lag, so that the two are as good as
+    independent: each has the variance ``4 n`` in ``n`` bins.
+    """
+    bins = float(best.stands_out.sum())
+    chance = _SURE**2 + _SURE * float(np.sqrt(8.0 * bins))
+    return chance * max(1.0, best.squares / (2.0 * bins))
+
+
+def _period(problem: Problem, best: Fit, most_lag_s: float) -> float | None:
+    """Return where the motion is most like itself, ``None`` where it never is."""
+    from scipy.fft import irfft
+
+    power = np.zeros(best.count // 2 + 1)
+    inside = np.abs(best.shape) ** 2 * best.stands_out
+    power[best.first_bin : best.first_bin + len(inside)] = inside
+    fine = 8
+    likeness = irfft(power, best.count * fine)
+    likeness = likeness[: int(likeness.size * 0.4)]
+    below = np.flatnonzero(likeness < 0.0)
+    if not len(below):
+        return None
+    reach = max(most_lag_s, 1.5 / problem.motion_hz) * problem.second.rate_hz * fine
+    tail = likeness[below[0] : int(reach)]
+    if len(tail) < 3 or tail.max() < 0.3 * likeness[0]:
+        return None
+    top = int(np.flatnonzero(tail >= 0.95 * tail.max())[0])
+    while top + 1 < len(tail) and tail[top + 1] > tail[top]:
+        top += 1
+    return float(below[0] + top) / fine / problem.second.rate_hz
+
+
+def _inside(problem: Problem, best: Fit, margin_s: float) -> Fit:
+    """Fit again where the first channel is there a period before and after."""
+    margin = int(margin_s * problem.second.rate_hz) + 2
+    if 4 * margin > best.count:
+        margin = best.count // 4
+    where = replace(
+        best.model.alignment,
+        stretch=slice(best.start + margin, best.start + best.count - margin),
+    )
+    return fit(problem, replace(best.model, alignment=where))
+
+
+def _moved(problem: Problem, best: Fit, later_s: float) -> Fit | None:
+    where = best.model.alignment
+    model = replace(best.model, alignment=replace(where, lag_s=where.lag_s + later_s))
+    try:
+        found = fit(problem, model)
+    except NothingInCommonError:
+        return None
+    return found if found.count == best.count else None
+
+
+def _growth(best: Fit, other: Fit | None) -> float:
+    if other is None:
+        return np.inf
+    return other.squares_under(best.noise, best.stands_out) - best.squares

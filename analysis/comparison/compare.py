@@ -1,0 +1,172 @@
+"""Comparison of two channels that show the same quantity, its derivative, or that with a lever."""
+
+import math
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from analysis.comparison.ambiguity import least_lag
+from analysis.comparison.band import Band, find_band, track
+from analysis.comparison.first_guess import Alignment, first_guess
+from analysis.comparison.fit import Fit, Model, NothingInCommonError, Problem, fit
+from analysis.comparison.result import Comparison
+from analysis.comparison.settings import ComparisonSettings
+from analysis.comparison.told import Found, Signal, told
+from analysis.comparison.warp import Warped
+from analysis.recording import Recording
+from hardware.description.arrays import FloatArray
+from hardware.description.errors import DataError
+from hardware.description.flags import Flag, Severity
+
+_MOST_LAG_S: Final = 10.0
+_ROUNDING: Final = 1e-9  # of a channel's values: less is no motion
+_LEAST_SAMPLES: Final = 32
+_SEEN: Final = 4.0  # uncertainties from which a dead band is taken for one
+_EXPLAINS: Final = 0.5  # least part of the harmonics' misfit that a dead band must take away
+
+
+def compare(
+    first: Recording,
+    first_channel: str,
+    second: Recording,
+    second_channel: str,
+    settings: ComparisonSettings = ComparisonSettings(),  # noqa: B008
+) -> Comparison:
+    """Return gain, lag, clock rate and dead band of the second channel over the first.
+
+    ``second(t) = gain * first(t - lag(t))``, ``lag(t) = lag + clock_rate (t - mid)``: a positive
+    lag is a second channel that comes later; both times are those of the recordings. Noise may be
+    in both channels.
+
+    Raises
+    ------
+    DataError
+        If a channel is missing, does not move, is too short, or the second does not follow the
+        first at any frequency.
+    ConfigurationError
+        If the settings cannot be.
+    """
+    settings.check()
+    names = (first_channel, *settings.levers)
+    leading = [_signal(first, name, -math.inf, math.inf) for name in names]
+    following = _signal(second, second_channel, settings.from_s, settings.to_s)
+    most_lag_s = _most_lag(leading[0], following, settings)
+    problem = _problem(leading, following, settings, most_lag_s)
+    try:
+        model, modulo_s = least_lag(problem, _grown(problem, most_lag_s), most_lag_s)
+        straight = _settled(problem, model)
+        best, dead_band = straight, None
+        if settings.order == 0 and not settings.levers:
+            best, dead_band = _with_dead_band(problem, straight)
+    except NothingInCommonError:
+        raise DataError(
+            f"{leading[0].name} and {following.name}: the second does not follow the first, no "
+            "gain and lag explain half of its power; is it the same motion, at the same time? "
+            "Allow a larger lag, or state the derivative, the band or the part of the record"
+        ) from None
+    found = Found(problem, best, modulo_s, dead_band, seen=best is not straight)
+    return told(found, leading, following, settings)
+
+
+def _signal(recording: Recording, name: str, from_s: float, to_s: float) -> Signal:
+    """Return the longest stretch of a channel without missing samples."""
+    part = recording.between(max(from_s, recording.start_s), min(to_s, recording.end_s))
+    values, unit = part.values(name), recording.channels[recording.index(name)].unit
+    called = f"{recording.name}: {name}"
+    missing = ~np.isfinite(values)
+    moving = values[~missing]
+    if not moving.size or np.ptp(moving) <= _ROUNDING * np.abs(moving).max():
+        raise DataError(f"{called} does not move, so that nothing can be compared with it")
+    if not missing.any():
+        return Signal(called, values, part.sample_rate_hz, part.start_s, unit)
+    bounds = np.flatnonzero(np.concatenate(([True], missing, [True])))
+    longest = int(np.argmax(np.diff(bounds)))
+    start, stop = int(bounds[longest]), int(bounds[longest + 1]) - 1
+    start_s, end_s = part.start_s + np.array([start, stop - 1]) / part.sample_rate_hz
+    message = (
+        f"{int(missing.sum())} samples are missing; compared is the longest stretch without, "
+        f"{start_s:.3f} s to {end_s:.3f} s"
+    )
+    flags = (Flag("longest_stretch", Severity.WARNING, message, name),)
+    return Signal(called, values[start:stop], part.sample_rate_hz, float(start_s), unit, flags)
+
+
+def _most_lag(leading: Signal, following: Signal, settings: ComparisonSettings) -> float:
+    shorter_s = min(len(one.values) / one.rate_hz for one in (leading, following))
+    return settings.most_lag_s or min(_MOST_LAG_S, shorter_s / 4.0)
+
+
+def _problem(
+    leading: list[Signal], following: Signal, settings: ComparisonSettings, most_lag_s: float
+) -> Problem:
+    one = leading[0]
+    ends_s = [a.start_s + len(a.values) / a.rate_hz + most_lag_s for a in (one, following)]
+    if not (one.start_s < ends_s[1] and following.start_s < ends_s[0]):
+        raise DataError(
+            f"{one.name} and {following.name}: the one begins at {one.start_s:.3f} s and the other "
+            f"at {following.start_s:.3f} s, more than the largest lag of {most_lag_s:g} s after "
+            "its end; allow a larger one"
+        )
+    band = find_band(one.values, following.values, (one.rate_hz, following.rate_hz))
+    low_hz, high_hz = settings.band_hz or (0.0, band.top_hz)
+    if settings.band_hz is not None:
+        band = Band(min(band.motion_hz, high_hz), max(high_hz, band.edge_hz), high_hz)
+    order = settings.order
+    first_orders = range(max(order, 0), max(order, 0) + 2)
+    second_orders = range(max(-order, 0), max(-order, 0) + 1)
+    tracks = [track(a.values, a.start_s, a.rate_hz, band, first_orders) for a in leading]
+    second = track(following.values, following.start_s, following.rate_hz, band, second_orders)
+    return Problem(Warped(*tracks), len(tracks), second, band.motion_hz, low_hz, high_hz)
+
+
+def _grown(problem: Problem, most_lag_s: float) -> Fit:
+    """Fit where most happens, then on twice as much, until nothing is left out.
+
+    From each length to the next the lag's error stays far below the quarter of a period that a
+    linear step bears.
+    """
+    guess = first_guess(problem.first, problem.second, problem.motion_hz, most_lag_s)
+    model = Model(guess, np.array([1.0] + [0.0] * (problem.channels - 1)))
+    count = problem.second.derivatives.shape[1]
+    while True:
+        found = fit(problem, model)
+        model, stretch = found.model, found.model.alignment.stretch
+        if stretch == slice(0, count):
+            return found
+        more = (stretch.stop - stretch.start) // 2 + 1
+        wider = slice(max(0, stretch.start - more), min(count, stretch.stop + more))
+        model = replace(model, alignment=replace(model.alignment, stretch=wider))
+
+
+def _settled(problem: Problem, model: Model) -> Fit:
+    """Fit on all samples that both have, the lag that of their middle."""
+    count = problem.second.derivatives.shape[1]
+    where = replace(model.alignment, stretch=slice(0, count))
+    time_s = problem.second.time_s
+    covered = np.flatnonzero(problem.first.covers(where.times_s(time_s)))
+    if len(covered) < _LEAST_SAMPLES:
+        raise NothingInCommonError
+    both = slice(int(covered[0]) + 2, int(covered[-1]) - 1)  # whatever the last digits of the lag
+    mid_s = float(time_s[both].mean())
+    lag_s = where.lag_s + where.rate * (mid_s - where.mid_s)
+    return fit(problem, replace(model, alignment=Alignment(lag_s, where.rate, mid_s, both)))
+
+
+def _with_dead_band(problem: Problem, straight: Fit) -> tuple[Fit, FloatArray]:
+    """Return the fit with a dead band where one is seen, and its half and uncertainty.
+
+    Noise shifts reversals by a part of itself. What is found must explain most of what stands out
+    of the noise at the frequencies that it makes: other things bend a sensor's line too.
+    """
+    near = fit(problem, replace(straight.model, half=0.0), lines=True)
+    bent = fit(problem, near.model)
+    half, u = float(bent.model.half or 0.0), float(bent.uncertainty[problem.channels + 2])
+    u = math.hypot(u, 0.5 * bent.noise_spread / abs(bent.model.gains[0]))
+    answer = np.array([half, u])
+    made = np.abs(bent.columns[problem.channels + 2] * half) ** 2 > bent.noise
+    if half < _SEEN * u or bent.count != straight.count or not made.any():
+        return straight, answer
+    before = straight.squares_under(bent.noise, made) - 2.0 * made.sum()
+    after = bent.squares_under(bent.noise, made) - 2.0 * made.sum()
+    return (bent if after < _EXPLAINS * before else straight), answer

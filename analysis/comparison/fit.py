@@ -1,0 +1,359 @@
+"""Gain, lag and clock rate by least squares over frequencies, each weighed by its noise.
+
+With the first channel ``a`` brought to the second one's clock, the second is to first order
+
+    b(t) = sum g_j a_j(s) - dlag z'(s) - drate (t - mid) z'(s) + noise,    z = sum g_j a_j,
+
+at ``s = t - lag - rate (t - mid)``. All are tapered alike and transformed, and the sum over bins of
+``|residual|^2 / R`` is made small, R being the noise's spectrum found from the residual itself
+(P. Whittle, Estimation and information in stationary time series, 1953). ``R`` holds the noise of
+both channels. Bins where ``a`` stands little out of the noise carry no column: noise in a column
+would draw the gain down.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from analysis.comparison.band import Track
+from analysis.comparison.dead_band import Play, follow
+from analysis.comparison.first_guess import Alignment
+from analysis.comparison.warp import Warped
+from hardware.description.arrays import BoolArray, ComplexArray, FloatArray
+
+_TAPER: Final = 0.1  # of the record, both ends together
+_FIRST: Final = 3  # bins: below, what is seen is a drift
+_STANDS_OUT: Final = 20.0  # power over the noise's; noise alone is that strong once in e^20
+_WIDEST: Final = 32  # bins on each side over which the noise's spectrum is smoothed
+_FLATTER: Final = 1  # times that a smoothed spectrum is taken off before it is smoothed again
+_STEPS: Final = 20
+_FEWEST: Final = 3  # steps
+_UNEXPLAINED: Final = 0.5  # of the power where the first channel stands out
+_SETTLED: Final = 0.02  # of an uncertainty, in the last step
+_A_PERIOD: Final = 200.0  # steps in which a dead band is followed: 1e-4 of the amplitude
+_ROUNDING: Final = 1e-12  # of the mean power: splines and filters are no better
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Two channels as they are compared.
+
+    Attributes
+    ----------
+    first
+        The first channel and those with a lever; rows 0 and 1 are what the second one shows, and
+        its derivative.
+    low_hz, top_hz
+        Frequencies that count.
+    """
+
+    first: Warped
+    channels: int
+    second: Track
+    motion_hz: float
+    low_hz: float
+    top_hz: float
+
+
+@dataclass(frozen=True)
+class Model:
+    """Parameters: where the clocks stand, a gain of each channel, half the dead band or ``None``.
+
+    ``half`` is in the first channel's unit.
+    """
+
+    alignment: Alignment
+    gains: FloatArray
+    half: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A model and what it leaves.
+
+    Attributes
+    ----------
+    covariance
+        Of ``[gains, lag, rate]``, half the dead band where it is fitted, and a level and a slope.
+    freedom
+        Degrees of freedom of the noise's spectrum.
+    start
+        First sample of the second channel.
+    columns
+        Spectra of the model's derivatives in the bins that count, shape ``(parameters, bins)``.
+    shape
+        Spectrum of what the model says of the second channel, shape ``(bins,)``.
+    residual, noise
+        Spectrum of what is left, and the mean of its squared magnitude, shape ``(bins,)``.
+    stands_out
+        Which bins carry the channels.
+    first_bin
+        The bins' own place in the transform.
+    """
+
+    model: Model
+    covariance: FloatArray
+    freedom: float
+    start: int
+    taper: FloatArray
+    columns: ComplexArray
+    shape: ComplexArray
+    residual: ComplexArray
+    noise: FloatArray
+    power: FloatArray
+    stands_out: BoolArray
+    first_bin: int
+
+    @property
+    def count(self) -> int:
+        """Samples of the second channel."""
+        return len(self.taper)
+
+    @property
+    def uncertainty(self) -> FloatArray:
+        """One standard deviation of each parameter."""
+        return np.asarray(np.sqrt(np.diag(self.covariance)))
+
+    @cached_property
+    def squares(self) -> float:
+        """Sum of squares of the residual in the bins that carry the channels, over the noise."""
+        return self.squares_under(self.noise, self.stands_out)
+
+    @property
+    def noise_spread(self) -> float:
+        """One standard deviation of the noise, in the second channel's unit."""
+        return float(np.sqrt(2.0 * self.noise.sum() / (self.taper**2).mean()) / self.count)
+
+    def squares_under(self, noise: FloatArray, bins: BoolArray) -> float:
+        """Return the same under another noise, in other bins."""
+        return float((2.0 * np.abs(self.residual[bins]) ** 2 / noise[bins]).sum())
+
+
+@dataclass(frozen=True, eq=False)
+class _Linear:
+    """The model's columns at one set of parameters, and the second channel, as spectra."""
+
+    start: int
+    taper: FloatArray
+    target: ComplexArray
+    channels: ComplexArray
+    motion: ComplexArray
+    slide: ComplexArray
+    by_play: ComplexArray
+    side: ComplexArray | None
+    drift: ComplexArray
+    first_bin: int
+
+    @property
+    def others(self) -> ComplexArray:
+        """The derivatives by all but the gains."""
+        side = () if self.side is None else (self.side,)
+        return np.array([self.motion, self.slide, *side, *self.drift])
+
+    def left(self, gains: FloatArray) -> ComplexArray:
+        """Return what the channels leave of the second one."""
+        left: ComplexArray = self.target - gains @ self.channels - gains[0] * self.by_play
+        return left
+
+    def columns(self, stands_out: BoolArray) -> ComplexArray:
+        """Return the derivatives, without the channels where they are noise."""
+        rows = [*(self.channels * stands_out), self.motion * stands_out, self.slide * stands_out]
+        if self.side is not None:
+            rows[0] = rows[0] + self.by_play
+            rows.append(self.side)
+        return np.array([*rows, *self.drift])
+
+
+def fit(problem: Problem, model: Model, *, lines: bool = False) -> Fit:
+    """Improve a model until it moves no more.
+
+    Its gains are found anew. The lag must be right within a quarter of the motion's period or so.
+
+    Parameters
+    ----------
+    lines
+        Whether lines that the model does not explain yet are no noise: for a dead band, which makes
+        harmonics.
+
+    Raises
+    ------
+    NothingInCommonError
+        If there is no frequency at which the second channel follows the first.
+    """
+    noise, bins = np.ones(0), np.ones(0, dtype=bool)
+    for step in range(_STEPS):
+        linear = _linearised(problem, model)
+        if noise.size != linear.target.size:
+            noise, bins = np.ones(linear.target.size), _strongest(linear.channels[0])
+        if not step:
+            model = replace(model, gains=_gains(linear, bins, noise))
+            linear = _linearised(problem, model)
+        columns = linear.columns(bins)
+        theta, inverse = _solved(columns, linear.left(model.gains), noise)
+        model = _moved(model, theta)
+        residual = linear.left(model.gains) - theta[problem.channels :] @ linear.others
+        hidden = (columns.conj() * (inverse @ columns)).sum(axis=0).real if step else 0.0
+        noise, reach = _smoothed(np.abs(residual) ** 2 + hidden, linear.target, lines=lines)
+        power = _around(np.abs(model.gains @ linear.channels) ** 2, 1)
+        bins = power > _STANDS_OUT * noise
+        if not bins.any():
+            bins = _strongest(linear.channels[0])
+        small = (np.abs(theta) <= _SETTLED * np.sqrt(np.diag(inverse)))[: -len(linear.drift)]
+        if step >= _FEWEST and small.all():
+            break
+    left, shown = (np.abs(one[bins]) ** 2 for one in (residual, linear.target))
+    if left.sum() > _UNEXPLAINED * shown.sum():
+        raise NothingInCommonError
+    columns = linear.columns(bins)
+    freedom = max(2.0 * (2 * reach + 1) - len(columns), 1.0)
+    # The weights are of the same record: they cost twice what their own scatter is.
+    covariance = _covariance(columns, noise, linear) * (1.0 + 4.0 / freedom)
+    return Fit(
+        model, covariance, freedom, linear.start, linear.taper, columns,
+        linear.target - residual, residual, noise, power, bins, linear.first_bin,
+    )  # fmt: skip
+
+
+class NothingInCommonError(Exception):
+    """No frequency at which one channel follows the other."""
+
+
+def _linearised(problem: Problem, model: Model) -> _Linear:
+    from scipy.fft import rfft
+    from scipy.signal.windows import tukey
+
+    second, where = problem.second, model.alignment
+    time_s = second.time_s[where.stretch]
+    covered = np.flatnonzero(problem.first.covers(where.times_s(time_s)))
+    if len(covered) < 16:
+        raise NothingInCommonError
+    start, count = int(covered[0]), _fast(len(covered))
+    time_s = time_s[start : start + count]
+    asked_s = where.times_s(time_s)
+    taper = tukey(count, _TAPER)
+    step_hz = second.rate_hz / count
+    low = max(_FIRST, int(np.ceil(problem.low_hz / step_hz)))
+    high = min(int(problem.top_hz / step_hz), count // 2 - 1)
+
+    def spectrum(values: FloatArray) -> ComplexArray:
+        return np.asarray(rfft(values * taper)[low : high + 1])
+
+    values = [problem.first.values(asked_s, 0, k) for k in range(problem.channels)]
+    slopes = [problem.first.values(asked_s, 1, k) for k in range(problem.channels)]
+    motion = -(model.gains @ np.array(slopes))
+    play = play_at(problem, model, time_s)
+    if play is not None:
+        motion = np.where(play.pushed, motion, 0.0)
+    begin = where.stretch.start + start
+    return _Linear(
+        begin,
+        taper,
+        spectrum(second.derivatives[0][begin : begin + count]),
+        np.array([spectrum(one) for one in values]),
+        spectrum(motion),
+        spectrum(motion * (time_s - where.mid_s)),
+        spectrum(np.zeros(count) if play is None else play.values - values[0]),
+        None if play is None else spectrum(-model.gains[0] * play.side),
+        np.array([spectrum(np.ones(count)), spectrum(np.linspace(-1.0, 1.0, count))]),
+        low,
+    )
+
+
+def play_at(problem: Problem, model: Model, time_s: FloatArray) -> Play | None:
+    """Return the play at even times, followed in steps fine enough not to cut its reversals."""
+    if model.half is None:
+        return None
+    rate_hz = problem.second.rate_hz
+    fine = int(np.ceil(_A_PERIOD * problem.motion_hz / rate_hz))
+    steps_s = time_s[0] + np.arange((len(time_s) - 1) * fine + 1) / (fine * rate_hz)
+    leader = problem.first.values(model.alignment.times_s(steps_s), 0)
+    return follow(leader, model.half).every(fine)
+
+
+def _fast(count: int) -> int:
+    """Return the largest length up to a count that transforms fast."""
+    from scipy.fft import prev_fast_len
+
+    return int(prev_fast_len(count))
+
+
+def _gains(linear: _Linear, bins: BoolArray, noise: FloatArray) -> FloatArray:
+    columns = np.concatenate((linear.channels * bins, linear.drift))
+    theta, _ = _solved(columns, linear.target, noise)
+    return theta[: len(linear.channels)]
+
+
+def _solved(
+    columns: ComplexArray, target: ComplexArray, noise: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the parameters and the inverse of the normal equations."""
+    weighted = columns.conj() / noise
+    scale = np.sqrt(np.maximum((np.abs(columns) ** 2 / noise).sum(axis=1), 1e-300))
+    normal = 2.0 * (weighted @ columns.T).real / np.outer(scale, scale)
+    right = 2.0 * (weighted @ target).real / scale
+    inverse = np.linalg.pinv(normal, hermitian=True)
+    return inverse @ right / scale, inverse / np.outer(scale, scale)
+
+
+def _moved(model: Model, theta: FloatArray) -> Model:
+    at = len(model.gains)
+    where = model.alignment
+    alignment = replace(where, lag_s=where.lag_s + theta[at], rate=where.rate + theta[at + 1])
+    half = model.half
+    if half is not None:
+        half = max(0.0, half + float(theta[at + 2]))
+    return Model(alignment, model.gains + theta[:at], half)
+
+
+def _strongest(channel: ComplexArray) -> BoolArray:
+    """Return the bins that carry the most, for a start."""
+    power = _around(np.abs(channel) ** 2, 1)
+    return np.asarray(power >= 0.01 * power.max())
+
+
+def _around(values: FloatArray, reach: int) -> FloatArray:
+    from scipy.ndimage import uniform_filter1d
+
+    return np.asarray(uniform_filter1d(values, 2 * reach + 1, mode="reflect"))
+
+
+def _smoothed(power: FloatArray, target: ComplexArray, *, lines: bool) -> tuple[FloatArray, int]:
+    """Return the noise's spectrum, and over how many bins on each side it is smoothed.
+
+    Parameters
+    ----------
+    power
+        Of the residual, and what the fit has taken from it.
+    """
+    from scipy.ndimage import median_filter
+
+    reach = int(np.clip(len(power) // 10, 1, _WIDEST))
+    floor = _ROUNDING * float((np.abs(target) ** 2).mean())
+    power = np.maximum(power, 1e-3 * floor)
+    if lines:
+        usual = median_filter(power, 2 * reach + 1, mode="reflect") / np.log(2.0)
+        return np.maximum(usual, floor), reach
+    noise = _around(power, reach)
+    for _ in range(_FLATTER):  # smoothed flat: a steep spectrum is no lower beside its foot
+        noise = noise * _around(power / noise, reach)
+    return np.maximum(noise, floor), reach
+
+
+def _covariance(columns: ComplexArray, noise: FloatArray, linear: _Linear) -> FloatArray:
+    """Return the parameters' covariance, the taper's part in it and all.
+
+    The estimate is a sum of the samples of the noise, each with a weight that the taper makes; the
+    noise itself is not tapered.
+    """
+    from scipy.fft import irfft, rfft
+
+    _, inverse = _solved(columns, linear.target, noise)
+    count, last = len(linear.taper), linear.first_bin + linear.target.size
+    padded = np.zeros((len(columns), count // 2 + 1), dtype=complex)
+    padded[:, linear.first_bin : last] = columns / noise
+    weights = rfft(irfft(padded, count) * linear.taper)[:, linear.first_bin : last]
+    untapered = noise / (linear.taper**2).mean()
+    middle = 2.0 * (weights * untapered @ weights.conj().T).real
+    return np.asarray(inverse @ middle @ inverse)

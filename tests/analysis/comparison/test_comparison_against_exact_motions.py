@@ -1,0 +1,212 @@
+"""Gain, lag, clock rate and dead band of motions that are exact at exactly warped times."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analysis.comparison.compare import compare
+from analysis.comparison.result import Comparison
+from analysis.comparison.settings import ComparisonSettings
+from analysis.recording import Recording
+from hardware.description.channels import Channel
+from hardware.description.errors import ConfigurationError, DataError
+from tests.analysis.comparison.motions import Motion, Truth, harmonic, irregular, pair, recorded
+
+RATE = 3e-4
+
+
+def truth(order: int = 0) -> Truth:
+    return Truth(gain=1.3, lag_s=0.12, rate=RATE, mid_s=29.5, order=order)
+
+
+def compared(
+    motion: Motion,
+    what: Truth,
+    seed: int = 0,
+    settings: ComparisonSettings | None = None,
+    **how: float,
+) -> Comparison:
+    rng = np.random.default_rng(seed)
+    first, second = pair(motion, what, rng, **how)
+    asked = settings or ComparisonSettings(order=what.order)
+    return compare(first, "x", second, "x", asked)
+
+
+def misses(found: Comparison, what: Truth) -> list[float]:
+    """Errors of gain, lag and clock rate in half-widths."""
+    lag_s = found.lag_s.value - what.lag_s - what.rate * (found.mid_s - what.mid_s)
+    if found.modulo_s is not None:
+        lag_s -= found.modulo_s * round(lag_s / found.modulo_s)
+    errors = (found.gain.value - what.gain, lag_s, found.clock_rate.value - what.rate)
+    halves = (found.gain, found.lag_s, found.clock_rate)
+    return [abs(error) / of.half_width() for error, of in zip(errors, halves, strict=True)]
+
+
+@pytest.mark.parametrize("order", [-2, -1, 0, 1, 2])
+def test_without_noise_nothing_is_off(order: int) -> None:
+    what = truth(order)
+    found = compared(irregular(np.random.default_rng(1)), what, noise=0.0)
+    lag_s = what.lag_s + what.rate * (found.mid_s - what.mid_s)
+    assert found.gain.value == pytest.approx(what.gain, rel=1e-5)
+    assert found.lag_s.value == pytest.approx(lag_s, abs=1e-6)
+    assert found.clock_rate.value == pytest.approx(what.rate, abs=1e-7)
+    assert found.modulo_s is None
+
+
+@pytest.mark.parametrize("order", [-1, 0, 2])
+def test_intervals_hold_in_irregular_motion(order: int) -> None:
+    what, missed = truth(order), []
+    for seed in range(20):
+        motion = irregular(np.random.default_rng(100 + seed))
+        missed.append(misses(compared(motion, what, seed), what))
+    assert np.mean(np.array(missed) < 1.0) > 0.85
+    assert np.max(missed) < 2.5
+
+
+def test_one_frequency_tells_the_lag_but_for_whole_periods() -> None:
+    rng = np.random.default_rng(3)
+    motion = harmonic(rng)
+    what = replace(truth(), lag_s=7.0)
+    found = compared(motion, what, 3)
+    assert found.modulo_s == pytest.approx(1.0 / motion.frequencies_hz[0], rel=1e-4)
+    assert abs(found.lag_s.value) <= found.modulo_s / 2.0
+    assert max(misses(found, what)) < 1.5
+    assert [flag.code for flag in found.flags] == ["lag_modulo"]
+
+
+def test_harmonics_repeat_with_their_fundamental() -> None:
+    rng = np.random.default_rng(4)
+    motion = harmonic(rng, 0.3, 0.1)
+    found = compared(motion, truth(), 4)
+    assert found.modulo_s == pytest.approx(1.0 / motion.frequencies_hz[0], rel=1e-4)
+    assert max(misses(found, truth())) < 1.5
+
+
+def test_a_clock_that_is_off_by_a_hundredth_is_followed() -> None:
+    what = replace(truth(), rate=0.008)
+    found = compared(irregular(np.random.default_rng(5)), what, 5)
+    assert max(misses(found, what)) < 1.5
+    assert found.lag_at(found.to_s).value - found.lag_at(found.from_s).value > 0.4
+
+
+def test_a_turned_sensor_has_a_negative_gain() -> None:
+    what = replace(truth(), gain=-0.7)
+    found = compared(irregular(np.random.default_rng(6)), what, 6)
+    assert max(misses(found, what)) < 1.5
+
+
+@pytest.mark.parametrize("width", [0.05, 0.3])
+@pytest.mark.parametrize("irregularly", [False, True])
+def test_a_dead_band_is_found_and_not_taken_for_a_lag(width: float, irregularly: bool) -> None:
+    rng = np.random.default_rng(7)
+    motion = irregular(rng) if irregularly else harmonic(rng)
+    fine_s = np.arange(-2.0, 62.0, 1e-3)
+    leader = motion.at(fine_s)
+    scale = leader.std()
+    follower, at = [], float(leader[0] / scale)
+    for value in (leader / scale).tolist():  # the definition, sample by sample
+        at = max(min(at, value + width / 2.0), value - width / 2.0)
+        follower.append(at)
+    first_s, second_s = np.arange(0.0, 60.0, 0.01), np.arange(0.0, 60.0, 0.005)
+    shown = 1.2 * np.interp(second_s - 0.05, fine_s, follower)
+    first = motion.at(first_s) / scale + 0.002 * rng.standard_normal(first_s.size)
+    second = shown + 0.002 * rng.standard_normal(second_s.size)
+    found = compare(
+        recorded("demand", first, 100.0, 0.0, "m"),
+        "x",
+        recorded("axis", second, 200.0, 0.0, "m"),
+        "x",
+    )
+    assert found.dead_band_found
+    assert found.dead_band is not None
+    assert abs(found.dead_band.value - width) < found.dead_band.half_width()
+    lag_s = found.lag_s.value - 0.05
+    assert abs(lag_s) < 5e-4
+    assert found.gain.value == pytest.approx(1.2, rel=2e-3)
+
+
+def test_without_a_dead_band_none_is_found() -> None:
+    for seed in range(10):
+        motion = irregular(np.random.default_rng(200 + seed))
+        assert not compared(motion, truth(), seed, noise=0.05).dead_band_found
+
+
+def test_a_lever_is_found() -> None:
+    rng = np.random.default_rng(8)
+    heave, pitch = irregular(rng), irregular(rng, 0.9)
+    first_s, second_s = np.arange(6000) / 100.0, np.arange(6000) / 100.0
+    what = replace(truth(), gain=1.0)
+    on_first = what.on_first(second_s)
+    rows = np.array([heave.at(first_s), pitch.at(first_s)])
+    rows += 1e-3 * rng.standard_normal(rows.shape)
+    camera = Recording("camera", (Channel("z", "m"), Channel("pitch", "rad")), rows, 100.0)
+    bow = heave.at(on_first) - 0.65 * pitch.at(on_first)
+    wire = recorded("wire", bow + 1e-3 * rng.standard_normal(bow.size), 100.0, 0.0, "m")
+    found = compare(camera, "z", wire, "x", ComparisonSettings(levers=("pitch",)))
+    arm = found.levers["pitch"]
+    assert abs(arm.value + 0.65) < 1.5 * arm.half_width() < 0.01
+    assert arm.unit == "m per rad"
+    assert max(misses(found, what)) < 1.5
+
+
+def test_a_lag_that_jumps_is_said_and_widens() -> None:
+    rng = np.random.default_rng(9)
+    motion = irregular(rng)
+    time_s = np.arange(6000) / 100.0
+    late = np.where(time_s < 30.0, 0.1, 0.14)
+    values = motion.at(time_s - late) + 0.02 * rng.standard_normal(time_s.size)
+    steady = compared(motion, replace(truth(), rate=0.0), 9)
+    found = compare(
+        recorded("a", motion.at(time_s), 100.0, 0.0, "m"),
+        "x",
+        recorded("b", values, 100.0, 0.0, "m"),
+        "x",
+    )
+    assert "lag_unsteady" in {flag.code for flag in found.flags}
+    assert found.lag_s.half_width() > 5.0 * steady.lag_s.half_width()
+
+
+def test_the_wrong_derivative_is_said() -> None:
+    found = compared(irregular(np.random.default_rng(10)), truth(2), settings=ComparisonSettings())
+    (flag,) = (flag for flag in found.flags if flag.code == "explained_in_part")
+    assert "as derivative +2" in flag.message
+
+
+def test_channels_that_have_nothing_in_common_are_refused() -> None:
+    rng = np.random.default_rng(11)
+    first, _ = pair(irregular(rng), truth(), rng)
+    _, second = pair(irregular(rng), truth(), rng)
+    with pytest.raises(DataError, match="does not follow"):
+        compare(first, "x", second, "x")
+    with pytest.raises(DataError, match="after its end"):
+        compare(first, "x", replace(second, start_s=500.0), "x")
+    still = recorded("still", np.ones(1000), 100.0, 0.0, "m")
+    with pytest.raises(DataError, match="does not move"):
+        compare(first, "x", still, "x")
+
+
+def test_missing_samples_leave_the_longest_stretch() -> None:
+    rng = np.random.default_rng(12)
+    first, second = pair(irregular(rng), truth(), rng)
+    values = second.values("x").copy()
+    values[1000:1010] = np.nan
+    found = compare(first, "x", replace(second, samples=values[None, :]), "x")
+    assert max(misses(found, truth())) < 1.5
+    assert "longest_stretch" in {flag.code for flag in found.flags}
+    assert found.from_s > 3.6
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        ComparisonSettings(order=4),
+        ComparisonSettings(order=-1, levers=("x",)),
+        ComparisonSettings(band_hz=(2.0, 1.0)),
+        ComparisonSettings(most_lag_s=0.0),
+        ComparisonSettings(from_s=2.0, to_s=1.0),
+    ],
+)
+def test_settings_that_cannot_be_are_refused(settings: ComparisonSettings) -> None:
+    with pytest.raises(ConfigurationError):
+        compared(irregular(np.random.default_rng(13)), truth(), settings=settings)
