@@ -1,20 +1,6 @@
 """The criteria of IMO resolution MSC.137(76), Standards for ship manoeuvrability (2002)."""
 
-from dataclasses import dataclass
-
-from hardware.description.arrays import FloatArray
-
 ADVANCE, TACTICAL, INITIAL, OVERSHOOT_20 = 4.5, 5.0, 2.5, 25.0
-
-
-@dataclass(frozen=True)
-class Criterion:
-    """One criterion: its name, the ships' values, and the limit that they must not exceed."""
-
-    name: str
-    unit: str
-    values: FloatArray
-    limit: float
 
 
 def first_overshoot_deg(length_over_speed_s: float) -> float:
