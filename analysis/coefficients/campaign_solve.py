@@ -19,6 +19,7 @@ from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.cycle_trials import cycle_trials
 from analysis.coefficients.linear_fit import lacking_places, linear_fit
 from analysis.coefficients.rearrangement import Refits, refits
+from analysis.coefficients.run_agreement import run_flags
 from analysis.uncertainty.values import UncertainValues, stacked
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
@@ -73,8 +74,9 @@ def _linear(cycles: Sequence[BodyCycle], request: Request) -> GroupCoefficients:
     )
     trials = _fits_trials([(LINEAR, fit)], request)
     others = refits(cycles, [fit], [])
+    flags = (*linear.flags, *run_flags(fit))
     return GroupCoefficients(
-        entries, fit.uncertain, trials, missing=missing, flags=linear.flags, others=others
+        entries, fit.uncertain, trials, missing=missing, flags=flags, others=others
     )
 
 
@@ -86,7 +88,10 @@ def _fits_block(
         _fit_entry(method, fit, k) for method, fit in fits for k in range(len(fit.names))
     )
     uncertain = stacked([fit.uncertain for _, fit in fits])
-    flags = tuple(flag.of(cycle.name) for cycle in cycles for flag in cycle.flags)
+    flags = (
+        *(flag.of(cycle.name) for cycle in cycles for flag in cycle.flags),
+        *(flag for method, fit in fits if method != SINGLE_RUN for flag in run_flags(fit)),
+    )
     trials = _fits_trials(fits, request)
     others = refits(cycles, [fit for _, fit in fits], group.richest)
     return GroupCoefficients(

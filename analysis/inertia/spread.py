@@ -22,6 +22,15 @@ DISAGREE = 0.01
 SURE = 0.8  # share of what it has not seen that a cause has to predict to be named
 
 
+_LONGER = "the lines are longer than measured (knots, clamps, stretch)"
+_WIDER = "the lines' spacing is wider than measured"
+# What has no opposite cannot be less than nothing.
+_OPPOSITES = {
+    _LONGER: "the lines are shorter than measured",
+    _WIDER: "the lines' spacing is narrower than measured",
+}
+
+
 def cause_statement(cause: str, predicts: float, *, told: bool) -> str:
     """Return the sentence about the likeliest cause.
 
@@ -82,7 +91,10 @@ class SpreadCause:
 
     def __str__(self) -> str:
         parts = zip(self.names, self.sizes, self.units, strict=True)
-        return " and ".join(f"{name}, {size:.3g} {unit}" for name, size, unit in parts)
+        return " and ".join(
+            f"{name if size > 0.0 else _OPPOSITES[name]}, {abs(size):.3g} {unit}"
+            for name, size, unit in parts
+        )
 
 
 @dataclass(frozen=True)
@@ -144,8 +156,8 @@ def compare_geometries(
 def _shapes(d: FloatArray, line: FloatArray, k: float) -> dict[str, tuple[str, FloatArray]]:
     """Relative change of the gyradius squared per unit of each cause."""
     return {
-        "the lines are longer than measured (knots, clamps, stretch)": ("m", 1.0 / line),
-        "the lines' spacing is wider than measured": ("m", -1.0 / d),
+        _LONGER: ("m", 1.0 / line),
+        _WIDER: ("m", -1.0 / d),
         "clamps move with the lines (their mass over the body's)": ("1", (d / k) ** 2 - 1.0),
         "the lines twist stiffly (stiffness over m g)": ("m", -line / d**2),
     }
@@ -169,6 +181,10 @@ def _causes(geometries: Sequence[SuspensionGyradius]) -> tuple[SpreadCause, ...]
             left = target - (matrix * weight[:, None]) @ solved
             units = tuple(shapes[n][0] for n in names)
             sizes = tuple(solved[1:].tolist())
+            if any(
+                size < 0.0 and n not in _OPPOSITES for n, size in zip(names, sizes, strict=True)
+            ):
+                continue
             own = k * math.exp(float(solved[0]))
             share = _predicts(matrix, target, weight)
             causes.append(SpreadCause(names, sizes, units, own, float(left @ left), freedom, share))

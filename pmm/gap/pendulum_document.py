@@ -1,5 +1,6 @@
 """What ``pmm gap pendulum`` shows: said once, for the terminal, the page and programs."""
 
+import math
 from collections.abc import Iterator
 from functools import partial
 from typing import Any, Final
@@ -76,7 +77,7 @@ ALTERNATIVES: Final = (
 )
 NEXT: Final[tuple[Column[Any], ...]] = (
     Column("next run", lambda one: one.what, "what"),
-    Column("expected ln evidence", lambda one: one.gain, "gain_ln_evidence", _ONE, number=True),
+    Column("would tell them apart", lambda one: one.gain, "gain_ln_evidence", lambda ln: _odds(ln)),
 )
 
 
@@ -220,13 +221,22 @@ def _remains(found: Diagnosis) -> Section:
     return Section("What remains", (left,))
 
 
+def _odds(ln_evidence: float) -> str:
+    """Return expected evidence in words; past a million to one it is of no more use to count."""
+    if ln_evidence < math.log(3.0):
+        return "no"
+    if ln_evidence > math.log(1e6):
+        return "for certain"
+    return f"at odds of {math.exp(ln_evidence):.2g} to 1"
+
+
 def _next(found: Diagnosis) -> Section:
     lines: tuple[str, ...] = ()
     if found.proposals and found.rivals is not None:
         one, other = (" + ".join(named(rival)) for rival in found.rivals)
         lines = (
-            "Records that a further test can make, by the ln evidence that the right one of two "
-            f"answers is expected to gain at least, whichever is right: {one}, or {other}.",
+            "Records that a further test can make, by the odds at which the right one of two "
+            f"answers would then stand at least, whichever is right: {one}, or {other}.",
         )
     runs = Table("Next", NEXT, found.proposals, "next", most=_PROPOSED)
     return Section("Next", (Text(lines), runs))

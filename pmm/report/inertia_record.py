@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST_RUNS = 4  # drawn; the numbers are those of all
-_BINS = 700
+_BINS = 2000  # more than a picture has columns
+_MOST_POINTS = 6000
+_POINTS_PER_PERIOD = 16
 _FIT_POINTS_PER_PERIOD = 24
 _MOST_FIT_POINTS = 4000
 
@@ -55,16 +57,16 @@ def _and_more(runs: PeriodRuns) -> str:
 def _draw_run(axes: "Axes", run: RecordAnalysis, whole: Series) -> list["Artist"]:
     series = run.part.series
     shown = display(series.unit)
-    time_s, values = thin(whole.time_s, whole.values)
+    time_s, values = thin(whole.time_s, whole.values, run.part.period_s)
     used = axes.axvspan(
         float(series.time_s[0]), float(series.time_s[-1]), color=STEADY_SHADE, label="used"
     )
-    (trace,) = axes.plot(time_s, shown.factor * values, color=TRACE, lw=1.6, label="record")
     smooth_s = _smooth(run)
     fitted = shown.factor * run.fit.values(smooth_s)
-    (fit,) = axes.plot(smooth_s, fitted, color=FIT, lw=0.8, label="fit")
-    periods = ", ".join(f"{mode.period_s:.5g} s" for mode in run.fit.modes)
-    axes.set_title(f"{shown_name(series.name)}: {periods}", loc="left")
+    # a wide band behind the record: neither hides the other, however long the record is
+    (fit,) = axes.plot(smooth_s, fitted, color=FIT, lw=2.6, alpha=0.55, label="fit")
+    (trace,) = axes.plot(time_s, shown.factor * values, color=TRACE, lw=0.7, label="record")
+    axes.set_title(f"{shown_name(series.name)}: {_periods(run)}", loc="left")
     axes.set_ylabel(f"{shown_name(series.channel)}\n({shown.label})")
     axes.set_xlim(float(whole.time_s[0]), float(whole.time_s[-1]))
     return [trace, fit, used]
@@ -72,7 +74,8 @@ def _draw_run(axes: "Axes", run: RecordAnalysis, whole: Series) -> list["Artist"
 
 def _draw_rest(axes: "Axes", run: RecordAnalysis) -> None:
     shown = display(run.part.series.unit)
-    time_s, values = thin(run.part.series.time_s, residual_on_grid(run))
+    series = run.part.series
+    time_s, values = thin(series.time_s, residual_on_grid(run), run.part.period_s)
     axes.plot(time_s, shown.factor * values, color=TRACE, lw=0.6)
     axes.axhline(0.0, color=FIT, lw=0.8)
     rms = shown.factor * float(np.sqrt(np.mean(run.fit.residual**2)))
@@ -85,6 +88,16 @@ def _draw_rest(axes: "Axes", run: RecordAnalysis) -> None:
         va="bottom",
         fontsize=8.0,
     )
+
+
+def _periods(run: RecordAnalysis) -> str:
+    """Return the fit's periods, and what the tables go on with: undamped, at no amplitude."""
+    fitted, at_none = (", ".join(f"{one:.5g}" for one in periods) for periods in (
+        [mode.period_s for mode in run.fit.modes],
+        [run.period(k).value * mode.undamped_period_s / mode.period_s
+         for k, mode in enumerate(run.fit.modes)],
+    ))  # fmt: skip
+    return f"{fitted} s as fitted; {at_none} s undamped, at no amplitude"
 
 
 def _smooth(run: RecordAnalysis) -> FloatArray:
@@ -102,8 +115,14 @@ def residual_on_grid(run: RecordAnalysis) -> FloatArray:
     return values
 
 
-def thin(time_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return a curve with few enough points that it still looks the same."""
+def thin(time_s: FloatArray, values: FloatArray, period_s: float) -> tuple[FloatArray, FloatArray]:
+    """Return a curve with few enough points that it still looks the same.
+
+    Every second, third ... sample, while these show a period's shape; else each stretch's extremes.
+    """
+    step = -(-time_s.size // _MOST_POINTS)
+    if step * (time_s[1] - time_s[0]) * _POINTS_PER_PERIOD <= period_s:
+        return time_s[::step], values[::step]
     if not np.isfinite(values).all():
         return time_s, values
     trace = zigzag(time_s, values.reshape(1, -1), _BINS)

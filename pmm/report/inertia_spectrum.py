@@ -11,6 +11,7 @@ from hardware.description.arrays import FloatArray
 from pmm.document.labels import display, plain, shown_name
 from pmm.document.style import FIT, PALETTE, TRACE, drawing
 from pmm.inertia.sources import PeriodRuns
+from pmm.report.envelope import zigzag
 from pmm.report.inertia_record import MOST_RUNS, residual_on_grid, thin
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 _REACH = 4.0  # times the highest fitted frequency
 _MOST_POINTS = 1500
+_BINS = 700
 
 
 def spectrum_figure(runs: PeriodRuns) -> "Figure":
@@ -76,13 +78,14 @@ def _lines(values: FloatArray, rate_hz: float, top_hz: float) -> tuple[FloatArra
     hz, amplitude = lines.frequency_hz[inside], lines.amplitude[inside]
     if hz.size <= _MOST_POINTS:
         return hz, amplitude
-    return thin(hz, amplitude)
+    trace = zigzag(hz, amplitude.reshape(1, -1), _BINS)
+    return trace.time_s, trace.values[0]
 
 
 def _draw_beats(axes: "Axes", run: RecordAnalysis) -> None:
     series, (slow, fast) = run.part.series, run.fit.modes
     shown = display(series.unit)
-    time_s, values = thin(series.time_s, series.values)
+    time_s, values = thin(series.time_s, series.values, fast.period_s)
     axes.plot(time_s, shown.factor * (values - run.fit.offset), color=TRACE, lw=0.8, label="record")
     along = np.linspace(float(time_s[0]), float(time_s[-1]), 800)
     t = along - run.fit.start_s

@@ -41,6 +41,7 @@ from analysis.inertia.principal_axes import (
     roll_from_three_yaws,
     roll_from_tilts,
 )
+from analysis.inertia.spread import SuspensionGyradius, compare_geometries
 from analysis.uncertainty.estimate import Estimate, exactly
 from hardware.description.errors import ConfigurationError, DataError
 from tests.analysis.inertia.paper_formulas import (
@@ -261,3 +262,13 @@ def test_corrections() -> None:
     assert level**2 == pytest.approx(0.5 * rod + 0.5 * side**2 + 0.7**2)
     even = gyradius_with_end_masses(600.0, 1.0, 1.2, 3.0, 3.0)
     assert even == pytest.approx(math.sqrt((600.0 + 2.4 * 9.0) / 602.4))
+
+
+def test_lines_shorter_than_measured_are_said_to_be_shorter() -> None:
+    """The gyradius follows the root of 1/line: lines that are 20 mm too short, on four lengths."""
+    k, short, rows = 0.34, 0.02, []
+    for d, line in ((0.2, 0.6), (0.3, 0.8), (0.5, 1.2), (0.5, 0.45)):
+        seen = k * math.sqrt((line - short) / line)
+        rows.append(SuspensionGyradius(f"{line}", Estimate.of(seen, 1e-5, "m"), d, line))
+    cause = compare_geometries(rows).causes[0]
+    assert str(cause).startswith("the lines are shorter than measured, 0.02")
