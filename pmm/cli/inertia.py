@@ -36,6 +36,11 @@ _FITS: Final = click.option(
     is_flag=True,
     help="Fit each record by the forms F1 to F4 too, and show their periods.",
 )
+_PROPERTIES: Final = click.option(
+    "--properties",
+    metavar="FILE",
+    help="Write mass, centre and whole tensor there for other programs: FILE.urdf or FILE.csv.",
+)
 # Job -> module, function and options of its own.
 _JOBS: Final = {
     "swing": ("swing", "run", (_FITS,), "Swing: alone, with the model, and its checks."),
@@ -44,8 +49,8 @@ _JOBS: Final = {
     "pendulum": ("pendulum", "run", (_FITS,),
                  "Compound pendulum: about one axis, or two (Lamboley)."),
     "incline": ("incline", "run", (), "Inclining test: depth of the centre of gravity."),
-    "combine": ("parts", "run_combine", (), "Put parts together and take others off."),
-    "ballast": ("parts", "run_ballast", (), "Find where given weights go."),
+    "combine": ("parts", "run_combine", (_PROPERTIES,), "Put parts together and take others off."),
+    "ballast": ("parts", "run_ballast", (_PROPERTIES,), "Find where given weights go."),
     "plan": ("plan", "run", (), "Forecast a test: uncertainty, best line length, resonance."),
 }  # fmt: skip
 
@@ -60,18 +65,22 @@ def _command(job: str, module: str, function: str) -> Callable[..., None]:
         overwrite: bool,
         plot: str | None,
         with_fits: bool = False,
+        properties: str | None = None,
     ) -> None:
         from importlib import import_module
 
         from pmm.cli.screen import busy, messages, show
         from pmm.document.style import write_figures
         from pmm.inertia.fits import form_fits
+        from pmm.inertia.mass_properties import check_ending, mass_properties
         from pmm.inertia.model_file import check_output, model_section
         from pmm.report.inertia_document import document
         from pmm.whole_file import write_whole
 
-        if output is not None:
-            check_output(Path(output), overwrite=overwrite)
+        for target in filter(None, (output, properties)):
+            check_output(Path(target), overwrite=overwrite)
+        if properties is not None:
+            check_ending(Path(properties))
         run = getattr(import_module(f"pmm.inertia.{module}"), function)
         with busy(f"{job}: {file}"):
             outcome = run(file)
@@ -84,6 +93,9 @@ def _command(job: str, module: str, function: str) -> Callable[..., None]:
         if output is not None:
             write_whole(Path(output), model_section(outcome))
             messages().print(f"written: {output}")
+        if properties is not None:
+            write_whole(Path(properties), mass_properties(outcome, Path(properties)))
+            messages().print(f"written: {properties}")
         if outcome.said_no:
             click.get_current_context().exit(1)
 

@@ -198,6 +198,7 @@ def run_ballast(path: str) -> Outcome:
         body=_body(table.name, whole, flags) if found.feasible else None,
         missing=() if found.feasible else ("a feasible ballasting",),
         plane=table.plane,
+        tensor=whole if found.feasible else None,
         notes=(found.message,) if found.feasible else (),
         placements=tuple(
             (one.name, one.mass_kg, float(place[0]), float(place[1]), float(place[2]))
