@@ -92,8 +92,12 @@ def design(
     With --after what was measured is told, and the runs that are still to be made; where nothing
     is left to do no plan is written.
 
+    \b
+    pmm plan design examples/horizontal/design.toml --output designed.toml
+    pmm plan design examples/horizontal/design.toml --after part-1 --output next.toml
+
     Exit status: 0 all targets are expected to be met, 1 not all, 2 a file is wrong.
-    """
+    """  # noqa: D301
     from pmm.cli.files import check_files, check_folder
     from pmm.cli.screen import doing, pasted, say
     from pmm.cli.screen import show as tell
