@@ -28,6 +28,7 @@ from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 
 _ROUGH_ITERATIONS = 10  # enough to tell the starts apart
+_MATTERS = 0.01  # residual over the first amplitude
 
 
 @dataclass(frozen=True)
@@ -237,12 +238,15 @@ def _flags(
         )
         flags.append(Flag("not_converged", Severity.VOID, message))
     if diagnostics.structured:
+        left = diagnostics.rms / max(mode.amplitude for mode in modes)
         message = (
             f"{where}: the residual is {diagnostics.structure:.3g} times as strong near the "
-            "oscillation as beside it: period or decay change with amplitude, or another mode is "
-            "there; extrapolate to zero amplitude, or fit one mode more"
+            f"oscillation as beside it, and {100.0 * left:.2g} % of the first amplitude: period or "
+            "decay change with amplitude, or another mode is there; extrapolate to zero amplitude, "
+            "fit one mode more, or ask `pmm gap pendulum` which friction or drag it is"
         )
-        flags.append(Flag("structured_residual", Severity.WARNING, message))
+        severity = Severity.WARNING if left > _MATTERS else Severity.NOTE
+        flags.append(Flag("structured_residual", severity, message))
     if min(mode.decay_1_s for mode in modes) < -1e-9:
         message = f"{where}: an oscillation grows; the record is not a free decay from here on"
         flags.append(Flag("growing", Severity.WARNING, message))

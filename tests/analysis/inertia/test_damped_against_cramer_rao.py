@@ -144,6 +144,17 @@ def test_a_model_that_is_wrong_is_accused() -> None:
     assert not fit_damped(t, y, modes=2).flags
 
 
+@pytest.mark.parametrize(("friction", "severity"), [(0.02, "warning"), (0.0004, "note")])
+def test_friction_that_is_hardly_there_is_only_noted(friction: float, severity: str) -> None:
+    """Coulomb friction takes an even part of the amplitude away in each swing."""
+    t = np.arange(0.0, 120.0, 0.05)
+    y = (np.exp(-0.001 * t) - friction * t / 3.0).clip(0.0) * np.cos(2.0 * np.pi * t / 3.0)
+    y = y + 1e-5 * np.random.default_rng(0).standard_normal(t.size)
+    (flag,) = (one for one in fit_damped(t, y).flags if one.code == "structured_residual")
+    assert flag.severity == severity
+    assert "pmm gap pendulum" in flag.message
+
+
 def test_too_few_samples_and_too_few_swings_are_refused() -> None:
     t = np.arange(0.0, 1.0, 0.25)
     with pytest.raises(DataError, match="4 samples for 5 unknowns"):
