@@ -8,6 +8,7 @@ import numpy as np
 from analysis.comparison.fit import Fit, Model, NothingInCommonError, Problem, fit
 
 _SURE: Final = 5.0  # standard deviations by which another lag must fit worse to be rejected
+_ALIKE: Final = 0.8  # correlation of a motion with itself, below which it does not repeat
 _TURNS: Final = 8
 
 
@@ -71,7 +72,7 @@ def _period(problem: Problem, best: Fit, most_lag_s: float) -> float | None:
         return None
     reach = max(most_lag_s, 1.5 / problem.motion_hz) * problem.second.rate_hz * fine
     tail = likeness[below[0] : int(reach)]
-    if len(tail) < 3 or tail.max() < 0.3 * likeness[0]:
+    if len(tail) < 3 or tail.max() < _ALIKE * likeness[0]:
         return None
     top = int(np.flatnonzero(tail >= 0.95 * tail.max())[0])
     while top + 1 < len(tail) and tail[top + 1] > tail[top]:

@@ -9,6 +9,7 @@ from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
 _POWER: Final = 0.999  # part of a channel's power that lies below its edge
+_TAPER: Final = 0.2  # of a record, both ends together
 _OVER_FLOOR: Final = 10.0  # a line of noise lies higher once in a thousand, by 10 ln 2
 _RATE: Final = 15.0  # working rate over the edge, where the record is sampled faster
 _LEAST_RATE: Final = 8.0  # the same, below which a record is sampled anew: 1e-5 of a quintic spline
@@ -56,7 +57,13 @@ class Track:
 
 
 def find_band(first: FloatArray, second: FloatArray, rates_hz: tuple[float, float]) -> Band:
-    """Return the band of the channel that has its power lowest: what both can show."""
+    """Return the band of the channel that has its power lowest: what both can show.
+
+    Parameters
+    ----------
+    first, second
+        Without mean and slope.
+    """
     found = [_edge(values, rate) for values, rate in zip((first, second), rates_hz, strict=True)]
     motion_hz, edge_hz = min(found, key=lambda one: one[1])
     return Band(motion_hz, edge_hz, min(_HARMONICS * edge_hz, _BELOW_NYQUIST * min(rates_hz)))
@@ -65,10 +72,10 @@ def find_band(first: FloatArray, second: FloatArray, rates_hz: tuple[float, floa
 def _edge(values: FloatArray, rate_hz: float) -> tuple[float, float]:
     """Return where half of the power lies below, and nearly all of it."""
     from scipy.fft import next_fast_len, rfft
+    from scipy.signal.windows import tukey
 
     count = len(values)
-    taper = np.hanning(count)
-    spectrum = rfft(without_line(values) * taper, next_fast_len(count, real=True))
+    spectrum = rfft(values * tukey(count, _TAPER), next_fast_len(count, real=True))
     power = np.abs(spectrum) ** 2
     frequency_hz = np.arange(len(power)) * rate_hz / (2.0 * (len(power) - 1.0))
     above = np.maximum(power - _OVER_FLOOR * np.median(power), 0.0)
@@ -87,7 +94,7 @@ def without_line(values: FloatArray) -> FloatArray:
 
 
 def track(values: FloatArray, start_s: float, rate_hz: float, band: Band, orders: range) -> Track:
-    """Return some derivatives of a channel at its working rate.
+    """Return some derivatives of a channel without mean and slope, at its working rate.
 
     Samples near the ends, of which the filter would need neighbours that are not there, go.
 
@@ -108,8 +115,7 @@ def track(values: FloatArray, start_s: float, rate_hz: float, band: Band, orders
             f"{len(values) / rate_hz:.3g} s at {rate_hz:g} Hz are too short for a motion of "
             f"{band.motion_hz:.3g} Hz"
         )
-    level = without_line(values)
-    rows = [upfirdn(kernel, level, up, down)[first : last + 1] for kernel in kernels]
+    rows = [upfirdn(kernel, values, up, down)[first : last + 1] for kernel in kernels]
     start = start_s + (first * down - half) / (rate_hz * up)
     return Track(start, rate_hz * up / down, np.array(rows))
 

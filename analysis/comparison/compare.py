@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from analysis.comparison.ambiguity import least_lag
-from analysis.comparison.band import Band, find_band, track
+from analysis.comparison.band import Band, find_band, track, without_line
 from analysis.comparison.first_guess import Alignment, first_guess
 from analysis.comparison.fit import Fit, Model, NothingInCommonError, Problem, fit
 from analysis.comparison.result import Comparison
@@ -79,7 +79,7 @@ def _signal(recording: Recording, name: str, from_s: float, to_s: float) -> Sign
     if not moving.size or np.ptp(moving) <= _ROUNDING * np.abs(moving).max():
         raise DataError(f"{called} does not move, so that nothing can be compared with it")
     if not missing.any():
-        return Signal(called, values, part.sample_rate_hz, part.start_s, unit)
+        return Signal(called, without_line(values), part.sample_rate_hz, part.start_s, unit)
     bounds = np.flatnonzero(np.concatenate(([True], missing, [True])))
     longest = int(np.argmax(np.diff(bounds)))
     start, stop = int(bounds[longest]), int(bounds[longest + 1]) - 1
@@ -89,7 +89,8 @@ def _signal(recording: Recording, name: str, from_s: float, to_s: float) -> Sign
         f"{start_s:.3f} s to {end_s:.3f} s"
     )
     flags = (Flag("longest_stretch", Severity.WARNING, message, name),)
-    return Signal(called, values[start:stop], part.sample_rate_hz, float(start_s), unit, flags)
+    kept = without_line(values[start:stop])
+    return Signal(called, kept, part.sample_rate_hz, float(start_s), unit, flags)
 
 
 def _most_lag(leading: Signal, following: Signal, settings: ComparisonSettings) -> float:

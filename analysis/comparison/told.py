@@ -22,7 +22,7 @@ _WRONG_ORDER: Final = 0.7  # power of the frequency with which a gain grows: ano
 
 @dataclass(frozen=True)
 class Signal:
-    """A channel's samples without gaps."""
+    """A channel's samples without gaps, without their mean and slope."""
 
     name: str
     values: FloatArray
