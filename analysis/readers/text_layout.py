@@ -2,6 +2,7 @@
 
 import csv
 import io
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -17,7 +18,9 @@ MISSING = ("", "NaN", "nan", "NAN", "-nan", "NA", "N/A", "n/a", "#N/A", "null", 
 
 _SAMPLE_LINES = 20
 _LARGEST_PREAMBLE = 1000
-_SEPARATORS = (("\t", "."), ("\t", ","), (";", "."), (";", ","), (",", "."), (" ", "."), (" ", ","))
+_LARGEST_TITLE = 20  # lines above the header
+_SEPARATORS = tuple((separator, decimal) for separator in "\t;|, " for decimal in ".,")
+_CLOCK = re.compile(r"(\d{1,2}):([0-5]\d):([0-5]\d(?:[.,]\d*)?)")
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,8 @@ class FoundLayout:
     def number(self, cell: str) -> float:
         """Read a cell as a number, NaN where it stands for a missing value.
 
+        A time of day, 14:03:07.25, is the seconds since midnight.
+
         Raises
         ------
         ValueError
@@ -60,6 +65,10 @@ class FoundLayout:
         """
         if cell in self.missing:
             return float("nan")
+        clock = _CLOCK.fullmatch(cell)
+        if clock:
+            hours, minutes, seconds = clock.groups()
+            return 3600.0 * int(hours) + 60.0 * int(minutes) + float(seconds.replace(",", "."))
         if "_" in cell or (self.decimal != "." and "." in cell):
             raise ValueError(cell)
         return float(cell.replace(self.decimal, "."))
@@ -79,7 +88,7 @@ def find_layout(source: TextSource, layout: TextLayout) -> FoundLayout:
     Lines that are blank or begin with ``#`` or ``%`` before the header are passed over; where
     numbers follow at once, the last such line is the header (as ``numpy.savetxt`` writes), and
     without any the columns are called ``column_1``, ``column_2`` ...  A line of units under the
-    header is taken as the columns' units.
+    header is taken as the columns' units. Lines above the header with fewer cells are titles.
 
     Raises
     ------
@@ -100,7 +109,18 @@ def find_layout(source: TextSource, layout: TextLayout) -> FoundLayout:
     first = bare.cells(body[0][1])
     if _is_data(bare, first):
         return _headless(bare, first, comments, body[0][0] - 1, where)
-    return _with_header(bare, body, where)
+    return _with_header(bare, _without_titles(bare, body), where)
+
+
+def _without_titles(bare: FoundLayout, body: list[tuple[int, str]]) -> list[tuple[int, str]]:
+    """Pass over lines above the header that have too few cells to be one."""
+    rows = [bare.cells(line) for _, line in body[:_LARGEST_TITLE]]
+    data = next((k for k, cells in enumerate(rows) if len(cells) > 1 and _is_data(bare, cells)), 0)
+    if not data:
+        return body
+    needed = len(rows[data]) - (not rows[data][-1])
+    first = next((k for k in range(data) if len(rows[k]) >= needed), 0)
+    return body[first:]
 
 
 def too_many_cells(where: str, line: int, cells: int, columns: int) -> DataError:

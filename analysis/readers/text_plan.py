@@ -124,7 +124,7 @@ def _time(
         names = ", ".join(header.text or header.generic for header in headers)
         raise DataError(
             f"{where}: no column is named as time (columns: {names}); name it in the column map, "
-            "or give the sample rate"
+            "or give the sample rate; where these are no headers, say skip_rows (lines before them)"
         )
     return named, named
 
