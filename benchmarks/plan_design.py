@@ -10,9 +10,10 @@ import numpy as np
 
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import Belief
+from analysis.design.candidate import Candidate
 from analysis.design.expectation import expected, made_up
 from analysis.design.noise import Noise
-from analysis.design.regression import Candidate, Target, prospects
+from analysis.design.regression import Target, prospects
 from analysis.design.selection import select
 from benchmarks.coefficients_campaigns import BODY, CUBIC, HORIZONTAL, without_incidence
 from benchmarks.outcome import Benchmark, Outcome, Report, Row

@@ -18,8 +18,9 @@ from scipy.stats import chi2
 from analysis.coefficients.cycle_fit import trusted
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import Belief
+from analysis.design.candidate import Candidate
 from analysis.design.noise import Noise
-from analysis.design.regression import Candidate, Prospects, Target, prospects
+from analysis.design.regression import Prospects, Target, prospects
 from analysis.uncertainty.freedom import effective_freedom, student_factor
 from benchmarks.coefficients_campaigns import BODY, without_incidence
 from hardware.description.arrays import BoolArray, FloatArray

@@ -16,8 +16,9 @@ from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit, fit_terms
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import Belief, believed_cycles
+from analysis.design.candidate import Candidate
 from analysis.design.noise import Noise
-from analysis.design.regression import Candidate, Fit, Target, fits_of
+from analysis.design.regression import Fit, Target, fits_of
 from hardware.description.errors import DataError
 
 SCATTER: Final = "scatter of the runs"

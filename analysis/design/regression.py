@@ -23,39 +23,12 @@ from analysis.coefficients.cycle_fit import FIRST, HIGHER, residual_variance, tr
 from analysis.coefficients.cycle_model import CycleProblem
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import ORDERS, Belief, believed_cycles
+from analysis.design.candidate import Candidate
 from analysis.design.noise import Noise
 from hardware.description.arrays import FloatArray, IntArray
 from hardware.description.setpoint import SetPoint
 
 _AT_ONCE: Final = 500  # cycles: some 100 MB
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """A run that could be made.
-
-    Attributes
-    ----------
-    periods
-        That are measured; what settles is not among them.
-    cost_s
-        Of tank time: waiting, setting, settling and the carriage's way back in it; infinite for a
-        run that is made already, or is none to choose.
-    """
-
-    point: SetPoint
-    periods: int
-    cost_s: float
-
-    @property
-    def measured_s(self) -> float:
-        """Time that is measured."""
-        return self.periods / self.point.frequency_hz
-
-    @property
-    def freedom(self) -> float:
-        """Degrees of freedom of the periods' own scatter."""
-        return max(self.periods - 1.0, 1.0)
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,9 @@ from analysis.coefficients.names import PLACES, Form, name_of
 from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainties
 from analysis.coefficients.terms import SURGE
 from analysis.design.belief import Belief
+from analysis.design.candidate import Candidate
 from analysis.design.noise import Noise
-from analysis.design.regression import Candidate, Target
+from analysis.design.regression import Target
 from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import RunKind
 from hardware.description.setpoint import Medium

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
-from analysis.design.regression import Candidate
+from analysis.design.candidate import Candidate
 from pmm.design.design_tables import DesignLimits
 from pmm.plan import check_table as table
 from pmm.plan.condition_checks import condition_findings

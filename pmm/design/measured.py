@@ -14,8 +14,8 @@ import numpy as np
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.repeats import repeatability, with_repeats
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
+from analysis.design.candidate import Candidate
 from analysis.design.expectation import SCATTER, Expected, expected, made_up
-from analysis.design.regression import Candidate
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE

@@ -4,8 +4,8 @@ from itertools import product
 
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import Belief
+from analysis.design.candidate import Candidate
 from analysis.design.noise import Noise
-from analysis.design.regression import Candidate
 from benchmarks.coefficients_campaigns import BODY, CUBIC, HORIZONTAL
 from hardware.description.oscillator import HORIZONTAL_1963
 from hardware.description.setpoint import SetPoint

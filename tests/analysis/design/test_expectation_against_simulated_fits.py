@@ -8,9 +8,10 @@ import pytest
 
 from analysis.coefficients.cycle_fit import FIRST, fit_cycles
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
+from analysis.design.candidate import Candidate
 from analysis.design.expectation import REPEATS, SCATTER, expected, made_up
 from analysis.design.noise import Noise
-from analysis.design.regression import Candidate, Target, prospects
+from analysis.design.regression import Target, prospects
 from analysis.design.selection import covariance
 from benchmarks import coefficients_campaigns as exact
 from hardware.description.setpoint import SetPoint

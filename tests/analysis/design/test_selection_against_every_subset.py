@@ -8,7 +8,8 @@ import pytest
 
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import Belief
-from analysis.design.regression import Candidate, Prospects, Target, prospects
+from analysis.design.candidate import Candidate
+from analysis.design.regression import Prospects, Target, prospects
 from analysis.design.selection import covariance, select
 from benchmarks.coefficients_campaigns import BODY, HORIZONTAL
 from hardware.description.oscillator import HORIZONTAL_1963
