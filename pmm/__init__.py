@@ -1,5 +1,28 @@
-"""Planar motion mechanism: run tests and analyse their recordings."""
+"""Planar motion mechanism: run tests and analyse their recordings.
+
+For Python there are :func:`open` and :func:`simulate` (``docs/python.md``), imported when they are
+first asked for.
+"""
+
+from typing import TYPE_CHECKING, Any
 
 from planar_motion_mechanism import refuse_intruders
 
+if TYPE_CHECKING:
+    from pmm.library.opening import open, simulate  # noqa: A004
+
 refuse_intruders()
+
+__all__ = ["open", "simulate"]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from pmm.library import opening
+
+    return getattr(opening, name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

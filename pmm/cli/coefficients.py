@@ -7,15 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pmm.cli.options import (
-    DEFAULT_TRIALS,
-    JSON,
-    PLOT,
-    SCHEDULER,
-    jobs_option,
-    probability,
-    with_options,
-)
+from pmm.cli.options import JSON, PLOT, SCHEDULER, jobs_option, probability, with_options
+from pmm.coefficients import DEFAULT_TRIALS
 
 if TYPE_CHECKING:
     from pmm.coefficients.settings import CoefficientSettings
@@ -117,18 +110,13 @@ def analysed(
     """Analyse the campaigns of a command; return the files that were read beside recordings."""
     from pmm.campaign.file_names import CAMPAIGN_FILE
     from pmm.cli.files import tell_writers
-    from pmm.coefficients.request import campaign_folder, finished, merged
-    from pmm.coefficients.settings import check_trials, settings_of
-    from pmm.coefficients.systems import check_dimensions
+    from pmm.coefficients.request import campaign_folder, finished, requested
     from pmm.coefficients.workflow import coefficients_of
     from pmm.parallel import open_executor
 
     folders = [campaign_folder(text) for text in options["campaigns"]]
     tell_writers(folders)
-    base, path = settings_of(folders[0], options["settings"])
-    settings = merged(base, options, DEFAULT_TRIALS)
-    check_trials(settings.trials)
-    check_dimensions(settings.system, settings.ship)
+    settings, path = requested(folders[0], options)
     jobs = options["jobs"]
     if jobs is None and options["scheduler"] is None and _few(folders, settings):
         jobs = 1

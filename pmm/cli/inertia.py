@@ -41,21 +41,19 @@ _PROPERTIES: Final = click.option(
     metavar="FILE",
     help="Write mass, centre and whole tensor there for other programs: FILE.urdf or FILE.csv.",
 )
-# Job -> module, function and options of its own.
+# Job -> options of its own, and what it is for.
 _JOBS: Final = {
-    "swing": ("swing", "run", (_FITS,), "Swing: alone, with the model, and its checks."),
-    "bifilar": ("bifilar", "run", (_FITS,),
-                "Bifilar suspension: yaw, pitch or roll, depth, principal axes."),
-    "pendulum": ("pendulum", "run", (_FITS,),
-                 "Compound pendulum: about one axis, or two (Lamboley)."),
-    "incline": ("incline", "run", (), "Inclining test: depth of the centre of gravity."),
-    "combine": ("parts", "run_combine", (_PROPERTIES,), "Put parts together and take others off."),
-    "ballast": ("parts", "run_ballast", (_PROPERTIES,), "Find where given weights go."),
-    "plan": ("plan", "run", (), "Forecast a test: uncertainty, best line length, resonance."),
-}  # fmt: skip
+    "swing": ((_FITS,), "Swing: alone, with the model, and its checks."),
+    "bifilar": ((_FITS,), "Bifilar suspension: yaw, pitch or roll, depth, principal axes."),
+    "pendulum": ((_FITS,), "Compound pendulum: about one axis, or two (Lamboley)."),
+    "incline": ((), "Inclining test: depth of the centre of gravity."),
+    "combine": ((_PROPERTIES,), "Put parts together and take others off."),
+    "ballast": ((_PROPERTIES,), "Find where given weights go."),
+    "plan": ((), "Forecast a test: uncertainty, best line length, resonance."),
+}
 
 
-def _command(job: str, module: str, function: str) -> Callable[..., None]:
+def _command(job: str) -> Callable[..., None]:
     """Return what does a job; what it found is printed even where it then may not be written."""
 
     def command(
@@ -67,11 +65,10 @@ def _command(job: str, module: str, function: str) -> Callable[..., None]:
         with_fits: bool = False,
         properties: str | None = None,
     ) -> None:
-        from importlib import import_module
-
         from pmm.cli.screen import busy, messages, show
         from pmm.document.style import write_figures
         from pmm.inertia.fits import form_fits
+        from pmm.inertia.jobs import do_job
         from pmm.inertia.mass_properties import check_ending, mass_properties
         from pmm.inertia.model_file import check_output, model_section
         from pmm.report.inertia_document import document
@@ -81,9 +78,8 @@ def _command(job: str, module: str, function: str) -> Callable[..., None]:
             check_output(Path(target), overwrite=overwrite)
         if properties is not None:
             check_ending(Path(properties))
-        run = getattr(import_module(f"pmm.inertia.{module}"), function)
         with busy(f"{job}: {file}"):
-            outcome = run(file)
+            outcome = do_job(job, file)
             fits = form_fits(outcome) if with_fits else None
         told = document(outcome, fits)
         show(told, as_json=as_json)
@@ -102,7 +98,5 @@ def _command(job: str, module: str, function: str) -> Callable[..., None]:
     return command
 
 
-for _job, (_module, _function, _own, _help) in _JOBS.items():
-    inertia.command(_job, help=_help)(
-        with_options(_EVERY, *_own)(_command(_job, _module, _function))
-    )
+for _job, (_own, _help) in _JOBS.items():
+    inertia.command(_job, help=_help)(with_options(_EVERY, *_own)(_command(_job)))

@@ -7,7 +7,6 @@ from typing import Any, Final, TypeVar
 import click
 
 F = TypeVar("F", bound=Callable[..., Any])
-DEFAULT_TRIALS: Final = 20_000  # of a Monte Carlo
 DEFAULT_LEVEL: Final = 0.95  # probability of the intervals
 
 JSON: Final = click.option(

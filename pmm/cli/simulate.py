@@ -41,49 +41,32 @@ def simulate(
     The folder gets the campaign file and a NetCDF recording per run; "pmm analyse FOLDER" then
     analyses them. No recording is overwritten unless you say so.
     """
-    from pmm.campaign import simulation
-    from pmm.campaign.campaign_file import read_campaign
-    from pmm.campaign.file_names import CAMPAIGN_FILE
+    from pmm.campaign.simulated_campaign import planned_simulation
     from pmm.cli.files import check_folder
     from pmm.cli.screen import pasted, say, show, show_progress
-    from pmm.recorder.campaign_owner import own_new_campaign
     from pmm.report.simulation_document import simulation_document
-    from sim.effects.catalogue import build, user_effects
 
-    path = Path(campaign)
-    path = path / CAMPAIGN_FILE if path.is_dir() else path
-    read = read_campaign(path)
-    folder = Path(read.name if output is None else output)
-    chosen = [read.run(name) for name in runs] or list(read.runs)
-    seed = read.simulation.seed if seed is None else seed
-    more = user_effects(effects_file)
-    on = (*read.effects_on(more), *(build(text, more) for text in effects))
-    zeros = () if runs else simulation.zero_runs(read)
-    check_folder(folder, "--output")
-    simulation.check_target(path, read, (*chosen, *zeros), folder, overwrite=overwrite)
+    planned = planned_simulation(
+        Path(campaign),
+        None if output is None else Path(output),
+        runs=runs,
+        effects=effects,
+        effects_file=effects_file,
+        seed=seed,
+        overwrite=overwrite,
+    )
+    check_folder(planned.folder, "--output")
     if plot is not None:
         check_folder(Path(plot), "--plot")
-    with own_new_campaign(folder):
-        done = [
-            *simulation.simulate_runs(
-                read,
-                show_progress(chosen, "simulating"),
-                folder,
-                seed,
-                overwrite=overwrite,
-                effects=on,
-            )
-        ]
-        at_rest = [
-            *simulation.simulate_zeros(read, zeros, folder, seed, overwrite=overwrite, effects=on)
-        ]
-        simulation.copy_campaign(path, read, folder)
+    done = planned.carry_out(lambda these: show_progress(these, "simulating"))
     figures: list[Path] = []
     if plot is not None:
         from pmm.report.chain_figures import save_chain_figure
 
-        for one in show_progress(done, "plotting"):
-            figures += save_chain_figure(read, one.run, on, one.seed, Path(plot))
-    show(simulation_document(read.name, folder, done, at_rest, on), as_json=as_json)
+        for one in show_progress(done.runs, "plotting"):
+            figures += save_chain_figure(
+                planned.campaign, one.run, planned.effects, one.seed, Path(plot)
+            )
+    show(simulation_document(planned, done), as_json=as_json)
     if not as_json:
-        say(pasted("analyse", folder), *figures)
+        say(pasted("analyse", planned.folder), *figures)

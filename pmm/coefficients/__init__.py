@@ -6,3 +6,7 @@ what is to be done with each recording, :mod:`~pmm.coefficients.reading` does it
 :mod:`~pmm.coefficients.workflow` puts it all together. :mod:`~pmm.coefficients.files` writes it.
 ``docs/coefficients-command.md`` has the keys.
 """
+
+from typing import Final
+
+DEFAULT_TRIALS: Final = 20_000  # of a Monte Carlo

@@ -10,17 +10,46 @@ from analysis.coefficients.names import Form
 from analysis.coefficients.quoting import Names
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.file_names import CAMPAIGN_FILE
+from pmm.coefficients import DEFAULT_TRIALS
 from pmm.coefficients.references import beside, check_systems, read_references
-from pmm.coefficients.settings import DRY, MODEL, CoefficientSettings, ReferenceFile, System
-from pmm.coefficients.systems import in_system, system_of
+from pmm.coefficients.settings import (
+    DRY,
+    MODEL,
+    CoefficientSettings,
+    ReferenceFile,
+    System,
+    check_trials,
+    settings_of,
+)
+from pmm.coefficients.systems import check_dimensions, in_system, system_of
 from pmm.coefficients.workflow import CampaignOutcome
 
 _PLAIN: Final = ("with_mass", "form", "level", "seed", "system", "inertia", "wanted", "leave_out")
 
 
-def merged(
-    base: CoefficientSettings, options: Mapping[str, Any], default_trials: int
-) -> CoefficientSettings:
+def requested(folder: Path, options: Mapping[str, Any]) -> tuple[CoefficientSettings, Path | None]:
+    """Return the settings of campaigns with a command's options in their place, and their file.
+
+    Parameters
+    ----------
+    folder
+        Of the first campaign.
+    options
+        Of ``pmm coefficients``, by their names.
+
+    Raises
+    ------
+    ConfigurationError
+        If the file is wrong, or something that is asked cannot be.
+    """
+    base, path = settings_of(folder, options["settings"])
+    settings = _merged(base, options)
+    check_trials(settings.trials)
+    check_dimensions(settings.system, settings.ship)
+    return settings, path
+
+
+def _merged(base: CoefficientSettings, options: Mapping[str, Any]) -> CoefficientSettings:
     """Return the settings with what the command line says in their place."""
     given: dict[str, Any] = {name: options[name] for name in _PLAIN if options[name]}
     if "form" in given:
@@ -38,10 +67,10 @@ def merged(
     if options["references"]:
         more = tuple(ReferenceFile(one) for one in options["references"])
         given["references"] = (*base.references, *more)
-    return replace(base, **given, trials=_trials(base, options, default_trials))
+    return replace(base, **given, trials=_trials(base, options))
 
 
-def _trials(base: CoefficientSettings, options: Mapping[str, Any], default: int) -> int:
+def _trials(base: CoefficientSettings, options: Mapping[str, Any]) -> int:
     wanted, trials = options["uncertainty"], options["trials"]
     if wanted == "linear" and trials is not None:
         raise ConfigurationError("--trials belongs to --uncertainty monte-carlo")
@@ -49,7 +78,7 @@ def _trials(base: CoefficientSettings, options: Mapping[str, Any], default: int)
         return 0
     if wanted is None and trials is None:
         return base.trials
-    return int(trials or base.trials or default)
+    return int(trials or base.trials or DEFAULT_TRIALS)
 
 
 def campaign_folder(text: str) -> Path:

@@ -6,16 +6,19 @@ It reads in light and dark, on a phone and in print.
 import hashlib
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree as ET
 
 from pmm.document.content import Content, Document, Figure, Section
 from pmm.document.style import render
 from pmm.version import provenance
 from pmm.whole_file import write_whole
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
 
 _WITHOUT = ("metadata", "style")
 _REFERENCE = re.compile(r"url\(#([^)]*)\)")
@@ -104,11 +107,7 @@ def write_page(
     """
     content = {
         "title": title or f"{document.name}: {document.about}",
-        "sections": [
-            (one, _anchor(one, place), parts)
-            for place, one in enumerate(document.sections)
-            if (parts := _parts(one))
-        ],
+        "sections": _sections(document),
         "command": command,
         "versions": provenance(),
         "files": [_file(one) for one in read],
@@ -127,19 +126,49 @@ def write_template(
         Plain text by the template's names: all of it is escaped. The drawings alone are markup, and
         their text was escaped in them.
     """
-    from jinja2 import Environment, StrictUndefined
-    from markupsafe import Markup
-
-    environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
-    environment.filters["markup"] = Markup
-    template = environment.from_string(files(package).joinpath(name).read_text(encoding="utf-8"))
-    style = files("pmm.document").joinpath("page.css").read_text(encoding="utf-8")
-    page = template.render(style=style, **content)
+    template = _templates().from_string(_text(name, package))
+    page = template.render(style=_text("page.css"), **content)
     path.parent.mkdir(parents=True, exist_ok=True)
     # A file name may hold bytes that are no text; they must not cost the page.
     write_whole(path, page.encode("utf-8", errors="replace"))
+
+
+def tables_as_html(document: Document) -> str:
+    """Return a document's texts, notes and tables as HTML without a style, for a notebook."""
+    told = [
+        replace(one, contents=tuple(part for part in one.contents if not isinstance(part, Figure)))
+        for one in document.sections
+    ]
+    content = _sections(replace(document, sections=tuple(told)))
+    return _templates().get_template("sections.html.jinja").render(sections=content)
+
+
+def _templates() -> "Environment":
+    """Return what fills templates; those of this package may be included by name."""
+    from jinja2 import Environment, FunctionLoader, StrictUndefined
+    from markupsafe import Markup
+
+    environment = Environment(
+        loader=FunctionLoader(_text),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["markup"] = Markup
+    return environment
+
+
+def _text(name: str, package: str = "pmm.document") -> str:
+    return files(package).joinpath(name).read_text(encoding="utf-8")
+
+
+def _sections(document: Document) -> list[tuple[Section, str, list[_Part]]]:
+    return [
+        (one, _anchor(one, place), parts)
+        for place, one in enumerate(document.sections)
+        if (parts := _parts(one))
+    ]
 
 
 def _anchor(section: Section, place: int) -> str:

@@ -22,29 +22,29 @@ if TYPE_CHECKING:
 class HarmonicsRequest:
     """The options of ``pmm analyse``, by their names there; ``None`` where one is not given."""
 
-    reference: str | None
-    frequency: float | None
-    edges: str | None
-    latency: float | None
-    angle_offset: float | None
-    channels: tuple[str, ...]
-    harmonics: int | None
-    gate: int | None
-    opens_at: float | None
-    periods: int | None
-    steady_tolerance: float | None
-    let_through: tuple[float, ...]
-    classic: bool
-    carrier: float | None
-    bandwidth: float | None
-    hann: bool
-    no_drift: bool
-    column_map: str | None
-    columns: tuple[str, ...]
-    sample_rate: float | None
-    calibration: str | None
-    level: float
-    save: str | None
+    reference: str | None = None
+    frequency: float | None = None
+    edges: str | None = None
+    latency: float | None = None
+    angle_offset: float | None = None
+    channels: tuple[str, ...] = ()
+    harmonics: int | None = None
+    gate: int | None = None
+    opens_at: float | None = None
+    periods: int | None = None
+    steady_tolerance: float | None = None
+    let_through: tuple[float, ...] = ()
+    classic: bool = False
+    carrier: float | None = None
+    bandwidth: float | None = None
+    hann: bool = False
+    no_drift: bool = False
+    column_map: str | None = None
+    columns: tuple[str, ...] = ()
+    sample_rate: float | None = None
+    calibration: str | None = None
+    level: float = 0.95
+    save: str | None = None
 
     def check(self, sources: "Sequence[Source]") -> None:
         """Refuse what cannot go together, before any recording is read.

@@ -1,11 +1,10 @@
 """What ``pmm simulate`` shows: the runs with their recordings, and what was switched on."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import asdict
-from pathlib import Path
 from typing import Final
 
+from pmm.campaign.simulated_campaign import PlannedSimulation, SimulatedCampaign
 from pmm.campaign.simulation import SimulatedRun, effect_rows
 from pmm.document.content import (
     Column,
@@ -38,31 +37,17 @@ _RUNS: Final[tuple[Column[SimulatedRun], ...]] = (
 )
 
 
-def simulation_document(
-    name: str,
-    folder: Path,
-    runs: Sequence[SimulatedRun],
-    at_rest: Sequence[str],
-    effects: Sequence[Effect],
-) -> Document:
-    """Return what was simulated of a campaign.
-
-    Parameters
-    ----------
-    name
-        Of the campaign.
-    at_rest
-        The recordings of its zero runs.
-    """
+def simulation_document(planned: PlannedSimulation, done: SimulatedCampaign) -> Document:
+    """Return what was simulated of a campaign."""
     told = (
-        Text((f"{name}: {counted(len(runs), 'run')}", "")),
-        Table("Runs", _RUNS, runs, "runs"),
-        Text([f"at rest: {file}" for file in at_rest]),
-        Text([f"effect {one.name}: {_parameters(one)}" for one in effects]),
-        Notes(flag_notes(flag for one in runs for flag in one.flags)),
-        Data("folder", folder),
-        Data("effects", effect_rows(effects)),
-        Data("at_rest", at_rest),
+        Text((f"{planned.campaign.name}: {counted(len(done.runs), 'run')}", "")),
+        Table("Runs", _RUNS, done.runs, "runs"),
+        Text([f"at rest: {file}" for file in done.at_rest]),
+        Text([f"effect {one.name}: {_parameters(one)}" for one in planned.effects]),
+        Notes(flag_notes(flag for one in done.runs for flag in one.flags)),
+        Data("folder", planned.folder),
+        Data("effects", effect_rows(planned.effects)),
+        Data("at_rest", done.at_rest),
     )
     return Document("", "simulated runs", (Section("", told),), SCHEMA)
 

@@ -11,10 +11,12 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
+import pmm
 from analysis.gap.locate.walk import CHAIN
 from pmm.cli import cli
 from pmm.cli.gap import gap
 from pmm.gap.document import SCHEMA
+from pmm.library.gap import GapResult
 from sim.effects.catalogue import catalogue
 
 HOUSE = Path(__file__).parents[3]
@@ -56,6 +58,7 @@ def told(few: None, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Resul
             "simulate": run(*simulate),
             "diagnose": run(*diagnose),
             "json": run(*diagnose[:2], *held_out[2:], "--json", "--page", "held-out.html"),
+            "python": pmm.open("rig").gap(hold_out=held_out[3:]),
             "add": run(*add),
             "again": run(*again, "--page", "again.html"),
             "twice": run(*add, "--effect", FEW[0]),
@@ -70,6 +73,21 @@ def told(few: None, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Resul
 def test_all_of_them_succeed(told: dict[str, Result]) -> None:
     for name in ("simulate", "diagnose", "json", "add", "again"):
         assert told[name].exit_code == 0, (name, told[name].output)
+
+
+def test_python_is_told_the_same(told: dict[str, Result | GapResult]) -> None:
+    ours, command = told["python"], told["json"]
+    assert isinstance(ours, GapResult)
+    assert isinstance(command, Result)
+    theirs = json.loads(command.stdout)
+    assert ours.to_dict() == theirs
+    assert (ours.verdict, list(ours.said)) == (theirs["verdict"], theirs["said"])
+    shown = ours.to_dataset()
+    assert shown.attrs["verdict"] == ours.verdict
+    assert dict(zip(shown["answer"].values, shown["probability"].values, strict=True)) == {
+        one["answer"]: one["probability"] for one in theirs["ranking"]
+    }
+    assert ours.plot_ranking()
 
 
 def test_a_reader_who_stops_reading_has_page_and_plan_all_the_same(

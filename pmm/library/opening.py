@@ -1,0 +1,97 @@
+"""What a path is: a recording, a campaign, or the file of a pendulum test."""
+
+import builtins
+import tomllib
+from collections.abc import Sequence
+from pathlib import Path
+
+from hardware.description.errors import ConfigurationError
+from pmm.campaign.file_names import CAMPAIGN_FILE
+from pmm.library.records import Kind, Records
+
+
+def open(path: str | Path) -> Records:  # noqa: A001
+    """Open a recording, a campaign or the file of a pendulum test; nothing is read but its kind.
+
+    Parameters
+    ----------
+    path
+        A recording (CSV, NetCDF, MATLAB or TDMS); a campaign's folder or file; or the TOML file of
+        a pendulum test.
+
+    Raises
+    ------
+    ConfigurationError
+        If nothing is there, or a folder has no campaign file.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise ConfigurationError(f"{path}: no such file or folder")
+    if path.is_dir():
+        if not (path / CAMPAIGN_FILE).exists():
+            raise ConfigurationError(
+                f"{path}: a folder without a {CAMPAIGN_FILE}; open one of its recordings"
+            )
+        return Records(path, Kind.CAMPAIGN)
+    if path.suffix != ".toml":
+        return Records(path, Kind.RECORDING)
+    return Records(path, Kind.CAMPAIGN if _is_campaign(path) else Kind.PENDULUM)
+
+
+def _is_campaign(path: Path) -> bool:
+    """Tell a campaign's file by its table of runs or of the oscillator."""
+    with builtins.open(path, "rb") as file:  # noqa: PTH123
+        try:
+            table = tomllib.load(file)
+        except tomllib.TOMLDecodeError as error:
+            raise ConfigurationError(f"{path}: {error}") from None
+    return bool({"runs", "oscillator"} & table.keys())
+
+
+def simulate(
+    campaign: str | Path,
+    output: str | Path | None = None,
+    *,
+    runs: Sequence[str] = (),
+    effects: Sequence[str] = (),
+    effects_file: str | None = None,
+    seed: int | None = None,
+    overwrite: bool = False,
+) -> Records:
+    """Simulate the runs of a campaign, as ``pmm simulate`` does, and open what was written.
+
+    Parameters
+    ----------
+    campaign
+        The campaign's file, or the folder that holds it.
+    output
+        Folder to write to; named after the campaign if not given.
+    runs
+        Names of those that are simulated; all if not given.
+    effects
+        Switched on besides those of the file, as ``"NAME:PARAM=VALUE,..."``.
+    effects_file
+        A Python file with effects of your own.
+    seed
+        Of all noise, in place of the file's.
+    overwrite
+        Whether recordings that are there are replaced.
+
+    Raises
+    ------
+    ConfigurationError
+        If the file is wrong, a run or an effect is not known, or something would be overwritten.
+    """
+    from pmm.campaign.simulated_campaign import planned_simulation
+
+    planned = planned_simulation(
+        Path(campaign),
+        None if output is None else Path(output),
+        runs=runs,
+        effects=effects,
+        effects_file=effects_file,
+        seed=seed,
+        overwrite=overwrite,
+    )
+    planned.carry_out()
+    return Records(planned.folder, Kind.CAMPAIGN)

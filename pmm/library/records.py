@@ -1,0 +1,228 @@
+"""What is opened: a recording, a campaign or a pendulum test, and what can be asked of it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+
+from hardware.description.errors import ConfigurationError
+from pmm.harmonics.request import HarmonicsRequest
+from pmm.harmonics.sources import find_sources
+
+if TYPE_CHECKING:
+    from pmm.library.coefficients import CoefficientsResult
+    from pmm.library.gap import GapResult
+    from pmm.library.harmonics import HarmonicsResult
+    from pmm.library.inertia import InertiaResult
+
+Job: TypeAlias = Literal["swing", "bifilar", "pendulum", "incline", "combine", "ballast", "plan"]
+
+
+class Kind(StrEnum):
+    """What a path is."""
+
+    RECORDING = "a recording"
+    CAMPAIGN = "a campaign"
+    PENDULUM = "the file of a pendulum test"
+
+
+@dataclass(frozen=True)
+class Records:
+    """A recording, the recordings of a campaign, or those of a pendulum test."""
+
+    path: Path
+    kind: Kind
+
+    def _require(self, *kinds: Kind) -> None:
+        if self.kind not in kinds:
+            raise ConfigurationError(
+                f"{self.path}: this is {self.kind}, and what you ask is told by "
+                + " or ".join(kinds)
+            )
+
+    def harmonics(
+        self,
+        *,
+        reference: str | None = None,
+        frequency_hz: float | None = None,
+        edges_file: str | None = None,
+        channels: Sequence[str] = (),
+        harmonics: int | None = None,
+        gate_periods: int | None = None,
+        opens_at_s: float | None = None,
+        periods: int | None = None,
+        take_out_drift: bool = True,
+        column_map: str | None = None,
+        calibration: str | None = None,
+        level: float = 0.95,
+    ) -> "HarmonicsResult":
+        """Resolve into mean and harmonics, as ``pmm analyse`` does.
+
+        Parameters
+        ----------
+        reference
+            Channel that the phase is taken from; by default the photocell, else the encoder, else
+            ``displacement_aft``, else the set-point's frequency.
+        frequency_hz
+            A known frequency in its place.
+        edges_file
+            File of the photocell's edge times in its place.
+        channels
+            To resolve; by default all but the reference and the shaft angle.
+        harmonics
+            Highest order; 3 by default.
+        gate_periods
+            Periods of a gate; by default the steady stretch.
+        opens_at_s, periods
+            Where the first gate opens, and how many periods are used after it.
+        take_out_drift
+            Whether a linear drift is taken out.
+        column_map
+            TOML that says which column of a text file is what.
+        calibration
+            File of the gauges' calibration, or ``"none"``; by default the recording's own.
+        level
+            Probability of the intervals.
+
+        Raises
+        ------
+        ConfigurationError
+            If what is asked cannot be.
+        DataError
+            If the data say no; of a campaign, if they do for each run.
+        """
+        from pmm.library.harmonics import harmonics_of
+
+        self._require(Kind.RECORDING, Kind.CAMPAIGN)
+        request = HarmonicsRequest(
+            reference=reference,
+            frequency=frequency_hz,
+            edges=edges_file,
+            channels=tuple(channels),
+            harmonics=harmonics,
+            gate=gate_periods,
+            opens_at=opens_at_s,
+            periods=periods,
+            no_drift=not take_out_drift,
+            column_map=column_map,
+            calibration=calibration,
+            level=level,
+        )
+        return harmonics_of(find_sources([str(self.path)]), request)
+
+    def coefficients(
+        self,
+        *,
+        settings: str | None = None,
+        form: Literal["manoeuvring", "seakeeping"] | None = None,
+        system: Literal["dimensional", "prime", "mmg", "seakeeping"] | None = None,
+        inertia: str | None = None,
+        wanted: Sequence[str] = (),
+        leave_out: Sequence[str] = (),
+        references: Sequence[str] = (),
+        trials: int = 0,
+        seed: int | None = None,
+        level: float | None = None,
+        jobs: int | None = 1,
+    ) -> "CoefficientsResult":
+        """Find added mass, damping and derivatives, as ``pmm coefficients`` does.
+
+        Parameters
+        ----------
+        settings
+            Settings file; ``coefficients.toml`` beside the campaign's if it is there.
+        form, system
+            Names and signs; units.
+        inertia
+            What is taken off: ``"model"``, ``"dry"`` or a file of ``pmm inertia``.
+        wanted
+            Coefficients that have to be there.
+        leave_out
+            Runs not to use.
+        references
+            Tables to hold the values against.
+        trials, seed
+            Of a Monte Carlo beside the linear budget; none if 0.
+        level
+            Probability of the intervals.
+        jobs
+            Processes; ``None`` takes one for each core, which a script has to guard by
+            ``if __name__ == "__main__":``.
+
+        Raises
+        ------
+        ConfigurationError, DataError
+            As :func:`pmm.coefficients.workflow.coefficients_of` does.
+        """
+        from pmm.coefficients.request import campaign_folder
+        from pmm.library.coefficients import campaign_coefficients
+
+        self._require(Kind.CAMPAIGN)
+        options: dict[str, Any] = {
+            "settings": settings,
+            "form": form,
+            "system": system,
+            "inertia": inertia,
+            "wanted": tuple(wanted),
+            "leave_out": tuple(leave_out),
+            "references": tuple(references),
+            "uncertainty": "monte-carlo" if trials else None,
+            "trials": trials or None,
+            "seed": seed,
+            "level": level,
+        }
+        return campaign_coefficients(campaign_folder(str(self.path)), options, jobs)
+
+    def gap(
+        self,
+        *,
+        effects: Sequence[str] = (),
+        without: Sequence[str] = (),
+        sensors: Sequence[str] = (),
+        hold_out: Sequence[str] = (),
+        jobs: int | None = 1,
+    ) -> "GapResult":
+        """Say where rig and simulation differ and why, as ``pmm gap`` does.
+
+        Parameters
+        ----------
+        effects, without
+            To restrict the catalogue to, or Python files with effects of your own; to take out.
+        sensors
+            Channels to use; all if not given.
+        hold_out
+            Runs that nobody looks at until the end, as ``frequency=1.1``.
+        jobs
+            As of :meth:`coefficients`.
+
+        Raises
+        ------
+        ConfigurationError, DataError
+            As :func:`pmm.gap.examine.examine` does.
+        """
+        from pmm.gap.examine import Options
+        from pmm.library.gap import campaign_gap
+
+        self._require(Kind.CAMPAIGN)
+        options = Options(tuple(effects), tuple(without), tuple(sensors), tuple(hold_out))
+        return campaign_gap(self.path, options, jobs)
+
+    def inertia(self, job: Job) -> "InertiaResult":
+        """Find mass, centre of gravity, inertia and gyradii, as ``pmm inertia JOB`` does.
+
+        Parameters
+        ----------
+        job
+            Which test the file is of, by the command's name for it.
+
+        Raises
+        ------
+        ConfigurationError, DataError
+            If the file is wrong, or the data do not carry what is asked.
+        """
+        from pmm.inertia.jobs import do_job
+        from pmm.library.inertia import InertiaResult
+
+        self._require(Kind.PENDULUM)
+        return InertiaResult(do_job(job, str(self.path)))

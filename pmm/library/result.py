@@ -1,0 +1,106 @@
+"""What every call returns: a document, and the same as frames, datasets and figures."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Final
+
+from hardware.description.errors import ConfigurationError
+from pmm.document.content import Document
+from pmm.document.data import as_data
+from pmm.document.page import tables_as_html
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+CONVENTIONS: Final = (
+    "mean + sum over order n of in_phase sin(n theta) + quadrature cos(n theta); theta is the "
+    "reference's phase; axes and signs: docs/conventions.md"
+)
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A column of a frame: its unit, empty where it has none of one, and its meaning."""
+
+    unit: str
+    meaning: str
+
+
+class Result(ABC):
+    """What a command shows, for a program or a notebook.
+
+    In a notebook it shows the command's own tables.
+    """
+
+    @cached_property
+    @abstractmethod
+    def document(self) -> Document:
+        """What the command shows: tables, texts, notes and figures."""
+
+    @abstractmethod
+    def to_dataframe(self) -> "pd.DataFrame":
+        """Return the main table, a row for each value; units are in the names or in a column."""
+
+    @abstractmethod
+    def to_dataset(self) -> "xr.Dataset":
+        """Return the same with units, meanings and conventions in the attributes."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what the command prints with ``--json``."""
+        return as_data(self.document)
+
+    @property
+    def figures(self) -> tuple[str, ...]:
+        """Names of the figures that :meth:`plot` draws."""
+        return tuple(one.name for one in self.document.figures)
+
+    def plot(self, name: str) -> "tuple[Axes, ...]":
+        """Draw a figure and return its axes; ``axes[0].get_figure(root=True)`` is the figure.
+
+        Raises
+        ------
+        ConfigurationError
+            If there is no figure of that name; the message lists those that there are.
+        """
+        for one in self.document.figures:
+            if one.name == name:
+                return tuple(one.draw().axes)
+        there = ", ".join(self.figures) or "none"
+        raise ConfigurationError(f"no figure {name!r}; there are: {there}")
+
+    def _plot_kind(self, kind: str) -> "dict[str, tuple[Axes, ...]]":
+        """Draw all figures whose names are of a kind, by name."""
+        return {name: self.plot(name) for name in self.figures if kind in name.split("-")}
+
+    def _repr_html_(self) -> str:
+        return tables_as_html(self.document)
+
+
+def dataset_of(
+    frame: "pd.DataFrame",
+    index: list[str],
+    variables: Mapping[str, Variable],
+    attributes: Mapping[str, Any],
+) -> "xr.Dataset":
+    """Return a frame as a dataset over some of its columns.
+
+    Parameters
+    ----------
+    index
+        Columns that become dimensions; what no row has is NaN.
+    variables
+        Units and meanings, by column.
+    attributes
+        Of the whole.
+    """
+    dataset = frame.set_index(index).to_xarray()
+    for name, one in variables.items():
+        if name in dataset:
+            dataset[name].attrs = {"long_name": one.meaning}
+            if one.unit:
+                dataset[name].attrs["units"] = one.unit
+    return dataset.assign_attrs(attributes)
