@@ -4,7 +4,7 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test coverage lint pages docs bench sealed clean
+.PHONY: help demo test coverage lint pages docs bench sealed release clean
 
 help:
 	@echo "make demo   install, run a small simulated campaign, analyse it, write a report to demo/"
@@ -15,6 +15,7 @@ help:
 	@echo "make docs   build the pages as a site in site/, every warning an error"
 	@echo "make bench  measure speed and coverage against rivals, write benchmarks/results/"
 	@echo "make sealed answer and score campaigns whose truth is withheld (an hour and more)"
+	@echo "make release  build wheel and source distribution, use each from a fresh environment"
 	@echo "make clean  remove the virtual environment and what the demo wrote"
 
 # One run of pip each; it marks the smaller installations that it includes as done.
@@ -65,6 +66,10 @@ bench: $(VENV)/.bench
 # Scored once for each commit: the commit's hash is the seed. Goes on where it was broken off.
 sealed: $(VENV)/.sealed
 	$(BIN)/python -m tests.sealed whole --commit $$(git rev-parse HEAD) --output board --left-out 100
+
+# Of a commit a step is done once: goes on where it was broken off.
+release: $(VENV)/.dev
+	$(BIN)/python -m benchmarks.release
 
 clean:
 	rm -rf $(VENV) demo site docs/api/*/
