@@ -116,7 +116,9 @@ class Records:
         *,
         settings: str | None = None,
         form: Literal["manoeuvring", "seakeeping"] | None = None,
-        system: Literal["dimensional", "prime", "mmg", "seakeeping"] | None = None,
+        system: Literal["dimensional", "prime", "bis", "mmg", "seakeeping"] | None = None,
+        names: Literal["plain", "abkowitz", "gertler-hagen"] | None = None,
+        with_mass: bool = False,
         inertia: str | None = None,
         wanted: Sequence[str] = (),
         leave_out: Sequence[str] = (),
@@ -132,8 +134,9 @@ class Records:
         ----------
         settings
             Settings file; ``coefficients.toml`` beside the campaign's if it is there.
-        form, system
-            Names and signs; units.
+        form, system, names, with_mass
+            Names and signs; units; whose names and factors; whether the model's mass is added to
+            the derivatives of yaw or pitch rate.
         inertia
             What is taken off: ``"model"``, ``"dry"`` or a file of ``pmm inertia``.
         wanted
@@ -163,6 +166,8 @@ class Records:
             "settings": settings,
             "form": form,
             "system": system,
+            "names": names,
+            "with_mass": with_mass,
             "inertia": inertia,
             "wanted": tuple(wanted),
             "leave_out": tuple(leave_out),
