@@ -5,7 +5,8 @@ from typing import Final
 
 import numpy as np
 
-from analysis.comparison.fit import Fit, Model, NothingInCommonError, Problem, fit
+from analysis.comparison.fit import Fit, fit
+from analysis.comparison.linear import Model, NothingInCommonError, Problem
 
 _SURE: Final = 5.0  # standard deviations by which another lag must fit worse to be rejected
 _ALIKE: Final = 0.8  # correlation of a motion with itself, below which it does not repeat

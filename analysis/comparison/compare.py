@@ -9,7 +9,8 @@ import numpy as np
 from analysis.comparison.ambiguity import least_lag
 from analysis.comparison.band import Band, find_band, track, without_line
 from analysis.comparison.first_guess import Alignment, first_guess
-from analysis.comparison.fit import Fit, Model, NothingInCommonError, Problem, fit
+from analysis.comparison.fit import Fit, fit
+from analysis.comparison.linear import Model, NothingInCommonError, Problem
 from analysis.comparison.result import Comparison
 from analysis.comparison.settings import ComparisonSettings
 from analysis.comparison.told import Found, Signal, told

@@ -17,14 +17,9 @@ from typing import Final
 
 import numpy as np
 
-from analysis.comparison.band import Track
-from analysis.comparison.dead_band import Play, follow
-from analysis.comparison.first_guess import Alignment
-from analysis.comparison.warp import Warped
+from analysis.comparison.linear import Linear, Model, NothingInCommonError, Problem, linearised
 from hardware.description.arrays import BoolArray, ComplexArray, FloatArray
 
-_TAPER: Final = 0.1  # of the record, both ends together
-_FIRST: Final = 3  # bins: below, what is seen is a drift
 _STANDS_OUT: Final = 20.0  # power over the noise's; noise alone is that strong once in e^20
 _WIDEST: Final = 32  # bins on each side over which the noise's spectrum is smoothed
 _FLATTER: Final = 1  # times that a smoothed spectrum is taken off before it is smoothed again
@@ -32,41 +27,7 @@ _STEPS: Final = 20
 _FEWEST: Final = 3  # steps
 _UNEXPLAINED: Final = 0.5  # of the power where the first channel stands out
 _SETTLED: Final = 0.02  # of an uncertainty, in the last step
-_A_PERIOD: Final = 200.0  # steps in which a dead band is followed: 1e-4 of the amplitude
 _ROUNDING: Final = 1e-12  # of the mean power: splines and filters are no better
-
-
-@dataclass(frozen=True)
-class Problem:
-    """Two channels as they are compared.
-
-    Attributes
-    ----------
-    first
-        The first channel and those with a lever; rows 0 and 1 are what the second one shows, and
-        its derivative.
-    low_hz, top_hz
-        Frequencies that count.
-    """
-
-    first: Warped
-    channels: int
-    second: Track
-    motion_hz: float
-    low_hz: float
-    top_hz: float
-
-
-@dataclass(frozen=True)
-class Model:
-    """Parameters: where the clocks stand, a gain of each channel, half the dead band or ``None``.
-
-    ``half`` is in the first channel's unit.
-    """
-
-    alignment: Alignment
-    gains: FloatArray
-    half: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,41 +92,6 @@ class Fit:
         return float((2.0 * np.abs(self.residual[bins]) ** 2 / noise[bins]).sum())
 
 
-@dataclass(frozen=True, eq=False)
-class _Linear:
-    """The model's columns at one set of parameters, and the second channel, as spectra."""
-
-    start: int
-    taper: FloatArray
-    target: ComplexArray
-    channels: ComplexArray
-    motion: ComplexArray
-    slide: ComplexArray
-    by_play: ComplexArray
-    side: ComplexArray | None
-    drift: ComplexArray
-    first_bin: int
-
-    @property
-    def others(self) -> ComplexArray:
-        """The derivatives by all but the gains."""
-        side = () if self.side is None else (self.side,)
-        return np.array([self.motion, self.slide, *side, *self.drift])
-
-    def left(self, gains: FloatArray) -> ComplexArray:
-        """Return what the channels leave of the second one."""
-        left: ComplexArray = self.target - gains @ self.channels - gains[0] * self.by_play
-        return left
-
-    def columns(self, stands_out: BoolArray) -> ComplexArray:
-        """Return the derivatives, without the channels where they are noise."""
-        rows = [*(self.channels * stands_out), self.motion * stands_out, self.slide * stands_out]
-        if self.side is not None:
-            rows[0] = rows[0] + self.by_play
-            rows.append(self.side)
-        return np.array([*rows, *self.drift])
-
-
 def fit(problem: Problem, model: Model, *, lines: bool = False) -> Fit:
     """Improve a model until it moves no more.
 
@@ -184,12 +110,12 @@ def fit(problem: Problem, model: Model, *, lines: bool = False) -> Fit:
     """
     noise, bins = np.ones(0), np.ones(0, dtype=bool)
     for step in range(_STEPS):
-        linear = _linearised(problem, model)
+        linear = linearised(problem, model)
         if noise.size != linear.target.size:
             noise, bins = np.ones(linear.target.size), _strongest(linear.channels[0])
         if not step:
             model = replace(model, gains=_gains(linear, bins, noise))
-            linear = _linearised(problem, model)
+            linear = linearised(problem, model)
         columns = linear.columns(bins)
         theta, inverse = _solved(columns, linear.left(model.gains), noise)
         model = _moved(model, theta)
@@ -216,70 +142,7 @@ def fit(problem: Problem, model: Model, *, lines: bool = False) -> Fit:
     )  # fmt: skip
 
 
-class NothingInCommonError(Exception):
-    """No frequency at which one channel follows the other."""
-
-
-def _linearised(problem: Problem, model: Model) -> _Linear:
-    from scipy.fft import rfft
-    from scipy.signal.windows import tukey
-
-    second, where = problem.second, model.alignment
-    time_s = second.time_s[where.stretch]
-    covered = np.flatnonzero(problem.first.covers(where.times_s(time_s)))
-    if len(covered) < 16:
-        raise NothingInCommonError
-    start, count = int(covered[0]), _fast(len(covered))
-    time_s = time_s[start : start + count]
-    asked_s = where.times_s(time_s)
-    taper = tukey(count, _TAPER)
-    step_hz = second.rate_hz / count
-    low = max(_FIRST, int(np.ceil(problem.low_hz / step_hz)))
-    high = min(int(problem.top_hz / step_hz), count // 2 - 1)
-
-    def spectrum(values: FloatArray) -> ComplexArray:
-        return np.asarray(rfft(values * taper)[low : high + 1])
-
-    values = [problem.first.values(asked_s, 0, k) for k in range(problem.channels)]
-    slopes = [problem.first.values(asked_s, 1, k) for k in range(problem.channels)]
-    motion = -(model.gains @ np.array(slopes))
-    play = play_at(problem, model, time_s)
-    if play is not None:
-        motion = np.where(play.pushed, motion, 0.0)
-    begin = where.stretch.start + start
-    return _Linear(
-        begin,
-        taper,
-        spectrum(second.derivatives[0][begin : begin + count]),
-        np.array([spectrum(one) for one in values]),
-        spectrum(motion),
-        spectrum(motion * (time_s - where.mid_s)),
-        spectrum(np.zeros(count) if play is None else play.values - values[0]),
-        None if play is None else spectrum(-model.gains[0] * play.side),
-        np.array([spectrum(np.ones(count)), spectrum(np.linspace(-1.0, 1.0, count))]),
-        low,
-    )
-
-
-def play_at(problem: Problem, model: Model, time_s: FloatArray) -> Play | None:
-    """Return the play at even times, followed in steps fine enough not to cut its reversals."""
-    if model.half is None:
-        return None
-    rate_hz = problem.second.rate_hz
-    fine = int(np.ceil(_A_PERIOD * problem.motion_hz / rate_hz))
-    steps_s = time_s[0] + np.arange((len(time_s) - 1) * fine + 1) / (fine * rate_hz)
-    leader = problem.first.values(model.alignment.times_s(steps_s), 0)
-    return follow(leader, model.half).every(fine)
-
-
-def _fast(count: int) -> int:
-    """Return the largest length up to a count that transforms fast."""
-    from scipy.fft import prev_fast_len
-
-    return int(prev_fast_len(count))
-
-
-def _gains(linear: _Linear, bins: BoolArray, noise: FloatArray) -> FloatArray:
+def _gains(linear: Linear, bins: BoolArray, noise: FloatArray) -> FloatArray:
     columns = np.concatenate((linear.channels * bins, linear.drift))
     theta, _ = _solved(columns, linear.target, noise)
     return theta[: len(linear.channels)]
@@ -341,7 +204,7 @@ def _smoothed(power: FloatArray, target: ComplexArray, *, lines: bool) -> tuple[
     return np.maximum(noise, floor), reach
 
 
-def _covariance(columns: ComplexArray, noise: FloatArray, linear: _Linear) -> FloatArray:
+def _covariance(columns: ComplexArray, noise: FloatArray, linear: Linear) -> FloatArray:
     """Return the parameters' covariance, the taper's part in it and all.
 
     The estimate is a sum of the samples of the noise, each with a weight that the taper makes; the

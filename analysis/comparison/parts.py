@@ -6,7 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from analysis.comparison.fit import Fit, Problem
+from analysis.comparison.fit import Fit
+from analysis.comparison.linear import Problem
 from hardware.description.arrays import BoolArray, FloatArray
 
 _PERIODS: Final = 5.0  # of the motion in a part of the record

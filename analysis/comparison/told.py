@@ -6,7 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from analysis.comparison.fit import Fit, Problem, play_at
+from analysis.comparison.fit import Fit
+from analysis.comparison.linear import Problem, play_at
 from analysis.comparison.parts import Parts, over_frequency, over_time
 from analysis.comparison.result import Comparison, Trace
 from analysis.comparison.settings import ComparisonSettings
