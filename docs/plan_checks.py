@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from pmm.plan.check_table import CHECKS, Check
+from pmm.plan.check import Check
+from pmm.plan.check_table import CHECKS
 
 HERE = Path(__file__).parent
 _HEAD = """\

@@ -5,7 +5,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.checks import frequency_flags, gate_flags, saturation_flags
+from analysis.resolver.checks import (
+    frequency_flags,
+    gate_flags,
+    reference_flags,
+    saturation_flags,
+)
 from analysis.resolver.estimate import PeriodValues, resolve, solve_periods
 from analysis.resolver.hann import resolve_hann
 from analysis.resolver.harmonics import Harmonics
@@ -104,7 +109,7 @@ def analyse(
         + set_point_flags(recording, reference, gates[0], readings[0])
         + frequency_flags(chosen.channel_names, values, reference)
         + flags
-        + _reference_flags(recording, reference, steady, settings)
+        + reference_flags(recording, reference, steady, settings)
         + saturation_flags(chosen, float(steady.opened_s[0]), float(steady.closed_s[-1])),
     )
 
@@ -207,33 +212,6 @@ def _limit_flags(
         )
         for channel, told in beside.items()
     )
-
-
-def _reference_flags(
-    recording: Recording, reference: PhaseReference, steady: PeriodSums, settings: ResolverSettings
-) -> tuple[Flag, ...]:
-    """Say where a signal that tells the phase does not keep its amplitude in the periods used."""
-    name = reference.channel
-    if reference.source is not ReferenceSource.SIGNAL or name is None:
-        return ()
-    sums = period_sums(recording.select([name]), reference, 1, edges_cycles=steady.edges_cycles)
-    values = solve_periods(sums).coefficients[:, 0]
-    size = np.hypot(values[:, 1], values[:, 2])
-    usual = float(np.nanmedian(size)) if np.isfinite(size).any() else np.inf
-    off = np.abs(size - usual)
-    outside = np.flatnonzero(off > settings.steady_tolerance * usual)
-    if not outside.size:
-        return ()
-    worst = int(np.nanargmax(off))
-    unit = recording.channels[recording.index(name)].unit
-    message = (
-        f"the amplitude of the reference leaves {usual:.4g} {unit} by more than "
-        f"{100.0 * settings.steady_tolerance:g} % in {outside.size} of {len(size)} periods, the "
-        f"first from {sums.opened_s[outside[0]]:.3f} s on; it is {size[worst]:.4g} {unit} at "
-        f"{sums.opened_s[worst]:.3f} s: the motion starts, stops or changes there. Choose the gate "
-        "before or after"
-    )
-    return (Flag("reference_unsteady", Severity.WARNING, message, name),)
 
 
 def _reading(

@@ -6,7 +6,8 @@ from analysis.recording import Recording
 from analysis.resolver.estimate import PeriodValues, solve_periods, usable
 from analysis.resolver.harmonics import DriftSource, Harmonics, IntervalSource
 from analysis.resolver.reference import PhaseReference, ReferenceSource
-from analysis.resolver.sums import PeriodSums
+from analysis.resolver.settings import ResolverSettings
+from analysis.resolver.sums import PeriodSums, period_sums
 from hardware.description.arrays import ComplexArray
 from hardware.description.flags import Flag, Severity
 
@@ -193,3 +194,30 @@ def _turn(phasor: ComplexArray) -> float | None:
     whole = abs(per_period) * (len(turned) - 1)
     away = np.abs(turned - turned.mean() - per_period * period).max()
     return per_period if whole > _NOTABLE_CYCLES and away < _STRAIGHT * whole else None
+
+
+def reference_flags(
+    recording: Recording, reference: PhaseReference, steady: PeriodSums, settings: ResolverSettings
+) -> tuple[Flag, ...]:
+    """Say where a signal that tells the phase does not keep its amplitude in the periods used."""
+    name = reference.channel
+    if reference.source is not ReferenceSource.SIGNAL or name is None:
+        return ()
+    sums = period_sums(recording.select([name]), reference, 1, edges_cycles=steady.edges_cycles)
+    values = solve_periods(sums).coefficients[:, 0]
+    size = np.hypot(values[:, 1], values[:, 2])
+    usual = float(np.nanmedian(size)) if np.isfinite(size).any() else np.inf
+    off = np.abs(size - usual)
+    outside = np.flatnonzero(off > settings.steady_tolerance * usual)
+    if not outside.size:
+        return ()
+    worst = int(np.nanargmax(off))
+    unit = recording.channels[recording.index(name)].unit
+    message = (
+        f"the amplitude of the reference leaves {usual:.4g} {unit} by more than "
+        f"{100.0 * settings.steady_tolerance:g} % in {outside.size} of {len(size)} periods, the "
+        f"first from {sums.opened_s[outside[0]]:.3f} s on; it is {size[worst]:.4g} {unit} at "
+        f"{sums.opened_s[worst]:.3f} s: the motion starts, stops or changes there. Choose the gate "
+        "before or after"
+    )
+    return (Flag("reference_unsteady", Severity.WARNING, message, name),)

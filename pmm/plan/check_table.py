@@ -6,10 +6,10 @@ The pages of ITTC 7.5-02-06-02 were not at hand: that it asks for a number, and 
 w L / U and w U / g, are told at second hand. Where no limit of it is known, none is stated.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 from hardware.bus import LARGEST_LOAD
+from pmm.plan.check import Check
 from pmm.plan.echoes import echo_limit
 
 _RIG = "the rig's file"
@@ -18,34 +18,6 @@ _ITTC = "ITTC 7.5-02-06-02"
 _NONE = "no limit stated"
 _ONLY_STATED = "nothing: it is stated, not judged"
 _OWN = "twice: what the rig allows is allowed twice as far, at the rig's risk; half: fewer runs"
-
-
-@dataclass(frozen=True)
-class Check:
-    """One row.
-
-    Attributes
-    ----------
-    quantity
-        What is looked at, with its unit; words in braces depend on plane or gauge.
-    limit
-        The verdict and where it begins, in words; ``{0}``, ``{1}`` stand for :attr:`numbers`.
-    source
-        Whose limit it is.
-    reason
-        Why, or what to do about it.
-    moved
-        What half the limit, or twice the limit, does.
-    numbers
-        Limits that do not come from the rig's file.
-    """
-
-    quantity: str
-    limit: str
-    source: str
-    reason: str
-    moved: str
-    numbers: tuple[float, ...] = ()
 
 
 FREQUENCY: Final = Check(

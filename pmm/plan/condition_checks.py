@@ -17,7 +17,7 @@ from hardware.description import kinds
 from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from pmm.plan import check_table as table
-from pmm.plan.check_table import Check
+from pmm.plan.check import Check
 from pmm.plan.echoes import echo_limit
 from pmm.plan.findings import PlanFinding, PlanVerdict
 from pmm.plan.motion_peaks import omega_of

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from hardware.rig_configuration import RigPart, load_of
 from pmm.plan import check_table as table
-from pmm.plan.check_table import Check
+from pmm.plan.check import Check
 from pmm.plan.duration import tank_length_m
 from pmm.plan.findings import PlanFinding, PlanVerdict
 from pmm.plan.force_estimate import force_peak_n
