@@ -83,7 +83,8 @@ def show_report() -> None:
     with TemporaryDirectory() as name:
         folder, whole = Path(name), Path(name) / "whole.png"
         CliRunner().invoke(cli, ["demo", "--vertical-only", "--output", str(folder / "demo")])
-        with browser(folder / "profile", width=1100, height=1500) as page:
+        with browser(folder / "profile") as page:
+            page.driver.set_window_size(1100, 1500)
             page.driver.get((folder / "demo" / "report.html").as_uri())
             page.run("document.documentElement.style.scrollbarWidth = 'none'")
             page.run("document.querySelector('h2').scrollIntoView(); scrollBy(0, -20)")
