@@ -17,6 +17,8 @@ _QUICK = [name for name in NAMES if name not in ("speed", "console", "crowd", "l
 
 @pytest.mark.parametrize("name", _QUICK)
 def test_quick_run_measures_and_is_kept(name: str, tmp_path: Path) -> None:
+    if name == "evidence":
+        pytest.importorskip("dynesty", reason="optional dependency bench")
     benchmark = load(name)
     outcome = benchmark.run(True, lambda _: None)
     for rows in outcome.tables.values():

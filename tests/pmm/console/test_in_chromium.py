@@ -144,6 +144,7 @@ def test_a_page_from_elsewhere_is_refused_and_beyond_here_a_token_is_asked(
     token = tmp_path / "token"
     token.write_text("a long and secret token")
     foreign = ThreadingHTTPServer(("127.0.0.1", 0), partial(_Silent, directory=str(elsewhere)))
+    foreign.daemon_threads = False  # so that its end waits for them
     thread = threading.Thread(target=foreign.serve_forever)
     thread.start()
     try:
@@ -173,6 +174,8 @@ def test_a_page_from_elsewhere_is_refused_and_beyond_here_a_token_is_asked(
 
 
 class _Silent(SimpleHTTPRequestHandler):
+    timeout = 1.0  # a browser opens connections that it may never use
+
     def log_message(self, format: str, *args: object) -> None:  # noqa: A002 - its name there
         return
 
