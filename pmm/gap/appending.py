@@ -1,4 +1,4 @@
-"""Effects that are put into the file of a campaign or of a pendulum."""
+"""Tables that are put into the file of a campaign or of a pendulum: effects, runs."""
 
 import json
 from collections.abc import Callable, Collection, Mapping, Sequence
@@ -43,14 +43,16 @@ def stated(effect: Effect) -> dict[str, float]:
     return {key: value for key, value in asdict(effect).items() if forms.get(key) != value}
 
 
-def append_effects(path: Path, effects: Sequence[Added], read: Callable[[Path], object]) -> Path:
-    """Append effects to a file as tables, and return where the old file is kept.
+def append_tables(path: Path, tables: Sequence[str], read: Callable[[Path], object]) -> Path:
+    """Append tables to a file, and return where the old file is kept.
 
     Tables at the end of a TOML file leave everything before them as it is, comments too. The new
     file takes the old one's place only once it is whole and has been read.
 
     Parameters
     ----------
+    tables
+        As they stand in the file, each with its heading.
     read
         Reads such a file.
 
@@ -62,7 +64,7 @@ def append_effects(path: Path, effects: Sequence[Added], read: Callable[[Path], 
         If another process is writing into its folder.
     """
     old = path.read_text(encoding="utf-8")
-    text = old.rstrip("\n") + "\n" + "".join(one.table for one in effects)
+    text = old.rstrip("\n") + "\n" + "".join(tables)
     written = path.with_name(f"{path.name}.part")
     with own_campaign(path.resolve().parent):
         written.write_text(text, encoding="utf-8")

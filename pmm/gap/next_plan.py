@@ -13,7 +13,7 @@ from sim.effects.effect import FurtherMeasurement
 RIG_FILE: Final = "rig.toml"
 
 
-def plan_text(name: str, proposals: Sequence[Proposal]) -> str:
+def plan_text(name: str, proposals: Sequence[Proposal], prefix: str = "next") -> str:
     """Return a plan of the proposed runs, most telling first.
 
     Each is an entry of its own under a comment with what it is expected to be worth. What no plan
@@ -23,13 +23,15 @@ def plan_text(name: str, proposals: Sequence[Proposal]) -> str:
     ----------
     name
         Of the campaign that is to be made.
+    prefix
+        What the runs' names begin with.
     """
     parts = [
         "# What pmm gap proposes next. The rig's file is named here; docs/plans.md has every key.\n"
         f"name = {toml_value(name)}\nrig = {toml_value(RIG_FILE)}\n"
     ]
     for number, one in enumerate(proposals, 1):
-        table = _entry(one, f"next-{number}")
+        table = _entry(one, f"{prefix}-{number}")
         worth = f"# {one.gain:.1f} expected log odds between the leading answers\n"
         done = f"# by hand: {one}\n"
         parts.append(worth + (toml_table("runs", table, array=True) if table else done))

@@ -40,7 +40,7 @@ class Jobs(CommandGroup):
 @click.group(
     cls=Jobs,
     package="pmm.cli.gap",
-    names=("add", "answer", "pendulum", "add-pendulum", "diagnose"),
+    names=("add", "answer", "pursue", "pendulum", "add-pendulum", "diagnose"),
     options_metavar="",
     subcommand_metavar="CAMPAIGN|COMMAND [OPTIONS]",
 )

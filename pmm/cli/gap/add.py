@@ -138,9 +138,9 @@ def add_and_say(
     """
     from pmm.cli.screen import show
     from pmm.document.content import Data, Document, Section, Text
-    from pmm.gap.appending import append_effects
+    from pmm.gap.appending import append_tables
 
-    kept = append_effects(path, added, read)
+    kept = append_tables(path, [one.table for one in added], read)
     told = (
         Text([f"added {one.said}" for one in added]),
         Text((f"{path}; as it was: {kept}", again)),
