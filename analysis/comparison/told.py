@@ -191,7 +191,9 @@ def _in_part(fit: Fit, order: int) -> tuple[Flag, ...]:
     """Say where gain and lag explain little, and whether another derivative would explain more."""
     power, left = np.abs(fit.shape) ** 2, np.abs(fit.residual) ** 2
     shown = np.abs(fit.shape + fit.residual)
-    strong = power >= _STRONG * power.max()
+    frequency = fit.first_bin + np.arange(len(power), dtype=np.float64)
+    recorded = power / frequency ** (2 * order)  # a derivative makes noise strong, not the channel
+    strong = recorded >= _STRONG * recorded.max()
     part = float(left[strong].sum() / (shown[strong] ** 2).sum())
     if part < _UNEXPLAINED:
         return ()
@@ -199,7 +201,7 @@ def _in_part(fit: Fit, order: int) -> tuple[Flag, ...]:
         f"gain and lag do not explain {100.0 * part:.2g} % of the second channel's power where the "
         "first is strong; the intervals hold only if that is noise"
     )
-    frequency = (np.flatnonzero(strong) + fit.first_bin).astype(np.float64)
+    frequency = frequency[strong]
     if frequency[-1] > _WIDE * frequency[0]:
         ratio = np.log(shown[strong] / np.sqrt(power[strong]))
         weights = np.sqrt(power[strong])

@@ -44,6 +44,7 @@ def test_the_table_says_it_with_units(tmp_path: Path) -> None:
     assert said.exit_code == 0, said.stderr
     for word in ("gain", "1.02", "lag", "ms", "clock rate", "ppm", "derivative 2"):
         assert word in said.stdout
+    assert "WARNING" not in said.stdout
     assert {path.suffix for path in (tmp_path / "plots").iterdir()} == {".svg", ".png"}
 
 
