@@ -45,20 +45,6 @@ def test_the_campaign_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert len(list((tmp_path / "my-campaign" / "plots").glob("*.svg"))) >= 18
 
 
-def test_the_commands_before_and_after_a_test_run(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (block,) = (one for one in blocks("sh") if "plan design" in one)
-    monkeypatch.chdir(tmp_path)
-    said = [
-        run(one.replace("examples/", f"{HOUSE}/examples/")) for one in block.strip().splitlines()
-    ]
-    assert len(said) == 3
-    assert (tmp_path / "my-designed-plan.toml").is_file()
-    assert "lag" in said[1]
-    assert "zig-zag" in said[2].lower()
-
-
 def test_every_link_leads_somewhere() -> None:
     targets = re.findall(r"\]\((?!https?:)([^)#]+)\)", README)
     assert targets
