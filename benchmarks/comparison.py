@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from analysis.comparison.compare import compare
-from analysis.comparison.result import Comparison
+from analysis.comparison.result import ChannelComparison
 from analysis.comparison.settings import ComparisonSettings
 from analysis.recording import Recording
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
@@ -80,7 +80,7 @@ def _trial(seed: int) -> tuple[str, FloatArray, FloatArray]:
 
 
 def _errors(
-    found: Comparison, gain: float, lag_s: float, rate: float
+    found: ChannelComparison, gain: float, lag_s: float, rate: float
 ) -> tuple[FloatArray, FloatArray]:
     off_s = found.lag_s.value - lag_s
     if found.modulo_s is not None:

@@ -10,10 +10,10 @@ import numpy as np
 
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import Belief
-from analysis.design.candidate import Candidate
+from analysis.design.candidate import CandidateRun
 from analysis.design.expectation import expected, made_up
 from analysis.design.noise import Noise
-from analysis.design.regression import Target, prospects
+from analysis.design.regression import DesignTarget, prospects
 from analysis.design.selection import select
 from benchmarks.coefficients_campaigns import BODY, CUBIC, HORIZONTAL, without_incidence
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
@@ -86,7 +86,9 @@ def _designed(tank: Tank, stop: str) -> Ended:
     while len(made) < MOST_RUNS:
         if not plan:
             known = scaled(tank.base, force_n, tank.repeat_known)
-            asked = [Target(one.name, one.standard_uncertainty / harder) for one in tank.targets]
+            asked = [
+                DesignTarget(one.name, one.standard_uncertainty / harder) for one in tank.targets
+            ]
             plan = list(select(known, asked, made=[one.candidate for one in made]).chosen)
             harder *= 1.0 if plan else 1.05
             continue
@@ -200,7 +202,7 @@ def _times(quick: bool) -> tuple[list[Row], dict[str, float]]:
     noise = Noise(6.0, 100.0, 1e-4, 0.1, 0.02)
     phases = (0.0, 0.8, 1.6, 2.4, 3.14)
     runs = [
-        Candidate(SetPoint(f, e, phase, speed, drift_rad=drift), count, 330.0 + (count + 4) / f)
+        CandidateRun(SetPoint(f, e, phase, speed, drift_rad=drift), count, 330.0 + (count + 4) / f)
         for f in FREQUENCIES_HZ[: 1 if quick else None] + ((0.25,) if not quick else ())
         for e in (0.05, 0.1, *AMPLITUDES_M)
         for phase in phases
@@ -208,7 +210,9 @@ def _times(quick: bool) -> tuple[list[Row], dict[str, float]]:
         for drift in (0.0, 0.05, 0.1, 0.2)
         for count in (3, 5, 8, 12, 20)
     ]
-    targets = [Target(name, max(0.015 * abs(value), 0.5)) for name, value in belief.values.items()]
+    targets = [
+        DesignTarget(name, max(0.015 * abs(value), 0.5)) for name, value in belief.values.items()
+    ]
     stated = StatedUncertainties(mass_kg=0.05, lag_s=2e-4, force_gain_relative=1e-3)
     began = time.process_time()
     known = prospects(runs, belief, noise, stated)

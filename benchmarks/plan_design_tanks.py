@@ -18,9 +18,9 @@ from scipy.stats import chi2
 from analysis.coefficients.cycle_fit import trusted
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import Belief
-from analysis.design.candidate import Candidate
+from analysis.design.candidate import CandidateRun
 from analysis.design.noise import Noise
-from analysis.design.regression import Prospects, Target, prospects
+from analysis.design.regression import DesignTarget, Prospects, prospects
 from analysis.uncertainty.freedom import effective_freedom, student_factor
 from benchmarks.coefficients_campaigns import BODY, without_incidence
 from hardware.description.arrays import BoolArray, FloatArray
@@ -43,10 +43,10 @@ _TYPICAL = {
 }  # fmt: skip
 
 
-def candidates() -> list[Candidate]:
+def candidates() -> list[CandidateRun]:
     """Return sway, yaw without incidence and two mixtures: all settings and lengths."""
     return [
-        Candidate(SetPoint(f, e, phase, speed), count, _cost_s(f, speed, count))
+        CandidateRun(SetPoint(f, e, phase, speed), count, _cost_s(f, speed, count))
         for f, e, speed, count in product(FREQUENCIES_HZ, AMPLITUDES_M, SPEEDS_M_S, PERIODS)
         for phase in (0.0, without_incidence(f, speed), *_MIXED_RAD)
     ]
@@ -145,14 +145,14 @@ class Tank:
             for row in (0, 1)
         }
 
-    def _targets(self, part: float) -> tuple[Target, ...]:
+    def _targets(self, part: float) -> tuple[DesignTarget, ...]:
         """A part of each linear coefficient and four parts of a cubic one; of a small one more."""
         found = []
         for (name, value), term in zip(
             self.base.belief.values.items(), self.base.belief.terms, strict=True
         ):
             times = 4.0 if term.degree > 1 else 5.0 if name in ("Y_rdot", "N_vdot", "Y_r") else 1.0
-            found.append(Target(name, times * part * abs(value)))
+            found.append(DesignTarget(name, times * part * abs(value)))
         return tuple(found)
 
     @property

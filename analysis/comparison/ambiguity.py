@@ -5,15 +5,17 @@ from typing import Final
 
 import numpy as np
 
-from analysis.comparison.fit import Fit, fit
-from analysis.comparison.linear import Model, NothingInCommonError, Problem
+from analysis.comparison.fit import ComparisonFit, fit
+from analysis.comparison.linear import ComparisonProblem, Model, NothingInCommonError
 
 _SURE: Final = 5.0  # standard deviations by which another lag must fit worse to be rejected
 _ALIKE: Final = 0.8  # correlation of a motion with itself, below which it does not repeat
 _TURNS: Final = 8
 
 
-def least_lag(problem: Problem, best: Fit, most_lag_s: float) -> tuple[Model, float | None]:
+def least_lag(
+    problem: ComparisonProblem, best: ComparisonFit, most_lag_s: float
+) -> tuple[Model, float | None]:
     """Return the model that fits best, and the period by which its lag may be off, if any.
 
     Lags a period earlier and later are tried on the same samples. Where one fits as well, the lag
@@ -47,7 +49,7 @@ def least_lag(problem: Problem, best: Fit, most_lag_s: float) -> tuple[Model, fl
     return best.model, None
 
 
-def _limit(best: Fit) -> float:
+def _limit(best: ComparisonFit) -> float:
     """Return by how much sums of squares of two lags may differ by chance.
 
     The first channel's noise is another one at another lag, so that the two are as good as
@@ -58,7 +60,7 @@ def _limit(best: Fit) -> float:
     return chance * max(1.0, best.squares / (2.0 * bins))
 
 
-def _period(problem: Problem, best: Fit, most_lag_s: float) -> float | None:
+def _period(problem: ComparisonProblem, best: ComparisonFit, most_lag_s: float) -> float | None:
     """Return where the motion is most like itself, ``None`` where it never is."""
     from scipy.fft import irfft
 
@@ -81,7 +83,7 @@ def _period(problem: Problem, best: Fit, most_lag_s: float) -> float | None:
     return float(below[0] + top) / fine / problem.second.rate_hz
 
 
-def _inside(problem: Problem, best: Fit, margin_s: float) -> Fit:
+def _inside(problem: ComparisonProblem, best: ComparisonFit, margin_s: float) -> ComparisonFit:
     """Fit again where the first channel is there a period before and after."""
     margin = int(margin_s * problem.second.rate_hz) + 2
     if 4 * margin > best.count:
@@ -93,7 +95,7 @@ def _inside(problem: Problem, best: Fit, margin_s: float) -> Fit:
     return fit(problem, replace(best.model, alignment=where))
 
 
-def _moved(problem: Problem, best: Fit, later_s: float) -> Fit | None:
+def _moved(problem: ComparisonProblem, best: ComparisonFit, later_s: float) -> ComparisonFit | None:
     where = best.model.alignment
     model = replace(best.model, alignment=replace(where, lag_s=where.lag_s + later_s))
     try:
@@ -103,7 +105,7 @@ def _moved(problem: Problem, best: Fit, later_s: float) -> Fit | None:
     return found if found.count == best.count else None
 
 
-def _growth(best: Fit, other: Fit | None) -> float:
+def _growth(best: ComparisonFit, other: ComparisonFit | None) -> float:
     if other is None:
         return np.inf
     return other.squares_under(best.noise, best.stands_out) - best.squares

@@ -31,7 +31,7 @@ class Band:
 
 
 @dataclass(frozen=True)
-class Track:
+class BandTrack:
     """A channel at its working rate, each derivative low-passed alike.
 
     Attributes
@@ -93,7 +93,9 @@ def without_line(values: FloatArray) -> FloatArray:
     return left
 
 
-def track(values: FloatArray, start_s: float, rate_hz: float, band: Band, orders: range) -> Track:
+def track(
+    values: FloatArray, start_s: float, rate_hz: float, band: Band, orders: range
+) -> BandTrack:
     """Return some derivatives of a channel without mean and slope, at its working rate.
 
     Samples near the ends, of which the filter would need neighbours that are not there, go.
@@ -117,7 +119,7 @@ def track(values: FloatArray, start_s: float, rate_hz: float, band: Band, orders
         )
     rows = [upfirdn(kernel, values, up, down)[first : last + 1] for kernel in kernels]
     start = start_s + (first * down - half) / (rate_hz * up)
-    return Track(start, rate_hz * up / down, np.array(rows))
+    return BandTrack(start, rate_hz * up / down, np.array(rows))
 
 
 def _kernels(

@@ -9,9 +9,9 @@ import numpy as np
 from analysis.comparison.ambiguity import least_lag
 from analysis.comparison.band import Band, find_band, track, without_line
 from analysis.comparison.first_guess import Alignment, first_guess
-from analysis.comparison.fit import Fit, fit
-from analysis.comparison.linear import Model, NothingInCommonError, Problem
-from analysis.comparison.result import Comparison
+from analysis.comparison.fit import ComparisonFit, fit
+from analysis.comparison.linear import ComparisonProblem, Model, NothingInCommonError
+from analysis.comparison.result import ChannelComparison
 from analysis.comparison.settings import ComparisonSettings
 from analysis.comparison.told import Found, Signal, told
 from analysis.comparison.warp import Warped
@@ -33,7 +33,7 @@ def compare(
     second: Recording,
     second_channel: str,
     settings: ComparisonSettings = ComparisonSettings(),  # noqa: B008
-) -> Comparison:
+) -> ChannelComparison:
     """Return gain, lag, clock rate and dead band of the second channel over the first.
 
     ``second(t) = gain * first(t - lag(t))``, ``lag(t) = lag + clock_rate (t - mid)``: a positive
@@ -101,7 +101,7 @@ def _most_lag(leading: Signal, following: Signal, settings: ComparisonSettings) 
 
 def _problem(
     leading: list[Signal], following: Signal, settings: ComparisonSettings, most_lag_s: float
-) -> Problem:
+) -> ComparisonProblem:
     one = leading[0]
     ends_s = [a.start_s + len(a.values) / a.rate_hz + most_lag_s for a in (one, following)]
     if not (one.start_s < ends_s[1] and following.start_s < ends_s[0]):
@@ -119,10 +119,10 @@ def _problem(
     second_orders = range(max(-order, 0), max(-order, 0) + 1)
     tracks = [track(a.values, a.start_s, a.rate_hz, band, first_orders) for a in leading]
     second = track(following.values, following.start_s, following.rate_hz, band, second_orders)
-    return Problem(Warped(*tracks), len(tracks), second, band.motion_hz, low_hz, high_hz)
+    return ComparisonProblem(Warped(*tracks), len(tracks), second, band.motion_hz, low_hz, high_hz)
 
 
-def _grown(problem: Problem, most_lag_s: float) -> Fit:
+def _grown(problem: ComparisonProblem, most_lag_s: float) -> ComparisonFit:
     """Fit where most happens, then on twice as much, until nothing is left out.
 
     From each length to the next the lag's error stays far below the quarter of a period that a
@@ -141,7 +141,7 @@ def _grown(problem: Problem, most_lag_s: float) -> Fit:
         model = replace(model, alignment=replace(model.alignment, stretch=wider))
 
 
-def _settled(problem: Problem, model: Model) -> Fit:
+def _settled(problem: ComparisonProblem, model: Model) -> ComparisonFit:
     """Fit on all samples that both have, the lag that of their middle."""
     count = problem.second.derivatives.shape[1]
     where = replace(model.alignment, stretch=slice(0, count))
@@ -155,7 +155,9 @@ def _settled(problem: Problem, model: Model) -> Fit:
     return fit(problem, replace(model, alignment=Alignment(lag_s, where.rate, mid_s, both)))
 
 
-def _with_dead_band(problem: Problem, straight: Fit) -> tuple[Fit, FloatArray]:
+def _with_dead_band(
+    problem: ComparisonProblem, straight: ComparisonFit
+) -> tuple[ComparisonFit, FloatArray]:
     """Return the fit with a dead band where one is seen, and its half and uncertainty.
 
     Noise shifts reversals by a part of itself. What is found must explain most of what stands out

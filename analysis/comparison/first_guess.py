@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from analysis.comparison.band import Track
+from analysis.comparison.band import BandTrack
 from analysis.comparison.warp import Warped
 from hardware.description.arrays import FloatArray
 
@@ -37,7 +37,9 @@ class Alignment:
         return times
 
 
-def first_guess(warped: Warped, second: Track, motion_hz: float, most_lag_s: float) -> Alignment:
+def first_guess(
+    warped: Warped, second: BandTrack, motion_hz: float, most_lag_s: float
+) -> Alignment:
     """Try all lags and clock rates on the part of the record where most happens.
 
     The sum of the pieces' correlations along ``lag + rate t`` is the Radon transform of the

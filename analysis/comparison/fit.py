@@ -17,7 +17,13 @@ from typing import Final
 
 import numpy as np
 
-from analysis.comparison.linear import Linear, Model, NothingInCommonError, Problem, linearised
+from analysis.comparison.linear import (
+    ComparisonProblem,
+    Linear,
+    Model,
+    NothingInCommonError,
+    linearised,
+)
 from hardware.description.arrays import BoolArray, ComplexArray, FloatArray
 
 _STANDS_OUT: Final = 20.0  # power over the noise's; noise alone is that strong once in e^20
@@ -31,7 +37,7 @@ _ROUNDING: Final = 1e-12  # of the mean power: splines and filters are no better
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class ComparisonFit:
     """A model and what it leaves.
 
     Attributes
@@ -92,7 +98,7 @@ class Fit:
         return float((2.0 * np.abs(self.residual[bins]) ** 2 / noise[bins]).sum())
 
 
-def fit(problem: Problem, model: Model, *, lines: bool = False) -> Fit:
+def fit(problem: ComparisonProblem, model: Model, *, lines: bool = False) -> ComparisonFit:
     """Improve a model until it moves no more.
 
     Its gains are found anew. The lag must be right within a quarter of the motion's period or so.
@@ -136,7 +142,7 @@ def fit(problem: Problem, model: Model, *, lines: bool = False) -> Fit:
     freedom = max(2.0 * (2 * reach + 1) - len(columns), 1.0)
     # The weights are of the same record: they cost twice what their own scatter is.
     covariance = _covariance(columns, noise, linear) * (1.0 + 4.0 / freedom)
-    return Fit(
+    return ComparisonFit(
         model, covariance, freedom, linear.start, linear.taper, columns,
         linear.target - residual, residual, noise, power, bins, linear.first_bin,
     )  # fmt: skip

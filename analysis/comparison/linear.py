@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from analysis.comparison.band import Track
+from analysis.comparison.band import BandTrack
 from analysis.comparison.dead_band import Play, follow
 from analysis.comparison.first_guess import Alignment
 from analysis.comparison.warp import Warped
@@ -17,7 +17,7 @@ _A_PERIOD: Final = 200.0  # steps in which a dead band is followed: 1e-4 of the 
 
 
 @dataclass(frozen=True)
-class Problem:
+class ComparisonProblem:
     """Two channels as they are compared.
 
     Attributes
@@ -31,7 +31,7 @@ class Problem:
 
     first: Warped
     channels: int
-    second: Track
+    second: BandTrack
     motion_hz: float
     low_hz: float
     top_hz: float
@@ -88,7 +88,7 @@ class Linear:
         return np.array([*rows, *self.drift])
 
 
-def linearised(problem: Problem, model: Model) -> Linear:
+def linearised(problem: ComparisonProblem, model: Model) -> Linear:
     """Return the columns on the samples that both channels have.
 
     Raises
@@ -136,7 +136,7 @@ def linearised(problem: Problem, model: Model) -> Linear:
     )
 
 
-def play_at(problem: Problem, model: Model, time_s: FloatArray) -> Play | None:
+def play_at(problem: ComparisonProblem, model: Model, time_s: FloatArray) -> Play | None:
     """Return the play at even times, followed in steps fine enough not to cut its reversals."""
     if model.half is None:
         return None

@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from analysis.comparison.fit import Fit
-from analysis.comparison.linear import Problem
+from analysis.comparison.fit import ComparisonFit
+from analysis.comparison.linear import ComparisonProblem
 from hardware.description.arrays import BoolArray, FloatArray
 
 _PERIODS: Final = 5.0  # of the motion in a part of the record
@@ -61,7 +61,7 @@ class Parts:
         return self.excess(self.gain - 1.0, self.gain_uncertainty, 1)
 
 
-def over_time(problem: Problem, fit: Fit) -> Parts:
+def over_time(problem: ComparisonProblem, fit: ComparisonFit) -> Parts:
     """Return the parts of the record, ten periods long or more."""
     from scipy.fft import irfft
 
@@ -81,7 +81,7 @@ def over_time(problem: Problem, fit: Fit) -> Parts:
     return _gathered(middles, found)
 
 
-def over_frequency(problem: Problem, fit: Fit) -> Parts:
+def over_frequency(problem: ComparisonProblem, fit: ComparisonFit) -> Parts:
     """Return the groups of frequencies, each harmonic by itself where there are harmonics."""
     bins = np.flatnonzero(fit.stands_out)
     breaks = np.flatnonzero(np.diff(bins) > 2) + 1

@@ -10,7 +10,7 @@ from hardware.description.flags import Flag
 
 
 @dataclass(frozen=True, eq=False)
-class Trace:
+class ComparedTrace:
     """Both channels on the second one's clock, up to twice their highest frequency, in its unit.
 
     Attributes
@@ -27,7 +27,7 @@ class Trace:
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class ChannelComparison:
     """A second channel over a first one: ``second(t) = gain first(t - lag(t))``.
 
     Attributes
@@ -81,7 +81,7 @@ class Comparison:
     dead_band_found: bool
     over_time: Parts
     over_frequency: Parts
-    trace: Trace
+    trace: ComparedTrace
     flags: tuple[Flag, ...] = ()
 
     def lag_at(self, time_s: float) -> Estimate:

@@ -6,10 +6,10 @@ from typing import Final
 
 import numpy as np
 
-from analysis.comparison.fit import Fit
-from analysis.comparison.linear import Problem, play_at
+from analysis.comparison.fit import ComparisonFit
+from analysis.comparison.linear import ComparisonProblem, play_at
 from analysis.comparison.parts import Parts, over_frequency, over_time
-from analysis.comparison.result import Comparison, Trace
+from analysis.comparison.result import ChannelComparison, ComparedTrace
 from analysis.comparison.settings import ComparisonSettings
 from analysis.uncertainty.estimate import Estimate
 from hardware.description.arrays import FloatArray
@@ -37,8 +37,8 @@ class Signal:
 class Found:
     """A fit, the period by which its lag may be off, half the dead band with its uncertainty."""
 
-    problem: Problem
-    fit: Fit
+    problem: ComparisonProblem
+    fit: ComparisonFit
     modulo_s: float | None
     dead_band: FloatArray | None
     seen: bool
@@ -46,7 +46,7 @@ class Found:
 
 def told(
     found: Found, leading: Sequence[Signal], following: Signal, settings: ComparisonSettings
-) -> Comparison:
+) -> ChannelComparison:
     """Return the comparison; intervals are widened where parts scatter more than they should."""
     problem, fit = found.problem, found.fit
     model, u = fit.model, fit.uncertainty
@@ -67,7 +67,7 @@ def told(
         band = Estimate.of(2.0 * half, 2.0 * half_u, leading[0].unit or "1", fit.freedom)
     time_s = problem.second.time_s[fit.start : fit.start + fit.count]
     bins = (np.flatnonzero(fit.stands_out) + fit.first_bin) * problem.second.rate_hz / fit.count
-    return Comparison(
+    return ChannelComparison(
         first=leading[0].name,
         second=following.name,
         unit=_per_second(unit, max(-settings.order, 0)),
@@ -97,7 +97,7 @@ def told(
     )
 
 
-def _gain(fit: Fit, row: int, wider: float, stretched: float, unit: str) -> Estimate:
+def _gain(fit: ComparisonFit, row: int, wider: float, stretched: float, unit: str) -> Estimate:
     """Return a gain; noise in the first channel draws it down, by no more than all the noise does.
 
     How much of the noise is whose is not known: the middle is taken, and the rest is an input of
@@ -122,7 +122,7 @@ def _per_second(unit: str, order: int) -> str:
     return f"{bare}/s{total if total > 1 else ''}" if total else bare
 
 
-def _trace(problem: Problem, fit: Fit, time_s: FloatArray) -> Trace:
+def _trace(problem: ComparisonProblem, fit: ComparisonFit, time_s: FloatArray) -> ComparedTrace:
     where, gains = fit.model.alignment, fit.model.gains
     asked_s = where.times_s(time_s)
     leaders = [problem.first.values(asked_s, 0, k) for k in range(problem.channels)]
@@ -134,7 +134,7 @@ def _trace(problem: Problem, fit: Fit, time_s: FloatArray) -> Trace:
     line = np.polynomial.Polynomial.fit(time_s, shown - expected, 1)
     highest = 2 * int(np.flatnonzero(fit.stands_out)[-1] + fit.first_bin)
     both = (_below(one, highest) for one in (shown, expected + line(time_s)))
-    return Trace(time_s, *both)
+    return ComparedTrace(time_s, *both)
 
 
 def _below(values: FloatArray, highest: int) -> FloatArray:
@@ -187,7 +187,7 @@ def _by_frequency(parts: Parts) -> tuple[Flag, ...]:
     return (Flag("depends_on_frequency", Severity.WARNING, message),)
 
 
-def _in_part(fit: Fit, order: int) -> tuple[Flag, ...]:
+def _in_part(fit: ComparisonFit, order: int) -> tuple[Flag, ...]:
     """Say where gain and lag explain little, and whether another derivative would explain more."""
     power, left = np.abs(fit.shape) ** 2, np.abs(fit.residual) ** 2
     shown = np.abs(fit.shape + fit.residual)

@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from analysis.comparison.band import Track
+from analysis.comparison.band import BandTrack
 from hardware.description.arrays import BoolArray, FloatArray
 
 _ORDER: Final = 5
@@ -21,7 +21,7 @@ class Warped:
         At one rate, with the same orders.
     """
 
-    def __init__(self, *tracks: Track) -> None:
+    def __init__(self, *tracks: BandTrack) -> None:
         self._tracks = tracks
         one = tracks[0]
         self.rate_hz = one.rate_hz

@@ -6,7 +6,7 @@ from hardware.description.setpoint import SetPoint
 
 
 @dataclass(frozen=True)
-class Candidate:
+class CandidateRun:
     """A run that could be made.
 
     Attributes

@@ -16,9 +16,9 @@ from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit, fit_terms
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import Belief, believed_cycles
-from analysis.design.candidate import Candidate
+from analysis.design.candidate import CandidateRun
 from analysis.design.noise import Noise
-from analysis.design.regression import Fit, Target, fits_of
+from analysis.design.regression import DesignFit, DesignTarget, fits_of
 from hardware.description.errors import DataError
 
 SCATTER: Final = "scatter of the runs"
@@ -27,7 +27,7 @@ _SOURCES: Final = ((re.compile("scatter of .*"), SCATTER), (re.compile("repeats:
 
 
 @dataclass(frozen=True)
-class Expected:
+class ExpectedCoefficient:
     """How well one coefficient is expected to be known.
 
     Attributes
@@ -62,7 +62,7 @@ class Expected:
         return not self.standard_uncertainty > self.wanted
 
 
-def made_up(candidates: Sequence[Candidate], belief: Belief, noise: Noise) -> list[BodyCycle]:
+def made_up(candidates: Sequence[CandidateRun], belief: Belief, noise: Noise) -> list[BodyCycle]:
     """Return the cycles that are expected of runs, named by their place."""
     names = [f"run {k + 1}" for k in range(len(candidates))]
     scatter = [
@@ -74,12 +74,12 @@ def made_up(candidates: Sequence[Candidate], belief: Belief, noise: Noise) -> li
 
 
 def expected(
-    candidates: Sequence[Candidate],
+    candidates: Sequence[CandidateRun],
     cycles: Sequence[BodyCycle],
-    targets: Sequence[Target],
+    targets: Sequence[DesignTarget],
     belief: Belief,
     stated: StatedUncertainties,
-) -> tuple[Expected, ...]:
+) -> tuple[ExpectedCoefficient, ...]:
     """Return how well all that is asked for is expected to be known by some runs.
 
     Parameters
@@ -95,7 +95,7 @@ def expected(
 
 
 def fitted(
-    fit: Fit, cycles: Sequence[BodyCycle], belief: Belief, stated: StatedUncertainties
+    fit: DesignFit, cycles: Sequence[BodyCycle], belief: Belief, stated: StatedUncertainties
 ) -> CycleFit:
     """Return the fit of some cycles.
 
@@ -107,8 +107,8 @@ def fitted(
 
 
 def _rows(
-    fit: Fit, cycles: Sequence[BodyCycle], belief: Belief, stated: StatedUncertainties
-) -> Iterator[Expected]:
+    fit: DesignFit, cycles: Sequence[BodyCycle], belief: Belief, stated: StatedUncertainties
+) -> Iterator[ExpectedCoefficient]:
     names = list(belief.values)
     asked = [k for k in fit.places if not fit.wanted or names[k] in fit.wanted]
     try:
@@ -117,7 +117,7 @@ def _rows(
         found, why = None, str(error)
     for k in asked:
         place = fit.places.index(k)
-        yield Expected(
+        yield ExpectedCoefficient(
             names[k],
             fit.where,
             belief.terms[k].unit,

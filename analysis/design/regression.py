@@ -23,7 +23,7 @@ from analysis.coefficients.cycle_fit import FIRST, HIGHER, residual_variance, tr
 from analysis.coefficients.cycle_model import CycleProblem
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import ORDERS, Belief, believed_cycles
-from analysis.design.candidate import Candidate
+from analysis.design.candidate import CandidateRun
 from analysis.design.noise import Noise
 from hardware.description.arrays import FloatArray, IntArray
 from hardware.description.setpoint import SetPoint
@@ -32,7 +32,7 @@ _AT_ONCE: Final = 500  # cycles: some 100 MB
 
 
 @dataclass(frozen=True)
-class Target:
+class DesignTarget:
     """How well a coefficient has to be known.
 
     Attributes
@@ -79,7 +79,7 @@ class Regression:
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class DesignFit:
     """Which candidates are fitted together with which terms of one load.
 
     Attributes
@@ -129,13 +129,13 @@ class Prospects:
         Which motion each candidate has, shape ``(n,)``.
     """
 
-    candidates: tuple[Candidate, ...]
+    candidates: tuple[CandidateRun, ...]
     belief: Belief
     motion: IntArray
     told: Mapping[int, Told]
 
     def regressions(
-        self, targets: Sequence[Target], like: Sequence[int] = ()
+        self, targets: Sequence[DesignTarget], like: Sequence[int] = ()
     ) -> tuple[Regression, ...]:
         """Return the regressions that targets ask for, as :func:`fits_of` has them.
 
@@ -149,7 +149,7 @@ class Prospects:
             self._regression(fit, like) for fit in fits_of(self.candidates, targets, self.belief)
         )
 
-    def _regression(self, fit: Fit, like: Sequence[int]) -> Regression:
+    def _regression(self, fit: DesignFit, like: Sequence[int]) -> Regression:
         names = tuple(list(self.belief.values)[k] for k in fit.places)
         wanted = np.array([fit.wanted.get(name, np.inf) for name in names])
         own, told = self.motion[fit.members], self.told[fit.row]
@@ -176,7 +176,7 @@ class Prospects:
 
 
 def prospects(
-    candidates: Sequence[Candidate], belief: Belief, noise: Noise, stated: StatedUncertainties
+    candidates: Sequence[CandidateRun], belief: Belief, noise: Noise, stated: StatedUncertainties
 ) -> Prospects:
     """Return what is known of runs that could be made.
 
@@ -192,8 +192,8 @@ def prospects(
 
 
 def fits_of(
-    candidates: Sequence[Candidate], targets: Sequence[Target], belief: Belief
-) -> Iterator[Fit]:
+    candidates: Sequence[CandidateRun], targets: Sequence[DesignTarget], belief: Belief
+) -> Iterator[DesignFit]:
     """Yield the fits that targets ask for: of all runs, and of those of each frequency and speed.
 
     Without a target all terms of all runs are asked for.
@@ -220,7 +220,7 @@ def fits_of(
 
 def _by_load(
     members: IntArray, wanted: Mapping[str, float], belief: Belief, degree: int, where: str = ""
-) -> Iterator[Fit]:
+) -> Iterator[DesignFit]:
     """Yield the fit of each load that is asked for, with terms of up to some degree."""
     names = list(belief.values)
     for row in sorted({term.row for term in belief.terms}):
@@ -229,7 +229,7 @@ def _by_load(
         )
         if places and (not wanted or any(names[k] in wanted for k in places)):
             orders = HIGHER if degree > 1 else FIRST
-            yield Fit(row, places, orders, members, wanted, where)
+            yield DesignFit(row, places, orders, members, wanted, where)
 
 
 def _told(

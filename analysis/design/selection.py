@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from analysis.design.regression import Prospects, Regression, Target
+from analysis.design.regression import DesignTarget, Prospects, Regression
 from hardware.description.arrays import BoolArray, FloatArray, IntArray
 
 MOST_RUNS: Final = 200
@@ -105,7 +105,7 @@ def covariance(regression: Regression, chosen: Sequence[int]) -> FloatArray:
 
 def select(
     prospects: Prospects,
-    targets: Sequence[Target],
+    targets: Sequence[DesignTarget],
     time_s: float = math.inf,
     made: Sequence[int] = (),
 ) -> Selection:

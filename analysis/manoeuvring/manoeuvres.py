@@ -11,7 +11,7 @@ import numpy as np
 
 from analysis.manoeuvring.march import (
     Log,
-    Moment,
+    ShipState,
     approach,
     heading_beyond,
     march,
@@ -28,7 +28,7 @@ _SPIRAL_HOLDS = 20.0  # L/U for each rudder angle
 
 
 @dataclass(frozen=True)
-class Turn:
+class TurningCircle:
     """A turning circle; every array has the shape ``(n,)``, NaN for a ship that does not turn.
 
     Attributes
@@ -94,7 +94,7 @@ def scale_s(ship: Ship) -> float:
 
 def turning_circle(
     ship: Ship, rudder_rad: float, log: Log | None = None, step: float = STEP_LENGTHS
-) -> Turn:
+) -> TurningCircle:
     """Turn with the rudder laid at once to an angle; a positive one turns to starboard."""
     side, unit, length = math.copysign(1.0, rudder_rad), scale_s(ship), ship.hull.length_m
     now, places = approach(ship), []
@@ -104,7 +104,7 @@ def turning_circle(
         places.append(now.state)
     quarter, half, steady = places
     speed = np.hypot(steady[U], steady[V])
-    return Turn(
+    return TurningCircle(
         quarter[X] / length,
         side * quarter[Y] / length,
         side * half[Y] / length,
@@ -157,7 +157,7 @@ def spiral(ship: Ship, largest_rad: float, step_rad: float) -> Spiral:
     return Spiral(np.asarray(angles), down, np.array(reached[len(angles) - 1 :])[::-1])
 
 
-def _way(moments: list[Moment]) -> FloatArray:
+def _way(moments: list[ShipState]) -> FloatArray:
     """Return how far each ship went, m: chords of the track."""
     places = np.array([one.state[[X, Y]] for one in moments])
     return np.asarray(np.hypot(*np.diff(places, axis=0).swapaxes(0, 1)).sum(axis=0))

@@ -19,7 +19,7 @@ _SECANTS = 6  # the step is short and the event smooth in it: digits of a double
 
 
 @dataclass(frozen=True)
-class Moment:
+class ShipState:
     """Where n ships are: time in s and rudder in rad, ``(n,)``, and state, ``(6, n)``."""
 
     time_s: FloatArray
@@ -32,21 +32,21 @@ class Log:
     """What is kept of every step of the first ships, for figures."""
 
     ships: int = 40
-    moments: list[Moment] = field(default_factory=list)
+    moments: list[ShipState] = field(default_factory=list)
 
-    def keep(self, moment: Moment) -> None:
+    def keep(self, moment: ShipState) -> None:
         """Add a moment of the first ships."""
         few = slice(self.ships)
         self.moments.append(
-            Moment(moment.time_s[few], moment.state[:, few], moment.rudder_rad[few])
+            ShipState(moment.time_s[few], moment.state[:, few], moment.rudder_rad[few])
         )
 
 
-def approach(ship: Ship) -> Moment:
+def approach(ship: Ship) -> ShipState:
     """Return straight course at the approach speed."""
     state = np.zeros((6, ship.count))
     state[U] = ship.approach_m_s
-    return Moment(np.zeros(ship.count), state, np.zeros(ship.count))
+    return ShipState(np.zeros(ship.count), state, np.zeros(ship.count))
 
 
 def heading_beyond(target_rad: float, side: float) -> Event:
@@ -61,13 +61,13 @@ def turning_back(side: float) -> Event:
 
 def march(
     ship: Ship,
-    start: Moment,
+    start: ShipState,
     order_rad: float,
     until: Event | None,
     longest_s: float,
     step_s: float,
     log: Log | None = None,
-) -> Moment:
+) -> ShipState:
     """Return where the ships are at the event; without an event, after ``longest_s``.
 
     Ships that do not come to the event in that time are NaN from there on.
@@ -92,10 +92,10 @@ def march(
             running = running & ~hit
         arrived = lasts == reach
         rudder = np.where(arrived, order_rad, now.rudder_rad + rate * lasts)
-        now = Moment(now.time_s + lasts, moved, rudder)
+        now = ShipState(now.time_s + lasts, moved, rudder)
         late = running & (now.time_s >= ends)
         if until is not None and late.any():
-            now = Moment(
+            now = ShipState(
                 np.where(late, np.nan, now.time_s), np.where(late, np.nan, now.state), rudder
             )
         running = running & ~late
@@ -104,7 +104,7 @@ def march(
     return now
 
 
-def _stepped(ship: Ship, now: Moment, rate: FloatArray, lasts: FloatArray) -> FloatArray:
+def _stepped(ship: Ship, now: ShipState, rate: FloatArray, lasts: FloatArray) -> FloatArray:
     def rates(state: FloatArray, share: float) -> FloatArray:
         return ship.rates(state, now.rudder_rad + share * lasts * rate)
 
@@ -115,7 +115,9 @@ def _stepped(ship: Ship, now: Moment, rate: FloatArray, lasts: FloatArray) -> Fl
     return np.asarray(now.state + lasts / 6.0 * (first + 2.0 * second + 2.0 * third + fourth))
 
 
-def _when(ship: Ship, now: Moment, rate: FloatArray, lasts: FloatArray, until: Event) -> FloatArray:
+def _when(
+    ship: Ship, now: ShipState, rate: FloatArray, lasts: FloatArray, until: Event
+) -> FloatArray:
     """Return how long each step lasts until the event, by secants."""
     before, after = np.zeros_like(lasts), lasts
     value, last = until(now.state), until(_stepped(ship, now, rate, lasts))

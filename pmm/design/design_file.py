@@ -17,9 +17,9 @@ from analysis.coefficients.names import PLACES, Form, name_of
 from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainties
 from analysis.coefficients.terms import SURGE
 from analysis.design.belief import Belief
-from analysis.design.candidate import Candidate
+from analysis.design.candidate import CandidateRun
 from analysis.design.noise import Noise
-from analysis.design.regression import Target
+from analysis.design.regression import DesignTarget
 from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import RunKind
 from hardware.description.setpoint import Medium
@@ -27,7 +27,7 @@ from pmm.campaign.model_uncertainty import take_uncertainty
 from pmm.coefficients.stated_inputs import largest, of_gauges, of_model
 from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
 from pmm.design.design_tables import DesignTables
-from pmm.design.grid import Grid, grid_of
+from pmm.design.grid import RunGrid, grid_of
 from pmm.design.targets import targets_of
 from pmm.plan.expansion import all_of, expand
 from pmm.plan.ordering import runs_of
@@ -68,12 +68,12 @@ class DesignFile:
     rig: RigFile
     tables: PlanTables
     fixed: tuple[RunPlan, ...]
-    made: tuple[Candidate, ...]
-    grid: Grid
+    made: tuple[CandidateRun, ...]
+    grid: RunGrid
     belief: Belief
     noise: Noise
     stated: StatedUncertainties
-    targets: tuple[Target, ...]
+    targets: tuple[DesignTarget, ...]
     time_s: float
     cycles: tuple[BodyCycle, ...] = ()
 
@@ -154,7 +154,7 @@ def _design(
     if could and not grid.runs:
         why = ", ".join(f"{what} ({count})" for what, count in grid.left_out.items())
         faults.append(Fault(("grid",), f"has no run that may be made; left out for: {why}"))
-    targets: tuple[Target, ...] = ()
+    targets: tuple[DesignTarget, ...] = ()
     if belief is not None and not faults:
         points = [run.set_point for run in grid.runs]
         targets = targets_of(tables.targets, belief, points, faults)
@@ -163,7 +163,7 @@ def _design(
         faults.append(Fault(("targets",), "are missing, and so is limits.time_h; give either"))
     if faults or belief is None:
         raise as_error(path, faults, original)
-    made = tuple(Candidate(run.set_point, run.periods, np.inf) for run in fixed if _tells(run))
+    made = tuple(CandidateRun(run.set_point, run.periods, np.inf) for run in fixed if _tells(run))
     return DesignFile(
         plan.name or path.resolve().parent.name, path, plan_table, found.rig_path, rig, kept,
         fixed, made, grid, belief, _noise(tables, rig), _stated(tables, rig), targets,

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from itertools import accumulate
 from typing import Final
 
-from analysis.design.expectation import REPEATS, SCATTER, Expected, expected, made_up
+from analysis.design.expectation import REPEATS, SCATTER, ExpectedCoefficient, expected, made_up
 from analysis.design.regression import prospects
 from analysis.design.selection import select
 from pmm.design.design_file import DesignFile
@@ -17,7 +17,7 @@ _HARDER: Final = (1.0, 1.1, 1.25, 1.5, 2.0)  # times as much is asked for
 
 
 @dataclass(frozen=True)
-class Step:
+class DesignStep:
     """The design up to one of its runs.
 
     Attributes
@@ -33,7 +33,7 @@ class Step:
     run: RunPlan
     repeats: int
     time_s: float
-    known: tuple[Expected, ...]
+    known: tuple[ExpectedCoefficient, ...]
 
 
 @dataclass(frozen=True)
@@ -52,9 +52,9 @@ class Design:
         Of each target that is not met, why.
     """
 
-    steps: tuple[Step, ...]
-    now: tuple[Expected, ...]
-    known: tuple[Expected, ...]
+    steps: tuple[DesignStep, ...]
+    now: tuple[ExpectedCoefficient, ...]
+    known: tuple[ExpectedCoefficient, ...]
     why: tuple[str, ...]
 
     @property
@@ -101,7 +101,7 @@ def _chosen(file: DesignFile) -> list[tuple[int, int]]:
     return list(Counter(found.chosen).items())
 
 
-def _known(file: DesignFile) -> tuple[Expected, ...]:
+def _known(file: DesignFile) -> tuple[ExpectedCoefficient, ...]:
     """Return what the runs that were made tell, or will tell that are made in any case."""
     if not file.made:
         return ()
@@ -109,7 +109,7 @@ def _known(file: DesignFile) -> tuple[Expected, ...]:
     return expected(file.made, cycles, file.targets, file.belief, file.stated)
 
 
-def _steps(file: DesignFile, chosen: list[tuple[int, int]]) -> tuple[Step, ...]:
+def _steps(file: DesignFile, chosen: list[tuple[int, int]]) -> tuple[DesignStep, ...]:
     """Return the steps: the runs that were made, or are made in any case, come before them."""
     order = [*file.made]
     ends = []
@@ -122,7 +122,7 @@ def _steps(file: DesignFile, chosen: list[tuple[int, int]]) -> tuple[Step, ...]:
     start_s = math.fsum(duration_rows(file.fixed, file.rig))
     costs = [file.grid.candidates[k].cost_s * repeats for k, repeats in chosen]
     return tuple(
-        Step(
+        DesignStep(
             file.grid.runs[candidate],
             repeats,
             start_s + time_s,
@@ -132,7 +132,7 @@ def _steps(file: DesignFile, chosen: list[tuple[int, int]]) -> tuple[Step, ...]:
     )
 
 
-def _why(one: Expected, file: DesignFile, used_s: float) -> str:
+def _why(one: ExpectedCoefficient, file: DesignFile, used_s: float) -> str:
     """Return why a target is not met, and what would help."""
     where = f" at {one.where}" if one.where else ""
     limited = math.isfinite(file.time_s)

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
-from analysis.design.candidate import Candidate
+from analysis.design.candidate import CandidateRun
 from pmm.design.design_tables import DesignLimits
 from pmm.plan import check_table as table
 from pmm.plan.condition_checks import condition_findings
@@ -23,7 +23,7 @@ from pmm.plan.run_plan import RunPlan
 
 
 @dataclass(frozen=True)
-class Grid:
+class RunGrid:
     """Candidates and the runs that they are.
 
     Attributes
@@ -35,13 +35,13 @@ class Grid:
     """
 
     runs: tuple[RunPlan, ...]
-    candidates: tuple[Candidate, ...]
+    candidates: tuple[CandidateRun, ...]
     left_out: dict[str, int]
 
 
 def grid_of(
     runs: Sequence[RunPlan], rig: RigFile, limits: DesignLimits, zero: ZeroTable | None
-) -> Grid:
+) -> RunGrid:
     """Return the candidates among some runs."""
     kept: list[RunPlan] = []
     left_out: Counter[str] = Counter()
@@ -55,13 +55,13 @@ def grid_of(
             left_out[why] += 1
         else:
             kept.append(run)
-    return Grid(tuple(kept), tuple(_candidate(run, rig, zero) for run in kept), dict(left_out))
+    return RunGrid(tuple(kept), tuple(_candidate(run, rig, zero) for run in kept), dict(left_out))
 
 
-def _candidate(run: RunPlan, rig: RigFile, zero: ZeroTable | None) -> Candidate:
+def _candidate(run: RunPlan, rig: RigFile, zero: ZeroTable | None) -> CandidateRun:
     """Return a run with what it costs: its pause and ramps, and its part of the zero runs."""
     share = 0.0 if zero is None else zero.duration_s / zero.every
-    return Candidate(run.set_point, run.periods, run_s(run, None, rig) + share)
+    return CandidateRun(run.set_point, run.periods, run_s(run, None, rig) + share)
 
 
 def _excluding(found: Iterable[PlanFinding], limits: DesignLimits) -> Iterator[str]:

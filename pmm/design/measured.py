@@ -14,8 +14,8 @@ import numpy as np
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.repeats import repeatability, with_repeats
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
-from analysis.design.candidate import Candidate
-from analysis.design.expectation import SCATTER, Expected, expected, made_up
+from analysis.design.candidate import CandidateRun
+from analysis.design.expectation import SCATTER, ExpectedCoefficient, expected, made_up
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
@@ -32,7 +32,7 @@ _ENOUGH = 3  # runs: fewer say too little of the noise
 class Measured:
     """Oscillations that were made and can be used; each with its cycle."""
 
-    candidates: tuple[Candidate, ...]
+    candidates: tuple[CandidateRun, ...]
     cycles: tuple[BodyCycle, ...]
     stated: StatedUncertainties
 
@@ -86,7 +86,7 @@ def _measured(file: DesignFile, folder: Path) -> Measured:
                 f"{file.rig_path.name}; name the campaigns of this design alone"
             )
     made = [runs[one.name] for one in cycles]
-    candidates = tuple(Candidate(one.set_point, one.periods, math.inf) for one in made)
+    candidates = tuple(CandidateRun(one.set_point, one.periods, math.inf) for one in made)
     return Measured(candidates, tuple(cycles), outcome.stated)
 
 
@@ -103,7 +103,7 @@ def _noise_shown(file: DesignFile) -> float:
     return median(ratios) if ratios and min(ratios) > 0.0 else 1.0
 
 
-def _scatter(one: Expected) -> float:
+def _scatter(one: ExpectedCoefficient) -> float:
     """Return what the periods' scatter leaves of a coefficient."""
     if not math.isfinite(one.standard_uncertainty):
         return math.inf

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from hardware.description.kinds import Motion
 from pmm.design.design_file import DesignFile
-from pmm.design.designing import Design, Step
+from pmm.design.designing import Design, DesignStep
 from pmm.document.notation import clock
 from pmm.toml_text import toml_table, toml_value
 
@@ -40,7 +40,7 @@ def _parts(file: DesignFile, design: Design, target: Path) -> Iterator[str]:
         )
 
 
-def _entry(step: Step, number: int) -> Mapping[str, Any]:
+def _entry(step: DesignStep, number: int) -> Mapping[str, Any]:
     run, point = step.run, step.run.set_point
     return {
         "motion": str(run.motion),

@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from analysis.design.belief import Belief
-from analysis.design.regression import Target
+from analysis.design.regression import DesignTarget
 from hardware.description.setpoint import SetPoint
 from pmm.configuration import Fault
 
@@ -32,7 +32,7 @@ def targets_of(
     belief: Belief,
     points: Sequence[SetPoint],
     faults: list[Fault],
-) -> tuple[Target, ...]:
+) -> tuple[DesignTarget, ...]:
     """Return the targets of a table; what is wrong with it is noted.
 
     Parameters
@@ -47,7 +47,7 @@ def targets_of(
         if not own:
             name, band, size, relative = _asked(key, value)
             believed = abs(belief.values[name]) if relative else 1.0
-            found.append(Target(name, size * believed, band))
+            found.append(DesignTarget(name, size * believed, band))
     return tuple(found)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from analysis.gap.pendulum.causes import tolerance
-from analysis.gap.pendulum.problem import Problem
+from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.surrogate import surrogate
 from analysis.gap.pendulum.swings import (
     Windows,
@@ -40,7 +40,7 @@ _GATE_SWINGS = 4  # in a window
 _OWN = ("line_excess", "spacing", "amplitude_period")  # each suspension has its own error
 
 
-def load_problem(path: Path) -> Problem:
+def load_problem(path: Path) -> PendulumProblem:
     """Read a file and its records.
 
     Raises
@@ -55,7 +55,7 @@ def load_problem(path: Path) -> Problem:
 
 def problem_of(
     case: PendulumCase, path: Path, more: Mapping[str, type[Any]] | None = None
-) -> Problem:
+) -> PendulumProblem:
     """Read the records of a file that has been read.
 
     It raises what :func:`load_problem` raises.
@@ -72,7 +72,7 @@ def problem_of(
     )
     if scaled:
         trials = tuple(_suspended(case, one, path.parent) for one in case.suspensions)
-        problem = Problem(trials, known, kinds=("period",))
+        problem = PendulumProblem(trials, known, kinds=("period",))
     else:
         problem = _decay(case, path.parent, known)
     on = [make_effect(one.name, more, **one.parameters) for one in case.effects]
@@ -84,7 +84,7 @@ def _with(trials: Sequence[Trial], effects: Sequence[PendulumEffect]) -> tuple[T
     return tuple(replace(one, effects=tuple(effects)) for one in trials)
 
 
-def _checked(path: Path, problem: Problem) -> Problem:
+def _checked(path: Path, problem: PendulumProblem) -> PendulumProblem:
     for number, trial in enumerate(problem.trials):
         if not (problem.trial == number).any():
             raise DataError(
@@ -94,7 +94,7 @@ def _checked(path: Path, problem: Problem) -> Problem:
     return problem
 
 
-def _decay(case: PendulumCase, folder: Path, known: tuple[Any, ...]) -> Problem:
+def _decay(case: PendulumCase, folder: Path, known: tuple[Any, ...]) -> PendulumProblem:
     if case.measured is None:
         raise ConfigurationError(f"{case.name}: no [measured] record")
     part = _part(case.measured, folder)
@@ -102,7 +102,7 @@ def _decay(case: PendulumCase, folder: Path, known: tuple[Any, ...]) -> Problem:
     if body is not None:
         trial = _sampled(part, body, part.period_s)
         _check_period(trial, part.period_s)
-        return Problem((trial,), known)
+        return PendulumProblem((trial,), known)
     if case.simulated is None:
         raise ConfigurationError(f"{case.name}: no [simulated] record, [floating] or [pivot]")
     theirs = _part(case.simulated, folder)
@@ -112,7 +112,7 @@ def _decay(case: PendulumCase, folder: Path, known: tuple[Any, ...]) -> Problem:
     trial = replace(
         _sampled(part, unit, theirs.period_s), bench=model.bench, variants=model.variants
     ).released()
-    return Problem((trial,), known, model_error=model.rms)
+    return PendulumProblem((trial,), known, model_error=model.rms)
 
 
 def _check_period(trial: Trial, period_s: float) -> None:

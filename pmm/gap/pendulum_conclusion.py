@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from analysis.gap.inference.answers import COEFFICIENTS, NONE, ODD_RUN, UNKNOWN, Answers
-from analysis.gap.pendulum.diagnose import Diagnosis
+from analysis.gap.pendulum.diagnose import PendulumDiagnosis
 from analysis.gap.pendulum.search import named
 from analysis.gap.pendulum.verdict import CAUSE, UNTOLD, Verdict
 from analysis.gap.search.fit import Fit
@@ -48,7 +48,7 @@ class PendulumConclusion:
         return self.verdict == UNTOLD and self.unknown > 0.5
 
 
-def conclusion_of(found: Diagnosis) -> PendulumConclusion:
+def conclusion_of(found: PendulumDiagnosis) -> PendulumConclusion:
     """Return what a diagnosis comes to."""
     answers, verdict = found.weighed.answers, found.verdict
     odd = max(answers.odd_runs, key=lambda run: answers.odd_runs[run], default="")

@@ -6,9 +6,9 @@ from functools import partial
 from typing import Any, Final
 
 from analysis.gap.inference.answers import COEFFICIENTS, NONE, effects_in
-from analysis.gap.pendulum.diagnose import Diagnosis
+from analysis.gap.pendulum.diagnose import PendulumDiagnosis
 from analysis.gap.pendulum.search import named
-from analysis.gap.pendulum.verdict import Law
+from analysis.gap.pendulum.verdict import DampingLaw
 from analysis.gap.pendulum.withheld import Foretold
 from analysis.gap.search.fit import Fit
 from pmm.document.content import (
@@ -116,7 +116,7 @@ def _sections(name: str, examined: ExaminedPendulum) -> Iterator[Section]:
     yield _next(found)
 
 
-def _numbers(found: Diagnosis) -> Iterator[Data]:
+def _numbers(found: PendulumDiagnosis) -> Iterator[Data]:
     """Yield what programs alone get."""
     verdict, answers = found.verdict, found.weighed.answers
     yield Data("verdict", verdict.said)
@@ -133,14 +133,14 @@ def _numbers(found: Diagnosis) -> Iterator[Data]:
     yield Data("rivals", [named(one) for one in found.rivals or ()])
 
 
-def _best(found: Diagnosis) -> tuple[str, ...]:
+def _best(found: PendulumDiagnosis) -> tuple[str, ...]:
     """Return the most probable answer: causes, none, or what it is besides."""
     best = found.weighed.answers.best
     calm = best in (NONE, COEFFICIENTS)
     return () if calm else effects_in(best) or (best,)
 
 
-def _which(found: Diagnosis) -> Iterator[Content]:
+def _which(found: PendulumDiagnosis) -> Iterator[Content]:
     sets = {" and ".join(named(one)): one for one in found.weighed.sets.values()}
     sets[" and ".join(named(found.best))] = found.settled.best
     answers: tuple[Column[tuple[str, float]], ...] = (
@@ -168,8 +168,8 @@ def fitted(one: Fit) -> str:
     )
 
 
-def _law_columns(found: Diagnosis) -> tuple[Column[Law], ...]:
-    def said(law: Law) -> str:
+def _law_columns(found: PendulumDiagnosis) -> tuple[Column[DampingLaw], ...]:
+    def said(law: DampingLaw) -> str:
         return "" if law is found.laws[0] else "yes" if law.told_apart else "no"
 
     def gaps(withheld: list[float]) -> str:
@@ -184,7 +184,7 @@ def _law_columns(found: Diagnosis) -> tuple[Column[Law], ...]:
     )
 
 
-def _how_far(found: Diagnosis) -> Iterator[Content]:
+def _how_far(found: PendulumDiagnosis) -> Iterator[Content]:
     """Yield, for each withheld regime, what each set of causes leaves of its gap."""
     if found.regimes:
         yield Text((_REGIMES,))
@@ -200,18 +200,18 @@ def _how_far(found: Diagnosis) -> Iterator[Content]:
         yield Table(title, columns, (regime.before, *regime.foretold))
 
 
-def _asked(one: Foretold, found: Diagnosis) -> str:
+def _asked(one: Foretold, found: PendulumDiagnosis) -> str:
     control = "wrong cause: " if one.causes == found.control and one.causes else ""
     return control + (", ".join(one.causes) or "no cause")
 
 
-def _records(found: Diagnosis) -> Iterator[Figure]:
+def _records(found: PendulumDiagnosis) -> Iterator[Figure]:
     for at, trial in enumerate(found.problem.trials):
         draw = partial(figures.swings_figure, found, at)
         yield Figure(f"{RECORD}{at + 1}", f"{trial.name}. {_SWINGS}", draw)
 
 
-def _remains(found: Diagnosis) -> Section:
+def _remains(found: PendulumDiagnosis) -> Section:
     columns: tuple[Column[Any], ...] = (
         word("where", "kind"),
         Column("verdict", lambda one: "gap" if one.beyond else "no gap"),
@@ -230,7 +230,7 @@ def _odds(ln_evidence: float) -> str:
     return f"at odds of {math.exp(ln_evidence):.2g} to 1"
 
 
-def _next(found: Diagnosis) -> Section:
+def _next(found: PendulumDiagnosis) -> Section:
     lines: tuple[str, ...] = ()
     if found.proposals and found.rivals is not None:
         one, other = (" + ".join(named(rival)) for rival in found.rivals)

@@ -8,8 +8,8 @@ from typing import Any
 
 from analysis.gap.forward.candidate import Candidate
 from analysis.gap.pendulum.causes import cause, causes_for
-from analysis.gap.pendulum.diagnose import Diagnosis, diagnose_trials
-from analysis.gap.pendulum.problem import Problem
+from analysis.gap.pendulum.diagnose import PendulumDiagnosis, diagnose_trials
+from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.search import MOST_CAUSES, fit
 from analysis.gap.pendulum.settle import Settled, settle
 from analysis.gap.pendulum.trial import Trial
@@ -43,7 +43,7 @@ class PendulumOptions:
 class ExaminedPendulum:
     """A diagnosis, and which of the effects that were asked for these records cannot show."""
 
-    diagnosis: Diagnosis
+    diagnosis: PendulumDiagnosis
     hidden: tuple[str, ...]
 
     @property
@@ -98,7 +98,7 @@ def fitted_causes(path: Path, names: Sequence[str], options: PendulumOptions) ->
 
 def _prepared(
     case: PendulumCase, path: Path, options: PendulumOptions
-) -> tuple[Problem, dict[str, type[Any]]]:
+) -> tuple[PendulumProblem, dict[str, type[Any]]]:
     """Return the records, and the effects to consider; the user's own have been tried."""
     kinds, more = chosen_of_pendulums(options.effects, options.without)
     problem = problem_of(case, path, more)

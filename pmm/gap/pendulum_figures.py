@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from analysis.gap.pendulum.diagnose import Diagnosis
-from analysis.gap.pendulum.problem import Problem
+from analysis.gap.pendulum.diagnose import PendulumDiagnosis
+from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.search import named
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.verdict import as_stated, remainder
@@ -23,7 +23,7 @@ _LABELS: Final = {"decay": "ln amplitude", "period": "phase to reference (rad)"}
 _EACH: Final = 5  # windows from one number on the map to the next
 
 
-def heat_map(found: Diagnosis) -> "Figure":
+def heat_map(found: PendulumDiagnosis) -> "Figure":
     """Draw E/u of each kind of observable and record over its windows, as stated and after."""
     problem = found.problem
     pairs = sorted(set(zip(problem.trial.tolist(), problem.kind.tolist(), strict=True)))
@@ -37,11 +37,11 @@ def heat_map(found: Diagnosis) -> "Figure":
     return before_and_after(grid, maps, "E/u")
 
 
-def _after(found: Diagnosis) -> FloatArray:
+def _after(found: PendulumDiagnosis) -> FloatArray:
     return remainder(found.settled.problem, found.settled.best)
 
 
-def _map(problem: Problem, pairs: list[tuple[int, int]], left: FloatArray) -> FloatArray:
+def _map(problem: PendulumProblem, pairs: list[tuple[int, int]], left: FloatArray) -> FloatArray:
     """Return sizes by trial and kind over the windows; NaN where a record has none."""
     count = max(one.windows.count for one in problem.trials)
     values = np.full((len(pairs), count), np.nan)
@@ -52,13 +52,13 @@ def _map(problem: Problem, pairs: list[tuple[int, int]], left: FloatArray) -> Fl
     return values
 
 
-def ranking_figure(found: Diagnosis) -> "Figure":
+def ranking_figure(found: PendulumDiagnosis) -> "Figure":
     """Draw the answers' probabilities, the best one in its colour."""
     shown = dict(ranking(found.weighed.answers))
     return probability_bars(shown, list(shown)[:1], "probability; in blue the most probable")
 
 
-def withheld_figure(found: Diagnosis) -> "Figure":
+def withheld_figure(found: PendulumDiagnosis) -> "Figure":
     """Draw the gap of each withheld regime without a cause, with the best set and the control."""
     rows = [regime.name for regime in found.regimes]
     best, control = named(found.best), found.control
@@ -71,7 +71,7 @@ def withheld_figure(found: Diagnosis) -> "Figure":
     return dotted(rows, series)
 
 
-def _gaps(found: Diagnosis, names: tuple[str, ...]) -> list[float]:
+def _gaps(found: PendulumDiagnosis, names: tuple[str, ...]) -> list[float]:
     gaps = []
     for regime in found.regimes:
         own = [_clear(one.gap) for one in regime.foretold if one.causes == names]
@@ -84,7 +84,7 @@ def _clear(gap: float) -> float:
     return math.sqrt(max(gap**2 - 1.0, 0.0))
 
 
-def swings_figure(found: Diagnosis, at: int) -> "Figure":
+def swings_figure(found: PendulumDiagnosis, at: int) -> "Figure":
     """Draw one record's amplitude and phase over time: measured, simulated, and with the causes.
 
     Both simulations have the release and the tolerances that fit best, as in the diagnosis.
@@ -114,7 +114,7 @@ def swings_figure(found: Diagnosis, at: int) -> "Figure":
     return figure
 
 
-def _told(problem: Problem, signature: FloatArray) -> FloatArray:
+def _told(problem: PendulumProblem, signature: FloatArray) -> FloatArray:
     """Return the observations as causes have them, with the release and tolerances that fit."""
     nuisances = problem.nuisances
     free = nuisances.columns @ nuisances.fitted(problem.residual - signature)

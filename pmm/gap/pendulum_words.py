@@ -8,9 +8,9 @@ import numpy as np
 
 from analysis.gap.inference.answers import NONE, ODD_RUN, UNKNOWN
 from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING
-from analysis.gap.pendulum.diagnose import Diagnosis
+from analysis.gap.pendulum.diagnose import PendulumDiagnosis
 from analysis.gap.pendulum.swings import KINDS
-from analysis.gap.pendulum.verdict import TOLD_APART, Law, open_laws, remainder
+from analysis.gap.pendulum.verdict import TOLD_APART, DampingLaw, open_laws, remainder
 from analysis.gap.search.fit import nothing
 from analysis.inertia.spread import cause_statement
 from pmm.gap.pendulum_conclusion import PendulumConclusion, conclusion_of, parameters
@@ -20,18 +20,18 @@ FASTER: Final = "damping that grows faster than linearly"
 _DECAY, _PERIOD = (KINDS.index(one) for one in ("decay", "period"))
 
 
-def sentences(found: Diagnosis) -> tuple[str, str, str]:
+def sentences(found: PendulumDiagnosis) -> tuple[str, str, str]:
     """Return the three sentences."""
     concluded = conclusion_of(found)
     return what_is_wrong(found, concluded), how_large_it_is(found), what_to_do(found, concluded)
 
 
-def what_is_wrong(found: Diagnosis, concluded: PendulumConclusion) -> str:
+def what_is_wrong(found: PendulumDiagnosis, concluded: PendulumConclusion) -> str:
     """Return what separates the record from its simulation, and what of it is open."""
     return f"{'; '.join(_wrong(found, concluded))}."
 
 
-def _wrong(found: Diagnosis, concluded: PendulumConclusion) -> Iterator[str]:
+def _wrong(found: PendulumDiagnosis, concluded: PendulumConclusion) -> Iterator[str]:
     if concluded.verdict == NONE:
         yield _no_gap(found)
         return
@@ -57,7 +57,7 @@ def _wrong(found: Diagnosis, concluded: PendulumConclusion) -> Iterator[str]:
         yield _undecided(found.laws[0], rivals)
 
 
-def _named(found: Diagnosis, concluded: PendulumConclusion, what: str) -> str:
+def _named(found: PendulumDiagnosis, concluded: PendulumConclusion, what: str) -> str:
     if found.regimes:
         return cause_statement(what, found.foretells, told=concluded.adds)
     told = "the cause" if concluded.adds else "the cause cannot be told; likeliest cause"
@@ -68,14 +68,14 @@ def _strange(concluded: PendulumConclusion) -> str:
     return f"that it is {OUTSIDE} has probability {concluded.unknown:.2f}"
 
 
-def _no_gap(found: Diagnosis) -> str:
+def _no_gap(found: PendulumDiagnosis) -> str:
     left = [one.kind for one in found.where if one.out_of_tolerance]
     if left:
         return f"Nothing that was considered explains the difference in {' and '.join(left)}"
     return "No gap: the record and its simulation agree within what the record can tell"
 
 
-def _damping(laws: Sequence[Law], rivals: Sequence[Law], names: Sequence[str]) -> str:
+def _damping(laws: Sequence[DampingLaw], rivals: Sequence[DampingLaw], names: Sequence[str]) -> str:
     """Return the law, or only that it is damping, as far as the laws can be told apart."""
     if not rivals:
         return " and ".join(one for one in names if one in DAMPING)
@@ -83,14 +83,14 @@ def _damping(laws: Sequence[Law], rivals: Sequence[Law], names: Sequence[str]) -
     return FASTER if all(set(one) & set(BEYOND_LINEAR) for one in possible) else "damping"
 
 
-def _undecided(first: Law, rivals: Sequence[Law]) -> str:
+def _undecided(first: DampingLaw, rivals: Sequence[DampingLaw]) -> str:
     return (
         f"its law cannot be told: {first.name} is the most probable, but it cannot be told apart "
         f"from {', '.join(law.name for law in rivals)}"
     )
 
 
-def how_large_it_is(found: Diagnosis) -> str:
+def how_large_it_is(found: PendulumDiagnosis) -> str:
     """Return by how much amplitude and phase are off without a cause, and the cause's own size."""
     problem = found.problem
     left = np.abs(remainder(problem, nothing(problem))) * problem.uncertainty
@@ -119,13 +119,13 @@ def _phase(verb: str, size: float) -> str:
     return f"the phase {verb}by up to {math.degrees(size):.2g} degrees of a swing"
 
 
-def _place(found: Diagnosis, at: int) -> str:
+def _place(found: PendulumDiagnosis, at: int) -> str:
     problem = found.problem
     trial = problem.trials[problem.trial[at]]
     return f" ({trial.name}, {problem.centre_s[at]:.3g} s)"
 
 
-def what_to_do(found: Diagnosis, concluded: PendulumConclusion) -> str:
+def what_to_do(found: PendulumDiagnosis, concluded: PendulumConclusion) -> str:
     """Return what to do next."""
     tell = _would_tell(found)
     if concluded.adds:
@@ -136,7 +136,7 @@ def what_to_do(found: Diagnosis, concluded: PendulumConclusion) -> str:
     return f"{tell or 'Look at what remains, below, and record longer or from another release'}."
 
 
-def _would_tell(found: Diagnosis) -> str:
+def _would_tell(found: PendulumDiagnosis) -> str:
     """Return the record that would tell the leading answers apart; empty where all is told."""
     if not (found.rivals and found.proposals):
         return ""

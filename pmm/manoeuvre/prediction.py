@@ -11,7 +11,7 @@ from analysis.manoeuvring import imo
 from analysis.manoeuvring.hull import HullLoads
 from analysis.manoeuvring.manoeuvres import (
     Spiral,
-    Turn,
+    TurningCircle,
     ZigZag,
     scale_s,
     spiral,
@@ -41,7 +41,7 @@ class Prediction:
     file: ShipFile
     ship: Ship
     level: float
-    turns: dict[str, Turn]
+    turns: dict[str, TurningCircle]
     zigzags: dict[tuple[str, int], ZigZag]
     spiral: Spiral
     straight: Straight

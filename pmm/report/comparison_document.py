@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from analysis.comparison.parts import Parts
-from analysis.comparison.result import Comparison
+from analysis.comparison.result import ChannelComparison
 from analysis.uncertainty.estimate import Estimate
 from analysis.uncertainty.freedom import student_factor
 from pmm.document.content import Column, Content, Data, Document, Figure, Section, Table, pairs
@@ -50,7 +50,7 @@ _FOUND: Final[tuple[Column[_Row], ...]] = (
 )
 
 
-def comparison_document(found: Comparison, level: float) -> Document:
+def comparison_document(found: ChannelComparison, level: float) -> Document:
     """Return what ``pmm compare`` shows; ``docs/comparison.md`` describes the keys.
 
     Parameters
@@ -77,7 +77,7 @@ def comparison_document(found: Comparison, level: float) -> Document:
     return Document("", "two channels compared", (Section("", told),), SCHEMA)
 
 
-def _rows(found: Comparison, level: float) -> Sequence[_Row]:
+def _rows(found: ChannelComparison, level: float) -> Sequence[_Row]:
     def row(what: str, of: Estimate, meaning: str, factor: float = 1.0, unit: str = "") -> _Row:
         shown = unit or of.unit.removeprefix("1")
         return _Row(what, factor * of.value, factor * of.half_width(level), shown, meaning)
@@ -98,7 +98,7 @@ def _rows(found: Comparison, level: float) -> Sequence[_Row]:
     return rows
 
 
-def _data(found: Comparison, level: float) -> Sequence[Data]:
+def _data(found: ChannelComparison, level: float) -> Sequence[Data]:
     def both(of: Estimate | None) -> dict[str, object] | None:
         if of is None:
             return None
@@ -127,7 +127,7 @@ def _data(found: Comparison, level: float) -> Sequence[Data]:
     return [Data(key, value) for key, value in named.items()]
 
 
-def _parts(parts: Parts, found: Comparison, level: float) -> list[_Part]:
+def _parts(parts: Parts, found: ChannelComparison, level: float) -> list[_Part]:
     """Return the parts with the whole's gain and lag in theirs."""
     factor = student_factor(np.array([np.inf]), level)[0]
     gain = found.gain.value

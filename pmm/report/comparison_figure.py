@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from analysis.comparison.result import Comparison
+from analysis.comparison.result import ChannelComparison
 from analysis.uncertainty.freedom import student_factor
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import shown_name
@@ -18,7 +18,7 @@ _PERIODS: Final = 8.0  # that the enlarged part shows
 _POINTS: Final = 4000
 
 
-def comparison_figure(found: Comparison, level: float = 0.95) -> "Figure":
+def comparison_figure(found: ChannelComparison, level: float = 0.95) -> "Figure":
     """Draw a comparison.
 
     Above, the second channel over what the first one, with gain, lag and clock rate, makes expect,
@@ -63,7 +63,7 @@ def comparison_figure(found: Comparison, level: float = 0.95) -> "Figure":
     return figure
 
 
-def _enlarged(axes: "Axes", found: Comparison) -> None:
+def _enlarged(axes: "Axes", found: ChannelComparison) -> None:
     trace = found.trace
     half_s = _PERIODS / 2.0 / max(found.motion_hz, 1e-12)
     power = trace.shown**2
@@ -77,7 +77,7 @@ def _enlarged(axes: "Axes", found: Comparison) -> None:
     axes.set_ylabel(f"{shown_name(found.second)}\n({found.unit})")
 
 
-def _left(axes: "Axes", found: Comparison) -> None:
+def _left(axes: "Axes", found: ChannelComparison) -> None:
     trace = found.trace
     step = -(-len(trace.time_s) // _POINTS)
     axes.plot(

@@ -7,9 +7,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
-from analysis.design.expectation import Expected
+from analysis.design.expectation import ExpectedCoefficient
 from pmm.design.design_file import DesignFile
-from pmm.design.designing import Design, Step
+from pmm.design.designing import Design, DesignStep
 from pmm.document.content import (
     Column,
     Data,
@@ -39,7 +39,7 @@ class _Row:
     """A step in its place, with what it buys."""
 
     number: int
-    step: Step
+    step: DesignStep
     buys: str
 
     @property
@@ -65,7 +65,7 @@ _STEPS: Final[tuple[Column[_Row], ...]] = (
     Column("ends at", lambda row: row.step.time_s, written=clock, number=True),
     word("buys most of", "buys"),
 )
-_KNOWN: Final[tuple[Column[Expected], ...]] = (
+_KNOWN: Final[tuple[Column[ExpectedCoefficient], ...]] = (
     word("coefficient", "name"),
     word("at", "where"),
     number("believed", "believed", written(".4g")),
@@ -76,7 +76,7 @@ _KNOWN: Final[tuple[Column[Expected], ...]] = (
     Column("most of it from", lambda one: next(iter(one.shares), "")),
     Column("met", lambda one: "" if math.isnan(one.wanted) else "yes" if one.met else "no"),
 )
-_MEASURED: Final[tuple[Column[Expected], ...]] = (
+_MEASURED: Final[tuple[Column[ExpectedCoefficient], ...]] = (
     word("coefficient", "name"),
     word("at", "where"),
     number("measured", "value", written(".4g")),
@@ -148,11 +148,11 @@ def _left_out(file: DesignFile) -> list[str]:
     ]
 
 
-def _relative(one: Expected) -> float:
+def _relative(one: ExpectedCoefficient) -> float:
     return one.standard_uncertainty / abs(one.believed) if one.believed else math.inf
 
 
-def _buys(before: Sequence[Expected], after: Sequence[Expected]) -> str:
+def _buys(before: Sequence[ExpectedCoefficient], after: Sequence[ExpectedCoefficient]) -> str:
     """Return the coefficient whose uncertainty a step lowers most, and from what to what."""
     was = {(one.name, one.where): one.standard_uncertainty for one in before}
     best, gain = "", 0.0
@@ -168,7 +168,7 @@ def _buys(before: Sequence[Expected], after: Sequence[Expected]) -> str:
     return best
 
 
-def _step_data(step: Step) -> dict[str, Any]:
+def _step_data(step: DesignStep) -> dict[str, Any]:
     point = step.run.set_point
     return {
         "motion": str(step.run.motion),
@@ -184,7 +184,7 @@ def _step_data(step: Step) -> dict[str, Any]:
     }
 
 
-def _known_data(one: Expected) -> dict[str, Any]:
+def _known_data(one: ExpectedCoefficient) -> dict[str, Any]:
     return {
         "name": one.name,
         "where": one.where,

@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
-from analysis.design.expectation import Expected
+from analysis.design.expectation import ExpectedCoefficient
 from pmm.design.designing import Design
 from pmm.document.style import PALETTE, TRACE, drawing
 
@@ -45,11 +45,11 @@ def _plain(value: float, _: float) -> str:
     return f"{value:g}"
 
 
-def _same(known: tuple[Expected, ...], k: int, last: Expected) -> bool:
+def _same(known: tuple[ExpectedCoefficient, ...], k: int, last: ExpectedCoefficient) -> bool:
     return k < len(known) and (known[k].name, known[k].where) == (last.name, last.where)
 
 
-def _ratio(one: Expected) -> float:
+def _ratio(one: ExpectedCoefficient) -> float:
     scale = one.wanted if math.isfinite(one.wanted) else abs(one.believed)
     ratio = one.standard_uncertainty / scale if scale else math.nan
     return ratio if math.isfinite(ratio) else math.nan

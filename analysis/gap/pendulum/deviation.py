@@ -15,7 +15,7 @@ from analysis.gap.inference.evidence import Background, Kind
 from analysis.gap.inference.kernel import Kernel
 from analysis.gap.inference.shapes import Shapes, SignatureOfEffect
 from analysis.gap.pendulum.causes import DAMPED, LINES, READ, RESTORED
-from analysis.gap.pendulum.problem import Problem
+from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.search.first_look import Looked
 from hardware.description.arrays import BoolArray, FloatArray
@@ -31,7 +31,7 @@ _WHENCE: Final[Mapping[str, tuple[str, ...]]] = {
 _DECAY, _PERIOD, _MEAN = (KINDS.index(one) for one in ("decay", "period", "mean"))
 
 
-def background(problem: Problem, looked: Sequence[Looked]) -> Background:
+def background(problem: PendulumProblem, looked: Sequence[Looked]) -> Background:
     """Return what stands beside every hypothesis of a pendulum test.
 
     Parameters
@@ -60,7 +60,7 @@ def background(problem: Problem, looked: Sequence[Looked]) -> Background:
     )
 
 
-def _kinds(problem: Problem, stages: tuple[str, ...]) -> Iterator[tuple[str, Kind]]:
+def _kinds(problem: PendulumProblem, stages: tuple[str, ...]) -> Iterator[tuple[str, Kind]]:
     """Yield where something unknown may show: in one kind of observable, or in all."""
     for kind in np.unique(problem.kind):
         name = KINDS[kind]
@@ -69,7 +69,7 @@ def _kinds(problem: Problem, stages: tuple[str, ...]) -> Iterator[tuple[str, Kin
     yield "all", Kind(np.ones(len(problem.kind), dtype=bool), stages)
 
 
-def units(problem: Problem) -> FloatArray:
+def units(problem: PendulumProblem) -> FloatArray:
     """Return how large a deviation of 1 is at each observation, in the observation's unit.
 
     Of the amplitude's logarithm what it is predicted to fall by over the record, an e-fold at
@@ -88,7 +88,7 @@ def units(problem: Problem) -> FloatArray:
     return np.asarray(out, np.float64)
 
 
-def _likeness(problem: Problem, rows: NDArray[np.intp]) -> FloatArray:
+def _likeness(problem: PendulumProblem, rows: NDArray[np.intp]) -> FloatArray:
     """Return how alike a deviation is in some windows, shape ``(rows, rows)``."""
     record, size = problem.trial[rows], _log_size(problem)[rows]
     bodies = [one.bench.body for one in problem.trials]
@@ -98,7 +98,7 @@ def _likeness(problem: Problem, rows: NDArray[np.intp]) -> FloatArray:
     return np.asarray((1.0 - _OWN) * shared + _OWN * own, np.float64)
 
 
-def _log_size(problem: Problem) -> FloatArray:
+def _log_size(problem: PendulumProblem) -> FloatArray:
     """Return the logarithm of each window's amplitude, its noise taken off by a parabola in time.
 
     Noise that stood here and in what is observed would be taken for a deviation.
@@ -113,7 +113,7 @@ def _log_size(problem: Problem) -> FloatArray:
     return found
 
 
-def _own(problem: Problem, scale: FloatArray) -> dict[str, FloatArray]:
+def _own(problem: PendulumProblem, scale: FloatArray) -> dict[str, FloatArray]:
     """Return by record what a gain, a period and a zero of its own change; none of very few."""
     if len(problem.trials) < _FEWEST:
         return {}

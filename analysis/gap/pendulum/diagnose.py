@@ -8,16 +8,16 @@ from typing import Final
 from analysis.gap.forward.candidate import Candidate
 from analysis.gap.inference.answers import effects_in
 from analysis.gap.pendulum.causes import DAMPING, causes_for
-from analysis.gap.pendulum.further import Proposal, Reach, propose
-from analysis.gap.pendulum.problem import Problem
-from analysis.gap.pendulum.search import MOST_CAUSES, Weighed, named, weigh
+from analysis.gap.pendulum.further import FurtherRecord, Reach, propose
+from analysis.gap.pendulum.problem import PendulumProblem
+from analysis.gap.pendulum.search import MOST_CAUSES, WeighedCauses, named, weigh
 from analysis.gap.pendulum.settle import Settled, settle
 from analysis.gap.pendulum.verdict import (
     CAUSE,
     TOLD_APART,
     Alternative,
+    DampingLaw,
     KindOfGap,
-    Law,
     Verdict,
     alternatives,
     damping_laws,
@@ -25,14 +25,14 @@ from analysis.gap.pendulum.verdict import (
     open_laws,
     where,
 )
-from analysis.gap.pendulum.withheld import Regime, foretell
+from analysis.gap.pendulum.withheld import WithheldSwings, foretell
 from analysis.gap.search.fit import Fit
 
 _ASKED: Final = 10.0  # ln weight behind the best law within which the withheld swings are asked too
 
 
 @dataclass(frozen=True, eq=False)
-class Diagnosis:
+class PendulumDiagnosis:
     """Where, which, how far, and what to do next.
 
     Attributes
@@ -51,18 +51,18 @@ class Diagnosis:
         Further records that tell them apart, best first.
     """
 
-    weighed: Weighed
+    weighed: WeighedCauses
     verdict: Verdict
     settled: Settled
     where: tuple[KindOfGap, ...]
-    laws: tuple[Law, ...]
+    laws: tuple[DampingLaw, ...]
     alternatives: tuple[Alternative, ...]
-    regimes: tuple[Regime, ...]
+    regimes: tuple[WithheldSwings, ...]
     rivals: tuple[Fit, Fit] | None = None
-    proposals: tuple[Proposal, ...] = ()
+    proposals: tuple[FurtherRecord, ...] = ()
 
     @property
-    def problem(self) -> Problem:
+    def problem(self) -> PendulumProblem:
         """What was diagnosed."""
         return self.weighed.problem
 
@@ -85,13 +85,13 @@ class Diagnosis:
 
 
 def diagnose_trials(
-    problem: Problem,
+    problem: PendulumProblem,
     causes: Sequence[Candidate] | None = None,
     *,
     most: int = MOST_CAUSES,
     reach: Reach | None = None,
     progress: Callable[[str], None] = lambda _: None,
-) -> Diagnosis:
+) -> PendulumDiagnosis:
     """Say what separates measured releases from their simulation.
 
     Parameters
@@ -116,14 +116,14 @@ def diagnose_trials(
     laws = _with_withheld(laws, regimes)
     progress("how large")
     after = settle(problem, best)
-    found = Diagnosis(weighed, verdict, after, where(problem, after), laws, others, regimes)
+    found = PendulumDiagnosis(weighed, verdict, after, where(problem, after), laws, others, regimes)
     progress("the next run")
     rivals = leading(found)
     proposals = propose(problem, *rivals, reach) if rivals else ()
     return replace(found, rivals=rivals, proposals=proposals)
 
 
-def leading(found: Diagnosis) -> tuple[Fit, Fit] | None:
+def leading(found: PendulumDiagnosis) -> tuple[Fit, Fit] | None:
     """Return the two answers that a further record should tell apart; none where all is told."""
     left = [law.hypothesis for law in open_laws(found.laws)]
     if left:
@@ -144,7 +144,9 @@ def _nested(one: Fit, other: Fit) -> bool:
     return set(one.names) <= set(other.names) or set(other.names) <= set(one.names)
 
 
-def _with_withheld(laws: Sequence[Law], regimes: Sequence[Regime]) -> tuple[Law, ...]:
+def _with_withheld(
+    laws: Sequence[DampingLaw], regimes: Sequence[WithheldSwings]
+) -> tuple[DampingLaw, ...]:
     """Return the laws with what each leaves of the withheld swings."""
     found = []
     for law in laws:
@@ -154,7 +156,7 @@ def _with_withheld(laws: Sequence[Law], regimes: Sequence[Regime]) -> tuple[Law,
     return tuple(found)
 
 
-def _asked(weighed: Weighed, best: Fit, laws: Sequence[Law]) -> tuple[Fit, ...]:
+def _asked(weighed: WeighedCauses, best: Fit, laws: Sequence[DampingLaw]) -> tuple[Fit, ...]:
     """Return what to foretell with: the best set, laws not far behind, the best wrong cause."""
     sets = {best.answer: best}
     for law in laws:
@@ -166,7 +168,7 @@ def _asked(weighed: Weighed, best: Fit, laws: Sequence[Law]) -> tuple[Fit, ...]:
     return tuple(sets.values())
 
 
-def _wrong(weighed: Weighed, best: Fit) -> Fit | None:
+def _wrong(weighed: WeighedCauses, best: Fit) -> Fit | None:
     """Return the best single cause among those that the best set has nothing to do with."""
     wrong = [
         one

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from analysis.gap.inference.gaussian import Nuisances, posterior
-from analysis.gap.pendulum.problem import Problem
+from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.trial import Trial
 from analysis.gap.search.fit import Fit, at
@@ -23,7 +23,7 @@ _EACH: Final = 5  # spacings, and lines
 
 
 @dataclass(frozen=True)
-class Proposal:
+class FurtherRecord:
     """A further record and what it is expected to bring.
 
     Attributes
@@ -59,11 +59,11 @@ class Reach:
 
 
 def propose(
-    problem: Problem,
+    problem: PendulumProblem,
     first: Fit,
     second: Fit,
     reach: Reach | None = None,
-) -> tuple[Proposal, ...]:
+) -> tuple[FurtherRecord, ...]:
     """Rank further records: other suspensions where light gates watch one, else releases.
 
     Parameters
@@ -79,7 +79,7 @@ def propose(
     found = []
     for what, trial in made:
         one, other = (_foretold(problem, trial, answer) for answer in (first, second))
-        found.append(Proposal(what, (_divergence(one, other), _divergence(other, one))))
+        found.append(FurtherRecord(what, (_divergence(one, other), _divergence(other, one))))
     return tuple(sorted(found, key=lambda one: -one.gain))
 
 
@@ -100,7 +100,7 @@ def _releases(trial: Trial, first: Fit) -> Iterator[tuple[str, Trial]]:
             yield what, _planned(replace(trial, windows=windows, bench=bench), trial, first)
 
 
-def _suspensions(problem: Problem, first: Fit, reach: Reach) -> Iterator[tuple[str, Trial]]:
+def _suspensions(problem: PendulumProblem, first: Fit, reach: Reach) -> Iterator[tuple[str, Trial]]:
     """Yield suspensions within reach, as the first answer foretells their records."""
     trial = problem.trials[0]
     body = suspension_of(trial.bench, "a further suspension")
@@ -121,7 +121,7 @@ def _suspensions(problem: Problem, first: Fit, reach: Reach) -> Iterator[tuple[s
             yield what, _planned(other, trial, first)
 
 
-def _reach(problem: Problem) -> Reach:
+def _reach(problem: PendulumProblem) -> Reach:
     bodies = [suspension_of(trial.bench, "a further suspension") for trial in problem.trials]
     halves = [one.half_spacing_m for one in bodies]
     lines = [one.line_length_m for one in bodies]
@@ -148,7 +148,7 @@ class _Expected:
     covariance: FloatArray
 
 
-def _foretold(problem: Problem, trial: Trial, one: Fit) -> _Expected:
+def _foretold(problem: PendulumProblem, trial: Trial, one: Fit) -> _Expected:
     """Return what an answer expects of a planned record, given the records that there are."""
     there = replace(problem, trials=(trial,))
     again = len(problem.trials) == 1 and not problem.on_lines
@@ -162,7 +162,7 @@ def _foretold(problem: Problem, trial: Trial, one: Fit) -> _Expected:
     return _Expected(planned.signature + slopes @ moved, covariance)
 
 
-def _parted(problem: Problem, *, again: bool) -> tuple[FloatArray, FloatArray]:
+def _parted(problem: PendulumProblem, *, again: bool) -> tuple[FloatArray, FloatArray]:
     """Return the columns that a further record shares with the others, and those it does not."""
     own: Sequence[FloatArray] = (problem.releases, problem.unsure)
     if again:  # the same body in the same set-up: only the release is new

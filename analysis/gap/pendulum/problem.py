@@ -40,7 +40,7 @@ class Tolerance:
 
 
 @dataclass(frozen=True, eq=False)
-class Problem:
+class PendulumProblem:
     """Records of releases beside their simulation: :class:`analysis.gap.forward.problem.Compared`.
 
     Attributes

@@ -21,7 +21,7 @@ from analysis.gap.inference.constants import ODDS
 from analysis.gap.inference.evidence import Background
 from analysis.gap.inference.gaussian import null_evidence
 from analysis.gap.pendulum.deviation import background
-from analysis.gap.pendulum.problem import Problem
+from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.search.engine import Engine, fitted, paired, widened
 from analysis.gap.search.first_look import HIDDEN, Looked, best_look
 from analysis.gap.search.fit import Fit, at, inside, nothing
@@ -35,7 +35,7 @@ _TINY: Final = 1e-300
 
 
 @dataclass(frozen=True, eq=False)
-class Weighed:
+class WeighedCauses:
     """All hypotheses, and how probable each is.
 
     Attributes
@@ -48,7 +48,7 @@ class Weighed:
         What stands beside every hypothesis.
     """
 
-    problem: Problem
+    problem: PendulumProblem
     sets: Mapping[str, Fit]
     looked: tuple[Looked, ...]
     beside: Background
@@ -75,11 +75,11 @@ class Weighed:
 
 
 def weigh(
-    problem: Problem,
+    problem: PendulumProblem,
     causes: Sequence[Candidate],
     most: int = MOST_CAUSES,
     progress: Callable[[str], None] = lambda _: None,
-) -> Weighed:
+) -> WeighedCauses:
     """Fit sets of causes, from one up to ``most``, and weigh every answer.
 
     Raises
@@ -106,10 +106,12 @@ def weigh(
     sets = {
         one.answer: settled(one, found.settled[one.answer]) for one in (*singles, *pairs, *triples)
     }
-    return Weighed(problem, sets, looked, beside, found)
+    return WeighedCauses(problem, sets, looked, beside, found)
 
 
-def fit(problem: Problem, causes: Sequence[Candidate], start: FloatArray | None = None) -> Fit:
+def fit(
+    problem: PendulumProblem, causes: Sequence[Candidate], start: FloatArray | None = None
+) -> Fit:
     """Fit some causes together.
 
     Parameters

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.gap.pendulum.problem import Problem
+from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.search import fit
 from analysis.gap.search.fit import Fit
 from hardware.description.errors import PmmError
@@ -21,11 +21,11 @@ _ROUNDS = 3
 class Settled:
     """A set of causes, and the problem that is linear about it."""
 
-    problem: Problem
+    problem: PendulumProblem
     best: Fit
 
 
-def settle(problem: Problem, best: Fit) -> Settled:
+def settle(problem: PendulumProblem, best: Fit) -> Settled:
     """Fit a set again about itself; as it is where the body would not swing back there."""
     found = Settled(problem, best)
     for _ in range(_ROUNDS if best.candidates else 0):
@@ -37,7 +37,7 @@ def settle(problem: Problem, best: Fit) -> Settled:
     return found
 
 
-def _about(found: Settled) -> Problem:
+def _about(found: Settled) -> PendulumProblem:
     problem, best = found.problem, found.best
     free = problem.nuisances.fitted(problem.residual - best.signature)
     first = np.cumsum([0, *(trial.release_columns for trial in problem.trials)])

@@ -13,7 +13,7 @@ import numpy as np
 from analysis.gap.forward.candidate import Candidate
 from analysis.gap.forward.problem import built
 from analysis.gap.pendulum.causes import cause
-from analysis.gap.pendulum.problem import Problem
+from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.search import fit, named
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.trial import Trial
@@ -65,7 +65,7 @@ def surrogate(trial: Trial, *, restoring: bool = True) -> Surrogate:
         Whether the restoring may change too; only the decay is followed otherwise.
     """
     kinds = KINDS[:2] if restoring else KINDS[:1]
-    problem = Problem((trial,), kinds=kinds)
+    problem = PendulumProblem((trial,), kinds=kinds)
     best = nothing(problem)
     for stage in _STAGES:
         best = _better(problem, best, [cause(one) for one in stage])
@@ -95,7 +95,7 @@ def _rms(row: FloatArray) -> float:
     return float(np.sqrt(np.mean(good**2))) if good.size else 0.0
 
 
-def _better(problem: Problem, best: Fit, causes: Sequence[Candidate]) -> Fit:
+def _better(problem: PendulumProblem, best: Fit, causes: Sequence[Candidate]) -> Fit:
     start = np.concatenate([_start(best, one) for one in causes])
     tried = fit(problem, causes, start)
     return tried if tried.log_evidence > best.log_evidence else best
@@ -111,7 +111,7 @@ def _start(best: Fit, one: Candidate) -> FloatArray:
     return 0.1 * one.start
 
 
-def _released(problem: Problem, trial: Trial, best: Fit) -> PendulumBench:
+def _released(problem: PendulumProblem, trial: Trial, best: Fit) -> PendulumBench:
     """Return the bench with the effects, released as the record was."""
     free = problem.nuisances.fitted(problem.residual - best.signature)
     released = trial.as_released(float(free[0]), float(free[1]))

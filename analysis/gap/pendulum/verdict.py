@@ -11,8 +11,8 @@ from analysis.gap.forward.candidate import Candidate
 from analysis.gap.inference.answers import COEFFICIENTS, NONE, ODD_RUN, UNKNOWN, effects_in
 from analysis.gap.inference.gaussian import Nuisances
 from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING, STIFFNESS
-from analysis.gap.pendulum.problem import Problem
-from analysis.gap.pendulum.search import Weighed, fit, named
+from analysis.gap.pendulum.problem import PendulumProblem
+from analysis.gap.pendulum.search import WeighedCauses, fit, named
 from analysis.gap.pendulum.settle import Settled
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.search.fit import Fit, expected_evidence, joined, nothing
@@ -65,7 +65,7 @@ class Verdict:
     by_class: Mapping[str, float]
 
 
-def judge(weighed: Weighed) -> Verdict:
+def judge(weighed: WeighedCauses) -> Verdict:
     """Return what is said: what is the most probable, where it is probable enough.
 
     Something unknown is said only where the records prefer it to every set of causes; where its
@@ -94,7 +94,7 @@ def judge(weighed: Weighed) -> Verdict:
     )
 
 
-def alike(weighed: Weighed, name: str) -> tuple[str, ...]:
+def alike(weighed: WeighedCauses, name: str) -> tuple[str, ...]:
     """Return the causes that pass for one: laws of damping of its kind, and its twins."""
     twins = weighed.beside.shapes.alike.get(name, frozenset((name,)))
     kin = next((kind for kind in (BEYOND_LINEAR, DAMPING) if name in kind), ())
@@ -127,7 +127,7 @@ def _classes(shares: Mapping[str, float]) -> dict[str, float]:
 
 
 @dataclass(frozen=True, eq=False)
-class Law:
+class DampingLaw:
     """A law of damping beside what else the best set holds.
 
     Attributes
@@ -150,12 +150,14 @@ class Law:
         return self.log_ratio < -math.log(TOLD_APART)
 
 
-def open_laws(laws: Sequence[Law]) -> tuple[Law, ...]:
+def open_laws(laws: Sequence[DampingLaw]) -> tuple[DampingLaw, ...]:
     """Return the laws of damping that cannot be told from the best one."""
     return tuple(law for law in laws[1:] if not law.told_apart)
 
 
-def damping_laws(weighed: Weighed, best: Fit, causes: Sequence[Candidate]) -> tuple[Law, ...]:
+def damping_laws(
+    weighed: WeighedCauses, best: Fit, causes: Sequence[Candidate]
+) -> tuple[DampingLaw, ...]:
     """Fit every law of damping that the causes make beside the best set's others; best first."""
     others = [one for one in best.candidates if one.name not in DAMPING]
     possible = {one.name: one for one in causes}
@@ -166,7 +168,7 @@ def damping_laws(weighed: Weighed, best: Fit, causes: Sequence[Candidate]) -> tu
     }
     weights = {name: weighed.weight(one) for name, one in fitted.items()}
     top = max(weights.values())
-    laws = [Law(name, one, weights[name] - top) for name, one in fitted.items()]
+    laws = [DampingLaw(name, one, weights[name] - top) for name, one in fitted.items()]
     return tuple(sorted(laws, key=lambda law: -law.log_ratio))
 
 
@@ -179,7 +181,7 @@ class Alternative:
     log_ratio: float
 
 
-def alternatives(weighed: Weighed, best: Fit) -> tuple[Alternative, ...]:
+def alternatives(weighed: WeighedCauses, best: Fit) -> tuple[Alternative, ...]:
     """Return which causes could stand in the place of each one, weights within a factor of 20."""
     found = [
         Alternative(one.name, name, ratio)
@@ -190,7 +192,7 @@ def alternatives(weighed: Weighed, best: Fit) -> tuple[Alternative, ...]:
     return tuple(sorted(found, key=lambda row: (row.instead_of, -row.log_ratio)))
 
 
-def _in_place(weighed: Weighed, best: Fit, at: int) -> Iterator[tuple[str, float]]:
+def _in_place(weighed: WeighedCauses, best: Fit, at: int) -> Iterator[tuple[str, float]]:
     """Yield the causes in the place of one of a set's, and their weight over the set's."""
     problem, reference = weighed.problem, weighed.weight(best)
     base = fit(problem, [one for number, one in enumerate(best.candidates) if number != at])
@@ -245,7 +247,7 @@ class KindOfGap:
         return rms**2 > 1.0 + _BEYOND * math.sqrt(2.0 / self.count)
 
 
-def where(problem: Problem, after: Settled) -> tuple[KindOfGap, ...]:
+def where(problem: PendulumProblem, after: Settled) -> tuple[KindOfGap, ...]:
     """Return the gap by kind of observable, before and after."""
     left = remainder(after.problem, after.best)
     lefts = (as_stated(problem), remainder(problem, nothing(problem)), left)
@@ -257,13 +259,13 @@ def where(problem: Problem, after: Settled) -> tuple[KindOfGap, ...]:
     return tuple(found)
 
 
-def remainder(problem: Problem, one: Fit) -> FloatArray:
+def remainder(problem: PendulumProblem, one: Fit) -> FloatArray:
     """Return what a hypothesis leaves of the gap with its nuisances at their best, in sigma."""
     left = problem.residual - one.signature
     return left - problem.nuisances.columns @ problem.nuisances.fitted(left)
 
 
-def as_stated(problem: Problem) -> FloatArray:
+def as_stated(problem: PendulumProblem) -> FloatArray:
     """Return the gap to the simulation as it is stated, releases at their best, in sigma."""
     release = Nuisances(problem.releases)
     return problem.residual - release.columns @ release.fitted(problem.residual)

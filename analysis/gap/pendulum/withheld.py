@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.gap.inference.gaussian import Nuisances, posterior
-from analysis.gap.pendulum.problem import Problem
+from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.search import fit, named
 from analysis.gap.pendulum.trial import Trial
 from analysis.gap.search.fit import Fit, at, nothing
@@ -52,7 +52,7 @@ class Foretold:
 
 
 @dataclass(frozen=True)
-class Regime:
+class WithheldSwings:
     """What was withheld, and how each hypothesis foretold it.
 
     Attributes
@@ -70,7 +70,7 @@ class Regime:
     foretold: tuple[Foretold, ...]
 
 
-def foretell(problem: Problem, sets: Sequence[Fit]) -> tuple[Regime, ...]:
+def foretell(problem: PendulumProblem, sets: Sequence[Fit]) -> tuple[WithheldSwings, ...]:
     """Withhold small swings, then large ones, and foretell them with some sets of causes.
 
     Where the records are of several suspensions, each of them is withheld instead.
@@ -100,10 +100,10 @@ def _fewest(hidden: BoolArray, trial: Trial) -> int:
 
 def _regime(
     name: str,
-    problem: Problem,
+    problem: PendulumProblem,
     hidden: Sequence[BoolArray],
     sets: Sequence[Fit],
-) -> Regime:
+) -> WithheldSwings:
     seen = _without(problem, hidden)
     parts = [
         np.broadcast_to(rows, (len(t.observed), rows.size))
@@ -118,10 +118,12 @@ def _regime(
         after.append(_foretold(problem, rows, named(one), plain, left))
     sizes = problem.amplitude[rows]
     count = int(sum(r.sum() for r in hidden))
-    return Regime(name, count, (float(sizes.min()), float(sizes.max())), before, tuple(after))
+    return WithheldSwings(
+        name, count, (float(sizes.min()), float(sizes.max())), before, tuple(after)
+    )
 
 
-def _without(problem: Problem, hidden: Sequence[BoolArray]) -> Problem:
+def _without(problem: PendulumProblem, hidden: Sequence[BoolArray]) -> PendulumProblem:
     """Return the problem without some windows of each trial."""
     trials = [
         replace(trial, observed=np.where(rows, np.nan, trial.observed))
@@ -130,7 +132,7 @@ def _without(problem: Problem, hidden: Sequence[BoolArray]) -> Problem:
     return replace(problem, trials=tuple(trials))
 
 
-def _left_out(problem: Problem, sets: Sequence[Fit]) -> Regime:
+def _left_out(problem: PendulumProblem, sets: Sequence[Fit]) -> WithheldSwings:
     """Foretell each suspension from the others."""
     every = np.ones(problem.residual.size, dtype=bool)
     lefts: list[list[tuple[FloatArray, FloatArray]]] = [[] for _ in (None, *sets)]
@@ -148,7 +150,7 @@ def _left_out(problem: Problem, sets: Sequence[Fit]) -> Regime:
         for part in lefts
     ]
     sizes = problem.amplitude
-    return Regime(
+    return WithheldSwings(
         "each suspension",
         sum(trial.windows.count for trial in problem.trials),
         (float(sizes.min()), float(sizes.max())),
@@ -160,7 +162,7 @@ def _left_out(problem: Problem, sets: Sequence[Fit]) -> Regime:
     )
 
 
-def _left(problem: Problem, one: Fit, rows: BoolArray) -> tuple[FloatArray, FloatArray]:
+def _left(problem: PendulumProblem, one: Fit, rows: BoolArray) -> tuple[FloatArray, FloatArray]:
     """Return the withheld windows' remainder in u, and draws of it, shape ``(draws, rows)``."""
     full = at(problem, one.candidates, one.units)
     whole = problem.nuisances.columns
@@ -175,7 +177,7 @@ def _left(problem: Problem, one: Fit, rows: BoolArray) -> tuple[FloatArray, Floa
 
 
 def _foretold(
-    problem: Problem,
+    problem: PendulumProblem,
     rows: BoolArray,
     causes: tuple[str, ...],
     plain: tuple[FloatArray, FloatArray],

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analysis.comparison.compare import compare
-from analysis.comparison.result import Comparison
+from analysis.comparison.result import ChannelComparison
 from analysis.comparison.settings import ComparisonSettings
 from analysis.recording import Recording
 from hardware.description.channels import Channel
@@ -26,14 +26,14 @@ def compared(
     seed: int = 0,
     settings: ComparisonSettings | None = None,
     **how: float,
-) -> Comparison:
+) -> ChannelComparison:
     rng = np.random.default_rng(seed)
     first, second = pair(motion, what, rng, **how)
     asked = settings or ComparisonSettings(order=what.order)
     return compare(first, "x", second, "x", asked)
 
 
-def misses(found: Comparison, what: Truth) -> list[float]:
+def misses(found: ChannelComparison, what: Truth) -> list[float]:
     """Errors of gain, lag and clock rate in half-widths."""
     lag_s = found.lag_s.value - what.lag_s - what.rate * (found.mid_s - what.mid_s)
     if found.modulo_s is not None:

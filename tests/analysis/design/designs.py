@@ -4,7 +4,7 @@ from itertools import product
 
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import Belief
-from analysis.design.candidate import Candidate
+from analysis.design.candidate import CandidateRun
 from analysis.design.noise import Noise
 from benchmarks.coefficients_campaigns import BODY, CUBIC, HORIZONTAL
 from hardware.description.oscillator import HORIZONTAL_1963
@@ -22,9 +22,9 @@ def grid(
     phases_rad: tuple[float, ...] = (0.0, 1.5),
     periods: tuple[int, ...] = (5,),
     speed_m_s: float = 1.2,
-) -> list[Candidate]:
+) -> list[CandidateRun]:
     """Return every combination; each run waits two minutes and settles for three periods."""
     return [
-        Candidate(SetPoint(f, e, phase, speed_m_s), count, 120.0 + (count + 3) / f)
+        CandidateRun(SetPoint(f, e, phase, speed_m_s), count, 120.0 + (count + 3) / f)
         for f, e, phase, count in product(frequencies_hz, amplitudes_m, phases_rad, periods)
     ]

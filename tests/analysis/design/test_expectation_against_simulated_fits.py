@@ -8,10 +8,10 @@ import pytest
 
 from analysis.coefficients.cycle_fit import FIRST, fit_cycles
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
-from analysis.design.candidate import Candidate
+from analysis.design.candidate import CandidateRun
 from analysis.design.expectation import REPEATS, SCATTER, expected, made_up
 from analysis.design.noise import Noise
-from analysis.design.regression import Target, prospects
+from analysis.design.regression import DesignTarget, prospects
 from analysis.design.selection import covariance
 from benchmarks import coefficients_campaigns as exact
 from hardware.description.setpoint import SetPoint
@@ -19,19 +19,19 @@ from tests.analysis.design.designs import EXACT, LINEAR, WHOLE
 
 PERIODS, TRIALS = 12, 40
 RUNS = [
-    Candidate(SetPoint(f, e, phase, 1.2), PERIODS, 1.0)
+    CandidateRun(SetPoint(f, e, phase, 1.2), PERIODS, 1.0)
     for f, e, phase in (
         (0.1, 0.2, 0.0), (0.2, 0.1, 0.0), (0.2, 0.2, 1.2), (0.1, 0.25, 0.6), (0.25, 0.2, 2.0),
     )
 ]  # fmt: skip
-TARGETS = [Target(name, 1.0) for name in WHOLE.values]
+TARGETS = [DesignTarget(name, 1.0) for name in WHOLE.values]
 
 
 def test_fits_of_noisy_periods_scatter_as_expected() -> None:
     """Runs are made sample by sample, each period's harmonics are drawn, and all is fitted."""
     noise = Noise(force_n=2.0, sample_rate_hz=100.0)
     runs, names = RUNS[:3], tuple(LINEAR.values)
-    asked = [Target(name, 1.0) for name in names]
+    asked = [DesignTarget(name, 1.0) for name in names]
     predicted = {
         one.name: one.standard_uncertainty
         for one in expected(runs, made_up(runs, LINEAR, noise), asked, LINEAR, EXACT)
@@ -70,9 +70,9 @@ def test_the_search_expects_what_the_fit_does() -> None:
 
 
 def test_a_run_that_does_not_tell_says_which_would() -> None:
-    runs = [Candidate(SetPoint(0.2, 0.1, 0.0, 1.2), 5, 1.0)]
+    runs = [CandidateRun(SetPoint(0.2, 0.1, 0.0, 1.2), 5, 1.0)]
     noise = Noise(2.0, 100.0)
-    rows = expected(runs, made_up(runs, LINEAR, noise), [Target("N_r", 1.0)], LINEAR, EXACT)
+    rows = expected(runs, made_up(runs, LINEAR, noise), [DesignTarget("N_r", 1.0)], LINEAR, EXACT)
     assert not rows[0].met
     assert np.isinf(rows[0].standard_uncertainty)
     assert "add a run in yaw" in rows[0].message

@@ -8,8 +8,8 @@ import pytest
 
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import Belief
-from analysis.design.candidate import Candidate
-from analysis.design.regression import Prospects, Target, prospects
+from analysis.design.candidate import CandidateRun
+from analysis.design.regression import DesignTarget, Prospects, prospects
 from analysis.design.selection import covariance, select
 from benchmarks.coefficients_campaigns import BODY, HORIZONTAL
 from hardware.description.oscillator import HORIZONTAL_1963
@@ -17,7 +17,7 @@ from hardware.description.setpoint import SetPoint
 from tests.analysis.design.designs import EXACT, LINEAR, NOISE, WHOLE, grid
 
 
-def _shortest(known: Prospects, targets: list[Target]) -> float:
+def _shortest(known: Prospects, targets: list[DesignTarget]) -> float:
     """Least tank time of any set of runs, none twice, that meets all targets."""
     costs = np.array([one.cost_s for one in known.candidates])
     least = math.inf
@@ -36,7 +36,11 @@ def _shortest(known: Prospects, targets: list[Target]) -> float:
 @pytest.mark.parametrize("wanted", [0.8, 1.5, 3.0])
 def test_no_subset_is_much_shorter(wanted: float) -> None:
     runs = grid(phases_rad=(0.0, 1.5, 2.5), periods=(5,))[:11]
-    targets = [Target("Y_v", wanted), Target("N_r", wanted), Target("Y_vdot", 4.0 * wanted)]
+    targets = [
+        DesignTarget("Y_v", wanted),
+        DesignTarget("N_r", wanted),
+        DesignTarget("Y_vdot", 4.0 * wanted),
+    ]
     known = prospects(runs, LINEAR, NOISE, EXACT)
     found = select(known, targets)
     assert found.met
@@ -66,15 +70,15 @@ def test_one_motion_takes_the_time_of_the_closed_form() -> None:
     Both gauges' density 2 sigma^2 / f_s over the time T gives ``s^2 = 4 sigma^2 / (f_s T)``.
     """
     belief = Belief(HORIZONTAL_1963, BODY, {k: HORIZONTAL[k] for k in ("Y_v", "Y_vdot")})
-    run = Candidate(SetPoint(0.2, 0.15, 0.0, 1.2), 10, 60.0)
-    (known,) = prospects([run], belief, NOISE, EXACT).regressions([Target("Y_v", 1.0)])
+    run = CandidateRun(SetPoint(0.2, 0.15, 0.0, 1.2), 10, 60.0)
+    (known,) = prospects([run], belief, NOISE, EXACT).regressions([DesignTarget("Y_v", 1.0)])
     omega = 2.0 * math.pi * 0.2
     s = math.sqrt(4.0 * NOISE.force_n**2 / (NOISE.sample_rate_hz * run.measured_s))
     closed = [s / (omega * 0.15), s / (omega**2 * 0.15)]
     assert np.sqrt(np.diag(covariance(known, [0]))) == pytest.approx(closed, rel=1e-6)
     for repeats in (1, 4, 9):
         wanted = 1.02 * closed[0] / math.sqrt(repeats)
-        found = select(prospects([run], belief, NOISE, EXACT), [Target("Y_v", wanted)])
+        found = select(prospects([run], belief, NOISE, EXACT), [DesignTarget("Y_v", wanted)])
         assert found.met
         assert len(found.chosen) == repeats
 
@@ -83,22 +87,22 @@ def test_a_lone_coefficient_is_asked_of_the_fastest_run() -> None:
     """``u = s / (w e)`` falls with the speed of the struts, so that the largest serves best."""
     belief = Belief(HORIZONTAL_1963, BODY, {k: HORIZONTAL[k] for k in ("Y_v", "Y_vdot")})
     runs = grid((0.05, 0.1, 0.25), (0.05, 0.2, 0.1), (0.0,), (5,))
-    found = select(prospects(runs, belief, NOISE, EXACT), [Target("Y_v", 0.5)])
+    found = select(prospects(runs, belief, NOISE, EXACT), [DesignTarget("Y_v", 0.5)])
     assert {runs[k].point for k in found.chosen} == {SetPoint(0.25, 0.2, 0.0, 1.2)}
 
 
 def test_what_is_stated_is_not_measured_away() -> None:
     known = prospects(grid(), LINEAR, NOISE, StatedUncertainties(mass_kg=1.0))
-    assert not select(known, [Target("Y_vdot", 0.9)], time_s=5e3).met
-    found = select(known, [Target("Y_vdot", 1.3)], time_s=5e3)
-    (force,) = known.regressions([Target("Y_vdot", 1.3)], found.chosen)
+    assert not select(known, [DesignTarget("Y_vdot", 0.9)], time_s=5e3).met
+    found = select(known, [DesignTarget("Y_vdot", 1.3)], time_s=5e3)
+    (force,) = known.regressions([DesignTarget("Y_vdot", 1.3)], found.chosen)
     assert found.met
     assert covariance(force, found.chosen)[0, 0] > 1.0
 
 
 def test_runs_that_were_made_are_not_asked_for_again() -> None:
     known = prospects(grid(), LINEAR, NOISE, EXACT)
-    targets = [Target("Y_v", 1.0), Target("N_r", 1.0)]
+    targets = [DesignTarget("Y_v", 1.0), DesignTarget("N_r", 1.0)]
     first = select(known, targets)
     assert select(known, targets, made=first.chosen).chosen == ()
     rest = select(known, targets, made=first.chosen[:1])
@@ -109,6 +113,6 @@ def test_runs_that_were_made_are_not_asked_for_again() -> None:
 def test_each_frequency_of_a_band_is_met_by_its_own_runs() -> None:
     runs = grid((0.1, 0.15, 0.2, 0.25), (0.1, 0.2), (0.0, 1.5), (5,))
     known = prospects(runs, LINEAR, NOISE, EXACT)
-    found = select(known, [Target("Y_v", 1.0, (0.12, 0.2))])
+    found = select(known, [DesignTarget("Y_v", 1.0, (0.12, 0.2))])
     assert found.met
     assert {runs[k].point.frequency_hz for k in found.chosen} == {0.15, 0.2}

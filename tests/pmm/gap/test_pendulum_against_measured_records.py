@@ -9,7 +9,7 @@ import pytest
 
 from analysis.gap.pendulum.causes import BEYOND_LINEAR, cause, causes_for
 from analysis.gap.pendulum.further import Reach, propose
-from analysis.gap.pendulum.problem import Problem
+from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.search import fit, weigh
 from analysis.gap.pendulum.verdict import CAUSE, TOLD_APART, UNTOLD, damping_laws, judge, open_laws
 from analysis.gap.pendulum.withheld import foretell
@@ -42,7 +42,7 @@ nonlinear_restoring = 1.0
 RELEASED_S = 26.2  # of the model test's record; before that the body is held
 
 
-def roll(folder: Path, record: str) -> Problem:
+def roll(folder: Path, record: str) -> PendulumProblem:
     """Return the problem of one record of the roll decay."""
     path = folder / "roll.toml"
     path.write_text(ROLL.format(SHARED / "roll_decay", record))
@@ -111,7 +111,7 @@ spacing = 2.5e-4
 """
 
 
-def rod(folder: Path, half: int | None = None) -> Problem:
+def rod(folder: Path, half: int | None = None) -> PendulumProblem:
     """Return the problem of one rod on four suspensions, of a half of each record or of all."""
     tables = []
     for path in sorted((SHARED / "bifilar").glob("*.csv")):

@@ -8,7 +8,7 @@ import pytest
 from analysis.gap.forward.candidate import Candidate
 from analysis.gap.inference.gaussian import misfit
 from analysis.gap.pendulum.causes import cause, causes_for, tolerance
-from analysis.gap.pendulum.problem import Problem
+from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.search import fit, weigh
 from analysis.gap.pendulum.swings import cut_into_windows, scatter, swings_of_samples
 from analysis.gap.pendulum.trial import Trial
@@ -23,7 +23,7 @@ PERIOD_S, RELEASE = 2.0, 0.2
 TIME_S = np.arange(0.0, 40.0, 0.02)
 
 
-def decay(amplitude: FloatArray, seed: int, phase: FloatArray | float = 0.0) -> Problem:
+def decay(amplitude: FloatArray, seed: int, phase: FloatArray | float = 0.0) -> PendulumProblem:
     """Return the problem of a record of that amplitude against a body without any loss."""
     noise = np.random.default_rng(seed).normal(0.0, 1e-4, TIME_S.size)
     values = amplitude * np.cos(2.0 * math.pi * TIME_S / PERIOD_S + phase) + noise
@@ -34,10 +34,10 @@ def decay(amplitude: FloatArray, seed: int, phase: FloatArray | float = 0.0) -> 
     trial = Trial("decay", bench, "roll", windows, found, scatter(found)).released()
     # the closed forms are those of the envelope: they have no third harmonic
     kinds = ("decay", "period", "mean")
-    return Problem((trial,), (tolerance("restoring", 1e-3),), kinds=kinds)
+    return PendulumProblem((trial,), (tolerance("restoring", 1e-3),), kinds=kinds)
 
 
-def some(problem: Problem) -> list[Candidate]:
+def some(problem: PendulumProblem) -> list[Candidate]:
     """Return the causes that are tried: those of every kind, so that a test takes a second."""
     names = (*LOSSES, "inertia", "restoring", "amplitude_period", "sensor_offset")
     return [one for one in causes_for(problem.trials) if one.name in names]

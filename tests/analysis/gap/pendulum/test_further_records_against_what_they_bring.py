@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from analysis.gap.pendulum.causes import cause, tolerance
-from analysis.gap.pendulum.further import Proposal, Reach, propose
-from analysis.gap.pendulum.problem import Problem
+from analysis.gap.pendulum.further import FurtherRecord, Reach, propose
+from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.search import fit
 from analysis.gap.pendulum.swings import Windows, cut_into_windows, scatter, swings_of_samples
 from analysis.gap.pendulum.trial import Trial
@@ -41,25 +41,25 @@ def hung(half_m: float, line_m: float, truth: tuple[PendulumEffect, ...], seed: 
     return replace(trial, observed=observed, uncertainty=np.full((5, 12), U_RAD))
 
 
-def on_lines(*trials: Trial) -> Problem:
+def on_lines(*trials: Trial) -> PendulumProblem:
     """Return the problem of some suspensions, the gyradius known within a few per cent."""
     known = (tolerance("inertia", 0.05), tolerance("line_excess", 3e-4, own=True))
-    return Problem(trials, known, kinds=("period",))
+    return PendulumProblem(trials, known, kinds=("period",))
 
 
-def both(problem: Problem, *kinds: type) -> tuple[Fit, Fit]:
+def both(problem: PendulumProblem, *kinds: type) -> tuple[Fit, Fit]:
     """Fit two causes, each by itself."""
     first, second = (fit(problem, [cause(kind)]) for kind in kinds)
     return first, second
 
 
-def ahead(problem: Problem, *kinds: type) -> float:
+def ahead(problem: PendulumProblem, *kinds: type) -> float:
     """Return by how much the first cause is ahead in ln evidence."""
     first, second = both(problem, *kinds)
     return first.log_evidence - second.log_evidence
 
 
-def lengths(one: Proposal) -> tuple[float, float]:
+def lengths(one: FurtherRecord) -> tuple[float, float]:
     """Return half spacing and lines of a proposed suspension."""
     half, line = one.what.split(", ")
     return float(half.split()[2]), float(line.split()[2])
@@ -108,12 +108,12 @@ def test_a_larger_release_brings_what_is_expected_of_it() -> None:
     kinds = (body.QuadraticDrag, body.CubicRateDamping)
     known, counted = (tolerance("restoring", 1e-3),), ("decay", "period")
     there = decayed(0.05, 0.3, seed=3)
-    problem = Problem((there,), known, kinds=counted)
+    problem = PendulumProblem((there,), known, kinds=counted)
     proposals = propose(problem, *both(problem, *kinds))
     gains = {one.what: one.gains[0] for one in proposals}
     expected = gains["release at 2 times the amplitude, a record as long"]
     assert expected > 5.0 * gains["release at 0.5 times the amplitude, a record as long"]
-    made = Problem((there, decayed(0.1, 0.3, seed=5)), known, kinds=counted)
+    made = PendulumProblem((there, decayed(0.1, 0.3, seed=5)), known, kinds=counted)
     gained = ahead(made, *kinds) - ahead(problem, *kinds)
     assert gained == pytest.approx(expected, rel=0.5), expected
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, cast
 
 import pytest
 
-from analysis.gap.pendulum.verdict import TOLD_APART, Law, open_laws
+from analysis.gap.pendulum.verdict import TOLD_APART, DampingLaw, open_laws
 from analysis.inertia.spread import cause_statement
 
 if TYPE_CHECKING:
@@ -20,8 +20,8 @@ class Named:
     names: tuple[str, ...]
 
 
-def law(name: str, log_ratio: float, *withheld: float) -> Law:
-    return Law(name, cast("Fit", Named((name,))), log_ratio, withheld)
+def law(name: str, log_ratio: float, *withheld: float) -> DampingLaw:
+    return DampingLaw(name, cast("Fit", Named((name,))), log_ratio, withheld)
 
 
 BEST = law("linear and cubic", 0.0, 5.1, 21.5)
@@ -35,9 +35,9 @@ FACTOR = -math.log(TOLD_APART)
         (law("behind, whatever it foretells", FACTOR - 0.1, 3.4, 9.8), True),
         (law("far behind, not asked", -100.0), True),
     ],
-    ids=lambda one: one.name if isinstance(one, Law) else "",
+    ids=lambda one: one.name if isinstance(one, DampingLaw) else "",
 )
-def test_odds_tell_laws_apart(other: Law, apart: bool) -> None:
+def test_odds_tell_laws_apart(other: DampingLaw, apart: bool) -> None:
     assert other.told_apart is apart
     assert (other in open_laws((BEST, other))) is not apart
 
