@@ -13,7 +13,7 @@ from analysis.comparison.fit import ComparisonFit, fit
 from analysis.comparison.linear import ComparisonProblem, Model, NothingInCommonError
 from analysis.comparison.result import ChannelComparison
 from analysis.comparison.settings import ComparisonSettings
-from analysis.comparison.told import Found, Signal, told
+from analysis.comparison.told import FittedComparison, Signal, told
 from analysis.comparison.warp import Warped
 from analysis.recording import Recording
 from hardware.description.arrays import FloatArray
@@ -66,7 +66,7 @@ def compare(
             "gain and lag explain half of its power; is it the same motion, at the same time? "
             "Allow a larger lag, or state the derivative, the band or the part of the record"
         ) from None
-    found = Found(problem, best, modulo_s, dead_band, seen=best is not straight)
+    found = FittedComparison(problem, best, modulo_s, dead_band, seen=best is not straight)
     return told(found, leading, following, settings)
 
 

@@ -34,7 +34,7 @@ class Signal:
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class FittedComparison:
     """A fit, the period by which its lag may be off, half the dead band with its uncertainty."""
 
     problem: ComparisonProblem
@@ -45,7 +45,10 @@ class Found:
 
 
 def told(
-    found: Found, leading: Sequence[Signal], following: Signal, settings: ComparisonSettings
+    found: FittedComparison,
+    leading: Sequence[Signal],
+    following: Signal,
+    settings: ComparisonSettings,
 ) -> ChannelComparison:
     """Return the comparison; intervals are widened where parts scatter more than they should."""
     problem, fit = found.problem, found.fit

@@ -18,7 +18,7 @@ _VALUE: Final = re.compile(r"([\d.eE+-]+)\s*%")
 _NEAR_ZERO: Final = 1e-3  # of the largest part of the load: less is lost in its other parts
 
 
-class Asked(NamedTuple):
+class AskedTarget(NamedTuple):
     """A target as it is written: its coefficient, band and size, and whether that is relative."""
 
     name: str
@@ -51,17 +51,17 @@ def targets_of(
     return tuple(found)
 
 
-def _asked(key: str, value: float | str) -> Asked:
+def _asked(key: str, value: float | str) -> AskedTarget:
     """Return what a key and its value ask for; a size that cannot be read is NaN."""
     match = _KEY.fullmatch(key.strip())
     if match is None:
-        return Asked(key, None, math.nan, relative=False)
+        return AskedTarget(key, None, math.nan, relative=False)
     low, high = _number(match[2]), _number(match[3] or match[2])
     band = None if match[2] is None else (low, high)
     if not isinstance(value, str):
-        return Asked(match[1], band, float(value), relative=False)
+        return AskedTarget(match[1], band, float(value), relative=False)
     share = _VALUE.fullmatch(value.strip())
-    return Asked(match[1], band, _number(share[1] if share else None) / 100.0, relative=True)
+    return AskedTarget(match[1], band, _number(share[1] if share else None) / 100.0, relative=True)
 
 
 def _number(text: str | None) -> float:

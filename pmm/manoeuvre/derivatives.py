@@ -20,7 +20,7 @@ from pmm.manoeuvre.ship_file import StatedHull
 _SAME_M_S = 1e-6
 
 
-class Sources(Protocol):
+class DerivativeSources(Protocol):
     """A file that says where a body's derivatives come from."""
 
     @property
@@ -40,7 +40,7 @@ class Sources(Protocol):
 
 
 def derivatives_of(
-    file: Sources, plane: Plane, trials: int, generator: Generator
+    file: DerivativeSources, plane: Plane, trials: int, generator: Generator
 ) -> dict[str, FloatArray]:
     """Return each derivative without dimensions: the value itself, and behind it each draw.
 
@@ -68,7 +68,7 @@ def derivatives_of(
 
 
 def _measured(
-    file: Sources, plane: Plane, trials: int, generator: Generator
+    file: DerivativeSources, plane: Plane, trials: int, generator: Generator
 ) -> dict[str, FloatArray]:
     """Return the recommended values of a campaign in the file's system."""
     found = _read(Path(str(file.coefficients)), plane)

@@ -24,7 +24,7 @@ from analysis.manoeuvring.stability import Straight, straight_course
 from hardware.description.arrays import FloatArray
 from hardware.description.oscillator import Plane
 from pmm.manoeuvre.derivatives import derivatives_of
-from pmm.manoeuvre.quantity import Quantity, Size, quantity_of
+from pmm.manoeuvre.quantity import FullScale, ManoeuvreQuantity, quantity_of
 from pmm.manoeuvre.ship_file import ShipFile
 
 SIDES = {"starboard": 1.0, "port": -1.0}
@@ -53,11 +53,11 @@ class Prediction:
         return scale_s(self.ship) * math.sqrt(self.file.scale)
 
     @cached_property
-    def quantities(self) -> tuple[Quantity, ...]:
+    def quantities(self) -> tuple[ManoeuvreQuantity, ...]:
         """All quantities, in the order of the page."""
         return tuple(self._quantities())
 
-    def _quantities(self) -> Iterator[Quantity]:
+    def _quantities(self) -> Iterator[ManoeuvreQuantity]:
         for side, turn in self.turns.items():
             what = f"turning circle 35°, {side}"
             yield self._of(what, "advance", "L", turn.advance, imo.ADVANCE)
@@ -88,8 +88,8 @@ class Prediction:
 
     def _of(
         self, manoeuvre: str, name: str, unit: str, values: FloatArray, limit: float = math.nan
-    ) -> Quantity:
-        size = Size(self.ship.hull.length_m * self.file.scale, "m") if unit == "L" else None
+    ) -> ManoeuvreQuantity:
+        size = FullScale(self.ship.hull.length_m * self.file.scale, "m") if unit == "L" else None
         return quantity_of(manoeuvre, name, unit, values, self.level, size, limit)
 
 

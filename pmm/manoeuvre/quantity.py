@@ -9,7 +9,7 @@ from hardware.description.arrays import FloatArray
 
 
 @dataclass(frozen=True)
-class Quantity:
+class ManoeuvreQuantity:
     """One quantity of the values themselves and of the draws.
 
     Attributes
@@ -40,7 +40,7 @@ class Quantity:
 
 
 @dataclass(frozen=True)
-class Size:
+class FullScale:
     """What a quantity is at full scale: so many times its value, in a unit."""
 
     factor: float
@@ -53,16 +53,16 @@ def quantity_of(
     unit: str,
     values: FloatArray,
     level: float,
-    size: Size | None = None,
+    size: FullScale | None = None,
     limit: float = math.nan,
-) -> Quantity:
+) -> ManoeuvreQuantity:
     """Return a quantity; ``values`` has the value itself first, and behind it each draw."""
     draws = values[1:]
     good = draws[np.isfinite(draws)]
     tail = 0.5 * (1.0 - level)
     low, high = np.quantile(good, (tail, 1.0 - tail)) if good.size else (np.nan, np.nan)
     judged = draws.size and math.isfinite(limit)
-    return Quantity(
+    return ManoeuvreQuantity(
         manoeuvre,
         name,
         unit,

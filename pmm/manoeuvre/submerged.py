@@ -9,7 +9,7 @@ from analysis.manoeuvring.depth import SubmergedBody
 from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from pmm.manoeuvre.derivatives import derivatives_of
-from pmm.manoeuvre.quantity import Quantity, Size, quantity_of
+from pmm.manoeuvre.quantity import FullScale, ManoeuvreQuantity, quantity_of
 from pmm.manoeuvre.ship_file import SubmergedFile
 
 
@@ -20,7 +20,7 @@ class DepthKeeping:
     file: SubmergedFile
     level: float
     draws: int
-    quantities: tuple[Quantity, ...]
+    quantities: tuple[ManoeuvreQuantity, ...]
 
 
 def depth_keeping(file: SubmergedFile, trials: int, seed: int, level: float) -> DepthKeeping:
@@ -31,7 +31,7 @@ def depth_keeping(file: SubmergedFile, trials: int, seed: int, level: float) -> 
     """
     body = body_of(file, trials, seed)
     speed, root = file.speed_m_s, math.sqrt(file.scale)
-    knots = Size(root, "m/s")
+    knots = FullScale(root, "m/s")
     time = body.length_m / speed
     found = [
         quantity_of("depth", "index G_v", "1", body.index, level),

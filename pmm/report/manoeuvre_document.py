@@ -8,7 +8,7 @@ from typing import Final
 from pmm.document.content import Column, Data, Document, Figure, Section, Table, Text, word
 from pmm.document.notation import NOT_KNOWN, counted, written
 from pmm.manoeuvre.prediction import Prediction
-from pmm.manoeuvre.quantity import Quantity
+from pmm.manoeuvre.quantity import ManoeuvreQuantity
 from pmm.manoeuvre.submerged import DepthKeeping
 from pmm.report.manoeuvre_figures import spiral_figure, turning_figure, zigzag_figure
 
@@ -62,15 +62,15 @@ def _head(found: Prediction) -> Iterator[str]:
     yield f"intervals from {counted(draws, 'draw')} of the derivatives; propeller and rudder stated"
 
 
-def _value(one: Quantity) -> str:
+def _value(one: ManoeuvreQuantity) -> str:
     return f"{one.value:.4g}"
 
 
-def _interval(one: Quantity) -> str:
+def _interval(one: ManoeuvreQuantity) -> str:
     return f"{one.low:.4g} to {one.high:.4g}" if math.isfinite(one.low) else NOT_KNOWN
 
 
-def _full(one: Quantity) -> str:
+def _full(one: ManoeuvreQuantity) -> str:
     shown = math.isfinite(one.full_scale)
     return f"{one.full_scale:.4g} {one.full_scale_unit}" if shown else ""
 
@@ -96,8 +96,8 @@ def _said(found: DepthKeeping) -> Iterator[str]:
         yield f"stable above {critical.value:.4g} m/s alone"
 
 
-def _table(found: Prediction | DepthKeeping) -> Table[Quantity]:
-    columns: tuple[Column[Quantity], ...] = (
+def _table(found: Prediction | DepthKeeping) -> Table[ManoeuvreQuantity]:
+    columns: tuple[Column[ManoeuvreQuantity], ...] = (
         Column("manoeuvre", lambda one: one.manoeuvre, "manoeuvre", once=True),
         word("quantity", "name"),
         word("unit", "unit"),
@@ -105,7 +105,7 @@ def _table(found: Prediction | DepthKeeping) -> Table[Quantity]:
         Column(f"{100.0 * found.level:g} % interval", _interval, number=True),
         Column("at full scale", _full, number=True),
         *(
-            Column[Quantity](None, partial(_key, key), key)
+            Column[ManoeuvreQuantity](None, partial(_key, key), key)
             for key in ("low", "high", "full_scale", "full_scale_unit", "limit", "within", "failed")
         ),
     )
@@ -116,12 +116,12 @@ def _table(found: Prediction | DepthKeeping) -> Table[Quantity]:
     return Table(name, columns, found.quantities, "quantities", titled=True, notes=notes)
 
 
-def _key(key: str, one: Quantity) -> object:
+def _key(key: str, one: ManoeuvreQuantity) -> object:
     return getattr(one, key)
 
 
-def _criteria(found: Prediction) -> Table[Quantity]:
-    columns: tuple[Column[Quantity], ...] = (
+def _criteria(found: Prediction) -> Table[ManoeuvreQuantity]:
+    columns: tuple[Column[ManoeuvreQuantity], ...] = (
         Column("criterion", lambda one: f"{one.name}, {one.manoeuvre}"),
         word("unit", "unit"),
         Column("value", _value, number=True),
@@ -142,7 +142,7 @@ def _share(share: float) -> str:
     return f"{100.0 * share:.1f} %" if math.isfinite(share) else NOT_KNOWN
 
 
-def _verdict(one: Quantity) -> str:
+def _verdict(one: ManoeuvreQuantity) -> str:
     if not math.isfinite(one.value):
         return "NOT REACHED"
     sure = not math.isfinite(one.within) or one.within >= _SURE or one.within <= 1.0 - _SURE
