@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from planar_motion_mechanism import refuse_intruders
 
 if TYPE_CHECKING:
-    from pmm.library.opening import open, simulate  # noqa: A004
+    from pmm.interface.opening import open, simulate  # noqa: A004
 
 refuse_intruders()
 
@@ -19,7 +19,7 @@ __all__ = ["open", "simulate"]
 def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from pmm.library import opening
+    from pmm.interface import opening
 
     return getattr(opening, name)
 

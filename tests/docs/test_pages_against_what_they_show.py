@@ -24,7 +24,7 @@ RUN_BY = {
     "docs/gap.md": "tests/pmm/gap/test_gap_command_against_its_page.py",
     "docs/gallery.md": "docs/gallery.py",
     "docs/inertia-files.md": "tests/end_to_end/test_inertia_pages_against_commands.py",
-    "docs/python.md": "tests/pmm/library/test_front_door_against_commands.py",
+    "docs/python.md": "tests/pmm/interface/test_front_door_against_commands.py",
     "docs/pendulums.md": "tests/sim/pendulum/test_effects_against_their_catalogue.py",
     "docs/recording-safety.md": "tests/pmm/recorder/test_run_folder_against_truth.py",
 }

@@ -16,7 +16,7 @@ from analysis.gap.locate.walk import CHAIN
 from pmm.cli import cli
 from pmm.cli.gap import gap
 from pmm.gap.document import SCHEMA
-from pmm.library.gap import GapResult
+from pmm.interface.gap import GapResult
 from sim.effects.catalogue import catalogue
 
 HOUSE = Path(__file__).parents[3]

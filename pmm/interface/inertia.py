@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from pmm.document.content import Document
 from pmm.inertia.outcome import Outcome
-from pmm.library.result import Result, Variable, dataset_of
+from pmm.interface.result import Result, Variable, dataset_of
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -11,7 +11,7 @@ from analysis.coefficients.recommendation import table
 from pmm.coefficients.request import finished, requested
 from pmm.coefficients.workflow import CampaignOutcome, coefficients_of
 from pmm.document.content import Document
-from pmm.library.result import Result
+from pmm.interface.result import Result
 from pmm.parallel import open_executor
 
 if TYPE_CHECKING:

@@ -21,11 +21,11 @@ import pmm
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.cli import cli
 from pmm.inertia.jobs import JOBS
-from pmm.library.coefficients import CoefficientsResult
-from pmm.library.gap import GapResult
-from pmm.library.harmonics import HarmonicsResult
-from pmm.library.inertia import InertiaResult
-from pmm.library.records import Job, Records
+from pmm.interface.coefficients import CoefficientsResult
+from pmm.interface.gap import GapResult
+from pmm.interface.harmonics import HarmonicsResult
+from pmm.interface.inertia import InertiaResult
+from pmm.interface.records import Job, Records
 from tests.docs.blocks import HOUSE, Block, blocks
 
 EXAMPLES = HOUSE / "examples"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 from pmm.document.content import Document
 from pmm.gap.examine import Options
 from pmm.gap.report import GapReport, gap_report
-from pmm.library.result import Result, Variable, dataset_of
+from pmm.interface.result import Result, Variable, dataset_of
 from pmm.parallel import open_executor
 
 if TYPE_CHECKING:

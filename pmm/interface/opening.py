@@ -7,7 +7,7 @@ from pathlib import Path
 
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.file_names import CAMPAIGN_FILE
-from pmm.library.records import Kind, Records
+from pmm.interface.records import Kind, Records
 
 
 def open(path: str | Path) -> Records:  # noqa: A001

@@ -13,7 +13,7 @@ from pmm.harmonics.request import HarmonicsRequest
 from pmm.harmonics.resolving import Failure, Resolved, doubts, resolve
 from pmm.harmonics.rows import ChannelRows, GateRows, RunRows
 from pmm.harmonics.sources import Found, Source
-from pmm.library.result import CONVENTIONS, Result, Variable, dataset_of
+from pmm.interface.result import CONVENTIONS, Result, Variable, dataset_of
 
 if TYPE_CHECKING:
     import pandas as pd

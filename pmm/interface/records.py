@@ -11,10 +11,10 @@ from pmm.harmonics.request import HarmonicsRequest
 from pmm.harmonics.sources import find_sources
 
 if TYPE_CHECKING:
-    from pmm.library.coefficients import CoefficientsResult
-    from pmm.library.gap import GapResult
-    from pmm.library.harmonics import HarmonicsResult
-    from pmm.library.inertia import InertiaResult
+    from pmm.interface.coefficients import CoefficientsResult
+    from pmm.interface.gap import GapResult
+    from pmm.interface.harmonics import HarmonicsResult
+    from pmm.interface.inertia import InertiaResult
 
 Job: TypeAlias = Literal["swing", "bifilar", "pendulum", "incline", "combine", "ballast", "plan"]
 
@@ -92,7 +92,7 @@ class Records:
         DataError
             If the data say no; of a campaign, if they do for each run.
         """
-        from pmm.library.harmonics import harmonics_of
+        from pmm.interface.harmonics import harmonics_of
 
         self._require(Kind.RECORDING, Kind.CAMPAIGN)
         request = HarmonicsRequest(
@@ -159,7 +159,7 @@ class Records:
             As :func:`pmm.coefficients.workflow.coefficients_of` does.
         """
         from pmm.coefficients.request import campaign_folder
-        from pmm.library.coefficients import campaign_coefficients
+        from pmm.interface.coefficients import campaign_coefficients
 
         self._require(Kind.CAMPAIGN)
         options: dict[str, Any] = {
@@ -207,7 +207,7 @@ class Records:
             As :func:`pmm.gap.examine.examine` does.
         """
         from pmm.gap.examine import Options
-        from pmm.library.gap import campaign_gap
+        from pmm.interface.gap import campaign_gap
 
         self._require(Kind.CAMPAIGN)
         options = Options(tuple(effects), tuple(without), tuple(sensors), tuple(hold_out))
@@ -227,7 +227,7 @@ class Records:
             If the file is wrong, or the data do not carry what is asked.
         """
         from pmm.inertia.jobs import do_job
-        from pmm.library.inertia import InertiaResult
+        from pmm.interface.inertia import InertiaResult
 
         self._require(Kind.PENDULUM)
         return InertiaResult(do_job(job, str(self.path)))
