@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import TypeVar
 
 import numpy as np
@@ -157,7 +157,8 @@ class Hull(ModelParameters):
             return hull.run(state, Block(turn * fine.points, fine.points, rate_hz), given)
 
         names = tuple(signal.name for signal in self.writes)
-        period_of_signals = last_period(run, HullState(), names)
+        settled = partial(_settled_memory, self.system, 1.0 / fine.frequency_hz)
+        period_of_signals = last_period(run, HullState(), names, settled)
         return {name: fine.harmonics(period_of_signals[name]) for name in names}
 
 
@@ -194,3 +195,22 @@ def _system(hull: Hull) -> HullSystem:
 @lru_cache(maxsize=64)
 def _holds(hull: Hull, step_s: float) -> tuple[Hold, Hold]:
     return hull.system.holds(step_s)
+
+
+def _settled_memory(
+    system: HullSystem, period_s: float, before: HullState, after: HullState
+) -> HullState:
+    """Return the state after a period with the memory that the same motion would lead to at last.
+
+    The memory x of the water is linear and no part of what meets in a clearance: over a period of
+    the same motion x goes to M x + c, so that what is left at last is x + (1 - M)^-1 (M x + c - x).
+    """
+    memory, first = system.radiation.states, 2 * system.elastic_count
+    if before.states is None or after.states is None or not memory:
+        return after
+    from scipy.linalg import expm
+
+    began, ended = np.array(before.states), np.array(after.states)
+    left = np.eye(memory) - expm(system.radiation.state_matrix * period_s)
+    ended[first:] = began[first:] + np.linalg.solve(left, (ended - began)[first:])
+    return after._replace(states=tuple(ended.tolist()))
