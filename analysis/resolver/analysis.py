@@ -66,8 +66,15 @@ def analyse(
     recording: Recording,
     choice: ReferenceChoice = ReferenceChoice(),
     settings: ResolverSettings = ResolverSettings(),
+    *,
+    intervals: bool = True,
 ) -> Analysis:
     """Resolve a recording.
+
+    Parameters
+    ----------
+    intervals
+        Whether the harmonics' uncertainties are wanted.
 
     Raises
     ------
@@ -96,7 +103,9 @@ def analyse(
             f"{steady.period_count} ({steady.opened_s[0]:.3f} s to {steady.closed_s[-1]:.3f} s)"
         )
     gates = [steady[k : k + size] for k in range(0, steady.period_count - size + 1, size)]
-    readings = tuple(_reading(chosen, reference, gate, steady, settings) for gate in gates)
+    readings = tuple(
+        _reading(chosen, reference, gate, steady, settings, intervals=intervals) for gate in gates
+    )
     return Analysis(
         chosen,
         reference,
@@ -220,13 +229,17 @@ def _reading(
     gate: PeriodSums,
     steady: PeriodSums,
     settings: ResolverSettings,
+    *,
+    intervals: bool,
 ) -> Harmonics:
     if settings.hann:
         result = _under_hann(recording, reference, gate, settings)
     else:
         around = steady if steady.period_count > gate.period_count else None
         drifting = settings.take_out_drift
-        result = resolve(recording, gate, around=around, take_out_drift=drifting)
+        result = resolve(
+            recording, gate, around=around, take_out_drift=drifting, intervals=intervals
+        )
     return replace(result, flags=gate_flags(gate, result))
 
 

@@ -100,6 +100,7 @@ def resolve(
     *,
     around: PeriodSums | None = None,
     take_out_drift: bool = True,
+    intervals: bool = True,
 ) -> Harmonics:
     """Return the harmonics of one gate.
 
@@ -114,6 +115,8 @@ def resolve(
         one period the drift; by default the gate's own periods do.
     take_out_drift
         Whether a linear drift is taken out.
+    intervals
+        Whether the uncertainties are wanted; they take longer than all else.
 
     Raises
     ------
@@ -125,7 +128,8 @@ def resolve(
     stretch = gate if around is None else usable(around)
     drift = fit_drift(gate, stretch) if take_out_drift else no_drift(gate)
     coefficients, ramp = _solve_gate(gate, drift.slope)
-    scatter = scatter_of(gate, stretch, drift)
+    scattered = stretch if intervals else stretch[:1]
+    scatter = scatter_of(gate, scattered, drift)
     return Harmonics(
         run=recording.name,
         channel_names=gate.channel_names,
@@ -139,7 +143,7 @@ def resolve(
         widening=scatter.widening,
         drift_per_s=drift.slope,
         drift_source=drift.source,
-        interval_source=_interval_source(gate, stretch),
+        interval_source=_interval_source(gate, scattered),
     )
 
 

@@ -66,6 +66,7 @@ class Simulator:
     solved: Solved = field(default_factory=Solved, repr=False)
     # Runs that were simulated in time, by name, what does not repeat, and draw; of this rig alone.
     _records: Records = field(default_factory=dict, init=False, repr=False)
+    _means: dict[str, FloatArray] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
     def nominal(self) -> FloatArray:
@@ -132,8 +133,11 @@ class Simulator:
 
     def _usual(self, number: int) -> FloatArray:
         """Return what a run shows in time without what does not repeat, as noise has it at mean."""
-        draws = [self._record(number, (), draw) for draw in range(DRAWS)]
-        return np.asarray(np.mean(draws, axis=0), np.float64)
+        name = self.stack.runs[number].name
+        if name not in self._means:
+            draws = [self._record(number, (), draw) for draw in range(DRAWS)]
+            self._means[name] = np.asarray(np.mean(draws, axis=0), np.float64)
+        return self._means[name]
 
     def state(self, run: GapRun, effects: Sequence[Effect]) -> SteadyState:
         """Return the steady state of a run that turns, with these effects and no others."""
@@ -209,8 +213,12 @@ def _drifted(rig: SimulatedRig, measured: Observation, later_s: float) -> FloatA
     drift = {
         name: (gauge.zero_drift_n_s + _stated_drift(rig, name)) * later_s for name, gauge in gauges
     }
-    means = [one.part is Part.MEAN for one in measured.components]
-    return np.array([drift.get(one.channel, 0.0) for one in measured.components]) * means
+    found = np.zeros(len(measured.components))
+    if any(drift.values()):
+        for at, one in enumerate(measured.components):
+            if one.part is Part.MEAN:
+                found[at] = drift.get(one.channel, 0.0)
+    return found
 
 
 def _stated_drift(rig: SimulatedRig, channel: str) -> float:

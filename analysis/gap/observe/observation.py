@@ -28,6 +28,7 @@ from hardware.description.channels import CARRIAGE_SPEED, DISPLACEMENTS, FORCES,
 from hardware.description.errors import DataError
 
 Found = Iterator[tuple[Component, float, float]]
+Moving = tuple[str, ...]
 
 ORDERS: Final = 6
 SPEED: Final = CARRIAGE_SPEED.name
@@ -83,8 +84,9 @@ def observe(
         Where the gate opens and for how long, how steady it has to be; channels, orders and the
         gates' length are the diagnosis' own.
     wanted
-        What will be compared, beside means and harmonics; the rest need not be looked for. ``None``
-        for all, and for the noise of each channel and what a recording of a rig may have wrong.
+        What will be compared, beside means and harmonics, by its values alone; the rest need not be
+        looked for. ``None`` for all, with its uncertainty, and for the noise of each channel and
+        what a recording of a rig may have wrong.
 
     Raises
     ------
@@ -100,17 +102,18 @@ def observe(
     phased, choice = choose_phase(whole, told)
     kept = tuple(one for one in names if one != choice.channel or one in FORCES)
     settings = replace(window, channels=kept, harmonics=_orders(recording), gate_periods=None)
-    analysis = analyse(phased, choice, settings)
+    analysis = analyse(phased, choice, settings, intervals=wanted is None)
     _check_periods(analysis)
-    found = [*_harmonics(analysis), *_frequency(analysis, recording)]
+    moving = _moving(analysis)
+    found = [*_harmonics(analysis, moving), *_frequency(analysis, recording)]
     timed = phased is whole and analysis.reference.source is ReferenceSource.PHOTOCELL
     found += _pulses(recording) if timed else ()
     if analysis.stretch.period_count >= _FEW_PERIODS:
         makers = (
-            (_TRENDS, _trends(analysis)),
-            (_SCATTERS, _scatter(analysis, timed=timed)),
-            (_BETWEEN, _between(analysis)),
-            (_BETWEEN, _surges(analysis)),
+            (_TRENDS, _trends(analysis, moving)),
+            (_SCATTERS, _scatter(analysis, moving, timed=timed)),
+            (_BETWEEN, _between(analysis, moving)),
+            (_BETWEEN, _surges(analysis, moving)),
         )
         for parts_made, made in makers:
             found += made if wanted is None or wanted & parts_made else ()
@@ -122,7 +125,7 @@ def observe(
         seen = replace(
             seen,
             steps=steps_of(steady),
-            quiet=_quiet(analysis),
+            quiet=_quiet(analysis, moving),
             plateaus=_plateaus(steady),
             turns_per_period=turns_per_period(steady, frequency_hz),
         )
@@ -154,10 +157,9 @@ def _orders(recording: Recording) -> int:
     )
 
 
-def _harmonics(analysis: Analysis) -> Found:
+def _harmonics(analysis: Analysis, moving: Moving) -> Found:
     reading = analysis.readings[0]
     deviation = reading.standard_uncertainty
-    moving = _moving(analysis)
     for row, name in enumerate(reading.channel_names):
         values, own = reading.coefficients[row], deviation[row]
         if name != SHAFT_ANGLE.name:  # its mean is a matter of counting turns
@@ -187,12 +189,11 @@ def _pulses(recording: Recording) -> Found:
         yield Component("", Part.PULSES), 1.0 - len(intervals) / max(turns, 1.0), 0.02
 
 
-def _trends(analysis: Analysis) -> Found:
+def _trends(analysis: Analysis, moving: Moving) -> Found:
     """Yield how means and harmonics change from the first cycles to the last."""
     solved = solve_periods(analysis.steady_sums).coefficients
-    moving = {*FORCES} & {*_moving(analysis)}
     for row, name in enumerate(analysis.steady_sums.channel_names):
-        if name in moving:
+        if name in FORCES and name in moving:
             yield Component(name, Part.TREND), *_slope(solved[:, row, 0])
             for order in _cycled(analysis):
                 at = 2 * order - 1
@@ -215,7 +216,7 @@ def _slope(values: FloatArray) -> tuple[float, float]:
     return slope, float(spread * np.sqrt(weight @ weight))
 
 
-def _scatter(analysis: Analysis, *, timed: bool) -> Found:
+def _scatter(analysis: Analysis, moving: Moving, *, timed: bool) -> Found:
     sums = analysis.steady_sums
     freedom = max(sums.period_count - 2, 1)
     sure = float(np.sqrt(0.5 / freedom))
@@ -226,9 +227,8 @@ def _scatter(analysis: Analysis, *, timed: bool) -> Found:
         own = sure * np.sqrt(1.5)
         yield Component("", Part.PERIOD_SCATTER), float(np.log(spread + 1e-7)), float(own)
     solved = solve_periods(sums).coefficients
-    moving = {*FORCES} & {*_moving(analysis)}
     for row, name in enumerate(sums.channel_names):
-        if name in moving:
+        if name in FORCES and name in moving:
             for order in _cycled(analysis):
                 parts = solved[:, row, 2 * order - 1 : 2 * order + 1]
                 power = float(np.var(parts, axis=0, ddof=1).sum())
@@ -242,7 +242,7 @@ def _steady(analysis: Analysis, recording: Recording | None = None) -> Recording
     return whole.between(float(sums.opened_s[0]), float(sums.closed_s[-1]))
 
 
-def _between(analysis: Analysis) -> Found:
+def _between(analysis: Analysis, moving: Moving) -> Found:
     part = _steady(analysis)
     rate_hz, frequency = part.sample_rate_hz, analysis.readings[0].frequency_hz
     count = part.sample_count
@@ -250,7 +250,7 @@ def _between(analysis: Analysis) -> Found:
     lines_hz = np.arange(count // 2 + 1) * rate_hz / count
     free = free_of_harmonics(lines_hz, frequency, rate_hz / count)
     repeats = repeating(2.0 * np.pi * analysis.reference.cycles_at(part.time_s()), 2 * ORDERS)
-    for name in _moving(analysis):
+    for name in moving:
         if name in FORCES:
             values = part.values(name)
             values = values - repeats @ (repeats.T @ values)
@@ -267,10 +267,9 @@ def _plateaus(part: Recording) -> dict[str, Plateau]:
     return {name: plateau(part.values(name)) for name in names}
 
 
-def _quiet(analysis: Analysis) -> dict[str, Lines]:
+def _quiet(analysis: Analysis, moving: Moving) -> dict[str, Lines]:
     """Return what lies between the harmonics of each channel."""
     part, reading = _steady(analysis), analysis.readings[0]
-    moving = _moving(analysis)
     names = [one for one in moving if np.isfinite(part.values(one)).all()]
     if not names:
         return {}
@@ -279,10 +278,10 @@ def _quiet(analysis: Analysis) -> dict[str, Lines]:
     return dict(zip(names, found, strict=True))
 
 
-def _surges(analysis: Analysis) -> Found:
-    part = _steady(analysis)
-    if SPEED not in _moving(analysis):
+def _surges(analysis: Analysis, moving: Moving) -> Found:
+    if SPEED not in moving:
         return
+    part = _steady(analysis)
     values, taper = part.values(SPEED), np.hanning(part.sample_count)
     power = np.abs(np.fft.rfft((values - values.mean()) * taper)) ** 2 / np.sum(taper**2)
     lines_hz = np.arange(len(power)) * part.sample_rate_hz / part.sample_count

@@ -13,6 +13,7 @@ from sim.effects.effect import Effect
 from sim.effects.k6_joint_play import JointPlay
 from sim.effects.k6b_free_play import FreePlay
 from sim.effects.switching import switch_on
+from sim.model.water.radiation import Radiation
 from sim.rig import SimulatedRig, vertical_rig
 from sim.run import steady_run
 from tests.sim.effects.against_theory import at_small_angles
@@ -103,6 +104,22 @@ def test_time_domain_and_periodic_form_agree(effect: Effect) -> None:
     found = 2.0 * (turn * run["force_aft"][-800:]).mean(axis=1)
     steady = steady_run(rig, set_point).spectra["force_aft"]
     assert np.abs(found - steady[1:4]).max() < 5e-4 * abs(steady[1])
+
+
+def test_a_memory_that_fades_slowly_is_settled_beside_a_clearance() -> None:
+    """A wave that dies out over 40 s: some 60 periods of 2 s would still show it."""
+    slow = Radiation(
+        np.zeros((2, 2)), np.diag([-0.025, -4.0]), np.diag([3.0, 20.0]), np.diag([3.0, 20.0])
+    )
+    slow_rig = replace(RIG, radiation=slow)
+    rig, set_point = switch_on((FreePlay(2e-4),), slow_rig, SetPoint(0.5, 0.02, 0.4))
+    chain = rig.chain(set_point)
+    state, _ = chain.run(chain.start(200.0, 1), 200 * 600)
+    _, run = chain.run(state, 1600)
+    turn = np.exp(-1j * np.outer([0, 1, 2, 3], run["shaft_angle"]))
+    found = (turn * run["force_aft"]).mean(axis=1) * [1.0, 2.0, 2.0, 2.0]
+    steady = steady_run(rig, set_point).spectra["force_aft"]
+    assert np.abs(found - steady[:4]).max() < 2e-5 * abs(steady[1])
 
 
 @pytest.mark.parametrize(("effect", "fine"), [(GearBacklash(0.003, 0.02, 3e4, 1.0), 20)])
