@@ -6,8 +6,9 @@ from typing import Any
 
 from hardware.description.arrangement import DriftBy, Joint
 from hardware.description.body import Body
+from hardware.description.channels import STEERING
 from hardware.description.errors import ConfigurationError
-from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator
+from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator, Plane
 from hardware.description.setpoint import Medium, SetPoint, check_within
 from sim.acquisition.channels import Acquisition, Digitiser
 from sim.acquisition.photocell import PhotocellStage
@@ -21,6 +22,7 @@ from sim.mechanism.linkage import Mechanism, Setting
 from sim.model.hull import Hull, HullCoefficients
 from sim.model.law_point import Acting
 from sim.model.mounting import Mounting
+from sim.model.steering import Steering
 from sim.model.water.force_laws import CrossFlow, SurgeForces
 from sim.model.water.radiation import Radiation
 from sim.stage import UNKNOWN_KEYS_REFUSED, Stage
@@ -54,6 +56,8 @@ class SimulatedRig:
         ``None`` for a rig without one.
     surge
         Forces along the model; they are there to be measured where ``acquisition.force_x`` is.
+    steering
+        Propeller and rudder, in water.
     """
 
     oscillator: Oscillator
@@ -72,6 +76,7 @@ class SimulatedRig:
     acquisition: Acquisition = field(default_factory=Acquisition)
     photocell: PhotocellStage | None = field(default_factory=PhotocellStage)
     surge: SurgeForces | None = None
+    steering: Steering | None = None
 
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
@@ -85,6 +90,7 @@ class SimulatedRig:
             further apart than the model's attachments can reach.
         """
         self._check_joint(set_point)
+        self._check_steering(set_point)
         check_within(self.oscillator, set_point)
         carriage = Carriage(set_point.carriage_speed_m_s, self.carriage)
         mechanism = Mechanism(
@@ -127,6 +133,28 @@ class SimulatedRig:
                 "spacing (limit 1, where the model stands across); lower eccentricity_m"
             )
 
+    def _check_steering(self, set_point: SetPoint) -> None:
+        steering = self.steering
+        rudder = steering is not None and steering.rudder is not None
+        propeller = steering is not None and steering.propeller is not None
+        faults = []
+        if set_point.rudder_angle_rad and not rudder:
+            faults.append("a rudder angle, but [steering.rudder] is missing")
+        if set_point.revolutions_hz and not propeller:
+            faults.append("revolutions, but [steering.propeller] is missing")
+        if steering is not None and self.oscillator.plane is Plane.VERTICAL:
+            faults.append("[steering] is for the horizontal oscillator")
+        if steering is not None and (self.drive.motor is not None or self.drive.gear is not None):
+            faults.append("[steering] needs a drive without motor and gear")
+        written = {signal.name for signal in (steering.writes if steering is not None else ())}
+        faults += [
+            f"acquisition.{line.channel.name}, but nothing in [steering] has it"
+            for line in self.acquisition.lines
+            if line.channel in STEERING and line.channel.name not in written
+        ]
+        if faults:
+            raise ConfigurationError("; ".join(faults))
+
     def _hull(self, set_point: SetPoint, carriage_speed_m_s: float) -> Hull:
         in_water = set_point.medium is Medium.WATER
         return Hull(
@@ -144,6 +172,7 @@ class SimulatedRig:
             self.oscillator.arrangement,
             self.surge if in_water else None,
             in_water,
+            None if self.steering is None else self.steering.set_for(set_point),
         )
 
     def ideal(self) -> "SimulatedRig":

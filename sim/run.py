@@ -27,6 +27,11 @@ if TYPE_CHECKING:
 MOST = 1e7
 
 
+_FINITE = (
+    "strut_phase_rad", "carriage_speed_m_s", "drift_rad", "rudder_angle_rad", "revolutions_hz",
+)  # fmt: skip
+
+
 def simulate(
     rig: SimulatedRig,
     set_point: SetPoint,
@@ -109,7 +114,7 @@ def _check_arguments(
         )
     else:
         faults += _too_many(set_point.frequency_hz, settling_periods + periods + 1, sample_rate_hz)
-    for field in ("strut_phase_rad", "carriage_speed_m_s", "drift_rad"):
+    for field in _FINITE:
         value = getattr(set_point, field)
         if not math.isfinite(value):
             faults.append(f"{field} = {value} of the set-point must be a finite number")

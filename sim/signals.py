@@ -86,6 +86,13 @@ FORCE_FORE = of_channel(channels.FORCE_FORE)
 # Force of the strut on the model along it, positive ahead.
 FORCE_X = of_channel(channels.FORCE_X)
 
+# Behind the model: what propeller and rudder do to their own gauges.
+RUDDER_ANGLE = of_channel(channels.RUDDER_ANGLE)
+REVOLUTIONS = of_channel(channels.REVOLUTIONS)
+PROPELLER_THRUST = of_channel(channels.PROPELLER_THRUST)
+PROPELLER_TORQUE = of_channel(channels.PROPELLER_TORQUE)
+RUDDER_NORMAL_FORCE = of_channel(channels.RUDDER_NORMAL_FORCE)
+
 # Dynamometers: what the gauges make of those forces.
 DYNAMOMETER_FORCE_AFT = Signal("dynamometer_force_aft", "N")
 DYNAMOMETER_FORCE_FORE = Signal("dynamometer_force_fore", "N")

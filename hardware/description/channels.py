@@ -64,6 +64,14 @@ FORCE_AFT = Channel("force_aft", "N")
 FORCE_FORE = Channel("force_fore", "N")
 FORCE_X = Channel("force_x", "N")
 CARRIAGE_SPEED = Channel("carriage_speed", "m/s")
+# Behind the model. A positive rudder angle turns the ship to starboard, and its normal force is
+# then positive (to port); thrust is positive ahead, both are those of the propeller and the rudder
+# on their gauges in the model.
+RUDDER_ANGLE = Channel("rudder_angle", "rad")
+REVOLUTIONS = Channel("revolutions", "Hz")
+PROPELLER_THRUST = Channel("propeller_thrust", "N")
+PROPELLER_TORQUE = Channel("propeller_torque", "N m")
+RUDDER_NORMAL_FORCE = Channel("rudder_normal_force", "N")
 
 # A turntable's sway, angle, force and moment stand in the places of the struts', aft first.
 _STRUTS: Final = {
@@ -81,7 +89,10 @@ def units_on(joint: Joint) -> Mapping[str, str]:
 # Names of the struts' channels, aft first; and all that a rig records, in the order of a recording.
 DISPLACEMENTS: Final = (DISPLACEMENT_AFT.name, DISPLACEMENT_FORE.name)
 FORCES: Final = (FORCE_AFT.name, FORCE_FORE.name)
+STEERING: Final = (
+    RUDDER_ANGLE, REVOLUTIONS, PROPELLER_THRUST, PROPELLER_TORQUE, RUDDER_NORMAL_FORCE,
+)  # fmt: skip
 STANDARD: Final = (
     SHAFT_ANGLE, DISPLACEMENT_AFT, DISPLACEMENT_FORE, FORCE_AFT, FORCE_FORE, FORCE_X,
-    CARRIAGE_SPEED,
+    CARRIAGE_SPEED, *STEERING,
 )  # fmt: skip

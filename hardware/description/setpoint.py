@@ -30,6 +30,10 @@ class SetPoint:
     drift_rad
         Steady heading of the model against the carriage's way, positive for the bow to starboard
         (trim: bow up), set as the oscillator's ``drift_by`` says.
+    rudder_angle_rad
+        Of the rudder against the model's midline, positive to turn to starboard.
+    revolutions_hz
+        Rate of the propeller, positive to drive ahead; 0 where it stands or there is none.
     """
 
     frequency_hz: float
@@ -38,6 +42,8 @@ class SetPoint:
     carriage_speed_m_s: float = 0.0
     medium: Medium = Medium.WATER
     drift_rad: float = 0.0
+    rudder_angle_rad: float = 0.0
+    revolutions_hz: float = 0.0
 
 
 def check_within(oscillator: Oscillator, set_point: SetPoint) -> None:

@@ -28,6 +28,7 @@ from sim.mechanism.linkage import Setting
 from sim.model.hull import HullCoefficients
 from sim.model.law_point import Acting
 from sim.model.mounting import Mounting
+from sim.model.steering import Steering
 from sim.model.water.force_laws import CrossFlow, SurgeForces
 from sim.model.water.radiation_file import RadiationFile
 from sim.rig import SimulatedRig
@@ -69,7 +70,7 @@ class Campaign:
         ``None`` where the file does not say; a simulation needs them, an analysis does not.
     hull, drive, dynamometers, acquisition, photocell, simulation
         What the simulation believes.
-    radiation, carriage, linkage_aft, linkage_fore, mounting, forces, cross_flow, surge
+    radiation, carriage, linkage_aft, linkage_fore, mounting, forces, cross_flow, surge, steering
         More of that, as in :class:`sim.rig.SimulatedRig`; the memory comes from a table.
     effects
         What is switched on besides, in this order.
@@ -107,6 +108,7 @@ class Campaign:
     forces: tuple[Acting, ...] = ()
     cross_flow: CrossFlow | None = None
     surge: SurgeForces | None = None
+    steering: Steering | None = None
     effects: tuple[SwitchedOn, ...] = ()
     reference: ReferenceChoice = field(default_factory=ReferenceChoice)
     analysis: ResolverSettings = field(default_factory=ResolverSettings)
@@ -154,6 +156,7 @@ class Campaign:
             forces=self.forces,
             cross_flow=self.cross_flow,
             surge=self.surge,
+            steering=self.steering,
         )
 
     def as_recorded(self, name: str) -> "Campaign":

@@ -26,8 +26,10 @@ _UNITS = {
     "eccentricity_mm": ("eccentricity_m", 1e-3),
     "strut_phase_deg": ("strut_phase_rad", math.pi / 180.0),
     "drift_deg": ("drift_rad", math.pi / 180.0),
+    "rudder_angle_deg": ("rudder_angle_rad", math.pi / 180.0),
 }
-_EXTRA_KEYS = {"oscillator": ("preset",), "runs": tuple(_UNITS), "at_rest": ("drift_deg",)}
+_RESTING = ("drift_deg", "rudder_angle_deg")
+_EXTRA_KEYS = {"oscillator": ("preset",), "runs": tuple(_UNITS), "at_rest": _RESTING}
 # Tables and keys for which ``false`` says that the rig has no such thing.
 _MAY_BE_FALSE = ("photocell", "acquisition")
 

@@ -193,6 +193,8 @@ def _differences(
         ("strut phase", "rad", phase.value, told.strut_phase_rad, phase.standard_uncertainty),
         ("carriage speed", "m/s", own.carriage_speed_m_s, told.carriage_speed_m_s, 0.0),
         ("drift", "rad", own.drift_rad, told.drift_rad, 0.0),
+        ("rudder angle", "rad", own.rudder_angle_rad, told.rudder_angle_rad, 0.0),
+        ("revolutions", "Hz", own.revolutions_hz, told.revolutions_hz, 0.0),
     )
     found = [
         f"{what} {mine:.6g} {unit}, the campaign says {theirs:.6g} {unit}"

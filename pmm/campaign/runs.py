@@ -43,6 +43,8 @@ class Asked:
     medium: Medium = Medium.WATER
     periods: int = 10
     drift_rad: float = 0.0
+    rudder_angle_rad: float = 0.0
+    revolutions_hz: float = 0.0
 
     @property
     def set_point(self) -> SetPoint:
@@ -54,6 +56,8 @@ class Asked:
             self.carriage_speed_m_s,
             self.medium,
             self.drift_rad,
+            self.rudder_angle_rad,
+            self.revolutions_hz,
         )
 
 
@@ -66,6 +70,7 @@ class Run(Asked):
     name
         Unique within the campaign; its recording is called so.
     frequency_hz, eccentricity_m, strut_phase_rad, carriage_speed_m_s, medium, drift_rad
+    rudder_angle_rad, revolutions_hz
         As in :class:`hardware.description.setpoint.SetPoint`.
     periods
         Whole periods wanted.
@@ -127,6 +132,8 @@ class AtRest:
     carriage_speed_m_s: float = 0.0
     medium: Medium = Medium.WATER
     drift_rad: float = 0.0
+    rudder_angle_rad: float = 0.0
+    revolutions_hz: float = 0.0
     repeat: int = 1
     load: LoadStep | None = None
     known_mass: KnownMass | None = None
@@ -139,8 +146,17 @@ class AtRest:
 
     @property
     def set_point(self) -> SetPoint:
-        """What the rig was told to do: carriage speed, medium and drift, the shaft at rest."""
-        return SetPoint(0.0, 0.0, 0.0, self.carriage_speed_m_s, self.medium, self.drift_rad)
+        """What the rig was told to do with its shaft at rest."""
+        return SetPoint(
+            0.0,
+            0.0,
+            0.0,
+            self.carriage_speed_m_s,
+            self.medium,
+            self.drift_rad,
+            self.rudder_angle_rad,
+            self.revolutions_hz,
+        )
 
     def recording_path(self, folder: Path) -> Path:
         """Return where the recording lies, as for a run."""

@@ -10,6 +10,7 @@ from typing import Any, Final
 from hardware.description.body import DIMENSIONS
 from hardware.description.channels import Channel
 from hardware.description.oscillator import Range
+from hardware.description.setpoint import SetPoint
 from hardware.roles import Reading
 from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
@@ -127,6 +128,7 @@ def _common(one: FinishedRun, names: set[str], number: int) -> dict[str, Any]:
         "carriage_speed_m_s": point.carriage_speed_m_s,
         "medium": point.medium,
         "drift_rad": point.drift_rad,
+        **_steering(point),
         "repeat": run.repeat,
         "known_mass": None if run.known_mass is None else asdict(run.known_mass),
         "zero_before": run.zero_before if run.zero_before in names else None,
@@ -136,6 +138,12 @@ def _common(one: FinishedRun, names: set[str], number: int) -> dict[str, Any]:
         "differs": one.differs or None,
         "recorded_with": one.recorded_with,
     }
+
+
+def _steering(point: SetPoint) -> dict[str, float]:
+    """Return rudder angle and revolutions, where the run has a rudder laid or a propeller."""
+    found = {"rudder_angle_rad": point.rudder_angle_rad, "revolutions_hz": point.revolutions_hz}
+    return {key: value for key, value in found.items() if value}
 
 
 def _turning(one: FinishedRun, rig: RigFile) -> dict[str, Any]:

@@ -79,7 +79,9 @@ def expand(
     lists = (
         repeats,
         entry.speeds_m_s or (0.0,),
+        entry.revolutions_hz or (0.0,),
         entry.drifts_rad or (0.0,),
+        entry.rudder_angles_rad or (0.0,),
         entry.strut_phases_rad or (math.nan,),
         entry.amplitudes_m or (0.0,),
         frequencies,
@@ -94,7 +96,9 @@ def run_count(entry: PlanEntry, defaults: Defaults, channels: Sequence[str]) -> 
         return repeats * len(entry.channels or channels) * len(entry.loads_n)
     lists: Lists = (
         entry.speeds_m_s,
+        entry.revolutions_hz,
         entry.drifts_rad,
+        entry.rudder_angles_rad,
         entry.strut_phases_rad,
         entry.amplitudes_m,
         entry.frequencies_hz,
@@ -105,7 +109,7 @@ def run_count(entry: PlanEntry, defaults: Defaults, channels: Sequence[str]) -> 
 def _run(
     entry: PlanEntry, defaults: Defaults, oscillator: Oscillator, one: tuple[Any, ...]
 ) -> RunPlan:
-    repeat, speed, drift, phase, amplitude, frequency = one
+    repeat, speed, revolutions, drift, rudder, phase, amplitude, frequency = one
     motion = entry.motion or Motion.NONE
     if motion is not Motion.PHASE:
         phase = strut_phase_of(motion, frequency, speed, oscillator.half_spacing_m)
@@ -118,6 +122,8 @@ def _run(
         0.0 if in_air else speed,
         Medium.AIR if in_air else entry.medium or Medium.WATER,
         drift,
+        rudder,
+        revolutions,
     )
     return RunPlan(
         name=_name(entry, one),
@@ -159,14 +165,18 @@ def _name(entry: PlanEntry, one: tuple[Any, ...]) -> str:
 
     Frequency and amplitude always stand there.
     """
-    repeat, speed, drift, phase, amplitude, frequency = one
+    repeat, speed, revolutions, drift, rudder, phase, amplitude, frequency = one
     parts = [entry.name or _prefix(entry)]
     if frequency and entry.kind is not RunKind.CONTROL:
         parts += [f"f{frequency:g}", f"a{1e3 * amplitude:.6g}"]
     if len(entry.speeds_m_s) > 1:
         parts.append(f"u{speed:g}")
+    if len(entry.revolutions_hz) > 1:
+        parts.append(f"n{revolutions:g}")
     if len(entry.drifts_rad) > 1:
         parts.append(f"b{math.degrees(drift):.6g}")
+    if len(entry.rudder_angles_rad) > 1:
+        parts.append(f"d{math.degrees(rudder):.6g}")
     if len(entry.strut_phases_rad) > 1:
         parts.append(f"p{math.degrees(phase):.6g}")
     if repeat > 1:

@@ -8,6 +8,7 @@ from typing import Any
 
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.oscillator import Oscillator
+from hardware.description.setpoint import SetPoint
 from pmm.plan.expansion import all_of, expand, snake
 from pmm.plan.plan_tables import OrderTable, PlanEntry, PlanTables, Scheme, ZeroTable
 from pmm.plan.run_plan import RunPlan
@@ -115,7 +116,13 @@ def _zero_run(name: str, like: RunPlan, zero: ZeroTable, prompts: tuple[str, ...
         name=name,
         kind=RunKind.ZERO,
         motion=Motion.NONE,
-        set_point=replace(point, frequency_hz=0.0, carriage_speed_m_s=0.0),
+        set_point=SetPoint(
+            0.0,
+            point.eccentricity_m,
+            point.strut_phase_rad,
+            medium=point.medium,
+            drift_rad=point.drift_rad,
+        ),
         duration_s=zero.duration_s,
         pause_before_s=like.pause_before_s,
         known_mass=like.known_mass,

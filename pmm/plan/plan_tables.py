@@ -79,6 +79,8 @@ class PlanEntry:
         For the motion ``"phase"``.
     drifts_rad
         Steady drift angles, positive for the bow to starboard.
+    rudder_angles_rad, revolutions_hz
+        Of the rudder, positive to turn to starboard; of the propeller.
     channels, loads_n
         Gauges and their loads, of check weights and pushes.
     medium
@@ -95,6 +97,8 @@ class PlanEntry:
     speeds_m_s: tuple[float, ...] = ()
     strut_phases_rad: tuple[float, ...] = ()
     drifts_rad: tuple[float, ...] = ()
+    rudder_angles_rad: tuple[float, ...] = ()
+    revolutions_hz: tuple[float, ...] = ()
     periods: int | None = None
     settling_periods: int | None = None
     repeats: int | None = None

@@ -17,6 +17,7 @@ _LISTS: Final = {
     "amplitudes_mm": ("amplitudes_m", 1e-3),
     "strut_phases_deg": ("strut_phases_rad", _DEGREE),
     "drifts_deg": ("drifts_rad", _DEGREE),
+    "rudder_angles_deg": ("rudder_angles_rad", _DEGREE),
 }
 # Keys of lists that a single value may stand for.
 _MANY: Final = (
@@ -25,6 +26,8 @@ _MANY: Final = (
     "speeds_m_s",
     "strut_phases_rad",
     "drifts_rad",
+    "rudder_angles_rad",
+    "revolutions_hz",
     "channels",
     "loads_n",
 )

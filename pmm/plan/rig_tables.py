@@ -183,6 +183,7 @@ HANDED_ON = (
     "photocell",
     "radiation",
     "simulation",
+    "steering",
     "surge",
     "tolerances",
 )

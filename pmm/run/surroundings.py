@@ -10,6 +10,7 @@ from hardware.demand import Demand
 from hardware.description.arrangement import DriftBy
 from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator, Plane
+from hardware.description.setpoint import SetPoint
 from hardware.driver import Prompt
 from pmm.plan.run_plan import RunPlan
 
@@ -26,11 +27,15 @@ class Surroundings:
         Channel and newtons of the weight that hangs on a gauge.
     drift_rad
         Mean heading of the model to the tow, however it is set.
+    rudder_angle_rad, revolutions_hz
+        Of the rudder and of the propeller.
     """
 
     medium: str = "water"
     carriage_speed_m_s: float = 0.0
     drift_rad: float = 0.0
+    rudder_angle_rad: float = 0.0
+    revolutions_hz: float = 0.0
     mass_kg: float = 0.0
     load: tuple[str, float] = ("", 0.0)
 
@@ -39,6 +44,7 @@ class Surroundings:
         yield from self._change_medium(str(run.set_point.medium))
         yield from self._change_mass(run)
         yield from self._change_drift(run, oscillator)
+        yield from self._change_steering(run.set_point)
         wanted = run.load if run.kind is RunKind.CHECK_WEIGHT else None
         yield from self._change_load(
             ("", 0.0) if wanted is None else (wanted.channel, wanted.force_n)
@@ -95,6 +101,21 @@ class Surroundings:
             text = f"drift: {drift_prompt(Geometry.of(oscillator, run.set_point))}; press Enter"
             yield Demand(text, "drift", drift_rad)
 
+    def _change_steering(self, point: SetPoint) -> Iterator[Demand]:
+        if point.rudder_angle_rad != self.rudder_angle_rad:
+            self.rudder_angle_rad = point.rudder_angle_rad
+            text = f"rudder: lay it {_rudder(point.rudder_angle_rad)}; press Enter when it is so"
+            yield Demand(text, "rudder", point.rudder_angle_rad)
+        if point.revolutions_hz != self.revolutions_hz:
+            self.revolutions_hz = point.revolutions_hz
+            text = (
+                f"propeller: turn it at {point.revolutions_hz:g} Hz "
+                f"({60.0 * point.revolutions_hz:g} rpm); press Enter when the rate is steady"
+                if point.revolutions_hz
+                else "propeller: stop it; press Enter when it stands"
+            )
+            yield Demand(text, "propeller", point.revolutions_hz)
+
 
 class Questions:
     """Asks demands one by one, once a cycle, so that the loop never waits for a person."""
@@ -138,6 +159,13 @@ def drift_prompt(geometry: Geometry) -> str:
             return f"set the turntable's mean angle: {angle}"
         case DriftBy.STRUTS_OFFSET:
             return f"set the struts' mean positions apart: {_apart(geometry)}, for {angle}"
+
+
+def _rudder(angle_rad: float) -> str:
+    if not angle_rad:
+        return "amidships"
+    to = "port" if angle_rad < 0.0 else "starboard"
+    return f"to turn to {to} by {abs(angle_rad):.4f} rad ({math.degrees(abs(angle_rad)):.2f} deg)"
 
 
 def _angle(geometry: Geometry) -> str:

@@ -37,6 +37,11 @@ _SOURCES = {
     channels.FORCE_FORE: signals.DYNAMOMETER_FORCE_FORE,
     channels.FORCE_X: signals.FORCE_X,
     channels.CARRIAGE_SPEED: signals.CARRIAGE_SPEED,
+    channels.RUDDER_ANGLE: signals.RUDDER_ANGLE,
+    channels.REVOLUTIONS: signals.REVOLUTIONS,
+    channels.PROPELLER_THRUST: signals.PROPELLER_THRUST,
+    channels.PROPELLER_TORQUE: signals.PROPELLER_TORQUE,
+    channels.RUDDER_NORMAL_FORCE: signals.RUDDER_NORMAL_FORCE,
 }
 
 
@@ -57,6 +62,11 @@ class Acquisition:
     force_fore: Digitiser | None = _PERFECT
     carriage_speed: Digitiser | None = None
     force_x: Digitiser | None = None
+    rudder_angle: Digitiser | None = None
+    revolutions: Digitiser | None = None
+    propeller_thrust: Digitiser | None = None
+    propeller_torque: Digitiser | None = None
+    rudder_normal_force: Digitiser | None = None
 
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
     name = "acquisition"

@@ -17,9 +17,9 @@ _DIALS: Final = ("eccentricity", "phase", "shaft")
 class SimulatedOperator:
     """Answers questions and does what they ask for, at once.
 
-    Carriage, medium, drift angle, masses and loads need no person. A dial is read by the person, if
-    there is one who answers; what was read is then where the linkage stands. Whatever else is to be
-    done and confirmed is taken for done where nobody is there to confirm it.
+    Carriage, medium, drift, rudder, propeller, masses and loads need no person. A dial is read by
+    the person, if there is one who answers; what was read is then where the linkage stands.
+    Whatever else is to be done and confirmed is taken for done where nobody is there to confirm it.
 
     Parameters
     ----------
@@ -90,6 +90,14 @@ def _turn_model(world: World, question: Demand) -> None:
     world.plant.surround(drift_rad=float(question.value or 0.0))
 
 
+def _lay_rudder(world: World, question: Demand) -> None:
+    world.plant.surround(rudder_angle_rad=float(question.value or 0.0))
+
+
+def _turn_propeller(world: World, question: Demand) -> None:
+    world.plant.surround(revolutions_hz=float(question.value or 0.0))
+
+
 def _load(world: World, question: Demand) -> None:
     inject(world, f"push {question.channel} {question.value}")
 
@@ -104,4 +112,6 @@ _DOING: Final[dict[str, Callable[[World, Demand], None]]] = {
     "load": _load,
     "mass": _ballast,
     "drift": _turn_model,
+    "rudder": _lay_rudder,
+    "propeller": _turn_propeller,
 }

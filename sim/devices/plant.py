@@ -6,8 +6,8 @@ sample; from there the changed chain goes on. A run in which nothing changes cos
 a sample.
 """
 
-from dataclasses import dataclass, replace
-from typing import Final
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Final
 
 from hardware.description.setpoint import Medium, SetPoint
 from sim import signals
@@ -23,12 +23,14 @@ SHAFT_FRICTION: Final = Friction(time_constant_s=2.0, deceleration=1.0)
 
 @dataclass(frozen=True)
 class PlantConditions:
-    """Conditions outside the rig: carriage speed, medium, seed of all noise, drift angle."""
+    """Conditions outside the rig: carriage, medium, seed of all noise, drift, rudder, propeller."""
 
     carriage_speed_m_s: float = 0.0
     medium: Medium = Medium.WATER
     seed: int = 1
     drift_rad: float = 0.0
+    rudder_angle_rad: float = 0.0
+    revolutions_hz: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -152,17 +154,19 @@ class Plant:
         carriage_speed_m_s: float | None = None,
         medium: Medium | None = None,
         drift_rad: float | None = None,
+        rudder_angle_rad: float | None = None,
+        revolutions_hz: float | None = None,
     ) -> None:
-        """Change speed, medium or the model's heading on the carriage, from the next sample on."""
+        """Change what is given, from the next sample on."""
         before, now = self._around, self._around
-        self._around = replace(
-            now,
-            carriage_speed_m_s=(
-                now.carriage_speed_m_s if carriage_speed_m_s is None else carriage_speed_m_s
-            ),
-            medium=now.medium if medium is None else medium,
-            drift_rad=now.drift_rad if drift_rad is None else drift_rad,
-        )
+        given: dict[str, Any] = {
+            "carriage_speed_m_s": carriage_speed_m_s,
+            "medium": medium,
+            "drift_rad": drift_rad,
+            "rudder_angle_rad": rudder_angle_rad,
+            "revolutions_hz": revolutions_hz,
+        }
+        self._around = replace(now, **{key: one for key, one in given.items() if one is not None})
         self._changed = self._changed or self._around != before
 
     def load(self, mass_kg: float, at_m: float = 0.0) -> None:
@@ -212,8 +216,8 @@ class Plant:
         rig = replace(self._rig, drive=following(self._rig.drive, self.profile))
         around = self._around
         any_hz = self._rig.oscillator.frequency_hz.high
-        speed, drift = around.carriage_speed_m_s, around.drift_rad
-        return rig.chain(SetPoint(any_hz, eccentricity, phase, speed, around.medium, drift))
+        conditions = {key: one for key, one in asdict(around).items() if key != "seed"}
+        return rig.chain(SetPoint(any_hz, eccentricity, phase, **conditions))
 
     def _run(self, chain: Chain, state: ChainState, count: int) -> _Stretch:
         carried = self._due

@@ -17,9 +17,10 @@ from sim.model.hull_steady_state import HullSteady
 from sim.model.model_march import Marching, marching_of
 from sim.model.numbers import numbers_of, turns_with, weight_less_buoyancy
 from sim.model.parameters import HullCoefficients, ModelParameters, mass_matrix
+from sim.model.steered import steered
 from sim.model.system import HullSystem
 from sim.model.water.radiation import constant
-from sim.signals import Signals
+from sim.signals import Signal, Signals
 from sim.solve.linear_system import Hold
 from sim.solve.period import Period, Spectra
 from sim.solve.recurrence import fine_enough, last_period
@@ -28,6 +29,7 @@ from sim.stage import Block
 
 __all__ = ["Hull", "HullCoefficients"]
 
+_FORCES = (signals.FORCE_AFT, signals.FORCE_FORE, signals.FORCE_X)
 ValueT = TypeVar("ValueT", np.float64, np.complex128)
 
 
@@ -53,7 +55,11 @@ class Hull(ModelParameters):
 
     name = "hull"
     reads = signals.MODEL_MOTION
-    writes = (signals.FORCE_AFT, signals.FORCE_FORE, signals.FORCE_X)
+
+    @property
+    def writes(self) -> tuple[Signal, ...]:
+        """The struts' forces, the force along the model, and what propeller and rudder write."""
+        return _FORCES if self.steering is None else (*_FORCES, *self.steering.writes)
 
     @property
     def system(self) -> HullSystem:
@@ -76,7 +82,12 @@ class Hull(ModelParameters):
             force = self._over(instants).on_rigid_mounting(struts)
         else:
             state, force = self._with_memory(state, struts, instants)
-        return state, self._written(np.ascontiguousarray(force.T))
+        rows = np.ascontiguousarray(force.T)
+        if self.steering is not None:
+            own = steered(self.steering, self.system.numbers, struts, flow)
+            own[:3] += rows
+            rows = own
+        return state, self._written(rows)
 
     def _written(self, rows: NDArray[ValueT]) -> dict[str, NDArray[ValueT]]:
         return {signal.name: row for signal, row in zip(self.writes, rows, strict=True)}
@@ -140,7 +151,14 @@ class Hull(ModelParameters):
             return period, hull._settled(period, inputs)
         y = np.stack([inputs[signal.name] for signal in self.reads[:2]], axis=1)
         model = HullSteady(hull.laws, hull.system, hull.carriage_speed_m_s, period)
-        return period, self._written(model.force(y, model.balanced(y)).T)
+        rows = model.force(y, model.balanced(y)).T
+        if self.steering is None:
+            return period, self._written(rows)
+        struts = np.stack([period.values(inputs[signal.name]) for signal in self.reads[:6]], axis=1)
+        flow = np.full(period.points, hull.carriage_speed_m_s)
+        added = period.harmonics(steered(self.steering, self.system.numbers, struts, flow).T).T
+        added[:3] += rows
+        return period, self._written(added)
 
     def at_speed(self, inputs: Spectra) -> "Hull":
         """Return the model at the carriage's mean speed."""

@@ -7,6 +7,7 @@ from hardware.description.body import Body
 from hardware.description.oscillator import Plane
 from sim.model.law_point import Acting
 from sim.model.mounting import Mounting
+from sim.model.steering import Steering
 from sim.model.water.force_laws import CrossFlow, SurgeForces
 from sim.model.water.hydrostatics import Matrix
 from sim.model.water.radiation import Radiation
@@ -78,6 +79,9 @@ class ModelParameters:
         Whether buoyancy carries the model: it then displaces its own mass, centred between the
         struts' attachments in height and below the centre of gravity along the model. Else, in the
         vertical plane, the weight hangs on the struts whole.
+    steering
+        Propeller and rudder. Their loads go by the struts' motion, and through the mounting to the
+        gauges without moving it.
     """
 
     plane: Plane
@@ -94,3 +98,4 @@ class ModelParameters:
     arrangement: Arrangement = field(default_factory=Arrangement)
     surge: SurgeForces | None = None
     afloat: bool = True
+    steering: Steering | None = None

@@ -5,7 +5,7 @@ its added mass on the left, hull, propeller and rudder on the right.
 """
 
 import math
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -59,10 +59,45 @@ def rate_hz() -> float:
 N = rate_hz()
 
 
+class Behind(NamedTuple):
+    """Loads of propeller and rudder, and what gauges behind the ship read."""
+
+    x: float
+    y: float
+    n: float
+    thrust: float
+    normal: float
+
+
+def steering(u: float, v: float, r: float, delta: float, rate: float) -> Behind:
+    U = math.sqrt(u * u + v * v)
+    beta, rp = math.atan2(-v, u), r * L / U
+    beta_p = beta - X_P * rp
+    c2 = C2[0] if beta_p > 0.0 else C2[1]
+    u_p = u * (1.0 - W_P0) * (1.0 + (1.0 - math.exp(-C1 * abs(beta_p))) * (c2 - 1.0))
+    j = u_p / (rate * D_P)
+    k_t = K[0] + K[1] * j + K[2] * j * j
+    thrust = RHO * rate**2 * D_P**4 * k_t
+    eta = D_P / H_R
+    race = 1.0 + KAPPA * (math.sqrt(1.0 + 8.0 * k_t / (math.pi * j * j)) - 1.0)
+    u_r = EPSILON * u_p * math.sqrt(eta * race**2 + 1.0 - eta)
+    beta_r = beta - L_R * rp
+    v_r = U * (GAMMA[0] if beta_r > 0.0 else GAMMA[1]) * beta_r
+    f_n = 0.5 * RHO * A_R * (u_r**2 + v_r**2) * F_ALPHA * math.sin(delta - math.atan2(v_r, u_r))
+    across = -f_n * math.cos(delta)
+    return Behind(
+        (1.0 - T_P) * thrust - (1.0 - T_R) * f_n * math.sin(delta),
+        (1.0 + A_H) * across,
+        (-0.5 + A_H * X_H) * L * across,
+        thrust,
+        f_n,
+    )
+
+
 def rates(state: np.ndarray, delta: float) -> np.ndarray:
     u, v, r, _, _, psi = state
     U = math.sqrt(u * u + v * v)
-    beta, vp, rp = math.atan2(-v, u), v / U, r * L / U
+    vp, rp = v / U, r * L / U
     c = HULL
     q = 0.5 * RHO * L * D * U * U
     x = q * (c["X_0"] + c["X_vv"] * vp**2 + c["X_vr"] * vp * rp + c["X_rr"] * rp**2
@@ -71,21 +106,8 @@ def rates(state: np.ndarray, delta: float) -> np.ndarray:
              + c["Y_vrr"] * vp * rp**2 + c["Y_rrr"] * rp**3)  # fmt: skip
     n = q * L * (c["N_v"] * vp + c["N_r"] * rp + c["N_vvv"] * vp**3 + c["N_vvr"] * vp**2 * rp
                  + c["N_vrr"] * vp * rp**2 + c["N_rrr"] * rp**3)  # fmt: skip
-    beta_p = beta - X_P * rp
-    c2 = C2[0] if beta_p > 0.0 else C2[1]
-    u_p = u * (1.0 - W_P0) * (1.0 + (1.0 - math.exp(-C1 * abs(beta_p))) * (c2 - 1.0))
-    j = u_p / (N * D_P)
-    k_t = K[0] + K[1] * j + K[2] * j * j
-    x += (1.0 - T_P) * RHO * N**2 * D_P**4 * k_t
-    eta = D_P / H_R
-    race = 1.0 + KAPPA * (math.sqrt(1.0 + 8.0 * k_t / (math.pi * j * j)) - 1.0)
-    u_r = EPSILON * u_p * math.sqrt(eta * race**2 + 1.0 - eta)
-    beta_r = beta - L_R * rp
-    v_r = U * (GAMMA[0] if beta_r > 0.0 else GAMMA[1]) * beta_r
-    f_n = 0.5 * RHO * A_R * (u_r**2 + v_r**2) * F_ALPHA * math.sin(delta - math.atan2(v_r, u_r))
-    x -= (1.0 - T_R) * f_n * math.sin(delta)
-    y -= (1.0 + A_H) * f_n * math.cos(delta)
-    n -= (-0.5 + A_H * X_H) * L * f_n * math.cos(delta)
+    behind = steering(u, v, r, delta, N)
+    x, y, n = x + behind.x, y + behind.y, n + behind.n
     unit = 0.5 * RHO * L * L * D
     m_x, m_y, j_z = M_X * unit, M_Y * unit, J_Z * unit * L * L
     left = np.array([
