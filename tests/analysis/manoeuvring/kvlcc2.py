@@ -94,8 +94,7 @@ def steering(u: float, v: float, r: float, delta: float, rate: float) -> Behind:
     )
 
 
-def rates(state: np.ndarray, delta: float) -> np.ndarray:
-    u, v, r, _, _, psi = state
+def hull(u: float, v: float, r: float) -> tuple[float, float, float]:
     U = math.sqrt(u * u + v * v)
     vp, rp = v / U, r * L / U
     c = HULL
@@ -106,6 +105,12 @@ def rates(state: np.ndarray, delta: float) -> np.ndarray:
              + c["Y_vrr"] * vp * rp**2 + c["Y_rrr"] * rp**3)  # fmt: skip
     n = q * L * (c["N_v"] * vp + c["N_r"] * rp + c["N_vvv"] * vp**3 + c["N_vvr"] * vp**2 * rp
                  + c["N_vrr"] * vp * rp**2 + c["N_rrr"] * rp**3)  # fmt: skip
+    return x, y, n
+
+
+def rates(state: np.ndarray, delta: float) -> np.ndarray:
+    u, v, r, _, _, psi = state
+    x, y, n = hull(u, v, r)
     behind = steering(u, v, r, delta, N)
     x, y, n = x + behind.x, y + behind.y, n + behind.n
     unit = 0.5 * RHO * L * L * D
