@@ -115,9 +115,10 @@ def design(
     if after:
         from pmm.coefficients.request import campaign_folder
         from pmm.design.measured import after as going_on
+        from pmm.design.measured import measured
 
         with doing("reading what was measured"):
-            read = going_on(read, [campaign_folder(one) for one in after])
+            read = going_on(read, [measured(read, campaign_folder(one)) for one in after])
     with doing("looking at what each run would tell"):
         found = designed(read)
     target = Path(output) if output is not None and found.steps else None

@@ -35,16 +35,22 @@ def report(**options: Any) -> None:
     """  # noqa: D301
     from pmm.cli.files import check_file
     from pmm.cli.screen import busy, program, say
+    from pmm.coefficients.request import campaign_folder
     from pmm.document.page import write_page
     from pmm.report.coefficients_document import report_document
+    from pmm.report.sequential_document import story
 
     path = _path(options)
     check_file(path, "--output", overwrite=options["overwrite"])
     outcome, files = analysed(options, hashed=True)
     title = options["title"] or f"Coefficients of {', '.join(outcome.names)}"
     command = shlex.join([Path(program()).name, *sys.argv[1:]])
+    folders = [campaign_folder(one) for one in options["campaigns"]]
+    stories = [one for pair in zip(folders, outcome.names, strict=True) for one in story(*pair)]
     with busy("drawing the page"):
-        write_page(report_document(outcome), path, title=title, command=command, read=files)
+        write_page(
+            report_document(outcome, stories), path, title=title, command=command, read=files
+        )
     say(path)
     finish(outcome)
 

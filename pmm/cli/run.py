@@ -1,7 +1,7 @@
 """``pmm run``: a plan in, recordings out."""
 
 import time
-from contextlib import ExitStack, nullcontext
+from contextlib import ExitStack, contextmanager, nullcontext
 from typing import TYPE_CHECKING
 
 import click
@@ -9,6 +9,7 @@ import click
 from pmm.cli.options import JSON
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from contextlib import AbstractContextManager
 
     from pmm.cli.terminal import Terminal
@@ -32,6 +33,17 @@ _INTERRUPTED = 130  # what a shell reports of a command that Ctrl-C ended
     metavar="FOLDER",
     help="Record there.  [default: the plan's name, in the folder that the rig's file names]",
 )
+@click.option(
+    "--until",
+    type=click.Choice(["targets"]),
+    help="PLAN.toml is a design: choose run after run until its targets are met.",
+)
+@click.option(
+    "--approve",
+    metavar="all|ENVELOPE.toml",
+    help="With --until: approve of all runs (simulated rig), or of those within an envelope.  "
+    "[default: ask for each change]",
+)
 @click.option("--dry-run", is_flag=True, help="Check the plan and say what would be done.")
 @click.option("--real-time", is_flag=True, help="Keep to the clock, also on a simulated rig.")
 @JSON
@@ -41,6 +53,8 @@ def run(
     resume: bool,
     accept_changes: bool,
     output: str | None,
+    until: str | None,
+    approve: str | None,
     dry_run: bool,
     real_time: bool,
     as_json: bool,
@@ -50,51 +64,37 @@ def run(
     Ctrl-C once stops gently: the axes run down along their profile, the power is taken off, the
     recording is closed. Twice stops at once. Nothing resumes by itself: --resume does.
     Axes that are set by hand are asked for; readings are typed in, or piped, one a line.
+    With --until targets the file is a design (docs/plan-design.md): after each run the coefficients
+    are found again and the rest is planned anew; you approve of each change.
 
     \b
     pmm run examples/vertical/plan.toml --output my-campaign
+    pmm run examples/vertical/design.toml --until targets --output my-campaign
     pmm analyse my-campaign
 
     Exit status: 0 all runs are complete; 1 the rig or the data say no; 2 the request was wrong;
     130 stopped by Ctrl-C.
     """  # noqa: D301
-    from hardware.description.room import is_full, said
-    from pmm.cli.files import check_folder
-    from pmm.cli.screen import pasted, say, show
-    from pmm.report.run_document import complete_runs, run_document
-    from pmm.run.session import RunFailedError, RunReport, run_job
+    from pmm.cli.run_until import carried_out_until
+    from pmm.cli.screen import pasted
 
     where = ("--output", output) if output else ()
-    again = pasted("run", plan, "--resume", *where)
-    found = RunReport()
-    try:
-        # The terminal is waited for last: the rig is left by then, and the folder free.
-        with (
-            ExitStack() as shown,
-            run_job(
-                plan,
-                only,
-                lambda folder: check_folder(folder, "--output"),
-                output=output,
-                resume=resume,
-                accept_changes=accept_changes,
-                dry_run=dry_run,
-                real_time=real_time,
-            ) as job,
-        ):
-            _tell(job)
-            if job.runs and not dry_run:
-                found = _carried_out(job, shown, quiet=as_json)
-    except OSError as error:
-        if not is_full(error):
-            raise
-        raise RunFailedError(
-            f"{said(error)}; what is recorded is kept\nwhen there is room: {again}"
-        ) from error
-    show(run_document(job, found, dry_run=dry_run), as_json=as_json)
-    if complete_runs(found) and not as_json:
-        say(pasted("analyse", job.folder))
+    again = pasted("run", plan, *(("--until", until) if until else ()), "--resume", *where)
+    with _room_said(again):
+        if until is None:
+            _refuse(approve is not None, "--approve")
+            found = _carried_out(
+                plan, only, output, resume, accept_changes, dry_run, real_time, as_json=as_json
+            )
+        else:
+            _refuse(bool(only), "--only", until)
+            _refuse(dry_run, "--dry-run", until)
+            found = carried_out_until(
+                plan, output, approve, resume, accept_changes, real_time, as_json=as_json
+            )
     if found.fault:
+        from pmm.run.session import RunFailedError
+
         raise RunFailedError(
             f"{found.fault}\nall axes are told to stop and the fault is latched; when its cause "
             f"is gone: {again}"
@@ -103,7 +103,91 @@ def run(
         click.get_current_context().exit(_INTERRUPTED)
 
 
-def _tell(job: "RunJob") -> None:
+def _refuse(given: bool, option: str, until: str | None = None) -> None:
+    """Refuse an option that does not go with --until, or goes with nothing else."""
+    if given and until is None:
+        raise click.UsageError(
+            f"{option} goes with --until; without it each run of PLAN.toml is made"
+        )
+    if given:
+        raise click.UsageError(
+            f"{option} does not go with --until: `pmm plan design` shows what would be chosen"
+        )
+
+
+@contextmanager
+def _room_said(again: str) -> "Iterator[None]":
+    """Say what to do where the disk is full."""
+    try:
+        yield
+    except OSError as error:
+        from hardware.description.room import is_full, said
+        from pmm.run.session import RunFailedError
+
+        if not is_full(error):
+            raise
+        raise RunFailedError(
+            f"{said(error)}; what is recorded is kept\nwhen there is room: {again}"
+        ) from error
+
+
+def _carried_out(
+    plan: str,
+    only: tuple[str, ...],
+    output: str | None,
+    resume: bool,
+    accept_changes: bool,
+    dry_run: bool,
+    real_time: bool,
+    *,
+    as_json: bool,
+) -> "RunReport":
+    """Make the runs of a plan and say how they ended."""
+    from pmm.cli.files import check_folder
+    from pmm.cli.screen import pasted, say, show
+    from pmm.report.run_document import complete_runs, run_document
+    from pmm.run.session import RunReport, run_job
+
+    found = RunReport()
+    # The terminal is waited for last: the rig is left by then, and the folder free.
+    with (
+        ExitStack() as shown,
+        run_job(
+            plan,
+            only,
+            lambda folder: check_folder(folder, "--output"),
+            output=output,
+            resume=resume,
+            accept_changes=accept_changes,
+            dry_run=dry_run,
+            real_time=real_time,
+        ) as job,
+    ):
+        tell_job(job)
+        if job.runs and not dry_run:
+            found = _shown(job, shown, quiet=as_json)
+    show(run_document(job, found, dry_run=dry_run), as_json=as_json)
+    if complete_runs(found) and not as_json:
+        say(pasted("analyse", job.folder))
+    return found
+
+
+def _shown(job: "RunJob", shown: ExitStack, *, quiet: bool) -> "RunReport":
+    """Carry the runs out, shown on the terminal."""
+    from pmm.cli.screen import messages
+    from pmm.run.operator import standard_input
+    from pmm.run.session import carry_out
+
+    terminal = before_others_with_terminal(shown, real_time=job.real_time)
+    return carry_out(
+        job,
+        lambda ask: view_of(terminal, ask, quiet=quiet),
+        lambda line: messages().print(line),
+        standard_input(),
+    )
+
+
+def tell_job(job: "RunJob") -> None:
     """Say what was found of the plan, and what runs that are there were recorded with."""
     from pmm.cli.screen import messages
     from pmm.document.terminal import print_content
@@ -114,21 +198,19 @@ def _tell(job: "RunJob") -> None:
         messages().print(f"keeps what it was recorded with: {told}")
 
 
-def _carried_out(job: "RunJob", shown: ExitStack, *, quiet: bool) -> "RunReport":
-    """Carry the runs out, shown on the terminal."""
+def before_others_with_terminal(shown: ExitStack, *, real_time: bool) -> "Terminal":
+    """Put the loop before other programs where it keeps time; open the terminal."""
     from pmm.cli.screen import messages
     from pmm.cli.terminal import Terminal
-    from pmm.run.session import carry_out, keep_time
+    from pmm.run.session import keep_time
 
-    if job.real_time and (advice := keep_time(shown).advice):
+    if real_time and (advice := keep_time(shown).advice):
         messages().print(advice)
-    terminal = shown.enter_context(Terminal())
-    return carry_out(
-        job, lambda ask: _view(terminal, ask, quiet=quiet), lambda line: messages().print(line)
-    )
+    return shown.enter_context(Terminal())
 
 
-def _view(terminal: "Terminal", ask: "Ask", *, quiet: bool) -> "AbstractContextManager[View]":
+def view_of(terminal: "Terminal", ask: "Ask", *, quiet: bool) -> "AbstractContextManager[View]":
+    """Return a live picture on a terminal, plain lines elsewhere."""
     from pmm.cli.run_view import LiveView, PlainView
 
     if quiet or not terminal.console.is_terminal:

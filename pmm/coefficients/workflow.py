@@ -93,8 +93,16 @@ _NOTHING_STATED = Flag(
 
 
 @dataclass(frozen=True, eq=False)
-class _Read:
-    """One campaign's recordings, read."""
+class CampaignCycles:
+    """One campaign's recordings, read.
+
+    Attributes
+    ----------
+    cycles
+        Of the runs that can be used.
+    stated
+        Standard uncertainties that its runs share.
+    """
 
     campaign: Campaign
     cycles: tuple[BodyCycle, ...]
@@ -140,7 +148,7 @@ def coefficients_of(
     water = common_water([campaign.water for _, campaign in campaigns])
     settings = replace(settings, ship=settings.ship.within(water))
     parts = [
-        _read(folder, campaign, settings, executor, progress, hashed=hashed)
+        campaign_cycles(folder, campaign, settings, executor, progress, hashed=hashed)
         for folder, campaign in campaigns
     ]
     cycles = tuple(cycle for part in parts for cycle in part.cycles)
@@ -210,15 +218,22 @@ def _check_left_out(names: Sequence[str], campaigns: Sequence[Campaign]) -> None
             raise ConfigurationError(f"leave_out: no run {name!r}; {nearest_run(name, known)}")
 
 
-def _read(
+def campaign_cycles(
     folder: Path,
     campaign: Campaign,
     settings: CoefficientSettings,
     executor: Executor,
     progress: Progress,
     *,
-    hashed: bool,
-) -> _Read:
+    hashed: bool = False,
+) -> CampaignCycles:
+    """Read all runs of one campaign, and fit nothing yet.
+
+    Raises
+    ------
+    ConfigurationError
+        If inertia is missing, or a geometry differs.
+    """
     oscillator = oscillator_of(campaign, folder)
     work = work_of(
         campaign,
@@ -239,7 +254,7 @@ def _read(
     ]
     done = [one for one in found if isinstance(one, Done)]
     gauges = [one.calibration for one in done if one.calibration is not None]
-    return _Read(
+    return CampaignCycles(
         campaign,
         tuple(cycles),
         tuple(done),

@@ -2,10 +2,13 @@
 
 import math
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate
 from typing import Final
 
+from analysis.coefficients.body_cycle import BodyCycle
+from analysis.design.candidate import CandidateRun
 from analysis.design.expectation import REPEATS, SCATTER, ExpectedCoefficient, expected, made_up
 from analysis.design.regression import prospects
 from analysis.design.selection import select
@@ -118,7 +121,7 @@ def _steps(file: DesignFile, chosen: list[tuple[int, int]]) -> tuple[DesignStep,
         ends.append(len(order))
     if not chosen:
         return ()
-    cycles = [*file.cycles, *made_up(order[len(file.cycles) :], file.belief, file.noise)]
+    cycles = _cycles(file, order)
     start_s = math.fsum(duration_rows(file.fixed, file.rig))
     costs = [file.grid.candidates[k].cost_s * repeats for k, repeats in chosen]
     return tuple(
@@ -132,6 +135,28 @@ def _steps(file: DesignFile, chosen: list[tuple[int, int]]) -> tuple[DesignStep,
     )
 
 
+def foreseen(file: DesignFile, more: Sequence[CandidateRun]) -> tuple[ExpectedCoefficient, ...]:
+    """Return what is expected of each coefficient after some runs beside those that were made."""
+    order = [*file.made, *more]
+    return expected(order, _cycles(file, order), file.targets, file.belief, file.stated)
+
+
+def _cycles(file: DesignFile, order: Sequence[CandidateRun]) -> list[BodyCycle]:
+    """Return the cycles of runs of which the first were made: those as measured."""
+    return [*file.cycles, *made_up(order[len(file.cycles) :], file.belief, file.noise)]
+
+
+def beyond_runs(one: ExpectedCoefficient) -> bool:
+    """Whether a target cannot be met by any runs: what they do not lower is beyond it alone."""
+    return not one.message and _left(one) <= 0.0
+
+
+def _left(one: ExpectedCoefficient) -> float:
+    """Return the variance that the scatter may have where the target is met."""
+    scatter = sum(one.shares.get(name, 0.0) for name in (SCATTER, REPEATS))
+    return one.wanted**2 - (1.0 - scatter) * one.standard_uncertainty**2
+
+
 def _why(one: ExpectedCoefficient, file: DesignFile, used_s: float) -> str:
     """Return why a target is not met, and what would help."""
     where = f" at {one.where}" if one.where else ""
@@ -143,7 +168,7 @@ def _why(one: ExpectedCoefficient, file: DesignFile, used_s: float) -> str:
     rest = {name: share for name, share in one.shares.items() if name not in (SCATTER, REPEATS)}
     expected_u, wanted = one.standard_uncertainty, one.wanted
     text = f"{one.name}{where}: {expected_u:.3g} {one.unit} is expected, {wanted:.3g} is asked for"
-    left = wanted**2 - (1.0 - scatter) * expected_u**2
+    left = _left(one)
     if left <= 0.0:
         most = max(rest, key=lambda name: rest[name])
         return (

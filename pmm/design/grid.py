@@ -55,10 +55,10 @@ def grid_of(
             left_out[why] += 1
         else:
             kept.append(run)
-    return RunGrid(tuple(kept), tuple(_candidate(run, rig, zero) for run in kept), dict(left_out))
+    return RunGrid(tuple(kept), tuple(candidate_of(run, rig, zero) for run in kept), dict(left_out))
 
 
-def _candidate(run: RunPlan, rig: RigFile, zero: ZeroTable | None) -> CandidateRun:
+def candidate_of(run: RunPlan, rig: RigFile, zero: ZeroTable | None) -> CandidateRun:
     """Return a run with what it costs: its pause and ramps, and its part of the zero runs."""
     share = 0.0 if zero is None else zero.duration_s / zero.every
     return CandidateRun(run.set_point, run.periods, run_s(run, None, rig) + share)

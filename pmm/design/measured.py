@@ -4,7 +4,7 @@ A campaign's folder is all the state there is: whoever was interrupted designs a
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
@@ -16,12 +16,12 @@ from analysis.coefficients.repeats import repeatability, with_repeats
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.candidate import CandidateRun
 from analysis.design.expectation import SCATTER, ExpectedCoefficient, expected, made_up
-from hardware.description.errors import ConfigurationError
+from hardware.description.errors import ConfigurationError, DataError
 from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.coefficients.settings import settings_of
 from pmm.coefficients.stated_inputs import largest
-from pmm.coefficients.workflow import coefficients_of
+from pmm.coefficients.workflow import campaign_cycles
 from pmm.design.design_file import DesignFile
 from pmm.parallel import open_executor
 
@@ -30,32 +30,39 @@ _ENOUGH = 3  # runs: fewer say too little of the noise
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """Oscillations that were made and can be used; each with its cycle."""
+    """Oscillations that were made and can be used, each with its cycle.
+
+    Attributes
+    ----------
+    failed
+        Why others cannot be used, by run.
+    """
 
     candidates: tuple[CandidateRun, ...]
     cycles: tuple[BodyCycle, ...]
     stated: StatedUncertainties
+    failed: Mapping[str, str]
 
 
-def after(file: DesignFile, folders: Sequence[Path]) -> DesignFile:
+def after(file: DesignFile, parts: Sequence[Measured]) -> DesignFile:
     """Return a design that goes on from runs that were made, with the noise that they showed.
 
     What ``[[runs]]`` has is taken to be among them.
 
     Raises
     ------
-    ConfigurationError
-        If a folder holds no campaign, or one of another oscillator.
     DataError
         If no run can be used.
     """
-    found = [_measured(file, folder) for folder in folders]
-    candidates = tuple(one for part in found for one in part.candidates)
-    cycles = [one for part in found for one in part.cycles]
+    candidates = tuple(one for part in parts for one in part.candidates)
+    cycles = [one for part in parts for one in part.cycles]
+    if not cycles:
+        why = "; ".join(f"{name}: {said}" for part in parts for name, said in part.failed.items())
+        raise DataError(f"none of the runs that were made can be used{why and f' ({why})'}")
     known = repeatability(cycles)
     both = np.maximum(known.relative, file.noise.repeat_relative)
     spread = replace(known, relative=both, degrees_of_freedom=known.degrees_of_freedom or math.inf)
-    stated = largest([file.stated, *(part.stated for part in found)])
+    stated = largest([file.stated, *(part.stated for part in parts)])
     table = {key: one for key, one in file.plan_table.items() if key != "runs"}
     going_on = replace(
         file, plan_table=table, fixed=(), made=candidates, stated=stated,
@@ -71,13 +78,21 @@ def after(file: DesignFile, folders: Sequence[Path]) -> DesignFile:
     )
 
 
-def _measured(file: DesignFile, folder: Path) -> Measured:
+def measured(file: DesignFile, folder: Path) -> Measured:
+    """Read the runs of a campaign's folder.
+
+    Raises
+    ------
+    ConfigurationError
+        If the folder holds no campaign, or one of another oscillator.
+    """
     path = folder / CAMPAIGN_FILE
-    runs = {one.name: one for one in read_campaign(path).runs}
+    campaign = read_campaign(path)
+    runs = {one.name: one for one in campaign.runs}
     settings, _ = settings_of(folder, None)
     with open_executor(1) as executor:
-        outcome = coefficients_of([folder], settings, executor, lambda *_: None)
-    cycles = [one for one in outcome.cycles if one.frequency_hz > 0.0]
+        found = campaign_cycles(folder, campaign, settings, executor, lambda *_: None)
+    cycles = [one for one in found.cycles if one.frequency_hz > 0.0]
     oscillator = file.rig.oscillator
     for one in cycles:
         if (one.plane, one.half_spacing_m) != (oscillator.plane, oscillator.half_spacing_m):
@@ -87,7 +102,8 @@ def _measured(file: DesignFile, folder: Path) -> Measured:
             )
     made = [runs[one.name] for one in cycles]
     candidates = tuple(CandidateRun(one.set_point, one.periods, math.inf) for one in made)
-    return Measured(candidates, tuple(cycles), outcome.stated)
+    failed = {one.name: one.message for one in found.failed}
+    return Measured(candidates, tuple(cycles), found.stated, failed)
 
 
 def _noise_shown(file: DesignFile) -> float:

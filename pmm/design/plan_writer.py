@@ -7,8 +7,9 @@ from typing import Any, Final
 
 from hardware.description.kinds import Motion
 from pmm.design.design_file import DesignFile
-from pmm.design.designing import Design, DesignStep
+from pmm.design.designing import Design
 from pmm.document.notation import clock
+from pmm.plan.run_plan import RunPlan
 from pmm.toml_text import toml_table, toml_value
 
 _TABLES: Final = ("water", "defaults", "order", "zero", "control")
@@ -22,26 +23,27 @@ def plan_text(file: DesignFile, design: Design, target: Path) -> str:
     target
         Where it is to lie: the rig is named from there.
     """
-    return "\n".join(_parts(file, design, target))
+    entries = [toml_table("runs", one, array=True) for one in file.plan_table.get("runs", [])]
+    for number, step in enumerate(design.steps, 1 + len(file.cycles)):
+        table = run_entry(step.run, number, step.repeats)
+        entries.append(f"# until {clock(step.time_s)}\n" + toml_table("runs", table, array=True))
+    return "\n".join([*plan_head(file, target), *entries])
 
 
-def _parts(file: DesignFile, design: Design, target: Path) -> Iterator[str]:
+def plan_head(file: DesignFile, target: Path) -> Iterator[str]:
+    """Yield what stands before the runs of a plan that is to lie at ``target``."""
     table = file.plan_table
     rig = os.path.relpath(file.rig_path.resolve(), target.resolve().parent)
     head = {"name": file.name, "rig": Path(rig).as_posix(), "operator": table.get("operator")}
-    yield f"# Written by pmm plan design from {file.path.name}: docs/plan-design.md\n" + "".join(
+    yield f"# Written from {file.path.name}: docs/plan-design.md\n" + "".join(
         f"{key} = {toml_value(value)}\n" for key, value in head.items() if value is not None
     )
     yield from (toml_table(name, table[name]) for name in _TABLES if name in table)
-    yield from (toml_table("runs", one, array=True) for one in table.get("runs", []))
-    for number, step in enumerate(design.steps, 1 + len(file.cycles)):
-        yield f"# until {clock(step.time_s)}\n" + toml_table(
-            "runs", _entry(step, number), array=True
-        )
 
 
-def _entry(step: DesignStep, number: int) -> Mapping[str, Any]:
-    run, point = step.run, step.run.set_point
+def run_entry(run: RunPlan, number: int, repeats: int = 1) -> Mapping[str, Any]:
+    """Return a run that was chosen, the ``number``-th, as an entry of a plan."""
+    point = run.set_point
     return {
         "motion": str(run.motion),
         "name": f"{run.entry}-{number:02d}",
@@ -53,6 +55,6 @@ def _entry(step: DesignStep, number: int) -> Mapping[str, Any]:
         "periods": run.periods,
         "settling_periods": run.settling_periods,
         "pause_s": run.pause_before_s,
-        "repeats": step.repeats,
+        "repeats": repeats,
         "prompt": run.prompts[0] if run.prompts else None,
     }

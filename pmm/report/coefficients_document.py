@@ -1,6 +1,6 @@
 """What a campaign's coefficients say: each table once, for the terminal, the page and programs."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Any, Final
 
@@ -70,8 +70,14 @@ def coefficients_document(outcome: CampaignOutcome) -> Document:
     )
 
 
-def report_document(outcome: CampaignOutcome) -> Document:
-    """Return what ``pmm report`` writes: the same values, and all that they rest on."""
+def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -> Document:
+    """Return what ``pmm report`` writes: the same values, and all that they rest on.
+
+    Parameters
+    ----------
+    stories
+        Of campaigns that chose their runs: what was known after each.
+    """
     found = outcome.result
     flags: Content = Notes(flag_notes(outcome.all_flags))
     return Document(
@@ -80,6 +86,7 @@ def report_document(outcome: CampaignOutcome) -> Document:
         (
             Section("", (pairs("Summary", _summary(outcome)), conditions_table(outcome))),
             Section("Coefficients", (recommended_table(found), *alternatives_tables(found))),
+            *stories,
             Section("Figures", tuple(figures(found))),
             Section("What was found", tuple(_findings(found))),
             Section("What was flagged", (Text(("Nothing.",)) if flags.empty else flags,)),

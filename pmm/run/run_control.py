@@ -99,6 +99,12 @@ class RunControl:
         self._conduct.surroundings = before._conduct.surroundings
         self._conduct.rested_since = before._conduct.rested_since
 
+    def add(self, runs: Sequence[RunPlan]) -> None:
+        """Take runs that follow those that were made, in the state DONE; each axis is set anew."""
+        self._conduct.placed.clear()
+        self.runs = (*self.runs, *runs)
+        self._numbers |= {run.name: n for n, run in enumerate(self.runs, 1)}
+
     @property
     def state(self) -> State:
         """Where run control stands."""

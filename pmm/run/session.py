@@ -2,12 +2,12 @@
 
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from functools import partial
 from pathlib import Path
+from typing import Final
 
 from hardware.description.errors import DataError
 from hardware.description.version import program
@@ -31,12 +31,12 @@ from pmm.run.campaign_folder import (
     kept_runs,
 )
 from pmm.run.journal import Taps
-from pmm.run.operator import Answers, Interrupts, standard_input
+from pmm.run.operator import Answers, Interrupts
 from pmm.run.recorder_factory import RecorderFactory, utc_now
 from pmm.run.rehearsal import rehearse
 from pmm.run.run_control import RunControl, View
 from pmm.run.run_origin import change_lines
-from pmm.run.states import Command, RunStateError
+from pmm.run.states import Command, RunStateError, State
 from pmm.run.status import RunOutcome
 
 Ask = Callable[[], str]  # what the operator is asked now; empty if nothing
@@ -70,6 +70,11 @@ class RunReport:
     outcomes: Sequence[RunOutcome] = ()
     interrupted: bool = False
     fault: str = ""
+
+
+Course = Iterator[RunJob | None]
+"""What follows when the runs of a job are made; ``None`` as long as that is not known."""
+_NOTHING_FOLLOWS: Final[Course] = iter(())
 
 
 class RunFailedError(DataError):
@@ -132,6 +137,8 @@ def carry_out(
     job: RunJob,
     view: Callable[[Ask], AbstractContextManager[View]],
     tell: Callable[[str], object],
+    answers: Answers,
+    course: Course = _NOTHING_FOLLOWS,
 ) -> RunReport:
     """Run the loop until all runs are made, Ctrl-C ends it, or a fault does.
 
@@ -141,6 +148,10 @@ def carry_out(
         Makes what shows the runs.
     tell
         Says what is to be known besides.
+    answers
+        The operator's; nobody else reads them meanwhile.
+    course
+        What follows each time that all runs are made and the rig is at rest.
 
     Raises
     ------
@@ -148,10 +159,11 @@ def carry_out(
         If a question is asked that nobody can answer.
     """
     keep_sources(job.plan, job.rig_file, job.folder)
-    answers, interrupts = standard_input(), Interrupts()
+    interrupts, jobs = Interrupts(), [job]
     with ExitStack() as stack:
         stack.enter_context(interrupts.counted())
-        stack.callback(_write, job)  # at the end, when the rig is left; a failure is heard here
+        # At the end, when the rig is left; a failure is heard here.
+        stack.callback(lambda: write_made(jobs[-1]))
         shown = stack.enter_context(view(lambda: answers.question))
         taps = Taps()
         rig = stack.enter_context(tapped_rig(job.rig_file, _pacer(job), answers, taps))
@@ -168,37 +180,83 @@ def carry_out(
         rig.prepare()
         for note in rig.notes:
             tell(f"note: {note}")
+        loop = _Loop(control, rig, answers, interrupts, executor)
         control.request(Command.START)
-        write = partial(_write, job) if executor is None else partial(executor.submit, _write, job)
-        _loop(control, rig, answers, interrupts, write)
+        loop.make(job)
+        while (following := loop.following(course)) is not None:
+            jobs.append(following)
+            recording.plan = following.plan
+            control.add(following.runs)
+            loop.make(following)
         fault = "" if control.fault is None else str(control.fault)
         return RunReport(control.outcomes, interrupts.count > 0, fault)
 
 
-def _loop(
-    control: RunControl,
-    rig: Rig,
-    answers: Answers,
-    interrupts: Interrupts,
-    write: Callable[[], object],
-) -> None:
-    """Step until nothing more happens; hand Ctrl-C on, once and twice."""
-    written = 0
-    attended = rig.master is not None and rig.master.operator is not None
-    while not control.finished:
-        answers.question = ""
-        control.step()
-        interrupts.hand_on(control.request)
-        if answers.absent and answers.question and not attended:
+@dataclass
+class _Loop:
+    """Steps a rig through its jobs, and at rest until it is known what follows.
+
+    Attributes
+    ----------
+    executor
+        Where the campaign's file is written; ``None`` for at once.
+    """
+
+    control: RunControl
+    rig: Rig
+    answers: Answers
+    interrupts: Interrupts
+    executor: Executor | None
+    _written: int = 0
+    _writing: Future[None] | None = None
+
+    def make(self, job: RunJob) -> None:
+        """Step until nothing more happens, and write the campaign's file after each run."""
+        while not self.control.finished:
+            self.answers.question = ""
+            self._step()
+            if len(self.control.outcomes) > self._written:
+                self._written = len(self.control.outcomes)
+                self._write(job)
+
+    def following(self, course: Course) -> RunJob | None:
+        """Step at rest until the course says what follows; ``None`` where nothing does."""
+        while self._writing is not None and not self._writing.done():
+            self._step()
+        if not self._goes_on():
+            return None
+        for job in course:
+            if job is not None:
+                return job
+            self._step()
+            if not self._goes_on():
+                return None
+            self.answers.question = ""
+        return None
+
+    def _goes_on(self) -> bool:
+        """Whether nobody has stopped, and there is no fault."""
+        return self.control.state is State.DONE
+
+    def _step(self) -> None:
+        """Step a cycle; hand Ctrl-C on, once and twice; stop where nobody can answer."""
+        attended = self.rig.master is not None and self.rig.master.operator is not None
+        self.control.step()
+        self.interrupts.hand_on(self.control.request)
+        if self.answers.absent and self.answers.question and not attended:
             with suppress(RunStateError):
-                control.request(Command.STOP)
-            raise RunFailedError(f"nobody answers: {answers.question}; the input has ended")
-        if len(control.outcomes) > written:
-            written = len(control.outcomes)
-            write()
+                self.control.request(Command.STOP)
+            raise RunFailedError(f"nobody answers: {self.answers.question}; the input has ended")
+
+    def _write(self, job: RunJob) -> None:
+        if self.executor is None:
+            write_made(job)
+        else:
+            self._writing = self.executor.submit(write_made, job)
 
 
-def _write(job: RunJob) -> None:
+def write_made(job: RunJob) -> None:
+    """Write the campaign file of the runs that were made so far."""
     done = finished_runs(job.folder, job.plan, job.rig_file)
     write_campaign(job.folder, job.plan, job.rig_file, done)
 

@@ -1,0 +1,59 @@
+"""``pmm run --until``: a campaign that chooses its runs, on the terminal."""
+
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pmm.run.session import RunJob, RunReport
+
+
+def carried_out_until(
+    design: str,
+    output: str | None,
+    approve: str | None,
+    resume: bool,
+    accept_changes: bool,
+    real_time: bool,
+    *,
+    as_json: bool,
+) -> "RunReport":
+    """Make run after run until the targets are met, and say how the campaign ended."""
+    from pmm.cli.files import check_folder
+    from pmm.cli.run import before_others_with_terminal, view_of
+    from pmm.cli.screen import messages, pasted, say, show
+    from pmm.design.design_file import read_design
+    from pmm.report.sequential_document import look_lines, sequential_document
+    from pmm.run.operator import standard_input
+    from pmm.sequential.carrying_out import Asked, Screen, carry_out_campaign
+    from pmm.sequential.look import read_decisions
+
+    file = read_design(Path(design))
+    asked = Asked(
+        output, approve, resume, accept_changes, real_time,
+        lambda folder: check_folder(folder, "--output"),
+    )  # fmt: skip
+    with ExitStack() as shown:
+        terminal = before_others_with_terminal(shown, real_time=file.rig.realtime or real_time)
+        screen = Screen(
+            lambda ask: view_of(terminal, ask, quiet=as_json),
+            lambda line: messages().print(line),
+            lambda look: messages().print("\n".join(look_lines(look))),
+            _tell_runs,
+        )
+        found = carry_out_campaign(file, asked, screen, standard_input())
+    decisions = read_decisions(found.folder)
+    if decisions:
+        show(sequential_document(file.name, found.folder, decisions), as_json=as_json)
+    if not as_json:
+        say(pasted("report", found.folder))
+    return found.report
+
+
+def _tell_runs(job: "RunJob") -> None:
+    """Say what was found of the runs that are made next, and not of the whole plan each time."""
+    from dataclasses import replace
+
+    from pmm.cli.run import tell_job
+
+    tell_job(replace(job, findings=tuple(one for one in job.findings if one.run)))

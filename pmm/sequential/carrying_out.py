@@ -1,0 +1,174 @@
+"""A campaign that chooses its runs, carried out on its rig from beginning to end."""
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import AbstractContextManager, ExitStack, contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Final
+
+from hardware.description.errors import ConfigurationError
+from pmm.design.design_file import DesignFile
+from pmm.plan.campaign_writer import write_campaign
+from pmm.plan.plan import read_plan_and_rig
+from pmm.plan.rig_file import is_simulated
+from pmm.real_time import step_back
+from pmm.recorder.campaign_owner import own_campaign
+from pmm.run.campaign_folder import finished_runs, keep_sources
+from pmm.run.operator import Answers
+from pmm.run.run_control import View
+from pmm.run.session import Ask, RunFailedError, RunJob, RunReport, carry_out, run_job
+from pmm.sequential.approval import approval_of
+from pmm.sequential.course import CampaignCourse
+from pmm.sequential.growing_plan import PLAN
+from pmm.sequential.look import Decision, Look
+from pmm.sequential.targets import TargetGoal
+
+_POLL_S: Final = 0.02
+
+
+@dataclass(frozen=True)
+class Asked:
+    """How a campaign is to be carried out.
+
+    Attributes
+    ----------
+    approve
+        What ``--approve`` says.
+    check_folder
+        Refuses a folder that cannot be written to.
+    """
+
+    output: str | None
+    approve: str | None
+    resume: bool
+    accept_changes: bool
+    real_time: bool
+    check_folder: Callable[[Path], None]
+
+
+@dataclass(frozen=True)
+class Screen:
+    """What shows a campaign: the loop, lines beside it, what is known after a run, a new job."""
+
+    view: Callable[[Ask], AbstractContextManager[View]]
+    tell: Callable[[str], object]
+    show: Callable[[Look], None]
+    job: Callable[[RunJob], None]
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """A campaign as a command left it.
+
+    Attributes
+    ----------
+    ended
+        What was decided last; ``None`` where a fault or the operator ended it before.
+    """
+
+    folder: Path
+    ended: Decision | None
+    report: RunReport
+
+
+def campaign_folder(asked: Asked, file: DesignFile) -> Path:
+    """Return where a campaign is recorded: as of ``pmm run``."""
+    if asked.output is not None:
+        return Path(asked.output)
+    return file.rig_path.parent / file.rig.recorder.folder / file.name
+
+
+def carry_out_campaign(
+    file: DesignFile, asked: Asked, screen: Screen, answers: Answers
+) -> Campaign:
+    """Make run after run until the design's targets are met, or nothing more is to be made.
+
+    Raises
+    ------
+    ConfigurationError, PlanRefusedError
+        If a file is wrong, the folder holds a campaign already and nobody asked to resume it, or
+        the rig refuses a run.
+    RunFailedError
+        If a question is asked that nobody can answer.
+    """
+    folder = campaign_folder(asked, file)
+    asked.check_folder(folder)
+    if (folder / PLAN).exists() and not asked.resume:
+        raise ConfigurationError(
+            f"{folder}: holds a campaign already; --resume goes on with it, --output records to "
+            "another folder"
+        )
+    approval = approval_of(asked.approve, simulated=is_simulated(file.rig.hardware))
+    goal = TargetGoal(file, folder)
+    with ExitStack() as stack:
+        stack.enter_context(own_campaign(folder))
+        _write_made(folder)
+        executor = stack.enter_context(_executor(file.rig.realtime or asked.real_time))
+        course = CampaignCourse(
+            goal, folder, approval, answers, screen.show,
+            partial(_opened, asked, folder, stack, screen), executor,
+        )  # fmt: skip
+        jobs = course.jobs()
+        first = _first(jobs, answers, screen.tell)
+        report = RunReport()
+        if first is not None:
+            report = carry_out(first, screen.view, screen.tell, answers, jobs)
+        return Campaign(folder, course.ended, report)
+
+
+def _write_made(folder: Path) -> None:
+    """Write the campaign file of what is there: a crash may have left it behind its runs."""
+    if (folder / PLAN).exists():
+        plan, rig = read_plan_and_rig(folder / PLAN)
+        write_campaign(folder, plan, rig, finished_runs(folder, plan, rig))
+
+
+def _opened(
+    asked: Asked, folder: Path, stack: ExitStack, screen: Screen, names: Sequence[str]
+) -> RunJob:
+    """Return a job of some runs of the folder's plan, checked as ``pmm run`` checks it."""
+    job = stack.enter_context(
+        run_job(
+            str(folder / PLAN),
+            names,
+            lambda _: None,
+            output=str(folder),
+            resume=True,
+            accept_changes=asked.accept_changes,
+            dry_run=False,
+            real_time=asked.real_time,
+        )
+    )
+    keep_sources(job.plan, job.rig_file, folder)
+    screen.job(job)
+    return job
+
+
+def _first(
+    jobs: Iterator[RunJob | None], answers: Answers, tell: Callable[[str], object]
+) -> RunJob | None:
+    """Return the first job, before the rig is opened; ``None`` where nothing is to be made."""
+    asked = ""
+    for job in jobs:
+        if job is not None:
+            return job
+        if answers.question != asked:
+            asked = answers.question
+            tell(f"? {asked}")
+        if answers.absent and asked:
+            raise RunFailedError(f"nobody answers: {asked}; the input has ended")
+        time.sleep(_POLL_S)
+    return None
+
+
+@contextmanager
+def _executor(real_time: bool) -> Iterator[Executor | None]:
+    """Give a thread to look in while the loop keeps time; in simulated time it may wait."""
+    if not real_time:
+        yield None
+        return
+    with ThreadPoolExecutor(1, thread_name_prefix="looking", initializer=step_back) as executor:
+        yield executor

@@ -1,0 +1,107 @@
+"""The course of a campaign that chooses its runs: look, show, ask, plan, make the next run.
+
+The campaign's folder is all the state there is: recordings, plan, and what was decided. Whoever was
+interrupted goes on from it.
+"""
+
+from collections.abc import Callable, Generator, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Protocol
+
+from pmm.run.operator import Answers
+from pmm.run.session import Course, RunJob
+from pmm.sequential.approval import Approval
+from pmm.sequential.look import Decision, Ending, Look, keep_decision
+
+_YES: Final = ("y", "yes")
+_NO: Final = ("n", "no")
+_APPROVE: Final = "Approve of these runs? [y/n]"
+_BY_OPERATOR: Final = "the operator"
+
+
+class Goal(Protocol):
+    """What a campaign is made for."""
+
+    def look(self) -> Look:
+        """Return what is known and what is to be made, from what the folder holds."""
+
+    def plan(self, look: Look) -> Sequence[str]:
+        """Write the plan as it was decided; return the names of the runs to be made now."""
+
+
+@dataclass
+class CampaignCourse:
+    """Tells what follows, run after run.
+
+    Attributes
+    ----------
+    show
+        Shows what is known and what is proposed.
+    open_job
+        Checks the folder's plan as any other and makes a job of some of its runs.
+    executor
+        Where a look is taken while the rig is watched; ``None`` for at once.
+    ended
+        What was decided last; ``None`` as long as the campaign goes on.
+    """
+
+    goal: Goal
+    folder: Path
+    approval: Approval
+    answers: Answers
+    show: Callable[[Look], None]
+    open_job: Callable[[Sequence[str]], RunJob]
+    executor: Executor | None = None
+    ended: Decision | None = None
+
+    def jobs(self) -> Course:
+        """Yield what is to be made next, and nothing as long as that is not known.
+
+        Raises
+        ------
+        ConfigurationError, PlanRefusedError
+            If a file is wrong, or the rig refuses a run; nothing is made of it then.
+        """
+        refused = bool(self.approval.question) and not (
+            yield from self._asked(self.approval.question)
+        )
+        self.approval.begin()
+        while not refused:
+            look = yield from self._looked()
+            self.show(look)
+            who = yield from self._approved(look)
+            refused = who is None
+            decision = look.decision(who or "", Ending.REJECTED if refused else None)
+            keep_decision(self.folder, decision)
+            due = () if refused else self.goal.plan(look)
+            if not due:
+                self.ended = decision
+                return
+            yield self.open_job(due)
+
+    def _looked(self) -> Generator[None, None, Look]:
+        if self.executor is None:
+            return self.goal.look()
+        future = self.executor.submit(self.goal.look)
+        while not future.done():
+            yield None
+        return future.result()
+
+    def _approved(self, look: Look) -> Generator[None, None, str | None]:
+        """Return who approves of what is proposed; ``None`` where nobody does."""
+        if not look.proposed:
+            return ""
+        if self.approval.covers(look.proposed):
+            return self.approval.name
+        return _BY_OPERATOR if (yield from self._asked(_APPROVE)) else None
+
+    def _asked(self, question: str) -> Generator[None, None, bool]:
+        """Return what the operator answers: yes or no, asked until it is either."""
+        while True:
+            answer = self.answers(question)
+            if answer is None:
+                yield None
+            elif answer.lower() in (*_YES, *_NO):
+                return answer.lower() in _YES

@@ -1,0 +1,164 @@
+"""The plan of a campaign that chooses its runs: what was made, and what is approved to be made.
+
+It lies in the campaign's folder and is a plan as any other; each run that was chosen is an entry of
+its own, behind the runs that are made in any case. Zero and control runs stand between them as the
+design says.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from hardware.description.errors import ConfigurationError
+from hardware.description.kinds import RunKind
+from pmm.configuration import read_toml
+from pmm.design.design_file import DesignFile
+from pmm.design.plan_writer import plan_head, run_entry
+from pmm.plan.plan import Plan, read_plan_and_rig
+from pmm.plan.plan_tables import Scheme, ZeroTable
+from pmm.plan.run_plan import RunPlan
+from pmm.run.campaign_folder import done_runs
+from pmm.toml_text import toml_table
+from pmm.whole_file import write_whole
+
+PLAN: Final = "plan.toml"
+_BETWEEN: Final = (RunKind.ZERO, RunKind.CONTROL)
+
+
+@dataclass(frozen=True, eq=False)
+class GrowingPlan:
+    """A campaign's plan as its folder has it.
+
+    Attributes
+    ----------
+    entries
+        Behind those that are made in any case, as the file has them: one run each.
+    done
+        Names of all runs that are complete.
+    """
+
+    plan: Plan
+    entries: tuple[Mapping[str, Any], ...]
+    done: frozenset[str]
+
+    @property
+    def chosen(self) -> tuple[RunPlan, ...]:
+        """Runs that were chosen, in their order."""
+        own = {one["name"] for one in self.entries}
+        return tuple(
+            run for run in self.plan.runs if run.kind is RunKind.OSCILLATION and run.entry in own
+        )
+
+    @property
+    def made(self) -> tuple[RunPlan, ...]:
+        """All runs that are complete, in the plan's order."""
+        return tuple(run for run in self.plan.runs if run.name in self.done)
+
+    @property
+    def open(self) -> tuple[RunPlan, ...]:
+        """All runs that are not complete."""
+        return tuple(run for run in self.plan.runs if run.name not in self.done)
+
+    @property
+    def left(self) -> tuple[RunPlan, ...]:
+        """Chosen runs that are not complete."""
+        return tuple(run for run in self.chosen if run.name not in self.done)
+
+    @property
+    def given_left(self) -> tuple[RunPlan, ...]:
+        """Runs that are made in any case and are not complete, zero and control runs apart."""
+        apart = {run.name for run in self.chosen}
+        return tuple(one for one in self.open if one.name not in apart and one.kind not in _BETWEEN)
+
+    @property
+    def due(self) -> tuple[RunPlan, ...]:
+        """What is to be made before it is asked again: up to the next run that was chosen.
+
+        In the end these are the closing zero runs. A closing control run is none of them: whatever
+        is added later would find it in its way.
+        """
+        runs = self.open
+        upto = self.left[:1] or self.given_left[-1:]
+        if upto:
+            return runs[: runs.index(upto[0]) + 1]
+        return tuple(run for run in runs if run.kind is RunKind.ZERO)
+
+    @property
+    def closed(self) -> bool:
+        """Whether the zero run behind the last run was made."""
+        runs = self.plan.runs
+        return bool(runs) and runs[-1].kind is RunKind.ZERO and runs[-1].name in self.done
+
+    def made_entries(self) -> Iterator[Mapping[str, Any]]:
+        """Yield the entries whose runs are complete."""
+        done = {run.entry for run in self.made}
+        yield from (one for one in self.entries if one["name"] in done)
+
+
+def read_growing(folder: Path, design: DesignFile) -> GrowingPlan | None:
+    """Return the plan that a campaign's folder holds; ``None`` where there is none yet.
+
+    Raises
+    ------
+    ConfigurationError
+        If it cannot be read, or its first runs are not those of the design.
+    """
+    path = folder / PLAN
+    if not path.is_file():
+        return None
+    plan, _ = read_plan_and_rig(path)
+    entries = read_toml(path)["runs"]
+    given = design.plan_table.get("runs", [])
+    if entries[: len(given)] != given:
+        raise ConfigurationError(
+            f"{path}: begins with other [[runs]] than {design.path.name}; put them back, or record "
+            "to another folder with --output"
+        )
+    own = tuple(entries[len(given) :])
+    return GrowingPlan(plan, own, frozenset(done_runs(folder, plan.runs)))
+
+
+def write_growing(
+    folder: Path, design: DesignFile, before: GrowingPlan | None, runs: Sequence[RunPlan]
+) -> None:
+    """Write the plan with the chosen runs that were made and those that are to follow.
+
+    Parameters
+    ----------
+    before
+        The plan so far.
+    runs
+        That follow, to be named.
+    """
+    target = folder / PLAN
+    own = [] if before is None else list(before.made_entries())
+    if before is not None and before.closed and runs:
+        own.append(_apart(design, len(own)))
+    first = 1 + sum("motion" in one for one in own)
+    own += [run_entry(run, number) for number, run in enumerate(runs, first)]
+    tables = [*design.plan_table.get("runs", []), *own]
+    text = [*plan_head(design, target), *(toml_table("runs", one, array=True) for one in tables)]
+    write_whole(target, "\n".join(text))
+
+
+def _apart(design: DesignFile, number: int) -> Mapping[str, Any]:
+    """Return a record at rest that keeps runs apart from those that a zero run has closed."""
+    zero = design.tables.zero or ZeroTable()
+    return {"kind": "zero", "name": f"apart-{number:02d}", "duration_s": zero.duration_s}
+
+
+def check_order(design: DesignFile) -> None:
+    """Refuse an order that runs cannot have of which each rests on those before it.
+
+    Raises
+    ------
+    ConfigurationError
+        If the design mixes its entries.
+    """
+    order = design.tables.order
+    if order.scheme is Scheme.RANDOM and order.across_entries:
+        raise ConfigurationError(
+            f"{design.path}: order.across_entries mixes runs that are chosen one after the other; "
+            "take it out"
+        )

@@ -1,0 +1,169 @@
+"""What was known after a run and what was decided then; the campaign's folder keeps all of it."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from enum import StrEnum
+from pathlib import Path
+from typing import Final
+
+from hardware.description.errors import ConfigurationError
+from pmm.configuration import Fault, as_error, validate
+from pmm.plan.run_plan import RunPlan
+from pmm.whole_file import write_whole
+
+DECISIONS: Final = "decisions.json"
+
+
+class Ending(StrEnum):
+    """Why a campaign needs no further runs, or gets none."""
+
+    MET = "all targets are met"
+    TIME = "the time is used up"
+    EXHAUSTED = "nothing left would help"
+    REJECTED = "the operator did not approve"
+
+
+@dataclass(frozen=True)
+class KnownTarget:
+    """How well one target is known.
+
+    Attributes
+    ----------
+    name
+        Of the coefficient, with frequency and speed where it holds at some.
+    value, standard_uncertainty
+        ``None`` where the runs do not determine it.
+    wanted
+        Largest standard uncertainty that meets it.
+    """
+
+    name: str
+    unit: str
+    value: float | None
+    standard_uncertainty: float | None
+    wanted: float
+
+    @property
+    def met(self) -> bool:
+        """Whether it is known as well as is wanted."""
+        return self.standard_uncertainty is not None and self.standard_uncertainty <= self.wanted
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What was known, and what was decided.
+
+    Attributes
+    ----------
+    runs
+        Oscillations that were made and are complete, in their order.
+    time_s
+        Tank time of all runs made, as planned.
+    kept
+        Planned runs that stay, by name.
+    added
+        Runs that are planned anew, in words.
+    left_s
+        Tank time of the runs that are planned.
+    approved
+        Who approved of the change; empty where there was none.
+    ending
+        Of the campaign; empty where it goes on.
+    remark
+        The ending, or the reason of a change, in words.
+    notes
+        Runs that cannot be used and targets that cannot be met, each in a sentence.
+    """
+
+    runs: tuple[str, ...]
+    time_s: float
+    known: tuple[KnownTarget, ...]
+    kept: tuple[str, ...] = ()
+    added: tuple[str, ...] = ()
+    left_s: float = 0.0
+    approved: str = ""
+    ending: str = ""
+    remark: str = ""
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """What a goal says after the runs that were made.
+
+    Attributes
+    ----------
+    kept
+        Planned runs that stay; none where ``proposed`` takes their place.
+    proposed
+        Runs that are to be planned anew, not named yet.
+    ending
+        ``None`` where the campaign goes on.
+    """
+
+    runs: tuple[str, ...]
+    time_s: float
+    known: tuple[KnownTarget, ...]
+    kept: tuple[RunPlan, ...] = ()
+    proposed: tuple[RunPlan, ...] = ()
+    left_s: float = 0.0
+    ending: Ending | None = None
+    remark: str = ""
+    notes: tuple[str, ...] = ()
+
+    def decision(self, approved: str = "", ending: Ending | None = None) -> Decision:
+        """Return it as it is kept."""
+        ended = ending or self.ending
+        return Decision(
+            self.runs, self.time_s, self.known, tuple(one.name for one in self.kept),
+            tuple(map(in_words, self.proposed)), self.left_s, approved,
+            "" if ended is None else str(ended), self.remark, self.notes,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Kept:
+    decisions: tuple[Decision, ...] = field(default_factory=tuple)
+
+
+def in_words(run: RunPlan) -> str:
+    """Return motion, settings and length of a run."""
+    point = run.set_point
+    words = [str(run.motion), f"{point.frequency_hz:g} Hz", f"{1e3 * point.eccentricity_m:.4g} mm"]
+    words += [f"{point.carriage_speed_m_s:g} m/s"] if point.carriage_speed_m_s else []
+    words += [f"drift {point.drift_rad:.3g} rad"] if point.drift_rad else []
+    return ", ".join([*words, f"{run.periods} periods"])
+
+
+def read_decisions(folder: Path) -> tuple[Decision, ...]:
+    """Return what was decided in a campaign's folder; nothing where no campaign chose its runs.
+
+    Raises
+    ------
+    ConfigurationError
+        If the file is damaged.
+    """
+    path = folder / DECISIONS
+    if not path.is_file():
+        return ()
+    faults: list[Fault] = []
+    try:
+        table = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise ConfigurationError(f"{path}: damaged ({error}); take it out to go on") from error
+    found = validate(_Kept, table, faults) if isinstance(table, Mapping) else None
+    if found is None or faults:
+        raise as_error(path, faults or [Fault((), "holds no decisions")], {})
+    return found.decisions
+
+
+def keep_decision(folder: Path, decision: Decision) -> None:
+    """Keep a decision in place of those after the same runs, or more."""
+    before = [one for one in read_decisions(folder) if len(one.runs) < len(decision.runs)]
+    _write(folder, [*before, decision])
+
+
+def _write(folder: Path, decisions: Sequence[Decision]) -> None:
+    text = json.dumps({"decisions": [asdict(one) for one in decisions]}, indent=1)
+    write_whole(folder / DECISIONS, text + "\n")
