@@ -174,7 +174,7 @@ def run(quick: bool, report: Report) -> Outcome:
     """Count what is there; with ``quick`` measure a case of each kind instead."""
     from benchmarks.boards.judged import null, with_outcome
     from benchmarks.boards.mutated import counted as spoiled
-    from pmm.gap.examine import Options
+    from pmm.gap.examination import Options
 
     if not quick:
         report("counting")

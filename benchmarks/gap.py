@@ -10,7 +10,7 @@ from pathlib import Path
 from analysis.gap.judge.diagnosis import diagnose
 from benchmarks.outcome import Benchmark, Outcome, Report
 from pmm.cli import cli
-from pmm.gap.prepare import prepare
+from pmm.gap.preparation import prepare
 from pmm.parallel import open_executor
 from sim.effects.catalogue import catalogue
 

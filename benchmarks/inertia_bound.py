@@ -8,7 +8,7 @@ from analysis.inertia.damped_fit import DampedMode, fit_damped
 from benchmarks.inertia_campaigns import series_of
 from hardware.description.arrays import FloatArray
 from sim.pendulum.effects import make_effect
-from sim.pendulum.simulate import simulate_swing
+from sim.pendulum.simulation import simulate_swing
 
 
 def period_bounds(time_s: FloatArray, modes: Sequence[DampedMode], noise_rms: float) -> FloatArray:

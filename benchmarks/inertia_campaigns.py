@@ -26,7 +26,7 @@ from sim.pendulum.benches import KEELBOAT_2014, SWING_2021
 from sim.pendulum.effects import make_effect
 from sim.pendulum.pivot import RigidPart
 from sim.pendulum.sensors import INCLINOMETER_RANGE_RAD
-from sim.pendulum.simulate import (
+from sim.pendulum.simulation import (
     simulate_bifilar,
     simulate_double_pendulum,
     simulate_swing,

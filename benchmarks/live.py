@@ -9,7 +9,7 @@ from analysis.recording import Recording
 from analysis.resolver.classic_average import AverageState, RunningAverage
 from analysis.resolver.estimate import resolve
 from analysis.resolver.harmonics import Harmonics
-from analysis.resolver.live import LiveResolver
+from analysis.resolver.live_resolver import LiveResolver
 from analysis.resolver.photocell import from_photocell
 from analysis.resolver.sums import period_sums
 from benchmarks.outcome import Benchmark, Outcome, Report, Row

@@ -13,7 +13,7 @@ from benchmarks.boards.campaigns import NULLS
 from benchmarks.boards.outside import FRICTION
 from benchmarks.boards.where import arose
 from hardware.description.errors import PmmError
-from pmm.gap.examine import Options, examine
+from pmm.gap.examination import Options, examine
 from pmm.gap.report import GapReport, gap_report
 
 Row = dict[str, Any]

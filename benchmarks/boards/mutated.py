@@ -93,7 +93,7 @@ def _coefficients(folder: Path) -> None:
 
 
 def _gap(folder: Path) -> None:
-    from pmm.gap.prepare import prepare
+    from pmm.gap.preparation import prepare
 
     prepare(folder, catalogue())
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from analysis.gap.forward.free_numbers import tolerated
 from hardware.description.arrays import FloatArray
-from pmm.gap.examine import Examined
+from pmm.gap.examination import Examined
 from pmm.gap.hull_report import HULL, Convention, Reported, reported
 from sim.rig import SimulatedRig
 

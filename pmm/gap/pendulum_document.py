@@ -29,7 +29,7 @@ from pmm.document.content import (
 from pmm.document.notation import percent, written
 from pmm.gap import pendulum_figures as figures
 from pmm.gap.pendulum_conclusion import classes, parameters, ranking
-from pmm.gap.pendulum_examine import ExaminedPendulum
+from pmm.gap.pendulum_examination import ExaminedPendulum
 from pmm.gap.pendulum_words import sentences
 
 SCHEMA: Final = "pmm-gap-pendulum-1"

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from pmm.document.content import Data, Document, Section, Table, Text, data_only, number, word
-from pmm.gap.pursue import Look, Pursuit
+from pmm.gap.pursuit_rounds import Look, Pursuit
 
 SCHEMA: Final = "pmm-gap-pursue-1"
 

@@ -18,7 +18,7 @@ from pmm.gap.answer import effect_rows, next_run
 from pmm.gap.cells import Cell, heat_cells
 from pmm.gap.coefficients import UNITS, CoefficientRow, coefficient_rows
 from pmm.gap.conclusion import Conclusion
-from pmm.gap.examine import Examined
+from pmm.gap.examination import Examined
 from pmm.gap.hull_report import Convention
 from pmm.gap.rows import ControlRow, Ranked, RegimeRow
 from pmm.gap.run_notes import noise_notes, odd_note, odd_one, run_notes

@@ -5,7 +5,7 @@ from typing import Final
 
 from analysis.gap.judge.withheld import gap_of
 from analysis.gap.observe.sensors import heard_rms
-from pmm.gap.examine import Examined
+from pmm.gap.examination import Examined
 
 NOTED: Final = 2.0  # times: a specification's noise is often meant as a largest one
 

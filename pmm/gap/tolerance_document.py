@@ -14,9 +14,9 @@ from analysis.gap.judge.verdict import coefficient_shift
 from pmm.document.content import Document, Section, Table, Text, number, word
 from pmm.document.notation import written
 from pmm.gap.case import stated_tolerances
-from pmm.gap.examine import Options
+from pmm.gap.examination import Options
 from pmm.gap.own_effects import chosen_effects
-from pmm.gap.prepare import Prepared, campaign_file, prepare
+from pmm.gap.preparation import Prepared, campaign_file, prepare
 
 SCHEMA: Final = "pmm-gap-tolerances-1"
 _LEARNT: Final = 0.9  # tolerances: a number known no better afterwards was not shown by these runs

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from pmm.document.content import Document
-from pmm.gap.examine import Options
+from pmm.gap.examination import Options
 from pmm.gap.report import GapReport, gap_report
 from pmm.interface.result import Result, Variable, dataset_of
 from pmm.parallel import open_executor
@@ -89,7 +89,7 @@ class GapResult(Result):
 
 def campaign_gap(path: Path, options: Options, jobs: int | None) -> GapResult:
     """Diagnose a campaign as ``pmm gap`` does."""
-    from pmm.gap.examine import examine
+    from pmm.gap.examination import examine
 
     with nullcontext() if jobs == 1 else open_executor(jobs) as executor:
         return GapResult(gap_report(examine(path, options, executor, lambda _: None)))

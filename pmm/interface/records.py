@@ -204,9 +204,9 @@ class Records:
         Raises
         ------
         ConfigurationError, DataError
-            As :func:`pmm.gap.examine.examine` does.
+            As :func:`pmm.gap.examination.examine` does.
         """
-        from pmm.gap.examine import Options
+        from pmm.gap.examination import Options
         from pmm.interface.gap import campaign_gap
 
         self._require(Kind.CAMPAIGN)

@@ -20,7 +20,7 @@ _NOTHING: Mapping[str, Any] = MappingProxyType({})
 class LiveSettings:
     """How the live resolver was set, so that a replay can be set likewise.
 
-    The fields are the arguments of :class:`analysis.resolver.live.LiveResolver`.
+    The fields are the arguments of :class:`analysis.resolver.live_resolver.LiveResolver`.
     """
 
     harmonics: int = 3

@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from analysis.resolver.harmonics import Harmonics
-from analysis.resolver.live import LiveResolver
+from analysis.resolver.live_resolver import LiveResolver
 from analysis.resolver.weights import REACH
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from types import MappingProxyType
 
 from analysis.resolver.harmonics import Harmonics
-from analysis.resolver.live import LiveResolver
+from analysis.resolver.live_resolver import LiveResolver
 from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag, Severity
 from hardware.description.known_loads import LoadStep

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from analysis.resolver.harmonics import Harmonics
-from analysis.resolver.live import Provisional
+from analysis.resolver.live_resolver import Provisional
 from analysis.uncertainty.freedom import student_factor
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel

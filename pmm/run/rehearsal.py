@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from analysis.resolver.live import LiveResolver
+from analysis.resolver.live_resolver import LiveResolver
 from hardware.description.channels import Channel
 from hardware.description.errors import PmmError
 from pmm.recorder.header import RunHeader

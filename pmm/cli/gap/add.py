@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from pmm.gap.appending import Added
-    from pmm.gap.examine import Examined
+    from pmm.gap.examination import Examined
     from sim.effects.effect import Effect
 
 _SCHEMA: Final = "pmm-gap-add-1"
@@ -66,7 +66,7 @@ def _examined(looks: Looks, path: Path, effect: str | None, jobs: int | None) ->
     from dataclasses import replace
 
     from pmm.cli.screen import doing
-    from pmm.gap.examine import examine
+    from pmm.gap.examination import examine
 
     options = looks.options
     if effect is not None:

@@ -12,7 +12,7 @@ from pmm.cli.options import JSON
 
 if TYPE_CHECKING:
     from analysis.gap.pendulum.settle import Settled
-    from pmm.gap.pendulum_examine import PendulumOptions
+    from pmm.gap.pendulum_examination import PendulumOptions
 
 _SCHEMA: Final = "pmm-gap-add-pendulum-1"
 
@@ -37,7 +37,7 @@ def add_pendulum(
     """
     from pmm.cli.screen import pasted
     from pmm.gap.appending import Added, refuse_twice
-    from pmm.gap.pendulum_examine import PendulumOptions
+    from pmm.gap.pendulum_examination import PendulumOptions
     from pmm.gap.pendulum_file import read_case
 
     given, path = Chosen(**chosen), Path(file)
@@ -58,7 +58,7 @@ def _settled(path: Path, causes: tuple[str, ...], options: "PendulumOptions") ->
     from hardware.description.errors import DataError
     from pmm.cli.screen import doing
     from pmm.gap.pendulum_conclusion import conclusion_of
-    from pmm.gap.pendulum_examine import examine_pendulum, fitted_causes
+    from pmm.gap.pendulum_examination import examine_pendulum, fitted_causes
     from pmm.gap.pendulum_words import what_is_wrong
 
     if causes:

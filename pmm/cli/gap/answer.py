@@ -153,7 +153,7 @@ def diagnosed(folder: Path, left_out: tuple[str, ...] = ()) -> dict[str, Any]:
     """Return the answer to a case's folder, with some effects taken out of the catalogue."""
     from analysis.gap.judge.diagnosis import diagnose
     from pmm.gap.answer import answer as answer_of
-    from pmm.gap.prepare import prepare
+    from pmm.gap.preparation import prepare
     from sim.effects.catalogue import catalogue
 
     known = {name: kind for name, kind in catalogue().items() if name not in left_out}

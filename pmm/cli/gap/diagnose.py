@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from pmm.campaign.runs import AtRest, Run
-    from pmm.gap.examine import Examined
+    from pmm.gap.examination import Examined
 
 
 @click.command()
@@ -59,8 +59,8 @@ def diagnose(
     from pmm.document.page import write_page
     from pmm.gap.case import CASE_FILE
     from pmm.gap.document import document
-    from pmm.gap.examine import examine
-    from pmm.gap.prepare import campaign_file
+    from pmm.gap.examination import examine
+    from pmm.gap.preparation import campaign_file
     from pmm.gap.report import gap_report
     from pmm.gap.tolerance_document import tolerance_document
 

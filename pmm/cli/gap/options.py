@@ -14,7 +14,7 @@ from pmm.cli.options import with_options
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from pmm.gap.examine import Options
+    from pmm.gap.examination import Options
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Looks(Chosen):
     @property
     def options(self) -> "Options":
         """What the diagnosis is told."""
-        from pmm.gap.examine import Options
+        from pmm.gap.examination import Options
 
         names = tuple(one.strip() for one in (self.sensors or "").split(",") if one.strip())
         return Options(self.effects, self.without, names, self.hold_out)

@@ -44,7 +44,7 @@ def pendulum(
     from pmm.document.page import write_page
     from pmm.gap.pendulum_conclusion import conclusion_of
     from pmm.gap.pendulum_document import document
-    from pmm.gap.pendulum_examine import PendulumOptions, examine_pendulum
+    from pmm.gap.pendulum_examination import PendulumOptions, examine_pendulum
 
     given, path = Chosen(**chosen), Path(file)
     check_files({"--page": page}, [("FILE.toml", path), *given.read])

@@ -11,8 +11,8 @@ from pmm.cli.options import JSON, jobs_option
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from pmm.gap.examine import Examined
-    from pmm.gap.pursue import Look
+    from pmm.gap.examination import Examined
+    from pmm.gap.pursuit_rounds import Look
 
 _EVERY_S = 2.0
 
@@ -80,10 +80,10 @@ def pursue(
 
     one_thread()  # the matrices are small: threads would wait for each other
     from pmm.cli.screen import show
-    from pmm.gap.pursue import Ways
-    from pmm.gap.pursue import pursue as pursued_until_known
     from pmm.gap.pursuit import pursued, simulated_by
     from pmm.gap.pursuit_document import pursuit_document
+    from pmm.gap.pursuit_rounds import Ways
+    from pmm.gap.pursuit_rounds import pursue as pursued_until_known
 
     looks, path = Looks(**chosen), Path(folder)
     campaign = pursued(path).campaign
@@ -101,7 +101,7 @@ def pursue(
 
 def _examined(looks: Looks, path: Path, jobs: int | None) -> "Examined":
     from pmm.cli.screen import doing
-    from pmm.gap.examine import examine
+    from pmm.gap.examination import examine
 
     with doing("reading") as told, engine(looks, jobs) as executor:
         return examine(path, looks.options, executor, told)

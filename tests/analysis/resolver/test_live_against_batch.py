@@ -12,7 +12,7 @@ from analysis.readers.conditioning import without_spikes
 from analysis.recording import Recording
 from analysis.resolver.estimate import resolve
 from analysis.resolver.harmonics import Harmonics
-from analysis.resolver.live import LiveResolver, Provisional
+from analysis.resolver.live_resolver import LiveResolver, Provisional
 from analysis.resolver.photocell import from_photocell
 from analysis.resolver.sums import period_sums
 from hardware.description.errors import DataError

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from pmm.gap.examine import Examined, Options, examine
+from pmm.gap.examination import Examined, Options, examine
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Folder:
 def _one_diagnosis_of_one_campaign() -> Iterator[None]:
     """Let commands in this process share what is found of the same campaign, asked the same."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("pmm.gap.examine.examine", _shared)
+        patch.setattr("pmm.gap.examination.examine", _shared)
         yield
     _once.cache_clear()  # another file may have another catalogue
 

@@ -12,7 +12,7 @@ import pytest
 from analysis.readers import read_recording, write_recording
 from analysis.recording import Recording
 from hardware.description.channels import CARRIAGE_SPEED
-from pmm.gap.examine import Examined, examine
+from pmm.gap.examination import Examined, examine
 from pmm.gap.run_notes import noise_notes
 from tests.pmm.gap.rigs import run
 

@@ -24,7 +24,7 @@ from sim.pendulum.effects import make_effect
 from sim.pendulum.pivot import Pendulum, RigidPart
 from sim.pendulum.record import PendulumRecord, record
 from sim.pendulum.sensors import Sensor
-from sim.pendulum.simulate import simulate_bifilar, simulate_stopwatch
+from sim.pendulum.simulation import simulate_bifilar, simulate_stopwatch
 
 BODY = RigidPart(mass_kg=12.0, lever_m=0.4, inertia_kg_m2=12.0 * 0.3**2)
 HEAD = f"gravity_m_s2 = {STANDARD_GRAVITY_M_S2}\nu_gravity_m_s2 = 1e-5\n"

@@ -24,7 +24,7 @@ from sim.pendulum.effects import make_effect
 from sim.pendulum.pivot import Pendulum
 from sim.pendulum.record import record
 from sim.pendulum.sensors import inclinometer
-from sim.pendulum.simulate import (
+from sim.pendulum.simulation import (
     simulate_bifilar,
     simulate_decay,
     simulate_stopwatch,

@@ -21,7 +21,7 @@ from sim.pendulum.floating import Floating
 from sim.pendulum.pivot import Pendulum
 from sim.pendulum.resistance import Resistance
 from sim.pendulum.sensors import motion_capture
-from sim.pendulum.simulate import (
+from sim.pendulum.simulation import (
     simulate_bifilar,
     simulate_compound_pendulum,
     simulate_decay,

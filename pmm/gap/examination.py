@@ -29,7 +29,7 @@ from hardware.description.arrays import FloatArray
 from pmm.campaign.campaign import Campaign
 from pmm.gap.conclusion import EFFECT, Conclusion, Weighing, verdict_of
 from pmm.gap.own_effects import chosen_effects, try_own
-from pmm.gap.prepare import Prepared, Progress, prepare
+from pmm.gap.preparation import Prepared, Progress, prepare
 from pmm.gap.steps import remains, walk_rows
 from sim.effects.catalogue import catalogue
 from sim.effects.effect import Effect

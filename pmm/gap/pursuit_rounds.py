@@ -10,7 +10,7 @@ from analysis.gap.inference.answers import effects_in
 from analysis.gap.judge.confounded import separating_measurements
 from hardware.description.errors import DataError
 from pmm.gap.conclusion import EFFECT
-from pmm.gap.examine import Examined
+from pmm.gap.examination import Examined
 from pmm.gap.pursuit import Maker, pursued, take_in, worth_making, write_round
 from pmm.gap.report import GapReport, gap_report
 from pmm.gap.words import joined
