@@ -88,6 +88,7 @@ def weigh(
     singles = fitted(problem, seen, none, engine)
     pairs = _completed(problem, free, paired(problem, singles, seen, none, engine))
     singles = _completed(problem, free, alone_again(problem, singles, pairs))
+    singles += _unfitted(seen, singles)
     progress("weighing")
     sought = np.array([one.is_sought for one in free], dtype=bool)
     considered = Considered(
@@ -113,6 +114,15 @@ def _completed(problem: Problem, free: Sequence[Free], fits: Sequence[Fit]) -> l
     moved = [together(problem, free, one) for one in fits[:LEADERS]]
     ones = [with_forms(problem, one) for one in (*moved, *fits[LEADERS:])]
     return sorted(ones, key=lambda one: -one.log_evidence)
+
+
+def _unfitted(seen: Sequence[Looked], fits: Sequence[Fit]) -> list[Fit]:
+    """Return the effects that did not promise enough to be fitted, as they were looked at.
+
+    They are less probable for that, and not impossible.
+    """
+    names = {one.names[0] for one in fits}
+    return [one.fit for one in seen if one.fit is not None and one.name not in names]
 
 
 def _hidden(looked: Sequence[Looked]) -> dict[str, float]:
