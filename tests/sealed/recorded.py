@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from hardware.description.arrays import FloatArray
+from hardware.description.channels import SHAFT_ANGLE
 from tests.sealed.generator.toml import as_toml
 from tests.sealed.variations import LEAST_SAMPLES, Variation, resampled
 
@@ -62,7 +64,8 @@ SOURCES: Final = (
     Source("simulate-friction", ("coulomb-friction",),
            ("simulate", "examples/gap/campaign.toml", "--output", "{}",
             "--effect", "coulomb-friction:friction_n=0.3"), "."),
-    Source("foreign", NOTHING, (), "examples/foreign"),
+    # Its aft gauge drifts and its hull has added mass (truth.toml); the campaign states neither.
+    Source("foreign", ("zero-drift", "coefficients"), (), "examples/foreign"),
 )  # fmt: skip
 
 
@@ -139,7 +142,7 @@ def _varied(one: "Recording", variation: Variation) -> "Recording":
     """Return a recording cut or thinned."""
     kept = int(np.ceil(variation.part * one.sample_count))
     rows = [
-        resampled(one.values(name)[:kept], variation.ratio, ramp=name == "shaft_angle")
+        resampled(_values(one, name)[:kept], variation.ratio, ramp=name == SHAFT_ANGLE.name)
         for name in one.channel_names
     ]
     end_s = one.start_s + kept / one.sample_rate_hz
@@ -150,6 +153,15 @@ def _varied(one: "Recording", variation: Variation) -> "Recording":
         sample_rate_hz=one.sample_rate_hz * float(variation.ratio),
         photocell_edges_s=None if edges is None else edges[edges < end_s],
     )
+
+
+def _values(one: "Recording", name: str) -> FloatArray:
+    """Return a channel's samples; an angle that begins anew at each turn goes on."""
+    values = one.values(name).copy()
+    if name == SHAFT_ANGLE.name:
+        there = np.isfinite(values)
+        values[there] = np.unwrap(values[there])
+    return values
 
 
 _ROLL: Final = """name = "roll decay"
@@ -251,6 +263,9 @@ def said_of(output: Path, name: str) -> str:
         return f"failed, exit status {error.returncode}"
     if told["verdict"] != "cause":
         return str(told["verdict"])
+    # The classes are nested: the narrowest one that is more probable than not is what is said.
+    if float(told["classes"][BEYOND_LINEAR]) > 0.5:
+        return BEYOND_LINEAR
     return max(sorted(told["classes"]), key=lambda one: float(told["classes"][one]))
 
 

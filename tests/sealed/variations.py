@@ -75,7 +75,8 @@ def resampled(values: FloatArray, ratio: Fraction, *, ramp: bool = False) -> Flo
     if ratio == 1:
         return values
     count = len(values)
-    line = np.polynomial.Polynomial.fit(np.arange(count), values, 1) if ramp else None
+    there = np.flatnonzero(np.isfinite(values))
+    line = np.polynomial.Polynomial.fit(there, values[there], 1) if ramp else None
     own = values if line is None else values - line(np.arange(count))
     out = resample_poly(own, ratio.numerator, ratio.denominator, padtype="line",
                         window=("kaiser", 8.0))  # fmt: skip

@@ -22,7 +22,7 @@ KINDS: Final = ("decay", "period", "mean", "third in phase", "third in quadratur
 _DECAY, _PERIOD, _MEAN, _THIRD = 0, 1, 2, 3
 _TERMS = 9
 _SAMPLES: Final = 2 * _TERMS  # in a window, at least
-FEWEST_WINDOWS: Final = 8
+FEWEST_WINDOWS: Final = 6  # about a parabola they leave 3 degrees of freedom, of which t has a variance
 MOST_WINDOWS: Final = 60
 _LEAST_PASSAGES = 5
 
@@ -175,7 +175,8 @@ def scatter(found: FloatArray) -> FloatArray:
     """Return the standard uncertainty of each window's values, shape ``(5, windows)``.
 
     It is what is left of them after a smooth curve, larger where the amplitude is small, and wider
-    where neighbours are alike. NaN stays NaN.
+    where neighbours are alike and, as the deviation of Student's t, where windows are few. NaN
+    stays NaN.
     """
     spread = np.full(found.shape, np.nan)
     for kind, values in enumerate(found):
@@ -197,7 +198,8 @@ def _rms_about_smooth(values: FloatArray, shape: FloatArray) -> float:
     degree = min(_DEGREE, values.size // 3)
     fit = np.polynomial.Legendre.fit(place, values, degree, w=1.0 / shape)
     left = (values - fit(place)) / shape
-    freedom = max(values.size - degree - 1, 1)
+    freedom = values.size - degree - 1
     alike = float(left[1:] @ left[:-1]) / max(float(left @ left), 1e-300)
     inflation = min(max((1.0 + alike) / max(1.0 - alike, 0.2), 1.0), 5.0)
-    return max(math.sqrt(inflation * float(left @ left) / freedom), _FLOOR)
+    few = freedom / (freedom - 2.0)
+    return max(math.sqrt(few * inflation * float(left @ left) / freedom), _FLOOR)
