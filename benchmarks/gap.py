@@ -1,4 +1,4 @@
-"""What a diagnosis costs: 4 to 40 runs, all effects and their pairs, from recordings to an answer."""
+"""Cost of a diagnosis: 4 to 40 runs, all effects and their pairs, from recordings to an answer."""
 
 import tempfile
 import time

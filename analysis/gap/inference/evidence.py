@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -110,45 +111,43 @@ class Background:
 
     def odd_runs(self) -> dict[str, FloatArray]:
         """Return that of one run with a gain or a zero of its own, by run."""
+        of, at = self._with_own(self._of)
+        calm = [one.reduced(self._scale(), of) for one in self._tolerated]
         return {
-            run: _mean(
-                self._seen([calm.reduced(self._odd(run, tau), self._of) for tau in TAUS])
-                for calm in self._tolerated
-            )
-            for run in self.own
+            run: _mean(self._seen([one.widened(1, rows, tau) for tau in TAUS]) for one in calm)
+            for run, rows in at.items()
         }
 
     def named(self, one: Hypothesis) -> list[Evidence]:
         """Return what named effects are worth beside a deviation of each size."""
-        beside = self.shapes.beside(one.names)
+        beside, turned = self.shapes.beside(one.names), self._turned(one)
         return [
-            self._weighed(one, self._plain[at], self._beside(tau, beside))
+            _in_any_form(one, self._plain[at].reduced(self._beside(tau, beside), turned))
             for at, tau in enumerate(TAUS)
         ]
 
     def named_beside(self, one: Hypothesis, run: str) -> FloatArray:
         """Return the log evidence of named effects beside one odd run."""
-        return _mean(
-            np.array(
-                [
-                    self._weighed(one, calm, self._odd(run, tau)).log_evidence
-                    if tau > TOLERATED
-                    else -np.inf
-                    for tau in TAUS
-                ]
-            )
-            for calm in self._tolerated
-        )
+        large = np.array(TAUS) > TOLERATED
+        of, at = self._with_own(self._turned(one))
+        logs = np.full((len(self._tolerated), len(TAUS)), -np.inf)
+        for row, under in enumerate(self._tolerated):
+            calm = under.reduced(self._scale(), of)
+            for column in np.flatnonzero(large):
+                found = _in_any_form(one, calm, at[run], TAUS[column])
+                logs[row, column] = found.log_evidence
+        return _mean(logs)
 
-    def _weighed(self, one: Hypothesis, under: Weighted, scale: FloatArray) -> Evidence:
-        """Return what named effects are worth, in whichever form of their families they are."""
-        turned = self.kernel.turned(np.column_stack((one.target, one.columns)))
-        forms = self.kernel.turned(one.forms)
-        every = FORMS if one.forms.shape[1] else FORMS[:1]
-        found = [weighed(one, under.reduced(scale, turned, share * forms)) for share in every]
-        logs = [each.log_evidence for each in found]
-        best = found[int(np.argmax(logs))]
-        return replace(best, log_evidence=float(_mean(np.array(logs))))
+    def _turned(self, one: Hypothesis) -> FloatArray:
+        """Return target, slopes and forms of a hypothesis in the kernel's coordinates."""
+        return self.kernel.turned(np.column_stack((one.target, one.columns, one.forms)))
+
+    def _with_own(self, of: FloatArray) -> tuple[FloatArray, dict[str, list[int]]]:
+        """Return columns with those of each run's own behind them, and where those are."""
+        ends = np.cumsum([of.shape[1], *(one.shape[1] for one in self._owned)])
+        at = [[*range(first, last)] for first, last in pairwise(ends.tolist())]
+        own = self.kernel.turned(np.hstack(self._owned)) if self.own else of[:, :0]
+        return np.hstack((of, own)), dict(zip(self.own, at, strict=True))
 
     @cached_property
     def _columns(self) -> FloatArray:
@@ -185,25 +184,20 @@ class Background:
         self,
         tolerances: FloatArray | float = 1.0,
         shapes: FloatArray | float = 0.0,
-        own: Mapping[str, float] | float = 0.0,
+        own: float = 0.0,
     ) -> FloatArray:
         """Return what each of the columns counts."""
-        runs = dict.fromkeys(self.own, own) if isinstance(own, float) else own
-        each = [np.full(one.shape[1], runs.get(run, 0.0)) for run, one in self.own.items()]
         return np.concatenate(
             (
                 np.broadcast_to(tolerances, self.tolerances.shape[1]),
                 np.broadcast_to(shapes, self.shapes.columns.shape[1]),
-                *each,
+                np.full(sum(one.shape[1] for one in self._owned), own),
             )
         )
 
     def _beside(self, tau: float, shapes: FloatArray) -> FloatArray:
         """Return the scale of a deviation with some shapes, and of each run's own part of it."""
         return self._scale(shapes=tau * shapes, own=tau * math.sqrt(PLAIN))
-
-    def _odd(self, run: str, tau: float) -> FloatArray:
-        return self._scale(own={run: tau})
 
     def _smooth(self, scale: FloatArray) -> FloatArray:
         """Return the log evidence at each tolerated size, minus infinity at larger ones."""
@@ -223,6 +217,30 @@ class Background:
         return np.array(
             [_density(one) if one.log_determinant > self._least else -np.inf for one in found]
         )
+
+
+def _in_any_form(
+    one: Hypothesis, found: Reduced, own: Sequence[int] = (), tau: float = 0.0
+) -> Evidence:
+    """Return what named effects are worth, in whichever form of their families they are.
+
+    Parameters
+    ----------
+    found
+        Products of the target, the slopes, the forms and more.
+    own
+        Which of them are a run's own, where one is odd.
+    tau
+        Size of its deviation.
+    """
+    kept, count = 1 + one.columns.shape[1], one.forms.shape[1]
+    at = [*range(kept, kept + count), *own]
+    every = [
+        weighed(one, found.widened(kept, at, np.repeat((share, tau), (count, len(own)))))
+        for share in (FORMS if count else FORMS[:1])
+    ]
+    logs = np.array([each.log_evidence for each in every])
+    return replace(every[int(np.argmax(logs))], log_evidence=float(_mean(logs)))
 
 
 def _mean(each: Iterable[FloatArray]) -> FloatArray:

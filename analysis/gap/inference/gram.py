@@ -1,10 +1,11 @@
 """The Gaussian of a hypothesis, reduced to the few numbers that its evidence needs."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import cholesky, solve_triangular
 
 from hardware.description.arrays import FloatArray
 
@@ -24,6 +25,39 @@ class Reduced:
     gram: FloatArray
     log_determinant: float
 
+    def widened(self, kept: int, at: Sequence[int], scale: FloatArray | float) -> "Reduced":
+        """Return the products of the first columns under a covariance with some others in it.
+
+        Parameters
+        ----------
+        kept
+            How many of the columns X are asked for.
+        at
+            Which of the others, M, are in it: ``S + M M^T``.
+        scale
+            What each of them counts, shape ``(len(at),)`` or one for all.
+        """
+        if not len(at):
+            return Reduced(self.gram[:kept, :kept], self.log_determinant)
+        own = np.broadcast_to(scale, len(at))
+        across = own[:, None] * self.gram[at, :kept]
+        within = own[:, None] * self.gram[np.ix_(at, at)] * own
+        return _absorbed(self.gram[:kept, :kept], across, within, self.log_determinant)
+
+
+def _absorbed(
+    gram: FloatArray, across: FloatArray, within: FloatArray, log_determinant: float
+) -> Reduced:
+    """Return products under ``S + M M^T``, of ``X^T S^-1 X``, ``M^T S^-1 X``, ``M^T S^-1 M``.
+
+    The last is written over.
+    """
+    within.flat[:: len(within) + 1] += 1.0
+    lower = cholesky(within, lower=True, overwrite_a=True, check_finite=False)
+    half = solve_triangular(lower, across, lower=True, check_finite=False)
+    logs = 2.0 * float(np.sum(np.log(np.diagonal(lower))))
+    return Reduced(np.asarray(gram - half.T @ half, np.float64), log_determinant + logs)
+
 
 @dataclass(frozen=True, eq=False)
 class Weighted:
@@ -41,18 +75,14 @@ class Weighted:
     diagonal: FloatArray
 
     @cached_property
-    def _over(self) -> FloatArray:
-        return np.asarray(self.columns / self.diagonal[:, None], np.float64)
-
-    @cached_property
     def _gram(self) -> FloatArray:
-        return np.asarray(self.columns.T @ self._over, np.float64)
+        return np.asarray(self.columns.T @ (self.columns / self.diagonal[:, None]), np.float64)
 
     @cached_property
     def _log_diagonal(self) -> float:
         return float(np.sum(np.log(self.diagonal)))
 
-    def reduced(self, scale: FloatArray, of: FloatArray, more: FloatArray | None = None) -> Reduced:
+    def reduced(self, scale: FloatArray, of: FloatArray) -> Reduced:
         """Return products of some columns under ``D + C C^T``.
 
         Parameters
@@ -61,23 +91,15 @@ class Weighted:
             What each of the columns counts in C, shape ``(columns,)``; 0 for what is not in it.
         of
             The columns X, shape ``(observations, any)``.
-        more
-            Further columns of C, shape ``(observations, any)``.
         """
         kept = np.flatnonzero(scale)
-        own = scale[kept]
-        within = self._gram[np.ix_(kept, kept)] * own[:, None] * own
-        across = own[:, None] * (self._over[:, kept].T @ of)
         of_over = of / self.diagonal[:, None]
-        if more is not None and more.shape[1]:
-            beside = own[:, None] * (self._over[:, kept].T @ more)
-            more_over = more / self.diagonal[:, None]
-            within = np.block([[within, beside], [beside.T, more.T @ more_over]])
-            across = np.vstack((across, more.T @ of_over))
-        gram = of.T @ of_over
-        if not len(within):
+        gram = np.asarray(of.T @ of_over, np.float64)
+        if not len(kept):
             return Reduced(gram, self._log_diagonal)
-        factor = cho_factor(np.eye(len(within)) + within, lower=True)
-        gram = gram - across.T @ cho_solve(factor, across)
-        logs = 2.0 * float(np.sum(np.log(np.diagonal(factor[0]))))
-        return Reduced(np.asarray(gram, np.float64), self._log_diagonal + logs)
+        own = scale[kept]
+        within = self._gram[np.ix_(kept, kept)]
+        within *= own
+        within *= own[:, None]
+        across = own[:, None] * (self.columns.T @ of_over)[kept]
+        return _absorbed(gram, across, within, self._log_diagonal)

@@ -22,7 +22,9 @@ KINDS: Final = ("decay", "period", "mean", "third in phase", "third in quadratur
 _DECAY, _PERIOD, _MEAN, _THIRD = 0, 1, 2, 3
 _TERMS = 9
 _SAMPLES: Final = 2 * _TERMS  # in a window, at least
-FEWEST_WINDOWS: Final = 6  # about a parabola they leave 3 degrees of freedom, of which t has a variance
+FEWEST_WINDOWS: Final = (
+    6  # about a parabola they leave 3 degrees of freedom, of which t has a variance
+)
 MOST_WINDOWS: Final = 60
 _LEAST_PASSAGES = 5
 

@@ -57,10 +57,12 @@ def test_products_under_the_reduced_covariance_are_those_under_the_dense_one(
     columns, beside = rng.standard_normal((size, count)), rng.standard_normal((size, more))
     scale = rng.integers(0, 2, count) * rng.uniform(0.1, 3.0, count)
     of = rng.standard_normal((size, 2))
-    chosen = np.hstack((columns * scale, beside))
+    sizes = rng.uniform(0.1, 3.0, more)
+    chosen = np.hstack((columns * scale, beside * sizes))
     dense = np.eye(size) + tau**2 * whole + chosen @ chosen.T
     weighted = Weighted(kernel.turned(columns), 1.0 + tau**2 * kernel.values)
-    found = weighted.reduced(scale, kernel.turned(of), kernel.turned(beside))
+    reduced = weighted.reduced(scale, kernel.turned(np.hstack((of, beside))))
+    found = reduced.widened(2, range(2, 2 + more), sizes)
     np.testing.assert_allclose(found.gram, of.T @ np.linalg.solve(dense, of), rtol=1e-8, atol=1e-9)
     assert found.log_determinant == pytest.approx(np.linalg.slogdet(dense)[1], abs=1e-8)
 
