@@ -39,7 +39,7 @@ NAMES = (
     "plan_design",
     "campaign",
     "sealed",
-    "gap",
+    "gap_cost",
     "evidence",
     "campaign_boards",
     "signs",

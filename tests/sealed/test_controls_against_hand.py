@@ -139,7 +139,6 @@ def test_targets_are_held_against_the_first_row(board: Path) -> None:
         "ahead_of_others": None,
         "left_out_sure_and_wrong": None,
         "case_s": 2.0,
-        "campaign_s": None,
     }
 
 

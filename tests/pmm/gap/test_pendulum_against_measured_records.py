@@ -164,8 +164,8 @@ def test_too_few_swings_are_refused(tmp_path: Path) -> None:
     table = (
         f'[[suspensions]]\nname = "one"\ngates = "{gates}"\nhalf_spacing_m = 0.2\nline_m = 0.6\n'
     )
-    file.write_text(ROD.replace("swings = 60", "swings = 24") + table)
-    with pytest.raises(DataError, match="one: 6 windows of swings are too few"):
+    file.write_text(ROD.replace("swings = 60", "swings = 16") + table)
+    with pytest.raises(DataError, match="one: 4 windows of swings are too few"):
         load_problem(file)
 
 
