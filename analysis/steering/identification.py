@@ -73,11 +73,10 @@ def identified(
         If the runs do not tell the factors of the loads, or parameters cannot be told apart.
     """
     loads, flow = load_factors(runs), inflow(runs, known)
-    spread = runs.uncertainty.ravel()
     ratios = tuple(_ratio(one) for one in (loads, flow))
     values, slopes, names = _parameters(runs, known, loads, flow, ratios)
-    scaled = slopes * spread
-    wake = _wakes(runs, flow, spread, ratios[1])
+    scaled = runs.followed(slopes)
+    wake = _wakes(runs, flow, ratios[1])
     points = tuple(
         self_propulsion(k, runs, known, loads, flow, max(1.0, *ratios), towing_force_n)
         for k in runs.straight
@@ -106,13 +105,19 @@ def _parameters(
     by_factors[0, 0], by_factors[1, 1], by_factors[2, 2] = 1.0, -1.0, 1.0
     by_factors[3, 2:] = -place / force_increase / length, 1.0 / force_increase / length
     of_loads = (thrust, 1.0 - steered, force_increase, place / length)
-    load_slopes = np.fmax(1.0, ratios[0]) * (by_factors @ loads.by_data[:4].reshape(4, -1))
-    flow_slopes = np.fmax(1.0, ratios[1]) * flow.by_data.reshape(len(flow.names), -1)
+    load_slopes = np.fmax(1.0, ratios[0]) * np.tensordot(by_factors, loads.by_data[:4], 1)
+    flow_slopes = np.fmax(1.0, ratios[1]) * flow.by_data
     rows = [(OF_LOADS[0], of_loads[0], load_slopes[0])]
     straight = [flow.names.index(wake_name(int(k))) for k in runs.straight]
     if straight:
         share = np.full(len(straight), 1.0 / len(straight))
-        rows.append(("w_P0", float(share @ flow.values[straight]), share @ flow_slopes[straight]))
+        rows.append(
+            (
+                "w_P0",
+                float(share @ flow.values[straight]),
+                np.tensordot(share, flow_slopes[straight], 1),
+            )
+        )
     rows += list(zip(OF_LOADS[1:], of_loads[1:], load_slopes[1:], strict=True))
     for name, told in OF_INFLOW.items():
         if name in flow.names:
@@ -122,8 +127,8 @@ def _parameters(
     return np.array(values), np.array(slopes), tuple(names)
 
 
-def _wakes(runs: SteeringRuns, flow: Inflow, spread: FloatArray, ratio: float) -> FloatArray:
+def _wakes(runs: SteeringRuns, flow: Inflow, ratio: float) -> FloatArray:
     own = [flow.names.index(wake_name(k)) for k in range(runs.conditions)]
-    slopes = flow.by_data[own].reshape(len(own), -1) * spread
-    u = np.fmax(1.0, ratio) * np.sqrt((slopes**2).sum(axis=1))
+    followed = runs.followed(flow.by_data[own])
+    u = np.fmax(1.0, ratio) * np.sqrt((followed**2).sum(axis=1))
     return np.concatenate((runs.motions, [flow.values[own]], [u]))

@@ -50,7 +50,11 @@ class SteeringRuns:
         Rudder angle, positive to turn to starboard; the propeller's rate of revolutions.
     values, uncertainty
         :data:`MEASURED` and their standard uncertainties, shape ``(5, n)``: X, Y (N) and N (N m) of
-        the water on the model without inertia, thrust ahead, normal force positive to port.
+        the water on the model without inertia, thrust ahead, normal force positive to port. The
+        uncertainties are those of each run alone.
+    shared
+        What several runs have in common, a column for each standard deviate: the readings at rest
+        that were taken off, shape ``(5, n, deviates)``.
 
     Raises
     ------
@@ -64,6 +68,7 @@ class SteeringRuns:
     rate_hz: FloatArray
     values: FloatArray
     uncertainty: FloatArray
+    shared: FloatArray | None = None
 
     def __post_init__(self) -> None:
         faults = []
@@ -84,6 +89,19 @@ class SteeringRuns:
                 )
         if faults:
             raise DataError("; ".join(faults))
+
+    def followed(self, slopes: FloatArray) -> FloatArray:
+        """Return what follows the measured numbers by slopes, per standard deviate of their errors.
+
+        Parameters
+        ----------
+        slopes
+            Shape ``(k, 5, n)``; the result ``(k, deviates)``.
+        """
+        own = (slopes * self.uncertainty).reshape(len(slopes), -1)
+        if self.shared is None:
+            return own
+        return np.concatenate((own, np.einsum("kmn,mnd->kd", slopes, self.shared)), axis=1)
 
     @cached_property
     def speed_m_s(self) -> FloatArray:

@@ -59,7 +59,7 @@ def self_propulsion(
     hull, wake = 4 + condition, flow.names.index(wake_name(condition))
     own = np.array([loads.values[0], loads.values[hull], flow.values[wake]])
     slopes = np.stack((loads.by_data[0], loads.by_data[hull], flow.by_data[wake]))
-    spread = (slopes * runs.uncertainty).reshape(3, -1)
+    spread = runs.followed(slopes)
     speed = float(runs.motions[0, condition])
 
     def point(at: FloatArray) -> FloatArray:

@@ -10,11 +10,11 @@ from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.campaign.runs import AtRest, Run
 from pmm.campaign.simulation import (
     SimulatedRun,
+    at_rest_runs,
     check_target,
     copy_campaign,
+    simulate_at_rest,
     simulate_runs,
-    simulate_zeros,
-    zero_runs,
 )
 from pmm.recorder.campaign_owner import own_new_campaign
 from sim.effects.catalogue import build, user_effects
@@ -80,7 +80,7 @@ class PlannedSimulation:
                 overwrite=self.overwrite,
                 effects=self.effects,
             )
-            zeros = simulate_zeros(
+            zeros = simulate_at_rest(
                 self.campaign,
                 self.zeros,
                 self.folder,
@@ -131,7 +131,7 @@ def planned_simulation(
         campaign,
         Path(campaign.name) if folder is None else folder,
         tuple(campaign.run(name) for name in runs) or tuple(campaign.runs),
-        () if runs else zero_runs(campaign),
+        () if runs else at_rest_runs(campaign),
         (*campaign.effects_on(more), *(build(text, more) for text in effects)),
         campaign.simulation.seed if seed is None else seed,
         overwrite,

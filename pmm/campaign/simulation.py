@@ -41,10 +41,10 @@ class SimulatedRun:
     flags: tuple[Flag, ...]
 
 
-def zero_runs(campaign: Campaign) -> tuple[AtRest, ...]:
-    """Return the zero runs whose place in the campaign is known, in the order they are made."""
-    made = made_in_order(campaign)
-    return tuple(one for one in made if isinstance(one, AtRest) and one.kind is RunKind.ZERO)
+def at_rest_runs(campaign: Campaign) -> tuple[AtRest, ...]:
+    """Return zero runs and tows whose place in the campaign is known, in the order made."""
+    made = (one for one in made_in_order(campaign) if isinstance(one, AtRest))
+    return tuple(one for one in made if one.kind is RunKind.ZERO or one.kind.towed)
 
 
 def check_target(
@@ -58,7 +58,7 @@ def check_target(
         If the campaign has no runs, or is one of measured recordings and lies in that very folder;
         or if a recording, or another campaign file, is there and may not be overwritten.
     """
-    if not campaign.runs:
+    if not runs:
         raise ConfigurationError(f"{path}: the campaign has no runs; add a table [[runs]] for each")
     target = folder / CAMPAIGN_FILE
     own = target.exists() and target.samefile(path)
@@ -109,16 +109,16 @@ def simulate_runs(
         yield SimulatedRun(run, file, run_seed, rate, count, recording.flags)
 
 
-def simulate_zeros(
+def simulate_at_rest(
     campaign: Campaign,
-    zeros: Sequence[AtRest],
+    records: Sequence[AtRest],
     folder: Path,
     seed: int,
     *,
     overwrite: bool,
     effects: Sequence[Effect] = (),
 ) -> Iterator[str]:
-    """Simulate zero runs, the shaft standing and the struts at their middle, and yield the files.
+    """Simulate zero runs and tows, the shaft standing, the struts at their middle; yield files.
 
     Raises
     ------
@@ -126,14 +126,14 @@ def simulate_zeros(
         As :func:`simulate_runs`.
     """
     rig = campaign.rig()
-    for zero in zeros:
+    for one in records:
         # The gauges' mean is taken with the scatter between blocks: a block stands for a period.
-        point = replace(zero.set_point, frequency_hz=ZERO_BLOCKS / zero.duration_s)
+        point = replace(one.set_point, frequency_hz=ZERO_BLOCKS / one.duration_s)
         periods = ZERO_BLOCKS - 1  # a simulated record is one longer
-        own = seed_of(seed, zero.name)
-        recording = _simulated(rig, campaign, zero, point, periods, own, effects)
+        own = seed_of(seed, one.name)
+        recording = _simulated(rig, campaign, one, point, periods, own, effects)
         recording = replace(recording, set_point=None)
-        yield _written(recording, folder, zero.name, overwrite=overwrite)
+        yield _written(recording, folder, one.name, overwrite=overwrite)
 
 
 def _simulated(

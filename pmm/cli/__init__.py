@@ -14,7 +14,7 @@ from pmm.cli.group import CommandGroup
 _NAMES = (
     "analyse", "coefficients", "compare", "completion", "console", "demo", "devices", "doctor",
     "effects", "evaluate", "gap", "inertia", "init", "manoeuvre", "plan", "recover", "replay",
-    "report", "run", "simulate",
+    "report", "run", "simulate", "steering",
 )  # fmt: skip
 _INTERRUPTED = 130  # what a shell reports of a command that Ctrl-C ended
 

@@ -1,5 +1,6 @@
 """What is to be done with each recording of a campaign: plain values that go to any process."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -20,6 +21,10 @@ from pmm.campaign.recording_source import COMPLETE, RecordingSource
 from pmm.campaign.runs import AtRest, Run
 from pmm.coefficients.settings import AmplifierTable
 
+_STEERED = (
+    "its rudder is laid, or its propeller turns at another rate than in most runs; `pmm steering` "
+    "takes such tows"
+)
 TOWED = (RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW)
 
 
@@ -176,8 +181,16 @@ def work_of(
     harmonics: int,
     leave_out: Sequence[str] = (),
     hashed: bool = False,
+    steered: bool = False,
 ) -> Work:
-    """Sort a campaign's runs and records at rest into tasks."""
+    """Sort a campaign's runs and records at rest into tasks.
+
+    Parameters
+    ----------
+    steered
+        Whether runs with a laid rudder, or with revolutions that most runs do not have, are wanted
+        and not those of the hull as it mostly ran.
+    """
     settings = replace(campaign.analysis, harmonics=harmonics, gate_periods=None)
     zeros: list[Task] = []
     runs: list[Task] = []
@@ -185,8 +198,13 @@ def work_of(
     missing: list[str] = []
     flags: list[Flag] = []
     every: tuple[Run | AtRest, ...] = (*campaign.at_rest, *campaign.runs)
+    rates = Counter(one.revolutions_hz for one in every if one.kind.oscillates or one.kind in TOWED)
+    usual = rates.most_common(1)[0][0] if rates else 0.0
     for one in every:
-        if (why := _why_not(one, leave_out)) is not None:
+        why = _why_not(one, leave_out)
+        if why is None and one.kind is not RunKind.ZERO:
+            why = _other_steering(one, usual, steered=steered)
+        if why is not None:
             flags += [_left_out(one.name, why)] if why else []
             continue
         source = RecordingSource.of(campaign, one, folder.resolve())
@@ -210,6 +228,13 @@ def work_of(
         kept = zeros if one.kind is RunKind.ZERO else dry if _is_dry(one) else runs
         kept.append(task)
     return Work(tuple(zeros), tuple(runs), tuple(dry), tuple(missing), tuple(flags))
+
+
+def _other_steering(one: Run | AtRest, usual_hz: float, *, steered: bool) -> str | None:
+    """Say why a run's rudder or propeller is not as it is wanted, as :func:`_why_not` does."""
+    if steered:
+        return None if one.rudder_angle_rad or one.revolutions_hz else ""
+    return _STEERED if one.rudder_angle_rad or one.revolutions_hz != usual_hz else None
 
 
 def _why_not(one: Run | AtRest, leave_out: Sequence[str]) -> str | None:

@@ -23,7 +23,7 @@ class RudderBehind:
         A_R and H_R.
     slope
         f_alpha, lift gradient of the normal force.
-    x_m, increase_x_m, lever_m
+    x_m, increase_x_m, inflow_x_m
         x_R, x_H and l_R.
     resistance_deduction, force_increase
         t_R and a_H.
@@ -40,7 +40,7 @@ class RudderBehind:
     slope: float
     x_m: float
     increase_x_m: float
-    lever_m: float
+    inflow_x_m: float
     resistance_deduction: float
     force_increase: float
     wake_ratio: float
@@ -77,7 +77,7 @@ class RudderBehind:
         jet = behind + self.acceleration * (np.sqrt(np.maximum(squared, 0.0)) - behind)
         along = self.wake_ratio * np.sqrt(covered * jet**2 + (1.0 - covered) * behind**2)
         speed = np.hypot(u, v)
-        across = speed * np.arctan2(-v, u) - self.lever_m * r
+        across = speed * np.arctan2(-v, u) - self.inflow_x_m * r
         gamma = np.where(across > 0.0, self.straightening_plus, self.straightening_minus)
         across = gamma * across
         attack = angle_rad - self.neutral_rad - np.arctan2(across, along)

@@ -20,6 +20,7 @@ TRUTH = {
     "gamma_R-": paper.GAMMA[1], "l_R'": paper.L_R, "delta_0": 0.0,
 }  # fmt: skip
 UNCERTAINTY = np.array([0.15, 0.15, 0.3, 0.05, 0.08])  # N, N, N m, N, N
+ZERO_N = 0.05  # of the zero runs that all runs share, of thrust and of normal force
 RATES = (7.0, 9.5, 12.0)
 RUDDERS = (-20.0, -10.0, 0.0, 10.0, 20.0)
 STRAIGHT = [(0.0, 0.0, rate, rudder) for rate in RATES for rudder in RUDDERS]
@@ -46,7 +47,13 @@ def runs(
         values.append((x + told.x, y + told.y, n + told.n, told.thrust, told.normal))
     exact = np.array(values).T
     u_of = np.repeat(spread[:, None], len(points), axis=1)
-    drawn = 0.0 if rng is None else rng.standard_normal(exact.shape) * u_of
+    shared = np.zeros((5, len(points), 2))
+    shared[3, :, 0] = shared[4, :, 1] = ZERO_N
+    drawn = np.zeros_like(exact)
+    if rng is not None:
+        drawn = rng.standard_normal(exact.shape) * u_of + shared @ rng.standard_normal(2)
     _, _, rates, rudders = np.array(points).T
     names = tuple(f"run-{k}" for k in range(len(points)))
-    return SteeringRuns(names, np.array(motion).T, np.radians(rudders), rates, exact + drawn, u_of)
+    return SteeringRuns(
+        names, np.array(motion).T, np.radians(rudders), rates, exact + drawn, u_of, shared
+    )

@@ -1,0 +1,63 @@
+"""``pmm steering``: parameters of propeller and rudder from a campaign's tows."""
+
+from pathlib import Path
+
+import click
+
+from pmm.cli.options import DEFAULT_LEVEL, JSON, PLOT, probability
+
+
+@click.command()
+@click.argument("folder", metavar="FOLDER")
+@click.option(
+    "--settings", metavar="FILE", help="In place of steering.toml of the campaign's folder."
+)
+@PLOT
+@click.option(
+    "--level",
+    type=float,
+    default=DEFAULT_LEVEL,
+    show_default=True,
+    callback=probability,
+    metavar="P",
+    help="Probability of the intervals.",
+)
+@JSON
+def steering(
+    folder: str, settings: str | None, plot: str | None, level: float, as_json: bool
+) -> None:
+    """Identify propeller and rudder of a campaign's tows by the MMG method.
+
+    Static rudder, oblique tow with rudder and load variation, each with its rudder angle and
+    revolutions, give thrust deduction, wake, rudder interaction and inflow with their intervals,
+    and the self-propulsion point. FOLDER has campaign.toml and steering.toml (docs/steering.md).
+
+    \b
+    pmm simulate examples/steering/campaign.toml --output steered
+    pmm steering steered --settings examples/steering/steering.toml --plot plots
+
+    Exit status: 0 done; 1 the runs do not tell the parameters, or one could not be used; 2 the
+    request was wrong.
+    """  # noqa: D301
+    from hardware.description.errors import ConfigurationError
+    from pmm.cli.files import check_folder, tell_writers
+    from pmm.cli.screen import error_line, messages, show
+    from pmm.document.style import write_figures
+    from pmm.report.steering_document import steering_document, steering_figures
+    from pmm.steering.workflow import steering_of
+
+    place = Path(folder)
+    if not place.is_dir():
+        raise ConfigurationError(f"{place}: no such folder")
+    if plot is not None:
+        check_folder(Path(plot), "--plot")
+    tell_writers([place])
+    found = steering_of(place, None if settings is None else Path(settings))
+    show(steering_document(found, level), as_json=as_json)
+    if plot is not None:
+        files = write_figures(steering_figures(found), Path(plot), "steering")
+        messages().print(f"written: {len(files)} figures in {plot}")
+    for one in found.failed:
+        error_line(one.message)
+    if found.failed:
+        click.get_current_context().exit(1)

@@ -1,0 +1,188 @@
+"""What ``pmm steering`` shows: parameters, self-propulsion, wakes, the tows, and a picture."""
+
+import math
+from collections.abc import Iterator
+from statistics import NormalDist
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from analysis.steering.propulsion import SelfPropulsion
+from pmm.document.content import (
+    Column,
+    Data,
+    Document,
+    Figure,
+    Note,
+    Notes,
+    Section,
+    Table,
+    Text,
+    data_only,
+    number,
+    word,
+)
+from pmm.document.notation import rounded, written
+from pmm.report.steering_figure import steering_figure
+from pmm.steering.reading import SteeredTow
+from pmm.steering.workflow import CampaignSteering
+
+SCHEMA: Final = "pmm-steering-1"
+_MEANS: Final = {
+    "1-t_P": "thrust deduction factor",
+    "w_P0": "wake fraction on straight course",
+    "t_R": "steering resistance deduction",
+    "a_H": "increase of the rudder's lateral force",
+    "x_H'": "place of that increase, over L",
+    "epsilon": "wake ratio of rudder and propeller",
+    "kappa": "acceleration by the propeller",
+    "gamma_R+": "flow straightening, bow to starboard",
+    "gamma_R-": "flow straightening, bow to port",
+    "l_R'": "lever of the inflow in a turn, over L",
+    "delta_0": "neutral rudder angle, rad",
+}
+_MISFIT: Final = 2.0
+
+
+class _Parameter(NamedTuple):
+    name: str
+    value: float
+    standard_uncertainty: float
+    low: float
+    high: float
+
+
+class _Wake(NamedTuple):
+    speed_m_s: float
+    drift_deg: float
+    wake: float
+    standard_uncertainty: float
+
+
+def steering_document(found: CampaignSteering, level: float) -> Document:
+    """Return what was identified; ``docs/steering.md`` has the keys."""
+    told, factor = found.parameters, NormalDist().inv_cdf(0.5 + 0.5 * level)
+    rows = [
+        _Parameter(name, value, u, value - factor * u, value + factor * u)
+        for name, value, u in zip(
+            told.names, told.values.tolist(), told.standard_uncertainty.tolist(), strict=True
+        )
+    ]
+    content = (
+        _parameters(rows, level),
+        Notes([Note("missing", f"{_plain(key)}: {how}") for key, how in told.missing.items()]),
+        Data("missing", told.missing),
+        Data("covariance", told.covariance.tolist()),
+        Text(list(_fit(found))),
+        Data("misfit", dict(zip(("loads", "inflow"), told.misfit, strict=True))),
+        _propulsion(told.self_propulsion, factor),
+        _wakes(found, factor),
+        _tows(found, factor),
+        Data("failed", [one.message for one in found.failed]),
+    )
+    figures = Section("Figures", tuple(steering_figures(found)))
+    return Document(found.name, "propeller and rudder", (Section("", content), figures), SCHEMA)
+
+
+def steering_figures(found: CampaignSteering) -> Iterator[Figure]:
+    """Yield the figures."""
+    caption = (
+        "Left: the rudder's normal force over its angle, with the fit. Right: force along the "
+        "model over thrust on straight course, the rudder amidships; its slope is 1 - t_P."
+    )
+    yield Figure("steering", caption, lambda: steering_figure(found))
+
+
+def _plain(name: str) -> str:
+    return f"{name} is not told by these runs; it takes"
+
+
+def _parameters(rows: list[_Parameter], level: float) -> Table[_Parameter]:
+    columns: tuple[Column[_Parameter], ...] = (
+        word("parameter", "name"),
+        Column("", lambda one: _MEANS[one.name]),
+        number("value", "value", written(".4g")),
+        number("u", "standard_uncertainty", written(".2g")),
+        Column(
+            f"{100.0 * level:g} % interval",
+            lambda one: f"{one.low:.4g} to {one.high:.4g}",
+            number=True,
+        ),
+        *data_only("low", "high"),
+    )
+    return Table("Propeller and rudder", columns, rows, "parameters", titled=True)
+
+
+def _fit(found: CampaignSteering) -> Iterator[str]:
+    loads, inflow = found.parameters.misfit
+    yield (
+        f"residuals over their stated scatter: {loads:.3g} for the loads, {inflow:.3g} for thrust "
+        "and normal force"
+        + (
+            ": beyond 2 the MMG method's form is not this ship's, or the scatter is more than the "
+            "runs' own; intervals are wider by it"
+            if max(loads, inflow) > _MISFIT
+            else ""
+        )
+    )
+
+
+def _propulsion(rows: tuple[SelfPropulsion, ...], factor: float) -> Table[SelfPropulsion]:
+    def told(heading: str, key: str, unit: str, u: str) -> Column[SelfPropulsion]:
+        return Column(
+            heading,
+            lambda one: rounded(getattr(one, key), factor * getattr(one, u)),
+            unit=unit,
+            number=True,
+        )
+
+    columns: tuple[Column[SelfPropulsion], ...] = (
+        number("U", "speed_m_s", written("g"), "m/s"),
+        told("resistance", "resistance_n", "N", "resistance_u"),
+        told("thrust", "thrust_n", "N", "thrust_u"),
+        told("revolutions", "rate_hz", "1/s", "rate_u"),
+        number("J", "advance", written(".4g")),
+        *data_only("resistance_n", "resistance_u", "thrust_n", "thrust_u", "rate_hz", "rate_u"),
+    )
+    return Table("Self-propulsion point", columns, rows, "self_propulsion", titled=True)
+
+
+def _wakes(found: CampaignSteering, factor: float) -> Table[_Wake]:
+    u, v, _, wake, spread = found.parameters.wakes
+    rows = [
+        _Wake(*one)
+        for one in np.stack(
+            (np.hypot(u, v), np.degrees(np.arctan2(-v, u)), wake, spread), axis=1
+        ).tolist()
+    ]
+    columns: tuple[Column[_Wake], ...] = (
+        number("U", "speed_m_s", written(".4g"), "m/s"),
+        number("drift", "drift_deg", written(".3g"), "deg"),
+        Column("w_P", lambda one: rounded(one.wake, factor * one.standard_uncertainty),
+               number=True),
+        *data_only("wake", "standard_uncertainty"),
+    )  # fmt: skip
+    return Table("Wake by thrust identity", columns, rows, "wakes", titled=True)
+
+
+def _tows(found: CampaignSteering, factor: float) -> Table[SteeredTow]:
+    columns: tuple[Column[SteeredTow], ...] = (
+        Column("run", lambda one: one.tow.run, "run"),
+        Column("drift", lambda one: f"{math.degrees(one.tow.drift_rad):.3g}", unit="deg",
+               number=True),
+        Column("rudder", lambda one: f"{math.degrees(one.rudder_rad):.4g}", unit="deg",
+               number=True),
+        number("n", "rate_hz", written(".4g"), "1/s"),
+        Column("X", lambda one: rounded(-one.tow.resistance_n, factor * one.tow.resistance_u),
+               unit="N", number=True),
+        Column("Y", lambda one: rounded(one.tow.force_n, factor * one.tow.force_u), unit="N",
+               number=True),
+        Column("N", lambda one: rounded(one.tow.moment_n_m, factor * one.tow.moment_u),
+               unit="N m", number=True),
+        Column("thrust", lambda one: rounded(one.thrust_n, factor * one.thrust_u), unit="N",
+               number=True),
+        Column("F_N", lambda one: rounded(one.normal_n, factor * one.normal_u), unit="N",
+               number=True),
+        *data_only("rudder_rad", "thrust_n", "thrust_u", "normal_n", "normal_u"),
+    )  # fmt: skip
+    return Table("Tows", columns, found.tows, "tows", titled=True, folded=True)

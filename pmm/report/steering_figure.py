@@ -1,0 +1,95 @@
+"""The figure of propeller and rudder: normal force over rudder angle, force over thrust."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from analysis.steering.inflow import INFLOW, behind
+from analysis.steering.observations import SteeringRuns
+from hardware.description.arrays import FloatArray
+from pmm.document.style import PALETTE, TRACE, drawing
+from pmm.steering.workflow import CampaignSteering
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_POINTS = 61
+
+
+def steering_figure(found: CampaignSteering) -> "Figure":
+    """Draw both panels."""
+    from matplotlib.figure import Figure
+
+    with drawing():
+        figure = Figure(figsize=(10.0, 4.4), layout="constrained")
+        left, right = figure.subplots(1, 2)
+        _normal_force(left, found)
+        _load_variation(right, found)
+        figure.suptitle(f"{found.name}: propeller and rudder")
+    return figure
+
+
+def _normal_force(axes: "Axes", found: CampaignSteering) -> None:
+    runs, drawn = found.runs, _groups(found.runs)
+    for colour, ((condition, rate), rows) in zip(_colours(len(drawn)), drawn.items(), strict=True):
+        u, v, _ = runs.motions[:, condition]
+        drift = np.degrees(np.arctan2(-v, u))
+        angles = np.degrees(runs.rudder_rad[rows])
+        axes.errorbar(
+            angles, runs.values[4, rows], 2.0 * runs.uncertainty[4, rows], fmt="o", color=colour,
+            markersize=3.5, label=f"{drift:.3g}°, {rate:.3g} 1/s",
+        )  # fmt: skip
+        if (curve := _fitted(found, condition, rate, angles)) is not None:
+            axes.plot(*curve, color=colour)
+    axes.set_xlabel("rudder angle (°)")
+    axes.set_ylabel("normal force (N)")
+    axes.legend(title="drift, revolutions", fontsize=7.0, title_fontsize=7.5, ncols=2)
+
+
+def _groups(runs: SteeringRuns) -> dict[tuple[int, float], list[int]]:
+    found: dict[tuple[int, float], list[int]] = {}
+    for k, condition in enumerate(runs.condition.tolist()):
+        found.setdefault((condition, round(float(runs.rate_hz[k]), 3)), []).append(k)
+    return found
+
+
+def _colours(count: int) -> list[str]:
+    return [PALETTE[k % len(PALETTE)] for k in range(count)]
+
+
+def _fitted(
+    found: CampaignSteering, condition: int, rate_hz: float, angles: FloatArray
+) -> tuple[FloatArray, FloatArray] | None:
+    """Return the fitted curve of one motion and rate; ``None`` where the fit does not tell it."""
+    told = found.parameters
+    if "epsilon" not in told.names:
+        return None
+    length, known = found.known.length_m, dict(zip(told.names, told.values, strict=True))
+    own = np.array([known.get(name, 0.0) for name in INFLOW])
+    own[INFLOW.index("l_R")] = length * known.get("l_R'", 0.0)
+    over = np.radians(np.linspace(angles.min(), angles.max(), _POINTS))
+    motion = np.repeat(found.runs.motions[:, [condition]], _POINTS, axis=1)
+    unit = np.ones((5, _POINTS))
+    runs = SteeringRuns(("",) * _POINTS, motion, over, np.full(_POINTS, rate_hz), unit, unit)
+    wake = np.full(_POINTS, told.wakes[3, condition])
+    return np.degrees(over), behind(runs, found.known, wake, own)[1]
+
+
+def _load_variation(axes: "Axes", found: CampaignSteering) -> None:
+    runs, slope = found.runs, found.parameters["1-t_P"]
+    for colour, condition in zip(PALETTE, runs.straight, strict=False):
+        rows = runs.condition == condition
+        turned = np.abs(runs.rudder_rad[rows]) < np.radians(0.5)
+        thrust, along = runs.values[3, rows][turned], runs.values[0, rows][turned]
+        if not len(thrust):
+            continue
+        speed = runs.motions[0, condition]
+        axes.plot(thrust, along, "o", color=colour, label=f"{speed:.3g} m/s")
+        ends = np.array([thrust.min(), thrust.max()])
+        offset = float(np.mean(along - slope * thrust))
+        axes.plot(ends, offset + slope * ends, color=colour)
+    axes.axhline(0.0, color=TRACE, linewidth=0.6)
+    axes.set_xlabel("thrust (N)")
+    axes.set_ylabel("X, force along the model (N)")
+    axes.legend()

@@ -1,0 +1,152 @@
+"""A campaign's tows with propeller and rudder, read and identified."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from analysis.coefficients.corrections import ZeroReading
+from analysis.steering.identification import SteeringParameters, identified
+from analysis.steering.observations import Particulars, SteeringRuns
+from hardware.description.arrays import FloatArray
+from hardware.description.errors import ConfigurationError, DataError
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.campaign_file import read_campaign
+from pmm.campaign.file_names import CAMPAIGN_FILE
+from pmm.coefficients.reading import read_zero
+from pmm.coefficients.settings import settings_of
+from pmm.coefficients.stated_inputs import chain_of, oscillator_of
+from pmm.coefficients.tasks import Failed, work_of
+from pmm.steering.reading import GAUGES, SteeredTow, read_gauge_zeros, read_tow, zeroed_names
+from pmm.steering.settings import SETTINGS_FILE, SteeringSettings, read_steering_settings
+
+_FRESH_KG_M3: Final = 998.8
+_SMALLEST: Final = 1e-9  # of the largest mean: the scatter of a record without any noise
+
+
+@dataclass(frozen=True, eq=False)
+class CampaignSteering:
+    """What a campaign tells of propeller and rudder.
+
+    Attributes
+    ----------
+    tows, runs
+        As they were read, in their order; the same as the equations take them.
+    failed
+        Runs that could not be used, and why.
+    """
+
+    name: str
+    settings: SteeringSettings
+    known: Particulars
+    tows: tuple[SteeredTow, ...]
+    runs: SteeringRuns
+    parameters: SteeringParameters
+    failed: tuple[Failed, ...]
+
+
+def steering_of(folder: Path, given: Path | None = None) -> CampaignSteering:
+    """Read a campaign's tows with a turning propeller and identify the parameters.
+
+    Parameters
+    ----------
+    folder
+        With the campaign file, and ``steering.toml`` where ``given`` is ``None``.
+
+    Raises
+    ------
+    ConfigurationError
+        If a file is wrong.
+    DataError
+        If there is no such run, or the runs do not tell the parameters.
+    """
+    campaign = read_campaign(folder / CAMPAIGN_FILE)
+    settings = read_steering_settings(folder / SETTINGS_FILE if given is None else given)
+    density = settings.density_kg_m3
+    if density is None:
+        density = _FRESH_KG_M3 if campaign.water is None else campaign.water.density_kg_m3
+    tows, failed = _tows(campaign, folder)
+    if not tows:
+        told = "; ".join(one.message for one in failed)
+        raise DataError(told or _nothing(folder))
+    known, runs = settings.particulars(density), steering_runs(tows)
+    parameters = identified(runs, known, settings.towing_force_n)
+    return CampaignSteering(
+        campaign.name, settings, known, tuple(tows), runs, parameters, tuple(failed)
+    )
+
+
+def _nothing(folder: Path) -> str:
+    return (
+        f"{folder / CAMPAIGN_FILE}: no recorded tow has a turning propeller or a laid rudder; give "
+        "revolutions_hz and rudder_angle_deg of the runs in [[at_rest]]"
+    )
+
+
+def _tows(campaign: Campaign, folder: Path) -> tuple[list[SteeredTow], list[Failed]]:
+    oscillator = oscillator_of(campaign, folder)
+    if oscillator.plane != "horizontal":
+        raise ConfigurationError(
+            f"{folder / CAMPAIGN_FILE}: oscillator.plane is {oscillator.plane}; rudder and "
+            "propeller are measured in the horizontal plane"
+        )
+    coefficients, _ = settings_of(folder, None)
+    work = work_of(campaign, folder, oscillator, chain_of(coefficients), harmonics=1, steered=True)
+    wanted = [task for task in work.runs if task.kind.towed]
+    names = zeroed_names(wanted)
+    failed: list[Failed] = []
+    strut_zeros, gauge_zeros = {}, {}
+    for task in work.zeros:
+        if task.name not in names:
+            continue
+        struts, gauges = read_zero(task), read_gauge_zeros(task)
+        failed += [one for one in (struts, gauges) if isinstance(one, Failed)][:1]
+        if not isinstance(struts, Failed) and struts.zero is not None:
+            strut_zeros[task.name] = struts.zero
+        if isinstance(gauges, ZeroReading):
+            gauge_zeros[task.name] = gauges
+    found: list[SteeredTow] = []
+    for task in wanted:
+        one = read_tow(task.with_zeros(strut_zeros), gauge_zeros)
+        (failed if isinstance(one, Failed) else found).append(one)  # type: ignore[arg-type]
+    return found, failed
+
+
+def steering_runs(tows: Sequence[SteeredTow]) -> SteeringRuns:
+    """Return tows as the equations take them: loads about the midpoint, X ahead."""
+    values = np.array(
+        [
+            (-one.tow.resistance_n, one.tow.force_n, one.tow.moment_n_m, one.thrust_n, one.normal_n)
+            for one in tows
+        ]
+    ).T
+    spread = np.array(
+        [
+            (one.tow.resistance_u, one.tow.force_u, one.tow.moment_u, one.thrust_u, one.normal_u)
+            for one in tows
+        ]
+    ).T
+    least = _SMALLEST * np.abs(values).max(axis=1, keepdims=True)
+    speed = np.array([one.tow.speed_m_s for one in tows])
+    drift = np.array([one.tow.drift_rad for one in tows])
+    motion = np.stack((speed * np.cos(drift), -speed * np.sin(drift), np.zeros(len(tows))))
+    return SteeringRuns(
+        tuple(one.tow.run for one in tows),
+        motion,
+        np.array([one.rudder_rad for one in tows]),
+        np.array([one.rate_hz for one in tows]),
+        values,
+        np.maximum(spread, least),
+        _shared(tows),
+    )
+
+
+def _shared(tows: Sequence[SteeredTow]) -> FloatArray:
+    """Return what the zeros' readings add to thrust and normal force of the runs they serve."""
+    keys = sorted({key for one in tows for key in one.zero_u})
+    shared = np.zeros((5, len(tows), len(keys)))
+    for k, key in enumerate(keys):
+        shared[3 + GAUGES.index(key[1]), :, k] = [one.zero_u.get(key, 0.0) for one in tows]
+    return shared

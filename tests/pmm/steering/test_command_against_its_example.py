@@ -1,0 +1,87 @@
+"""``pmm steering`` on examples/steering: simulated, recorded, read, and told what was put in."""
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from pmm.cli import cli
+from tests.analysis.manoeuvring import kvlcc2 as paper
+
+EXAMPLE = Path(__file__).parents[3] / "examples" / "steering"
+SETTINGS = EXAMPLE / "steering.toml"
+PUT_IN = {
+    "1-t_P": 1.0 - paper.T_P, "w_P0": paper.W_P0, "t_R": paper.T_R, "a_H": paper.A_H,
+    "x_H'": paper.X_H, "epsilon": paper.EPSILON, "kappa": paper.KAPPA, "gamma_R+": paper.GAMMA[0],
+    "gamma_R-": paper.GAMMA[1], "delta_0": 0.005,
+}  # fmt: skip
+
+
+def pmm(*arguments: object) -> Result:
+    return CliRunner().invoke(cli, [str(one) for one in arguments])
+
+
+@pytest.fixture(scope="module")
+def steered(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("steering") / "steered"
+    made = pmm("simulate", EXAMPLE / "campaign.toml", "--output", folder)
+    assert made.exit_code == 0, made.output
+    return folder
+
+
+def changed(folder: Path, place: Path, old: str, new: str) -> Path:
+    place.mkdir()
+    for one in folder.glob("*.nc"):
+        (place / one.name).symlink_to(one)
+    text = (folder / "campaign.toml").read_text(encoding="utf-8")
+    assert old in text
+    (place / "campaign.toml").write_text(text.replace(old, new), encoding="utf-8")
+    return place
+
+
+def test_the_parameters_are_those_put_in(steered: Path, tmp_path: Path) -> None:
+    ran = pmm("steering", steered, "--settings", SETTINGS, "--plot", tmp_path, "--json")
+    assert ran.exit_code == 0, ran.output
+    found = json.loads(ran.stdout)
+    rows = {one["name"]: one for one in found["parameters"]}
+    assert list(rows) == list(PUT_IN)
+    for name, value in PUT_IN.items():
+        off = abs(rows[name]["value"] - value) / rows[name]["standard_uncertainty"]
+        assert off < 3.5, name  # of ten: beyond it once in 200 seeds
+        assert rows[name]["standard_uncertainty"] < 0.01 * max(abs(value), 0.1)
+    assert found["missing"] == {"l_R": "yaw with rudder"}
+    (point,) = found["self_propulsion"]
+    resistance = -paper.hull(paper.U0, 0.0, 0.0)[0]
+    assert point["rate_hz"] == pytest.approx(paper.N, rel=1e-3)
+    assert point["resistance_n"] == pytest.approx(resistance, rel=2e-3)
+    assert {one.suffix for one in tmp_path.iterdir()} == {".svg", ".png"}
+
+
+def test_people_read_names_intervals_and_what_is_missing(steered: Path) -> None:
+    told = pmm("steering", steered, "--settings", SETTINGS, "--level", "0.9").stdout
+    assert "thrust deduction factor" in told
+    assert "90 % interval" in told
+    assert "l_R is not told by these runs; it takes: yaw with rudder" in told
+
+
+def test_coefficients_leave_a_laid_rudder_out(steered: Path) -> None:
+    ran = pmm("coefficients", steered, "--json")
+    left = json.loads(ran.stdout)["left_out"]
+    laid = [one for one in left if "`pmm steering` takes such tows" in one["message"]]
+    assert len(laid) == 18  # of 21 tows those at 10 1/s with the rudder amidships stay
+
+
+def test_what_is_wrong_is_said(steered: Path, tmp_path: Path) -> None:
+    bad = tmp_path / "bad.toml"
+    bad.write_text("length_m = 0.0\n", encoding="utf-8")
+    ran = pmm("steering", steered, "--settings", bad)
+    assert ran.exit_code == 2
+    assert "propeller" in ran.stderr
+    no_zero = changed(steered, tmp_path / "a", 'zero_before = "zero-1"\nzero_after = "zero-2"', "")
+    ran = pmm("steering", no_zero, "--settings", SETTINGS)
+    assert ran.exit_code == 1
+    assert "no zero run is named" in ran.stderr
+    ran = pmm("steering", EXAMPLE, "--settings", SETTINGS)
+    assert ran.exit_code == 2
+    assert "no such file" in ran.stderr
