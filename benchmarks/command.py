@@ -37,6 +37,7 @@ NAMES = (
     "coefficients",
     "exact",
     "plan_design",
+    "sequential",
     "campaign",
     "sealed",
     "gap_cost",

@@ -116,9 +116,11 @@ def design(
         from pmm.coefficients.request import campaign_folder
         from pmm.design.measured import after as going_on
         from pmm.design.measured import measured
+        from pmm.parallel import open_executor
 
-        with doing("reading what was measured"):
-            read = going_on(read, [measured(read, campaign_folder(one)) for one in after])
+        folders = [campaign_folder(one) for one in after]
+        with doing("reading what was measured"), open_executor(1) as executor:
+            read = going_on(read, [measured(read, one, executor) for one in folders])
     with doing("looking at what each run would tell"):
         found = designed(read)
     target = Path(output) if output is not None and found.steps else None

@@ -5,6 +5,7 @@ A campaign's folder is all the state there is: whoever was interrupted designs a
 
 import math
 from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
@@ -23,7 +24,6 @@ from pmm.coefficients.settings import settings_of
 from pmm.coefficients.stated_inputs import largest
 from pmm.coefficients.workflow import campaign_cycles
 from pmm.design.design_file import DesignFile
-from pmm.parallel import open_executor
 
 _ENOUGH = 3  # runs: fewer say too little of the noise
 
@@ -78,8 +78,8 @@ def after(file: DesignFile, parts: Sequence[Measured]) -> DesignFile:
     )
 
 
-def measured(file: DesignFile, folder: Path) -> Measured:
-    """Read the runs of a campaign's folder.
+def measured(file: DesignFile, folder: Path, executor: Executor) -> Measured:
+    """Read the runs of a campaign's folder, each on an executor.
 
     Raises
     ------
@@ -90,8 +90,7 @@ def measured(file: DesignFile, folder: Path) -> Measured:
     campaign = read_campaign(path)
     runs = {one.name: one for one in campaign.runs}
     settings, _ = settings_of(folder, None)
-    with open_executor(1) as executor:
-        found = campaign_cycles(folder, campaign, settings, executor, lambda *_: None)
+    found = campaign_cycles(folder, campaign, settings, executor, lambda *_: None)
     cycles = [one for one in found.cycles if one.frequency_hz > 0.0]
     oscillator = file.rig.oscillator
     for one in cycles:

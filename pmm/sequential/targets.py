@@ -27,6 +27,7 @@ from pmm.sequential.growing_plan import (
     write_growing,
 )
 from pmm.sequential.look import Ending, KnownTarget, Look
+from pmm.sequential.remembering import Remembering
 
 _WORSE: Final = 0.05  # of a natural logarithm, summed over the targets: a plan stays within
 _LONGER: Final = 1.1  # times the new plan's time
@@ -68,6 +69,7 @@ class TargetGoal:
             )
         check_order(file)
         self._file, self._folder = file, folder
+        self._executor = Remembering()
 
     def plan(self, look: Look) -> tuple[str, ...]:
         """Write the plan as it was decided; return the names of the runs to be made now."""
@@ -137,7 +139,7 @@ class TargetGoal:
             return _Standing(plan, None, {})
         if not any(run.oscillates for run in plan.made):
             return _Standing(plan, None, {})
-        found = measured(self._file, self._folder)
+        found = measured(self._file, self._folder, self._executor)
         kept = [k for k, one in enumerate(found.cycles) if one.name in plan.done]
         found = replace(
             found,
