@@ -1,4 +1,4 @@
-"""Campaigns that choose their runs: killed at random moments and resumed, and how long a look takes.
+"""Campaigns that choose their runs: killed at random moments and resumed; the time of a look.
 
 ``python -m benchmarks sequential`` carries out a campaign on the simulated vertical rig without a
 break, then kills others at a moment each, resumes them, and holds them against it.

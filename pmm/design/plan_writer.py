@@ -30,11 +30,16 @@ def plan_text(file: DesignFile, design: Design, target: Path) -> str:
     return "\n".join([*plan_head(file, target), *entries])
 
 
-def plan_head(file: DesignFile, target: Path) -> Iterator[str]:
+def plan_head(file: DesignFile, target: Path, *, grows: bool = False) -> Iterator[str]:
     """Yield what stands before the runs of a plan that is to lie at ``target``."""
     table = file.plan_table
     rig = os.path.relpath(file.rig_path.resolve(), target.resolve().parent)
-    head = {"name": file.name, "rig": Path(rig).as_posix(), "operator": table.get("operator")}
+    head = {
+        "name": file.name,
+        "rig": Path(rig).as_posix(),
+        "operator": table.get("operator"),
+        "grows": grows or None,
+    }
     yield f"# Written from {file.path.name}: docs/plan-design.md\n" + "".join(
         f"{key} = {toml_value(value)}\n" for key, value in head.items() if value is not None
     )

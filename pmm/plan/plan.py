@@ -50,6 +50,8 @@ class Plan:
         That file, as it was read; empty for a plan that was not read from one.
     water
         What the tank is filled with; ``None`` where the plan does not say.
+    grows
+        Whether it changes from run to run.
     """
 
     name: str
@@ -60,6 +62,7 @@ class Plan:
     sha256: str
     content: bytes = b""
     water: Water | None = None
+    grows: bool = False
 
 
 def read_plan(path: str | Path) -> Plan:
@@ -97,7 +100,7 @@ def read_plan_and_rig(path: str | Path) -> tuple[Plan, RigFile]:
         raise ConfigurationError("\n".join(map(str, errors)))
     sha256 = hashlib.sha256(content).hexdigest()
     name = tables.name or path.resolve().parent.name
-    kept = (tables.operator, sha256, content, tables.water)
+    kept = (tables.operator, sha256, content, tables.water, tables.grows)
     return Plan(name, path, found.rig_path, runs, *kept), rig
 
 

@@ -164,6 +164,8 @@ class PlanTables:
         The rig's file, its path from this one.
     water
         What the tank is filled with on the day; ``None`` where the file does not say.
+    grows
+        Whether it changes from run to run: each run keeps to what it was made from.
     """
 
     name: str = ""
@@ -174,6 +176,7 @@ class PlanTables:
     zero: ZeroTable | None = None
     control: ControlTable | None = None
     water: Water | None = None
+    grows: bool = False
     runs: tuple[PlanEntry, ...] = ()
 
     __pydantic_config__ = STRICT_TABLE

@@ -138,7 +138,10 @@ def write_growing(
     first = 1 + sum("motion" in one for one in own)
     own += [run_entry(run, number) for number, run in enumerate(runs, first)]
     tables = [*design.plan_table.get("runs", []), *own]
-    text = [*plan_head(design, target), *(toml_table("runs", one, array=True) for one in tables)]
+    text = [
+        *plan_head(design, target, grows=True),
+        *(toml_table("runs", one, array=True) for one in tables),
+    ]
     write_whole(target, "\n".join(text))
 
 

@@ -104,18 +104,19 @@ class TargetGoal:
             notes=notes,
         )
         given = bool(self._file.fixed) if standing.plan is None else bool(standing.plan.given_left)
-        ending = _ending(found, file, standing.left, hopeless=bool(hopeless))
+        left = _offered(standing.left, file)
+        ending = _ending(found, file, left, hopeless=bool(hopeless))
         if ending is not None and not given:
             return replace(look, ending=ending[0], remark=ending[1])
-        return self._next(look, found, file, standing)
+        return self._next(look, found, file, left)
 
-    def _next(self, look: Look, found: Design, file: DesignFile, standing: _Standing) -> Look:
+    def _next(self, look: Look, found: Design, file: DesignFile, left: Sequence[RunPlan]) -> Look:
         """Return the look with the runs that follow: those that were planned, or others."""
         new = tuple(step.run for step in found.steps for _ in range(step.repeats))
-        new_s, left_s = self._cost_s(new), self._cost_s(standing.left)
-        why = self._why_new(found, file, standing.left, new_s, left_s)
+        new_s, left_s = self._cost_s(new), self._cost_s(left)
+        why = self._why_new(found, file, left, new_s, left_s)
         if not why or not new:
-            return replace(look, kept=standing.left, left_s=left_s)
+            return replace(look, kept=tuple(left), left_s=left_s)
         return replace(look, proposed=new, left_s=new_s, remark=why)
 
     def _why_new(
@@ -174,6 +175,12 @@ class TargetGoal:
     def _cost_s(self, runs: Sequence[RunPlan]) -> float:
         file = self._file
         return math.fsum(candidate_of(run, file.rig, file.tables.zero).cost_s for run in runs)
+
+
+def _offered(left: Sequence[RunPlan], file: DesignFile) -> Sequence[RunPlan]:
+    """Return the planned runs that are left; none where the grid does not have all of them now."""
+    offered = {(run.set_point, run.periods) for run in file.grid.runs}
+    return left if all((run.set_point, run.periods) in offered for run in left) else ()
 
 
 def _designed(file: DesignFile) -> tuple[Design, list[tuple[str, ExpectedCoefficient]]]:

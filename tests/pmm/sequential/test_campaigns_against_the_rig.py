@@ -3,7 +3,8 @@
 import json
 import tomllib
 from pathlib import Path
-from shutil import rmtree
+from shutil import copytree, rmtree
+from typing import Any
 
 import pytest
 from click.testing import CliRunner
@@ -16,9 +17,22 @@ from pmm.plan.plan import read_plan_and_rig
 from tests.pmm.sequential.campaigns import EXAMPLE, made, until, written
 
 
-def test_it_stops_when_the_targets_are_met_and_the_hull_is_found(tmp_path: Path) -> None:
-    folder = tmp_path / "c"
-    told = made(written(tmp_path, repeat=0.006), folder)
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Any]:
+    """A campaign that has ended, in ``c`` beside its design, and what it told."""
+    place = tmp_path_factory.mktemp("whole")
+    return place, made(written(place, repeat=0.005), place / "c")
+
+
+@pytest.fixture
+def copied(whole: tuple[Path, Any], tmp_path: Path) -> Path:
+    """That campaign, to be changed."""
+    copytree(whole[0], tmp_path, dirs_exist_ok=True)
+    return tmp_path
+
+
+def test_it_stops_when_the_targets_are_met_and_the_hull_is_found(whole: tuple[Path, Any]) -> None:
+    folder, told = whole[0] / "c", whole[1]
     assert told["ending"] == "all targets are met"
     last, before = told["decisions"][-1], told["decisions"][:-1]
     hull = tomllib.loads((EXAMPLE / "rig.toml").read_text(encoding="utf-8"))["hull"]["damping"]
@@ -26,47 +40,53 @@ def test_it_stops_when_the_targets_are_met_and_the_hull_is_found(tmp_path: Path)
     for one in last["known"]:
         assert one["standard_uncertainty"] <= one["wanted"]
         assert abs(one["value"] - truth[one["name"]]) < 3.0 * one["standard_uncertainty"]
-    assert not any(
-        all((one["standard_uncertainty"] or 1e9) <= one["wanted"] for one in row["known"])
-        for row in before
-        if row["known"]
-    )
+    for row in before:  # not one run too many
+        met = [(one["standard_uncertainty"] or 1e9) <= one["wanted"] for one in row["known"]]
+        assert not (met and all(met))
     assert [len(row["runs"]) for row in told["decisions"]] == list(range(len(last["runs"]) + 1))
     plan, rig = read_plan_and_rig(folder / "plan.toml")
     assert {one.verdict for one in check_plan(plan, rig)} <= {PlanVerdict.NOTE}
     assert last["time_s"] == pytest.approx(sum(duration_rows(plan.runs, rig)))
-    assert plan.runs[0].name == "zero-01"
-    assert plan.runs[-1].name == "zero-02"  # the closing zero was made too
+    assert [plan.runs[0].name, plan.runs[-1].name] == ["zero-01", "zero-02"]
     assert all((folder / run.name / "run.nc").is_file() for run in plan.runs)
 
 
-def test_the_coefficients_of_the_folder_are_those_that_ended_it(tmp_path: Path) -> None:
-    folder = tmp_path / "c"
-    told = made(written(tmp_path), folder)
-    done = CliRunner().invoke(
-        cli, ["plan", "design", str(tmp_path / "design.toml"), "--after", str(folder), "--json"]
-    )
+def test_the_coefficients_of_the_folder_are_those_that_ended_it(whole: tuple[Path, Any]) -> None:
+    place, told = whole
+    words = ["plan", "design", str(place / "design.toml"), "--after", str(place / "c"), "--json"]
+    done = CliRunner().invoke(cli, words)
     known = {one["name"]: one for one in json.loads(done.stdout)["known"]}
     for one in told["decisions"][-1]["known"]:
         assert one["value"] == pytest.approx(known[one["name"]]["value"], rel=1e-12)
 
 
-def test_a_campaign_that_was_cut_short_goes_on_to_the_same_runs(tmp_path: Path) -> None:
-    design, whole = written(tmp_path, repeat=0.006), tmp_path / "whole"
-    runs = made(design, whole)["runs"]
-    assert len(runs) >= 3
+def test_the_report_tells_what_was_known_after_each_run(whole: tuple[Path, Any]) -> None:
+    place, told = whole
+    page = place / "page.html"
+    done = CliRunner().invoke(cli, ["report", str(place / "c"), "--output", str(page)])
+    assert done.exit_code == 0, f"{done.output}{done.exception}"
+    text = page.read_text(encoding="utf-8")
+    assert "Run after run" in text
+    assert all(name in text for name in told["runs"])
+    assert "standard uncertainty over what is asked for" in text  # the figure's axis
+
+
+def test_a_campaign_that_was_cut_short_goes_on_to_the_same_runs(
+    whole: tuple[Path, Any], copied: Path
+) -> None:
+    design, folder, runs = copied / "design.toml", copied / "c", whole[1]["runs"]
     # As a crash leaves it: a run is lost, the campaign's file is older than what is recorded.
-    for lost in (whole / runs[-1], whole / "zero-02"):
+    for lost in (folder / runs[-1], folder / "zero-02"):
         rmtree(lost)
-    old = (whole / "campaign.toml").read_text(encoding="utf-8")
-    (whole / "campaign.toml").write_text(old.partition("[[runs]]")[0], encoding="utf-8")
-    kept = {name: (whole / name / "run.nc").read_bytes() for name in runs[:-1]}
-    again = made(design, whole, "--resume")
+    old = (folder / "campaign.toml").read_text(encoding="utf-8")
+    (folder / "campaign.toml").write_text(old.partition("[[runs]]")[0], encoding="utf-8")
+    kept = {name: (folder / name / "run.nc").read_bytes() for name in runs[:-1]}
+    again = made(design, folder, "--resume")
     assert again["runs"] == runs
     assert again["ending"] == "all targets are met"
-    assert kept == {name: (whole / name / "run.nc").read_bytes() for name in runs[:-1]}
-    assert not list(whole.glob("*.try*"))
-    assert made(design, whole, "--resume")["decisions"] == again["decisions"]
+    assert kept == {name: (folder / name / "run.nc").read_bytes() for name in runs[:-1]}
+    assert not list(folder.glob("*.try*"))
+    assert made(design, folder, "--resume")["decisions"] == again["decisions"]
 
 
 def test_nothing_is_made_that_the_operator_does_not_approve(tmp_path: Path) -> None:
@@ -79,9 +99,6 @@ def test_nothing_is_made_that_the_operator_does_not_approve(tmp_path: Path) -> N
     assert nobody.exit_code == 1
     assert "nobody answers: Approve of these runs?" in str(nobody.exception) + nobody.output
     assert not list((tmp_path / "c").glob("*/header.json"))
-    approved = until(design, tmp_path / "c", given="y\n")
-    assert approved.exit_code == 0
-    assert "the operator" in approved.stdout
 
 
 def test_the_time_is_kept_to_and_said(tmp_path: Path) -> None:
@@ -101,15 +118,16 @@ def test_what_no_run_lowers_ends_the_campaign_before_it_begins(tmp_path: Path) -
     assert all("which no run lowers" in one for one in told["decisions"][-1]["notes"])
 
 
-def test_a_run_that_cannot_be_used_is_said_and_the_campaign_goes_on(tmp_path: Path) -> None:
-    design, folder = written(tmp_path), tmp_path / "c"
-    runs = made(design, folder)["runs"]
-    (folder / runs[0] / "run.nc").write_bytes(b"nothing that could be read")
-    told = made(design, folder, "--resume")
+def test_a_run_that_cannot_be_used_is_said_and_the_campaign_goes_on(
+    whole: tuple[Path, Any], copied: Path
+) -> None:
+    runs = whole[1]["runs"]
+    (copied / "c" / runs[0] / "run.nc").write_bytes(b"nothing that could be read")
+    told = made(copied / "design.toml", copied / "c", "--resume")
     assert told["ending"] == "all targets are met"
     assert set(runs) < set(told["runs"])
-    assert any(one.startswith(f"{runs[0]} cannot be used") for one in
-               told["decisions"][-1]["notes"])  # fmt: skip
+    notes = told["decisions"][-1]["notes"]
+    assert any(one.startswith(f"{runs[0]} cannot be used") for one in notes)
 
 
 @pytest.mark.parametrize(
@@ -144,22 +162,49 @@ def test_a_design_without_targets_has_no_end(tmp_path: Path) -> None:
     assert "has no [targets]" in str(done.exception) + done.output
 
 
-def test_a_folder_that_holds_a_campaign_is_gone_on_from_only_on_demand(tmp_path: Path) -> None:
-    design = written(tmp_path)
-    made(design, tmp_path / "c")
-    done = until(design, tmp_path / "c", "--approve", "all")
+def test_a_folder_that_holds_a_campaign_is_gone_on_from_only_on_demand(
+    whole: tuple[Path, Any],
+) -> None:
+    done = until(whole[0] / "design.toml", whole[0] / "c", "--approve", "all")
     assert done.exit_code == 2
     assert "--resume goes on with it" in str(done.exception) + done.output
 
 
-def test_an_ended_campaign_goes_on_when_more_is_asked(tmp_path: Path) -> None:
-    design, folder = written(tmp_path, repeat=0.004), tmp_path / "c"
-    before = made(design, folder)
+def test_an_ended_campaign_goes_on_when_more_is_asked(
+    whole: tuple[Path, Any], copied: Path
+) -> None:
+    design, folder = copied / "design.toml", copied / "c"
     text = design.read_text(encoding="utf-8")
-    design.write_text(text.replace('Z_w = "3 %"', 'Z_w = "1.5 %"'), encoding="utf-8")
-    after = made(design, folder, "--resume")
+    design.write_text(text.replace('Z_w = "3 %"', 'Z_w = "2.2 %"'), encoding="utf-8")
+    before, after = whole[1]["runs"], made(design, folder, "--resume")
     assert after["ending"] == "all targets are met"
-    assert after["runs"][: len(before["runs"])] == before["runs"]
-    assert len(after["runs"]) > len(before["runs"])
-    assert after["decisions"][-1]["known"][0]["wanted"] == pytest.approx(0.015 * 190.0)
+    assert after["runs"][: len(before)] == before
+    assert len(after["runs"]) > len(before)
     assert (folder / "zero-04" / "run.nc").is_file()  # a zero run before and after the new ones
+
+
+def test_a_run_that_fails_stops_the_campaign_at_rest_and_others_take_its_place(
+    tmp_path: Path,
+) -> None:
+    design, folder = written(tmp_path), tmp_path / "c"
+    hull = "added_mass = [[75.0, 3.0], [3.0, 22.0]]\ndamping = [[900.0, 12.0], [12.0, 55.0]]\n"
+    _append(tmp_path / "simulated.toml", f"\n[hull]\n{hull}")  # the tank knows it better
+    for strut in ("aft", "fore"):
+        gauge = f'channel = "force_{strut}"\nfull_scale_n = 40.0\n'
+        _append(tmp_path / "rig.toml", f"\n[[gauges]]\n{gauge}")
+    text = design.read_text(encoding="utf-8")
+    design.write_text(text.replace("[10.0, 20.0]", "[20.0]"), encoding="utf-8")
+    failed = until(design, folder, given="y\n")
+    assert failed.exit_code == 1
+    said = str(failed.exception) + failed.output
+    assert "the fault is latched" in said
+    assert "--until targets --resume" in said
+    design.write_text(text.replace("[10.0, 20.0]", "[5.0]"), encoding="utf-8")
+    told = made(design, folder, "--resume")
+    assert told["ending"] == "all targets are met"
+    assert all("-a5" in name for name in told["runs"])
+    assert told["decisions"][0]["approved"] == "all, beforehand"
+
+
+def _append(path: Path, text: str) -> None:
+    path.write_text(path.read_text(encoding="utf-8") + text, encoding="utf-8")
