@@ -13,7 +13,7 @@ help:
 	@echo "make lint   formatting, types, imports"
 	@echo "make pages  write the pages that are made from the code, once it has changed"
 	@echo "make docs   build the pages as a site in site/, every warning an error"
-	@echo "make bench  measure speed and coverage against rivals, write benchmarks/results/"
+	@echo "make bench  draw many inputs for the tests, measure speed and coverage, write benchmarks/results/"
 	@echo "make sealed answer and score campaigns whose truth is withheld (an hour and more)"
 	@echo "make release  build wheel and source distribution, use each from a fresh environment"
 	@echo "make clean  remove the virtual environment and what the demo wrote"
@@ -60,7 +60,10 @@ pages: $(VENV)/.dev
 docs: $(VENV)/.docs
 	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --jobs auto docs site
 
+# First the tests that draw their inputs, with many more of them than `make test` draws.
 bench: $(VENV)/.bench
+	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest $(WORKERS) \
+		-m hypothesis --hypothesis-profile=full
 	$(BIN)/python -m benchmarks
 
 # Scored once for each commit: the commit's hash is the seed. Goes on where it was broken off.

@@ -9,10 +9,16 @@ from hypothesis import HealthCheck, settings
 
 from tests.hardware.leaks import Leaks
 
-# No clock decides a test: a slow machine is no fault of the code.
+# No clock decides a test: a slow machine is no fault of the code. A few examples of each in every
+# run of the tests; `make bench` asks for many.
 settings.register_profile(
-    "seeded", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow]
+    "seeded",
+    max_examples=25,
+    derandomize=True,
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow],
 )
+settings.register_profile("full", settings.get_profile("seeded"), max_examples=200)
 settings.load_profile("seeded")
 
 

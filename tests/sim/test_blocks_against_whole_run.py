@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from hardware.description.setpoint import SetPoint
@@ -56,7 +56,6 @@ def busy_chain() -> Chain:
     return replace(chain, stages=(*chain.stages, Lag(0.3)))
 
 
-@settings(deadline=None, max_examples=60)
 @given(sizes=st.lists(st.integers(0, 120), min_size=1, max_size=12), seed=st.integers(0, 2**40))
 def test_any_mix_of_block_sizes_gives_the_samples_of_the_whole_run(
     sizes: list[int], seed: int

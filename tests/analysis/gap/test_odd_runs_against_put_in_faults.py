@@ -65,8 +65,15 @@ def test_an_effect_in_all_runs_is_no_odd_run(rig: SimulatedRig, name: str) -> No
     assert max(found.odd_runs.values()) < 0.1
 
 
-@pytest.mark.parametrize("name", ["coulomb-friction", "quadratic-damping"])
-@pytest.mark.parametrize("share", [0.003, 0.01, 0.03, 0.1])
+@pytest.mark.parametrize(
+    ("name", "share"),
+    [
+        ("quadratic-damping", 0.003),
+        ("coulomb-friction", 0.01),
+        ("quadratic-damping", 0.03),
+        ("coulomb-friction", 0.1),
+    ],
+)
 def test_an_effect_at_the_edge_of_the_noise_is_no_odd_run(
     rig: SimulatedRig, name: str, share: float
 ) -> None:

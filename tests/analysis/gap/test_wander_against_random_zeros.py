@@ -46,9 +46,9 @@ def test_a_wander_comes_back_whatever_the_zeros_offset_and_even_drift(rig: Simul
 
 def test_few_records_say_it_wider(rig: SimulatedRig) -> None:
     """A new zero lies within 1.96 of them in nine of ten or so, for two records as for twelve."""
-    for count in (2, 3, 6, 12):
+    for count in (2, 12):
         inside = []
-        for seed in range(400):
+        for seed in range(200):
             zeros = drawn(0.05, count + 1, 1000 * count + seed)
             found = wander(rig, at_rest(zeros[:count])).get(FORCES[0])
             level_n = 0.0 if found is None else found[0]

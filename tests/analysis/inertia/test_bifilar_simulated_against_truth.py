@@ -95,12 +95,15 @@ def test_centre_of_gravity_within_a_millimetre() -> None:
 
 @pytest.mark.slow
 def test_intervals_cover_as_promised_and_are_no_wider_than_they_must() -> None:
-    """A campaign: four runs whose periods scatter, a spacing known to 0.5 mm; 400 of them."""
+    """A campaign: four runs whose periods scatter, a spacing known to 0.5 mm.
+
+    Of 100 intervals of 95 % fewer than 91 hold the truth in 3 draws of 100, all in 6 of 1000.
+    """
     rng = np.random.default_rng(2014)
     spacing_u, scatter = 5e-4, 3e-4
     t = np.arange(0.0, 40.0, 0.25)
     covered, widths = 0, []
-    campaigns = 400
+    campaigns = 100
     for _ in range(campaigns):
         ratios = []
         for _ in range(4):
@@ -122,7 +125,7 @@ def test_intervals_cover_as_promised_and_are_no_wider_than_they_must() -> None:
         low, high = budget.result.interval()
         covered += low <= K <= high
         widths.append(high - low)
-    assert 0.93 <= covered / campaigns <= 0.98
+    assert 91 <= covered <= 99
     ideal = K * math.hypot(spacing_u / D, scatter / 2.0)  # all known: the GUM's own
     assert np.median(widths) <= 1.2 * 2.0 * 1.96 * ideal
 

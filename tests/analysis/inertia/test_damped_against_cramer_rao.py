@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.inertia.damped_fit import fit_damped
@@ -57,7 +57,6 @@ def test_poor_starts_always_succeed_and_the_peer_does_not() -> None:
     decay=st.floats(0.0, 0.03),
     phase=st.floats(-3.1, 3.1),
 )
-@settings(max_examples=40, deadline=None)
 def test_any_start_finds_the_same_period(
     factor: float, period: float, decay: float, phase: float
 ) -> None:
@@ -74,7 +73,6 @@ def test_any_start_finds_the_same_period(
 
 
 @given(ratio=st.floats(1.03, 2.5), share=st.floats(0.2, 5.0), phase=st.floats(-3.0, 3.0))
-@settings(max_examples=40, deadline=None)
 def test_two_modes_are_told_apart(ratio: float, share: float, phase: float) -> None:
     t = np.arange(0.0, 120.0, 0.05)
     y = damped(t, 3.8, 0.008, 1.0) + damped(t, 3.8 * ratio, 0.002, share, phase)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.inertia.ballast import BallastTarget, Weight, place_ballast
@@ -22,7 +22,6 @@ def point(name: str, m: float, x: float, y: float, z: float, u: float = 0.0) -> 
 
 
 @given(points)
-@settings(max_examples=50, deadline=None)
 def test_combined_points_are_the_sums(rows: list[tuple[float, float, float, float]]) -> None:
     whole = combine("all", [point(str(k), *row) for k, row in enumerate(rows)])
     m, r = np.array([row[0] for row in rows]), np.array([row[1:] for row in rows])
@@ -35,7 +34,6 @@ def test_combined_points_are_the_sums(rows: list[tuple[float, float, float, floa
 
 
 @given(points)
-@settings(max_examples=50, deadline=None)
 def test_taking_away_undoes_putting_on(rows: list[tuple[float, float, float, float]]) -> None:
     parts = [point(str(k), *row) for k, row in enumerate(rows)]
     rest = combine("rest", [combine("all", parts)], without=parts[1:])

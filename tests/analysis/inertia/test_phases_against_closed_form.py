@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from scipy.stats import binom
 
 from analysis.inertia.amplitude import zero_amplitude_period
 from analysis.inertia.bifilar import sway_period, yaw_period
@@ -18,7 +19,7 @@ from tests.analysis.inertia.records import FloatArray, G, amplitude, damped, swi
 
 PERIOD_S = 3.0
 K, D, LINE = 1.056, 0.900, 3.477
-RECORDS = 120
+RECORDS = 40
 
 
 def swing(
@@ -61,11 +62,12 @@ def periods_alone(local: LocalPeriods) -> LocalPeriods:
 def assert_covered(found: list[Estimate], true_s: float, *, widest: float = 3.0) -> None:
     """Hold the periods of many records to one truth.
 
-    Where the change with amplitude is in doubt the choice between the laws widens the intervals:
-    above 98 % is no fault, being ``widest`` times as wide as the errors are would be.
+    Of intervals of 95 % fewer hold it in one draw of twenty at most. Where the change with
+    amplitude is in doubt the choice between the laws widens the intervals: above 98 % is no fault,
+    being ``widest`` times as wide as the errors are would be.
     """
     held = [low <= true_s <= high for low, high in (one.interval() for one in found)]
-    assert np.mean(held) >= 0.93
+    assert sum(held) >= binom.ppf(0.05, len(held), 0.95)
     errors = np.array([one.value - true_s for one in found])
     stated = np.array([one.uncertainty for one in found])
     assert np.mean(stated**2) < widest**2 * np.mean(errors**2)
@@ -118,7 +120,6 @@ def test_cycles_that_cannot_be_counted_are_said_and_cost_width() -> None:
     assert shorter.period().uncertainty < period.uncertainty
 
 
-@settings(max_examples=40, deadline=None)
 @given(
     turn=st.floats(-1e3, 1e3),
     later=st.floats(-1e3, 1e3),
@@ -152,7 +153,7 @@ def test_extrapolation_covers_whichever_law_holds(power: int, slope: float) -> N
     phase = 2.0 * np.pi / PERIOD_S * (time_s - lag)
     covariance = np.broadcast_to(np.diag(error**2), (12, 2, 2))
     found = []
-    for _ in range(200):
+    for _ in range(60):
         off = error * rng.standard_normal((12, 2))
         local = LocalPeriods(
             time_s,

@@ -184,7 +184,6 @@ def test_incline_from_one_end_and_from_both() -> None:
 
 
 @given(px=st.floats(0.2, 0.6), more=st.floats(0.2, 1.0), psi=st.floats(-0.3, 0.3))
-@settings(max_examples=40, deadline=None)
 def test_principal_axes_there_and_back(px: float, more: float, psi: float) -> None:
     pz = px + more
     kx, kz = gyradius_about(px, pz, psi + math.pi / 2.0), gyradius_about(px, pz, psi)

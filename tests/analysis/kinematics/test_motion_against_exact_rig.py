@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.kinematics.complex_step import by_parts, pointwise
@@ -28,7 +28,6 @@ from tests.exact.rigs import ARRANGEMENTS, exact_rig
 RELATIVE = 1e-9
 
 
-@settings(max_examples=200)
 @given(
     plane=st.sampled_from(Plane),
     arrangement=st.sampled_from(ARRANGEMENTS),

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -67,7 +67,6 @@ def assert_same(found: Recording, expected: Recording) -> None:
 
 
 @given(recording=recordings())
-@settings(max_examples=40, suppress_health_check=[HealthCheck.too_slow], deadline=None)
 def test_a_file_gives_back_what_was_written(
     tmp_path_factory: pytest.TempPathFactory, recording: Recording
 ) -> None:
@@ -80,7 +79,6 @@ def test_a_file_gives_back_what_was_written(
 
 
 @given(recording=recordings())
-@settings(max_examples=40, suppress_health_check=[HealthCheck.too_slow], deadline=None)
 def test_a_dataset_gives_back_what_went_in(recording: Recording) -> None:
     assert_same(from_dataset(to_dataset(recording)), recording)
 

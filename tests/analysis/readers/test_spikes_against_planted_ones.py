@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.io import savemat
 
@@ -83,7 +83,6 @@ def _made(folder: Path) -> Path:
     return folder
 
 
-@settings(max_examples=80, deadline=None)
 @given(
     start=st.integers(10, COUNT - 20),
     length=st.integers(1, 3),
@@ -111,7 +110,6 @@ def test_what_is_planted_is_taken_out_and_nothing_else(
     assert [flag.code for flag in found.flags] == ["spike"]
 
 
-@settings(max_examples=80, deadline=None)
 @given(
     amplitude=st.floats(0.0, 1e6),
     noise=st.floats(0.0, 1e3),

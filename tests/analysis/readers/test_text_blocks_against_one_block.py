@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.readers import read_recording, text_source
@@ -32,7 +32,6 @@ def read(path: Path, block: int) -> tuple[list[list[float]], list[str], str]:
     return values, [flag.message for flag in one.flags], one.provenance["sha256"]
 
 
-@settings(max_examples=80, deadline=None)
 @given(
     block=st.integers(1, 300),
     layout=st.sampled_from([(",", "."), (";", ","), ("\t", "."), (" ", ".")]),

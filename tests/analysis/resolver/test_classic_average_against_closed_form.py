@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.recording import Recording
@@ -105,7 +105,6 @@ def test_variance_against_least_squares_of_the_same_waiting_time(
     assert average_variance_ratio(waiting) == pytest.approx(squared**2, rel=0.01)
 
 
-@settings(max_examples=40, deadline=None)
 @given(st.lists(st.integers(0, 90), max_size=12), st.integers(0, 2**32 - 1))
 def test_needles_do_not_depend_on_blocks(lengths: list[int], seed: int) -> None:
     values = np.random.default_rng(seed).standard_normal((2, 300))

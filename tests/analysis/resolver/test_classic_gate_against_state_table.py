@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.recording import Recording
@@ -93,7 +93,6 @@ def test_pulses_before_the_first_sample_find_nothing_on() -> None:
     assert state.reading.opened_s == 3.0
 
 
-@settings(max_examples=60, deadline=None)
 @given(
     st.lists(st.integers(0, 60), max_size=10),
     st.floats(0.0, 0.99),

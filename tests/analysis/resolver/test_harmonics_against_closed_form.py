@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.resolver.estimate import resolve
@@ -37,31 +37,26 @@ def error(frequency_hz: float, first_cycle: float, periods: int, **content: obje
     return np.abs(difference)
 
 
-@settings(max_examples=200, deadline=None)
 @given(frequencies, phases, st.sampled_from([1, 2, 3, 4, 7]))
 def test_modelled_harmonics_are_exact(frequency: float, phase: float, periods: int) -> None:
     assert error(frequency, phase, periods).max() < 1e-12
 
 
-@settings(max_examples=200, deadline=None)
 @given(frequencies, phases)
 def test_unmodelled_harmonics_stay_out_of_one_period(frequency: float, phase: float) -> None:
     assert error(frequency, phase, 1, higher=True).max() < 1e-6
 
 
-@settings(max_examples=200, deadline=None)
 @given(frequencies, phases, st.integers(2, 6))
 def test_drift_and_unmodelled_harmonics_stay_out(freq: float, phase: float, periods: int) -> None:
     assert error(freq, phase, periods, higher=True, drift=1.0).max() < 1e-6
 
 
-@settings(max_examples=200, deadline=None)
 @given(frequencies, phases, st.integers(2, 6))
 def test_drift_alone_is_taken_out(frequency: float, phase: float, periods: int) -> None:
     assert error(frequency, phase, periods, drift=1.0).max() < 1e-8
 
 
-@settings(max_examples=50, deadline=None)
 @given(frequencies, phases, st.integers(1, 12))
 def test_any_number_of_harmonics(frequency: float, phase: float, harmonics: int) -> None:
     content = np.random.default_rng(harmonics).normal(size=2 * harmonics + 1)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.recording import Recording
@@ -65,7 +65,6 @@ def test_the_closed_form_is_the_worst_phase(periods: int) -> None:
     assert leakage(periods, orders, harmonics=3) == pytest.approx(bound, rel=1e-4, abs=1e-6)
 
 
-@settings(max_examples=60, deadline=None)
 @given(st.integers(1, 40), st.integers(1, 200), st.integers(1, 3))
 def test_closed_form_is_zero_where_whole_periods_of_the_vibration_fit(
     periods: int, turns: int, harmonic: int

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.resolver.estimate import resolve
@@ -75,7 +75,6 @@ def test_missed_pulses_at_the_ends_only_shorten_the_reference(missed: list[int])
     assert not reference.flags
 
 
-@settings(max_examples=200, deadline=None)
 @given(st.integers(0, 10), st.floats(0.005, 0.995))
 def test_an_extra_pulse_is_dropped_and_no_other(revolution: int, fraction: float) -> None:
     extra = PULSES[revolution] + fraction
@@ -102,7 +101,6 @@ def test_several_extra_pulses_are_dropped(extras: tuple[float, ...]) -> None:
     assert reference.times_s == pytest.approx(PULSES, abs=1e-12)
 
 
-@settings(max_examples=100, deadline=None)
 @given(st.sampled_from([2, 3, 8, 9]), st.floats(0.03, 0.97))
 def test_extra_and_missed_pulses_in_one_run(missed: int, fraction: float) -> None:
     edges = np.delete(PULSES, missed)

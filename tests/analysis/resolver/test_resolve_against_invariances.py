@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.resolver.estimate import resolve
@@ -28,7 +28,6 @@ def resolved(values: FloatArray, estimator: str, start_s: float = 0.0) -> Harmon
     return resolve(run, sums[1:2] if estimator == "one period" else sums[1:7], around=sums)
 
 
-@settings(max_examples=40, deadline=None)
 @given(estimators, st.floats(1e-9, 1e9), st.booleans())
 def test_scale(estimator: str, factor: float, negative: bool) -> None:
     factor = -factor if negative else factor
@@ -38,7 +37,6 @@ def test_scale(estimator: str, factor: float, negative: bool) -> None:
     assert scaled.drift_per_s / factor == pytest.approx(plain.drift_per_s, abs=1e-12)
 
 
-@settings(max_examples=40, deadline=None)
 @given(estimators, st.permutations(range(5)))
 def test_order_of_channels(estimator: str, order: list[int]) -> None:
     plain, mixed = resolved(VALUES, estimator), resolved(VALUES[order], estimator)
@@ -47,7 +45,6 @@ def test_order_of_channels(estimator: str, order: list[int]) -> None:
     assert mixed.drift_per_s == pytest.approx(plain.drift_per_s[order], abs=1e-13)
 
 
-@settings(max_examples=40, deadline=None)
 @given(estimators, st.floats(-5.0, 5.0), st.floats(-5.0, 5.0))
 def test_superposition(estimator: str, a: float, b: float) -> None:
     plain = resolved(VALUES, estimator).coefficients
@@ -55,7 +52,6 @@ def test_superposition(estimator: str, a: float, b: float) -> None:
     assert both.coefficients[0] == pytest.approx(a * plain[0] + b * plain[1], abs=1e-12)
 
 
-@settings(max_examples=40, deadline=None)
 @given(estimators, st.floats(-1e6, 1e6))
 def test_a_constant_goes_into_the_mean_alone(estimator: str, level: float) -> None:
     plain, raised = resolved(VALUES, estimator), resolved(VALUES + level, estimator)
@@ -66,7 +62,6 @@ def test_a_constant_goes_into_the_mean_alone(estimator: str, level: float) -> No
     assert raised.half_width() == pytest.approx(plain.half_width(), abs=100.0 * tolerance)
 
 
-@settings(max_examples=40, deadline=None)
 @given(estimators, st.floats(-1e4, 1e4))
 def test_the_clock_s_zero(estimator: str, start_s: float) -> None:
     plain, later = resolved(VALUES, estimator), resolved(VALUES, estimator, start_s)
@@ -74,7 +69,6 @@ def test_the_clock_s_zero(estimator: str, start_s: float) -> None:
     assert later.opened_s - start_s == pytest.approx(plain.opened_s, abs=1e-9)
 
 
-@settings(max_examples=40, deadline=None)
 @given(st.sampled_from(ESTIMATORS[1:]), st.floats(-3.0, 3.0))
 def test_a_drift_goes_into_the_mean_and_the_slope_alone(estimator: str, slope: float) -> None:
     time = np.arange(1000) / 100.0

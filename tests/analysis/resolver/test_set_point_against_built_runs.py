@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.recording import Recording
@@ -83,7 +83,6 @@ def test_a_frequency_that_does_not_fit_is_named_with_the_one_that_does() -> None
     assert not found(run(None), "frequency_differs")
 
 
-@settings(max_examples=40, deadline=None)
 @given(st.floats(0.7, 1.3), st.floats(0.9, 1.1))
 def test_any_frequency_near_by_is_found(frequency_hz: float, ratio: float) -> None:
     given_hz = frequency_hz * ratio

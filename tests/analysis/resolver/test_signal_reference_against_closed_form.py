@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.resolver.reference import PhaseReference
@@ -23,7 +23,6 @@ def away_rad(reference: PhaseReference, time: FloatArray, cycles: FloatArray) ->
     return np.asarray(2.0 * np.pi * (turns - np.rint(turns.mean())))
 
 
-@settings(max_examples=80, deadline=None)
 @given(st.floats(0.05, 8.0), st.floats(0.0, 1.0), st.integers(6, 60))
 def test_any_frequency_and_phase_is_found(frequency: float, phase: float, periods: int) -> None:
     time = np.arange(int(RATE_HZ * periods / frequency)) / RATE_HZ

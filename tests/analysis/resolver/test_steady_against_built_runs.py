@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.resolver.estimate import solve_periods
@@ -40,7 +40,6 @@ def test_ramps_and_rests_are_left_out(size: float) -> None:
     assert (found.start, found.stop) == (10, 30)
 
 
-@settings(max_examples=40, deadline=None)
 @given(st.integers(0, 12), st.integers(1, 6), st.integers(8, 15), st.integers(1, 6))
 def test_any_ramp_is_left_out(rest: int, rise: int, steady: int, fall: int) -> None:
     corners = np.cumsum([rest, rise, steady, fall])

@@ -6,7 +6,7 @@ order and sums the basis itself instead of a series in closed form.
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.recording import Recording
@@ -97,7 +97,6 @@ def test_quick_sums_against_a_sine_of_every_sample(
     near(period_sums(run, reference, harmonics), plainly(run, reference, harmonics))
 
 
-@settings(max_examples=40, deadline=None)
 @given(st.integers(20, 4 * ROW), st.integers(1, 4), st.floats(0.0, 0.999))
 def test_quick_sums_at_any_length_of_a_period(
     samples: int, harmonics: int, opening_cycle: float
@@ -108,7 +107,6 @@ def test_quick_sums_at_any_length_of_a_period(
     near(period_sums(run, reference, harmonics), plainly(run, reference, harmonics))
 
 
-@settings(max_examples=40, deadline=None)
 @given(
     st.integers(20, 6 * ROW),
     st.lists(st.integers(0, 2 * ROW), min_size=1, max_size=8),
@@ -190,7 +188,6 @@ def test_a_period_longer_than_what_is_read_at_once(monkeypatch: pytest.MonkeyPat
     same(period_sums(read, reference), period_sums(run, reference))
 
 
-@settings(max_examples=60, deadline=None)
 @given(st.floats(0.0, 0.05), st.floats(0.0, 0.05))
 def test_the_ends_of_a_record_are_exact_too(before: float, after: float) -> None:
     """Gates that open on the first samples and close on the last."""

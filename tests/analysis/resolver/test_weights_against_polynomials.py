@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from analysis.resolver.weights import gate_weights
@@ -24,7 +24,6 @@ def spread(opening: float, closing: float, count: int = COUNT) -> FloatArray:
     return row
 
 
-@settings(max_examples=300, deadline=None)
 @given(edges, st.integers(0, DEGREE))
 def test_polynomials_are_exact(pair: tuple[float, float], degree: int) -> None:
     opening, closing = sorted(pair)
@@ -53,14 +52,12 @@ def test_the_sixth_degree_is_not_exact() -> None:
     assert abs(spread(10.5, 12.5) @ x**6 - exact) > 1e-3
 
 
-@settings(max_examples=200, deadline=None)
 @given(st.floats(0.0, 10.0), st.floats(2.0, 9.0), st.floats(2.0, 10.0))
 def test_weights_are_additive(a: float, first: float, second: float) -> None:
     b, c = a + first, a + first + second
     assert spread(a, b) + spread(b, c) == pytest.approx(spread(a, c), abs=1e-12)
 
 
-@settings(max_examples=100, deadline=None)
 @given(edges)
 @example((0.0, 2.0))
 @example((COUNT - 3.0, COUNT - 1.0))

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.uncertainty.budget import linear_budget
@@ -86,7 +86,6 @@ def test_finite_degrees_of_freedom_widen_the_monte_carlo() -> None:
     slopes=st.lists(st.floats(-5.0, 5.0), min_size=4, max_size=4),
     r=st.floats(-0.99, 0.99),
 )
-@settings(max_examples=30, deadline=None)
 def test_linear_formulas_are_exact(u: list[float], slopes: list[float], r: float) -> None:
     inputs = {f"x{k}": Estimate.of(1.0 + k, spread) for k, spread in enumerate(u)}
     inputs["x0"] = tied(1.0, u[0], math.sqrt(abs(r)))

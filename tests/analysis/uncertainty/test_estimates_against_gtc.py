@@ -5,7 +5,7 @@ import math
 import GTC
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.uncertainty.budget import derived
@@ -16,7 +16,6 @@ freedom = st.integers(2, 30).map(float)
 
 
 @given(spread, spread, spread, freedom, freedom)
-@settings(max_examples=60, deadline=None)
 def test_a_chain_of_formulas_is_gtcs(
     u_period: float, u_mass: float, u_scale: float, nu_period: float, nu_mass: float
 ) -> None:

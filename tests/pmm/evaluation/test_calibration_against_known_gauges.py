@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.recording import Recording
@@ -48,7 +48,6 @@ def record(values: np.ndarray, **more: object) -> Recording:
 ROWS = st.lists(st.integers(0, 2), min_size=1, max_size=4)
 
 
-@settings(max_examples=60, deadline=None)
 @given(rows=ROWS, start=st.integers(0, 40), stop=st.integers(0, 60), seed=st.integers(0, 99))
 def test_any_part_of_the_samples_is_the_matrix_s_inverse(
     rows: list[int], start: int, stop: int, seed: int

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
@@ -202,7 +202,6 @@ def reports(draw: st.DrawFn) -> GapReport:
 
 
 @given(report=reports())
-@settings(max_examples=100, deadline=None, derandomize=True)
 def test_any_diagnosis(report: GapReport, tmp_path_factory: pytest.TempPathFactory) -> None:
     path = tmp_path_factory.getbasetemp() / "hand.html"
     told = document(report)
@@ -223,7 +222,6 @@ def without_figures(told: Document) -> Document:
 
 
 @given(report=reports())
-@settings(max_examples=300, deadline=None, derandomize=True)
 def test_the_most_probable_answer_is_what_is_said(report: GapReport) -> None:
     found = report.conclusion
     first = max(found.weighing.shares, key=lambda name: found.weighing.shares[name])

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from hardware.description.errors import ConfigurationError
@@ -61,7 +61,6 @@ def test_the_examples_are_read(name: str) -> None:
 
 
 @given(data=st.data())
-@settings(max_examples=250, deadline=None, derandomize=True)
 def test_a_spoiled_file_is_read_or_refused(
     data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
 ) -> None:

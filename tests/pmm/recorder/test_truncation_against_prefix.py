@@ -69,7 +69,6 @@ def _said_where(error: DataError, folder: Path) -> None:
     assert str(folder) in str(error)
 
 
-@settings(max_examples=40, deadline=None)
 @given(share=st.floats(0.0, 1.0))
 def test_samples_cut_anywhere(left: Path, share: float) -> None:
     with tempfile.TemporaryDirectory() as place:

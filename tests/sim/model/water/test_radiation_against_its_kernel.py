@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import simpson
 
@@ -101,7 +101,6 @@ def test_kernel_starts_at_the_integral_of_the_damping() -> None:
     np.testing.assert_allclose(radiation.kernel(0.0), integral, atol=1e-4 * scale)
 
 
-@settings(max_examples=60, deadline=None)
 @given(seed=st.integers(0, 10**6), blocks=st.integers(2, 5), size=st.integers(1, 2))
 def test_every_ladder_is_passive_and_has_no_damping_at_rest(
     seed: int, blocks: int, size: int
@@ -121,7 +120,6 @@ def test_every_ladder_is_passive_and_has_no_damping_at_rest(
     assert np.abs(still + still.T).max() < 1e-8 * scale
 
 
-@settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 10**6), motion=st.integers(0, 10**6))
 def test_no_motion_gets_energy_out_of_the_water(seed: int, motion: int) -> None:
     """Work up to any time exceeds what the states hold, |xi|^2/2: for random piecewise motions."""
