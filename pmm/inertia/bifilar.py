@@ -17,20 +17,11 @@ from pmm.inertia.air import without_air
 from pmm.inertia.bifilar_axes import plane_axes
 from pmm.inertia.bifilar_tables import BifilarTable
 from pmm.inertia.bifilar_workflow import workflow
-from pmm.inertia.hanging import hung
+from pmm.inertia.experiment import Experiment
 from pmm.inertia.lines import line_share, yaw_off_lines
-from pmm.inertia.outcome import (
-    Finding,
-    Outcome,
-    PlaneAxes,
-    assessed,
-    compare,
-    once,
-)
-from pmm.inertia.properties import AXES, properties
-from pmm.inertia.reading import Job, read_job
-from pmm.inertia.sources import PeriodRuns, read_period
-from pmm.inertia.stated_values import flags_of, given, gravity_of
+from pmm.inertia.outcome import Finding, Outcome, PlaneAxes, assessed
+from pmm.inertia.properties import AXES
+from pmm.inertia.stated_values import given, gravity_of
 from pmm.inertia.suspension import Suspended, hang
 
 _APART = 3.0  # joint standard uncertainties that two methods of one suspension may differ by
@@ -44,46 +35,22 @@ def run(path: str) -> Outcome:
     ConfigurationError, DataError
         If the file is wrong, or the data do not carry what is asked.
     """
-    job = read_job(path, BifilarTable)
-    table = job.table
-    tests = [hang(job, one) for one in table.suspensions]
-    findings = [finding for one in tests for finding in _findings(one, several=len(tests) > 1)]
-    flags = [*flags_of(table), *(flag for one in tests for flag in one.flags)]
-    periods = [runs for one in tests for runs in one.periods]
-    notes: list[str] = []
-    found: list[Redundancy] = []
-    gyradii, used = _results(table, tests, findings, flags, notes, found)
-    notes += _air_notes(table, gyradii)
-    axes = _tilts(job, gyradii, used, findings, periods, flags, found)
-    step = workflow(job, tests, findings, flags, periods)
-    centre = hung(table, findings, flags)
-    found += [centre.redundancy] if centre else []
-    body, missing = properties(
-        table.name,
-        table.model,
-        gyradii,
-        take_off=table.take_off,
-        budgets=[one.budget for one in used.values()],
-        flags=flags,
-        centre=centre,
-    )
-    if body is not None and table.take_off:
-        findings += _own_findings(body.mass, body.gyradii)
-    return Outcome(
-        "bifilar",
-        table.name,
-        tuple(findings),
-        once(flags),
-        tuple(periods),
-        body,
-        missing,
-        table.plane or _plane(gyradii),
-        compare(findings, table.targets),
-        tuple(notes),
-        step,
-        axes=axes,
-        redundancy=tuple(found),
-    )
+    test = Experiment.of(path, BifilarTable)
+    table = test.table
+    suspended = [hang(test.job, one) for one in table.suspensions]
+    for one in suspended:
+        test.findings += _findings(one, several=len(suspended) > 1)
+        test.flags += one.flags
+        test.periods += one.periods
+    gyradii, used = _results(test, suspended)
+    test.notes += _air_notes(table, gyradii)
+    axes = _tilts(test, gyradii, used)
+    step = workflow(test, suspended)
+    test.plumb()
+    test.weigh(gyradii, [one.budget for one in used.values()], test.flags)
+    if test.body is not None and table.take_off:
+        test.findings += _own_findings(test.body.mass, test.body.gyradii)
+    return test.outcome("bifilar", _plane(gyradii), next_step=step, axes=axes)
 
 
 def _air_notes(table: BifilarTable, gyradii: Mapping[str, Estimate]) -> Iterator[str]:
@@ -115,18 +82,15 @@ def _findings(one: Suspended, *, several: bool) -> Iterator[Finding]:
 
 
 def _results(
-    table: BifilarTable,
-    hung: list[Suspended],
-    findings: list[Finding],
-    flags: list[Flag],
-    notes: list[str],
-    redundancy: list[Redundancy],
+    test: Experiment[BifilarTable], hung: list[Suspended]
 ) -> tuple[dict[str, Estimate], dict[str, Assessment]]:
     """Return each axis' gyradius: of the chosen method, over all suspensions that have it."""
     gyradii: dict[str, Estimate] = {}
     used: dict[str, Assessment] = {}
     for axis in AXES:
-        chosen = [(one, assessment) for one in hung if (assessment := _chosen(table, one, axis))]
+        chosen = [
+            (one, assessment) for one in hung if (assessment := _chosen(test.table, one, axis))
+        ]
         if not chosen:
             continue
         used[axis] = chosen[0][1]
@@ -140,16 +104,16 @@ def _results(
             ]
             spread = compare_geometries(rows, result=f"k_{axis}_m")
             gyradii[axis] = spread.gyradius
-            flags += spread.flags
-            redundancy.append(spread.redundancy)
-        findings[:] = [one for one in findings if one.name != f"k_{axis}_m"]
+            test.flags += spread.flags
+            test.redundancy.append(spread.redundancy)
+        test.findings = [one for one in test.findings if one.name != f"k_{axis}_m"]
         whole = used[axis] if len(chosen) == 1 else None
-        findings.append(Finding(f"k_{axis}_m", f"{axis} gyradius", gyradii[axis], whole))
-    flags += [flag for one in hung for flag in _between_methods(one)]
-    redundancy += [found for one in hung for found in _methods(one)]
+        test.findings.append(Finding(f"k_{axis}_m", f"{axis} gyradius", gyradii[axis], whole))
+    test.flags += [flag for one in hung for flag in _between_methods(one)]
+    test.redundancy += [found for one in hung for found in _methods(one)]
     if len([key for key in hung[0].found if key.startswith("yaw")]) > 1 and "yaw" in used:
         method = next(key for key, one in hung[0].found.items() if one is used["yaw"])
-        notes.append(f"the {method} is the result (method in the file chooses another)")
+        test.notes.append(f"the {method} is the result (method in the file chooses another)")
     return gyradii, used
 
 
@@ -188,25 +152,17 @@ def _chosen(table: BifilarTable, one: Suspended, axis: str) -> Assessment | None
 
 
 def _tilts(
-    job: Job[BifilarTable],
-    gyradii: dict[str, Estimate],
-    used: dict[str, Assessment],
-    findings: list[Finding],
-    periods: list[PeriodRuns],
-    flags: list[Flag],
-    redundancy: list[Redundancy],
+    test: Experiment[BifilarTable], gyradii: dict[str, Estimate], used: dict[str, Assessment]
 ) -> PlaneAxes | None:
     """Roll from tilted yaw tests, where it was not measured, and the principal axes."""
-    table, level = job.table, gyradii.get("yaw")
+    table, level = test.table, gyradii.get("yaw")
     if not table.tilted:
         return None
     if level is None:
-        raise ConfigurationError(f"{job.path}: tilted needs the level yaw test too; add yaw")
-    tests = []
+        raise ConfigurationError(f"{test.job.path}: tilted needs the level yaw test too; add yaw")
+    tilted = []
     for number, one in enumerate(table.tilted, 1):
-        runs = read_period(job, one, f"tilted[{number}]")
-        periods.append(runs)
-        flags += runs.flags
+        runs = test.period(one, f"tilted[{number}]")
         at = next((s for s in table.suspensions if s.yaw is not None), table.suspensions[0])
         spacing, line = (
             given(at, key, at.name) if getattr(one, key) is None else given(one, key)
@@ -218,12 +174,12 @@ def _tilts(
             own = yaw_off_lines(one if one.half_spacing_m else at, share, own)
         gyradius = without_air(table, own).result
         angle = one.angle
-        tests.append((angle, gyradius))
+        tilted.append((angle, gyradius))
     seed = table.monte_carlo_seed + 30
-    found, axes, agreement = plane_axes(level, gyradii.get("roll"), tests, seed)
-    findings += found
-    redundancy += agreement
-    flags += [flag for one in agreement for flag in one.flags()]
+    found, axes, agreement = plane_axes(level, gyradii.get("roll"), tilted, seed)
+    test.findings += found
+    test.redundancy += agreement
+    test.flags += [flag for one in agreement for flag in one.flags()]
     for row in found:
         if row.name == "k_roll_m" and row.assessment is not None:
             gyradii["roll"], used["roll"] = row.estimate, row.assessment

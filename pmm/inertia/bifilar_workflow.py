@@ -8,11 +8,9 @@ from analysis.inertia.elementary_functions import Value
 from analysis.inertia.workflow import Step
 from analysis.uncertainty.budget import derived
 from analysis.uncertainty.estimate import Estimate
-from hardware.description.flags import Flag
 from pmm.inertia.bifilar_tables import BifilarTable
+from pmm.inertia.experiment import Experiment
 from pmm.inertia.outcome import Finding
-from pmm.inertia.reading import Job
-from pmm.inertia.sources import PeriodRuns, read_period
 from pmm.inertia.stated_values import given, gravity_of
 from pmm.inertia.suspension import Suspended
 from pmm.inertia.workflow import guide
@@ -30,53 +28,45 @@ _WORDS = {
 }
 
 
-def workflow(
-    job: Job[BifilarTable],
-    hung: Sequence[Suspended],
-    findings: list[Finding],
-    flags: list[Flag],
-    periods: list[PeriodRuns],
-) -> str | None:
+def workflow(test: Experiment[BifilarTable], hung: Sequence[Suspended]) -> str | None:
     """Read the steps beside the test and bring them together; return what is next.
 
     All steps hang from the lines of the first suspension, so they share its spacing and length, and
     gravity.
     """
-    table = job.table
+    table = test.table
     if table.tare is None:
         return None
     inertias: dict[Step, Estimate] = {}
     first = hung[0]
     if first.yaw is not None:
         inertias[Step.TEST] = _inertia(
-            job, first, first.yaw, given(table.model, "mass_kg", "model")
+            table, first, first.yaw, given(table.model, "mass_kg", "model")
         )
     for step, words in _WORDS.items():
         source = getattr(table, _TABLES[step])
         if source is None:
             continue
-        runs = read_period(job, source.period, f"{_TABLES[step]}.period")
-        periods.append(runs)
-        flags += runs.flags
-        inertias[step] = _inertia(job, first, runs.period, given(source, "mass_kg"))
+        period = test.period(source.period, f"{_TABLES[step]}.period").period
+        inertias[step] = _inertia(table, first, period, given(source, "mass_kg"))
         name = f"{_TABLES[step]}_i_yaw_kg_m2"
-        findings.append(Finding(name, f"{words}: yaw inertia", inertias[step]))
+        test.findings.append(Finding(name, f"{words}: yaw inertia", inertias[step]))
     known = None if table.check is None else given(table.check, "known_inertia_kg_m2")
-    return guide(inertias, _TABLES, known, "the vertical axis", findings, flags)
+    return guide(inertias, _TABLES, known, "the vertical axis", test.findings, test.flags)
 
 
-def _inertia(job: Job[BifilarTable], one: Suspended, period: Estimate, mass: Estimate) -> Estimate:
+def _inertia(table: BifilarTable, one: Suspended, period: Estimate, mass: Estimate) -> Estimate:
     """Return the inertia of what hangs."""
-    table = one.table
+    lines = one.table
 
     def inertia(
         period_s: Value, mass_kg: Value, half_spacing_m: Value, line_m: Value, gravity_m_s2: Value
     ) -> Value:
         on_lines = yaw_gyradius(period_s, half_spacing_m, line_m, gravity_m_s2)
-        share = table.line_mass_kg / mass_kg
+        share = lines.line_mass_kg / mass_kg
         own = yaw_without_lines(on_lines, share, half_spacing_m, by_sway=False)
         return mass_kg * own**2
 
-    lengths = {key: given(table, key, table.name) for key in ("half_spacing_m", "line_m")}
-    inputs = {"period_s": period, "mass_kg": mass, "gravity_m_s2": gravity_of(job.table)}
+    lengths = {key: given(lines, key, lines.name) for key in ("half_spacing_m", "line_m")}
+    inputs = {"period_s": period, "mass_kg": mass, "gravity_m_s2": gravity_of(table)}
     return derived("I_yaw", inertia, "kg m2", **inputs, **lengths)

@@ -9,8 +9,6 @@ from analysis.inertia.elementary_functions import Value, arctan, cos, sin
 from analysis.inertia.hanging import HangingCentre, PlumbLine, centre_of_lines
 from analysis.uncertainty.budget import derived
 from analysis.uncertainty.estimate import Estimate
-from hardware.description.flags import Flag
-from pmm.inertia.outcome import Finding
 from pmm.inertia.reading import one_of, together
 from pmm.inertia.stated_values import given
 
@@ -141,16 +139,3 @@ def hanging_rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     for key in ("cg_x_m", "cg_z_m"):
         if key in model:
             yield f"model.{key}", "and hanging are both given; one is enough"
-
-
-def hung(table: Any, findings: list[Finding], flags: list[Flag]) -> HangingCentre | None:
-    """Return the centre of gravity that a job's file has plumb lines for, with what is found."""
-    if table.hanging is None:
-        return None
-    centre: HangingCentre = table.hanging.centre()
-    findings += [
-        Finding("cg_x_m", "CG forward of the datum, by plumb lines", centre.x),
-        Finding("cg_z_m", "CG below the datum, by plumb lines", centre.z),
-    ]
-    flags += centre.redundancy.flags()
-    return centre

@@ -11,23 +11,15 @@ from analysis.inertia.elementary_functions import Value, sqrt
 from analysis.inertia.record import RecordAnalysis
 from analysis.uncertainty.estimate import Estimate
 from analysis.uncertainty.monte_carlo import Assessment, assess
-from analysis.uncertainty.redundancy import Redundancy
 from hardware.description.oscillator import Plane
 from pmm.inertia.air import air_rules, without_air
-from pmm.inertia.hanging import hanging_rules, hung
+from pmm.inertia.experiment import Experiment
+from pmm.inertia.hanging import hanging_rules
 from pmm.inertia.job_table import JobTable
-from pmm.inertia.outcome import (
-    Finding,
-    Outcome,
-    PlaneAxes,
-    assessed,
-    compare,
-    once,
-)
-from pmm.inertia.properties import properties
-from pmm.inertia.reading import Job, one_of, read_job
-from pmm.inertia.sources import PeriodRuns, PeriodSource, read_period
-from pmm.inertia.stated_values import flags_of, given, given_or_none, gravity_of
+from pmm.inertia.outcome import Finding, Outcome, PlaneAxes, assessed, once
+from pmm.inertia.reading import one_of
+from pmm.inertia.sources import PeriodRuns, PeriodSource
+from pmm.inertia.stated_values import given, given_or_none, gravity_of
 from pmm.inertia.torsion import TorsionTable, about_rod, in_plane, stiffness
 
 
@@ -84,121 +76,92 @@ def run(path: str) -> Outcome:
     ConfigurationError, DataError
         If the file is wrong, or the data do not carry what is asked.
     """
-    job = read_job(path, PendulumJob)
-    table = job.table
-    periods: list[PeriodRuns] = []
-    swung = _swing(job, periods)
-    findings, told = list(swung.findings), [*flags_of(table)]
-    centre = hung(table, findings, told)
-    told += [flag for one in periods for flag in one.flags]
-    flags = once([*told, *(flag for one in swung.redundancy for flag in one.flags())])
+    test = Experiment.of(path, PendulumJob)
+    swung = _swing(test)
+    test.plumb()
+    test.flags += [flag for one in test.redundancy for flag in one.flags()]
     gyradii: dict[str, Estimate] = (
-        {} if swung.gyradius is None else {table.axis: swung.gyradius.result}
+        {} if swung.gyradius is None else {test.table.axis: swung.gyradius.result}
     )
-    body, missing = properties(
-        table.name,
-        table.model,
-        gyradii,
-        take_off=table.take_off,
-        budgets=[swung.gyradius.budget] if swung.gyradius else [],
-        flags=flags,
-        centre=centre,
-    )
+    budgets = [] if swung.gyradius is None else [swung.gyradius.budget]
+    test.weigh(gyradii, budgets, once(test.flags))
     planes = {"pitch": Plane.VERTICAL, "yaw": Plane.HORIZONTAL}
-    return Outcome(
-        "pendulum",
-        table.name,
-        tuple(findings),
-        flags,
-        tuple(periods),
-        body,
-        missing,
-        table.plane or planes.get(table.axis),
-        compare(findings, table.targets),
-        swung.notes,
-        axes=swung.axes,
-        redundancy=(*swung.redundancy, *((centre.redundancy,) if centre else ())),
-    )
+    return test.outcome("pendulum", planes.get(test.table.axis), axes=swung.axes)
 
 
 @dataclass(frozen=True)
 class _Swung:
     """What a test gave: the gyradius about the file's axis, if it follows."""
 
-    findings: tuple[Finding, ...]
     gyradius: Assessment | None = None
     axes: PlaneAxes | None = None
-    notes: tuple[str, ...] = ()
-    redundancy: tuple[Redundancy, ...] = ()
 
 
-def _swing(job: Job[PendulumJob], periods: list[PeriodRuns]) -> _Swung:
+def _swing(test: Experiment[PendulumJob]) -> _Swung:
     """Do what the file has the geometry for."""
-    table = job.table
+    table = test.table
     if table.torsion is not None:
-        return _on_rod(job, table.torsion, periods)
+        return _on_rod(test, table.torsion)
     if table.depth_m is not None or table.second is not None:
-        return _on_axis(job, periods)
-    if table.period is None:
-        return _Swung(())
-    _period(job, periods, pendulum=False)
-    note = "no depth_m, second or torsion is given: period and decay are all that follows"
-    return _Swung(tuple(decay_findings(periods[0])), notes=(note,))
+        return _on_axis(test)
+    if table.period is not None:
+        _period(test, pendulum=False)
+        test.findings += decay_findings(test.periods[0])
+        test.notes.append(
+            "no depth_m, second or torsion is given: period and decay are all that follows"
+        )
+    return _Swung()
 
 
-def _on_axis(job: Job[PendulumJob], periods: list[PeriodRuns]) -> _Swung:
+def _on_axis(test: Experiment[PendulumJob]) -> _Swung:
     """About one axis at a known depth, or about two."""
-    table = job.table
+    table = test.table
     gravity, seed = gravity_of(table), table.monte_carlo_seed
-    first = _period(job, periods)
-    findings: list[Finding] = []
+    first = _period(test)
     if table.second is None:
         depth = given(table, "depth_m")
         own = compound_pendulum(first, depth, gravity, seed=seed)
     else:
-        second = read_period(job, table.second.period, "second.period", pendulum=True)
-        periods.append(second)
+        second = test.period(table.second.period, "second.period", pendulum=True).period
         apart = given(table.second, "apart_m")
-        below, own = lamboley(first, second.period, apart, gravity, seed=seed)
+        below, own = lamboley(first, second, apart, gravity, seed=seed)
         depth = below.budget.result
-        findings.append(assessed("depth_m", "CG below the first axis", below))
+        test.findings.append(assessed("depth_m", "CG below the first axis", below))
     name, words = f"k_{table.axis}_m", f"{table.axis} gyradius"
     if table.entrained_air is not None:
-        findings.append(assessed(f"k_{table.axis}_in_air_m", f"{words}, with its air", own))
+        in_air = assessed(f"k_{table.axis}_in_air_m", f"{words}, with its air", own)
+        test.findings.append(in_air)
         own = without_air(table, own, depth=depth, seed=seed + 2)
-    findings.append(assessed(name, words, own))
+    test.findings.append(assessed(name, words, own))
     mass = given_or_none(table.model, "mass_kg", "model")
     if mass is not None:
         inputs = {"mass_kg": mass, "gyradius_m": own.budget.result}
         about = assess("I", _inertia, inputs, unit="kg m2", seed=seed + 3)
-        findings.append(_about(table, about))
-    return _Swung(tuple(findings), own)
+        test.findings.append(_about(table, about))
+    return _Swung(own)
 
 
-def _on_rod(job: Job[PendulumJob], torsion: TorsionTable, periods: list[PeriodRuns]) -> _Swung:
+def _on_rod(test: Experiment[PendulumJob], torsion: TorsionTable) -> _Swung:
     """On a torsion rod: about the file's axis, or about several in the centre plane."""
-    table, seed = job.table, job.table.monte_carlo_seed
-    rod, findings = stiffness(job, torsion, periods, seed)
+    table, seed = test.table, test.table.monte_carlo_seed
+    rod = stiffness(test, torsion, seed)
     mass = given_or_none(table.model, "mass_kg", "model")
     if torsion.axes:
-        plane = in_plane(job, torsion, rod, periods)
-        found = (*findings, *plane.findings())
-        axes = None if mass is None else plane.ellipse(mass)
-        return _Swung(found, axes=axes, redundancy=(plane.inertia.redundancy,))
-    about = about_rod(rod, _period(job, periods, pendulum=False), seed + 1)
-    findings.append(_about(table, about))
+        plane = in_plane(test, torsion, rod)
+        return _Swung(axes=None if mass is None else plane.ellipse(mass))
+    about = about_rod(rod, _period(test, pendulum=False), seed + 1)
+    test.findings.append(_about(table, about))
     if mass is None:
-        return _Swung(tuple(findings))
+        return _Swung()
     inputs = {"inertia_kg_m2": about.budget.result, "mass_kg": mass}
     own = assess("k", _gyradius, inputs, unit="m", seed=seed + 2)
-    findings.append(assessed(f"k_{table.axis}_m", f"{table.axis} gyradius", own))
-    return _Swung(tuple(findings), own)
+    test.findings.append(assessed(f"k_{table.axis}_m", f"{table.axis} gyradius", own))
+    return _Swung(own)
 
 
-def _period(job: Job[PendulumJob], periods: list[PeriodRuns], *, pendulum: bool = True) -> Estimate:
-    source = job.table.period or PeriodSource()
-    periods.append(read_period(job, source, "period", pendulum=pendulum))
-    return periods[-1].period
+def _period(test: Experiment[PendulumJob], *, pendulum: bool = True) -> Estimate:
+    source = test.table.period or PeriodSource()
+    return test.period(source, "period", pendulum=pendulum).period
 
 
 def _about(table: PendulumJob, about: Assessment) -> Finding:

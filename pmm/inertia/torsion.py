@@ -12,9 +12,10 @@ from analysis.uncertainty.budget import derived
 from analysis.uncertainty.estimate import Estimate, exactly
 from analysis.uncertainty.monte_carlo import Assessment, assess
 from hardware.description.errors import DataError
+from pmm.inertia.experiment import Experiment
 from pmm.inertia.outcome import Finding, PlaneAxes, assessed
-from pmm.inertia.reading import Job, one_of
-from pmm.inertia.sources import AngledPeriod, PeriodRuns, PeriodSource, read_period
+from pmm.inertia.reading import one_of
+from pmm.inertia.sources import AngledPeriod, PeriodSource
 from pmm.inertia.stated_values import given
 
 
@@ -63,23 +64,20 @@ class TorsionTable:
             yield "axes", f"are {len(axes)}; roll, yaw and their product need three or more"
 
 
-def stiffness(
-    job: Job[Any], table: TorsionTable, periods: list[PeriodRuns], seed: int
-) -> tuple[Estimate, list[Finding]]:
+def stiffness(test: Experiment[Any], table: TorsionTable, seed: int) -> Estimate:
     """Return the rod's stiffness, as given or by its bar."""
     if table.bar is None:
-        return given(table, "stiffness_n_m_rad"), []
-    runs = read_period(job, table.bar.period, "torsion.bar.period")
-    periods.append(runs)
+        return given(table, "stiffness_n_m_rad")
     inputs = {key: given(table.bar, key) for key in ("mass_kg", "length_m", "diameter_m")}
-    inputs["period_s"] = runs.period
+    inputs["period_s"] = test.period(table.bar.period, "torsion.bar.period").period
 
     def rod(mass_kg: Value, length_m: Value, diameter_m: Value, period_s: Value) -> Value:
         square = length_m * length_m / 12.0 + diameter_m * diameter_m / 16.0
         return torsional_stiffness(mass_kg * square, period_s)
 
     found = assess("c", rod, inputs, unit="N m/rad", seed=seed)
-    return found.budget.result, [assessed("stiffness_n_m_rad", "torsion rod: stiffness", found)]
+    test.findings.append(assessed("stiffness_n_m_rad", "torsion rod: stiffness", found))
+    return found.budget.result
 
 
 def about_rod(rod: Estimate, period: Estimate, seed: int) -> Assessment:
@@ -135,10 +133,8 @@ def _gyradius(inertia: Estimate, mass: Estimate) -> Estimate:
     return derived("k", lambda about, mass: sqrt(about / mass), "m", about=inertia, mass=mass)
 
 
-def in_plane(
-    job: Job[Any], torsion: TorsionTable, rod: Estimate, periods: list[PeriodRuns]
-) -> TorsionPlane:
-    """Return the inertia in the x-z plane from several axes.
+def in_plane(test: Experiment[Any], torsion: TorsionTable, rod: Estimate) -> TorsionPlane:
+    """Return the inertia in the x-z plane from several axes, among the test's findings too.
 
     Raises
     ------
@@ -149,11 +145,13 @@ def in_plane(
     angles, about = [], []
     common = torsion.u_common_angle_rad + math.radians(torsion.u_common_angle_deg)
     for number, one in enumerate(torsion.axes, 1):
-        runs = read_period(job, one, f"torsion.axes[{number}]")
-        periods.append(runs)
+        runs = test.period(one, f"torsion.axes[{number}]")
         angles.append(one.angle.widened(common, label="torsion.common_angle"))
         inputs = {"stiffness_n_m_rad": stiff, "period_s": runs.period}
         about.append(derived("I", torsional_inertia, "kg m2", **inputs))
     found = plane_inertia(about, angles).scaled(rod.following(1.0, 1.0 / rod.value))
     measured = tuple((angle.value, own) for angle, own in zip(angles, about, strict=True))
-    return TorsionPlane(found, measured)
+    plane = TorsionPlane(found, measured)
+    test.findings += plane.findings()
+    test.redundancy.append(found.redundancy)
+    return plane

@@ -1,0 +1,145 @@
+"""The shape of every job that swings or hangs a body: read, measure, gather, conclude."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Generic, TypeVar
+
+from analysis.inertia.hanging import HangingCentre
+from analysis.inertia.result import InertiaResult
+from analysis.uncertainty.budget import Budget
+from analysis.uncertainty.estimate import Estimate
+from analysis.uncertainty.redundancy import Redundancy
+from hardware.description.flags import Flag
+from hardware.description.oscillator import Plane
+from pmm.inertia.job_table import JobTable
+from pmm.inertia.outcome import Finding, Outcome, PlaneAxes, StaticTest, compare, once
+from pmm.inertia.properties import properties
+from pmm.inertia.reading import Job, read_job
+from pmm.inertia.sources import PeriodRuns, read_period
+from pmm.inertia.stated_values import flags_of
+
+TableT = TypeVar("TableT", bound=JobTable)
+
+
+@dataclass
+class Experiment(Generic[TableT]):
+    """What a job has found so far, and the outcome that it ends in.
+
+    Attributes
+    ----------
+    missing
+        What the mass properties lack while ``body`` is ``None``.
+    centre
+        Of gravity by plumb lines, once they are asked for.
+    """
+
+    job: Job[TableT]
+    findings: list[Finding] = field(default_factory=list)
+    flags: list[Flag] = field(default_factory=list)
+    periods: list[PeriodRuns] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    redundancy: list[Redundancy] = field(default_factory=list)
+    statics: list[StaticTest] = field(default_factory=list)
+    centre: HangingCentre | None = None
+    body: InertiaResult | None = None
+    missing: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, path: str, kind: type[TableT]) -> "Experiment[TableT]":
+        """Read a job's file; its stated air and gravity may have flags already.
+
+        Raises
+        ------
+        ConfigurationError
+            If the file is wrong.
+        """
+        job = read_job(path, kind)
+        return cls(job, flags=[*flags_of(job.table)])
+
+    @property
+    def table(self) -> TableT:
+        """What the job's file says."""
+        return self.job.table
+
+    def period(self, source: Any, where: str, *, pendulum: bool = False) -> PeriodRuns:
+        """Read a period of the file, with its flags.
+
+        Raises
+        ------
+        ConfigurationError, DataError
+            If it is not there, or its records do not carry it.
+        """
+        runs = read_period(self.job, source, where, pendulum=pendulum)
+        self.periods.append(runs)
+        self.flags += runs.flags
+        return runs
+
+    def plumb(self) -> None:
+        """Take the centre of gravity from the plumb lines, where the file has them."""
+        if self.table.hanging is None:
+            return
+        self.centre = self.table.hanging.centre()
+        self.findings += [
+            Finding("cg_x_m", "CG forward of the datum, by plumb lines", self.centre.x),
+            Finding("cg_z_m", "CG below the datum, by plumb lines", self.centre.z),
+        ]
+        self.flags += self.centre.redundancy.flags()
+
+    def weigh(
+        self,
+        gyradii: Mapping[str, Estimate],
+        budgets: Sequence[Budget],
+        flags: Sequence[Flag],
+        cg_z: Estimate | None = None,
+    ) -> None:
+        """Bring gyradii by axis, mass and centre of gravity together, or note what is missing."""
+        self.body, self.missing = properties(
+            self.table.name,
+            self.table.model,
+            gyradii,
+            take_off=self.table.take_off,
+            budgets=budgets,
+            flags=flags,
+            centre=self.centre,
+            cg_z=cg_z,
+        )
+
+    def outcome(
+        self,
+        name: str,
+        plane: Plane | None,
+        *,
+        next_step: str | None = None,
+        axes: PlaneAxes | None = None,
+    ) -> Outcome:
+        """Return all that was found, held against the file's targets.
+
+        Parameters
+        ----------
+        name
+            Of the job: ``swing``, ``bifilar`` or ``pendulum``.
+        plane
+            That was measured; the file may name another one.
+
+        Raises
+        ------
+        ConfigurationError
+            If a target names what was not found.
+        """
+        table, centre = self.table, self.centre
+        return Outcome(
+            name,
+            table.name,
+            tuple(self.findings),
+            once(self.flags),
+            tuple(self.periods),
+            self.body,
+            self.missing,
+            table.plane or plane,
+            compare(self.findings, table.targets),
+            tuple(self.notes),
+            next_step,
+            axes=axes,
+            statics=tuple(self.statics),
+            redundancy=(*self.redundancy, *((centre.redundancy,) if centre else ())),
+        )
