@@ -45,7 +45,7 @@ def carried_out_until(
     decisions = read_decisions(found.folder)
     if decisions:
         show(sequential_document(file.name, found.folder, decisions), as_json=as_json)
-    if not as_json:
+    if decisions and decisions[-1].runs and not as_json:
         say(pasted("report", found.folder))
     return found.report
 

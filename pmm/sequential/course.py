@@ -6,7 +6,7 @@ interrupted goes on from it.
 
 from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, Protocol
 
@@ -15,9 +15,8 @@ from pmm.run.session import Course, RunJob
 from pmm.sequential.approval import Approval
 from pmm.sequential.look import Decision, Ending, Look, keep_decision
 
-_YES: Final = ("y", "yes")
-_NO: Final = ("n", "no")
-_APPROVE: Final = "Approve of these runs? [y/n]"
+_FIRST: Final = "Approve of these runs? y: yes, n: no, and end"
+_CHANGE: Final = "Approve of these runs? y: yes, k: keep the plan as it was, n: no, and end"
 _BY_OPERATOR: Final = "the operator"
 
 
@@ -64,18 +63,17 @@ class CampaignCourse:
         ConfigurationError, PlanRefusedError
             If a file is wrong, or the rig refuses a run; nothing is made of it then.
         """
-        refused = bool(self.approval.question) and not (
-            yield from self._asked(self.approval.question)
-        )
+        question = self.approval.question
+        if question and (yield from self._asked(question, "yn")) == "n":
+            return
         self.approval.begin()
-        while not refused:
+        while True:
             look = yield from self._looked()
             self.show(look)
-            who = yield from self._approved(look)
-            refused = who is None
-            decision = look.decision(who or "", Ending.REJECTED if refused else None)
+            look, who = yield from self._decided(look)
+            decision = look.decision(who)
             keep_decision(self.folder, decision)
-            due = () if refused else self.goal.plan(look)
+            due = () if look.ending is Ending.REJECTED else self.goal.plan(look)
             if not due:
                 self.ended = decision
                 return
@@ -89,19 +87,22 @@ class CampaignCourse:
             yield None
         return future.result()
 
-    def _approved(self, look: Look) -> Generator[None, None, str | None]:
-        """Return who approves of what is proposed; ``None`` where nobody does."""
+    def _decided(self, look: Look) -> Generator[None, None, tuple[Look, str]]:
+        """Return what is decided on what is proposed, and by whom."""
         if not look.proposed:
-            return ""
+            return look, ""
         if self.approval.covers(look.proposed):
-            return self.approval.name
-        return _BY_OPERATOR if (yield from self._asked(_APPROVE)) else None
+            return look, self.approval.name
+        question = _CHANGE if look.before else _FIRST
+        answer = yield from self._asked(question, "ykn" if look.before else "yn")
+        decided = {"y": look, "k": look.as_before, "n": replace(look, ending=Ending.REJECTED)}
+        return decided[answer], _BY_OPERATOR
 
-    def _asked(self, question: str) -> Generator[None, None, bool]:
-        """Return what the operator answers: yes or no, asked until it is either."""
+    def _asked(self, question: str, letters: str) -> Generator[None, None, str]:
+        """Return what the operator answers: one of some letters, asked until it is one."""
         while True:
             answer = self.answers(question)
             if answer is None:
                 yield None
-            elif answer.lower() in (*_YES, *_NO):
-                return answer.lower() in _YES
+            elif answer[:1].lower() in tuple(letters):
+                return answer[0].lower()

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Final
@@ -98,6 +98,8 @@ class Look:
         Planned runs that stay; none where ``proposed`` takes their place.
     proposed
         Runs that are to be planned anew, not named yet.
+    before, before_s
+        Planned runs that ``proposed`` would take the place of, and their tank time.
     ending
         ``None`` where the campaign goes on.
     """
@@ -108,13 +110,22 @@ class Look:
     kept: tuple[RunPlan, ...] = ()
     proposed: tuple[RunPlan, ...] = ()
     left_s: float = 0.0
+    before: tuple[RunPlan, ...] = ()
+    before_s: float = 0.0
     ending: Ending | None = None
     remark: str = ""
     notes: tuple[str, ...] = ()
 
-    def decision(self, approved: str = "", ending: Ending | None = None) -> Decision:
+    @property
+    def as_before(self) -> "Look":
+        """The same with the plan as it was."""
+        return replace(
+            self, kept=self.before, proposed=(), left_s=self.before_s, remark="the plan stays"
+        )
+
+    def decision(self, approved: str = "") -> Decision:
         """Return it as it is kept."""
-        ended = ending or self.ending
+        ended = self.ending
         return Decision(
             self.runs, self.time_s, self.known, tuple(one.name for one in self.kept),
             tuple(map(in_words, self.proposed)), self.left_s, approved,

@@ -90,8 +90,7 @@ class TargetGoal:
             If the folder's plan or campaign file is wrong.
         """
         standing = self._standing()
-        file = self._going_on(standing)
-        found, hopeless = _designed(file)
+        file, found, hopeless = _designed(self._going_on(standing))
         notes = (
             *(f"{name} cannot be used: {why}" for name, why in standing.unusable.items()),
             *(why for why, one in hopeless),
@@ -117,7 +116,9 @@ class TargetGoal:
         why = self._why_new(found, file, left, new_s, left_s)
         if not why or not new:
             return replace(look, kept=tuple(left), left_s=left_s)
-        return replace(look, proposed=new, left_s=new_s, remark=why)
+        return replace(
+            look, proposed=new, left_s=new_s, before=tuple(left), before_s=left_s, remark=why
+        )
 
     def _why_new(
         self, found: Design, file: DesignFile, left: Sequence[RunPlan], new_s: float, left_s: float
@@ -183,21 +184,23 @@ def _offered(left: Sequence[RunPlan], file: DesignFile) -> Sequence[RunPlan]:
     return left if all((run.set_point, run.periods) in offered for run in left) else ()
 
 
-def _designed(file: DesignFile) -> tuple[Design, list[tuple[str, ExpectedCoefficient]]]:
-    """Return the design for the targets that runs can meet, and the others with the reason."""
+def _designed(
+    file: DesignFile,
+) -> tuple[DesignFile, Design, list[tuple[str, ExpectedCoefficient]]]:
+    """Return the file with the targets that runs can meet, its design, and why not the others."""
     hopeless: list[tuple[str, ExpectedCoefficient]] = []
     while True:
         found = design(file)
         short = zip([one for one in found.known if not one.met], found.why, strict=True)
         bad = [(why, one) for one, why in short if math.isfinite(one.wanted) and beyond_runs(one)]
         if not bad:
-            return found, hopeless
+            return file, found, hopeless
         now = {(one.name, one.where): one for one in found.now}
         hopeless += [(why, now.get((one.name, one.where), one)) for why, one in bad]
         names = {one.name for _, one in bad}
         targets = tuple(one for one in file.targets if one.name not in names)
         if not targets:
-            return replace(found, steps=(), why=()), hopeless
+            return file, Design((), (), (), ()), hopeless
         file = replace(file, targets=targets)
 
 

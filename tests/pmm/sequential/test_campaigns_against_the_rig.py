@@ -118,6 +118,18 @@ def test_what_no_run_lowers_ends_the_campaign_before_it_begins(tmp_path: Path) -
     assert all("which no run lowers" in one for one in told["decisions"][-1]["notes"])
 
 
+def test_one_target_beyond_all_runs_leaves_the_others(tmp_path: Path) -> None:
+    design = written(tmp_path, more="Z_wdot = 0.2\n[stated]\nmass_kg = 0.5\n")
+    told = made(design, tmp_path / "c")
+    assert told["ending"] == "nothing left would help"
+    last = told["decisions"][-1]
+    assert last["remark"] == "all other targets are met"
+    assert [one["standard_uncertainty"] <= one["wanted"] for one in last["known"]] == [
+        one["name"] != "Z_wdot" for one in last["known"]
+    ]
+    assert sum(bool(one["added"]) for one in told["decisions"]) == 1
+
+
 def test_a_run_that_cannot_be_used_is_said_and_the_campaign_goes_on(
     whole: tuple[Path, Any], copied: Path
 ) -> None:

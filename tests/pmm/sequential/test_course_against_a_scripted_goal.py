@@ -83,6 +83,15 @@ def test_a_no_ends_it_and_writes_no_plan(tmp_path: Path) -> None:
     assert course.ended.ending == "the operator did not approve"
 
 
+def test_the_plan_stays_as_it_was_on_demand(tmp_path: Path) -> None:
+    other = Look(("a",), 10.0, (), proposed=(ONE, ONE), left_s=20.0, before=(ONE,), before_s=9.0)
+    goal = Scripted(tmp_path, [FIRST, other, LAST])
+    assert _jobs(_course(goal, "k\ny\nk\n")) == [("next",), ("next",)]  # no k at the first plan
+    kept = read_decisions(tmp_path)[1]
+    assert (kept.added, len(kept.kept), kept.left_s) == ((), 1, 9.0)
+    assert kept.approved == "the operator"
+
+
 def test_who_does_not_attend_gets_no_envelope(tmp_path: Path) -> None:
     path = tmp_path / "envelope.toml"
     path.write_text(
