@@ -21,7 +21,7 @@ from tests.pmm.sequential.campaigns import EXAMPLE, made, until, written
 def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Any]:
     """A campaign that has ended, in ``c`` beside its design, and what it told."""
     place = tmp_path_factory.mktemp("whole")
-    return place, made(written(place, repeat=0.005), place / "c")
+    return place, made(written(place, repeat=0.004), place / "c")
 
 
 @pytest.fixture
