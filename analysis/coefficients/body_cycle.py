@@ -76,6 +76,8 @@ class BodyCycle:
         Where coefficients are wanted, ahead of the midpoint.
     drift_rad
         Steady heading of the model against the carriage's way, bow to starboard (bow up).
+    rudder_rad
+        Angle at which the rudder is laid, positive to turn to starboard; 0 where there is none.
     arrangement
         Of the rig, by which motion and loads were made of what was read.
     readings
@@ -101,6 +103,7 @@ class BodyCycle:
     tare: Tare = field(default_factory=Tare)
     arrangement: Arrangement = field(default_factory=Arrangement)
     readings: ComplexArray = field(default_factory=_unread)
+    rudder_rad: float = 0.0
 
     @property
     def has_surge(self) -> bool:

@@ -31,6 +31,7 @@ STATIC_DRIFT = "static drift"
 SURGE_FORCES = "surge"
 
 _LEFT_OUT = "other motion left out"
+_LINEAR_ANGLES = 4  # of the rudder; more of them tell what is cubic
 _MOVES = 0.05  # of the larger motion at the struts: less tells nothing of its terms
 
 
@@ -215,15 +216,17 @@ def static_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
     """Return the loads over drift (or trim) angles, straight tows among them.
 
     Force and moment take the form that the data support, and what they misfit it by widens their
-    intervals; X is the resistance and, where the model was turned, quadratic.
+    intervals; X is the resistance and, where the model was turned, quadratic. A rudder that was
+    laid adds its own terms, as mirrored runs mirror the loads: odd ones, in X even ones.
     """
     plane, speed = cycles[0].plane, cycles[0].speed_m_s
+    odd, even = _rudder_factors(cycles)
     group = GroupFits()
     fits, missing = group.fits, group.missing
     for row in (0, 1):
-        forms = forms_of(plane, row, "v", steady=True)
+        forms = forms_of(plane, row, "v", steady=True, rudder=odd)
         try:
-            choice, richest = choose_form(cycles, row, "v", STATIC, steady=True)
+            choice, richest = choose_form(cycles, row, "v", STATIC, steady=True, rudder=odd)
         except DataError as error:
             missing += [Missing(name, f"{STATIC_DRIFT}: {error}") for name in forms[LINEAR_FORM]]
             continue
@@ -235,6 +238,21 @@ def static_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
     if all(cycle.has_surge for cycle in cycles):
         letter = VELOCITY_LETTERS[plane][0]
         turned = any(round(cycle.drift_rad, 6) for cycle in cycles)
-        names = ["X_0", f"X_{letter * 2}"] if turned else ["X_0"]
+        names = ["X_0", *([f"X_{letter * 2}"] if turned else []), *(f"X_{one}" for one in even)]
         _try_surge(group, cycles, names, STATIC, request)
     return group
+
+
+def _rudder_factors(cycles: Sequence[BodyCycle]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the factors of the rudder's terms that static runs may tell: odd ones, even ones."""
+    v = VELOCITY_LETTERS[cycles[0].plane][0]
+    angles = {round(cycle.rudder_rad, 4) for cycle in cycles}
+    if angles == {0.0}:
+        return (), ()
+    drifts = {round(cycle.drift_rad, 4) for cycle in cycles if round(cycle.rudder_rad, 4)}
+    cubic = ("ddd",) if len(angles) > _LINEAR_ANGLES else ()
+    turned = bool(drifts - {0.0})
+    return (
+        ("d", *cubic, *((f"{v}{v}d",) if turned else ())),
+        ("dd", *((f"{v}d",) if turned else ())),
+    )

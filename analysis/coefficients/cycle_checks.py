@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from analysis.coefficients.body_cycle import BodyCycle
-from analysis.coefficients.cycle_model import CycleProblem
-from analysis.coefficients.terms import SURGE, Term, name_of_term
+from analysis.coefficients.cycle_model import MOVES, CycleProblem
+from analysis.coefficients.terms import RUDDER_LETTER, SURGE, Term, name_of_term
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.setpoint import Medium
 
@@ -100,11 +100,14 @@ def _typical(term: Term, problem: CycleProblem) -> float:
     pace = float(max(across, half * turn))
     omega = 2.0 * np.pi * max(cycle.frequency_hz for cycle in problem.cycles)
     turning = sum("r" in factor.replace("dot", "") for factor in term.factors)
-    return float(pace**term.degree * omega**term.rates / half**turning)
+    laid = float(np.abs(problem.moved[:, MOVES.index(RUDDER_LETTER)]).max()) ** term.rudders
+    return float(laid * pace**term.degree * omega**term.rates / half**turning)
 
 
 def _remedy(terms: Sequence[Term], problem: CycleProblem) -> str:
     """Return which run would tell terms apart, or from nothing."""
+    if any(term.rudders for term in terms):
+        return "runs with the rudder laid at other angles"
     if not any(cycle.frequency_hz > 0.0 for cycle in problem.cycles):
         return "static runs at another drift angle"
     letters = {f.replace("dot", "").strip("|") for term in terms for f in term.factors}

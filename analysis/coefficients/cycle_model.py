@@ -219,14 +219,15 @@ class CycleProblem:
         return (_AHEAD, 0), (across, first), (_ROTATION, 1), (across, first + 1), (_ROTATION, 2)
 
     def moves(self, parts: FloatArray) -> FloatArray:
-        """Return :data:`MOVES` over the cycles, shape ``(..., cycles, 5, instants)``."""
+        """Return :data:`MOVES` over the cycles, shape ``(..., cycles, 6, instants)``."""
         shaped = self._shaped(parts)
         pace = self._omega * (1.0 + parts[..., -1])
         moves = []
         for channel, times in self._made_of:
             own = shaped[..., channel, :].reshape(*parts.shape[:-1], -1)
             moves.append((pace**times)[..., None] * (own @ basis(self.highest + 1, times)))
-        return np.stack(moves, axis=-2)
+        rudder = np.array([cycle.rudder_rad for cycle in self.cycles])[:, None]
+        return np.stack((*moves, np.broadcast_to(rudder, moves[0].shape)), axis=-2)
 
     def residual_slopes(self, values: FloatArray, row: int) -> FloatArray:
         """Return how one load's residuals follow a cycle's numbers, terms' values held.
@@ -268,7 +269,7 @@ class CycleProblem:
 
     @cached_property
     def _slopes(self) -> FloatArray:
-        """How the terms follow the moves, ``(cycles, terms, 5, instants)``."""
+        """How the terms follow the moves, ``(cycles, terms, 6, instants)``."""
         return slopes_of(self.terms, self.moved)
 
     def _load_slope(self, row: int) -> FloatArray:
@@ -281,7 +282,8 @@ class CycleProblem:
     def _by_numbers(self, over: FloatArray) -> FloatArray:
         """Return what changes per move and instant are per number: the moves' own slope after.
 
-        Shape ``(cycles, k, 5, instants)`` to ``(cycles, k, numbers)``.
+        The rudder is none of a cycle's numbers. Shape ``(cycles, k, 6, instants)`` to
+        ``(cycles, k, numbers)``.
         """
         count = self.highest + 1
         slopes = np.zeros((*over.shape[:2], count, len(CHANNELS), 2))

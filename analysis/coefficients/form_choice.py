@@ -36,7 +36,13 @@ _DESCRIBES = 3.0  # squares left over by the richest form, for each degree of fr
 
 
 def forms_of(
-    plane: Plane, row: int, motions: str, *, cross: bool = True, steady: bool = False
+    plane: Plane,
+    row: int,
+    motions: str,
+    *,
+    cross: bool = True,
+    steady: bool = False,
+    rudder: Sequence[str] = (),
 ) -> Mapping[str, tuple[str, ...]]:
     """Return the terms of each form of one load.
 
@@ -48,6 +54,8 @@ def forms_of(
         Whether terms of both motions together are among them, where the runs move in both.
     steady
         Whether the runs are static: a constant stands where there is no acceleration.
+    rudder
+        Factors of terms of the rudder, which every form has.
     """
     v, r = tuple(VELOCITY_LETTERS[plane])
     load = name_of_term(term_of(linear_terms(plane, (row,))[0], plane), plane)[0]
@@ -57,6 +65,7 @@ def forms_of(
         if steady
         else tuple(name for name in linear_terms(plane, (row,)) if name[2] in own)
     )
+    linear += tuple(f"{load}_{factors}" for factors in rudder)
     cubic = tuple(f"{load}_{letter * 3}" for letter in own)
     quadratic = tuple(f"{load}_{letter}|{letter}|" for letter in own)
     if len(own) == 2 and cross:
@@ -78,6 +87,7 @@ def choose_form(
     *,
     cross: bool = True,
     steady: bool = False,
+    rudder: Sequence[str] = (),
 ) -> tuple[FormChoice, CycleFit]:
     """Return which form of one load the cycles support, and the fit of the richest.
 
@@ -85,7 +95,7 @@ def choose_form(
     ----------
     row
         0 force, 1 moment.
-    motions, cross, steady
+    motions, cross, steady, rudder
         As in :func:`forms_of`.
 
     Raises
@@ -93,7 +103,8 @@ def choose_form(
     DataError
         If not even the linear terms are determined.
     """
-    forms = forms_of(cycles[0].plane, row, motions, cross=cross, steady=steady)
+    plane = cycles[0].plane
+    forms = forms_of(plane, row, motions, cross=cross, steady=steady, rudder=rudder)
     fits = {LINEAR_FORM: fit_cycles(cycles, forms[LINEAR_FORM], orders)}
     for form in [form for form in forms if form != LINEAR_FORM]:
         try:

@@ -111,7 +111,8 @@ def _serves(coefficients: CampaignCoefficients, entry: CoefficientEntry, *, curv
     if coefficients.form is Form.SEAKEEPING and not curved:
         names = [name_of(place, coefficients.plane, Form.MANOEUVRING) for place in PLACES]
         return entry.name not in names  # the same again in the other form
-    if term_of(entry.name, coefficients.plane).degree < 2:
+    term = term_of(entry.name, coefficients.plane)
+    if term.degree < 2 or term.rudders:  # every form has these
         return True
     choices = coefficients.choices_of(entry.name, entry.runs)
     return all(choice.fitted == choice.verdict != LINEAR_FORM for choice in choices)

@@ -1,7 +1,7 @@
 """Terms over a cycle: products of factors, and how they follow each motion.
 
 The factors are the velocities through the water along (u), across (v) and turning (r), and the
-rates of the latter two, at each instant of the averaged cycle.
+rates of the latter two, at each instant of the averaged cycle, and the rudder's angle (d).
 """
 
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ import numpy as np
 from analysis.coefficients.terms import Term
 from hardware.description.arrays import FloatArray
 
-MOVES = ("u", "v", "r", "vdot", "rdot")
+MOVES = ("u", "v", "r", "vdot", "rdot", "d")
 
 
 def waves_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
@@ -22,7 +22,7 @@ def waves_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
     Parameters
     ----------
     moves
-        :data:`MOVES`, shape ``(..., 5, instants)``.
+        :data:`MOVES`, shape ``(..., 6, instants)``.
     """
     waves = np.empty((*moves.shape[:-2], len(terms), moves.shape[-1]))
     for k, term in enumerate(terms):
@@ -31,7 +31,7 @@ def waves_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
 
 
 def slopes_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
-    """Return how each term follows each motion, shape ``(..., terms, 5, instants)``."""
+    """Return how each term follows each motion, shape ``(..., terms, 6, instants)``."""
     slopes = np.zeros((*moves.shape[:-2], len(terms), len(MOVES), moves.shape[-1]))
     for k, term in enumerate(terms):
         factors = [_factor(factor, moves) for factor in term.factors]

@@ -1,8 +1,9 @@
 """Terms of a manoeuvring model: ``Y_vvr`` is the coefficient of v v r in Y, without factorials.
 
 A name is a load, an underscore and factors: velocities (``u``, ``v``, ``r`` or ``u``, ``w``,
-``q``), their rates (``vdot``, ``rdot``) and sizes (``|v|``, ``|r|``); ``0`` alone is the
-constant, which others write ``*``. X takes the same.
+``q``), their rates (``vdot``, ``rdot``), sizes (``|v|``, ``|r|``) and the rudder's angle ``d`` in
+radians; ``0`` alone is the constant, which others write ``*``. X takes the same. ``Y_d`` and
+``X_vd`` are those of one speed.
 """
 
 import re
@@ -15,6 +16,7 @@ from hardware.description.oscillator import Plane
 LOAD_WORDS = ("force", "moment", "surge force")
 LOAD_LETTERS = {Plane.VERTICAL: "ZM", Plane.HORIZONTAL: "YN"}
 AHEAD_LETTER = "u"
+RUDDER_LETTER = "d"
 VELOCITY_LETTERS = {Plane.VERTICAL: "wq", Plane.HORIZONTAL: "vr"}
 SURGE = 2  # row of X
 
@@ -32,7 +34,7 @@ class Term:
         0 force, 1 moment, 2 surge force.
     factors
         ``"v"``, ``"vdot"``, ``"|v|"`` for the translation, ``"r"``, ``"rdot"``, ``"|r|"`` for the
-        rotation and ``"u"`` ahead, in either plane; none for the constant.
+        rotation, ``"u"`` ahead and ``"d"`` of the rudder, in either plane; none for the constant.
     """
 
     row: int
@@ -50,8 +52,13 @@ class Term:
 
     @property
     def degree(self) -> int:
-        """Number of factors: 1 linear, 2 quadratic, 3 cubic."""
-        return len(self.factors)
+        """Number of velocities and rates among the factors: 1 linear, 2 quadratic, 3 cubic."""
+        return len(self.factors) - self.rudders
+
+    @property
+    def rudders(self) -> int:
+        """How often the rudder's angle is a factor."""
+        return sum(factor.strip("|") == RUDDER_LETTER for factor in self.factors)
 
     @property
     def unit(self) -> str:
@@ -77,17 +84,19 @@ def term_of(name: str, plane: Plane) -> Term:
     ConfigurationError
         If it means none in this plane.
     """
-    velocities, loads = VELOCITY_LETTERS[plane] + AHEAD_LETTER, LOAD_LETTERS[plane] + "X"
+    velocities = VELOCITY_LETTERS[plane] + AHEAD_LETTER + RUDDER_LETTER
+    loads = LOAD_LETTERS[plane] + "X"
     match = _WORD.fullmatch(name)
     letters = {letter.strip("|")[0] for letter in _FACTOR.findall(match[2])} if match else set()
-    if match is None or match[1] not in loads or not letters <= set(velocities):
+    strange = not letters <= set(velocities) or (match is not None and "ddot" in match[2])
+    if match is None or match[1] not in loads or strange:
         example = "Y_v, Y_vvr, N_r|v|, X_vr" if plane is Plane.HORIZONTAL else "Z_w, Z_w|w|, M_qqq"
         raise ConfigurationError(
             f"{name!r} is no term in the {plane} plane: a load of {', '.join(loads)}, an "
             f"underscore and factors of {velocities[0]} and {velocities[1]}; for example {example}"
         )
     row = loads.index(match[1])
-    common = dict(zip(velocities, "vr" + AHEAD_LETTER, strict=True))
+    common = dict(zip(velocities, "vr" + AHEAD_LETTER + RUDDER_LETTER, strict=True))
     factors = [
         re.sub("^(\\|?)[a-z]", lambda m, f=f: m[1] + common[f.strip("|")[0]], f)  # type: ignore[misc]
         for f in _FACTOR.findall(match[2])

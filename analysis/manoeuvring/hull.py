@@ -42,6 +42,12 @@ class HullLoads:
     values: Mapping[str, FloatArray]
 
     def __post_init__(self) -> None:
+        steered = [name for name in self.values if term_of(name, Plane.HORIZONTAL).rudders]
+        if steered:
+            raise ConfigurationError(
+                f"{', '.join(steered)}: terms of the rudder's angle are not taken beside the "
+                "rudder of [rudder]; leave them out"
+            )
         missing = [name for name in NEEDED if name not in self.values]
         if missing:
             raise ConfigurationError(

@@ -159,7 +159,7 @@ def _model(task: Task, struts: StrutCycle) -> BodyCycle:
     }
     if responses:
         struts = struts.without_response(responses)
-    return struts.model()
+    return replace(struts.model(), rudder_rad=task.set_point.rudder_angle_rad)
 
 
 def response_of(one: AmplifierTable) -> Response:

@@ -22,8 +22,8 @@ from pmm.campaign.runs import AtRest, Run
 from pmm.coefficients.settings import AmplifierTable
 
 _STEERED = (
-    "its rudder is laid, or its propeller turns at another rate than in most runs; `pmm steering` "
-    "takes such tows"
+    "it oscillates with a laid rudder, or its propeller turns at another rate than in most runs; "
+    "`pmm steering` takes such tows"
 )
 TOWED = (RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW)
 
@@ -188,8 +188,8 @@ def work_of(
     Parameters
     ----------
     steered
-        Whether runs with a laid rudder, or with revolutions that most runs do not have, are wanted
-        and not those of the hull as it mostly ran.
+        Whether all runs with a propeller or a rudder are wanted, and not those of the ship as it
+        mostly ran.
     """
     settings = replace(campaign.analysis, harmonics=harmonics, gate_periods=None)
     zeros: list[Task] = []
@@ -234,7 +234,8 @@ def _other_steering(one: Run | AtRest, usual_hz: float, *, steered: bool) -> str
     """Say why a run's rudder or propeller is not as it is wanted, as :func:`_why_not` does."""
     if steered:
         return None if one.rudder_angle_rad or one.revolutions_hz else ""
-    return _STEERED if one.rudder_angle_rad or one.revolutions_hz != usual_hz else None
+    laid = one.rudder_angle_rad and one.kind.oscillates
+    return _STEERED if laid or one.revolutions_hz != usual_hz else None
 
 
 def _why_not(one: Run | AtRest, leave_out: Sequence[str]) -> str | None:

@@ -12,7 +12,9 @@ from analysis.coefficients.terms import SURGE, Term, name_of_term, term_of
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Plane
 
-factors = st.lists(st.sampled_from(["v", "r", "vdot", "rdot", "|v|", "|r|"]), max_size=4)
+factors = st.lists(
+    st.sampled_from(["v", "r", "vdot", "rdot", "|v|", "|r|", "d", "|d|"]), max_size=4
+)
 
 
 @given(st.integers(0, 1), factors, st.sampled_from(list(Plane)))
@@ -26,13 +28,14 @@ def test_a_name_and_its_term_are_a_pair(row: int, parts: list[str], plane: Plane
     [("Y_v", "N s/m"), ("Y_vdot", "kg"), ("N_vdot", "kg m"), ("N_rdot", "kg m2"), ("N_r", "N m s"),
      ("Y_r", "N s"), ("N_v", "N s"), ("Y_vvv", "N s3/m3"), ("Y_v|v|", "N s2/m2"),
      ("Y_vvr", "N s3/m2"), ("N_vvv", "N s3/m2"), ("N_rrr", "N m s3"), ("X_vr", "N s2/m"),
-     ("Y_0", "N"), ("N_0", "N m")],
+     ("Y_0", "N"), ("N_0", "N m"), ("Y_d", "N"), ("N_d", "N m"), ("X_dd", "N"), ("Y_vd", "N s/m"),
+     ("N_vvd", "N s2/m"), ("Y_rd", "N s")],
 )  # fmt: skip
 def test_units(name: str, unit: str) -> None:
     assert term_of(name, Plane.HORIZONTAL).unit == unit
 
 
-@pytest.mark.parametrize("name", ["Y_w", "Z_v", "Yv", "Y_vv0", "K_v", "Y_", "Y_dot"])
+@pytest.mark.parametrize("name", ["Y_w", "Z_v", "Yv", "Y_vv0", "K_v", "Y_", "Y_dot", "Y_ddot"])
 def test_what_is_no_term_is_refused(name: str) -> None:
     with pytest.raises(ConfigurationError, match="is no term in the horizontal plane"):
         term_of(name, Plane.HORIZONTAL)
@@ -45,27 +48,28 @@ def test_x_is_a_load_in_both_planes() -> None:
 
 
 def test_waves_are_products() -> None:
-    moves = np.array([[2.0, 4.0], [1.0, -2.0], [3.0, 0.5], [5.0, 7.0], [11.0, 13.0]])
-    names = ("Y_vvr", "Y_v|r|", "Y_rdot", "Y_0", "Y_uv")
+    moves = np.array([[2.0, 4.0], [1.0, -2.0], [3.0, 0.5], [5.0, 7.0], [11.0, 13.0],
+                      [0.5, 0.5]])  # fmt: skip
+    names = ("Y_vvr", "Y_v|r|", "Y_rdot", "Y_0", "Y_uv", "Y_vd")
     terms = [term_of(name, Plane.HORIZONTAL) for name in names]
-    expected = [[3.0, 2.0], [3.0, -1.0], [11.0, 13.0], [1.0, 1.0], [2.0, -8.0]]
+    expected = [[3.0, 2.0], [3.0, -1.0], [11.0, 13.0], [1.0, 1.0], [2.0, -8.0], [0.5, -1.0]]
     np.testing.assert_allclose(waves_of(terms, moves), expected)
 
 
-words = st.sampled_from(["u", "v", "r", "vdot", "rdot", "|v|", "|r|", "|u|"])
+words = st.sampled_from(["u", "v", "r", "vdot", "rdot", "|v|", "|r|", "|u|", "d"])
 away_from_zero = st.one_of(st.floats(0.1, 3.0), st.floats(-3.0, -0.1))  # corners have no slope
 
 
 @given(
     st.lists(st.lists(words, max_size=4), min_size=1, max_size=3),
-    st.lists(away_from_zero, min_size=10, max_size=10),
+    st.lists(away_from_zero, min_size=12, max_size=12),
 )
 def test_slopes_are_what_small_steps_show(factors: list[list[str]], at: list[float]) -> None:
     terms = [Term(0, tuple(one)) for one in factors]
-    moves, step = np.array(at).reshape(5, 2), 1e-4
-    shown = np.empty((len(terms), 5, 2))
-    for k in range(5):
-        change = step * np.eye(5)[:, k, None]
+    moves, step = np.array(at).reshape(6, 2), 1e-4
+    shown = np.empty((len(terms), 6, 2))
+    for k in range(6):
+        change = step * np.eye(6)[:, k, None]
         shown[:, k] = (waves_of(terms, moves + change) - waves_of(terms, moves - change)) / 2 / step
     found = slopes_of(terms, moves)
     np.testing.assert_allclose(found, shown, rtol=1e-6, atol=1e-5)

@@ -65,11 +65,26 @@ def test_people_read_names_intervals_and_what_is_missing(steered: Path) -> None:
     assert "l_R is not told by these runs; it takes: yaw with rudder" in told
 
 
-def test_coefficients_leave_a_laid_rudder_out(steered: Path) -> None:
-    ran = pmm("coefficients", steered, "--json")
-    left = json.loads(ran.stdout)["left_out"]
-    laid = [one for one in left if "`pmm steering` takes such tows" in one["message"]]
-    assert len(laid) == 18  # of 21 tows those at 10 1/s with the rudder amidships stay
+def test_coefficients_have_the_rudders_derivatives(steered: Path) -> None:
+    found = json.loads(pmm("coefficients", steered, "--json").stdout)
+    laid = [one for one in found["left_out"] if "takes such tows" in one["message"]]
+    assert len(laid) == 10  # of 21 tows those at 10 1/s stay: what most have
+    rows = {one["name"]: one for one in found["recommended"]}
+    step = 1e-4
+
+    def by_rudder(load: str, u: float, v: float, at: float = 0.0) -> float:
+        ends = [
+            getattr(paper.steering(u, v, 0.0, at + side * step - 0.005, 10.0), load)
+            for side in (1, -1)
+        ]
+        return (ends[0] - ends[1]) / (2.0 * step)
+
+    for name, load in (("Y_d", "y"), ("N_d", "n")):
+        slope = by_rudder(load, paper.U0, 0.0)
+        assert rows[name]["value"] == pytest.approx(slope, rel=0.02)
+        assert rows[name]["unit"] == {"y": "N", "n": "N m"}[load]
+    bend = by_rudder("x", paper.U0, 0.0, step) - by_rudder("x", paper.U0, 0.0, -step)
+    assert rows["X_dd"]["value"] == pytest.approx(bend / (4.0 * step), rel=0.1)
 
 
 def test_what_is_wrong_is_said(steered: Path, tmp_path: Path) -> None:
