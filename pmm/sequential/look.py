@@ -170,9 +170,16 @@ def read_decisions(folder: Path) -> tuple[Decision, ...]:
 
 
 def keep_decision(folder: Path, decision: Decision) -> None:
-    """Keep a decision in place of those after the same runs, or more."""
-    before = [one for one in read_decisions(folder) if len(one.runs) < len(decision.runs)]
-    _write(folder, [*before, decision])
+    """Keep a decision in place of those after the same runs, or more.
+
+    A plan that was approved of after the same runs and stays is no new decision: who was
+    interrupted before the next run keeps what was decided.
+    """
+    before = read_decisions(folder)
+    older = [one for one in before if len(one.runs) < len(decision.runs)]
+    same = [one for one in before if len(one.runs) == len(decision.runs) and not one.ending]
+    stays = bool(same) and not (decision.added or decision.ending)
+    _write(folder, [*older, same[-1] if stays else decision])
 
 
 def _write(folder: Path, decisions: Sequence[Decision]) -> None:

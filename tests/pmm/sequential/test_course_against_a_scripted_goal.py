@@ -121,6 +121,16 @@ def test_what_is_decided_again_takes_the_place_of_what_was(tmp_path: Path) -> No
     assert read_decisions(tmp_path)[1] == KEPT.decision()
 
 
+def test_who_is_interrupted_before_the_next_run_keeps_what_was_decided(tmp_path: Path) -> None:
+    keep_decision(tmp_path, FIRST.decision("the operator"))
+    keep_decision(tmp_path, Look((), 0.0, (), kept=(ONE,), left_s=10.0).decision())
+    assert read_decisions(tmp_path) == (FIRST.decision("the operator"),)
+    ended = Look((), 0.0, (), ending=Ending.EXHAUSTED).decision()
+    keep_decision(tmp_path, ended)
+    keep_decision(tmp_path, FIRST.decision("all, beforehand"))
+    assert read_decisions(tmp_path) == (FIRST.decision("all, beforehand"),)
+
+
 @pytest.mark.parametrize("text", ["", "{", "[]", '{"decisions": [{"runs": 3}]}'])
 def test_damaged_decisions_are_said(tmp_path: Path, text: str) -> None:
     (tmp_path / DECISIONS).write_text(text, encoding="utf-8")
