@@ -37,6 +37,7 @@ NAMES = (
     "coefficients",
     "exact",
     "plan_design",
+    "steering",
     "sequential",
     "campaign",
     "sealed",
