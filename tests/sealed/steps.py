@@ -135,7 +135,7 @@ def _answer(
 ) -> None:
     from tests.sealed.answering import answers
 
-    with _in_words():
+    with in_words():
         for given in told(label, len(asked), answers(asked, workers, limit_s, scheduler)):
             for row, why in given.failed.items():
                 click.echo(f"{given.case}, {row}: failed, {why}", err=True)
@@ -161,7 +161,7 @@ def shown(
     from tests.sealed.scored import score_board
 
     carry_out = None if workers is None else carrier(board, workers)
-    with _in_words():
+    with in_words():
         score_board(board, carry_out, json_file=json_file, page=page, docs=docs)
 
 
@@ -175,12 +175,12 @@ def scoreboard(docs: Path) -> None:
     """
     from tests.sealed.scoreboard import write_scoreboard
 
-    with _in_words():
+    with in_words():
         write_scoreboard(docs)
 
 
 @contextmanager
-def _in_words() -> Iterator[None]:
+def in_words() -> Iterator[None]:
     """Let an error of the data end the command with its own words, as ``pmm`` does."""
     try:
         yield

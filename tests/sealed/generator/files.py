@@ -265,9 +265,14 @@ def truth(case: Case, held_out: Mapping[str, Any]) -> dict[str, Any]:
 
 def write(case: Case, cases: Path, keys: Path) -> None:
     """Write a case's folder below ``cases`` and its key below ``keys``."""
-    folder, key = cases / case.name, keys / case.name
+    write_open(case, cases)
+    _write_key(case, keys / case.name)
+
+
+def write_open(case: Case, cases: Path) -> None:
+    """Write a case's folder below ``cases``: what whoever answers may see."""
+    folder = cases / case.name
     folder.mkdir(parents=True)
-    (key / "held-out").mkdir(parents=True)
     foreign = bool(np.random.default_rng([case.seed, case.index, 3]).random() < FOREIGN_SHARE)
     rig = case.campaign.rig
     for number, run in enumerate(case.campaign.runs):
@@ -280,8 +285,12 @@ def write(case: Case, cases: Path, keys: Path) -> None:
     if case.campaign.table is not None:
         (folder / "radiation.csv").write_text(table_text(case.campaign.table, rig.plane))
     (folder / "case.toml").write_text(case_text(case))
+
+
+def _write_key(case: Case, key: Path) -> None:
+    (key / "held-out").mkdir(parents=True)
     held_out = {}
     for run, (clean, ref) in zip(case.campaign.held_out, case.withheld, strict=True):
-        write_netcdf(key / "held-out" / f"{run.name}.nc", clean, run, rig)
+        write_netcdf(key / "held-out" / f"{run.name}.nc", clean, run, case.campaign.rig)
         held_out[run.name] = _held_out(case, run, clean, ref)
     (key / "truth.json").write_text(json.dumps(truth(case, held_out), indent=1) + "\n")

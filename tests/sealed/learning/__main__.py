@@ -1,0 +1,68 @@
+"""``python -m tests.sealed.learning``: rows that learn. docs/sealed.md."""
+
+import os
+from pathlib import Path
+
+import click
+
+from tests.sealed.learning.campaigns import LOOKS, made
+from tests.sealed.progress import told
+from tests.sealed.scoring.board import DIAGNOSIS
+from tests.sealed.steps import in_words
+
+FOLDER = click.Path(file_okay=False, path_type=Path)
+BOARD = click.Path(exists=True, file_okay=False, path_type=Path)
+LOOK = click.option("--look", default="components", show_default=True,
+                    type=click.Choice(sorted(LOOKS)), help="What is learnt from.")  # fmt: skip
+
+
+@click.group()
+def main() -> None:
+    """Rows of the board that learn: see docs/sealed.md."""
+
+
+@main.command("campaigns")
+@click.option("--output", required=True, type=FOLDER)
+@click.option("--count", default=2000, show_default=True, type=click.IntRange(1))
+@LOOK
+@click.option("--workers", default=os.cpu_count() or 1, show_default="one per core",
+              type=click.IntRange(1))  # fmt: skip
+def campaigns_command(output: Path, count: int, look: str, workers: int) -> None:
+    """Make training campaigns of worlds A and B; those that are there are kept."""
+    jobs = count - len(list(output.glob(f"{look}-*.json")))
+    for line in told("campaigns made", jobs, made(output, count, look, workers)):
+        if not line.endswith(".json"):
+            click.echo(line, err=True)
+
+
+@main.command("boost")
+@click.argument("board", type=BOARD)
+@click.option("--campaigns", required=True, type=BOARD, help="Training campaigns.")
+@LOOK
+def boost_command(board: Path, campaigns: Path, look: str) -> None:
+    """Answer BOARD by gradient boosting on training campaigns: the row boosted-LOOK."""
+    from tests.sealed.learning.rows import boosted
+
+    with in_words():
+        for line in told("boosted", *boosted(board, campaigns, look)):
+            click.echo(line, err=True)
+
+
+@main.command("calibrate")
+@click.argument("board", type=BOARD)
+@click.option("--on", "fitted_on", multiple=True, required=True, type=BOARD,
+              help="Boards of worlds A and B with keys and answers; several times.")  # fmt: skip
+@click.option("--row", default=DIAGNOSIS, show_default=True, help="Whose answers.")
+@click.option("--miss", default=0.1, show_default=True, type=click.FloatRange(0.0, 1.0),
+              help="Share of cases whose set may miss what is right.")  # fmt: skip
+def calibrate_command(board: Path, fitted_on: tuple[Path, ...], row: str, miss: float) -> None:
+    """Write BOARD's answers calibrated on others: rows ROW-isotonic and ROW-conformal."""
+    from tests.sealed.learning.rows import calibrated
+
+    with in_words():
+        for line in calibrated(board, fitted_on, row, miss):
+            click.echo(line)
+
+
+if __name__ == "__main__":
+    main()

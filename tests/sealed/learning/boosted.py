@@ -1,0 +1,122 @@
+"""An amortised classifier: gradient boosting on features of campaigns, as a row of a board."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from hardware.description.arrays import FloatArray
+from hardware.description.errors import DataError
+from tests.sealed.learning.campaigns import LOOKS, Example, Numbers, examples
+from tests.sealed.learning.features import as_matrix, of_components, of_hypotheses
+from tests.sealed.peers.scene import scene
+from tests.sealed.peers.sheet import NONE, sheet, stages_of
+
+NEEDS: Final = "sklearn"
+SEED: Final = 26
+FEATURES: Final[Mapping[str, Callable[[Numbers], dict[str, float]]]] = {
+    "components": of_components,
+    "hypotheses": of_hypotheses,
+}
+ROUNDS, LEAVES, RATE, LEAST = 60, 6, 0.1, 3
+"""Trees of each answer, leaves of a tree, learning rate, and least examples of a leaf."""
+
+
+@dataclass(frozen=True, eq=False)
+class Classifier:
+    """A fitted classifier of answers and one of stages, over the same features.
+
+    Attributes
+    ----------
+    names
+        The features, in their order.
+    trained_on
+        How many campaigns.
+    """
+
+    look: str
+    names: tuple[str, ...]
+    answers: Any
+    stages: Any
+    trained_on: int
+
+    @classmethod
+    def fitted(cls, found: Sequence[Example], look: str) -> "Classifier":
+        """Fit to training campaigns; a pair counts as half of each of its effects.
+
+        Raises
+        ------
+        DataError
+            If scikit-learn is not installed, or fewer than two answers were made.
+        """
+        if find_spec(NEEDS) is None:
+            raise DataError("scikit-learn is not installed: pip install -e .[peers]")
+        if len({name for one in found for name in one.right}) < 2:
+            raise DataError(
+                f"{len(found)} campaigns of {look}: make more (campaigns --look {look})"
+            )
+        rows = [FEATURES[look](one.numbers) for one in found]
+        names = tuple(sorted({name for row in rows for name in row}))
+        matrix = as_matrix(rows, names)
+        answers = _boosted(matrix, [one.right for one in found])
+        stages = _boosted(matrix, [one.stages or (NONE,) for one in found])
+        return cls(look, names, answers, stages, len(found))
+
+    def shares(self, numbers: Numbers) -> tuple[dict[str, float], dict[str, float]]:
+        """Return how probable each answer and each stage is."""
+        row = as_matrix([FEATURES[self.look](numbers)], self.names)
+        return _by_name(self.answers, row), _by_name(self.stages, row)
+
+    def answer(self, case: Path) -> dict[str, Any]:
+        """Return the answer to a case's folder; nothing is foretold to shrink."""
+        shares, stages = self.shares(LOOKS[self.look](case))
+        stages.pop(NONE, None)
+        certain = math.fsum(stages.values()) > 0.0
+        return sheet(case.name, shares, stages if certain else stages_of(shares),
+                     scene(case).foretold())  # fmt: skip
+
+
+def classifier(campaigns: Path, look: str) -> Classifier:
+    """Return the classifier fitted to all campaigns of a folder."""
+    return Classifier.fitted(examples(campaigns, look), look)
+
+
+def _boosted(matrix: FloatArray, right: Sequence[tuple[str, ...]]) -> Any:
+    from sklearn.ensemble import HistGradientBoostingClassifier
+
+    at = [number for number, names in enumerate(right) for _ in names]
+    weights = [1.0 / len(names) for names in right for _ in names]
+    model = HistGradientBoostingClassifier(
+        max_iter=ROUNDS, max_leaf_nodes=LEAVES, learning_rate=RATE, min_samples_leaf=LEAST,
+        max_features=0.2, early_stopping=False, random_state=SEED,
+    )  # fmt: skip
+    return model.fit(matrix[at], [name for names in right for name in names], weights)
+
+
+def _by_name(model: Any, row: FloatArray) -> dict[str, float]:
+    shares = model.predict_proba(row)[0]
+    return {str(name): float(share) for name, share in zip(model.classes_, shares, strict=True)}
+
+
+def importance(
+    model: Any, matrix: FloatArray, right: Sequence[str], groups: Mapping[str, Sequence[int]],
+    rng: np.random.Generator,
+) -> dict[str, float]:  # fmt: skip
+    """Return by how much the share of right answers falls when a group of features is shuffled.
+
+    Breiman (2001), over groups of columns that are shuffled together, largest first.
+    """
+
+    def reached(values: FloatArray) -> float:
+        return float(np.mean(model.predict(values) == np.asarray(right)))
+
+    whole, falls = reached(matrix), {}
+    for name, columns in groups.items():
+        shuffled = matrix.copy()
+        shuffled[:, columns] = matrix[rng.permutation(len(matrix))][:, columns]
+        falls[name] = whole - reached(shuffled)
+    return dict(sorted(falls.items(), key=lambda one: -one[1]))

@@ -1,0 +1,45 @@
+"""Gradient boosting where the right answer is plain, and importance where one cell tells it."""
+
+import numpy as np
+import pytest
+
+from tests.sealed.learning.boosted import Classifier, importance
+from tests.sealed.learning.campaigns import Example
+
+pytest.importorskip("sklearn", reason="optional dependency peers")
+
+SETTINGS = [[-0.3, -3.0, 1.0, 1.0, 1.0], [0.3, -3.5, 1.0, 0.5, 1.0]]
+CELLS = ("force_aft|mean|0", "force_fore|mean|0")
+
+
+def _example(rng: np.random.Generator, index: int) -> Example:
+    """Return two runs: a zero offset is 20 sigma in the aft mean, all else is noise."""
+    off = rng.standard_normal(4)
+    off[::2] += 20.0 * (index % 2)
+    numbers = {"cell": CELLS * 2, "run": [0, 0, 1, 1], "off": off.tolist(), "settings": SETTINGS}
+    name, stage = ("zero-offset", "dynamometers") if index % 2 else ("none", "")
+    return Example(index, (name,), (stage,) if stage else (), numbers)
+
+
+def test_what_is_plain_is_named_with_its_stage() -> None:
+    """An offset of 20 sigma cannot be missed, and nothing is called nothing."""
+    rng = np.random.default_rng(5)
+    model = Classifier.fitted([_example(rng, at) for at in range(60)], "components")
+    for index in (100, 101):
+        asked = _example(rng, index)
+        shares, stages = model.shares(asked.numbers)
+        assert shares[asked.right[0]] > 0.9
+        assert stages[(asked.stages or ("none",))[0]] > 0.9
+
+
+def test_only_the_cell_that_tells_is_important() -> None:
+    """Shuffled, half of two equally frequent answers are left; the other column tells nothing."""
+    from sklearn.tree import DecisionTreeClassifier
+
+    rng = np.random.default_rng(6)
+    right = ["a", "b"] * 200
+    matrix = np.column_stack([np.array([0.0, 1.0] * 200), rng.standard_normal(400)])
+    model = DecisionTreeClassifier(max_depth=1, random_state=0).fit(matrix, right)
+    falls = importance(model, matrix, right, {"telling": [0], "other": [1]}, rng)
+    assert falls["telling"] == pytest.approx(0.5, abs=0.08)
+    assert falls["other"] == 0.0
