@@ -18,8 +18,6 @@ KNOWN = (
     ("put_in", "forgotten"),
     [
         ("stribeck-friction", ()),
-        ("coulomb-friction:friction_n=0.3", ("coulomb-friction",)),
-        ("quadratic-damping", ("quadratic-damping",)),
         ("quadratic-drift", ()),
         ("torque-cogging", ("torque-cogging",)),
         ("connecting-rod", ()),

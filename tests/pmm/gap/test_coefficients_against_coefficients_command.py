@@ -13,7 +13,7 @@ from tests.pmm.gap.rigs import run
 from tests.sim.manoeuvring import Derivatives, PrimeSystem, from_added_mass_and_damping
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
-FEW = ("--effects", "coulomb-friction")
+FEW = ("--effects", "coulomb-friction,gauge-hysteresis,amplifier-lag")
 KEPT = ("heave-0.50-20", "pitch-0.50-20", "heave-1.10-20", "pitch-1.10-20")
 SPEED_M_S, LENGTH_M, DENSITY_KG_M3 = 1.2, 2.5, 998.8
 MORE = """
