@@ -72,6 +72,9 @@ REVOLUTIONS = Channel("revolutions", "Hz")
 PROPELLER_THRUST = Channel("propeller_thrust", "N")
 PROPELLER_TORQUE = Channel("propeller_torque", "N m")
 RUDDER_NORMAL_FORCE = Channel("rudder_normal_force", "N")
+# How far two points of the model stand below where they stood at rest, positive down.
+POSITION_AFT = Channel("position_aft", "m")
+POSITION_FORE = Channel("position_fore", "m")
 
 # A turntable's sway, angle, force and moment stand in the places of the struts', aft first.
 _STRUTS: Final = {
@@ -92,6 +95,7 @@ FORCES: Final = (FORCE_AFT.name, FORCE_FORE.name)
 STEERING: Final = (
     RUDDER_ANGLE, REVOLUTIONS, PROPELLER_THRUST, PROPELLER_TORQUE, RUDDER_NORMAL_FORCE,
 )  # fmt: skip
+POSITIONS: Final = (POSITION_AFT.name, POSITION_FORE.name)
 STANDARD: Final = (
     SHAFT_ANGLE, DISPLACEMENT_AFT, DISPLACEMENT_FORE, FORCE_AFT, FORCE_FORE, FORCE_X,
     CARRIAGE_SPEED, *STEERING,

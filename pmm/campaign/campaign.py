@@ -6,6 +6,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 
+from analysis.attitude import AttitudeSensors
 from analysis.gap.forward.tolerances import Tolerances
 from analysis.readers import ColumnMap
 from analysis.resolver.reference_choice import ReferenceChoice
@@ -89,6 +90,8 @@ class Campaign:
         What the simulation and the rig's settings may be off by: no gap within them.
     water
         What the model was tested in; ``None`` where the file does not say.
+    attitude
+        The sensors of sinkage and trim; ``None`` where there are none.
     """
 
     name: str = "campaign"
@@ -119,6 +122,7 @@ class Campaign:
     tared: bool = False
     tolerances: Tolerances = field(default_factory=Tolerances)
     water: TankWater | None = None
+    attitude: AttitudeSensors | None = None
 
     __pydantic_config__ = STRICT_TABLE
 

@@ -28,6 +28,7 @@ from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag, Severity
 from pmm.campaign.calibrated_recording import applied
 from pmm.campaign.recording_source import RAW, open_recording
+from pmm.coefficients.attitude import attitude_of, rest_of
 from pmm.coefficients.settings import AmplifierTable
 from pmm.coefficients.tasks import Done, Failed, Task, Zero
 from pmm.coefficients.zeros import utc_s, zeroed
@@ -117,8 +118,9 @@ def _check_units(recording: Recording, joint: Joint) -> None:
 def _at_rest(task: Task, recording: Recording) -> Done:
     reading = zero_reading(recording, 0.0, (*FORCES, *_surge(recording)))
     drift_rad = task.set_point.drift_rad
-    zero = Zero(task.name, utc_s(recording), task.number, reading, drift_rad)
-    return _done(task, recording, None, zero)
+    position, flags = rest_of(task, recording)
+    zero = Zero(task.name, utc_s(recording), task.number, reading, drift_rad, position)
+    return _done(task, recording, None, zero, flags=flags)
 
 
 def _turning(task: Task, recording: Recording) -> Done:
@@ -130,10 +132,11 @@ def _turning(task: Task, recording: Recording) -> Done:
     struts = measured_cycle(analysis, task.oscillator, set_point=task.set_point)
     struts, flags = zeroed(struts, task, recording)
     found = tuple(flag for flag in analysis.flags if flag not in recording.flags)
-    flags = (*found, *flags, *_speed_flags(task, recording))
+    attitude, told = attitude_of(task, recording)
+    flags = (*found, *flags, *_speed_flags(task, recording), *told)
     periods = analysis.readings[0].periods
     done = _done(task, recording, _model(task, struts), None, periods, flags)
-    return replace(done, seen=first_harmonics(recording, analysis))
+    return replace(done, seen=first_harmonics(recording, analysis), attitude=attitude)
 
 
 def _towed(task: Task, recording: Recording) -> Done:
@@ -146,7 +149,9 @@ def _towed(task: Task, recording: Recording) -> Done:
             "before and after, and name them as zero_before and zero_after; or say tared = true in "
             "the campaign file, where zeros were taken off before it was recorded"
         )
-    return _done(task, recording, _model(task, struts), None, 0, flags)
+    attitude, told = attitude_of(task, recording)
+    done = _done(task, recording, _model(task, struts), None, 0, (*flags, *told))
+    return replace(done, attitude=attitude)
 
 
 def _model(task: Task, struts: StrutCycle) -> BodyCycle:

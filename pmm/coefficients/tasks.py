@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from analysis.attitude import Attitude, AttitudeSensors, RestPosition
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.corrections import ZeroReading
 from analysis.plausibility import RunHarmonics
@@ -42,6 +43,8 @@ class Zero:
         Its ``at_s`` says nothing.
     drift_rad
         Drift (trim) at which the model stood.
+    position
+        What the sensors of sinkage and trim read; ``None`` without them.
     """
 
     name: str
@@ -49,6 +52,7 @@ class Zero:
     number: int | None
     reading: ZeroReading
     drift_rad: float = 0.0
+    position: RestPosition | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +88,8 @@ class Task:
         Whether the recording's means are forces as they stand.
     hashed
         Whether the file's SHA-256 is wanted.
+    sensors
+        Of sinkage and trim; ``None`` where the campaign file states none.
     """
 
     source: RecordingSource
@@ -98,6 +104,7 @@ class Task:
     zeros: tuple[Zero | None, Zero | None] = (None, None)
     tared: bool = False
     hashed: bool = False
+    sensors: AttitudeSensors | None = None
 
     @property
     def name(self) -> str:
@@ -128,6 +135,8 @@ class Done:
         What made its readings forces; ``None`` where nothing did, or a matrix by hand.
     seen
         What the checks across all runs look at; ``None`` for a record at rest.
+    attitude
+        Sinkage and trim; ``None`` without their sensors, in a zero run or without a zero.
     """
 
     name: str
@@ -141,6 +150,7 @@ class Done:
     sha256: str = ""
     calibration: Calibration | None = None
     seen: RunHarmonics | None = None
+    attitude: Attitude | None = None
 
 
 @dataclass(frozen=True)
@@ -224,6 +234,7 @@ def work_of(
             (one.zero_before, one.zero_after),
             tared=campaign.tared,
             hashed=hashed,
+            sensors=campaign.attitude,
         )
         kept = zeros if one.kind is RunKind.ZERO else dry if _is_dry(one) else runs
         kept.append(task)

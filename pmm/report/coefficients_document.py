@@ -36,6 +36,7 @@ from pmm.document.content import (
 )
 from pmm.document.flag_lines import flag_lines, flag_notes
 from pmm.document.notation import NOT_KNOWN, counted, joined, rounded, written
+from pmm.report.attitude import attitude_table
 from pmm.report.coefficient_plots import figures
 from pmm.report.coefficient_tables import (
     alternatives_tables,
@@ -62,7 +63,7 @@ def coefficients_document(outcome: CampaignOutcome) -> Document:
         "coefficients",
         (
             Section("", (Text((f"{used}, {found.plane}, {found.form} form",)),)),
-            Section("", (*conclusion(found), conditions_table(outcome), noticed)),
+            Section("", (*conclusion(found), *_conditions(outcome), noticed)),
             Section("", (*_beside(found), *alternatives_tables(found))),
             Section("", tuple(Data(key, value) for key, value in _data(outcome).items())),
         ),
@@ -84,7 +85,7 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
         ", ".join(outcome.names),
         "coefficients",
         (
-            Section("", (pairs("Summary", _summary(outcome)), conditions_table(outcome))),
+            Section("", (pairs("Summary", _summary(outcome)), *_conditions(outcome))),
             Section("Coefficients", (recommended_table(found), *alternatives_tables(found))),
             *stories,
             Section("Figures", tuple(figures(found))),
@@ -95,6 +96,10 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
         ),
         SCHEMA,
     )
+
+
+def _conditions(outcome: CampaignOutcome) -> tuple[Content, ...]:
+    return conditions_table(outcome), attitude_table(outcome)
 
 
 def conclusion(found: CampaignCoefficients) -> tuple[Content, ...]:

@@ -1,0 +1,160 @@
+"""Sinkage and trim of a model, from the positions of two of its points.
+
+Both points lie on a line along the model. One that stands ``x`` ahead of the reference point is at
+``z = z_0 - x sin(theta)`` below its place at rest, with z down and the trim theta positive bow up
+(ITTC 7.5-02-02-01). So, exactly at any trim, ``sin(theta) = (z_aft - z_fore) / (x_fore - x_aft)``.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Final
+
+import numpy as np
+
+from analysis.recording import Recording
+from analysis.resolver.harmonics import Harmonics
+from hardware.description.channels import POSITIONS, Channel
+from hardware.description.errors import ConfigurationError, DataError
+
+SINKAGE: Final = Channel("sinkage", "m")
+TRIM: Final = Channel("trim", "rad")
+NAMES: Final = (SINKAGE.name, TRIM.name)
+HARMONICS: Final = 2
+
+
+class HeaveAndPitch(StrEnum):
+    """Whether the model may heave and pitch on its guides."""
+
+    FREE = "free"
+    FIXED = "fixed"
+
+
+@dataclass(frozen=True)
+class AttitudeSensors:
+    """Two sensors of position on the model.
+
+    Attributes
+    ----------
+    aft_x_m, fore_x_m
+        Their places ahead of the reference point, along the model.
+    heave_and_pitch
+        Whether the model is free in both, or the rig holds or moves it.
+    sinkage_x_m
+        Of which point ahead of the reference point the sinkage is told.
+
+    Raises
+    ------
+    ConfigurationError
+        If the fore sensor does not stand ahead of the aft one.
+    """
+
+    aft_x_m: float
+    fore_x_m: float
+    heave_and_pitch: HeaveAndPitch
+    sinkage_x_m: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not self.fore_x_m > self.aft_x_m:
+            raise ConfigurationError(
+                f"attitude: fore_x_m = {self.fore_x_m:g} m is not ahead of aft_x_m = "
+                f"{self.aft_x_m:g} m; give both as metres ahead of the reference point"
+            )
+
+
+@dataclass(frozen=True)
+class RestPosition:
+    """Means of both sensors at rest, aft first, with their standard uncertainties, in metres."""
+
+    mean_m: tuple[float, float]
+    uncertainty_m: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A mean and the amplitudes of the first harmonics, with standard uncertainties.
+
+    The uncertainties of amplitudes are those along the phasor. Tows have no harmonics.
+    """
+
+    mean: float
+    mean_u: float
+    amplitude: tuple[float, ...] = ()
+    amplitude_u: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Attitude:
+    """Sinkage in metres, positive down, and trim in radians, positive bow up, of one run."""
+
+    sensors: AttitudeSensors
+    sinkage: Measured
+    trim: Measured
+
+
+def common_rest(rests: Sequence[RestPosition]) -> RestPosition:
+    """Return the mean of what was read before and after a run."""
+    means = np.mean([one.mean_m for one in rests], axis=0)
+    apart = np.linalg.norm([one.uncertainty_m for one in rests], axis=0) / len(rests)
+    return RestPosition((float(means[0]), float(means[1])), (float(apart[0]), float(apart[1])))
+
+
+def with_attitude(recording: Recording, sensors: AttitudeSensors, rest: RestPosition) -> Recording:
+    """Return the recording with the channels ``sinkage`` and ``trim`` behind its own.
+
+    Raises
+    ------
+    DataError
+        If the positions differ by more than the sensors' distance, which no trim can make.
+    """
+    aft, fore = (
+        recording.values(name) - own for name, own in zip(POSITIONS, rest.mean_m, strict=True)
+    )
+    distance = sensors.fore_x_m - sensors.aft_x_m
+    sine = (aft - fore) / distance
+    if (most := float(np.nanmax(np.abs(sine)))) > 1.0:
+        raise DataError(
+            f"{recording.name}: {' and '.join(POSITIONS)} differ by {most * distance:.4g} m, more "
+            f"than the {distance:g} m between the sensors; check their units and [attitude]"
+        )
+    sinkage = aft - (sensors.sinkage_x_m - sensors.aft_x_m) * sine
+    own = recording.samples[0 : len(recording.channels), 0 : recording.sample_count]
+    return replace(
+        recording,
+        channels=(*recording.channels, SINKAGE, TRIM),
+        samples=np.vstack([own, sinkage, np.arcsin(sine)]),
+    )
+
+
+def attitude(
+    sensors: AttitudeSensors, rest: RestPosition, sinkage: Measured, trim: Measured
+) -> Attitude:
+    """Return what was measured, with the rest's uncertainty in both means."""
+    distance = sensors.fore_x_m - sensors.aft_x_m
+    share = (sensors.sinkage_x_m - sensors.aft_x_m) / distance
+    aft_u, fore_u = rest.uncertainty_m
+    angle_u = math.hypot(aft_u, fore_u) / (distance * math.cos(trim.mean))
+    height_u = math.hypot((1.0 - share) * aft_u, share * fore_u)
+    return Attitude(
+        sensors,
+        replace(sinkage, mean_u=math.hypot(sinkage.mean_u, height_u)),
+        replace(trim, mean_u=math.hypot(trim.mean_u, angle_u)),
+    )
+
+
+def measured(found: Harmonics, name: str) -> Measured:
+    """Return a channel's mean and amplitudes with the resolver's own uncertainties."""
+    row = found.channel_names.index(name)
+    sizes, apart = found.amplitude[row], found.deviations[row]
+    along = [
+        (found.in_phase[row, k] * apart[2 * k + 1] + found.quadrature[row, k] * apart[2 * k + 2])
+        / max(sizes[k], np.finfo(float).tiny)
+        for k in range(found.order)
+    ]
+    return Measured(
+        float(found.mean[row]),
+        float(found.standard_uncertainty[row, 0]),
+        tuple(map(float, sizes)),
+        tuple(float(np.linalg.norm(one)) for one in along),
+    )
