@@ -12,11 +12,13 @@ from hardware.description.arrays import FloatArray
 def weighed_of(case: Path) -> dict[str, Any]:
     """Return numbers of a case's hypotheses by name; an effect that was not fitted has fewer.
 
-    Of each effect: ``evidence``, the log evidence that its first look promises; ``size`` of its
-    signature, in sigma; ``overlap``, the cosine between what the recordings leave and its
-    signature; and of each answer its ``share``, how probable the diagnosis holds it to be.
+    Of each effect: ``evidence``, by how much the log evidence that its first look promises is above
+    that of no effect, in which the number of runs cancels; ``size`` of its signature, in sigma;
+    ``overlap``, the cosine between what the recordings leave and its signature; and of each answer
+    its ``share``, how probable the diagnosis holds it to be.
     """
     from analysis.gap.judge.diagnosis import problem_of
+    from analysis.gap.search.fit import nothing
     from analysis.gap.search.hypotheses import weigh
     from pmm.gap.preparation import prepare
     from sim.effects.catalogue import catalogue
@@ -28,10 +30,10 @@ def weighed_of(case: Path) -> dict[str, Any]:
     found: dict[str, Any] = {
         f"{name}|share": share for name, share in weighed.answers.by_answer.items()
     }
-    left = _left(problem, problem.residual)
+    left, none = _left(problem, problem.residual), nothing(problem).log_evidence
     for one in weighed.looked:
         if one.fit is not None and np.isfinite(one.expected):
-            found[f"{one.name}|evidence"] = float(one.expected)
+            found[f"{one.name}|evidence"] = float(one.expected) - none
             found[f"{one.name}|size"] = float(one.visible)
             found[f"{one.name}|overlap"] = cosine(left, _left(problem, one.fit.signature))
     return found
