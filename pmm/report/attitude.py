@@ -73,8 +73,13 @@ _NOTE: Final = (
 
 def attitude_table(outcome: CampaignOutcome) -> Table[AttitudeRow]:
     """Return sinkage and trim of all runs that told them, by speed, drift and frequency."""
-    rows = sorted(_rows(outcome), key=lambda row: (row.speed_m_s, row.drift_rad, row.frequency_hz))
+    rows = attitude_rows(outcome)
     return Table("Sinkage and trim", _COLUMNS, rows, "attitude", titled=True, notes=(_NOTE,))
+
+
+def attitude_rows(outcome: CampaignOutcome) -> list[AttitudeRow]:
+    """Return the runs that told sinkage and trim, by speed, drift and frequency."""
+    return sorted(_rows(outcome), key=lambda row: (row.speed_m_s, row.drift_rad, row.frequency_hz))
 
 
 def _rows(outcome: CampaignOutcome) -> Iterator[AttitudeRow]:

@@ -37,6 +37,7 @@ from pmm.document.content import (
 from pmm.document.flag_lines import flag_lines, flag_notes
 from pmm.document.notation import NOT_KNOWN, counted, joined, rounded, written
 from pmm.report.attitude import attitude_table
+from pmm.report.attitude_figure import attitude_figures
 from pmm.report.coefficient_plots import figures
 from pmm.report.coefficient_tables import (
     alternatives_tables,
@@ -88,7 +89,7 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
             Section("", (pairs("Summary", _summary(outcome)), *_conditions(outcome))),
             Section("Coefficients", (recommended_table(found), *alternatives_tables(found))),
             *stories,
-            Section("Figures", tuple(figures(found))),
+            Section("Figures", (*figures(found), *attitude_figures(outcome))),
             Section("What was found", tuple(_findings(found))),
             Section("What was flagged", (Text(("Nothing.",)) if flags.empty else flags,)),
             Section("Uncertainty", (_given(outcome), budget_table(found))),

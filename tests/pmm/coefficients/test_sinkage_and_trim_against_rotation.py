@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from matplotlib.container import ErrorbarContainer
 
-from analysis.attitude import RestPosition, with_attitude
+from analysis.attitude import Measured, RestPosition, with_attitude
 from analysis.readers import read_recording, write_recording
 from analysis.recording import Recording
 from hardware.description.arrays import FloatArray
@@ -19,6 +20,8 @@ from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.setpoint import SetPoint
 from pmm.campaign.campaign_file import read_campaign
 from pmm.cli import cli
+from pmm.report.attitude import AttitudeRow
+from pmm.report.attitude_figure import attitude_figure
 from tests.pmm.coefficients.campaigns import at_rest, head, horizontal_rig, record
 
 AFT_M, FORE_M, AT_M = -0.7, 1.1, 0.25
@@ -46,7 +49,8 @@ def positions(sinkage_m: FloatArray, trim_rad: FloatArray) -> FloatArray:
     """Rotate both points about the one whose sinkage is given; z is down, bow up lifts the bow."""
     turned = np.exp(-1j * trim_rad)  # x + i z
     rows = [sinkage_m + ((x - AT_M) * turned).imag for x in (AFT_M, FORE_M)]
-    return np.array(rows) + np.array(OFFSETS_M)[:, None]
+    found: FloatArray = np.array(rows) + np.array(OFFSETS_M)[:, None]
+    return found
 
 
 def extended(recording: Recording, rows: FloatArray, seed: int, unit: str = "m") -> Recording:
@@ -115,6 +119,33 @@ def test_people_read_it_in_millimetres_and_degrees(campaign: Path) -> None:
     shown = CliRunner().invoke(cli, ["coefficients", str(campaign)]).stdout
     assert "Sinkage and trim" in shown
     assert "11.45" in shown  # degrees: 0.2 rad
+
+
+def test_the_figure_shows_each_run_over_speed_and_over_drift() -> None:
+    cases = [(0.8, 0.0), (0.8, 0.1), (1.2, 0.0)]
+    rows = [
+        AttitudeRow(f"run {k}", speed, drift, 0.0, "free", 0.0, Measured(speed**2, 0.1),
+                    Measured(drift, 0.01))
+        for k, (speed, drift) in enumerate(cases)
+    ]  # fmt: skip
+    axes = attitude_figure(rows).axes
+    drawn = [
+        sorted(
+            tuple(np.ravel(one.lines[0].get_xydata()))
+            for one in panel.containers
+            if isinstance(one, ErrorbarContainer) and one.lines[0] is not None
+        )
+        for panel in axes
+    ]
+    degrees = [(math.degrees(drift), speed) for speed, drift in cases]
+    expected = [
+        [(speed, 1e3 * speed**2) for speed, _ in cases],
+        [(drift, 1e3 * speed**2) for drift, speed in degrees],
+        [(speed, drift) for drift, speed in degrees],
+        [(drift, drift) for drift, _ in degrees],
+    ]
+    for found, wanted in zip(drawn, expected, strict=True):
+        np.testing.assert_allclose(found, sorted(wanted))
 
 
 def test_without_noise_the_rotation_comes_back_exactly(campaign: Path) -> None:
