@@ -5,6 +5,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
+from typing import TYPE_CHECKING
 
 from analysis.attitude import AttitudeSensors
 from analysis.gap.forward.tolerances import Tolerances
@@ -33,6 +34,9 @@ from sim.model.steering import Steering
 from sim.model.water.force_laws import CrossFlow, SurgeForces
 from sim.model.water.radiation_file import RadiationFile
 from sim.rig import SimulatedRig
+
+if TYPE_CHECKING:
+    from sim.model.water.fitted_memory import FittedMemory
 
 
 @dataclass(frozen=True)
@@ -142,8 +146,7 @@ class Campaign:
             raise ConfigurationError(
                 f"campaign {self.name!r}: no table {tables}; the simulation needs it"
             )
-        table = self.radiation
-        memory = None if table is None else table.fitted(self.oscillator.plane)
+        memory = self.memory
         return SimulatedRig(
             oscillator=self.oscillator,
             body=self.model,
@@ -152,7 +155,7 @@ class Campaign:
             dynamometers=self.dynamometers,
             acquisition=self.acquisition,
             photocell=self.photocell,
-            radiation=memory,
+            radiation=None if memory is None else memory.radiation,
             carriage=self.carriage,
             linkage_aft=self.linkage_aft,
             linkage_fore=self.linkage_fore,
@@ -162,6 +165,16 @@ class Campaign:
             surge=self.surge,
             steering=self.steering,
         )
+
+    @property
+    def memory(self) -> "FittedMemory | None":
+        """The water's memory, as fitted to the table of ``[radiation]``; ``None`` without one.
+
+        It raises what :meth:`sim.model.water.radiation_file.RadiationFile.fitted` raises.
+        """
+        if self.radiation is None or self.oscillator is None:
+            return None
+        return self.radiation.fitted(self.oscillator.plane)
 
     def as_recorded(self, name: str) -> "Campaign":
         """Return the campaign with the tables that a run or a record at rest was recorded with."""

@@ -12,6 +12,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,8 +20,13 @@ from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.names import Form
 from analysis.coefficients.reference import ReferenceTable, compared, table_of_matrices
 from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
+from pmm.campaign.campaign import Campaign
 from pmm.coefficients.settings import ReferenceFile, System
+
+if TYPE_CHECKING:
+    from sim.model.water.fitted_memory import FittedMemory
 
 _COMMENT = re.compile(r"#\s*(\w+)\s*[=:]\s*(.+?)\s*$")
 _FREQUENCIES = {"frequency_hz": 1.0, "omega_rad_s": 1.0 / (2.0 * math.pi)}
@@ -29,16 +35,32 @@ _NOT_COEFFICIENTS = (*_FREQUENCIES, "speed_m_s")
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """A table and the system that it is in."""
+    """A table and the system that it is in.
+
+    Attributes
+    ----------
+    flag
+        What the campaign's own memory leaves of the table, where it was fitted to the same file.
+    """
 
     system: System
     table: ReferenceTable
+    flag: Flag | None = None
 
 
 def read_references(
-    files: Sequence[ReferenceFile], plane: Plane, form: Form
+    files: Sequence[ReferenceFile],
+    plane: Plane,
+    form: Form,
+    fitted: Sequence[Campaign] = (),
 ) -> tuple[Reference, ...]:
     """Read tables; one of several speeds becomes a table for each.
+
+    Parameters
+    ----------
+    fitted
+        Campaigns whose simulation has a memory of the water. Where a reference is the table that it
+        was fitted to, its allowance holds the largest deviation of that memory.
 
     Raises
     ------
@@ -47,7 +69,7 @@ def read_references(
     DataError
         If it cannot be read as a table; the message names line and column.
     """
-    return tuple(found for one in files for found in _read(one, plane, form))
+    return tuple(found for one in files for found in _read(one, plane, form, fitted))
 
 
 def beside(
@@ -79,21 +101,25 @@ def check_systems(references: Sequence[Reference], system: System) -> None:
             )
 
 
-def _read(one: ReferenceFile, plane: Plane, form: Form) -> Iterator[Reference]:
+def _read(
+    one: ReferenceFile, plane: Plane, form: Form, fitted: Sequence[Campaign]
+) -> Iterator[Reference]:
     path = Path(one.file)
     if not path.is_file():
         raise ConfigurationError(f"reference {path}: no such file")
     if path.suffix.lower() == ".nc":
-        yield _radiation(one, plane, form)
+        yield _radiation(one, plane, form, fitted)
         return
     text = path.read_text(encoding="utf-8-sig")
     if "radiating_dof" in text or "a33_analytic_kg" in text:
-        yield _radiation(one, plane, form)
+        yield _radiation(one, plane, form, fitted)
         return
     yield from _from_csv(path, text, one)
 
 
-def _radiation(one: ReferenceFile, plane: Plane, form: Form) -> Reference:
+def _radiation(
+    one: ReferenceFile, plane: Plane, form: Form, fitted: Sequence[Campaign]
+) -> Reference:
     """Return a table of added mass and damping over frequency as a reference."""
     from sim.model.water.table_files import read_capytaine, read_heave_csv, read_hull_csv
 
@@ -106,6 +132,12 @@ def _radiation(one: ReferenceFile, plane: Plane, form: Form) -> Reference:
         found = read_heave_csv(path)
     else:
         raise DataError(f"reference {path}: heave alone is of no use to the horizontal oscillator")
+    memory = _memory_of(one, fitted)
+    allowance, flag = one.allowance_relative, None
+    if memory is not None:
+        allowance = math.hypot(allowance, memory.error)
+        text = f"the simulation's memory of the water, {memory} Intervals beside it are wider by it"
+        flag = Flag("memory_misfit", Severity.NOTE, text)
     table = table_of_matrices(
         one.name or found.name,
         plane,
@@ -114,9 +146,20 @@ def _radiation(one: ReferenceFile, plane: Plane, form: Form) -> Reference:
         found.damping,
         form=form,
         speed_m_s=one.speed_m_s,
-        allowance_relative=one.allowance_relative,
+        allowance_relative=allowance,
     )
-    return Reference(System.DIMENSIONAL, table)
+    return Reference(System.DIMENSIONAL, table, flag)
+
+
+def _memory_of(one: ReferenceFile, fitted: Sequence[Campaign]) -> "FittedMemory | None":
+    """Return the memory that was fitted to this very table; ``None`` where none was."""
+    for campaign in fitted:
+        table = campaign.radiation
+        if table is None or Path(table.file).resolve() != Path(one.file).resolve():
+            continue
+        if table.body == one.body and campaign.oscillator is not None:
+            return campaign.memory
+    return None
 
 
 def _from_csv(path: Path, text: str, one: ReferenceFile) -> Iterator[Reference]:

@@ -104,8 +104,9 @@ def campaign_folder(text: str) -> Path:
 def finished(outcome: CampaignOutcome, settings: CoefficientSettings) -> CampaignOutcome:
     """Put reference tables beside the values, and bring both to the system asked for."""
     found = outcome.result
-    references = read_references(settings.references, found.plane, found.form)
+    references = read_references(settings.references, found.plane, found.form, outcome.with_memory)
     check_systems(references, settings.system)
+    noted = [one.flag for one in references if one.flag is not None]
     found = beside(found, references, System.DIMENSIONAL)
     found, flags = in_system(
         found, settings.system, outcome.settings.ship, outcome.body, outcome.stated
@@ -113,7 +114,7 @@ def finished(outcome: CampaignOutcome, settings: CoefficientSettings) -> Campaig
     if settings.system is not System.DIMENSIONAL:
         found = beside(found, references, settings.system)
     found = quoted(found, settings.quoting, _carried(outcome, settings))
-    return replace(outcome, result=found, left_out=(*outcome.left_out, *flags))
+    return replace(outcome, result=found, left_out=(*outcome.left_out, *flags, *noted))
 
 
 def _carried(outcome: CampaignOutcome, settings: CoefficientSettings) -> Carried:

@@ -53,6 +53,8 @@ class CampaignOutcome:
         As they were given, with the density of the campaigns' water where they state none.
     water
         That of the campaigns.
+    with_memory
+        The campaigns whose simulation has a memory of the water, fitted to a table.
     """
 
     names: tuple[str, ...]
@@ -67,6 +69,7 @@ class CampaignOutcome:
     body: Body | None
     settings: CoefficientSettings
     water: TankWater | None
+    with_memory: tuple[Campaign, ...] = ()
 
     @property
     def noticed(self) -> tuple[Flag, ...]:
@@ -175,6 +178,7 @@ def coefficients_of(
         parts[0].body,
         settings,
         water,
+        tuple(one for _, one in campaigns if one.radiation is not None),
     )
 
 

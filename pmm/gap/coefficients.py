@@ -36,6 +36,9 @@ class CoefficientRow:
     ----------
     stated
         What the campaign says.
+    u_stated
+        Standard uncertainty of that: what a memory of the water leaves of the table that it was
+        fitted to; 0 without one.
     without, u_without
         Fitted to the campaign without an effect, and its standard uncertainty.
     with_effect, u_with
@@ -49,6 +52,7 @@ class CoefficientRow:
     name: str
     unit: str
     stated: float
+    u_stated: float
     without: float
     u_without: float
     with_effect: float
@@ -70,7 +74,7 @@ class CoefficientRow:
         """
         if self.compared:
             return self.with_effect, self.u_with
-        return self.stated, self.u_without
+        return self.stated, math.hypot(self.u_without, self.u_stated)
 
     @property
     def off_u(self) -> float:
@@ -93,7 +97,7 @@ class CoefficientRow:
     def moved(self) -> bool:
         """Whether it is off what is stated, or an effect moves it, by more than its uncertainty."""
         value, u = self.reference
-        return self.off or abs(value - self.stated) > 2.0 * u
+        return self.off or abs(value - self.stated) > 2.0 * math.hypot(u, self.u_stated)
 
     @property
     def where(self) -> str:
@@ -132,7 +136,9 @@ def coefficient_rows(examined: Examined) -> tuple[Convention, tuple[CoefficientR
     """
     simulator = examined.diagnosis.problem.simulator
     points = [run.set_point for run in simulator.stack.runs if run.turns]
-    convention, derivatives = reported(examined.ready.reporting, simulator.rig, points)
+    convention, derivatives = reported(
+        examined.ready.reporting, simulator.rig, points, examined.campaign.memory
+    )
     plain, cured = _fits(examined)
     others = [Reported(name, UNITS[name], {name: 1.0}) for name in plain.names if name not in HULL]
     kept = [one for one in (*derivatives, *others) if one.weights.keys() & set(plain.names)]
@@ -149,6 +155,7 @@ def _row(one: Reported, examined: Examined, plain: _Fit, cured: _Fit | None) -> 
         one.name,
         one.unit,
         stated,
+        one.memory_u,
         here + off,
         u_without,
         here + left,

@@ -15,6 +15,7 @@ from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.coefficients.settings import CoefficientSettings, System
 from pmm.coefficients.systems import BY_GRAVITY, system_of
+from sim.model.water.fitted_memory import FittedMemory
 from sim.rig import SimulatedRig
 
 # Added mass and damping by rows, about the midpoint between the struts.
@@ -62,6 +63,8 @@ class Reported:
         Of the hull's numbers that it is the sum of.
     memory
         What the water's memory adds to that sum.
+    memory_u
+        Standard uncertainty of that: what the memory leaves of the table that it was fitted to.
     speed_m_s, frequency_hz
         Where it holds; NaN where it is the same at all.
     """
@@ -70,12 +73,16 @@ class Reported:
     unit: str
     weights: Mapping[str, float]
     memory: float = 0.0
+    memory_u: float = 0.0
     speed_m_s: float = math.nan
     frequency_hz: float = math.nan
 
 
 def reported(
-    settings: CoefficientSettings, rig: SimulatedRig, set_points: Sequence[SetPoint]
+    settings: CoefficientSettings,
+    rig: SimulatedRig,
+    set_points: Sequence[SetPoint],
+    memory: FittedMemory | None = None,
 ) -> tuple[Convention, tuple[Reported, ...]]:
     """Return the coefficients that a campaign's runs report, and how they are written.
 
@@ -86,6 +93,8 @@ def reported(
     ----------
     set_points
         Of the runs that oscillate, one or more.
+    memory
+        What the rig's memory of the water was fitted to, and how well.
 
     Raises
     ------
@@ -101,7 +110,7 @@ def reported(
         systems = {one: by_speed(one[0]) for one in states if by_gravity or one[0] > 0.0}
     name = common_name(tuple(systems.values())) if systems else DIMENSIONAL
     found = {
-        state: list(_of_state(settings, rig, state, systems.get(state)))
+        state: list(_of_state(settings, rig, state, systems.get(state), memory))
         for state in systems or states
     }
     plane = str(rig.oscillator.plane)
@@ -110,11 +119,18 @@ def reported(
 
 
 def _of_state(
-    settings: CoefficientSettings, rig: SimulatedRig, state: State, system: Normalisation | None
+    settings: CoefficientSettings,
+    rig: SimulatedRig,
+    state: State,
+    system: Normalisation | None,
+    fitted: FittedMemory | None,
 ) -> Iterator[Reported]:
     """Yield each coefficient at one speed and frequency."""
     form, plane, (speed, frequency) = settings.form, rig.oscillator.plane, state
     added_mass, damping = _memory(rig, frequency)
+    left = np.zeros((2, 2, 2))
+    if fitted is not None:
+        left = np.array(fitted.standard_uncertainties(2.0 * math.pi * frequency))
     found = as_reported(
         np.stack((*_UNITS[:, 0], added_mass)),
         np.stack((*_UNITS[:, 1], damping)),
@@ -130,7 +146,8 @@ def _of_state(
         *parts, memory = (column / factor).tolist()
         weights = {one: part for one, part in zip(HULL, parts, strict=True) if part}
         unit = place.unit if system is None else "1"
-        yield Reported(name, unit, weights, memory, speed, frequency)
+        memory_u = float(np.linalg.norm(parts * left.ravel()))
+        yield Reported(name, unit, weights, memory, memory_u, speed, frequency)
 
 
 def _memory(rig: SimulatedRig, frequency_hz: float) -> tuple[FloatArray, FloatArray]:

@@ -115,6 +115,9 @@ def _difference(examined: Examined) -> FloatArray:
 def _notes(examined: Examined, odd: str) -> Iterator[str]:
     if odd:
         yield odd_note(odd, examined.diagnosis.answers.odd_runs[odd])
+    memory = examined.campaign.memory
+    if memory is not None:
+        yield f"memory of the water, {memory}"
     yield from run_notes(examined)
     yield from noise_notes(examined)
     if examined.cause is not None:

@@ -121,6 +121,6 @@ def coefficient_columns(*, compared: bool) -> tuple[Column[CoefficientRow], ...]
         number("stated", "stated", written(".6g")),
         *fitted,
         *(with_it if compared else data_only("bias_u")),
-        *data_only("name", "without", "u_without", "with_effect", "u_with", "speed_m_s",
+        *data_only("name", "u_stated", "without", "u_without", "with_effect", "u_with", "speed_m_s",
                    "frequency_hz"),
     )  # fmt: skip

@@ -39,9 +39,11 @@ _RUNS: Final[tuple[Column[SimulatedRun], ...]] = (
 
 def simulation_document(planned: PlannedSimulation, done: SimulatedCampaign) -> Document:
     """Return what was simulated of a campaign."""
+    memory = planned.campaign.memory
     told = (
         Text((f"{planned.campaign.name}: {counted(len(done.runs), 'run')}", "")),
         Table("Runs", _RUNS, done.runs, "runs"),
+        Text([f"memory of the water, {memory}"] if memory else []),
         Text([f"at rest: {file}" for file in done.at_rest]),
         Text([f"effect {one.name}: {_parameters(one)}" for one in planned.effects]),
         Notes(flag_notes(flag for one in done.runs for flag in one.flags)),

@@ -105,7 +105,7 @@ def _built(tables: dict[str, Any], folder: Path, where: str) -> SimulatedRig:
         memory = replace(file, file=str(folder / file.file)).fitted(rig.oscillator.plane)
     except DataError as error:
         raise ConfigurationError(f"{where}: radiation: {error}") from error
-    return replace(rig, radiation=memory)
+    return replace(rig, radiation=memory.radiation)
 
 
 def _none_for_false(tables: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,110 +1,127 @@
 """Fit the memory of the water to a table of added mass and damping.
 
-The identification runs in the frequency domain, on B + i w A at the table's frequencies, over the
-numbers of a :class:`sim.model.water.ladder.Ladder`: what comes out is passive, has no damping at
-zero frequency and a kernel that begins with a finite value, by its form. The added mass at infinite
-frequency is fitted along unless the table has it.
+The identification runs in the frequency domain, on A + B/(i w) at the table's frequencies, by
+vector fitting (:mod:`sim.model.water.vector_fitting`) with a damping that is nowhere negative
+(:mod:`sim.model.water.passive_fit`). The added mass at infinite frequency is fitted along unless
+the table has it.
 """
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
-from sim.model.water.identification import MemoryTarget, best_joint_ladder, best_ladder
-from sim.model.water.ladder import Ladder
-from sim.model.water.radiation import Radiation, constant
-from sim.model.water.tables import RadiationTable
+from sim.model.water.fitted_memory import FittedMemory, scales
+from sim.model.water.passive_fit import passive_fit
+from sim.model.water.radiation import constant
+from sim.model.water.tables import UNCERTAINTY, RadiationTable
+from sim.model.water.vector_fitting import (
+    PartialFractions,
+    Samples,
+    fitted_poles,
+    fitted_residues,
+    input_column,
+    state_matrix,
+)
 
 # Relative to the diagonal: below it a table's coupling is rounding, and the two degrees of freedom
 # are fitted one by one.
 COUPLING_IS_NOISE: Final = 1e-4
 _FEWEST: Final = 2  # states
-
-
-@dataclass(frozen=True, eq=False)
-class FittedMemory:
-    """A memory and how well it reproduces the table that it was fitted to.
-
-    Attributes
-    ----------
-    added_mass_error, damping_error
-        Largest deviation at the table's frequencies above 0, shape ``(2, 2)``: relative to the
-        table's value on the diagonal, to the root of the product of both diagonal values off it. A
-        diagonal value below ``floor`` of its peak counts as that. Zero for a degree of freedom that
-        the table does not have.
-    """
-
-    radiation: Radiation
-    added_mass_error: FloatArray
-    damping_error: FloatArray
-    floor: float
-
-    @property
-    def error(self) -> float:
-        """Largest of all deviations."""
-        return float(max(self.added_mass_error.max(), self.damping_error.max()))
+_MOST: Final = 12
+_MOST_CHOSEN: Final = 10
+_SHARE: Final = 2.0 / 3.0  # of the table's values that a fit may have numbers for
+# Rows and columns of the elements that are fitted, by the number of degrees of freedom.
+_INDICES: Final = {1: ((0,), (0,)), 2: ((0, 0, 1), (0, 1, 1))}
 
 
 def fit_memory(
     table: RadiationTable,
-    states: int = 6,
+    states: int | None = None,
     *,
+    uncertainty: float = UNCERTAINTY,
     floor: float = 0.01,
-    starts: int = 12,
-    seed: int = 0,
 ) -> FittedMemory:
     """Return the passive memory that comes nearest to the table.
 
-    Least squares of the relative deviations from several starting points, drawn around the peak of
-    the damping; the best is kept. Where the degrees of freedom are coupled, both are fitted once
-    more together. It takes one to three seconds: keep the result.
+    Least squares of the relative deviations, by relaxed vector fitting. Where the degrees of
+    freedom are coupled, both are fitted together, with common poles.
 
     Parameters
     ----------
     states
-        States for each degree of freedom, 2 to 10: 4 to 6 serve most hulls. Where no memory of so
-        many fades, as with a table that has a slow tail, it is one of as many as do.
+        States for each degree of freedom, 2 to 12. ``None``: the fewest, up to 10, whose misfit is
+        not above the uncertainty of the table; where none reaches it, those that come nearest.
+    uncertainty
+        Standard uncertainty of the table's values, relative.
     floor
         Part of its peak below which a value counts as that, in the weights and in the errors.
-    starts, seed
-        Number of starting points, and the seed of their random stream.
 
     Raises
     ------
     ConfigurationError
-        If ``states``, ``floor`` or ``starts`` is out of range.
+        If ``states``, ``uncertainty`` or ``floor`` is out of range.
     DataError
-        If the table has fewer frequencies than states, its coupling is not symmetric, or no
-        start leads to a memory that fades.
+        If the table has fewer frequencies than states, or its coupling is not symmetric.
     """
-    _check(table, states, floor, starts)
-    targets = _Targets(table.symmetrised(), floor)
-    for count in range(states, _FEWEST, -1):
-        try:
-            return _fitted(targets, count, starts, np.random.default_rng(seed))
-        except DataError:  # none of that many fades: a slow tail asks for fewer
-            continue
-    return _fitted(targets, _FEWEST, starts, np.random.default_rng(seed))
+    _check(table, states, uncertainty, floor)
+    target = _Target(table.symmetrised(), floor)
+    fits = [(dofs, *_fitted(target.of(dofs), states, uncertainty)) for dofs in target.groups()]
+    infinite = target.table.added_mass_infinite
+    added = np.array(target.table.added_mass[-1] if infinite is None else infinite)
+    radiation = constant(added)
+    for dofs, fit, _ in fits:
+        radiation = radiation.joined(*target.state_space(dofs, fit))
+        added[np.ix_(dofs, dofs)] = _matrix(fit.infinite) * target.unit[np.ix_(dofs, dofs)]
+    radiation = replace(radiation, added_mass_infinite=added)
+    loss = max((loss for *_, loss in fits), default=1.0)
+    return FittedMemory(radiation, target.table, floor, uncertainty, loss)
 
 
 def _fitted(
-    targets: "_Targets", states: int, starts: int, generator: np.random.Generator
-) -> FittedMemory:
-    fits = {
-        i: best_ladder(targets.of((i,)), states, starts, generator) for i in targets.with_damping
-    }
-    if len(fits) == 2 and targets.coupling > COUPLING_IS_NOISE:
-        both = best_joint_ladder(targets.of((0, 1)), fits[0], fits[1], starts, generator)
-        return targets.judged([((0, 1), *both)])
-    return targets.judged([((i,), *fit) for i, fit in fits.items()])
+    samples: Samples, states: int | None, uncertainty: float
+) -> tuple[PartialFractions, float]:
+    """Return the fit, and by which factor its misfit is larger for the damping's condition."""
+    elements, k = samples.values.shape
+    most = min(_MOST_CHOSEN, max(_FEWEST, int(_SHARE * 2 * k * elements / (1 + elements))))
+    counts = range(_FEWEST, most + 1) if states is None else (states,)
+    tried: list[tuple[float, PartialFractions]] = []
+    for count in counts:
+        plain = fitted_residues(samples, fitted_poles(samples, count))
+        tried.append((_per_freedom(samples, plain), plain))
+        if tried[-1][0] > uncertainty:
+            continue
+        found = passive_fit(samples, plain.poles)
+        if _per_freedom(samples, found) <= uncertainty:
+            return found, _loss(samples, found, plain)
+    fits = [(passive_fit(samples, one.poles), one) for _, one in sorted(tried, key=_first)[:2]]
+    found, plain = min(fits, key=lambda pair: _per_freedom(samples, pair[0]))
+    return found, _loss(samples, found, plain)
+
+
+def _loss(samples: Samples, found: PartialFractions, plain: PartialFractions) -> float:
+    misfit = plain.misfit(samples)
+    return found.misfit(samples) / misfit if misfit > 0.0 else 1.0
+
+
+def _first(pair: tuple[float, PartialFractions]) -> float:
+    return pair[0]
+
+
+def _per_freedom(samples: Samples, fit: PartialFractions) -> float:
+    """Return the root mean square deviation for each degree of freedom that the fit leaves."""
+    elements, count = fit.residues.shape
+    data = 2 * samples.values.size
+    numbers = count + elements * (count - 1 + (samples.infinite is None))
+    return fit.misfit(samples) * math.sqrt(data / max(data - numbers, 1))
 
 
 @dataclass(frozen=True)
-class _Targets:
+class _Target:
     """The table in units in which all that is fitted is of the order of one.
 
     Frequencies are divided by their geometric middle, masses by the root of the largest of either
@@ -119,10 +136,13 @@ class _Targets:
         """The frequencies above 0, where B + i w A tells A."""
         return slice(int(self.table.omega_rad_s[0] == 0.0), None)
 
-    @property
-    def with_damping(self) -> list[int]:
-        """The degrees of freedom that radiate."""
-        return [i for i in (0, 1) if self.table.damping[:, i, i].any()]
+    def groups(self) -> Iterator[tuple[int, ...]]:
+        """Yield the degrees of freedom that radiate: each alone, or both where they are coupled."""
+        own = [i for i in (0, 1) if self.table.damping[:, i, i].any()]
+        if len(own) == 2 and self.coupling > COUPLING_IS_NOISE:
+            yield (0, 1)
+            return
+        yield from ((i,) for i in own)
 
     @property
     def middle(self) -> float:
@@ -131,78 +151,70 @@ class _Targets:
         return math.sqrt(float(omega[0]) * float(omega[-1]))
 
     @property
-    def mass(self) -> FloatArray:
-        """Square root of the unit of mass of each degree of freedom."""
+    def unit(self) -> FloatArray:
+        """Unit of mass of each element, ``(2, 2)``."""
         largest = np.abs(self.table.added_mass[:, (0, 1), (0, 1)]).max(axis=0)
-        return np.sqrt(np.where(largest > 0.0, largest, 1.0))
-
-    @property
-    def scales(self) -> tuple[FloatArray, FloatArray]:
-        """What a deviation of A, of B counts relative to; each ``(k, 2, 2)``."""
-        return self._scale(self.table.added_mass), self._scale(self.table.damping)
-
-    def _scale(self, matrices: FloatArray) -> FloatArray:
-        own = np.abs(matrices[self.rows][:, (0, 1), (0, 1)])
-        own = np.maximum(own, self.floor * own.max(axis=0))
-        own = np.sqrt(np.where(own > 0.0, own, np.inf))
-        return own[:, :, None] * own[:, None, :]
+        root = np.sqrt(np.where(largest > 0.0, largest, 1.0))
+        return np.outer(root, root)
 
     @property
     def coupling(self) -> float:
         """Largest coupling, relative to the diagonal."""
         both = (self.table.added_mass, self.table.damping)
-        parts = zip(both, self.scales, strict=True)
-        return float(max(np.abs(x[self.rows] / s)[:, 0, 1].max() for x, s in parts))
+        parts = zip(both, scales(self.table, self.floor), strict=True)
+        return float(max(np.abs(x[self.rows] / s[self.rows])[:, 0, 1].max() for x, s in parts))
 
-    def of(self, dofs: tuple[int, ...]) -> MemoryTarget:
+    def of(self, dofs: tuple[int, ...]) -> Samples:
         """Return what has to be reproduced for some degrees of freedom."""
-        pick = np.ix_(range(self.table.omega_rad_s[self.rows].size), dofs, dofs)
-        mass = np.outer(self.mass, self.mass)
-        a, b = self.table.added_mass[self.rows] / mass, self.table.damping[self.rows] / mass
-        scale_a, scale_b = self.scales
-        infinite = self.table.added_mass_infinite
-        return MemoryTarget(
-            self.table.omega_rad_s[self.rows] / self.middle,
-            a[pick],
-            b[pick] / self.middle,
-            (mass / scale_a)[pick],
-            (mass * self.middle / scale_b)[pick],
-            None if infinite is None else (infinite / mass)[np.ix_(dofs, dofs)],
-        )
-
-    def judged(self, fits: list[tuple[tuple[int, ...], Ladder, FloatArray]]) -> FittedMemory:
-        """Return the memory in SI units, and its deviations from the table."""
-        infinite = self.table.added_mass_infinite
-        added = np.array(self.table.added_mass[-1] if infinite is None else infinite)
-        radiation = constant(added)
-        for dofs, ladder, numbers in fits:
-            matrices = ladder.matrices(numbers)
-            added[np.ix_(dofs, dofs)] = (
-                matrices.added_mass * np.outer(self.mass, self.mass)[np.ix_(dofs, dofs)]
-            )
-            gain = np.zeros((ladder.states, 2))
-            gain[:, dofs] = self.middle * matrices.input * self.mass[list(dofs)]
-            radiation = radiation.joined(self.middle * matrices.state, gain, gain.T)
-        radiation = Radiation(
-            added, radiation.state_matrix, radiation.input_matrix, radiation.output_matrix
-        )
+        first, second = (np.take(dofs, at) for at in _INDICES[len(dofs)])
         omega = self.table.omega_rad_s[self.rows]
-        scale_a, scale_b = self.scales
-        off_a = np.abs(radiation.added_mass(omega) - self.table.added_mass[self.rows]) / scale_a
-        off_b = np.abs(radiation.damping(omega) - self.table.damping[self.rows]) / scale_b
-        return FittedMemory(radiation, off_a.max(axis=0), off_b.max(axis=0), self.floor)
+        unit = self.unit[first, second]
+
+        def elements(matrices: FloatArray) -> FloatArray:
+            return np.asarray(matrices[self.rows][:, first, second].T / unit[:, None])
+
+        scale_a, scale_b = map(elements, scales(self.table, self.floor))
+        values = elements(self.table.added_mass) - 1j * elements(self.table.damping) / omega
+        infinite = self.table.added_mass_infinite
+        known = None if infinite is None else infinite[first, second] / unit
+        return Samples(omega / self.middle, values, 1.0 / scale_a, omega / scale_b, known)
+
+    def state_space(
+        self, dofs: tuple[int, ...], fit: PartialFractions
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return state, input and output matrix in SI units, input and output equally large."""
+        state, column = state_matrix(fit.poles), input_column(fit.poles)
+        n, m = len(state), len(dofs)
+        residues = np.array([_matrix(one) for one in fit.residues.T])  # (n, m, m)
+        residues = residues * self.unit[np.ix_(dofs, dofs)] * self.middle
+        inputs, outputs = np.zeros((m * n, 2)), np.zeros((2, m * n))
+        for j, dof in enumerate(dofs):
+            own = slice(j * n, (j + 1) * n)
+            # K = s (M - A_inf), and the residues add up to zero: the output is R A.
+            answers = residues[:, :, j].T @ state * self.middle
+            size = math.sqrt(float(np.linalg.norm(answers) / np.linalg.norm(column))) or 1.0
+            inputs[own, dof] = size * column
+            outputs[list(dofs), own] = answers / size
+        return np.asarray(np.kron(np.eye(m), state * self.middle), np.float64), inputs, outputs
 
 
-def _check(table: RadiationTable, states: int, floor: float, starts: int) -> None:
-    if not _FEWEST <= states <= 10:
-        raise ConfigurationError(f"states = {states} must be 2 to 10 for each degree of freedom")
-    if not 0.0 < floor <= 1.0:
-        raise ConfigurationError(f"floor = {floor} must be above 0 and at most 1")
-    if starts < 1:
-        raise ConfigurationError(f"starts = {starts} must be at least 1")
+def _matrix(elements: FloatArray) -> FloatArray:
+    """Return a symmetric matrix from its 1 or 3 elements."""
+    return elements[[[0]]] if elements.size == 1 else elements[[[0, 1], [1, 2]]]
+
+
+def _check(table: RadiationTable, states: int | None, uncertainty: float, floor: float) -> None:
+    if states is not None and not _FEWEST <= states <= _MOST:
+        raise ConfigurationError(
+            f"states = {states} must be {_FEWEST} to {_MOST} for each degree of freedom"
+        )
+    for name, value in (("uncertainty", uncertainty), ("floor", floor)):
+        if not 0.0 < value <= 1.0:
+            raise ConfigurationError(f"{name} = {value} must be above 0 and at most 1")
     count = int(np.count_nonzero(table.omega_rad_s))
-    if count < states:
+    needed = _FEWEST if states is None else states
+    if count < needed:
         raise DataError(
-            f"{table.name} has {count} frequencies above 0, too few for {states} states of each "
+            f"{table.name} has {count} frequencies above 0, too few for {needed} states of each "
             f"degree of freedom; compute more, or use at most {count} states"
         )

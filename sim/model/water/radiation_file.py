@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import Plane
+from sim.model.water.tables import UNCERTAINTY
 
 if TYPE_CHECKING:
-    from sim.model.water.radiation import Radiation
+    from sim.model.water.fitted_memory import FittedMemory
     from sim.model.water.tables import RadiationTable
 
 
@@ -23,7 +24,10 @@ class RadiationFile:
         Beside the campaign file: NetCDF of Capytaine, or CSV with one row for each frequency and
         pair of degrees of freedom, or of heave alone.
     states
-        Of the memory for each degree of freedom; see :func:`sim.model.water.memory.fit_memory`.
+        Of the memory for each degree of freedom; ``None``: as many as the uncertainty asks for. See
+        :func:`sim.model.water.memory.fit_memory`.
+    uncertainty
+        Standard uncertainty of the table's values, relative.
     body
         Which body of a CSV with several.
     rotation_sign
@@ -31,11 +35,12 @@ class RadiationFile:
     """
 
     file: str
-    states: int = 6
+    states: int | None = None
+    uncertainty: float = UNCERTAINTY
     body: str | None = None
     rotation_sign: int = 1
 
-    def fitted(self, plane: Plane) -> "Radiation":
+    def fitted(self, plane: Plane) -> "FittedMemory":
         """Return the memory; the same file is fitted once.
 
         Raises
@@ -52,10 +57,10 @@ class RadiationFile:
 
 
 @lru_cache(maxsize=8)
-def _fitted(source: RadiationFile, plane: Plane, changed_ns: int) -> "Radiation":  # noqa: ARG001
+def _fitted(source: RadiationFile, plane: Plane, changed_ns: int) -> "FittedMemory":  # noqa: ARG001
     from sim.model.water.memory import fit_memory
 
-    return fit_memory(_read(source, plane), source.states).radiation
+    return fit_memory(_read(source, plane), source.states, uncertainty=source.uncertainty)
 
 
 def _read(source: RadiationFile, plane: Plane) -> "RadiationTable":

@@ -10,6 +10,7 @@ Files: :mod:`sim.model.water.table_files`. The memory: :mod:`sim.model.water.mem
 
 import math
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,6 +18,12 @@ from numpy.typing import ArrayLike
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import Plane
+
+# Standard uncertainty of a table's values, relative, where none is stated: what panel methods
+# reach at best, so that the fit of a memory adds little to it.
+UNCERTAINTY: Final = 2e-3
+# Of the peak: negative damping beyond it is no noise of a table.
+_MOST_NEGATIVE: Final = 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +48,7 @@ class RadiationTable:
     ------
     DataError
         If a shape does not fit, a value is not finite, frequencies do not rise, or the damping of
-        one degree of freedom is negative.
+        one degree of freedom is negative by more than a twentieth of its peak.
     """
 
     plane: Plane
@@ -86,7 +93,7 @@ class RadiationTable:
     def _check_damping(self) -> None:
         own = self.damping[:, (0, 1), (0, 1)]
         worst = np.unravel_index(int(own.argmin()), own.shape)
-        if own[worst] < -1e-3 * own[:, worst[1]].max(initial=0.0):
+        if own[worst] < -_MOST_NEGATIVE * own[:, worst[1]].max(initial=0.0):
             raise DataError(
                 f"{self.name}: the damping of the {('translation', 'rotation')[worst[1]]} is "
                 f"{own[worst]:.4g} at {self.omega_rad_s[worst[0]]:.4g} rad/s, where it cannot be "

@@ -171,7 +171,7 @@ def rows(draw: st.DrawFn, *, named: bool) -> CoefficientRow:
     with_effect, u = draw(value) if named else math.nan, 0.5
     without = draw(value)
     return CoefficientRow(
-        "Z_w", "N s/m", draw(value), without, u, with_effect, u, (without - with_effect) / u,
+        "Z_w", "N s/m", draw(value), 0.0, without, u, with_effect, u, (without - with_effect) / u,
         math.nan, math.nan,
     )  # fmt: skip
 

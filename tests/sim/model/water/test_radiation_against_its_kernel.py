@@ -10,8 +10,8 @@ from scipy.integrate import simpson
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
-from sim.model.water.ladder import Ladder
 from sim.model.water.radiation import Radiation, constant
+from tests.sim.model.water.ladder import Ladder
 from tests.sim.model.water.passivity import is_passive
 
 

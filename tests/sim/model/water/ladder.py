@@ -20,7 +20,7 @@ from functools import cached_property
 
 import numpy as np
 
-from hardware.description.arrays import ComplexArray, FloatArray, IntArray
+from hardware.description.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True)
@@ -79,56 +79,7 @@ class Ladder:
         j, low, x, a = (np.tensordot(p, b, 1) for p, b in zip(parts, self.bases, strict=True))
         return j, low, x, a
 
-    def join(
-        self, skew: FloatArray, lower: FloatArray, inner: FloatArray, added: FloatArray
-    ) -> FloatArray:
-        """Return the numbers of given matrices: the inverse of :meth:`split`."""
-        given = (skew, lower, inner, added)
-        parts = [
-            np.tensordot(basis, matrix, 2) / (basis**2).sum(axis=(1, 2))
-            for basis, matrix in zip(self.bases, given, strict=True)
-        ]
-        return np.concatenate(parts)
-
     def matrices(self, numbers: FloatArray) -> Matrices:
         """Return the state space that the numbers stand for."""
         skew, lower, inner, added = self.split(numbers)
         return Matrices(skew - lower @ lower.T, -skew @ inner, added)
-
-    def response(self, numbers: FloatArray, omega: FloatArray) -> ComplexArray:
-        """Return B + i w A = K + i w A_inf, shape ``(k, m, m)``."""
-        matrices = self.matrices(numbers)
-        right = _solve(omega, matrices.state, matrices.input)
-        return matrices.input.T @ right + 1j * omega[:, None, None] * matrices.added_mass
-
-    def slope(self, numbers: FloatArray, omega: FloatArray) -> ComplexArray:
-        """Return the derivative of :meth:`response` to each number, shape ``(p, k, m, m)``."""
-        skew, lower, inner, _ = self.split(numbers)
-        matrices = self.matrices(numbers)
-        right = _solve(omega, matrices.state, matrices.input)
-        left = _solve(omega, matrices.state.T, matrices.input).swapaxes(1, 2)
-        base_j, base_l, base_x, base_a = self.bases
-
-        def through_state(change: FloatArray) -> ComplexArray:
-            moved: ComplexArray = left @ change[:, None] @ right
-            return moved
-
-        def through_gain(change: FloatArray) -> ComplexArray:
-            moved: ComplexArray = change.swapaxes(1, 2)[:, None] @ right + left @ change[:, None]
-            return moved
-
-        loss = base_l @ lower.T + lower @ base_l.swapaxes(1, 2)
-        parts = (
-            through_state(base_j) + through_gain(-base_j @ inner),
-            through_state(-loss),
-            through_gain(-skew @ base_x),
-            1j * omega[:, None, None] * base_a[:, None],
-        )
-        return np.concatenate(parts)
-
-
-def _solve(omega: FloatArray, state: FloatArray, gain: FloatArray) -> ComplexArray:
-    """Return (i w - state)^-1 gain, shape ``(k, n, m)``."""
-    shifted = 1j * omega[:, None, None] * np.eye(len(state)) - state
-    loads = np.broadcast_to(gain, (omega.size, *gain.shape))
-    return np.asarray(np.linalg.solve(shifted, loads), dtype=np.complex128)
