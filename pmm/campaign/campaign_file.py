@@ -8,11 +8,11 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, TypeVar
 
-from analysis.attitude import AttitudeSensors, HeaveAndPitch
 from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import RunKind
-from hardware.description.oscillator import Oscillator, Plane
+from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import check_within
+from pmm.campaign.attitude import forced_faults
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.column_table import take_columns
 from pmm.campaign.file_names import campaign_name_faults, no_file_name
@@ -103,9 +103,7 @@ def _none_for_false(table: dict[str, Any]) -> None:
 def _run_faults(table: dict[str, Any]) -> Iterator[Fault]:
     """Yield what is wrong with runs that are right by themselves."""
     oscillator = validate(Oscillator, table.get("oscillator", {}), [])
-    sensors = validate(AttitudeSensors, table.get("attitude", {}), [])
-    if oscillator is not None and sensors is not None:
-        yield from _forced(oscillator, sensors)
+    yield from forced_faults(oscillator, table.get("attitude"))
     runs = list(_valid(table, "runs", Run))
     rest = list(_valid(table, "at_rest", AtRest))
     every: list[tuple[Place, Run | AtRest]] = [*runs, *rest]
@@ -145,16 +143,6 @@ def _zero_faults(run: Run | AtRest, place: Place, zeros: list[str]) -> Iterator[
             near = get_close_matches(name, zeros, n=1, cutoff=0.5)
             hint = f"did you mean {near[0]!r}?" if near else "list it in [[at_rest]], kind zero"
             yield Fault((*place, key), f"= {name!r} is no zero run of the campaign; {hint}")
-
-
-def _forced(oscillator: Oscillator, sensors: AttitudeSensors) -> Iterator[Fault]:
-    """Refuse a model that is free in what a vertical oscillator forces."""
-    if oscillator.plane is Plane.VERTICAL and sensors.heave_and_pitch is HeaveAndPitch.FREE:
-        yield Fault(
-            ("attitude", "heave_and_pitch"),
-            '= "free": a vertical oscillator forces heave and pitch; say "fixed", or correct plane '
-            "in [oscillator]",
-        )
 
 
 def _beyond(oscillator: Oscillator, run: Run, place: Place) -> Iterator[Fault]:

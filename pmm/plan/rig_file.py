@@ -12,6 +12,7 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
 from hardware.rig_configuration import TABLES, RigConfiguration, read_rig
 from hardware.watch import WatchLimits
+from pmm.campaign.attitude import attitude_faults
 from pmm.campaign.calibration import Calibration, read_calibration
 from pmm.campaign.model_uncertainty import expand_preset
 from pmm.configuration import (
@@ -142,6 +143,10 @@ def examine_rig(path: Path) -> RigFileReading:
     modes = _more_modes(own, path, faults)
     calibration = _calibration(own, hardware, path, faults)
     oscillator = validate(Oscillator, table.get("oscillator", {}), [])
+    sensors = (own.campaign if own is not None else {}).get("attitude")
+    if sensors is not None:
+        found = attitude_faults(oscillator, sensors)
+        faults += [Fault(("campaign", *one.place), one.message) for one in found]
     channels = None if hardware is None else channels_of(hardware)
     if faults or own is None or hardware is None:
         return RigFileReading(None, oscillator, channels, as_error(path, faults, original))

@@ -170,6 +170,7 @@ class ModesFile:
 HANDED_ON = (
     "acquisition",
     "analysis",
+    "attitude",
     "carriage",
     "cross_flow",
     "drive",

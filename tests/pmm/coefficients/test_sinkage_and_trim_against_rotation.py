@@ -20,9 +20,11 @@ from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.setpoint import SetPoint
 from pmm.campaign.campaign_file import read_campaign
 from pmm.cli import cli
+from pmm.plan.rig_file import read_rig_file
 from pmm.report.attitude import AttitudeRow
 from pmm.report.attitude_figure import attitude_figure
 from tests.pmm.coefficients.campaigns import at_rest, head, horizontal_rig, record
+from tests.pmm.plan.plans import RIG_TEXT
 
 AFT_M, FORE_M, AT_M = -0.7, 1.1, 0.25
 OFFSETS_M = (0.031, -0.012)
@@ -201,3 +203,18 @@ def test_a_wrong_table_is_refused(tmp_path: Path, text: str, said: str) -> None:
     path.write_text(text)
     with pytest.raises(ConfigurationError, match=said):
         read_campaign(path)
+
+
+def test_a_rig_hands_the_table_on_and_refuses_a_free_one_in_the_vertical(tmp_path: Path) -> None:
+    path = tmp_path / "rig.toml"
+
+    table = TABLE.replace("[attitude]", "[campaign.attitude]")
+    path.write_text(RIG_TEXT + table.replace('"free"', '"fixed"'))
+    assert read_rig_file(path).campaign["attitude"]["fore_x_m"] == FORE_M
+    for wrong, said in (
+        (table, "a vertical oscillator forces heave and pitch"),
+        (table.replace('heave_and_pitch = "free"', ""), "heave_and_pitch is missing"),
+    ):
+        path.write_text(RIG_TEXT + wrong)
+        with pytest.raises(ConfigurationError, match=said):
+            read_rig_file(path)
