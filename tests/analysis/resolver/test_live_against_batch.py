@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from analysis.readers.conditioning import without_spikes
@@ -74,6 +74,7 @@ def same(ours: list[Harmonics], theirs: list[Harmonics]) -> None:
         assert one.interval_source == other.interval_source
 
 
+@settings(max_examples=60, deadline=None)
 @given(
     st.lists(st.integers(1, 200), min_size=1, max_size=6),
     st.lists(st.floats(-0.9, 0.3), min_size=1, max_size=5),
@@ -307,6 +308,7 @@ def test_missing_samples_cost_their_periods_and_no_more(periods: int) -> None:
     )
 
 
+@settings(max_examples=60, deadline=None)
 @given(
     st.lists(st.integers(1, 200), min_size=1, max_size=6),
     st.lists(st.floats(-0.9, 0.3), min_size=1, max_size=5),
