@@ -28,6 +28,8 @@ class MonteCarlo:
         Mean and standard deviation of the trials.
     low, high
         Ends of the probabilistically symmetric interval of 95 %.
+    end_uncertainty
+        Standard uncertainty of the less certain end, by the trials' own order statistics.
     """
 
     trials: int
@@ -35,6 +37,7 @@ class MonteCarlo:
     uncertainty: float
     low: float
     high: float
+    end_uncertainty: float
 
 
 @dataclass(frozen=True)
@@ -110,8 +113,13 @@ def monte_carlo(
             f"{name}: {100 * lost:.1f} % of the trials have no value (limit {100 * _MOST_LOST:g} "
             "%): the inputs' uncertainties reach where the formula ends; measure them better"
         )
-    low, high = np.quantile(good, (0.025, 0.975))
-    return MonteCarlo(trials, float(good.mean()), float(good.std(ddof=1)), float(low), float(high))
+    ends, beside = np.array([0.025, 0.975]), math.sqrt(0.025 * 0.975 / good.size)
+    low, high = np.quantile(good, ends)
+    # A share of the trials is binomial, whatever their distribution: no density need be assumed.
+    above, below = np.clip(ends + beside, 0.0, 1.0), np.clip(ends - beside, 0.0, 1.0)
+    spread = np.quantile(good, above) - np.quantile(good, below)
+    mean, deviation = float(good.mean()), float(good.std(ddof=1))
+    return MonteCarlo(trials, mean, deviation, float(low), float(high), float(spread.max() / 2.0))
 
 
 def assess(
@@ -133,7 +141,7 @@ def assess(
     budget = linear_budget(name, formula, inputs, unit=unit)
     trial = monte_carlo(name, formula, inputs, seed=seed, trials=trials)
     linear = budget.result
-    tolerance = max(_rounding(linear.uncertainty), 4.0 * _end_error(trial))
+    tolerance = max(_rounding(linear.uncertainty), 4.0 * trial.end_uncertainty)
     low, high = linear.interval()
     worst = max(abs(low - trial.low), abs(high - trial.high))
     return Assessment(budget, trial, worst <= tolerance)
@@ -144,9 +152,3 @@ def _rounding(uncertainty: float) -> float:
     if uncertainty <= 0.0:
         return 0.0
     return float(0.5 * 10.0 ** (math.floor(math.log10(uncertainty)) - 1))
-
-
-def _end_error(trial: MonteCarlo) -> float:
-    """Standard error of a quantile at 2.5 %, for a near-normal outcome."""
-    density = 0.0584 / trial.uncertainty if trial.uncertainty > 0.0 else math.inf
-    return math.sqrt(0.025 * 0.975 / trial.trials) / density

@@ -66,6 +66,31 @@ def test_a_bent_formula_is_caught() -> None:
     assert found.interval[1] == pytest.approx(5.0, rel=0.1)
 
 
+def test_ends_of_heavy_tails_are_as_uncertain_as_their_density_makes_them() -> None:
+    """Student's t of one degree is Cauchy's: its density at the end is 1 / (pi (1 + 12.7 ** 2))."""
+    inputs = {"x": Estimate.of(0.0, 0.3, "1", 1.0)}
+    trials = 500_000
+    found = monte_carlo("x", lambda x: x, inputs, seed=5, trials=trials)
+    end = math.tan(math.pi * 0.475)
+    expected = 0.3 * math.sqrt(0.025 * 0.975 / trials) * math.pi * (1.0 + end**2)
+    assert found.end_uncertainty == pytest.approx(expected, rel=0.15)
+
+
+def test_a_budget_is_not_good_enough_for_want_of_a_second_moment() -> None:
+    """Two runs of a kind: the deviation of a hundred thousand trials is that of the largest."""
+    inputs = {
+        "a": Estimate.of(1.0, 0.02, "1", 1.0),
+        "b": Estimate.of(2.0, 0.02, "1", 1.0),
+        "c": Estimate.of(1.0, 0.03),
+    }
+    found = assess("a b + c", lambda a, b, c: a * b + c, inputs, seed=7)
+    low, high = found.budget.result.interval()
+    off = max(abs(low - found.monte_carlo.low), abs(high - found.monte_carlo.high))
+    assert off > 0.2 * found.budget.result.half_width()
+    assert found.monte_carlo.uncertainty > 1.0
+    assert not found.linear_good_enough
+
+
 def test_degrees_of_freedom_are_welchs() -> None:
     inputs = {"a": Estimate.of(1.0, 0.3, "1", 4.0), "b": Estimate.of(2.0, 0.4, "1", 9.0)}
     budget = linear_budget("sum", lambda a, b: a + b, inputs)
