@@ -108,7 +108,9 @@ def most_of(count: int) -> int:
     return min(MOST, max(1, int(MOST_OF_A_CHANNEL * count)))
 
 
-def find_pulses(samples: Samples, row: int, curvature: FloatArray, most: int) -> Pulses:
+def find_pulses(
+    samples: Samples, row: int, curvature: FloatArray, most: int, until: int | None = None
+) -> Pulses:
     """Walk down from where a channel bends most until what bends is no pulse.
 
     Parameters
@@ -117,12 +119,16 @@ def find_pulses(samples: Samples, row: int, curvature: FloatArray, most: int) ->
         The largest second differences of each 32 samples, shape ``(chunks,)``; changed in place.
     most
         Pulses beyond which none is a spike.
+    until
+        Sample from which on nothing is sought: what lies there is seen as surroundings alone.
+        ``None`` for the whole.
     """
     count = samples.shape[1]
+    until = count if until is None else until
     pulses: list[Spike] = []
     while curvature.size:
         chunk = int(np.argmax(curvature))
-        place, values, bend = _window(samples, row, chunk, pulses)
+        place, values, bend = _window(samples, row, chunk, pulses, until)
         if bend < curvature[chunk]:
             curvature[chunk] = bend  # what was taken out stood here too
             continue
@@ -183,7 +189,7 @@ def _without_holes(values: FloatArray) -> FloatArray:
 
 
 def _window(
-    samples: Samples, row: int, chunk: int, spikes: list[Spike]
+    samples: Samples, row: int, chunk: int, spikes: list[Spike], until: int
 ) -> tuple[IntArray, FloatArray, float]:
     """Return the good samples around where a chunk bends most: their numbers and values, the bend.
 
@@ -198,7 +204,8 @@ def _window(
     good = np.flatnonzero(np.isfinite(values))
     place, values = good + first, values[good]
     bend = np.abs(np.diff(values, n=2))
-    here = (place[1:-1] > chunk * _CHUNK) & (place[1:-1] <= (chunk + 1) * _CHUNK)
+    last = min((chunk + 1) * _CHUNK, until - 1)
+    here = (place[1:-1] > chunk * _CHUNK) & (place[1:-1] <= last)
     if not here.any():
         return place, values, 0.0
     at = 1 + int(np.argmax(np.where(here, bend, -1.0)))

@@ -227,8 +227,10 @@ class LiveResolver:
         rate = self._run.sample_rate_hz
         held = self._buffer[:, : self._count - self._first]
         edges = np.array([self._number(time) - self._first for time in (opened_s, closed_s)])
-        held = held[:, : int(edges[1]) + _AHEAD + 1]
-        self._spikes += self._watch.take_out(held, self._first)
+        last = int(edges[1])
+        held = held[:, : last + _AHEAD + 1]
+        until = min(last + REACH + 1, held.shape[1])
+        self._spikes += self._watch.take_out(held, self._first, until)
         edges = np.clip(edges, 0.0, held.shape[1] - 1.0)
         gate = Gates(*np.array([*edges, self._cycle, self._cycle + 1.0])[:, None])
         if edges[0] < REACH - 1 or edges[1] >= held.shape[1] - REACH:  # a run's very ends

@@ -33,7 +33,7 @@ class SpikeWatch:
         self._known = [Pulses((), 0.0)] * channels
         self._numbers: list[list[int]] = [[] for _ in range(channels)]
 
-    def take_out(self, values: FloatArray, first: int) -> list[LiveSpike]:
+    def take_out(self, values: FloatArray, first: int, until: int) -> list[LiveSpike]:
         """Put the cubic in the place of spikes, and return those.
 
         Parameters
@@ -42,23 +42,27 @@ class SpikeWatch:
             A period and what its edges need, shape ``(channels, samples)``; changed in place.
         first
             Number of their first sample; all before and in it count as what has come.
+        until
+            Which of them belongs to a later period alone. What lies there may be half a spike, and
+            is judged when its surroundings have come.
         """
         taken: list[LiveSpike] = []
         with np.errstate(over="ignore", invalid="ignore"):
-            bends = curvature_of_chunks(values)
+            bends = curvature_of_chunks(values[:, : until + 1])
             for row, bend in enumerate(bends):
-                taken += self._of_channel(values, row, bend, first)
+                taken += self._of_channel(values, row, bend, first, until)
         for spike in taken:
             values[spike.row, spike.spike.start : spike.spike.stop] = spike.spike.instead
         return taken
 
     def _of_channel(
-        self, values: FloatArray, row: int, bend: FloatArray, first: int
+        self, values: FloatArray, row: int, bend: FloatArray, first: int, until: int
     ) -> list[LiveSpike]:
         known, numbers = self._known[row], self._numbers[row]
         if not bend.max(initial=0.0) > known.rest:
             return []
-        pulses_now = find_pulses(values, row, bend, most_of(first + values.shape[1]))
+        most = most_of(first + values.shape[1])
+        pulses_now = find_pulses(values, row, bend, most, until)
         new = [pulse for pulse in pulses_now.candidates if pulse.start + first not in numbers]
         numbers += [pulse.start + first for pulse in new]
         pulses = tuple(pulse.moved(first) for pulse in new)

@@ -308,6 +308,20 @@ def test_missing_samples_cost_their_periods_and_no_more(periods: int) -> None:
     )
 
 
+@pytest.mark.parametrize("length", [1, 2, 3])
+def test_a_spike_is_taken_out_wherever_a_period_ends(length: int) -> None:
+    """What has come when a period is summed up ends in the middle of a spike, too."""
+    edge = int(EDGES[3] * RATE_HZ)
+    clean = run()
+    for at in range(edge - 10, edge + 30):
+        spoilt = np.array(clean.samples[:, 0:COUNT])
+        spoilt[1, at : at + length] -= 50.0
+        record = replace(clean, samples=spoilt)
+        live = LiveResolver(record.channels, RATE_HZ)
+        same(feed(live, record, EDGES, [1], [0.0]), list(batch(without_spikes(record), EDGES, 1)))
+        assert [taken.number for taken in live.spikes()] == [at]
+
+
 @settings(max_examples=60, deadline=None)
 @given(
     st.lists(st.integers(1, 200), min_size=1, max_size=6),
