@@ -30,12 +30,12 @@ import can
 can.interface.BACKENDS.setdefault("pmm-simulated", ("sim.devices.bus", "SimulatedBus"))
 from pmm.cli import main
 from pmm.run import session
-loop = session._loop
+loop = session._Loop.make
 def watched(*words):
     before = set(sys.modules)
     loop(*words)
     print(json.dumps(sorted(set(sys.modules) - before)), file=sys.__stdout__)
-session._loop = watched
+session._Loop.make = watched
 main()
 """
 
