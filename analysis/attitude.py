@@ -72,7 +72,7 @@ class RestPosition:
 
 
 @dataclass(frozen=True)
-class Measured:
+class AttitudeChannel:
     """A mean and the amplitudes of the first harmonics, with standard uncertainties.
 
     The uncertainties of amplitudes are those along the phasor. Tows have no harmonics.
@@ -89,8 +89,8 @@ class Attitude:
     """Sinkage in metres, positive down, and trim in radians, positive bow up, of one run."""
 
     sensors: AttitudeSensors
-    sinkage: Measured
-    trim: Measured
+    sinkage: AttitudeChannel
+    trim: AttitudeChannel
 
 
 def common_rest(rests: Sequence[RestPosition]) -> RestPosition:
@@ -128,7 +128,7 @@ def with_attitude(recording: Recording, sensors: AttitudeSensors, rest: RestPosi
 
 
 def attitude(
-    sensors: AttitudeSensors, rest: RestPosition, sinkage: Measured, trim: Measured
+    sensors: AttitudeSensors, rest: RestPosition, sinkage: AttitudeChannel, trim: AttitudeChannel
 ) -> Attitude:
     """Return what was measured, with the rest's uncertainty in both means."""
     distance = sensors.fore_x_m - sensors.aft_x_m
@@ -143,7 +143,7 @@ def attitude(
     )
 
 
-def measured(found: Harmonics, name: str) -> Measured:
+def measured(found: Harmonics, name: str) -> AttitudeChannel:
     """Return a channel's mean and amplitudes with the resolver's own uncertainties."""
     row = found.channel_names.index(name)
     sizes, apart = found.amplitude[row], found.deviations[row]
@@ -152,7 +152,7 @@ def measured(found: Harmonics, name: str) -> Measured:
         / max(sizes[k], np.finfo(float).tiny)
         for k in range(found.order)
     ]
-    return Measured(
+    return AttitudeChannel(
         float(found.mean[row]),
         float(found.standard_uncertainty[row, 0]),
         tuple(map(float, sizes)),

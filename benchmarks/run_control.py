@@ -25,8 +25,9 @@ from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.run.journal import Taps
 from pmm.run.recorder_factory import RecorderFactory
-from pmm.run.run_control import RunControl, View
+from pmm.run.run_control import RunControl
 from pmm.run.states import Command, State
+from pmm.run.view import View
 from sim.devices.bench_file import DRIVERS
 from sim.devices.plant import PlantConditions
 from sim.devices.registry import running

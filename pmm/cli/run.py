@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
     from pmm.cli.terminal import Terminal
-    from pmm.run.run_control import View
     from pmm.run.session import Ask, RunJob, RunReport
+    from pmm.run.view import View
 
 _INTERRUPTED = 130  # what a shell reports of a command that Ctrl-C ended
 

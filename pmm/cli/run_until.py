@@ -25,11 +25,11 @@ def carried_out_until(
     from pmm.design.design_file import read_design
     from pmm.report.sequential_document import look_lines, sequential_document
     from pmm.run.operator import standard_input
-    from pmm.sequential.carrying_out import Asked, Screen, carry_out_campaign
+    from pmm.sequential.carrying_out import CampaignRequest, Screen, carry_out_campaign
     from pmm.sequential.look import read_decisions
 
     file = read_design(Path(design))
-    asked = Asked(
+    asked = CampaignRequest(
         output, approve, resume, accept_changes, real_time,
         lambda folder: check_folder(folder, "--output"),
     )  # fmt: skip

@@ -7,7 +7,7 @@ from analysis.attitude import (
     HARMONICS,
     NAMES,
     Attitude,
-    Measured,
+    AttitudeChannel,
     RestPosition,
     attitude,
     common_rest,
@@ -61,7 +61,7 @@ def attitude_of(task: Task, recording: Recording) -> tuple[Attitude | None, tupl
         sinkage, trim = (measured(reading, name) for name in NAMES)
     else:
         means, apart = _means(derived, NAMES)
-        sinkage, trim = (Measured(*one) for one in zip(means, apart, strict=True))
+        sinkage, trim = (AttitudeChannel(*one) for one in zip(means, apart, strict=True))
     return attitude(task.sensors, rest, sinkage, trim), ()
 
 

@@ -1,6 +1,5 @@
 """From folders of recordings to a campaign's coefficients, on any executor."""
 
-from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
@@ -12,15 +11,15 @@ from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.strut_phasors import MOTION_ASKED
 from hardware.description.body import Body
-from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.campaign.plausibility import implausible
-from pmm.campaign.runs import nearest_run
 from pmm.campaign.water import TankWater, common_water
 from pmm.coefficients.reading import read_cycle, read_zero
+from pmm.coefficients.run_names import check_left_out, check_names
 from pmm.coefficients.settings import CoefficientSettings
 from pmm.coefficients.solving import Progress, solve_campaign
 from pmm.coefficients.stated_inputs import (
@@ -146,8 +145,8 @@ def coefficients_of(
         If no run can be used, or a wanted coefficient is not determined.
     """
     campaigns = [(folder, read_campaign(folder / CAMPAIGN_FILE)) for folder in folders]
-    _check_names(campaigns)
-    _check_left_out(settings.leave_out, [campaign for _, campaign in campaigns])
+    check_names(campaigns)
+    check_left_out(settings.leave_out, [campaign for _, campaign in campaigns])
     water = common_water([campaign.water for _, campaign in campaigns])
     settings = replace(settings, ship=settings.ship.within(water))
     parts = [
@@ -194,32 +193,6 @@ def request_of(settings: CoefficientSettings, stated: StatedUncertainties) -> Re
         settings.nonlinear,
         settings.zero_frequency,
     )
-
-
-def _check_names(campaigns: Sequence[tuple[Path, Campaign]]) -> None:
-    """Refuse runs of one name before anything is read."""
-    places = [
-        (name, folder)
-        for folder, campaign in campaigns
-        for name in [*(one.name for one in campaign.runs), *(one.name for one in campaign.at_rest)]
-    ]
-    counts = Counter(name for name, _ in places)
-    faults = []
-    for name, count in counts.items():
-        if count > 1:
-            where = " and ".join(str(folder) for own, folder in places if own == name)
-            faults.append(f"two runs are called {name!r} (in {where}); rename one")
-    if faults:
-        raise ConfigurationError("the campaigns cannot be taken together: " + "; ".join(faults))
-
-
-def _check_left_out(names: Sequence[str], campaigns: Sequence[Campaign]) -> None:
-    """Refuse to leave out what is not there: a slip in a name would leave the run in."""
-    runs = [one.name for campaign in campaigns for one in campaign.runs]
-    known = [*runs, *(one.name for campaign in campaigns for one in campaign.at_rest)]
-    for name in names:
-        if name not in known:
-            raise ConfigurationError(f"leave_out: no run {name!r}; {nearest_run(name, known)}")
 
 
 def campaign_cycles(

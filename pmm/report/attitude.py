@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from analysis.attitude import Measured
+from analysis.attitude import AttitudeChannel
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import Column, Table, data_only, number, word
 from pmm.document.notation import NOT_KNOWN, rounded, written
@@ -21,8 +21,8 @@ class AttitudeRow:
     frequency_hz: float
     heave_and_pitch: str
     sinkage_x_m: float
-    sinkage: Measured
-    trim: Measured
+    sinkage: AttitudeChannel
+    trim: AttitudeChannel
 
     @property
     def drift_deg(self) -> float:
@@ -36,7 +36,7 @@ _DEGREES: Final = 180.0 / math.pi
 
 def _mean(key: str, factor: float, unit: str) -> Column[AttitudeRow]:
     def told(row: AttitudeRow) -> str:
-        one: Measured = getattr(row, key)
+        one: AttitudeChannel = getattr(row, key)
         return rounded(factor * one.mean, factor * one.mean_u)
 
     return Column(key, told, unit=unit, number=True)
@@ -44,7 +44,7 @@ def _mean(key: str, factor: float, unit: str) -> Column[AttitudeRow]:
 
 def _harmonic(key: str, order: int, factor: float, unit: str) -> Column[AttitudeRow]:
     def told(row: AttitudeRow) -> str:
-        one: Measured = getattr(row, key)
+        one: AttitudeChannel = getattr(row, key)
         if len(one.amplitude) < order:
             return NOT_KNOWN
         return rounded(factor * one.amplitude[order - 1], factor * one.amplitude_u[order - 1])

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from analysis.attitude import Measured
+from analysis.attitude import AttitudeChannel
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import Figure
 from pmm.document.style import PALETTE, drawing
@@ -23,7 +23,7 @@ _OVER: Final[tuple[tuple[str, Callable[[AttitudeRow], float]], ...]] = (
     ("carriage speed (m/s)", lambda row: row.speed_m_s),
     ("drift (°)", lambda row: row.drift_deg),
 )
-_SHOWN: Final[tuple[tuple[str, float, Callable[[AttitudeRow], Measured]], ...]] = (
+_SHOWN: Final[tuple[tuple[str, float, Callable[[AttitudeRow], AttitudeChannel]], ...]] = (
     ("sinkage (mm)", 1e3, lambda row: row.sinkage),
     ("trim (°)", 180.0 / math.pi, lambda row: row.trim),
 )
@@ -51,7 +51,9 @@ def attitude_figure(rows: Sequence[AttitudeRow]) -> "Drawing":
     return figure
 
 
-def _mark(axes: "Axes", row: AttitudeRow, place: float, value: Measured, factor: float) -> None:
+def _mark(
+    axes: "Axes", row: AttitudeRow, place: float, value: AttitudeChannel, factor: float
+) -> None:
     axes.errorbar(
         place,
         factor * value.mean,

@@ -8,7 +8,7 @@ nothing goes on by itself afterwards. The tables are in :mod:`pmm.run.states`.
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from functools import partial
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Final
 
 from hardware.errors import HardwareError, Reaction, as_fault
 from hardware.rig import Rig
@@ -24,18 +24,12 @@ from pmm.run.phases import PHASES, enter
 from pmm.run.states import Command, RunStateError, State
 from pmm.run.status import Alarms, RunOutcome, RunStatus
 from pmm.run.stopper import Stopper
+from pmm.run.view import View
 
 if TYPE_CHECKING:
     from pmm.recorder.live_path import Taken
 
 _FINAL: Final = frozenset({State.STOPPED, State.FAULT, State.DONE})
-
-
-class View(Protocol):
-    """Shows what is going on."""
-
-    def show(self, control: "RunControl") -> None:
-        """Look at the control, if it is time to."""
 
 
 class RunControl:

@@ -34,10 +34,11 @@ from pmm.run.journal import Taps
 from pmm.run.operator import Answers, Interrupts
 from pmm.run.recorder_factory import RecorderFactory, utc_now
 from pmm.run.rehearsal import rehearse
-from pmm.run.run_control import RunControl, View
+from pmm.run.run_control import RunControl
 from pmm.run.run_origin import change_lines
 from pmm.run.states import Command, RunStateError, State
 from pmm.run.status import RunOutcome
+from pmm.run.view import View
 
 Ask = Callable[[], str]  # what the operator is asked now; empty if nothing
 

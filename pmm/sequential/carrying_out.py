@@ -18,8 +18,8 @@ from pmm.real_time import step_back
 from pmm.recorder.campaign_owner import own_campaign
 from pmm.run.campaign_folder import finished_runs, keep_sources
 from pmm.run.operator import Answers
-from pmm.run.run_control import View
 from pmm.run.session import Ask, RunFailedError, RunJob, RunReport, carry_out, run_job
+from pmm.run.view import View
 from pmm.sequential.approval import approval_of
 from pmm.sequential.course import CampaignCourse
 from pmm.sequential.growing_plan import PLAN
@@ -30,7 +30,7 @@ _POLL_S: Final = 0.02
 
 
 @dataclass(frozen=True)
-class Asked:
+class CampaignRequest:
     """How a campaign is to be carried out.
 
     Attributes
@@ -60,7 +60,7 @@ class Screen:
 
 
 @dataclass(frozen=True)
-class Campaign:
+class MadeCampaign:
     """A campaign as a command left it.
 
     Attributes
@@ -74,7 +74,7 @@ class Campaign:
     report: RunReport
 
 
-def campaign_folder(asked: Asked, file: DesignFile) -> Path:
+def campaign_folder(asked: CampaignRequest, file: DesignFile) -> Path:
     """Return where a campaign is recorded: as of ``pmm run``."""
     if asked.output is not None:
         return Path(asked.output)
@@ -82,8 +82,8 @@ def campaign_folder(asked: Asked, file: DesignFile) -> Path:
 
 
 def carry_out_campaign(
-    file: DesignFile, asked: Asked, screen: Screen, answers: Answers
-) -> Campaign:
+    file: DesignFile, asked: CampaignRequest, screen: Screen, answers: Answers
+) -> MadeCampaign:
     """Make run after run until the design's targets are met, or nothing more is to be made.
 
     Raises
@@ -116,7 +116,7 @@ def carry_out_campaign(
         report = RunReport()
         if first is not None:
             report = carry_out(first, screen.view, screen.tell, answers, jobs)
-        return Campaign(folder, course.ended, report)
+        return MadeCampaign(folder, course.ended, report)
 
 
 def _write_made(folder: Path) -> None:
@@ -127,7 +127,7 @@ def _write_made(folder: Path) -> None:
 
 
 def _opened(
-    asked: Asked, folder: Path, stack: ExitStack, screen: Screen, names: Sequence[str]
+    asked: CampaignRequest, folder: Path, stack: ExitStack, screen: Screen, names: Sequence[str]
 ) -> RunJob:
     """Return a job of some runs of the folder's plan, checked as ``pmm run`` checks it."""
     job = stack.enter_context(

@@ -20,7 +20,7 @@ _CHANGE: Final = "Approve of these runs? y: yes, k: keep the plan as it was, n: 
 _BY_OPERATOR: Final = "the operator"
 
 
-class Goal(Protocol):
+class CampaignGoal(Protocol):
     """What a campaign is made for."""
 
     def look(self) -> Look:
@@ -46,7 +46,7 @@ class CampaignCourse:
         What was decided last; ``None`` as long as the campaign goes on.
     """
 
-    goal: Goal
+    goal: CampaignGoal
     folder: Path
     approval: Approval
     answers: Answers

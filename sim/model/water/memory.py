@@ -21,7 +21,7 @@ from sim.model.water.radiation import constant
 from sim.model.water.tables import UNCERTAINTY, RadiationTable
 from sim.model.water.vector_fitting import (
     PartialFractions,
-    Samples,
+    SampledTable,
     fitted_poles,
     fitted_residues,
     input_column,
@@ -83,7 +83,7 @@ def fit_memory(
 
 
 def _fitted(
-    samples: Samples, states: int | None, uncertainty: float
+    samples: SampledTable, states: int | None, uncertainty: float
 ) -> tuple[PartialFractions, float]:
     """Return the fit, and by which factor its misfit is larger for the damping's condition."""
     elements, k = samples.values.shape
@@ -103,7 +103,7 @@ def _fitted(
     return found, _loss(samples, found, plain)
 
 
-def _loss(samples: Samples, found: PartialFractions, plain: PartialFractions) -> float:
+def _loss(samples: SampledTable, found: PartialFractions, plain: PartialFractions) -> float:
     misfit = plain.misfit(samples)
     return found.misfit(samples) / misfit if misfit > 0.0 else 1.0
 
@@ -112,7 +112,7 @@ def _first(pair: tuple[float, PartialFractions]) -> float:
     return pair[0]
 
 
-def _per_freedom(samples: Samples, fit: PartialFractions) -> float:
+def _per_freedom(samples: SampledTable, fit: PartialFractions) -> float:
     """Return the root mean square deviation for each degree of freedom that the fit leaves."""
     elements, count = fit.residues.shape
     data = 2 * samples.values.size
@@ -164,7 +164,7 @@ class _Target:
         parts = zip(both, scales(self.table, self.floor), strict=True)
         return float(max(np.abs(x[self.rows] / s[self.rows])[:, 0, 1].max() for x, s in parts))
 
-    def of(self, dofs: tuple[int, ...]) -> Samples:
+    def of(self, dofs: tuple[int, ...]) -> SampledTable:
         """Return what has to be reproduced for some degrees of freedom."""
         first, second = (np.take(dofs, at) for at in _INDICES[len(dofs)])
         omega = self.table.omega_rad_s[self.rows]
@@ -177,7 +177,7 @@ class _Target:
         values = elements(self.table.added_mass) - 1j * elements(self.table.damping) / omega
         infinite = self.table.added_mass_infinite
         known = None if infinite is None else infinite[first, second] / unit
-        return Samples(omega / self.middle, values, 1.0 / scale_a, omega / scale_b, known)
+        return SampledTable(omega / self.middle, values, 1.0 / scale_a, omega / scale_b, known)
 
     def state_space(
         self, dofs: tuple[int, ...], fit: PartialFractions

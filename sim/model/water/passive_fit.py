@@ -15,7 +15,7 @@ from hardware.description.arrays import ComplexArray, FloatArray, IntArray
 from sim.model.water.conditions import least_squares
 from sim.model.water.vector_fitting import (
     PartialFractions,
-    Samples,
+    SampledTable,
     admissible,
     basis,
     input_column,
@@ -53,7 +53,7 @@ class _Cuts:
         return _Cuts(np.concatenate([self.omega, omega]), np.concatenate([self.factors, factors]))
 
 
-def passive_fit(samples: Samples, poles: ComplexArray) -> PartialFractions:
+def passive_fit(samples: SampledTable, poles: ComplexArray) -> PartialFractions:
     """Return the best fit without negative damping that has these poles, or moved ones.
 
     Parameters
@@ -67,7 +67,7 @@ def passive_fit(samples: Samples, poles: ComplexArray) -> PartialFractions:
     return _refined(samples, *_passive(samples, poles, none))
 
 
-def _refined(samples: Samples, found: PartialFractions, cuts: _Cuts) -> PartialFractions:
+def _refined(samples: SampledTable, found: PartialFractions, cuts: _Cuts) -> PartialFractions:
     """Return the fit after Gauss-Newton steps of poles and residues under the conditions."""
     least, stiffness = found.misfit(samples), 1e-2
     for _ in range(_STEPS):
@@ -87,7 +87,9 @@ def _refined(samples: Samples, found: PartialFractions, cuts: _Cuts) -> PartialF
     return found
 
 
-def _passive(samples: Samples, poles: ComplexArray, cuts: _Cuts) -> tuple[PartialFractions, _Cuts]:
+def _passive(
+    samples: SampledTable, poles: ComplexArray, cuts: _Cuts
+) -> tuple[PartialFractions, _Cuts]:
     """Return the best passive residues of given poles, and the cuts that it took."""
     for _ in range(_ROUNDS):
         watch = _watched(samples, poles, cuts.omega)
@@ -102,7 +104,7 @@ def _passive(samples: Samples, poles: ComplexArray, cuts: _Cuts) -> tuple[Partia
 
 
 def _solved(
-    samples: Samples,
+    samples: SampledTable,
     poles: ComplexArray,
     cuts: _Cuts,
     around: PartialFractions | None = None,
@@ -192,7 +194,7 @@ def _factors(directions: FloatArray) -> FloatArray:
     return np.stack([first**2, 2.0 * first * second, second**2], axis=1)
 
 
-def _watched(samples: Samples, poles: ComplexArray, cuts: FloatArray) -> _Watched:
+def _watched(samples: SampledTable, poles: ComplexArray, cuts: FloatArray) -> _Watched:
     """Return where the damping is looked at: closely about the cuts, at which it touches zero."""
     spread = np.geomspace(
         min(samples.omega[0], np.abs(poles).min()) / _FAR,
@@ -208,14 +210,14 @@ def _watched(samples: Samples, poles: ComplexArray, cuts: FloatArray) -> _Watche
     return _Watched(omega, rows / (rows @ least)[:, None], np.outer(own, least))
 
 
-def _least(samples: Samples, poles: ComplexArray, omega: FloatArray) -> FloatArray:
+def _least(samples: SampledTable, poles: ComplexArray, omega: FloatArray) -> FloatArray:
     """Return the damping that a cut asks for: a little more than the least."""
     rows = -omega[:, None] * basis(poles, omega).imag
     least: FloatArray = 1.5 * (rows @ _least_residues(samples, poles))
     return least
 
 
-def _least_residues(samples: Samples, poles: ComplexArray) -> FloatArray:
+def _least_residues(samples: SampledTable, poles: ComplexArray) -> FloatArray:
     """Return the residues of the least damping, shape ``(n,)``: of the sum of s/((s - p)(s - q)).
 
     The sum is over pairs p, q: two conjugate poles, or two real ones that follow each other. Its

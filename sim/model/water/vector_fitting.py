@@ -27,7 +27,7 @@ _APART: Final = 1e-3  # relative distance of real poles
 
 
 @dataclass(frozen=True, eq=False)
-class Samples:
+class SampledTable:
     """What is to be fitted: e elements of a symmetric matrix at k frequencies.
 
     Attributes
@@ -74,13 +74,13 @@ class PartialFractions:
     residues: FloatArray
     infinite: FloatArray
 
-    def deviations(self, samples: Samples) -> FloatArray:
+    def deviations(self, samples: SampledTable) -> FloatArray:
         """Return the weighted deviations from the samples, shape ``(e, 2 k)``."""
         fitted = self.residues @ basis(self.poles, samples.omega).T + self.infinite[:, None]
         off = fitted - samples.values
         return np.array([samples.weighted(e, row) for e, row in enumerate(off)])
 
-    def misfit(self, samples: Samples) -> float:
+    def misfit(self, samples: SampledTable) -> float:
         """Return the root mean square of the weighted deviations."""
         return float(np.sqrt(np.mean(self.deviations(samples) ** 2)))
 
@@ -120,7 +120,7 @@ def input_column(poles: ComplexArray) -> FloatArray:
     return np.concatenate(parts)
 
 
-def starting_poles(samples: Samples, count: int) -> ComplexArray:
+def starting_poles(samples: SampledTable, count: int) -> ComplexArray:
     """Return pairs spread over the frequencies, and a real pole where the number is odd."""
     low, high = samples.omega[0], samples.omega[-1]
     spread = np.geomspace(low, high, count // 2 + 2)[1:-1]
@@ -129,7 +129,7 @@ def starting_poles(samples: Samples, count: int) -> ComplexArray:
     return np.concatenate([middle, pairs]) if count % 2 else pairs
 
 
-def fitted_poles(samples: Samples, count: int) -> ComplexArray:
+def fitted_poles(samples: SampledTable, count: int) -> ComplexArray:
     """Return the poles of the best iteration, all of which fade."""
     poles = admissible(samples, starting_poles(samples, count))
     best, least = poles, np.inf
@@ -145,7 +145,7 @@ def fitted_poles(samples: Samples, count: int) -> ComplexArray:
     return best
 
 
-def fitted_residues(samples: Samples, poles: ComplexArray) -> PartialFractions:
+def fitted_residues(samples: SampledTable, poles: ComplexArray) -> PartialFractions:
     """Return the best residues of given poles."""
     free, known = sum_free(poles), samples.infinite
     functions = _with_infinite(samples, basis(poles, samples.omega) @ free)
@@ -159,7 +159,7 @@ def fitted_residues(samples: Samples, poles: ComplexArray) -> PartialFractions:
     return PartialFractions(poles, residues, numbers[:, -1] if known is None else known)
 
 
-def _with_infinite(samples: Samples, functions: ComplexArray) -> ComplexArray:
+def _with_infinite(samples: SampledTable, functions: ComplexArray) -> ComplexArray:
     """Return the functions, and a constant beside them where the end value is fitted along."""
     if samples.infinite is not None:
         return functions
@@ -199,7 +199,7 @@ def sum_free(poles: ComplexArray) -> FloatArray:
     return np.linalg.qr(counted, mode="complete")[0][:, 1:]
 
 
-def admissible(samples: Samples, poles: ComplexArray) -> ComplexArray:
+def admissible(samples: SampledTable, poles: ComplexArray) -> ComplexArray:
     """Return the poles reflected to the left, none slower, faster or narrower than is shown.
 
     A pair narrower than the distance of the table's frequencies would ring between them.
@@ -217,7 +217,7 @@ def admissible(samples: Samples, poles: ComplexArray) -> ComplexArray:
     return np.concatenate([-real + 0j, (-rate + 1j * poles.imag)[paired]])
 
 
-def _relocated(samples: Samples, found: PartialFractions) -> ComplexArray:
+def _relocated(samples: SampledTable, found: PartialFractions) -> ComplexArray:
     """Return the zeros of the scaling function: one step of relaxed vector fitting."""
     functions = basis(found.poles, samples.omega)
     own = _with_infinite(samples, functions @ sum_free(found.poles))

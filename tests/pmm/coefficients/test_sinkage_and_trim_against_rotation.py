@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 from matplotlib.container import ErrorbarContainer
 
-from analysis.attitude import Measured, RestPosition, with_attitude
+from analysis.attitude import AttitudeChannel, RestPosition, with_attitude
 from analysis.readers import read_recording, write_recording
 from analysis.recording import Recording
 from hardware.description.arrays import FloatArray
@@ -126,8 +126,8 @@ def test_people_read_it_in_millimetres_and_degrees(campaign: Path) -> None:
 def test_the_figure_shows_each_run_over_speed_and_over_drift() -> None:
     cases = [(0.8, 0.0), (0.8, 0.1), (1.2, 0.0)]
     rows = [
-        AttitudeRow(f"run {k}", speed, drift, 0.0, "free", 0.0, Measured(speed**2, 0.1),
-                    Measured(drift, 0.01))
+        AttitudeRow(f"run {k}", speed, drift, 0.0, "free", 0.0, AttitudeChannel(speed**2, 0.1),
+                    AttitudeChannel(drift, 0.01))
         for k, (speed, drift) in enumerate(cases)
     ]  # fmt: skip
     axes = attitude_figure(rows).axes
