@@ -71,6 +71,8 @@ class Campaign:
     ----------
     name
         What the campaign is called.
+    model_name
+        What its model is called; empty where the file does not say.
     oscillator, model
         ``None`` where the file does not say; a simulation needs them, an analysis does not.
     hull, drive, dynamometers, acquisition, photocell, simulation
@@ -99,6 +101,7 @@ class Campaign:
     """
 
     name: str = "campaign"
+    model_name: str = ""
     oscillator: Oscillator | None = None
     model: Body | None = None
     hull: HullCoefficients = field(default_factory=HullCoefficients)

@@ -12,9 +12,9 @@ from hardware.description.room import said
 from pmm.cli.group import CommandGroup
 
 _NAMES = (
-    "analyse", "coefficients", "compare", "completion", "console", "demo", "devices", "doctor",
-    "effects", "evaluate", "gap", "inertia", "init", "manoeuvre", "plan", "recover", "replay",
-    "report", "run", "simulate", "steering",
+    "analyse", "archive", "coefficients", "compare", "completion", "console", "demo", "devices",
+    "doctor", "effects", "evaluate", "gap", "inertia", "init", "manoeuvre", "plan", "recover",
+    "replay", "report", "run", "simulate", "steering",
 )  # fmt: skip
 _INTERRUPTED = 130  # what a shell reports of a command that Ctrl-C ended
 

@@ -179,6 +179,7 @@ HANDED_ON = (
     "forces",
     "linkage_aft",
     "linkage_fore",
+    "model_name",
     "model_uncertainty",
     "mounting",
     "photocell",

@@ -92,7 +92,7 @@ def test_every_key_is_documented(kind: type) -> None:
 
 
 def test_every_table_is_documented() -> None:
-    keys = {"[name]", "[tared]", "[runs]"}
+    keys = {"[name]", "[model_name]", "[tared]", "[runs]"}
     tables = {f"[{field.name}]" for field in fields(Campaign)} - keys
     assert tables <= IN_CODE | {f"[{name}]" for name in re.findall(r"\[(\w+)\]", PAGE)}
 

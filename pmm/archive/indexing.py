@@ -1,0 +1,206 @@
+"""Folders into the archive: what changed is taken in anew, what is known is not computed again."""
+
+import sqlite3
+from collections.abc import Iterable, Mapping
+from dataclasses import astuple, dataclass
+from pathlib import Path
+from typing import Any
+
+from hardware.description.errors import DataError
+from pmm.archive.contents import Contents, Stamp, changes, read_contents, recorded_utc, stamp
+from pmm.archive.notebook import NOTES_FILE, NoteLine, read_notes, write_note
+from pmm.archive.results import LEVEL, Analysed, Analyses, HarmonicValue
+
+
+@dataclass(frozen=True)
+class Added:
+    """What was done with a folder.
+
+    Attributes
+    ----------
+    state
+        ``"new"``, ``"changed"`` or ``"as before"``.
+    computed
+        What was computed now: ``"analysis"``, ``"diagnosis"``, both or none.
+    refused
+        What could not be found, from the analysis of now.
+    """
+
+    folder: Path
+    campaign: str
+    state: str
+    runs: int
+    computed: tuple[str, ...]
+    refused: tuple[str, ...]
+
+
+def add_folder(
+    connection: sqlite3.Connection, folder: Path, analyses: Analyses, now_utc: str
+) -> Added:
+    """Take a folder in, and compute what is asked for and not known of these very files.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`pmm.archive.contents.read_contents`.
+    DataError
+        If the folder changes while it is analysed.
+    """
+    folder = folder.resolve()
+    before = _row(connection, folder)
+    contents = read_contents(folder, {} if before is None else stamps(connection, before["id"]))
+    same = before is not None and before["sha256"] == contents.sha256
+    with connection:
+        if before is not None and not same:
+            connection.execute("DELETE FROM campaigns WHERE id = ?", (before["id"],))
+        if not same:
+            _insert(connection, contents, now_utc)
+    row = _row(connection, folder)
+    assert row is not None  # noqa: S101 - it was written above
+    key: int = row["id"]
+    with connection:
+        connection.execute("UPDATE campaigns SET seen_utc = ? WHERE id = ?", (now_utc, key))
+        _set_files(connection, key, contents)
+        _set_notes(connection, key, contents.notes)
+    computed, refused = _computed(connection, row, contents, analyses)
+    state = "as before" if same else "new" if before is None else "changed"
+    count = len(contents.records)
+    return Added(folder, contents.campaign.name, state, count, computed, refused)
+
+
+def _row(connection: sqlite3.Connection, folder: Path) -> sqlite3.Row | None:
+    found: sqlite3.Row | None = connection.execute(
+        "SELECT * FROM campaigns WHERE folder = ?", (str(folder),)
+    ).fetchone()
+    return found
+
+
+def stamps(connection: sqlite3.Connection, campaign: int) -> Mapping[str, Stamp]:
+    """Return the files of a campaign as they were seen."""
+    rows = connection.execute(
+        "SELECT path, bytes, mtime_ns, sha256 FROM files WHERE campaign = ?", (campaign,)
+    )
+    return {path: Stamp(*rest) for path, *rest in rows}
+
+
+def _insert(connection: sqlite3.Connection, contents: Contents, now_utc: str) -> None:
+    campaign = contents.campaign
+    runs = contents.records
+    places = [contents.recording(one) for one in runs]
+    times = [None if one is None else recorded_utc(contents.folder / one) for one in places]
+    first = min((one for one in times if one is not None), default=None)
+    key = connection.execute(
+        "INSERT INTO campaigns (folder, campaign, hull, recorded_utc, seen_utc, sha256) "
+        "VALUES (?, ?, ?, ?, ?, ?)",
+        (str(contents.folder), campaign.name, campaign.model_name, first, now_utc,
+         contents.sha256),
+    ).lastrowid  # fmt: skip
+    rows = []
+    for run, place, time in zip(runs, places, times, strict=True):
+        at = run.set_point
+        rows.append(
+            (key, run.name, str(run.kind), run.outcome, run.repeat, at.frequency_hz,
+             at.eccentricity_m, at.strut_phase_rad, at.carriage_speed_m_s, str(at.medium),
+             at.drift_rad, place, None if place is None else contents.stamps[place].sha256, time)
+        )  # fmt: skip
+    connection.executemany(
+        "INSERT INTO runs (campaign, run, kind, outcome, repeat, frequency_hz, eccentricity_m, "
+        "strut_phase_rad, carriage_speed_m_s, medium, drift_rad, recording, sha256, recorded_utc) "
+        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        rows,
+    )
+
+
+def _set_files(connection: sqlite3.Connection, key: int, contents: Contents) -> None:
+    rows = [(key, path, *astuple(one)) for path, one in contents.stamps.items()]
+    connection.execute("DELETE FROM files WHERE campaign = ?", (key,))
+    connection.executemany("INSERT INTO files VALUES (?, ?, ?, ?, ?)", rows)
+
+
+def note_run(connection: sqlite3.Connection, run: Mapping[str, Any], note: NoteLine) -> Path:
+    """Write a note to the folder of a run and take it into the archive; return the file.
+
+    Parameters
+    ----------
+    run
+        As :func:`pmm.archive.queries.the_run` finds it.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`pmm.archive.notebook.write_note`.
+    DataError
+        If the folder vanished.
+    """
+    folder, key = Path(run["folder"]), run["campaign_id"]
+    if not folder.is_dir():
+        raise DataError(f"{folder}: the folder vanished; add it from where it is now")
+    write_note(folder, note)
+    path = folder / NOTES_FILE
+    with connection:
+        _set_notes(connection, key, read_notes(folder))
+        connection.execute(
+            "INSERT OR REPLACE INTO files VALUES (?, ?, ?, ?, ?)",
+            (key, NOTES_FILE, *astuple(stamp(path))),
+        )
+    return path
+
+
+def _set_notes(connection: sqlite3.Connection, key: int, notes: Iterable[NoteLine]) -> None:
+    rows = [(key, *astuple(one)) for one in notes]
+    connection.execute("DELETE FROM notes WHERE campaign = ?", (key,))
+    connection.executemany("INSERT INTO notes VALUES (?, ?, ?, ?, ?)", rows)
+
+
+def _computed(
+    connection: sqlite3.Connection, row: sqlite3.Row, contents: Contents, analyses: Analyses
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    computed: list[str] = []
+    refused: tuple[str, ...] = ()
+    key: int = row["id"]
+    if analyses.analyse is not None and not row["analysed"]:
+        found = analyses.analyse(contents.folder)
+        _check_unchanged(contents)
+        with connection:
+            _write(connection, key, found)
+        computed.append("analysis")
+        refused = found.refused
+    if analyses.diagnose is not None and not row["diagnosed"]:
+        verdict = analyses.diagnose(contents.folder)
+        _check_unchanged(contents)
+        with connection:
+            connection.execute("INSERT INTO verdicts VALUES (?, ?, ?, ?)", (key, *astuple(verdict)))
+            connection.execute("UPDATE campaigns SET diagnosed = 1 WHERE id = ?", (key,))
+        computed.append("diagnosis")
+    return tuple(computed), refused
+
+
+def _check_unchanged(contents: Contents) -> None:
+    if found := changes(contents.folder, contents.stamps):
+        raise DataError(
+            f"{contents.folder}: {'; '.join(found)} while it was analysed; add it again"
+        )
+
+
+def _write(connection: sqlite3.Connection, key: int, found: Analysed) -> None:
+    ids = dict(connection.execute("SELECT run, id FROM runs WHERE campaign = ?", (key,)))
+    connection.executemany(
+        "INSERT INTO harmonics VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        _harmonic_rows(key, ids, found.harmonics),
+    )
+    connection.executemany(
+        "INSERT INTO coefficients VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        [(key, *astuple(one), LEVEL) for one in found.coefficients],
+    )
+    connection.executemany(
+        "INSERT INTO refusals VALUES (?, ?)", [(key, text) for text in found.refused]
+    )
+    connection.execute("UPDATE campaigns SET analysed = 1 WHERE id = ?", (key,))
+
+
+def _harmonic_rows(
+    key: int, ids: Mapping[str, int], values: Iterable[HarmonicValue]
+) -> Iterable[tuple[object, ...]]:
+    for one in values:
+        name, *rest = astuple(one)
+        yield (key, ids[name], *rest)

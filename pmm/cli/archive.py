@@ -1,0 +1,218 @@
+"""``pmm archive``: any number of campaign folders in one file, found and compared."""
+
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from pmm.cli.group import CommandGroup
+from pmm.cli.options import JSON, PLOT, probability
+
+if TYPE_CHECKING:
+    from pmm.archive.indexing import Added
+
+_LIMITS = 0.99  # probability of a control chart's limits
+FILE = click.option(
+    "--archive", "file", metavar="FILE", default="archive.sqlite", show_default=True,
+    help="The archive's file.",
+)  # fmt: skip
+CAMPAIGN = click.option(
+    "--campaign", metavar="NAME", help="Of which campaign, by name or folder, if several have it."
+)
+
+
+@click.group(cls=CommandGroup, kind="job")
+def archive() -> None:
+    """Keep many campaigns in one file: list, find, show, note, trend, export.
+
+    The file is made of the folders alone and can be made again from them. Exit status: 0 done,
+    1 something could not be found or analysed, 2 the request was wrong.
+
+    \b
+    pmm archive add campaigns/* --analyse
+    pmm archive find "hull = 'KVLCC2' and frequency_hz > 0.5"
+    pmm archive trend Z_w --plot plots
+    """  # noqa: D301
+
+
+@archive.command()
+@click.argument("folders", nargs=-1, required=True, metavar="FOLDER...")
+@click.option("--analyse", "analysed", is_flag=True, help="Find harmonics and coefficients.")
+@click.option("--gap", is_flag=True, help="Diagnose the gap to the simulation; takes long.")
+@FILE
+@JSON
+def add(folders: tuple[str, ...], analysed: bool, gap: bool, file: str, as_json: bool) -> None:
+    """Take campaign folders in, or again those that changed.
+
+    Nothing is computed twice of the same recordings, campaign file and settings. Without --analyse
+    a campaign is listed as not analysed.
+
+    \b
+    pmm archive add 2025-03-kvlcc2 2025-09-kvlcc2 --analyse
+    """  # noqa: D301
+    from hardware.description.errors import PmmError
+    from pmm.archive.database import open_archive
+    from pmm.archive.indexing import add_folder
+    from pmm.archive.results import Analyses
+    from pmm.cli.archive_analyses import analysed_folder, diagnosed_folder
+    from pmm.cli.files import check_file
+    from pmm.cli.screen import error_line, show, show_progress
+    from pmm.report.archive_document import added_document
+
+    check_file(Path(file), "--archive")
+    analyses = Analyses(analysed_folder if analysed else None, diagnosed_folder if gap else None)
+    done: list[Added] = []
+    statuses = []
+    with open_archive(Path(file), create=True) as connection:
+        for one in show_progress(folders, "folders"):
+            try:
+                done.append(add_folder(connection, Path(one), analyses, _now()))
+            except PmmError as error:
+                error_line(str(error))
+                statuses.append(error.exit_status)
+    show(added_document(tuple(done), file), as_json=as_json)
+    statuses += [1 for one in done if one.refused]
+    if statuses:
+        click.get_current_context().exit(min(statuses))
+
+
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+@archive.command("list")
+@FILE
+@JSON
+def list_campaigns(file: str, as_json: bool) -> None:
+    """List campaigns; say which changed or vanished since they were added."""
+    from pmm.archive.database import open_archive
+    from pmm.archive.queries import campaigns
+    from pmm.cli.screen import show
+    from pmm.report.archive_document import list_document
+
+    with open_archive(Path(file)) as connection:
+        show(list_document(campaigns(connection), file), as_json=as_json)
+
+
+@archive.command()
+@click.argument("expression", metavar="EXPR")
+@click.option("--channel", metavar="NAME", help="Show a harmonic of this channel with each run.")
+@click.option("--order", type=click.IntRange(min=0), default=1, show_default=True,
+              help="Of that harmonic; 0 is the mean.")  # fmt: skip
+@FILE
+@JSON
+def find(expression: str, channel: str | None, order: int, file: str, as_json: bool) -> None:
+    """Find the runs that fulfil a condition.
+
+    Columns, = != < <= > >=, and, or, not, brackets, numbers, quoted texts. With --channel in_phase,
+    quadrature, amplitude, gate and unit are columns too.
+
+    \b
+    pmm archive find "hull = 'KVLCC2' and frequency_hz > 0.5"
+    pmm archive find "kind = 'oscillation' and amplitude > 10" --channel force_aft
+    """  # noqa: D301
+    from pmm.archive.database import open_archive
+    from pmm.archive.queries import find_runs
+    from pmm.cli.screen import show
+    from pmm.report.archive_document import find_document
+
+    with open_archive(Path(file)) as connection:
+        rows = find_runs(connection, expression, channel, order)
+    show(find_document(rows, expression, channel, order, file), as_json=as_json)
+
+
+@archive.command("show")
+@click.argument("run", metavar="RUN")
+@CAMPAIGN
+@FILE
+@JSON
+def show_one(run: str, campaign: str | None, file: str, as_json: bool) -> None:
+    """Show a run: set-point, recording with its hash, harmonics, notes."""
+    from pmm.archive.database import open_archive
+    from pmm.archive.queries import show_run
+    from pmm.cli.screen import show
+    from pmm.report.archive_document import show_document
+
+    with open_archive(Path(file)) as connection:
+        show(show_document(show_run(connection, run, campaign)), as_json=as_json)
+
+
+@archive.command()
+@click.argument("run", metavar="RUN")
+@click.argument("text", metavar="TEXT")
+@CAMPAIGN
+@click.option("--author", metavar="NAME", help="Who writes.  [default: the user's name]")
+@FILE
+def note(run: str, text: str, campaign: str | None, author: str | None, file: str) -> None:
+    """Write a line about a run, with time and name, to notes.jsonl in its campaign's folder.
+
+    \b
+    pmm archive note heave-0.50 "gauge fore replaced before this run"
+    """  # noqa: D301
+    from getpass import getuser
+
+    from pmm.archive.database import open_archive
+    from pmm.archive.indexing import note_run
+    from pmm.archive.notebook import NoteLine
+    from pmm.archive.queries import the_run
+    from pmm.cli.screen import messages
+
+    with open_archive(Path(file)) as connection:
+        found = the_run(connection, run, campaign)
+        line = NoteLine(_now(), run, author or getuser(), text)
+        path = note_run(connection, found, line)
+    messages().print(f"written: {path}")
+
+
+@archive.command()
+@click.argument("name", metavar="NAME")
+@PLOT
+@click.option("--level", type=float, default=_LIMITS, show_default=True, callback=probability,
+              metavar="P", help="Probability of the limits.")  # fmt: skip
+@FILE
+@JSON
+def trend(name: str, plot: str | None, level: float, file: str, as_json: bool) -> None:
+    """Show a coefficient over time, and which campaign's is not as the others'.
+
+    \b
+    pmm archive trend Z_w --plot plots
+    """  # noqa: D301
+    from pmm.archive.database import open_archive
+    from pmm.archive.queries import trends
+    from pmm.cli.files import check_folder
+    from pmm.cli.screen import messages, show
+    from pmm.document.style import write_figures
+    from pmm.report.archive_document import trend_document, trend_figures
+
+    if plot is not None:
+        check_folder(Path(plot), "--plot")
+    with open_archive(Path(file)) as connection:
+        found = trends(connection, name, level)
+    show(trend_document(found, level), as_json=as_json)
+    if plot is not None:
+        files = write_figures(trend_figures(found), Path(plot), "archive")
+        messages().print(f"written: {len(files)} figures in {plot}")
+
+
+@archive.command()
+@click.option("--parquet", metavar="FILE", required=True, help="Write all harmonics there.")
+@click.option("--overwrite", is_flag=True, help="Replace a file that is there.")
+@FILE
+def export(parquet: str, overwrite: bool, file: str) -> None:
+    """Write all harmonics, each with its run's set-point, as a Parquet file.
+
+    \b
+    pmm archive export --parquet harmonics.parquet
+    """  # noqa: D301
+    from pmm.archive.database import open_archive
+    from pmm.archive.parquet import write_parquet
+    from pmm.archive.queries import all_harmonics
+    from pmm.cli.files import check_files
+    from pmm.cli.screen import messages
+
+    check_files({"--parquet": parquet}, [("--archive", Path(file))], overwrite=overwrite)
+    with open_archive(Path(file)) as connection:
+        rows = all_harmonics(connection)
+    write_parquet(rows, Path(parquet))
+    messages().print(f"written: {parquet}, {len(rows)} harmonics")
