@@ -13,7 +13,7 @@ from pmm.archive.results import LEVEL, Analysed, Analyses, HarmonicValue
 
 
 @dataclass(frozen=True)
-class Added:
+class AddedFolder:
     """What was done with a folder.
 
     Attributes
@@ -36,7 +36,7 @@ class Added:
 
 def add_folder(
     connection: sqlite3.Connection, folder: Path, analyses: Analyses, now_utc: str
-) -> Added:
+) -> AddedFolder:
     """Take a folder in, and compute what is asked for and not known of these very files.
 
     Raises
@@ -65,7 +65,7 @@ def add_folder(
     computed, refused = _computed(connection, row, contents, analyses)
     state = "as before" if same else "new" if before is None else "changed"
     count = len(contents.records)
-    return Added(folder, contents.campaign.name, state, count, computed, refused)
+    return AddedFolder(folder, contents.campaign.name, state, count, computed, refused)
 
 
 def _row(connection: sqlite3.Connection, folder: Path) -> sqlite3.Row | None:

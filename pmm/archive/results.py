@@ -50,7 +50,7 @@ class Analysed:
 
 
 @dataclass(frozen=True)
-class Verdict:
+class GapVerdict:
     """What the gap diagnosis answers: its verdict, the first answer and its probability."""
 
     verdict: str
@@ -63,4 +63,4 @@ class Analyses:
     """What is computed of a folder that is not known yet; ``None`` where it is not asked for."""
 
     analyse: Callable[[Path], Analysed] | None = None
-    diagnose: Callable[[Path], Verdict] | None = None
+    diagnose: Callable[[Path], GapVerdict] | None = None

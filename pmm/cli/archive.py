@@ -10,7 +10,7 @@ from pmm.cli.group import CommandGroup
 from pmm.cli.options import JSON, PLOT, probability
 
 if TYPE_CHECKING:
-    from pmm.archive.indexing import Added
+    from pmm.archive.indexing import AddedFolder
 
 _LIMITS = 0.99  # probability of a control chart's limits
 FILE = click.option(
@@ -62,7 +62,7 @@ def add(folders: tuple[str, ...], analysed: bool, gap: bool, file: str, as_json:
 
     check_file(Path(file), "--archive")
     analyses = Analyses(analysed_folder if analysed else None, diagnosed_folder if gap else None)
-    done: list[Added] = []
+    done: list[AddedFolder] = []
     statuses = []
     with open_archive(Path(file), create=True) as connection:
         for one in show_progress(folders, "folders"):

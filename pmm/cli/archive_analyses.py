@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from analysis.coefficients.recommendation import table
 from hardware.description.errors import PmmError
-from pmm.archive.results import LEVEL, Analysed, CoefficientValue, HarmonicValue, Verdict
+from pmm.archive.results import LEVEL, Analysed, CoefficientValue, GapVerdict, HarmonicValue
 from pmm.interface.coefficients import CoefficientsResult
 from pmm.interface.harmonics import HarmonicsResult
 from pmm.interface.opening import open as opened
@@ -65,10 +65,10 @@ def _coefficients(found: CoefficientsResult) -> Iterator[CoefficientValue]:
             yield CoefficientValue(**{one.name: row[one.name] for one in fields(CoefficientValue)})
 
 
-def diagnosed_folder(folder: Path) -> Verdict:
+def diagnosed_folder(folder: Path) -> GapVerdict:
     """Return what the gap diagnosis answers."""
     found = opened(folder).gap()
     first = next(iter(found.report.ranking), None)
     if first is None:
-        return Verdict(found.verdict, None, None)
-    return Verdict(found.verdict, first.answer, first.probability)
+        return GapVerdict(found.verdict, None, None)
+    return GapVerdict(found.verdict, first.answer, first.probability)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from pmm.archive.control_chart import FEWEST, ChartPoint
-from pmm.archive.indexing import Added
+from pmm.archive.indexing import AddedFolder
 from pmm.archive.queries import HARMONIC_COLUMNS, RUN_COLUMNS, Row, ShownRun, Trend
 from pmm.archive.results import LEVEL
 from pmm.document.content import (
@@ -49,9 +49,9 @@ def _data(*keys: str) -> tuple[Column[Row], ...]:
     return tuple(Column(None, itemgetter(key), key) for key in keys)
 
 
-def added_document(added: tuple[Added, ...], archive: str) -> Document:
+def added_document(added: tuple[AddedFolder, ...], archive: str) -> Document:
     """Return what was done with each folder."""
-    columns: tuple[Column[Added], ...] = (
+    columns: tuple[Column[AddedFolder], ...] = (
         word("campaign", "campaign"),
         word("folder", "folder"),
         word("", "state"),

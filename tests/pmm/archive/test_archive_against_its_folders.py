@@ -16,7 +16,7 @@ from pmm.archive.database import open_archive
 from pmm.archive.indexing import add_folder
 from pmm.archive.notebook import NoteLine, read_notes, write_note
 from pmm.archive.queries import campaigns
-from pmm.archive.results import Analysed, Analyses, Verdict
+from pmm.archive.results import Analysed, Analyses, GapVerdict
 from pmm.cli import cli
 from tests.pmm.coefficients.campaigns import vertical_campaign
 
@@ -191,7 +191,7 @@ def test_what_is_known_is_not_computed_again(copy: Path) -> None:
         calls.append(folder.name)
         return Analysed(refused=("one: no gate",))
 
-    wanted = Analyses(analyse, lambda _: Verdict("effect", "m1", 0.9))
+    wanted = Analyses(analyse, lambda _: GapVerdict("effect", "m1", 0.9))
     with open_archive(copy / "a.sqlite") as connection:
 
         def add() -> tuple[str, tuple[str, ...]]:
