@@ -61,6 +61,7 @@ def add(folders: tuple[str, ...], analysed: bool, gap: bool, file: str, as_json:
     from pmm.report.archive_document import added_document
 
     check_file(Path(file), "--archive")
+    Path(file).parent.mkdir(parents=True, exist_ok=True)
     analyses = Analyses(analysed_folder if analysed else None, diagnosed_folder if gap else None)
     done: list[AddedFolder] = []
     statuses = []

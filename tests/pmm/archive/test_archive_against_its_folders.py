@@ -258,6 +258,7 @@ def test_bad_requests_are_said(copy: Path, tmp_path: Path) -> None:
     assert "march" in done.stdout
     shutil.copytree(copy / "march", copy / "again")
     told("add", copy / "again", "--archive", file)
+    told("add", copy / "again", "--archive", copy / "not" / "yet" / "there.sqlite")
     done = job("show", "one-0.6-20", "--archive", file, status=2)
     assert "several runs 'one-0.6-20'; say which with --campaign" in done.stderr
     job("show", "one-0.6-20", "--campaign", copy / "again", "--archive", file)
