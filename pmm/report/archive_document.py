@@ -112,7 +112,7 @@ def _short(folder: str) -> str:
 def _gap(row: Row) -> str:
     if not row["diagnosed"]:
         return ""
-    answer = "" if row["answer"] is None else f": {row['answer']}"
+    answer = "" if row["answer"] in (None, row["verdict"]) else f": {row['answer']}"
     likely = "" if row["probability"] is None else f" ({100.0 * row['probability']:.0f} %)"
     return f"{row['verdict']}{answer}{likely}"
 
