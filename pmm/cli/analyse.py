@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pmm.cli.options import DEFAULT_LEVEL, JSON, PLOT, probability
+from pmm.cli.options import JSON, LEVEL, PLOT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -122,15 +122,7 @@ _ANY, _POSITIVE = _Finite(positive=False), _Finite()
     help="Make forces of the gauges' readings with this file of `pmm evaluate`; none: leave the "
     "readings as they are.  [default: the one that the recording carries]",
 )
-@click.option(
-    "--level",
-    type=float,
-    callback=probability,
-    metavar="P",
-    default=DEFAULT_LEVEL,
-    show_default=True,
-    help="Probability of the intervals.",
-)
+@LEVEL
 @PLOT
 @click.option("--save", metavar="FOLDER", help="Write the recordings there, as NetCDF.")
 @JSON

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pmm.cli.options import DEFAULT_LEVEL, JSON, PLOT, probability
+from pmm.cli.options import JSON, LEVEL, PLOT
 
 if TYPE_CHECKING:
     from analysis.recording import Recording
@@ -35,8 +35,7 @@ if TYPE_CHECKING:
               help="The same, one column at a time; repeatable.")  # fmt: skip
 @click.option("--sample-rate", "rates_hz", type=float, multiple=True, metavar="HZ",
               help="In place of time columns; twice for two files, in their order.")  # fmt: skip
-@click.option("--level", type=float, callback=probability, metavar="P", default=DEFAULT_LEVEL,
-              show_default=True, help="Probability of the intervals.")  # fmt: skip
+@LEVEL
 @PLOT
 @JSON
 def compare(

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from pmm.cli.options import DEFAULT_LEVEL, JSON, PLOT, probability
+from pmm.cli.options import JSON, LEVEL, PLOT
 
 DEFAULT_DRAWS = 500
 
@@ -23,15 +23,7 @@ DEFAULT_DRAWS = 500
 @click.option(
     "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of the draws."
 )
-@click.option(
-    "--level",
-    type=float,
-    default=DEFAULT_LEVEL,
-    show_default=True,
-    callback=probability,
-    metavar="P",
-    help="Probability of the intervals.",
-)
+@LEVEL
 @JSON
 def manoeuvre(
     file: str, plot: str | None, trials: int, seed: int, level: float, as_json: bool

@@ -50,3 +50,13 @@ def jobs_option(default: str) -> Callable[[F], F]:
 SCHEDULER: Final = click.option(
     "--scheduler", metavar="ADDRESS", help="A Dask scheduler in place of processes."
 )
+
+LEVEL: Final = click.option(
+    "--level",
+    type=float,
+    callback=probability,
+    metavar="P",
+    default=DEFAULT_LEVEL,
+    show_default=True,
+    help="Probability of the intervals.",
+)

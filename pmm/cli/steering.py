@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from pmm.cli.options import DEFAULT_LEVEL, JSON, PLOT, probability
+from pmm.cli.options import JSON, LEVEL, PLOT
 
 
 @click.command()
@@ -13,15 +13,7 @@ from pmm.cli.options import DEFAULT_LEVEL, JSON, PLOT, probability
     "--settings", metavar="FILE", help="In place of steering.toml of the campaign's folder."
 )
 @PLOT
-@click.option(
-    "--level",
-    type=float,
-    default=DEFAULT_LEVEL,
-    show_default=True,
-    callback=probability,
-    metavar="P",
-    help="Probability of the intervals.",
-)
+@LEVEL
 @JSON
 def steering(
     folder: str, settings: str | None, plot: str | None, level: float, as_json: bool
@@ -33,8 +25,8 @@ def steering(
     and the self-propulsion point. FOLDER has campaign.toml and steering.toml (docs/steering.md).
 
     \b
-    pmm simulate examples/steering/campaign.toml --output steered
-    pmm steering steered --settings examples/steering/steering.toml --plot plots
+    pmm simulate examples/steering/campaign.toml --output tows
+    pmm steering tows --settings examples/steering/steering.toml --plot plots
 
     Exit status: 0 done; 1 the runs do not tell the parameters, or one could not be used; 2 the
     request was wrong.

@@ -22,7 +22,7 @@ from pmm.campaign.recording_source import COMPLETE, RecordingSource
 from pmm.campaign.runs import AtRest, Run
 from pmm.coefficients.settings import AmplifierTable
 
-_STEERED = (
+_OTHER_STEERING = (
     "it oscillates with a laid rudder, or its propeller turns at another rate than in most runs; "
     "`pmm steering` takes such tows"
 )
@@ -191,13 +191,13 @@ def work_of(
     harmonics: int,
     leave_out: Sequence[str] = (),
     hashed: bool = False,
-    steered: bool = False,
+    with_steering: bool = False,
 ) -> Work:
     """Sort a campaign's runs and records at rest into tasks.
 
     Parameters
     ----------
-    steered
+    with_steering
         Whether all runs with a propeller or a rudder are wanted, and not those of the ship as it
         mostly ran.
     """
@@ -213,7 +213,7 @@ def work_of(
     for one in every:
         why = _why_not(one, leave_out)
         if why is None and one.kind is not RunKind.ZERO:
-            why = _other_steering(one, usual, steered=steered)
+            why = _other_steering(one, usual, with_steering=with_steering)
         if why is not None:
             flags += [_left_out(one.name, why)] if why else []
             continue
@@ -241,12 +241,12 @@ def work_of(
     return Work(tuple(zeros), tuple(runs), tuple(dry), tuple(missing), tuple(flags))
 
 
-def _other_steering(one: Run | AtRest, usual_hz: float, *, steered: bool) -> str | None:
+def _other_steering(one: Run | AtRest, usual_hz: float, *, with_steering: bool) -> str | None:
     """Say why a run's rudder or propeller is not as it is wanted, as :func:`_why_not` does."""
-    if steered:
+    if with_steering:
         return None if one.rudder_angle_rad or one.revolutions_hz else ""
     laid = one.rudder_angle_rad and one.kind.oscillates
-    return _STEERED if laid or one.revolutions_hz != usual_hz else None
+    return _OTHER_STEERING if laid or one.revolutions_hz != usual_hz else None
 
 
 def _why_not(one: Run | AtRest, leave_out: Sequence[str]) -> str | None:

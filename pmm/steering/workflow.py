@@ -93,7 +93,9 @@ def _tows(campaign: Campaign, folder: Path) -> tuple[list[SteeredTow], list[Fail
             "propeller are measured in the horizontal plane"
         )
     coefficients, _ = settings_of(folder, None)
-    work = work_of(campaign, folder, oscillator, chain_of(coefficients), harmonics=1, steered=True)
+    work = work_of(
+        campaign, folder, oscillator, chain_of(coefficients), harmonics=1, with_steering=True
+    )
     wanted = [task for task in work.runs if task.kind.towed]
     names = zeroed_names(wanted)
     failed: list[Failed] = []

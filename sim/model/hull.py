@@ -17,7 +17,7 @@ from sim.model.hull_steady_state import HullSteady
 from sim.model.model_march import Marching, marching_of
 from sim.model.numbers import numbers_of, turns_with, weight_less_buoyancy
 from sim.model.parameters import HullCoefficients, ModelParameters, mass_matrix
-from sim.model.steered import steered
+from sim.model.steering_loads import steering_loads
 from sim.model.system import HullSystem
 from sim.model.water.radiation import constant
 from sim.signals import Signal, Signals
@@ -84,7 +84,7 @@ class Hull(ModelParameters):
             state, force = self._with_memory(state, struts, instants)
         rows = np.ascontiguousarray(force.T)
         if self.steering is not None:
-            own = steered(self.steering, self.system.numbers, struts, flow)
+            own = steering_loads(self.steering, self.system.numbers, struts, flow)
             own[:3] += rows
             rows = own
         return state, self._written(rows)
@@ -156,7 +156,9 @@ class Hull(ModelParameters):
             return period, self._written(rows)
         struts = np.stack([period.values(inputs[signal.name]) for signal in self.reads[:6]], axis=1)
         flow = np.full(period.points, hull.carriage_speed_m_s)
-        added = period.harmonics(steered(self.steering, self.system.numbers, struts, flow).T).T
+        added = period.harmonics(
+            steering_loads(self.steering, self.system.numbers, struts, flow).T
+        ).T
         added[:3] += rows
         return period, self._written(added)
 

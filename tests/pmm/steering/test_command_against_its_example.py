@@ -23,8 +23,8 @@ def pmm(*arguments: object) -> Result:
 
 
 @pytest.fixture(scope="module")
-def steered(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("steering") / "steered"
+def tows(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("steering") / "tows"
     made = pmm("simulate", EXAMPLE / "campaign.toml", "--output", folder)
     assert made.exit_code == 0, made.output
     return folder
@@ -40,8 +40,8 @@ def changed(folder: Path, place: Path, old: str, new: str) -> Path:
     return place
 
 
-def test_the_parameters_are_those_put_in(steered: Path, tmp_path: Path) -> None:
-    ran = pmm("steering", steered, "--settings", SETTINGS, "--plot", tmp_path, "--json")
+def test_the_parameters_are_those_put_in(tows: Path, tmp_path: Path) -> None:
+    ran = pmm("steering", tows, "--settings", SETTINGS, "--plot", tmp_path, "--json")
     assert ran.exit_code == 0, ran.output
     found = json.loads(ran.stdout)
     rows = {one["name"]: one for one in found["parameters"]}
@@ -58,15 +58,15 @@ def test_the_parameters_are_those_put_in(steered: Path, tmp_path: Path) -> None:
     assert {one.suffix for one in tmp_path.iterdir()} == {".svg", ".png"}
 
 
-def test_people_read_names_intervals_and_what_is_missing(steered: Path) -> None:
-    told = pmm("steering", steered, "--settings", SETTINGS, "--level", "0.9").stdout
+def test_people_read_names_intervals_and_what_is_missing(tows: Path) -> None:
+    told = pmm("steering", tows, "--settings", SETTINGS, "--level", "0.9").stdout
     assert "thrust deduction factor" in told
     assert "90 % interval" in told
     assert "l_R is not told by these runs; it takes: yaw with rudder" in told
 
 
-def test_coefficients_have_the_rudders_derivatives(steered: Path) -> None:
-    found = json.loads(pmm("coefficients", steered, "--json").stdout)
+def test_coefficients_have_the_rudders_derivatives(tows: Path) -> None:
+    found = json.loads(pmm("coefficients", tows, "--json").stdout)
     laid = [one for one in found["left_out"] if "takes such tows" in one["message"]]
     assert len(laid) == 10  # of 21 tows those at 10 1/s stay: what most have
     rows = {one["name"]: one for one in found["recommended"]}
@@ -87,13 +87,13 @@ def test_coefficients_have_the_rudders_derivatives(steered: Path) -> None:
     assert rows["X_dd"]["value"] == pytest.approx(bend / (4.0 * step), rel=0.1)
 
 
-def test_what_is_wrong_is_said(steered: Path, tmp_path: Path) -> None:
+def test_what_is_wrong_is_said(tows: Path, tmp_path: Path) -> None:
     bad = tmp_path / "bad.toml"
     bad.write_text("length_m = 0.0\n", encoding="utf-8")
-    ran = pmm("steering", steered, "--settings", bad)
+    ran = pmm("steering", tows, "--settings", bad)
     assert ran.exit_code == 2
     assert "propeller" in ran.stderr
-    no_zero = changed(steered, tmp_path / "a", 'zero_before = "zero-1"\nzero_after = "zero-2"', "")
+    no_zero = changed(tows, tmp_path / "a", 'zero_before = "zero-1"\nzero_after = "zero-2"', "")
     ran = pmm("steering", no_zero, "--settings", SETTINGS)
     assert ran.exit_code == 1
     assert "no zero run is named" in ran.stderr

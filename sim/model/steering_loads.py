@@ -8,7 +8,7 @@ from sim.model.numbers import moving
 from sim.model.steering import Steering
 
 
-def steered(
+def steering_loads(
     steering: Steering, numbers: FloatArray, struts: FloatArray, flow_m_s: FloatArray
 ) -> FloatArray:
     """Return the readings aft, fore and along, then the signals that the steering writes.
