@@ -12,11 +12,11 @@ from benchmarks.simulator_rivals import METHODS, ModelOnGauges
 from benchmarks.timing import Contender, interleave
 from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
+from hardware.description.motor import Servo
 from hardware.description.oscillator import VERTICAL_1963
 from hardware.description.setpoint import SetPoint
 from sim.acquisition.amplifier import LowPass
 from sim.acquisition.channels import Digitiser
-from sim.drive.motor import Servo
 from sim.drive.prescribed_drive import DriveSettings, SpeedRipple
 from sim.model.friction import Coulomb
 from sim.model.law_point import Acting, Point

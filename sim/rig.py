@@ -2,12 +2,13 @@
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from hardware.description.arrangement import DriftBy, Joint
 from hardware.description.body import Body
 from hardware.description.channels import STEERING
 from hardware.description.errors import ConfigurationError
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator, Plane
 from hardware.description.setpoint import Medium, SetPoint, check_within
 from sim.acquisition.channels import Acquisition, Digitiser
@@ -25,7 +26,9 @@ from sim.model.mounting import Mounting
 from sim.model.steering import Steering
 from sim.model.water.force_laws import CrossFlow, SurgeForces
 from sim.model.water.radiation import Radiation
-from sim.stage import UNKNOWN_KEYS_REFUSED, Stage
+
+if TYPE_CHECKING:
+    from sim.stage import Stage
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """What a stage of the chain is: signals in, signals out, and a state that is a value."""
 
 from dataclasses import dataclass
-from typing import Any, Final, Protocol, TypeVar, runtime_checkable
+from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
@@ -10,10 +10,6 @@ from sim.signals import Signal, Signals
 from sim.solve.period import Period, Spectra
 
 StateT = TypeVar("StateT")
-
-# Parameter classes carry this as ``__pydantic_config__``: whoever validates one from a
-# configuration file refuses a key that the class does not have.
-UNKNOWN_KEYS_REFUSED: Final = {"extra": "forbid"}
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ import numpy as np
 
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.errors import ConfigurationError
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from sim.solve.linear_system import Hold, LinearSystem, causal_hold
-from sim.stage import UNKNOWN_KEYS_REFUSED
 
 FILTER_DEGREE: Final = 5  # of the polynomial between samples; error 0.014 (w h)^6
 _NODES: Final = 6  # samples that a delay interpolates

@@ -8,13 +8,14 @@ import numpy as np
 
 from hardware.description import channels
 from hardware.description.channels import Channel
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from sim import signals
 from sim.acquisition.digitiser import Digitiser as Digitiser
 from sim.acquisition.digitiser import LineState, digitise
 from sim.acquisition.noise import start_stream
 from sim.signals import Signal, Signals
 from sim.solve.period import Period, Spectra
-from sim.stage import UNKNOWN_KEYS_REFUSED, Block
+from sim.stage import Block
 
 if TYPE_CHECKING:
     from hardware.description.arrays import ComplexArray, FloatArray

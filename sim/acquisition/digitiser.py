@@ -8,9 +8,10 @@ import numpy as np
 
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.errors import ConfigurationError
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from sim.acquisition.amplifier import BridgeCarrier, LowPass, delay_weights
 from sim.acquisition.noise import NoiseState, draw_normal
-from sim.stage import UNKNOWN_KEYS_REFUSED, Block
+from sim.stage import Block
 
 
 @dataclass(frozen=True)

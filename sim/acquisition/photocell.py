@@ -7,12 +7,13 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from sim import signals
 from sim.acquisition.crossings import quintic, root
 from sim.acquisition.noise import NoiseState, draw_normal, start_stream
 from sim.signals import Signals
 from sim.solve.period import Period, Spectra
-from sim.stage import UNKNOWN_KEYS_REFUSED, Block
+from sim.stage import Block
 
 _TURN = 2.0 * math.pi
 _MOST_STEPS = 100

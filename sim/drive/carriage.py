@@ -5,10 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from sim import signals
 from sim.signals import Signals
 from sim.solve.period import Period, Spectra
-from sim.stage import UNKNOWN_KEYS_REFUSED, Block
+from sim.stage import Block
 
 
 @dataclass(frozen=True)

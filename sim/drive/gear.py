@@ -6,9 +6,9 @@ from functools import lru_cache
 import numpy as np
 
 from hardware.description.errors import ConfigurationError
-from sim.drive.motor import Motor, closed_loop
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED, Motor
+from sim.drive.motor import closed_loop
 from sim.solve.linear_system import LinearSystem
-from sim.stage import UNKNOWN_KEYS_REFUSED
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,10 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
+from hardware.description.motor import Cogging, Guides, Motor
 from sim import signals
 from sim.drive.gear import geared
-from sim.drive.motor import Cogging, Guides, Motor, closed_loop, droop
+from sim.drive.motor import closed_loop, droop
 from sim.drive.prescribed_drive import SHAFT, DriveSettings, ShaftMotion, shaft_over
 from sim.drive.shaft_system import TORQUE_DEGREE, ShaftSystem
 from sim.signals import Signals

@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from hardware.description.arrays import FloatArray
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED, Guides, Servo, ShuntMotor
 from sim import signals
 from sim.drive.gear import Gear
-from sim.drive.motor import Guides, Servo, ShuntMotor
 from sim.signals import Signals
 from sim.solve.period import Period, Spectra
-from sim.stage import UNKNOWN_KEYS_REFUSED, Block
+from sim.stage import Block
 
 SHAFT = (signals.SHAFT_ANGLE, signals.SHAFT_SPEED, signals.SHAFT_ACCELERATION)
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hardware.description.motor import Cogging
 from hardware.description.setpoint import SetPoint
-from sim.drive.motor import Cogging
 from sim.drive.prescribed_drive import SpeedRipple
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.shaft import uneven_signature

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sim.drive.motor import ShuntMotor, SpeedLoop
+from hardware.description.motor import ShuntMotor, SpeedLoop
 from sim.effects.effect import Signature
 from sim.effects.situation import Situation
 

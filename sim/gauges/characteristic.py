@@ -7,7 +7,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from hardware.description.arrays import FloatArray
-from sim.stage import UNKNOWN_KEYS_REFUSED
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 
 
 class LoopState(NamedTuple):

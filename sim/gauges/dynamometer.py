@@ -6,12 +6,13 @@ from typing import TypeAlias
 import numpy as np
 
 from hardware.description.arrays import FloatArray
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from sim import signals
 from sim.gauges.characteristic import Curve, Loop, LoopState, PowerLoop, follow, limited
 from sim.periodic import steady_by_samples
 from sim.signals import Signals
 from sim.solve.period import Period, Spectra
-from sim.stage import UNKNOWN_KEYS_REFUSED, Block
+from sim.stage import Block
 
 DynamometerState: TypeAlias = tuple[LoopState | None, LoopState | None]
 

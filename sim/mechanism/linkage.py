@@ -8,11 +8,12 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from sim import signals
 from sim.mechanism.play import JointMotion, PlayState, follow_with_play
 from sim.signals import Signals
 from sim.solve.period import Period, Spectra
-from sim.stage import UNKNOWN_KEYS_REFUSED, Block
+from sim.stage import Block
 
 # Of each strut; None before the first sample, and for a strut without play.
 PlayStates: TypeAlias = tuple[PlayState | None, PlayState | None]

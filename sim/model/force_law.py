@@ -13,8 +13,8 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from sim.mechanism.geometry import Value
-from sim.stage import UNKNOWN_KEYS_REFUSED
 
 # Below this speed friction builds up with the speed: at rest it has no sign of its own. It widens
 # the turn of a motion with peak speed V, which takes (CREEP / V)^2 / 6 from the first harmonic.

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from hardware.description.arrangement import Arrangement
 from hardware.description.body import Body
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from hardware.description.oscillator import Plane
 from sim.model.law_point import Acting
 from sim.model.mounting import Mounting
@@ -11,7 +12,6 @@ from sim.model.steering import Steering
 from sim.model.water.force_laws import CrossFlow, SurgeForces
 from sim.model.water.hydrostatics import Matrix
 from sim.model.water.radiation import Radiation
-from sim.stage import UNKNOWN_KEYS_REFUSED
 
 _NONE: Matrix = ((0.0, 0.0), (0.0, 0.0))
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
-from sim.stage import UNKNOWN_KEYS_REFUSED
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hardware.description.arrays import FloatArray
-from sim.stage import UNKNOWN_KEYS_REFUSED
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 
 
 @dataclass(frozen=True)

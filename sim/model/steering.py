@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hardware.description.arrays import FloatArray
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from hardware.description.setpoint import SetPoint
 from sim import signals
 from sim.model.propeller import PropellerBehind
 from sim.model.rudder import RudderBehind
 from sim.signals import Signal
-from sim.stage import UNKNOWN_KEYS_REFUSED
 
 _NO_RACE = 1.0
 

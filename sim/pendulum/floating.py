@@ -6,10 +6,10 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from sim.pendulum.body import LINEAR
 from sim.pendulum.coordinates import ROLL, Coordinate
 from sim.pendulum.resistance import Resistance
-from sim.stage import UNKNOWN_KEYS_REFUSED
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,11 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.pendulum.body import LINEAR, PENDULUM
 from sim.pendulum.coordinates import ANGLE
 from sim.pendulum.resistance import Air, Resistance
-from sim.stage import UNKNOWN_KEYS_REFUSED
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,11 @@ import pytest
 from click.testing import CliRunner
 
 from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.motor import Servo, ShuntMotor
 from hardware.description.setpoint import SetPoint
 from pmm.campaign.campaign_file import read_campaign
 from pmm.cli import cli
 from sim.drive.carriage import CarriageSettings, Fluctuation
-from sim.drive.motor import Servo, ShuntMotor
 from sim.mechanism.linkage import Setting
 from sim.model.friction import Coulomb
 from sim.model.law_point import Acting, Point

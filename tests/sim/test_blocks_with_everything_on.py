@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from hardware.description.motor import Cogging, Guides, ShuntMotor
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
 from sim.acquisition.amplifier import BridgeCarrier, FilterKind, LowPass
@@ -14,7 +15,6 @@ from sim.acquisition.channels import Acquisition, Digitiser
 from sim.acquisition.photocell import PhotocellStage
 from sim.chain import join
 from sim.drive.carriage import CarriageSettings, Fluctuation
-from sim.drive.motor import Cogging, Guides, ShuntMotor
 from sim.drive.prescribed_drive import DriveSettings, SpeedRipple
 from sim.gauges.dynamometer import Dynamometer, Dynamometers
 from sim.model.friction import Coulomb, LoadFriction

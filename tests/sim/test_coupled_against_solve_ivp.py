@@ -10,9 +10,10 @@ from scipy.integrate import solve_ivp
 
 from hardware.description.arrangement import Gauges
 from hardware.description.arrays import FloatArray
+from hardware.description.motor import Servo, ShuntMotor, SpeedLoop
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
-from sim.drive.motor import Servo, ShuntMotor, SpeedLoop, droop
+from sim.drive.motor import droop
 from sim.drive.prescribed_drive import DriveSettings
 from sim.model.friction import Coulomb
 from sim.model.law_point import Acting, Point

@@ -9,10 +9,10 @@ import pytest
 from numpy.typing import NDArray
 
 from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint, Pivot
+from hardware.description.motor import Servo
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium
 from sim import signals
-from sim.drive.motor import Servo
 from sim.drive.prescribed_drive import DriveSettings
 from sim.model.mounting import Mounting
 from sim.periodic import steady_state

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from hardware.description.motor import Cogging, Guides, Servo
 from hardware.description.setpoint import SetPoint
 from sim.coupled import stage, steady_state
-from sim.drive.motor import Cogging, Guides, Servo
 from sim.model import hull
 from sim.model import hull_steady_state as hull_steady
 from sim.model.compiled_laws import law_force

@@ -9,11 +9,11 @@ import pytest
 
 from hardware.description.arrays import ComplexArray
 from hardware.description.errors import ConfigurationError
+from hardware.description.motor import Cogging, Guides, Servo, ShuntMotor
 from hardware.description.setpoint import SetPoint
 from sim.acquisition.amplifier import BridgeCarrier, FilterKind, LowPass
 from sim.acquisition.photocell import PhotocellStage
 from sim.drive.carriage import CarriageSettings
-from sim.drive.motor import Cogging, Guides, Servo, ShuntMotor
 from sim.drive.prescribed_drive import DriveSettings, SpeedRipple
 from sim.mechanism.linkage import Setting
 from sim.model.friction import Coulomb

@@ -12,8 +12,8 @@ from typing import Final
 
 import numpy as np
 
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from sim.solve.linear_system import Rows, as_rows
-from sim.stage import UNKNOWN_KEYS_REFUSED
 
 # Columns of the coefficients, v the translation's velocity and r the rotation's.
 CUBIC_TERMS: Final = ("v^3", "v^2 r", "v r^2", "r^3")

@@ -19,9 +19,9 @@ from analysis.gap.locate.walk import (
 )
 from analysis.gap.observe.components import GapRun, Part
 from hardware.description.channels import DISPLACEMENTS, FORCES, SHAFT_ANGLE
+from hardware.description.motor import ShuntMotor
 from sim.acquisition.amplifier import LowPass
 from sim.acquisition.channels import Digitiser
-from sim.drive.motor import ShuntMotor
 from sim.drive.prescribed_drive import DriveSettings
 from sim.effects.catalogue import build
 from sim.effects.effect import StageName

@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from hardware.description.motor import Servo, SpeedLoop
 from hardware.description.setpoint import SetPoint
 from sim.acquisition.photocell import PhotocellStage
 from sim.devices.plant import Plant, PlantConditions
 from sim.devices.profile import SpeedProfile, following
-from sim.drive.motor import Servo, SpeedLoop
 from sim.rig import SimulatedRig, vertical_rig
 from tests.hardware.rigs import COUNTS_PER_TURN
 from tests.sim.devices.benches import NEWTON_PER_COUNT, WHOLE, in_process, turning

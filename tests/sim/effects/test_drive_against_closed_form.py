@@ -7,9 +7,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from hardware.description.arrays import FloatArray
+from hardware.description.motor import Cogging, Guides
 from hardware.description.setpoint import Medium, SetPoint
 from sim import signals
-from sim.drive.motor import Cogging, Guides
 from sim.effects.d1_speed_ripple import SpeedRippleEffect
 from sim.effects.d1b_torque_cogging import TorqueCogging
 from sim.effects.d2_speed_droop import SpeedDroop

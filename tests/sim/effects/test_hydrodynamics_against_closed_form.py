@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from hardware.description.errors import ConfigurationError
+from hardware.description.motor import ShuntMotor
 from hardware.description.setpoint import Medium, SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.drive.gear import Gear
-from sim.drive.motor import ShuntMotor
 from sim.drive.prescribed_drive import DriveSettings
 from sim.effects.campaign import in_order
 from sim.effects.effect import Effect
