@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from analysis.coefficients.campaign_records import ReferenceRow
-from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
+from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.campaign_systems import System, speed_power, term_of_entry
 from analysis.coefficients.names import Form
 from analysis.coefficients.normalisation import Normalisation
@@ -145,17 +145,11 @@ def _changed(
     )
     for label, parts in slopes.items():
         uncertain = uncertain.plus(label, parts)
-    trials = found.trials
     return replace(
         found,
         entries=tuple(replace(one, name=name(one.name)) for one in found.entries),
         uncertain=uncertain,
-        trials=TrialColumns(
-            trials.count,
-            trials.standard_uncertainty * factors,
-            trials.low * factors + shifts,
-            trials.high * factors + shifts,
-        ),
+        trials=found.trials.carried(found.uncertain, uncertain, factors),
     )
 
 

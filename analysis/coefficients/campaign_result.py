@@ -43,6 +43,27 @@ class TrialColumns:
     low: FloatArray
     high: FloatArray
 
+    def carried(
+        self, before: UncertainValues, after: UncertainValues, factors: FloatArray
+    ) -> "TrialColumns":
+        """Return the columns of values that follow by factors, with inputs that no trial drew.
+
+        What these add is the linear budget's, with what they share with inputs that were drawn.
+
+        Parameters
+        ----------
+        before, after
+            The values with their budgets.
+        factors
+            Of those before in those after, shape ``(n,)``.
+        """
+        own = self.standard_uncertainty * np.abs(factors)
+        added = after.standard_uncertainty**2 - (before.standard_uncertainty * factors) ** 2
+        spread = np.sqrt(np.maximum(own**2 + added, 0.0))
+        stretch = factors * np.divide(spread, own, out=np.ones_like(own), where=own > 0.0)
+        ends = after.values + stretch * (np.stack((self.low, self.high)) - before.values)
+        return TrialColumns(self.count, spread, ends.min(axis=0), ends.max(axis=0))
+
 
 def no_trials(size: int) -> TrialColumns:
     """Return the columns of a campaign without Monte Carlo."""

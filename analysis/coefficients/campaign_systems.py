@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from analysis.coefficients.campaign_records import CoefficientEntry
-from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
+from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.names import Form, place_of
 from analysis.coefficients.normalisation import DIMENSIONAL, Normalisation
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
@@ -53,7 +53,8 @@ def without_dimensions(
         speeds = np.array([system.speed_m_s or np.inf for system in systems])
         parts = -uncertain.values * powers * stated.speed_m_s / speeds
         uncertain = uncertain.plus("speed_m_s", parts)
-    return replace(scaled, uncertain=uncertain)
+    trials = coefficients.trials.carried(coefficients.uncertain, uncertain, 1.0 / factors)
+    return replace(scaled, uncertain=uncertain, trials=trials)
 
 
 def with_dimensions(coefficients: CampaignCoefficients, system: System) -> CampaignCoefficients:
@@ -122,17 +123,12 @@ def _scaled(
         replace(one, parts=one.parts * factors[one.rows][:, None])
         for one in coefficients.uncertain.contributions
     )
-    trials = coefficients.trials
+    uncertain = UncertainValues(coefficients.values * factors, contributions)
     texts = units or ("1",) * len(coefficients.entries)
     return replace(
         coefficients,
         normalisation=name,
         entries=tuple(replace(e, unit=u) for e, u in zip(coefficients.entries, texts, strict=True)),
-        uncertain=UncertainValues(coefficients.values * factors, contributions),
-        trials=TrialColumns(
-            trials.count,
-            trials.standard_uncertainty * factors,
-            trials.low * factors,
-            trials.high * factors,
-        ),
+        uncertain=uncertain,
+        trials=coefficients.trials.carried(coefficients.uncertain, uncertain, factors),
     )

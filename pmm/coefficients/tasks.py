@@ -26,6 +26,10 @@ _OTHER_STEERING = (
     "it oscillates with a laid rudder, or its propeller turns at another rate than in most runs; "
     "`pmm steering` takes such tows"
 )
+_NO_STEERING = (
+    "it states neither rudder_angle_deg nor revolutions_hz in the campaign file; give them where a "
+    "propeller turned or a rudder was there"
+)
 TOWED = (RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW)
 
 
@@ -244,7 +248,7 @@ def work_of(
 def _other_steering(one: Run | AtRest, usual_hz: float, *, with_steering: bool) -> str | None:
     """Say why a run's rudder or propeller is not as it is wanted, as :func:`_why_not` does."""
     if with_steering:
-        return None if one.rudder_angle_rad or one.revolutions_hz else ""
+        return None if one.rudder_angle_rad or one.revolutions_hz else _NO_STEERING
     laid = one.rudder_angle_rad and one.kind.oscillates
     return _OTHER_STEERING if laid or one.revolutions_hz != usual_hz else None
 

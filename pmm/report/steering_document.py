@@ -22,6 +22,7 @@ from pmm.document.content import (
     number,
     word,
 )
+from pmm.document.flag_lines import flag_notes
 from pmm.document.notation import rounded, written
 from pmm.report.steering_figure import steering_figure
 from pmm.steering.reading import SteeredTow
@@ -79,6 +80,8 @@ def steering_document(found: CampaignSteering, level: float) -> Document:
         _wakes(found, factor),
         _tows(found, factor),
         Data("failed", [one.message for one in found.failed]),
+        Notes(flag_notes(found.left_out)),
+        Data("left_out", found.left_out),
     )
     figures = Section("Figures", tuple(steering_figures(found)))
     return Document(found.name, "propeller and rudder", (Section("", content), figures), SCHEMA)

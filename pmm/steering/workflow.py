@@ -12,13 +12,14 @@ from analysis.steering.identification import SteeringParameters, identified
 from analysis.steering.observations import Particulars, SteeringRuns
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.flags import Flag
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.coefficients.reading import read_zero
 from pmm.coefficients.settings import settings_of
 from pmm.coefficients.stated_inputs import chain_of, oscillator_of
-from pmm.coefficients.tasks import Failed, work_of
+from pmm.coefficients.tasks import Failed, Work, work_of
 from pmm.steering.reading import GAUGES, SteeredTow, read_gauge_zeros, read_tow, zeroed_names
 from pmm.steering.settings import SETTINGS_FILE, SteeringSettings, read_steering_settings
 
@@ -34,8 +35,8 @@ class CampaignSteering:
     ----------
     tows, runs
         As they were read, in their order; the same as the equations take them.
-    failed
-        Runs that could not be used, and why.
+    failed, left_out
+        Runs that could not be used, and those that are none of propeller and rudder, and why.
     """
 
     name: str
@@ -45,6 +46,7 @@ class CampaignSteering:
     runs: SteeringRuns
     parameters: SteeringParameters
     failed: tuple[Failed, ...]
+    left_out: tuple[Flag, ...] = ()
 
 
 def steering_of(folder: Path, given: Path | None = None) -> CampaignSteering:
@@ -67,14 +69,22 @@ def steering_of(folder: Path, given: Path | None = None) -> CampaignSteering:
     density = settings.density_kg_m3
     if density is None:
         density = _FRESH_KG_M3 if campaign.water is None else campaign.water.density_kg_m3
-    tows, failed = _tows(campaign, folder)
+    work = _work(campaign, folder)
+    tows, failed = _tows(work)
     if not tows:
         told = "; ".join(one.message for one in failed)
         raise DataError(told or _nothing(folder))
     known, runs = settings.particulars(density), steering_runs(tows)
     parameters = identified(runs, known, settings.towing_force_n)
     return CampaignSteering(
-        campaign.name, settings, known, tuple(tows), runs, parameters, tuple(failed)
+        campaign.name,
+        settings,
+        known,
+        tuple(tows),
+        runs,
+        parameters,
+        tuple(failed),
+        work.left_out,
     )
 
 
@@ -85,7 +95,7 @@ def _nothing(folder: Path) -> str:
     )
 
 
-def _tows(campaign: Campaign, folder: Path) -> tuple[list[SteeredTow], list[Failed]]:
+def _work(campaign: Campaign, folder: Path) -> Work:
     oscillator = oscillator_of(campaign, folder)
     if oscillator.plane != "horizontal":
         raise ConfigurationError(
@@ -93,9 +103,12 @@ def _tows(campaign: Campaign, folder: Path) -> tuple[list[SteeredTow], list[Fail
             "propeller are measured in the horizontal plane"
         )
     coefficients, _ = settings_of(folder, None)
-    work = work_of(
+    return work_of(
         campaign, folder, oscillator, chain_of(coefficients), harmonics=1, with_steering=True
     )
+
+
+def _tows(work: Work) -> tuple[list[SteeredTow], list[Failed]]:
     wanted = [task for task in work.runs if task.kind.towed]
     names = zeroed_names(wanted)
     failed: list[Failed] = []

@@ -12,6 +12,7 @@ from analysis.coefficients.campaign_quoting import Carried, as_products, quoted
 from analysis.coefficients.campaign_records import HIGHER_ORDER, CoefficientEntry
 from analysis.coefficients.campaign_result import CampaignCoefficients, no_trials
 from analysis.coefficients.campaign_systems import without_dimensions
+from analysis.coefficients.cycle_trials import columns
 from analysis.coefficients.names import Form
 from analysis.coefficients.normalisation import prime
 from analysis.coefficients.quoting import Names, Quoting
@@ -196,6 +197,34 @@ def test_the_uncertainty_of_the_mass_is_that_of_another_mass(
         )
         expected = values - at(base)
         np.testing.assert_allclose(slope, expected, atol=2e-3 * abs(at(base)).max() * small)
+
+
+@pytest.mark.parametrize("divided", [False, True])
+def test_the_trials_spread_as_draws_that_carry_the_mass_themselves(divided: bool) -> None:
+    """A mass that is taken off each trial and quoted with it again, written out draw by draw."""
+    count, mass, spread = 40_000, 1.7e7, 2e5
+    rng = np.random.default_rng(16)
+    heavier, scatter = spread * rng.standard_normal(count), rng.standard_normal(count)
+    density = DENSITY * (1.0 + 0.01 * rng.standard_normal(count))
+    drawn = -3e8 + 0.4 * SPEED_M_S * heavier + 2e6 * scatter
+    start = campaign({"Y_r": -3e8}, Plane.HORIZONTAL)
+    parts = {"mass_kg": 0.4 * SPEED_M_S * spread, "scatter": 2e6}
+    rows = np.zeros(1, dtype=int)
+    own = tuple(Contribution(key, np.inf, rows, np.array([[one]])) for key, one in parts.items())
+    uncertain = UncertainValues(start.values, own)
+    columns_of = columns(drawn[:, None], 0.95)
+    start = replace(start, uncertain=uncertain, trials=columns_of)
+    stated = StatedUncertainties(mass_kg=spread, density_relative=0.01 * divided)
+    quoted_draws = drawn - (mass + heavier) * SPEED_M_S
+    if divided:
+        start = without_dimensions(start, system, stated)
+        quoted_draws /= 0.5 * density * LENGTH_M**3 * SPEED_M_S
+    carried = Carried(mass, 0.0, system if divided else None, stated)
+    found = quoted(start, Quoting(with_mass=True), carried)
+    assert found.trials.standard_uncertainty[0] == pytest.approx(quoted_draws.std(), rel=0.01)
+    ends = np.quantile(quoted_draws, (0.025, 0.975))
+    both = (found.trials.low[0], found.trials.high[0])
+    assert both == pytest.approx(ends, abs=0.03 * quoted_draws.std())
 
 
 def test_the_seakeeping_form_is_refused() -> None:

@@ -49,18 +49,40 @@ def _written(folder: Path, text: str) -> str:
     return str(path)
 
 
-def test_the_json_has_every_quantity_with_its_interval_and_criterion() -> None:
+Rows = dict[tuple[str, str], dict[str, float]]
+
+
+@pytest.fixture(scope="module")
+def rows() -> Rows:
+    """The example's quantities by manoeuvre and name."""
     status, output = _run(str(EXAMPLE), "--trials", "40", "--json")
     assert status == 0, output
     found = json.loads(output[output.index("{") :])
     assert found["schema"] == "pmm-manoeuvre-1"
-    rows = {(one["manoeuvre"], one["name"]): one for one in found["quantities"]}
+    return {(one["manoeuvre"], one["name"]): one for one in found["quantities"]}
+
+
+def test_the_json_has_every_quantity_with_its_interval_and_criterion(rows: Rows) -> None:
     advance = rows["turning circle 35°, starboard", "advance"]
     assert advance["low"] < advance["value"] < advance["high"]
     assert advance["full_scale"] == pytest.approx(advance["value"] * 7.0 * 45.714)
     assert (advance["limit"], advance["within"]) == (4.5, 1.0)
     assert rows["zig-zag 10/10, port", "overshoot 1"]["limit"] == 20.0
     assert rows["turning circle 35°, port", "transfer"]["limit"] is None
+
+
+def test_the_page_beside_the_free_running_model_says_what_is_computed(rows: Rows) -> None:
+    page = (ROOT / "docs" / "manoeuvre.md").read_text(encoding="utf-8")
+    row = r"^\| ([^|`]+?) \| ([\d.]+)[^|]+\| [\d.]+[^|]+\| ([\d.]+)[^|]+\| [\d.]+[^|]+\|$"
+    told = re.findall(row, page, re.MULTILINE)
+    assert len(told) == 5
+    for what, *values in told:
+        angle, _, name = what.rpartition(", ")
+        manoeuvre = f"zig-zag {angle}" if angle else "turning circle 35°"
+        order = {"first overshoot": "overshoot 1", "second overshoot": "overshoot 2"}
+        for side, value in zip(("starboard", "port"), values, strict=True):
+            computed = rows[f"{manoeuvre}, {side}", order.get(name, name)]["value"]
+            assert f"{computed:.{len(value.split('.')[1])}f}" == value, what
 
 
 def test_draws_spread_as_the_slope_says() -> None:

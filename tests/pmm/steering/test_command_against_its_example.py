@@ -65,6 +65,15 @@ def test_people_read_names_intervals_and_what_is_missing(tows: Path) -> None:
     assert "l_R is not told by these runs; it takes: yaw with rudder" in told
 
 
+def test_a_tow_that_states_no_rudder_and_no_revolutions_is_named(
+    tows: Path, tmp_path: Path
+) -> None:
+    stated = "rudder_angle_deg = -20\nrevolutions_hz = 8.0\n"
+    bare = changed(tows, tmp_path / "bare", stated, "")
+    told = " ".join(pmm("steering", bare, "--settings", SETTINGS).stdout.split())
+    assert "straight-tow-b0-n8-d-20: left out: it states neither rudder_angle_deg nor" in told
+
+
 def test_coefficients_have_the_rudders_derivatives(tows: Path) -> None:
     found = json.loads(pmm("coefficients", tows, "--json").stdout)
     laid = [one for one in found["left_out"] if "takes such tows" in one["message"]]
