@@ -1,24 +1,28 @@
 """Draw mutations over all four packages, run the tests that cover each, list the survivors.
 
-``make coverage`` says which tests run which line (``.coverage``). The draw is seeded: the same
-sources give the same mutations, each kind as often, so that two states of the tests can be compared
-on the same product. It goes on where it was broken off; a line of the results is one mutation.
+``make coverage`` says which tests run which line (``.coverage``); without it, a mutation is tried
+on the test files that import its module, then on those that import it through another, as far as
+patience goes. The draw is seeded: the same sources give the same mutations, each kind as often.
+``--before`` takes a checkout of an earlier state: then only mutations are drawn that stand once in
+both, and what survives now is tried there too. It goes on where it was broken off; a line of the
+results is one mutation.
 """
 
 import argparse
 import json
-import os
 import shutil
 import tempfile
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
+from benchmarks.mutants.nearest import rings
 from benchmarks.mutants.sites import Mutation, mutations
-from benchmarks.mutants.trial import Covering, House
+from benchmarks.mutants.trial import Covering, House, Outcome
 
 ROOT: Final = Path(__file__).parents[2]
 _PACKAGES: Final = ("analysis", "sim", "pmm", "hardware")
@@ -26,21 +30,67 @@ _RESULTS: Final = ROOT / "benchmarks" / "results" / "mutants.jsonl"
 _LEFT: Final = (".git", ".venv", "site", "demo", "board", ".mypy_cache", ".ruff_cache")
 
 
-def drawn(root: Path, packages: Sequence[str], count: int, seed: int) -> list[tuple[str, Mutation]]:
+def drawn(
+    root: Path, packages: Sequence[str], count: int, seed: int, before: Path | None = None
+) -> list[tuple[str, Mutation]]:
     """Return so many mutations with their files, no two the same, each kind equally likely."""
+    ones = _all(root, packages)
+    if before:
+        there = {one.told for _, one in _single(_all(before, packages))}
+        ones = [(file, one) for file, one in _single(ones) if one.told in there]
     by_kind: dict[str, list[tuple[str, Mutation]]] = {}
-    for package in packages:
-        for path in sorted((root / package).rglob("*.py")):
-            file = path.relative_to(root).as_posix()
-            for one in mutations(path.read_text(encoding="utf-8")):
-                by_kind.setdefault(one.kind, []).append((file, one))
+    for file, one in ones:
+        by_kind.setdefault(one.kind, []).append((file, one))
     generator = np.random.default_rng(seed)
     found: list[tuple[str, Mutation]] = []
     while len(found) < count and any(by_kind.values()):
-        kind = str(generator.choice(sorted(name for name, ones in by_kind.items() if ones)))
-        ones = by_kind[kind]
-        found.append(ones.pop(int(generator.integers(len(ones)))))
+        kind = str(generator.choice(sorted(name for name, left in by_kind.items() if left)))
+        left = by_kind[kind]
+        found.append(left.pop(int(generator.integers(len(left)))))
     return found
+
+
+def _all(root: Path, packages: Sequence[str]) -> list[tuple[str, Mutation]]:
+    return [
+        (path.relative_to(root).as_posix(), one)
+        for package in packages
+        for path in sorted((root / package).rglob("*.py"))
+        for one in mutations(path.read_text(encoding="utf-8"))
+    ]
+
+
+def _single(ones: Sequence[tuple[str, Mutation]]) -> list[tuple[str, Mutation]]:
+    counted = Counter(one.told for _, one in ones)
+    return [(file, one) for file, one in ones if counted[one.told] == 1]
+
+
+@dataclass(frozen=True)
+class State:
+    """A checkout whose tests are asked.
+
+    Attributes
+    ----------
+    house
+        Its copy, in which mutations are made.
+    """
+
+    root: Path
+    packages: Sequence[str]
+    coverage: Path
+    house: House
+
+    def judge(self, file: str, one: Mutation) -> Outcome:
+        """Return what becomes of a mutation."""
+        if self.coverage.exists():
+            return self.house.judge(
+                file, one, [covering(self.coverage, self.root, file).of(one.line)]
+            )
+        return self.house.judge(file, one, rings(self.root, self.packages, file))
+
+    def again(self, mutation: Mutation) -> Outcome:
+        """Return what becomes here of a mutation of another state."""
+        ones = _all(self.root, self.packages)
+        return self.judge(*next(place for place in ones if place[1].told == mutation.told))
 
 
 def covering(data: Path, root: Path, file: str) -> Covering:
@@ -55,20 +105,23 @@ def covering(data: Path, root: Path, file: str) -> Covering:
     )
 
 
-def tried(request: argparse.Namespace, root: Path, house: House) -> Iterator[dict[str, Any]]:
+def tried(
+    request: argparse.Namespace, now: State, before: State | None
+) -> Iterator[dict[str, Any]]:
     """Yield the outcome of each mutation that the results do not have yet."""
     known = {one["number"] for one in _kept(request.output) if one["seed"] == request.seed}
-    for number, (file, one) in enumerate(
-        drawn(root, request.packages, request.count, request.seed)
-    ):
+    ones = drawn(now.root, request.packages, request.count, request.seed, request.before)
+    for number, (file, one) in enumerate(ones):
         if number in known:
             continue
-        tests = covering(request.coverage, root, file).of(one.line)
-        yield {
+        row = {
             "seed": request.seed, "number": number, "file": file, "line": one.line,
-            "kind": one.kind, "before": one.before, "after": one.after, "tests": len(tests),
-            **house.judge(file, one, tests),
+            "kind": one.kind, "text": one.text, "before": one.before, "after": one.after,
+            **now.judge(file, one),
         }  # fmt: skip
+        if before and row["outcome"] != "killed":
+            row["earlier"] = before.again(one)
+        yield row
 
 
 def _kept(output: Path) -> list[dict[str, Any]]:
@@ -80,11 +133,12 @@ def main(arguments: Sequence[str]) -> int:
     """Run the command."""
     request = _parsed(arguments)
     with tempfile.TemporaryDirectory() as place:
-        folder = Path(place) / "house"
-        shutil.copytree(ROOT, folder, ignore=shutil.ignore_patterns(*_LEFT))
-        os.environ["PYTHONPATH"] = str(folder)
-        house = House(folder, request.workers)
-        for row in tried(request, ROOT, house):
+        now = _state(request, ROOT, request.coverage, Path(place) / "house")
+        before = None
+        if request.before:
+            data = request.before / ".coverage"
+            before = _state(request, request.before, data, Path(place) / "earlier")
+        for row in tried(request, now, before):
             with request.output.open("a", encoding="utf-8") as file:
                 file.write(json.dumps(row) + "\n")
             where = f"{row['file']}:{row['line']}"
@@ -100,11 +154,19 @@ def main(arguments: Sequence[str]) -> int:
     return 0
 
 
+def _state(request: argparse.Namespace, root: Path, coverage: Path, folder: Path) -> State:
+    shutil.copytree(root, folder, ignore=shutil.ignore_patterns(*_LEFT))
+    house = House(folder, request.workers, request.patience)
+    return State(root, request.packages, coverage, house)
+
+
 def _parsed(arguments: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.mutants", description=__doc__)
     parser.add_argument("--count", type=int, default=60)
     parser.add_argument("--seed", type=int, default=25)
     parser.add_argument("--workers", type=int, default=1, help="processes that test a mutation")
+    parser.add_argument("--patience", type=float, default=1800.0, help="seconds for a mutation")
+    parser.add_argument("--before", type=Path, help="a checkout of an earlier state")
     parser.add_argument("--coverage", type=Path, default=ROOT / ".coverage")
     parser.add_argument("--output", type=Path, default=_RESULTS)
     parser.add_argument("--packages", nargs="+", default=list(_PACKAGES))

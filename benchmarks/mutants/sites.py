@@ -36,14 +36,25 @@ class Mutation:
         Where the expression stands, in bytes of the source.
     line
         The line on which it begins, from 1.
+    function
+        The name of the innermost function around it; empty outside of functions.
+    text
+        The line on which it begins.
     """
 
     kind: str
+    function: str
+    text: str
     line: int
     begin: int
     end: int
     before: str
     after: str
+
+    @property
+    def told(self) -> tuple[str, ...]:
+        """What is the same of a mutation in two states of the sources."""
+        return self.kind, self.function, self.text, self.before, self.after
 
     def applied(self, source: str) -> str:
         """Return the mutated source."""
@@ -53,34 +64,38 @@ class Mutation:
 
 def mutations(source: str) -> list[Mutation]:
     """Return every mutation of a source, in the order of its text."""
-    starts = [0]
-    for line in source.encode().split(b"\n"):
+    data, starts = source.encode(), [0]
+    for line in data.split(b"\n"):
         starts.append(starts[-1] + len(line) + 1)
+    texts = [line.strip() for line in source.split("\n")]
     found = []
-    for node in _expressions(ast.parse(source)):
+    for node, function in _expressions(ast.parse(source)):
         begin = starts[node.lineno - 1] + node.col_offset
         end = starts[(node.end_lineno or 1) - 1] + (node.end_col_offset or 0)
-        before = source.encode()[begin:end].decode()
+        before = data[begin:end].decode()
         for kind, changed in _changes(node):
             after = f"({ast.unparse(changed)})"
-            found.append(Mutation(kind, node.lineno, begin, end, before, after))
+            text = texts[node.lineno - 1]
+            found.append(Mutation(kind, function, text, node.lineno, begin, end, before, after))
     return sorted(found, key=lambda one: (one.begin, one.end, one.kind))
 
 
-def _expressions(node: ast.AST) -> Iterator[ast.expr]:
-    """Yield the expressions that are computed, of whatever is below."""
+def _expressions(node: ast.AST, function: str = "") -> Iterator[tuple[ast.expr, str]]:
+    """Yield the expressions that are computed, of whatever is below, with the function's name."""
+    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+        function = node.name
     for name, value in ast.iter_fields(node):
         if name in ("annotation", "returns", "decorator_list"):
             continue
         for one in value if isinstance(value, list) else [value]:
             if isinstance(one, ast.AST) and not isinstance(one, ast.JoinedStr):
                 if isinstance(one, ast.expr):
-                    yield one
-                yield from _expressions(one)
+                    yield one, function
+                yield from _expressions(one, function)
 
 
 def _changes(node: ast.expr) -> Iterator[tuple[str, ast.expr]]:
-    changed = copy.deepcopy(node)
+    changed = copy.copy(node)
     match changed:
         case ast.BinOp() if type(changed.op) in _ARITHMETIC:
             changed.op = _ARITHMETIC[type(changed.op)]()
@@ -90,8 +105,8 @@ def _changes(node: ast.expr) -> Iterator[tuple[str, ast.expr]]:
             yield "and, or", changed
         case ast.UnaryOp(op=ast.USub() | ast.Not() as operator):
             yield "sign" if isinstance(operator, ast.USub) else "not", changed.operand
-        case ast.Constant(value=bool() | int() | float()):
-            yield _other(changed)
+        case ast.Constant(value=bool() | int() | float() as value):
+            yield _other(value)
         case ast.Call(args=[first, second, *more]) if not _starred(changed.args):
             changed.args = [second, first, *more]
             yield "arguments", changed
@@ -105,8 +120,7 @@ def _compared(node: ast.Compare, operator: type[ast.cmpop]) -> Iterator[tuple[st
             yield kind, ast.Compare(node.left, [rivals[operator]()], node.comparators)
 
 
-def _other(constant: ast.Constant) -> tuple[str, ast.expr]:
-    value = constant.value
+def _other(value: float) -> tuple[str, ast.expr]:
     if isinstance(value, bool):
         return "flag", ast.Constant(not value)
     return "number", ast.Constant(value + 1 if isinstance(value, int) else 2.0 * value or 1.0)

@@ -1,9 +1,11 @@
 """One mutation, made in a copy of the sources, and the tests that cover it."""
 
+import os
 import re
+import resource
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,7 +15,9 @@ from benchmarks.mutants.sites import Mutation
 
 _FAILED: Final = re.compile(r"^(?:FAILED|ERROR) (\S+::.+?|\S+\.py)(?: - .*)?$", re.MULTILINE)
 _NO_TEST_RAN: Final = 5  # pytest's exit status
-_PATIENCE_S: Final = 1800.0
+_STUCK: Final = 60.0  # of patience, by the clock: tests wait for ever
+
+Outcome = dict[str, str | int]
 
 
 @dataclass(frozen=True)
@@ -32,28 +36,44 @@ class Covering:
 
 @dataclass
 class House:
-    """A copy of the sources, to be mutated, and what fails in it anyway."""
+    """A copy of the sources, to be mutated, and what fails in it anyway.
+
+    Attributes
+    ----------
+    patience_s
+        How long the tests of one mutation may take, in seconds of a processor: how busy the machine
+        is decides nothing.
+    """
 
     folder: Path
     workers: int = 1
+    patience_s: float = 1800.0
     sound: dict[str, bool] = field(default_factory=dict)
 
-    def judge(self, file: str, mutation: Mutation, tests: Sequence[str]) -> dict[str, str]:
-        """Return the outcome: ``survived``, ``untested``, or ``killed`` with the test it was by.
+    def judge(self, file: str, mutation: Mutation, rings: Iterable[Sequence[str]]) -> Outcome:
+        """Return the outcome: ``killed`` with the test it was by, or else how many tests passed.
 
-        A test that fails without the mutation too is left out, and the others are asked again.
+        Rings of tests are asked one after the other. A test that fails without the mutation too is
+        left out, and the others of its ring are asked again. ``survived`` where all passed,
+        ``unfinished`` where patience ended before, ``untested`` where there was none to ask.
         """
-        asked = list(tests)
-        while asked:
-            with self._mutated(file, mutation):
-                failed = self._failed(asked)
-            if failed is None:
-                return {"outcome": "survived"}
-            broken = [one for one in failed if not self._is_sound(one)]
-            if len(broken) < len(failed) or not failed:
-                return {"outcome": "killed", "by": next(iter({*failed} - {*broken}), "no end")}
-            asked = [one for one in asked if one not in broken]
-        return {"outcome": "untested"}
+        end, passed = _spent_s() + self.patience_s, 0
+        for ring in rings:
+            asked = list(ring)
+            while asked:
+                with self._mutated(file, mutation):
+                    failed = self._failed(asked, end - _spent_s())
+                if failed is None:
+                    return {"outcome": "unfinished", "tests": passed}
+                broken = [one for one in failed if not self._is_sound(one)]
+                if len(broken) < len(failed):
+                    by = next(one for one in failed if one not in broken)
+                    return {"outcome": "killed", "by": by, "tests": passed + len(asked)}
+                asked = [one for one in asked if one not in broken]
+                if not failed:
+                    passed += len(asked)
+                    break
+        return {"outcome": "survived" if passed else "untested", "tests": passed}
 
     @contextmanager
     def _mutated(self, file: str, mutation: Mutation) -> Iterator[None]:
@@ -67,24 +87,38 @@ class House:
 
     def _is_sound(self, test: str) -> bool:
         if test not in self.sound:
-            self.sound[test] = self._failed([test]) is None
+            self.sound[test] = self._failed([test], self.patience_s) == []
         return self.sound[test]
 
-    def _failed(self, tests: Sequence[str]) -> list[str] | None:
-        """Return the first tests that fail; ``None`` where none does, empty for no end."""
+    def _failed(self, tests: Sequence[str], patience_s: float) -> list[str] | None:
+        """Return the first tests that fail; ``None`` where patience ended before."""
         listed = self.folder / "asked.txt"
         listed.write_text("\n".join(tests), encoding="utf-8")
-        options = ["-x", "-q", "-p", "no:cacheprovider", "-n", str(self.workers)]
-        if self.workers == 1:
-            options = options[:-2]
+        options = ["-x", "-q", "-p", "no:cacheprovider", "--timeout", "0"]
+        if self.workers > 1:
+            options += ["-n", str(self.workers)]
+        end_s = max(1, round(patience_s))
         try:
             done = subprocess.run(
                 [sys.executable, "-B", "-m", "pytest", *options, f"@{listed}"],
-                cwd=self.folder, capture_output=True, text=True, check=False,
-                timeout=_PATIENCE_S,
+                cwd=self.folder, env={**os.environ, "PYTHONPATH": str(self.folder)},
+                capture_output=True, text=True, check=False, timeout=_STUCK * self.patience_s,
+                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (end_s, end_s)),
             )  # fmt: skip
         except subprocess.TimeoutExpired:
-            return []
-        if done.returncode in (0, _NO_TEST_RAN):
             return None
-        return _FAILED.findall(done.stdout) or ["collection"]
+        if done.returncode < 0:
+            return None
+        if done.returncode in (0, _NO_TEST_RAN):
+            return []
+        failed = _FAILED.findall(done.stdout)
+        if not failed:
+            raise RuntimeError(
+                f"pytest says of no test that it failed:\n{done.stdout}{done.stderr}"
+            )
+        return failed
+
+
+def _spent_s() -> float:
+    spent = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return spent.ru_utime + spent.ru_stime
