@@ -1,7 +1,7 @@
 """Two channels of one motion against exact signals: errors, intervals, and an hour's time."""
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -10,96 +10,70 @@ from analysis.comparison.compare import compare
 from analysis.comparison.result import ChannelComparison
 from analysis.comparison.settings import ComparisonSettings
 from analysis.recording import Recording
+from benchmarks.comparison_bound import least_errors, memory_of
+from benchmarks.comparison_motion import Seen, noise, sines
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 
 _RECORDS: Final = 500
 _DURATION_S: Final = 60.0
-_NOISE: Final = 0.01  # of the signal's spread: 40 dB
 _KINDS: Final = ("one frequency", "harmonics", "irregular", "irregular, derivative 2", "coloured")
-
-
-@dataclass(frozen=True)
-class _Motion:
-    """A sum of sines, exact at any time."""
-
-    turn: FloatArray
-    size: FloatArray
-    phase: FloatArray
-
-    def at(self, time_s: FloatArray, order: int = 0) -> FloatArray:
-        total = np.zeros(len(time_s))
-        for w, a, p in zip(self.turn, self.size, self.phase, strict=True):
-            total += a * w**order * np.sin(w * time_s + p + order * np.pi / 2.0)
-        return total
-
-
-def _motion(kind: str, rng: np.random.Generator) -> _Motion:
-    if kind.startswith(("one", "harm")):
-        size = np.array([1.0]) if kind.startswith("one") else np.array([1.0, 0.2, 0.05])
-        turn = 2.0 * np.pi * rng.uniform(0.5, 1.5) * np.arange(1.0, len(size) + 1.0)
-    else:
-        turn = 2.0 * np.pi * rng.uniform(0.3, 1.5, 40)
-        size = np.exp(-(((turn / 2.0 / np.pi - 0.8) / 0.25) ** 2)) * rng.rayleigh(size=40)
-    return _Motion(turn, size, rng.uniform(0.0, 2.0 * np.pi, len(turn)))
-
-
-def _noise(kind: str, values: FloatArray, rng: np.random.Generator) -> FloatArray:
-    drawn = rng.standard_normal(len(values))
-    if kind == "coloured":  # a first-order memory of twenty samples
-        for k in range(1, len(drawn)):
-            drawn[k] = 0.95 * drawn[k - 1] + np.sqrt(1.0 - 0.95**2) * drawn[k]
-    return np.asarray(_NOISE * values.std() * drawn)
 
 
 def _record(values: FloatArray, rate_hz: float, start_s: float) -> Recording:
     return Recording("exact", (Channel("x", "m"),), values[None, :], rate_hz, start_s)
 
 
-def _trial(seed: int) -> tuple[str, FloatArray, FloatArray]:
-    """Return the kind, the errors of gain, lag and clock rate, and their half-widths."""
+@dataclass(frozen=True)
+class _Trial:
+    """A record's errors of gain, lag and clock rate; half-widths; least errors of the last two."""
+
+    kind: str
+    errors: FloatArray
+    halves: FloatArray
+    least: FloatArray
+
+
+def _trial(seed: int) -> _Trial:
     rng = np.random.default_rng(seed)
     kind = _KINDS[seed % len(_KINDS)]
-    motion, order = _motion(kind, rng), 2 if "derivative" in kind else 0
+    motion, order = sines(kind, rng), 2 if "derivative" in kind else 0
     gain, lag_s = rng.uniform(0.5, 2.0), rng.uniform(-0.3, 0.3)
     rate = rng.uniform(-1.0, 1.0) * (8e-3 if seed % 2 else 3e-4)
     first_s = np.arange(int(100 * _DURATION_S)) / 100.0 - rng.uniform(0.0, 1.0)
     second_s = np.arange(int(240 * _DURATION_S)) / 240.0
-    mid_s = _DURATION_S / 2.0
+    seen = Seen(gain, lag_s, rate, _DURATION_S / 2.0, order)
     first = motion.at(first_s)
-    second = gain * motion.at(second_s - lag_s - rate * (second_s - mid_s), order)
+    second = gain * motion.at(seen.times_s(second_s), order)
     found = compare(
-        _record(first + _noise(kind, first, rng), 100.0, float(first_s[0])),
+        _record(first + noise(kind, first, rng), 100.0, float(first_s[0])),
         "x",
-        _record(second + _noise(kind, second, rng), 240.0, 0.0),
+        _record(second + noise(kind, second, rng), 240.0, 0.0),
         "x",
         ComparisonSettings(order=order),
     )
-    return kind, *_errors(found, gain, lag_s + rate * (found.mid_s - mid_s), rate)
+    there = replace(seen, lag_s=lag_s + rate * (found.mid_s - seen.mid_s), mid_s=found.mid_s)
+    least = least_errors(motion, there, first_s, second_s, memory_of(kind))
+    return _Trial(kind, *_errors(found, there), least)
 
 
-def _errors(
-    found: ChannelComparison, gain: float, lag_s: float, rate: float
-) -> tuple[FloatArray, FloatArray]:
-    off_s = found.lag_s.value - lag_s
+def _errors(found: ChannelComparison, seen: Seen) -> tuple[FloatArray, FloatArray]:
+    off_s = found.lag_s.value - seen.lag_s
     if found.modulo_s is not None:
         off_s -= found.modulo_s * round(off_s / found.modulo_s)
     halves = [one.half_width() for one in (found.gain, found.lag_s, found.clock_rate)]
-    errors = [found.gain.value / gain - 1.0, off_s, found.clock_rate.value - rate]
-    halves[0] /= gain
+    errors = [found.gain.value / seen.gain - 1.0, off_s, found.clock_rate.value - seen.rate]
+    halves[0] /= seen.gain
     return np.array(errors), np.array(halves)
 
 
 def _hour(seconds: float) -> tuple[float, float]:
     """Return processor and clock time of a comparison at 1 kHz, the better of two."""
     rng = np.random.default_rng(0)
-    motion, time_s = _motion("irregular", rng), np.arange(int(1000 * seconds)) / 1000.0
+    motion, time_s = sines("irregular", rng), np.arange(int(1000 * seconds)) / 1000.0
     first, second = motion.at(time_s), motion.at(time_s - 0.1 - 2e-4 * time_s)
-    records = [
-        _record(one + _NOISE * one.std() * rng.standard_normal(len(one)), 1000.0, 0.0)
-        for one in (first, second)
-    ]
+    records = [_record(one + noise("irregular", one, rng), 1000.0, 0.0) for one in (first, second)]
     taken = []
     for _ in range(2):
         clock, processor = time.perf_counter(), time.process_time()
@@ -118,15 +92,15 @@ def run(quick: bool, report: Report) -> Outcome:
         trials.append(_trial(seed))
     report("an hour at 1 kHz")
     processor_s, clock_s = _hour(60.0 if quick else 3600.0)
-    errors = np.abs(np.array([one[1] for one in trials]))
-    halves = np.array([one[2] for one in trials])
-    held = (errors <= halves).mean(axis=0)
-    white = errors[[one[0] != "coloured" for one in trials]]
+    errors = np.abs(np.array([one.errors for one in trials]))
+    held = (errors <= np.array([one.halves for one in trials])).mean(axis=0)
+    white = errors[[one.kind != "coloured" for one in trials]]
     measured = {
         "lag_ms": 1e3 * float(errors[:, 1].max()),
         "rate_ppm": 1e6 * float(errors[:, 2].max()),
         "lag_white_ms": 1e3 * float(white[:, 1].max()),
         "rate_white_ppm": 1e6 * float(white[:, 2].max()),
+        "over_bound": float(_over_bound(trials).max()),
         "hour_s": processor_s,
     }
     for name, part in zip(("gain", "lag", "rate"), held, strict=True):
@@ -138,24 +112,38 @@ def run(quick: bool, report: Report) -> Outcome:
         "to 8000 ppm. The motion is a sum of sines, evaluated at exactly warped times.",
         "Noise with a memory has thirty times as much power where the motion is, which no method "
         "takes out: the largest errors are judged in all records, and in those of white noise.",
+        "Least standard deviations: Cramer and Rao's bound, by the Fisher information of both "
+        "channels' samples in their own noise, with gain, lag, clock rate, and parts and frequency "
+        "of every sine unknown (benchmarks/comparison_bound.py).",
         f"An hour of both at 1 kHz took {processor_s:.2f} s of processor, {clock_s:.2f} s by the "
         "clock of a machine that had other work.",
     )
     return Outcome({"Two channels of one motion": rows}, measured, notes)
 
 
-def _row(kind: str, trials: list[tuple[str, FloatArray, FloatArray]]) -> Row:
-    own = [(error, half) for name, error, half in trials if name == kind]
-    errors = np.abs(np.array([one[0] for one in own]))
-    halves = np.array([one[1] for one in own])
+def _over_bound(trials: list[_Trial]) -> FloatArray:
+    """Return the root mean square of the errors of lag and clock rate over the least ones."""
+    ratios = np.array([one.errors[1:] / one.least for one in trials])
+    return np.asarray(np.sqrt((ratios**2).mean(axis=0)))
+
+
+def _row(kind: str, trials: list[_Trial]) -> Row:
+    own = [one for one in trials if one.kind == kind]
+    errors = np.abs(np.array([one.errors for one in own]))
+    halves = np.array([one.halves for one in own])
     held = (errors <= halves).mean(axis=0)
+    least, over = np.median([one.least for one in own], axis=0), _over_bound(own)
     return {
         "motion": kind,
         "records": len(own),
         "largest error of the lag, ms": 1e3 * float(errors[:, 1].max()),
         "its median half-width, ms": 1e3 * float(np.median(halves[:, 1])),
+        "its least standard deviation, median, ms": 1e3 * float(least[0]),
+        "RMS of its error over that": float(over[0]),
         "largest error of the clock rate, ppm": 1e6 * float(errors[:, 2].max()),
         "its median half-width, ppm": 1e6 * float(np.median(halves[:, 2])),
+        "its least standard deviation, median, ppm": 1e6 * float(least[1]),
+        "RMS of its error over it": float(over[1]),
         "gain held": float(held[0]),
         "lag held": float(held[1]),
         "clock rate held": float(held[2]),

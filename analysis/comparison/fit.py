@@ -124,7 +124,7 @@ def fit(problem: ComparisonProblem, model: Model, *, lines: bool = False) -> Com
             linear = linearised(problem, model)
         columns = linear.columns(bins)
         theta, inverse = _solved(columns, linear.left(model.gains), noise)
-        model = _moved(model, theta)
+        before, model = model, _moved(model, theta)
         residual = linear.left(model.gains) - theta[problem.channels :] @ linear.others
         hidden = (columns.conj() * (inverse @ columns)).sum(axis=0).real if step else 0.0
         noise, reach = _smoothed(np.abs(residual) ** 2 + hidden, linear.target, lines=lines)
@@ -132,8 +132,8 @@ def fit(problem: ComparisonProblem, model: Model, *, lines: bool = False) -> Com
         bins = power > _STANDS_OUT * noise
         if not bins.any():
             bins = _strongest(linear.channels[0])
-        small = (np.abs(theta) <= _SETTLED * np.sqrt(np.diag(inverse)))[: -len(linear.drift)]
-        if step >= _FEWEST and small.all():
+        taken = np.abs(model.parameters - before.parameters)  # a dead band stays at none
+        if step >= _FEWEST and (taken <= _SETTLED * np.sqrt(np.diag(inverse))[: len(taken)]).all():
             break
     left, shown = (np.abs(one[bins]) ** 2 for one in (residual, linear.target))
     if left.sum() > _UNEXPLAINED * shown.sum():

@@ -48,6 +48,12 @@ class Model:
     gains: FloatArray
     half: float | None = None
 
+    @property
+    def parameters(self) -> FloatArray:
+        """``[gains, lag, rate]``, and half the dead band where there is one."""
+        half = () if self.half is None else (self.half,)
+        return np.array([*self.gains, self.alignment.lag_s, self.alignment.rate, *half])
+
 
 class NothingInCommonError(Exception):
     """No frequency at which one channel follows the other."""

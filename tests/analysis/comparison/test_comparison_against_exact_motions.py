@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from analysis.comparison import fit
 from analysis.comparison.compare import compare
 from analysis.comparison.result import ChannelComparison
 from analysis.comparison.settings import ComparisonSettings
@@ -210,3 +211,16 @@ def test_missing_samples_leave_the_longest_stretch() -> None:
 def test_settings_that_cannot_be_are_refused(settings: ComparisonSettings) -> None:
     with pytest.raises(ConfigurationError):
         compared(irregular(np.random.default_rng(13)), truth(), settings=settings)
+
+
+def test_a_dead_band_that_is_not_there_is_looked_for_in_few_steps(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    tried = []
+    linearised = fit.linearised
+    monkeypatch.setattr(
+        fit, "linearised", lambda *given: (tried.append(given[1].half), linearised(*given))[1]
+    )
+    found = compared(irregular(np.random.default_rng(13)), truth(), 13)
+    assert found.dead_band is not None
+    assert 2 <= sum(half is not None for half in tried) <= 20  # of two fits: no better after ten
