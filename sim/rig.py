@@ -5,8 +5,9 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from hardware.description.arrangement import DriftBy, Joint
+from hardware.description.attitude import AttitudeSensors, HeaveAndPitch
 from hardware.description.body import Body
-from hardware.description.channels import STEERING
+from hardware.description.channels import POSITIONS, STEERING
 from hardware.description.errors import ConfigurationError
 from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator, Plane
@@ -20,6 +21,7 @@ from sim.drive.loaded_drive import LoadedDrive
 from sim.drive.prescribed_drive import ConstantSpeedDrive, DriveSettings
 from sim.gauges.dynamometer import Dynamometer, Dynamometers
 from sim.mechanism.linkage import Mechanism, Setting
+from sim.model.attitude import Attitude, Squat
 from sim.model.hull import Hull, HullCoefficients
 from sim.model.law_point import Acting
 from sim.model.mounting import Mounting
@@ -61,6 +63,8 @@ class SimulatedRig:
         Forces along the model; they are there to be measured where ``acquisition.force_x`` is.
     steering
         Propeller and rudder, in water.
+    attitude, squat
+        Sensors of position on the model, and how it sinks and trims in water where it is free to.
     """
 
     oscillator: Oscillator
@@ -80,6 +84,8 @@ class SimulatedRig:
     photocell: PhotocellStage | None = field(default_factory=PhotocellStage)
     surge: SurgeForces | None = None
     steering: Steering | None = None
+    attitude: AttitudeSensors | None = None
+    squat: Squat | None = None
 
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
@@ -94,6 +100,7 @@ class SimulatedRig:
         """
         self._check_joint(set_point)
         self._check_steering(set_point)
+        self._check_attitude()
         check_within(self.oscillator, set_point)
         carriage = Carriage(set_point.carriage_speed_m_s, self.carriage)
         mechanism = Mechanism(
@@ -116,7 +123,7 @@ class SimulatedRig:
                 reflected_inertia(hull.system.mass, set_point),
             )
             stages = (carriage, Coupled(loaded, mechanism, hull))
-        behind = (self.dynamometers, self.acquisition)
+        behind = (*self._sensed(hull), self.dynamometers, self.acquisition)
         seen = () if self.photocell is None else (self.photocell,)
         return Chain((*stages, *behind, *seen))
 
@@ -157,6 +164,29 @@ class SimulatedRig:
         ]
         if faults:
             raise ConfigurationError("; ".join(faults))
+
+    def _check_attitude(self) -> None:
+        faults = []
+        if self.attitude is None and self._positions:
+            names = " and ".join(f"acquisition.{name}" for name in self._positions)
+            faults.append(f"{names}, but no [attitude] says where the sensors stand")
+        free = self.attitude is not None and self.attitude.heave_and_pitch is HeaveAndPitch.FREE
+        if self.squat is not None and not free:
+            faults.append('[squat], but no [attitude] with heave_and_pitch = "free"')
+        if faults:
+            raise ConfigurationError("; ".join(faults))
+
+    @property
+    def _positions(self) -> list[str]:
+        names = (line.channel.name for line in self.acquisition.lines)
+        return [name for name in names if name in POSITIONS]
+
+    def _sensed(self, hull: Hull) -> tuple["Stage[Any]", ...]:
+        """Return the stage of sinkage and trim, where they are recorded."""
+        if self.attitude is None or not self._positions:
+            return ()
+        squat = self.squat if hull.afloat else None
+        return (Attitude(self.attitude, squat or Squat(), hull),)
 
     def _hull(self, set_point: SetPoint, carriage_speed_m_s: float) -> Hull:
         in_water = set_point.medium is Medium.WATER

@@ -93,6 +93,10 @@ PROPELLER_THRUST = of_channel(channels.PROPELLER_THRUST)
 PROPELLER_TORQUE = of_channel(channels.PROPELLER_TORQUE)
 RUDDER_NORMAL_FORCE = of_channel(channels.RUDDER_NORMAL_FORCE)
 
+# The model's own sensors of position.
+POSITION_AFT = of_channel(channels.POSITION_AFT)
+POSITION_FORE = of_channel(channels.POSITION_FORE)
+
 # Dynamometers: what the gauges make of those forces.
 DYNAMOMETER_FORCE_AFT = Signal("dynamometer_force_aft", "N")
 DYNAMOMETER_FORCE_FORE = Signal("dynamometer_force_fore", "N")

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
-from analysis.attitude import AttitudeSensors, HeaveAndPitch
+from hardware.description.attitude import AttitudeSensors, HeaveAndPitch
 from hardware.description.oscillator import Oscillator, Plane
 from pmm.configuration import Fault, validate
 

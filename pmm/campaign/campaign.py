@@ -7,11 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING
 
-from analysis.attitude import AttitudeSensors
 from analysis.gap.forward.tolerances import Tolerances
 from analysis.readers import ColumnMap
 from analysis.resolver.reference_choice import ReferenceChoice
 from analysis.resolver.settings import ResolverSettings
+from hardware.description.attitude import AttitudeSensors
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
@@ -27,6 +27,7 @@ from sim.effects.catalogue import build_from
 from sim.effects.effect import Effect
 from sim.gauges.dynamometer import Dynamometers
 from sim.mechanism.linkage import Setting
+from sim.model.attitude import Squat
 from sim.model.hull import HullCoefficients
 from sim.model.law_point import Acting
 from sim.model.mounting import Mounting
@@ -77,7 +78,8 @@ class Campaign:
         ``None`` where the file does not say; a simulation needs them, an analysis does not.
     hull, drive, dynamometers, acquisition, photocell, simulation
         What the simulation believes.
-    radiation, carriage, linkage_aft, linkage_fore, mounting, forces, cross_flow, surge, steering
+    radiation, carriage, linkage_aft, linkage_fore, mounting, forces, cross_flow, surge, steering,
+    squat
         More of that, as in :class:`sim.rig.SimulatedRig`; the memory comes from a table.
     effects
         What is switched on besides, in this order.
@@ -119,6 +121,7 @@ class Campaign:
     cross_flow: CrossFlow | None = None
     surge: SurgeForces | None = None
     steering: Steering | None = None
+    squat: Squat | None = None
     effects: tuple[SwitchedOn, ...] = ()
     reference: ReferenceChoice = field(default_factory=ReferenceChoice)
     analysis: ResolverSettings = field(default_factory=ResolverSettings)
@@ -167,6 +170,8 @@ class Campaign:
             cross_flow=self.cross_flow,
             surge=self.surge,
             steering=self.steering,
+            attitude=self.attitude,
+            squat=self.squat,
         )
 
     @property

@@ -5,13 +5,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from analysis.attitude import Attitude, AttitudeSensors, RestPosition
+from analysis.attitude import Attitude, RestPosition
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.corrections import ZeroReading
 from analysis.plausibility import RunHarmonics
 from analysis.resolver.reference_choice import ReferenceChoice
 from analysis.resolver.settings import ResolverSettings
 from hardware.description.arrays import FloatArray
+from hardware.description.attitude import AttitudeSensors
 from hardware.description.flags import Flag, Severity
 from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator

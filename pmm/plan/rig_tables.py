@@ -185,6 +185,7 @@ HANDED_ON = (
     "photocell",
     "radiation",
     "simulation",
+    "squat",
     "steering",
     "surge",
     "tolerances",

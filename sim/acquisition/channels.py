@@ -43,6 +43,8 @@ _SOURCES = {
     channels.PROPELLER_THRUST: signals.PROPELLER_THRUST,
     channels.PROPELLER_TORQUE: signals.PROPELLER_TORQUE,
     channels.RUDDER_NORMAL_FORCE: signals.RUDDER_NORMAL_FORCE,
+    channels.POSITION_AFT: signals.POSITION_AFT,
+    channels.POSITION_FORE: signals.POSITION_FORE,
 }
 
 
@@ -68,6 +70,8 @@ class Acquisition:
     propeller_thrust: Digitiser | None = None
     propeller_torque: Digitiser | None = None
     rudder_normal_force: Digitiser | None = None
+    position_aft: Digitiser | None = None
+    position_fore: Digitiser | None = None
 
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
     name = "acquisition"

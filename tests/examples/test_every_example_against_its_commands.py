@@ -1,6 +1,8 @@
 """Every example is run by its commands, and gives what it was made of."""
 
 import json
+import math
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -20,7 +22,7 @@ ELSEWHERE = {
     "steering": "tests/pmm/steering/test_command_against_its_example.py",
     "recordings": "tests/analysis/readers/test_examples_against_their_recipe.py",
 }
-HERE = ("horizontal", "inertia", "vertical")
+HERE = ("attitude", "horizontal", "inertia", "vertical")
 INERTIA = {
     "axes": "bifilar",
     "ballast": "ballast",
@@ -62,6 +64,30 @@ def test_a_campaign_gives_the_damping_that_was_put_in(
     values = [row["value"] for row in rows if (row["name"], row["method"]) == (damping, "linear")]
     assert values
     assert values == pytest.approx([put_in] * len(values), rel=5e-3)
+
+
+def test_the_model_sinks_and_trims_as_the_example_says(tmp_path: Path) -> None:
+    campaign, out = EXAMPLES / "attitude" / "campaign.toml", str(tmp_path / "squat")
+    made = CliRunner().invoke(cli, ["simulate", str(campaign), "--output", out])
+    assert made.exit_code == 0, made.stderr
+    ran = CliRunner().invoke(cli, ["coefficients", out, "--json"])
+    rows = {row["run"]: row for row in json.loads(ran.stdout)["attitude"]}
+    put_in = tomllib.loads(campaign.read_text(encoding="utf-8"))["squat"]
+    drift = math.radians(8.0)
+    for run, along, across in (
+        ("tow-0.8", 0.8, 0.0),
+        ("tow-1.2", 1.2, 0.0),
+        ("drift-1.2-8", 1.2 * math.cos(drift), 1.2 * math.sin(drift)),
+        ("sway-0.25", 1.2, 0.2 * 2.0 * math.pi * 0.25 / math.sqrt(2.0)),
+    ):
+        for key, letter in (("sinkage", "z"), ("trim", "theta")):
+            expected = put_in[f"{letter}_uu"] * along**2 + put_in[f"{letter}_vv"] * across**2
+            one = rows[run][key]
+            assert abs(one["mean"] - expected) < 4.0 * one["mean_u"], (run, key)
+            assert one["mean_u"] < 2e-5
+    second = put_in["z_vv"] * (0.2 * 2.0 * math.pi * 0.25) ** 2 / 2.0
+    assert rows["sway-0.25"]["sinkage"]["amplitude"][1] == pytest.approx(second, rel=0.02)
+    assert len(rows) == 5
 
 
 @pytest.mark.parametrize("name", INERTIA)

@@ -26,6 +26,7 @@ from sim.drive.carriage import CarriageSettings, Fluctuation
 from sim.drive.prescribed_drive import DriveSettings
 from sim.gauges.dynamometer import Dynamometer, Dynamometers
 from sim.mechanism.linkage import Setting
+from sim.model.attitude import Squat
 from sim.model.hull import HullCoefficients
 from sim.model.law_point import Acting
 from sim.model.laws import AnyLaw
@@ -82,6 +83,7 @@ def test_there_are_examples() -> None:
         RadiationFile,
         CrossFlow,
         Acting,
+        Squat,
         SwitchedOn,
         *(law for law in get_args(AnyLaw)),
     ],
