@@ -1,7 +1,7 @@
 """The acquisition: filter, sampling, noise and conversion of each channel that the rig records."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -133,16 +133,26 @@ class Acquisition:
 
         Noise, drift, rounding and hum, which are not periodic, are left out.
         """
-        written: dict[str, ComplexArray] = {}
-        for line, out in zip(self.lines, self.writes, strict=True):
-            how = line.digitiser
-            values = inputs[line.source.name]
-            factor = how.response(period.s)
-            recorded = values * factor + period.constant(how.offset * factor[0].real)
-            if line.source is signals.SHAFT_ANGLE:
-                recorded[0] -= period.omega_rad_s * how.delay_s
-            elif how.full_scale is not None and np.abs(recorded).sum() > how.full_scale:
-                limited = np.clip(period.values(recorded), -how.full_scale, how.full_scale)
-                recorded = period.harmonics(limited)
-            written[out.name] = recorded
-        return period, written
+        factors, added = _responses(self, period)
+        values = np.reshape([inputs[source.name] for source in self.reads], factors.shape)
+        recorded = values * factors + added
+        for row, line in zip(recorded, self.lines, strict=True):
+            limit = line.digitiser.full_scale
+            angle = line.source is signals.SHAFT_ANGLE
+            if not angle and limit is not None and np.abs(row).sum() > limit:
+                row[:] = period.harmonics(np.clip(period.values(row), -limit, limit))
+        return period, {out.name: row for out, row in zip(self.writes, recorded, strict=True)}
+
+
+@lru_cache(maxsize=512)
+def _responses(acquisition: Acquisition, period: Period) -> "tuple[ComplexArray, ComplexArray]":
+    """Return by what the channels multiply harmonics, and what they add, a row each."""
+    responses = [line.digitiser.response(period.s) for line in acquisition.lines]
+    factors = np.reshape(np.array(responses, np.complex128), (-1, period.orders + 1))
+    added = np.zeros_like(factors)
+    for row, line in enumerate(acquisition.lines):
+        how = line.digitiser
+        added[row, 0] = how.offset * factors[row, 0].real
+        if line.source is signals.SHAFT_ANGLE:
+            added[row, 0] -= period.omega_rad_s * how.delay_s
+    return factors, added

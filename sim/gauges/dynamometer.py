@@ -1,11 +1,11 @@
 """The dynamometers: readings from the forces in the struts."""
 
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 
-from hardware.description.arrays import FloatArray
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from sim import signals
 from sim.gauges.characteristic import Curve, Loop, LoopState, PowerLoop, follow, limited
@@ -15,6 +15,7 @@ from sim.solve.period import Period, Spectra
 from sim.stage import Block
 
 DynamometerState: TypeAlias = tuple[LoopState | None, LoopState | None]
+ValuesT = TypeVar("ValuesT", FloatArray, ComplexArray)
 
 
 @dataclass(frozen=True)
@@ -86,6 +87,12 @@ class Dynamometer:
         return bool(self.hysteresis_1_n or self.loops)
 
     @property
+    def is_straight(self) -> bool:
+        """Whether the reading is a line over the force, whatever its size."""
+        bent = self.curvature_1_n or self.curves or self.remembers
+        return not bent and self.lowest_n is None and self.highest_n is None
+
+    @property
     def _all_loops(self) -> tuple[Loop, ...]:
         own = (PowerLoop(self.hysteresis_1_n / 2.0, 1.0),) if self.hysteresis_1_n else ()
         return (*own, *self.loops)
@@ -150,16 +157,26 @@ class Dynamometers:
         self, state: DynamometerState, block: Block, inputs: Signals
     ) -> tuple[DynamometerState, Signals]:
         """Return the readings of both dynamometers over the block."""
-        aft, fore = (inputs[signal.name] for signal in self.reads)
-        if self.cross_talk_aft or self.cross_talk_fore:
-            aft, fore = aft + self.cross_talk_aft * fore, fore + self.cross_talk_fore * aft
+        aft, fore = self._felt(*(inputs[signal.name] for signal in self.reads))
         aft_state, aft_reading = self.aft.read(state[0], block, aft)
         fore_state, fore_reading = self.fore.read(state[1], block, fore)
-        names = (signal.name for signal in self.writes)
-        return (aft_state, fore_state), dict(zip(names, (aft_reading, fore_reading), strict=True))
+        return (aft_state, fore_state), self._written(aft_reading, fore_reading)
+
+    def _felt(self, aft: ValuesT, fore: ValuesT) -> tuple[ValuesT, ValuesT]:
+        if self.cross_talk_aft or self.cross_talk_fore:
+            return aft + self.cross_talk_aft * fore, fore + self.cross_talk_fore * aft
+        return aft, fore
+
+    def _written(self, aft: ValuesT, fore: ValuesT) -> dict[str, ValuesT]:
+        return {signal.name: own for signal, own in zip(self.writes, (aft, fore), strict=True)}
 
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
         """Return the harmonics of the readings; the drift of the zero is left out."""
+        if self.aft.is_straight and self.fore.is_straight:
+            felt = self._felt(*(inputs[signal.name] for signal in self.reads))
+            gauges = zip((self.aft, self.fore), felt, strict=True)
+            read = (one.gain * force + period.constant(one.offset_n) for one, force in gauges)
+            return period, self._written(*read)
         steady = Dynamometers(
             self.aft.without_drift(),
             self.fore.without_drift(),

@@ -66,12 +66,7 @@ class LawBalance:
         return harmonics if settled else None
 
     def _given(self, y: ComplexArray, *more: Any) -> tuple[Any, ...]:
-        period, table = self.period, self.table
-        return (
-            table.laws, table.arguments, table.corners, *self._smooth, self._free(y),
-            self._by_laws, *_waves(period.orders, period.points), gauss(period.orders),
-            period.step_s, self.speed_m_s, *more,
-        )  # fmt: skip
+        return *self._laws, self._free(y), *self._whatever_moves, *more
 
     def _free(self, y: ComplexArray) -> ComplexArray:
         """Return h, h', h'' and linear force without the laws, two columns each."""
@@ -83,6 +78,16 @@ class LawBalance:
         return np.concatenate([moving, linear], axis=1)
 
     @cached_property
+    def _laws(self) -> tuple[FloatArray, ...]:
+        table = self.table
+        return table.laws, table.arguments, table.corners, *self._smooth()
+
+    @cached_property
+    def _whatever_moves(self) -> tuple[Any, ...]:
+        period = self.period
+        waves = _waves(period.orders, period.points)
+        return self._by_laws(), *waves, gauss(period.orders), period.step_s, self.speed_m_s
+
     def _smooth(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """The rows of the laws that have no corners, and the hull in parts.
 
@@ -97,7 +102,6 @@ class LawBalance:
         s = self.period.s
         return np.stack([np.ones_like(s), s, s**2], axis=1)
 
-    @cached_property
     def _by_laws(self) -> ComplexArray:
         """What a law's harmonic adds to them, shape ``(orders + 1, 8, 2)``."""
         way = np.zeros_like(self.impedance) if self.give is None else self.give

@@ -150,7 +150,7 @@ class Hull(ModelParameters):
         if self.mounting.joint is not None:
             return period, hull._settled(period, inputs)
         y = np.stack([inputs[signal.name] for signal in self.reads[:2]], axis=1)
-        model = HullSteady(hull.laws, hull.system, hull.carriage_speed_m_s, period)
+        model = _steadily(hull, period)
         rows = model.force(y, model.balanced(y)).T
         if self.steering is None:
             return period, self._written(rows)
@@ -210,6 +210,12 @@ def _system(hull: Hull) -> HullSystem:
         elastic=hull.mounting.elastic,
         joint=hull.mounting.joint,
     )
+
+
+@lru_cache(maxsize=512)
+def _steadily(hull: Hull, period: Period) -> HullSteady:
+    """Return the model over a period, kept: a rig's motion changes more often than its model."""
+    return HullSteady(hull.laws, hull.system, hull.carriage_speed_m_s, period)
 
 
 @lru_cache(maxsize=64)
