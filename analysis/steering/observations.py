@@ -52,6 +52,9 @@ class SteeringRuns:
         :data:`MEASURED` and their standard uncertainties, shape ``(5, n)``: X, Y (N) and N (N m) of
         the water on the model without inertia, thrust ahead, normal force positive to port. The
         uncertainties are those of each run alone.
+    courses
+        What the hull did, a name each: runs of one share the hull's own loads. Without them it is
+        told from ``motion``.
     shared
         What several runs have in common, a column for each standard deviate: the readings at rest
         that were taken off, shape ``(5, n, deviates)``.
@@ -69,6 +72,7 @@ class SteeringRuns:
     values: FloatArray
     uncertainty: FloatArray
     shared: FloatArray | None = None
+    courses: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         faults = []
@@ -110,7 +114,9 @@ class SteeringRuns:
 
     @cached_property
     def condition(self) -> IntArray:
-        """Number of each run's motion: runs with the same u, v and r share their hull's loads."""
+        """Number of each run's course: runs of one share their hull's loads."""
+        if self.courses:
+            return np.unique(self.courses, return_inverse=True)[1].ravel()
         speed = self.speed_m_s.max()
         scaled = np.round(self.motion / speed / _SAME).astype(np.int64)
         return np.unique(scaled, axis=1, return_inverse=True)[1].ravel()

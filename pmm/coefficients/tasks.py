@@ -25,7 +25,7 @@ from pmm.coefficients.settings import AmplifierTable
 
 _OTHER_STEERING = (
     "it oscillates with a laid rudder, or its propeller turns at another rate than in most runs; "
-    "`pmm steering` takes such tows"
+    "`pmm steering` takes such runs"
 )
 _NO_STEERING = (
     "it states neither rudder_angle_deg nor revolutions_hz in the campaign file; give them where a "

@@ -25,7 +25,7 @@ from pmm.document.content import (
 from pmm.document.flag_lines import flag_notes
 from pmm.document.notation import rounded, written
 from pmm.report.steering_figure import steering_figure
-from pmm.steering.reading import SteeredTow
+from pmm.steering.reading import SteeredRun
 from pmm.steering.workflow import CampaignSteering
 
 SCHEMA: Final = "pmm-steering-1"
@@ -56,6 +56,7 @@ class _Parameter(NamedTuple):
 class _Wake(NamedTuple):
     speed_m_s: float
     drift_deg: float
+    turning_rad_s: float
     wake: float
     standard_uncertainty: float
 
@@ -151,16 +152,17 @@ def _propulsion(rows: tuple[SelfPropulsion, ...], factor: float) -> Table[SelfPr
 
 
 def _wakes(found: CampaignSteering, factor: float) -> Table[_Wake]:
-    u, v, _, wake, spread = found.parameters.wakes
+    u, v, r, wake, spread = found.parameters.wakes
     rows = [
         _Wake(*one)
         for one in np.stack(
-            (np.hypot(u, v), np.degrees(np.arctan2(-v, u)), wake, spread), axis=1
+            (np.hypot(u, v), np.degrees(np.arctan2(-v, u)), r, wake, spread), axis=1
         ).tolist()
     ]
     columns: tuple[Column[_Wake], ...] = (
         number("U", "speed_m_s", written(".4g"), "m/s"),
         number("drift", "drift_deg", written(".3g"), "deg"),
+        number("r", "turning_rad_s", written(".3g"), "rad/s"),
         Column("w_P", lambda one: rounded(one.wake, factor * one.standard_uncertainty),
                number=True),
         *data_only("wake", "standard_uncertainty"),
@@ -168,24 +170,31 @@ def _wakes(found: CampaignSteering, factor: float) -> Table[_Wake]:
     return Table("Wake by thrust identity", columns, rows, "wakes", titled=True)
 
 
-def _tows(found: CampaignSteering, factor: float) -> Table[SteeredTow]:
-    columns: tuple[Column[SteeredTow], ...] = (
-        Column("run", lambda one: one.tow.run, "run"),
-        Column("drift", lambda one: f"{math.degrees(one.tow.drift_rad):.3g}", unit="deg",
+def _tows(found: CampaignSteering, factor: float) -> Table[SteeredRun]:
+    def load(heading: str, row: int, unit: str) -> Column[SteeredRun]:
+        return Column(
+            heading,
+            lambda one: rounded(one.loads[row], factor * one.loads_u[row]),
+            unit=unit,
+            number=True,
+        )
+
+    columns: tuple[Column[SteeredRun], ...] = (
+        word("run", "run"),
+        Column("drift", lambda one: f"{math.degrees(one.drift_rad):.3g}", unit="deg",
                number=True),
+        Column("r", lambda one: f"{one.motion[2]:.3g}", unit="rad/s", number=True),
         Column("rudder", lambda one: f"{math.degrees(one.rudder_rad):.4g}", unit="deg",
                number=True),
         number("n", "rate_hz", written(".4g"), "1/s"),
-        Column("X", lambda one: rounded(-one.tow.resistance_n, factor * one.tow.resistance_u),
-               unit="N", number=True),
-        Column("Y", lambda one: rounded(one.tow.force_n, factor * one.tow.force_u), unit="N",
-               number=True),
-        Column("N", lambda one: rounded(one.tow.moment_n_m, factor * one.tow.moment_u),
-               unit="N m", number=True),
+        load("X", 0, "N"),
+        load("Y", 1, "N"),
+        load("N", 2, "N m"),
         Column("thrust", lambda one: rounded(one.thrust_n, factor * one.thrust_u), unit="N",
                number=True),
         Column("F_N", lambda one: rounded(one.normal_n, factor * one.normal_u), unit="N",
                number=True),
-        *data_only("rudder_rad", "thrust_n", "thrust_u", "normal_n", "normal_u"),
+        *data_only("motion", "loads", "loads_u", "rudder_rad", "thrust_n", "thrust_u", "normal_n",
+                   "normal_u"),
     )  # fmt: skip
-    return Table("Tows", columns, found.tows, "tows", titled=True, folded=True)
+    return Table("Runs", columns, found.tows, "tows", titled=True, folded=True)

@@ -33,18 +33,18 @@ def steering_figure(found: CampaignSteering) -> "Figure":
 def _normal_force(axes: "Axes", found: CampaignSteering) -> None:
     runs, drawn = found.runs, _groups(found.runs)
     for colour, ((condition, rate), rows) in zip(_colours(len(drawn)), drawn.items(), strict=True):
-        u, v, _ = runs.motions[:, condition]
-        drift = np.degrees(np.arctan2(-v, u))
+        u, v, r = runs.motions[:, condition]
+        drift, turning = np.degrees(np.arctan2(-v, u)), r * found.known.length_m / np.hypot(u, v)
         angles = np.degrees(runs.rudder_rad[rows])
         axes.errorbar(
             angles, runs.values[4, rows], 2.0 * runs.uncertainty[4, rows], fmt="o", color=colour,
-            markersize=3.5, label=f"{drift:.3g}°, {rate:.3g} 1/s",
+            markersize=3.5, label=f"{drift:.3g}°, {turning:.2g}, {rate:.3g} 1/s",
         )  # fmt: skip
         if (curve := _fitted(found, condition, rate, angles)) is not None:
             axes.plot(*curve, color=colour)
     axes.set_xlabel("rudder angle (°)")
     axes.set_ylabel("normal force (N)")
-    axes.legend(title="drift, revolutions", fontsize=7.0, title_fontsize=7.5, ncols=2)
+    axes.legend(title="drift, r L/U, revolutions", fontsize=7.0, title_fontsize=7.5, ncols=2)
 
 
 def _groups(runs: SteeringRuns) -> dict[tuple[int, float], list[int]]:

@@ -1,12 +1,13 @@
-"""Means of a tow with propeller and rudder: loads, thrust, normal force, angle and rate."""
+"""A run with propeller and rudder: loads, thrust, normal force, angle and rate."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import Final
 
+from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.corrections import ZeroReading, zero_reading
-from analysis.coefficients.tows import Tow, tow_of
+from analysis.coefficients.tows import tow_of
 from analysis.recording import Recording
 from hardware.description.channels import (
     FORCE_X,
@@ -19,19 +20,25 @@ from hardware.description.errors import DataError
 from pmm.campaign.recording_source import open_recording
 from pmm.coefficients.reading import read_cycle
 from pmm.coefficients.tasks import Failed, Task
+from pmm.steering.instants import Instant, instants
 
 GAUGES: Final = (PROPELLER_THRUST.name, RUDDER_NORMAL_FORCE.name)
 _TARED: Final = (*GAUGES, RUDDER_ANGLE.name)
 
 
 @dataclass(frozen=True)
-class SteeredTow:
-    """One tow.
+class SteeredRun:
+    """A tow, or one of the two instants of an oscillation.
 
     Attributes
     ----------
-    tow
-        Loads of the water on the model.
+    course
+        What the hull did, by name: the same of runs that differ in propeller and rudder alone.
+    motion
+        u, v (m/s) and r (rad/s) of the midpoint.
+    loads, loads_u
+        X, Y and N of the water on the model (of an oscillation with its inertia), with standard
+        uncertainties.
     rudder_rad, rate_hz
         As they were measured, else as the campaign states them.
     thrust_n, normal_n
@@ -40,7 +47,11 @@ class SteeredTow:
         By zero run and gauge, the standard uncertainty that the zero's reading adds.
     """
 
-    tow: Tow
+    run: str
+    course: str
+    motion: tuple[float, float, float]
+    loads: tuple[float, ...]
+    loads_u: tuple[float, ...]
     rudder_rad: float
     rate_hz: float
     thrust_n: float
@@ -48,6 +59,11 @@ class SteeredTow:
     normal_n: float
     normal_u: float
     zero_u: Mapping[tuple[str, str], float]
+
+    @property
+    def drift_rad(self) -> float:
+        """Of the midpoint, bow to starboard."""
+        return math.atan2(-self.motion[1], self.motion[0])
 
 
 def read_gauge_zeros(task: Task) -> ZeroReading | Failed:
@@ -60,22 +76,21 @@ def read_gauge_zeros(task: Task) -> ZeroReading | Failed:
         return Failed(task.name, str(task.source.path), str(error), error.exit_status)
 
 
-def read_tow(task: Task, zeros: Mapping[str, ZeroReading]) -> SteeredTow | Failed:
-    """Read a tow; ``task`` has its zero runs, ``zeros`` what the gauges behind the model read."""
+def read_steered(task: Task, zeros: Mapping[str, ZeroReading]) -> list[SteeredRun] | Failed:
+    """Read a run; ``task`` has its zero runs, ``zeros`` what the gauges behind the model read."""
     done = read_cycle(task)
-    if isinstance(done, Failed) or done.cycle is None:
-        return (
-            done
-            if isinstance(done, Failed)
-            else Failed(task.name, done.file, f"{task.name}: it is no tow", 1)
-        )
+    if isinstance(done, Failed):
+        return done
+    assert done.cycle is not None  # noqa: S101 - only a zero run has none
     try:
-        return _steered(task, tow_of(task.kind, done.cycle), zeros)
+        return list(_steered(task, done.cycle, zeros))
     except DataError as error:
         return Failed(task.name, done.file, str(error), error.exit_status)
 
 
-def _steered(task: Task, tow: Tow, zeros: Mapping[str, ZeroReading]) -> SteeredTow:
+def _steered(
+    task: Task, cycle: BodyCycle, zeros: Mapping[str, ZeroReading]
+) -> Iterator[SteeredRun]:
     recording = open_recording(task.source)
     there = recording.channel_names
     lacking = [name for name in (*GAUGES, FORCE_X.name) if name not in there]
@@ -84,14 +99,45 @@ def _steered(task: Task, tow: Tow, zeros: Mapping[str, ZeroReading]) -> SteeredT
             f"{task.name}: no channel {' or '.join(lacking)}; thrust, the rudder's normal force "
             f"and the force along the model have to be recorded (channels: {', '.join(there)})"
         )
-    point = task.set_point
     own = {name: zeros[name] for name in task.zero_names if name is not None and name in zeros}
-    means = {name: _mean(recording, name, own, tared=task.tared) for name in GAUGES}
-    angle = point.rudder_angle_rad
-    if RUDDER_ANGLE.name in there:
-        angle, *_ = _mean(recording, RUDDER_ANGLE.name, own, tared=task.tared)
-    rate = point.revolutions_hz
-    if REVOLUTIONS.name in there:
+    rest = {name: _rest(recording, name, own, tared=task.tared) for name in GAUGES}
+    angle, rate = _angle(task, recording, own), _rate(task, recording)
+    by_zero = {(zero, name): u for name, (_, each) in rest.items() for zero, u in each.items()}
+    offsets = [offset for offset, _ in rest.values()]
+    for one in _instants(task, recording, cycle):
+        course = f"{replace(task.set_point, rudder_angle_rad=0.0, revolutions_hz=0.0)} {one.side}"
+        thrust, normal = (value - offset for value, offset in zip(one.gauges, offsets, strict=True))
+        name = f"{task.name} {one.side}".strip()
+        yield SteeredRun(
+            name, course, one.motion, one.loads, one.loads_u, angle, rate,
+            thrust, one.gauges_u[0], normal, one.gauges_u[1], by_zero,
+        )  # fmt: skip
+
+
+def _instants(task: Task, recording: Recording, cycle: BodyCycle) -> list[Instant]:
+    """Return what a run tells: a tow its means, an oscillation two instants."""
+    if task.kind.oscillates:
+        return instants(task, recording, cycle, GAUGES)
+    tow = tow_of(task.kind, cycle)
+    read = zero_reading(recording, 0.0, GAUGES).offsets.real
+    speed, drift = tow.speed_m_s, tow.drift_rad
+    motion = (speed * math.cos(drift), -speed * math.sin(drift), 0.0)
+    loads = (-tow.resistance_n, tow.force_n, tow.moment_n_m)
+    loads_u = (tow.resistance_u, tow.force_u, tow.moment_u)
+    values, spread = read.values[::2].tolist(), read.standard_uncertainty[::2].tolist()
+    return [Instant("", motion, loads, loads_u, tuple(values), tuple(spread))]
+
+
+def _angle(task: Task, recording: Recording, own: Mapping[str, ZeroReading]) -> float:
+    if RUDDER_ANGLE.name not in recording.channel_names:
+        return task.set_point.rudder_angle_rad
+    offset, _ = _rest(recording, RUDDER_ANGLE.name, own, tared=task.tared)
+    return float(recording.values(RUDDER_ANGLE.name).mean()) - offset
+
+
+def _rate(task: Task, recording: Recording) -> float:
+    rate = task.set_point.revolutions_hz
+    if REVOLUTIONS.name in recording.channel_names:
         rate = float(recording.values(REVOLUTIONS.name).mean())
         turned = recording.channels[recording.index(REVOLUTIONS.name)].unit == "rad/s"
         rate = rate / (2.0 * math.pi) if turned else rate
@@ -100,17 +146,13 @@ def _steered(task: Task, tow: Tow, zeros: Mapping[str, ZeroReading]) -> SteeredT
             f"{task.name}: its propeller has no revolutions; record the channel "
             f"{REVOLUTIONS.name}, or give revolutions_hz of the run in the campaign file"
         )
-    (thrust, thrust_u, first), (normal, normal_u, second) = means.values()
-    by_zero = {(zero, GAUGES[0]): u for zero, u in first.items()}
-    by_zero |= {(zero, GAUGES[1]): u for zero, u in second.items()}
-    return SteeredTow(tow, angle, rate, thrust, thrust_u, normal, normal_u, by_zero)
+    return rate
 
 
-def _mean(
+def _rest(
     recording: Recording, name: str, zeros: Mapping[str, ZeroReading], *, tared: bool
-) -> tuple[float, float, dict[str, float]]:
-    """Return a channel's mean less its zeros' mean, its own uncertainty, and that of each zero."""
-    run = zero_reading(recording, 0.0, (name,)).offsets.real
+) -> tuple[float, dict[str, float]]:
+    """Return what a channel reads at rest, and the uncertainty that each zero run adds to it."""
     rest = {
         zero: one.offsets.select([name]).real
         for zero, one in zeros.items()
@@ -124,9 +166,8 @@ def _mean(
             "tared = true in the campaign file"
         )
     share = 1.0 / max(len(rest), 1)
-    value = float(run.values[0]) - share * sum(float(one.values[0]) for one in rest.values())
     by_zero = {zero: share * float(one.standard_uncertainty[0]) for zero, one in rest.items()}
-    return value, float(run.standard_uncertainty[0]), by_zero
+    return share * sum(float(one.values[0]) for one in rest.values()), by_zero
 
 
 def zeroed_names(tasks: list[Task]) -> set[str]:

@@ -12,15 +12,16 @@ from analysis.steering.identification import SteeringParameters, identified
 from analysis.steering.observations import Particulars, SteeringRuns
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
-from hardware.description.flags import Flag
+from hardware.description.flags import Flag, Severity
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.coefficients.reading import read_zero
 from pmm.coefficients.settings import settings_of
 from pmm.coefficients.stated_inputs import chain_of, oscillator_of
-from pmm.coefficients.tasks import Failed, Work, work_of
-from pmm.steering.reading import GAUGES, SteeredTow, read_gauge_zeros, read_tow, zeroed_names
+from pmm.coefficients.tasks import Failed, Task, Work, work_of
+from pmm.steering.instants import HARMONICS, only_sways
+from pmm.steering.reading import GAUGES, SteeredRun, read_gauge_zeros, read_steered, zeroed_names
 from pmm.steering.settings import SETTINGS_FILE, SteeringSettings, read_steering_settings
 
 _FRESH_KG_M3: Final = 998.8
@@ -42,7 +43,7 @@ class CampaignSteering:
     name: str
     settings: SteeringSettings
     known: Particulars
-    tows: tuple[SteeredTow, ...]
+    tows: tuple[SteeredRun, ...]
     runs: SteeringRuns
     parameters: SteeringParameters
     failed: tuple[Failed, ...]
@@ -84,8 +85,13 @@ def steering_of(folder: Path, given: Path | None = None) -> CampaignSteering:
         runs,
         parameters,
         tuple(failed),
-        work.left_out,
+        (*work.left_out, *map(_sways, filter(only_sways, work.runs))),
     )
+
+
+def _sways(task: Task) -> Flag:
+    why = "left out: it sways without a turn; of oscillations with propeller and rudder take yaw"
+    return Flag("run_left_out", Severity.NOTE, why, None, (task.name,))
 
 
 def _nothing(folder: Path) -> str:
@@ -104,12 +110,17 @@ def _work(campaign: Campaign, folder: Path) -> Work:
         )
     coefficients, _ = settings_of(folder, None)
     return work_of(
-        campaign, folder, oscillator, chain_of(coefficients), harmonics=1, with_steering=True
+        campaign,
+        folder,
+        oscillator,
+        chain_of(coefficients),
+        harmonics=HARMONICS,
+        with_steering=True,
     )
 
 
-def _tows(work: Work) -> tuple[list[SteeredTow], list[Failed]]:
-    wanted = [task for task in work.runs if task.kind.towed]
+def _tows(work: Work) -> tuple[list[SteeredRun], list[Failed]]:
+    wanted = [task for task in work.runs if not only_sways(task)]
     names = zeroed_names(wanted)
     failed: list[Failed] = []
     strut_zeros, gauge_zeros = {}, {}
@@ -122,43 +133,34 @@ def _tows(work: Work) -> tuple[list[SteeredTow], list[Failed]]:
             strut_zeros[task.name] = struts.zero
         if isinstance(gauges, ZeroReading):
             gauge_zeros[task.name] = gauges
-    found: list[SteeredTow] = []
+    found: list[SteeredRun] = []
     for task in wanted:
-        one = read_tow(task.with_zeros(strut_zeros), gauge_zeros)
-        (failed if isinstance(one, Failed) else found).append(one)  # type: ignore[arg-type]
+        one = read_steered(task.with_zeros(strut_zeros), gauge_zeros)
+        if isinstance(one, Failed):
+            failed.append(one)
+        else:
+            found += one
     return found, failed
 
 
-def steering_runs(tows: Sequence[SteeredTow]) -> SteeringRuns:
-    """Return tows as the equations take them: loads about the midpoint, X ahead."""
-    values = np.array(
-        [
-            (-one.tow.resistance_n, one.tow.force_n, one.tow.moment_n_m, one.thrust_n, one.normal_n)
-            for one in tows
-        ]
-    ).T
-    spread = np.array(
-        [
-            (one.tow.resistance_u, one.tow.force_u, one.tow.moment_u, one.thrust_u, one.normal_u)
-            for one in tows
-        ]
-    ).T
+def steering_runs(runs: Sequence[SteeredRun]) -> SteeringRuns:
+    """Return runs as the equations take them: loads about the midpoint, X ahead."""
+    values = np.array([(*one.loads, one.thrust_n, one.normal_n) for one in runs]).T
+    spread = np.array([(*one.loads_u, one.thrust_u, one.normal_u) for one in runs]).T
     least = _SMALLEST * np.abs(values).max(axis=1, keepdims=True)
-    speed = np.array([one.tow.speed_m_s for one in tows])
-    drift = np.array([one.tow.drift_rad for one in tows])
-    motion = np.stack((speed * np.cos(drift), -speed * np.sin(drift), np.zeros(len(tows))))
     return SteeringRuns(
-        tuple(one.tow.run for one in tows),
-        motion,
-        np.array([one.rudder_rad for one in tows]),
-        np.array([one.rate_hz for one in tows]),
+        tuple(one.run for one in runs),
+        np.array([one.motion for one in runs]).T,
+        np.array([one.rudder_rad for one in runs]),
+        np.array([one.rate_hz for one in runs]),
         values,
         np.maximum(spread, least),
-        _shared(tows),
+        _shared(runs),
+        tuple(one.course for one in runs),
     )
 
 
-def _shared(tows: Sequence[SteeredTow]) -> FloatArray:
+def _shared(tows: Sequence[SteeredRun]) -> FloatArray:
     """Return what the zeros' readings add to thrust and normal force of the runs they serve."""
     keys = sorted({key for one in tows for key in one.zero_u})
     shared = np.zeros((5, len(tows), len(keys)))
