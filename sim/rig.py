@@ -1,14 +1,16 @@
 """A simulated rig: the parameters of all its stages, and two nominal ones as data."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from hardware.description.arrangement import DriftBy, Joint
 from hardware.description.attitude import AttitudeSensors, HeaveAndPitch
 from hardware.description.body import Body
-from hardware.description.channels import POSITIONS, STEERING
+from hardware.description.channels import HEELING, POSITIONS, STEERING
 from hardware.description.errors import ConfigurationError
+from hardware.description.heel import Heel
 from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator, Plane
 from hardware.description.setpoint import Medium, SetPoint, check_within
@@ -22,6 +24,8 @@ from sim.drive.prescribed_drive import ConstantSpeedDrive, DriveSettings
 from sim.gauges.dynamometer import Dynamometer, Dynamometers
 from sim.mechanism.linkage import Mechanism, Setting
 from sim.model.attitude import Attitude, Squat
+from sim.model.heel import Heeling
+from sim.model.heel_terms import HeelTerms
 from sim.model.hull import Hull, HullCoefficients
 from sim.model.law_point import Acting
 from sim.model.mounting import Mounting
@@ -65,6 +69,9 @@ class SimulatedRig:
         Propeller and rudder, in water.
     attitude, squat
         Sensors of position on the model, and how it sinks and trims in water where it is free to.
+    heel, heel_loads
+        How the model heels, and the terms of the water's loads on it then
+        (:class:`sim.model.heel_terms.HeelTerms`).
     """
 
     oscillator: Oscillator
@@ -86,6 +93,8 @@ class SimulatedRig:
     steering: Steering | None = None
     attitude: AttitudeSensors | None = None
     squat: Squat | None = None
+    heel: Heel | None = None
+    heel_loads: Mapping[str, float] = field(default_factory=dict, hash=False)
 
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
@@ -101,6 +110,7 @@ class SimulatedRig:
         self._check_joint(set_point)
         self._check_steering(set_point)
         self._check_attitude()
+        self._check_heel(set_point)
         check_within(self.oscillator, set_point)
         carriage = Carriage(set_point.carriage_speed_m_s, self.carriage)
         mechanism = Mechanism(
@@ -188,6 +198,31 @@ class SimulatedRig:
         squat = self.squat if hull.afloat else None
         return (Attitude(self.attitude, squat or Squat(), hull),)
 
+    def _check_heel(self, set_point: SetPoint) -> None:
+        faults = []
+        if self.heel is None:
+            recorded = [
+                one.channel.name for one in self.acquisition.lines if one.channel in HEELING
+            ]
+            faults += [f"acquisition.{name}, but [heel] is missing" for name in recorded]
+            if set_point.heel_rad:
+                faults.append("a heel angle, but [heel] is missing")
+            if self.heel_loads:
+                faults.append("[heel_loads], but [heel] is missing")
+        else:
+            if self.oscillator.plane is Plane.VERTICAL:
+                faults.append("[heel] is for the horizontal oscillator")
+            if self.drive.motor is not None or self.drive.gear is not None:
+                faults.append("[heel] needs a drive without motor and gear")
+        if faults:
+            raise ConfigurationError("; ".join(faults))
+
+    def _heeling(self, set_point: SetPoint) -> Heeling | None:
+        if self.heel is None:
+            return None
+        in_water, terms = set_point.medium is Medium.WATER, HeelTerms.of(self.heel_loads)
+        return Heeling(self.heel, self.body, terms, set_point.heel_rad, in_water)
+
     def _hull(self, set_point: SetPoint, carriage_speed_m_s: float) -> Hull:
         in_water = set_point.medium is Medium.WATER
         return Hull(
@@ -206,6 +241,7 @@ class SimulatedRig:
             self.surge if in_water else None,
             in_water,
             None if self.steering is None else self.steering.set_for(set_point),
+            self._heeling(set_point),
         )
 
     def ideal(self) -> "SimulatedRig":

@@ -29,6 +29,7 @@ MOST = 1e7
 
 _FINITE = (
     "strut_phase_rad", "carriage_speed_m_s", "drift_rad", "rudder_angle_rad", "revolutions_hz",
+    "heel_rad",
 )  # fmt: skip
 
 

@@ -97,6 +97,10 @@ RUDDER_NORMAL_FORCE = of_channel(channels.RUDDER_NORMAL_FORCE)
 POSITION_AFT = of_channel(channels.POSITION_AFT)
 POSITION_FORE = of_channel(channels.POSITION_FORE)
 
+# A model that heels.
+ROLL_MOMENT = of_channel(channels.ROLL_MOMENT)
+HEEL_ANGLE = of_channel(channels.HEEL_ANGLE)
+
 # Dynamometers: what the gauges make of those forces.
 DYNAMOMETER_FORCE_AFT = Signal("dynamometer_force_aft", "N")
 DYNAMOMETER_FORCE_FORE = Signal("dynamometer_force_fore", "N")

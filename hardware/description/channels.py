@@ -72,6 +72,10 @@ REVOLUTIONS = Channel("revolutions", "Hz")
 PROPELLER_THRUST = Channel("propeller_thrust", "N")
 PROPELLER_TORQUE = Channel("propeller_torque", "N m")
 RUDDER_NORMAL_FORCE = Channel("rudder_normal_force", "N")
+# A model that heels, positive to starboard: the moment of the struts on it about its roll axis, and
+# its angle.
+ROLL_MOMENT = Channel("roll_moment", "N m")
+HEEL_ANGLE = Channel("heel_angle", "rad")
 # How far two points of the model stand below where they stood at rest, positive down.
 POSITION_AFT = Channel("position_aft", "m")
 POSITION_FORE = Channel("position_fore", "m")
@@ -95,9 +99,10 @@ FORCES: Final = (FORCE_AFT.name, FORCE_FORE.name)
 STEERING: Final = (
     RUDDER_ANGLE, REVOLUTIONS, PROPELLER_THRUST, PROPELLER_TORQUE, RUDDER_NORMAL_FORCE,
 )  # fmt: skip
+HEELING: Final = (ROLL_MOMENT, HEEL_ANGLE)
 POSITIONS_OF_MODEL: Final = (POSITION_AFT, POSITION_FORE)
 POSITIONS: Final = (POSITION_AFT.name, POSITION_FORE.name)
 STANDARD: Final = (
     SHAFT_ANGLE, DISPLACEMENT_AFT, DISPLACEMENT_FORE, FORCE_AFT, FORCE_FORE, FORCE_X,
-    CARRIAGE_SPEED, *STEERING, *POSITIONS_OF_MODEL,
+    CARRIAGE_SPEED, *STEERING, *POSITIONS_OF_MODEL, *HEELING,
 )  # fmt: skip

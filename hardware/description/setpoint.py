@@ -34,6 +34,8 @@ class SetPoint:
         Of the rudder against the model's midline, positive to turn to starboard.
     revolutions_hz
         Rate of the propeller, positive to drive ahead; 0 where it stands or there is none.
+    heel_rad
+        Heel at which the model is fixed, or rests where it is free to roll; positive to starboard.
     """
 
     frequency_hz: float
@@ -44,6 +46,7 @@ class SetPoint:
     drift_rad: float = 0.0
     rudder_angle_rad: float = 0.0
     revolutions_hz: float = 0.0
+    heel_rad: float = 0.0
 
 
 def check_within(oscillator: Oscillator, set_point: SetPoint) -> None:

@@ -14,6 +14,7 @@ from analysis.resolver.settings import ResolverSettings
 from hardware.description.attitude import AttitudeSensors
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
+from hardware.description.heel import Heel
 from hardware.description.oscillator import Oscillator
 from pmm.campaign.model_uncertainty import ModelUncertainty
 from pmm.campaign.runs import AtRest, RecordedWith, Run, nearest_run
@@ -79,7 +80,7 @@ class Campaign:
     hull, drive, dynamometers, acquisition, photocell, simulation
         What the simulation believes.
     radiation, carriage, linkage_aft, linkage_fore, mounting, forces, cross_flow, surge, steering,
-    squat
+    squat, heel_loads
         More of that, as in :class:`sim.rig.SimulatedRig`; the memory comes from a table.
     effects
         What is switched on besides, in this order.
@@ -100,6 +101,8 @@ class Campaign:
         What the model was tested in; ``None`` where the file does not say.
     attitude
         The sensors of sinkage and trim; ``None`` where there are none.
+    heel
+        How the model heels; ``None`` where it does not.
     """
 
     name: str = "campaign"
@@ -122,6 +125,8 @@ class Campaign:
     surge: SurgeForces | None = None
     steering: Steering | None = None
     squat: Squat | None = None
+    heel: Heel | None = None
+    heel_loads: Mapping[str, float] = field(default_factory=dict, hash=False)
     effects: tuple[SwitchedOn, ...] = ()
     reference: ReferenceChoice = field(default_factory=ReferenceChoice)
     analysis: ResolverSettings = field(default_factory=ResolverSettings)
@@ -172,6 +177,8 @@ class Campaign:
             steering=self.steering,
             attitude=self.attitude,
             squat=self.squat,
+            heel=self.heel,
+            heel_loads=self.heel_loads,
         )
 
     @property

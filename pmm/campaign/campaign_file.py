@@ -16,6 +16,7 @@ from pmm.campaign.attitude import forced_faults
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.column_table import take_columns
 from pmm.campaign.file_names import campaign_name_faults, no_file_name
+from pmm.campaign.heel import heel_faults
 from pmm.campaign.model_uncertainty import expand_preset, take_uncertainty
 from pmm.campaign.runs import AtRest, Run
 from pmm.configuration import Fault, Place, as_error, limit_faults, read_toml, validate
@@ -28,8 +29,9 @@ _UNITS = {
     "strut_phase_deg": ("strut_phase_rad", math.pi / 180.0),
     "drift_deg": ("drift_rad", math.pi / 180.0),
     "rudder_angle_deg": ("rudder_angle_rad", math.pi / 180.0),
+    "heel_deg": ("heel_rad", math.pi / 180.0),
 }
-_RESTING = ("drift_deg", "rudder_angle_deg")
+_RESTING = ("drift_deg", "rudder_angle_deg", "heel_deg")
 _EXTRA_KEYS = {"oscillator": ("preset",), "runs": tuple(_UNITS), "at_rest": _RESTING}
 # Tables and keys for which ``false`` says that the rig has no such thing.
 _MAY_BE_FALSE = ("photocell", "acquisition")
@@ -104,6 +106,7 @@ def _run_faults(table: dict[str, Any]) -> Iterator[Fault]:
     """Yield what is wrong with runs that are right by themselves."""
     oscillator = validate(Oscillator, table.get("oscillator", {}), [])
     yield from forced_faults(oscillator, table.get("attitude"))
+    yield from heel_faults(oscillator, table.get("heel"))
     runs = list(_valid(table, "runs", Run))
     rest = list(_valid(table, "at_rest", AtRest))
     every: list[tuple[Place, Run | AtRest]] = [*runs, *rest]

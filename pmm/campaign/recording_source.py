@@ -195,6 +195,7 @@ def _differences(
         ("drift", "rad", own.drift_rad, told.drift_rad, 0.0),
         ("rudder angle", "rad", own.rudder_angle_rad, told.rudder_angle_rad, 0.0),
         ("revolutions", "Hz", own.revolutions_hz, told.revolutions_hz, 0.0),
+        ("heel", "rad", own.heel_rad, told.heel_rad, 0.0),
     )
     found = [
         f"{what} {mine:.6g} {unit}, the campaign says {theirs:.6g} {unit}"

@@ -45,6 +45,7 @@ class Asked:
     drift_rad: float = 0.0
     rudder_angle_rad: float = 0.0
     revolutions_hz: float = 0.0
+    heel_rad: float = 0.0
 
     @property
     def set_point(self) -> SetPoint:
@@ -58,6 +59,7 @@ class Asked:
             self.drift_rad,
             self.rudder_angle_rad,
             self.revolutions_hz,
+            self.heel_rad,
         )
 
 
@@ -70,7 +72,7 @@ class Run(Asked):
     name
         Unique within the campaign; its recording is called so.
     frequency_hz, eccentricity_m, strut_phase_rad, carriage_speed_m_s, medium, drift_rad
-    rudder_angle_rad, revolutions_hz
+    rudder_angle_rad, revolutions_hz, heel_rad
         As in :class:`hardware.description.setpoint.SetPoint`.
     periods
         Whole periods wanted.
@@ -134,6 +136,7 @@ class AtRest:
     drift_rad: float = 0.0
     rudder_angle_rad: float = 0.0
     revolutions_hz: float = 0.0
+    heel_rad: float = 0.0
     repeat: int = 1
     load: LoadStep | None = None
     known_mass: KnownMass | None = None
@@ -156,6 +159,7 @@ class AtRest:
             self.drift_rad,
             self.rudder_angle_rad,
             self.revolutions_hz,
+            self.heel_rad,
         )
 
     def recording_path(self, folder: Path) -> Path:

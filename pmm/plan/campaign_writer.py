@@ -128,7 +128,7 @@ def _common(one: FinishedRun, names: set[str], number: int) -> dict[str, Any]:
         "carriage_speed_m_s": point.carriage_speed_m_s,
         "medium": point.medium,
         "drift_rad": point.drift_rad,
-        **_steering(point),
+        **_set_besides(point),
         "repeat": run.repeat,
         "known_mass": None if run.known_mass is None else asdict(run.known_mass),
         "zero_before": run.zero_before if run.zero_before in names else None,
@@ -140,9 +140,10 @@ def _common(one: FinishedRun, names: set[str], number: int) -> dict[str, Any]:
     }
 
 
-def _steering(point: SetPoint) -> dict[str, float]:
-    """Return rudder angle and revolutions, where the run has a rudder laid or a propeller."""
-    found = {"rudder_angle_rad": point.rudder_angle_rad, "revolutions_hz": point.revolutions_hz}
+def _set_besides(point: SetPoint) -> dict[str, float]:
+    """Return rudder angle, revolutions and heel, where the run has them."""
+    keys = ("rudder_angle_rad", "revolutions_hz", "heel_rad")
+    found: dict[str, float] = {key: getattr(point, key) for key in keys}
     return {key: value for key, value in found.items() if value}
 
 

@@ -80,6 +80,7 @@ def expand(
         repeats,
         entry.speeds_m_s or (0.0,),
         entry.revolutions_hz or (0.0,),
+        entry.heels_rad or (0.0,),
         entry.drifts_rad or (0.0,),
         entry.rudder_angles_rad or (0.0,),
         entry.strut_phases_rad or (math.nan,),
@@ -97,6 +98,7 @@ def run_count(entry: PlanEntry, defaults: Defaults, channels: Sequence[str]) -> 
     lists: Lists = (
         entry.speeds_m_s,
         entry.revolutions_hz,
+        entry.heels_rad,
         entry.drifts_rad,
         entry.rudder_angles_rad,
         entry.strut_phases_rad,
@@ -109,7 +111,7 @@ def run_count(entry: PlanEntry, defaults: Defaults, channels: Sequence[str]) -> 
 def _run(
     entry: PlanEntry, defaults: Defaults, oscillator: Oscillator, one: tuple[Any, ...]
 ) -> RunPlan:
-    repeat, speed, revolutions, drift, rudder, phase, amplitude, frequency = one
+    repeat, speed, revolutions, heel, drift, rudder, phase, amplitude, frequency = one
     motion = entry.motion or Motion.NONE
     if motion is not Motion.PHASE:
         phase = strut_phase_of(motion, frequency, speed, oscillator.half_spacing_m)
@@ -124,6 +126,7 @@ def _run(
         drift,
         rudder,
         revolutions,
+        heel,
     )
     return RunPlan(
         name=_name(entry, one),
@@ -165,20 +168,19 @@ def _name(entry: PlanEntry, one: tuple[Any, ...]) -> str:
 
     Frequency and amplitude always stand there.
     """
-    repeat, speed, revolutions, drift, rudder, phase, amplitude, frequency = one
+    repeat, speed, revolutions, heel, drift, rudder, phase, amplitude, frequency = one
     parts = [entry.name or _prefix(entry)]
     if frequency and entry.kind is not RunKind.CONTROL:
         parts += [f"f{frequency:g}", f"a{1e3 * amplitude:.6g}"]
-    if len(entry.speeds_m_s) > 1:
-        parts.append(f"u{speed:g}")
-    if len(entry.revolutions_hz) > 1:
-        parts.append(f"n{revolutions:g}")
-    if len(entry.drifts_rad) > 1:
-        parts.append(f"b{math.degrees(drift):.6g}")
-    if len(entry.rudder_angles_rad) > 1:
-        parts.append(f"d{math.degrees(rudder):.6g}")
-    if len(entry.strut_phases_rad) > 1:
-        parts.append(f"p{math.degrees(phase):.6g}")
+    varied = (
+        ("u", entry.speeds_m_s, speed),
+        ("n", entry.revolutions_hz, revolutions),
+        ("h", entry.heels_rad, math.degrees(heel)),
+        ("b", entry.drifts_rad, math.degrees(drift)),
+        ("d", entry.rudder_angles_rad, math.degrees(rudder)),
+        ("p", entry.strut_phases_rad, math.degrees(phase)),
+    )
+    parts += [f"{letter}{value:g}" for letter, values, value in varied if len(values) > 1]
     if repeat > 1:
         parts.append(f"r{repeat}")
     return "-".join(parts)

@@ -106,7 +106,7 @@ def with_zeros(runs: Sequence[RunPlan], zero: ZeroTable) -> list[RunPlan]:
 
 
 def _zero_group(run: RunPlan) -> tuple[Any, ...]:
-    return run.kind.wants_zeros, run.set_point.medium, run.known_mass
+    return run.kind.wants_zeros, run.set_point.medium, run.known_mass, run.set_point.heel_rad
 
 
 def _zero_run(name: str, like: RunPlan, zero: ZeroTable, prompts: tuple[str, ...]) -> RunPlan:
@@ -122,6 +122,7 @@ def _zero_run(name: str, like: RunPlan, zero: ZeroTable, prompts: tuple[str, ...
             point.strut_phase_rad,
             medium=point.medium,
             drift_rad=point.drift_rad,
+            heel_rad=point.heel_rad,
         ),
         duration_s=zero.duration_s,
         pause_before_s=like.pause_before_s,

@@ -11,7 +11,7 @@ from pmm.plan.plan_tables import ControlTable, Defaults, PlanEntry, first_of
 _KEYS: Final = tuple(PlanEntry.__dataclass_fields__)
 _ALWAYS: Final = {"kind", "name", "repeats", "pause_s", "prompt"}
 _GATE: Final = {"periods", "settling_periods", "target_relative", "max_periods"}
-_STEERING: Final = {"rudder_angles_rad", "revolutions_hz"}
+_SET: Final = {"rudder_angles_rad", "revolutions_hz", "heels_rad"}
 _MATRIX: Final = _GATE | {
     "motion",
     "frequencies_hz",
@@ -22,7 +22,7 @@ _MATRIX: Final = _GATE | {
 }
 _REST: Final = {"duration_s", "medium"}
 _TAKES: Final[dict[RunKind, set[str]]] = {
-    RunKind.OSCILLATION: _MATRIX | _STEERING,
+    RunKind.OSCILLATION: _MATRIX | _SET,
     RunKind.DRY: _MATRIX - {"drifts_rad"},
     RunKind.KNOWN_MASS: (_MATRIX - {"drifts_rad"}) | {"known_mass"},
     RunKind.RESTORING: _MATRIX - {"speeds_m_s", "drifts_rad"},
@@ -30,8 +30,8 @@ _TAKES: Final[dict[RunKind, set[str]]] = {
     RunKind.PUSH: _REST | {"channels", "loads_n"},
     RunKind.PLUCK: _REST,
     RunKind.ZERO: _REST,
-    RunKind.STATIC_DRIFT: {"duration_s", "speeds_m_s", "drifts_rad"} | _STEERING,
-    RunKind.STRAIGHT_TOW: {"duration_s", "speeds_m_s"} | _STEERING,
+    RunKind.STATIC_DRIFT: {"duration_s", "speeds_m_s", "drifts_rad"} | _SET,
+    RunKind.STRAIGHT_TOW: {"duration_s", "speeds_m_s"} | _SET,
 }
 _NEEDS: Final[dict[RunKind, tuple[str, ...]]] = {
     RunKind.OSCILLATION: ("motion", "frequencies_hz", "amplitudes_m"),
@@ -47,6 +47,7 @@ _SHOWN: Final = {
     "amplitudes_m": "amplitudes_mm",
     "drifts_rad": "drifts_deg",
     "rudder_angles_rad": "rudder_angles_deg",
+    "heels_rad": "heels_deg",
     "strut_phases_rad": "strut_phases_deg",
 }
 _SINGLE: Final = {"strut_phases_deg": "strut_phase_deg", "drifts_deg": "drift_deg"}

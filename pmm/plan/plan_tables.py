@@ -81,6 +81,8 @@ class PlanEntry:
         Steady drift angles, positive for the bow to starboard.
     rudder_angles_rad, revolutions_hz
         Of the rudder, positive to turn to starboard; of the propeller.
+    heels_rad
+        Heel angles, positive to starboard.
     channels, loads_n
         Gauges and their loads, of check weights and pushes.
     medium
@@ -99,6 +101,7 @@ class PlanEntry:
     drifts_rad: tuple[float, ...] = ()
     rudder_angles_rad: tuple[float, ...] = ()
     revolutions_hz: tuple[float, ...] = ()
+    heels_rad: tuple[float, ...] = ()
     periods: int | None = None
     settling_periods: int | None = None
     repeats: int | None = None

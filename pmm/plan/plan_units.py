@@ -18,6 +18,7 @@ _LISTS: Final = {
     "strut_phases_deg": ("strut_phases_rad", _DEGREE),
     "drifts_deg": ("drifts_rad", _DEGREE),
     "rudder_angles_deg": ("rudder_angles_rad", _DEGREE),
+    "heels_deg": ("heels_rad", _DEGREE),
 }
 # Keys of lists that a single value may stand for.
 _MANY: Final = (
@@ -28,6 +29,7 @@ _MANY: Final = (
     "drifts_rad",
     "rudder_angles_rad",
     "revolutions_hz",
+    "heels_rad",
     "channels",
     "loads_n",
 )

@@ -14,6 +14,7 @@ from hardware.rig_configuration import TABLES, RigConfiguration, read_rig
 from hardware.watch import WatchLimits
 from pmm.campaign.attitude import attitude_faults
 from pmm.campaign.calibration import Calibration, read_calibration
+from pmm.campaign.heel import own_heel_faults
 from pmm.campaign.model_uncertainty import expand_preset
 from pmm.configuration import (
     Fault,
@@ -143,10 +144,11 @@ def examine_rig(path: Path) -> RigFileReading:
     modes = _more_modes(own, path, faults)
     calibration = _calibration(own, hardware, path, faults)
     oscillator = validate(Oscillator, table.get("oscillator", {}), [])
-    sensors = (own.campaign if own is not None else {}).get("attitude")
-    if sensors is not None:
-        found = attitude_faults(oscillator, sensors)
-        faults += [Fault(("campaign", *one.place), one.message) for one in found]
+    handed_on = own.campaign if own is not None else {}
+    for key, faults_of in (("attitude", attitude_faults), ("heel", own_heel_faults)):
+        if key in handed_on:
+            found = faults_of(oscillator, handed_on[key])
+            faults += [Fault(("campaign", *one.place), one.message) for one in found]
     channels = None if hardware is None else channels_of(hardware)
     if faults or own is None or hardware is None:
         return RigFileReading(None, oscillator, channels, as_error(path, faults, original))

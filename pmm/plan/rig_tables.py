@@ -177,6 +177,8 @@ HANDED_ON = (
     "dynamometers",
     "effects",
     "forces",
+    "heel",
+    "heel_loads",
     "linkage_aft",
     "linkage_fore",
     "model_name",

@@ -4,6 +4,7 @@ import math
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Final
 
 from analysis.kinematics.geometry import Geometry
 from hardware.demand import Demand
@@ -27,8 +28,8 @@ class Surroundings:
         Channel and newtons of the weight that hangs on a gauge.
     drift_rad
         Mean heading of the model to the tow, however it is set.
-    rudder_angle_rad, revolutions_hz
-        Of the rudder and of the propeller.
+    rudder_angle_rad, revolutions_hz, heel_rad
+        Of the rudder, of the propeller and of the model.
     """
 
     medium: str = "water"
@@ -36,6 +37,7 @@ class Surroundings:
     drift_rad: float = 0.0
     rudder_angle_rad: float = 0.0
     revolutions_hz: float = 0.0
+    heel_rad: float = 0.0
     mass_kg: float = 0.0
     load: tuple[str, float] = ("", 0.0)
 
@@ -44,7 +46,7 @@ class Surroundings:
         yield from self._change_medium(str(run.set_point.medium))
         yield from self._change_mass(run)
         yield from self._change_drift(run, oscillator)
-        yield from self._change_steering(run.set_point)
+        yield from self._change_settings(run.set_point)
         wanted = run.load if run.kind is RunKind.CHECK_WEIGHT else None
         yield from self._change_load(
             ("", 0.0) if wanted is None else (wanted.channel, wanted.force_n)
@@ -101,20 +103,12 @@ class Surroundings:
             text = f"drift: {drift_prompt(Geometry.of(oscillator, run.set_point))}; press Enter"
             yield Demand(text, "drift", drift_rad)
 
-    def _change_steering(self, point: SetPoint) -> Iterator[Demand]:
-        if point.rudder_angle_rad != self.rudder_angle_rad:
-            self.rudder_angle_rad = point.rudder_angle_rad
-            text = f"rudder: lay it {_rudder(point.rudder_angle_rad)}; press Enter when it is so"
-            yield Demand(text, "rudder", point.rudder_angle_rad)
-        if point.revolutions_hz != self.revolutions_hz:
-            self.revolutions_hz = point.revolutions_hz
-            text = (
-                f"propeller: turn it at {point.revolutions_hz:g} Hz "
-                f"({60.0 * point.revolutions_hz:g} rpm); press Enter when the rate is steady"
-                if point.revolutions_hz
-                else "propeller: stop it; press Enter when it stands"
-            )
-            yield Demand(text, "propeller", point.revolutions_hz)
+    def _change_settings(self, point: SetPoint) -> Iterator[Demand]:
+        for part, key, words in _SETTINGS:
+            value = getattr(point, key)
+            if value != getattr(self, key):
+                setattr(self, key, value)
+                yield Demand(f"{part}: {words(value)}", part, value)
 
 
 class Questions:
@@ -163,9 +157,38 @@ def drift_prompt(geometry: Geometry) -> str:
 
 def _rudder(angle_rad: float) -> str:
     if not angle_rad:
-        return "amidships"
+        return "lay it amidships; press Enter when it is so"
+    to, by = _side_and_size(angle_rad)
+    return f"lay it to turn to {to} by {by}; press Enter when it is so"
+
+
+def _heel(angle_rad: float) -> str:
+    if not angle_rad:
+        return "set the model upright; press Enter when it is so"
+    to, by = _side_and_size(angle_rad)
+    return f"heel the model to {to} by {by}; press Enter when it is so"
+
+
+def _side_and_size(angle_rad: float) -> tuple[str, str]:
+    size = abs(angle_rad)
     to = "port" if angle_rad < 0.0 else "starboard"
-    return f"to turn to {to} by {abs(angle_rad):.4f} rad ({math.degrees(abs(angle_rad)):.2f} deg)"
+    return to, f"{size:.4f} rad ({math.degrees(size):.2f} deg)"
+
+
+def _propeller(rate_hz: float) -> str:
+    if not rate_hz:
+        return "stop it; press Enter when it stands"
+    return (
+        f"turn it at {rate_hz:g} Hz ({60.0 * rate_hz:g} rpm); press Enter when the rate is steady"
+    )
+
+
+# What people set, the set-point's key for it, and what they are asked.
+_SETTINGS: Final[tuple[tuple[str, str, Callable[[float], str]], ...]] = (
+    ("heel", "heel_rad", _heel),
+    ("rudder", "rudder_angle_rad", _rudder),
+    ("propeller", "revolutions_hz", _propeller),
+)
 
 
 def _angle(geometry: Geometry) -> str:

@@ -45,6 +45,8 @@ _SOURCES = {
     channels.RUDDER_NORMAL_FORCE: signals.RUDDER_NORMAL_FORCE,
     channels.POSITION_AFT: signals.POSITION_AFT,
     channels.POSITION_FORE: signals.POSITION_FORE,
+    channels.ROLL_MOMENT: signals.ROLL_MOMENT,
+    channels.HEEL_ANGLE: signals.HEEL_ANGLE,
 }
 
 
@@ -72,6 +74,8 @@ class Acquisition:
     rudder_normal_force: Digitiser | None = None
     position_aft: Digitiser | None = None
     position_fore: Digitiser | None = None
+    roll_moment: Digitiser | None = None
+    heel_angle: Digitiser | None = None
 
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
     name = "acquisition"

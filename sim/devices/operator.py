@@ -17,9 +17,9 @@ _DIALS: Final = ("eccentricity", "phase", "shaft")
 class SimulatedOperator:
     """Answers questions and does what they ask for, at once.
 
-    Carriage, medium, drift, rudder, propeller, masses and loads need no person. A dial is read by
-    the person, if there is one who answers; what was read is then where the linkage stands.
-    Whatever else is to be done and confirmed is taken for done where nobody is there to confirm it.
+    Carriage, medium, angles, propeller, masses and loads need no person. A dial is read by the
+    person, if there is one who answers; what was read is then where the linkage stands. Whatever
+    else is to be done and confirmed is taken for done where nobody is there to confirm it.
 
     Parameters
     ----------
@@ -78,24 +78,17 @@ class SimulatedOperator:
             plant.turn(_TURN * value, _BY_HAND_RAD_S2)
 
 
-def _tow(world: World, question: Demand) -> None:
-    world.plant.surround(carriage_speed_m_s=float(question.value or 0.0))
+def _setting(key: str) -> Callable[[World, Demand], None]:
+    """Return what sets one of the plant's conditions to what is asked for."""
+
+    def doing(world: World, question: Demand) -> None:
+        world.plant.surround(**{key: float(question.value or 0.0)})
+
+    return doing
 
 
 def _immerse(world: World, question: Demand) -> None:
     world.plant.surround(medium=Medium(str(question.value)))
-
-
-def _turn_model(world: World, question: Demand) -> None:
-    world.plant.surround(drift_rad=float(question.value or 0.0))
-
-
-def _lay_rudder(world: World, question: Demand) -> None:
-    world.plant.surround(rudder_angle_rad=float(question.value or 0.0))
-
-
-def _turn_propeller(world: World, question: Demand) -> None:
-    world.plant.surround(revolutions_hz=float(question.value or 0.0))
 
 
 def _load(world: World, question: Demand) -> None:
@@ -107,11 +100,12 @@ def _ballast(world: World, question: Demand) -> None:
 
 
 _DOING: Final[dict[str, Callable[[World, Demand], None]]] = {
-    "carriage": _tow,
+    "carriage": _setting("carriage_speed_m_s"),
     "medium": _immerse,
     "load": _load,
     "mass": _ballast,
-    "drift": _turn_model,
-    "rudder": _lay_rudder,
-    "propeller": _turn_propeller,
+    "drift": _setting("drift_rad"),
+    "rudder": _setting("rudder_angle_rad"),
+    "propeller": _setting("revolutions_hz"),
+    "heel": _setting("heel_rad"),
 }

@@ -23,7 +23,7 @@ SHAFT_FRICTION: Final = Friction(time_constant_s=2.0, deceleration=1.0)
 
 @dataclass(frozen=True)
 class PlantConditions:
-    """Conditions outside the rig: carriage, medium, seed of all noise, drift, rudder, propeller."""
+    """Conditions outside the rig: carriage, medium, seed of all noise, and what people set."""
 
     carriage_speed_m_s: float = 0.0
     medium: Medium = Medium.WATER
@@ -31,6 +31,7 @@ class PlantConditions:
     drift_rad: float = 0.0
     rudder_angle_rad: float = 0.0
     revolutions_hz: float = 0.0
+    heel_rad: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -149,24 +150,10 @@ class Plant:
         """Eccentricity in metres and strut phase in radians, as they are set."""
         return self._linkage
 
-    def surround(
-        self,
-        carriage_speed_m_s: float | None = None,
-        medium: Medium | None = None,
-        drift_rad: float | None = None,
-        rudder_angle_rad: float | None = None,
-        revolutions_hz: float | None = None,
-    ) -> None:
-        """Change what is given, from the next sample on."""
-        before, now = self._around, self._around
-        given: dict[str, Any] = {
-            "carriage_speed_m_s": carriage_speed_m_s,
-            "medium": medium,
-            "drift_rad": drift_rad,
-            "rudder_angle_rad": rudder_angle_rad,
-            "revolutions_hz": revolutions_hz,
-        }
-        self._around = replace(now, **{key: one for key, one in given.items() if one is not None})
+    def surround(self, **given: Any) -> None:
+        """Change what is given of the :class:`PlantConditions`, from the next sample on."""
+        before = self._around
+        self._around = replace(before, **given)
         self._changed = self._changed or self._around != before
 
     def load(self, mass_kg: float, at_m: float = 0.0) -> None:

@@ -32,11 +32,14 @@ class HullState(NamedTuple):
         Displacements, velocities and accelerations of the struts at the last sample.
     loads
         The loads (f, g) of the last samples.
+    roll
+        Of a model that is free to roll (:func:`sim.model.roll_march.march_roll`).
     """
 
     states: tuple[float, ...] | None = None
     motion: tuple[float, ...] = ()
     loads: Tail = ()
+    roll: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

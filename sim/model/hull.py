@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 from hardware.description.arrays import FloatArray
 from hardware.description.struts import to_motion
 from sim import signals
+from sim.mechanism.geometry import BodyMotion
 from sim.model.block_forces import BlockForces, HullState
 from sim.model.forces import Instants
+from sim.model.heel import Heeling
 from sim.model.hull_steady_state import HullSteady
 from sim.model.model_march import Marching, marching_of
-from sim.model.numbers import numbers_of, turns_with, weight_less_buoyancy
+from sim.model.numbers import moving, numbers_of, turns_with, weight_less_buoyancy
 from sim.model.parameters import HullCoefficients, ModelParameters, mass_matrix
 from sim.model.steering_loads import steering_loads
 from sim.model.system import HullSystem
@@ -30,6 +32,7 @@ from sim.stage import Block
 __all__ = ["Hull", "HullCoefficients"]
 
 _FORCES = (signals.FORCE_AFT, signals.FORCE_FORE, signals.FORCE_X)
+_HEELING = (signals.ROLL_MOMENT, signals.HEEL_ANGLE)
 ValueT = TypeVar("ValueT", np.float64, np.complex128)
 
 
@@ -58,8 +61,9 @@ class Hull(ModelParameters):
 
     @property
     def writes(self) -> tuple[Signal, ...]:
-        """The struts' forces, the force along the model, and what propeller and rudder write."""
-        return _FORCES if self.steering is None else (*_FORCES, *self.steering.writes)
+        """The struts' forces, that along the model, what propeller and rudder write, and roll."""
+        steering = () if self.steering is None else self.steering.writes
+        return (*_FORCES, *steering, *(() if self.heeling is None else _HEELING))
 
     @property
     def system(self) -> HullSystem:
@@ -78,6 +82,7 @@ class Hull(ModelParameters):
         struts = np.column_stack(columns)
         flow = self.flow_factor * inputs[signals.CARRIAGE_SPEED.name]
         instants = Instants(block.time_s, 1.0 / block.sample_rate_hz, flow)
+        rolled = state.roll
         if not self.system.states:
             force = self._over(instants).on_rigid_mounting(struts)
         else:
@@ -87,7 +92,22 @@ class Hull(ModelParameters):
             own = steering_loads(self.steering, self.system.numbers, struts, flow)
             own[:3] += rows
             rows = own
+        if self.heeling is not None:
+            at = moving(self.system.numbers, struts, flow)
+            roll, rolled = self.heeling.rolling(at, rolled, instants.step_s)
+            rows = self._heeled(self.heeling, rows, at, roll)
+            state = state._replace(roll=rolled)
         return state, self._written(rows)
+
+    def _heeled(
+        self, heeling: Heeling, rows: FloatArray, at: BodyMotion, roll: FloatArray
+    ) -> FloatArray:
+        """Return the rows with what heel adds, and its own two behind them."""
+        own = heeling.readings(self.system.numbers, at, roll)
+        rows = np.concatenate((rows, own[3:]))
+        rows[:3] += own[:3]
+        rows[:2] *= heeling.on_gauges(roll[0])
+        return rows
 
     def _written(self, rows: NDArray[ValueT]) -> dict[str, NDArray[ValueT]]:
         return {signal.name: row for signal, row in zip(self.writes, rows, strict=True)}
@@ -152,15 +172,21 @@ class Hull(ModelParameters):
         y = np.stack([inputs[signal.name] for signal in self.reads[:2]], axis=1)
         model = _steadily(hull, period)
         rows = model.force(y, model.balanced(y)).T
-        if self.steering is None:
+        if self.steering is None and self.heeling is None:
             return period, self._written(rows)
         struts = np.stack([period.values(inputs[signal.name]) for signal in self.reads[:6]], axis=1)
         flow = np.full(period.points, hull.carriage_speed_m_s)
-        added = period.harmonics(
-            steering_loads(self.steering, self.system.numbers, struts, flow).T
-        ).T
-        added[:3] += rows
-        return period, self._written(added)
+        if self.steering is not None:
+            behind = steering_loads(self.steering, self.system.numbers, struts, flow)
+            added = period.harmonics(behind.T).T
+            added[:3] += rows
+            rows = added
+        if self.heeling is not None:
+            at = moving(self.system.numbers, struts, flow)
+            roll = self.heeling.settled(at, period)
+            whole = self._heeled(self.heeling, period.values(rows.T).T, at, roll)
+            rows = period.harmonics(whole.T).T
+        return period, self._written(rows)
 
     def at_speed(self, inputs: Spectra) -> "Hull":
         """Return the model at the carriage's mean speed."""

@@ -6,6 +6,7 @@ from hardware.description.arrangement import Arrangement
 from hardware.description.body import Body
 from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from hardware.description.oscillator import Plane
+from sim.model.heel import Heeling
 from sim.model.law_point import Acting
 from sim.model.mounting import Mounting
 from sim.model.steering import Steering
@@ -82,6 +83,8 @@ class ModelParameters:
     steering
         Propeller and rudder. Their loads go by the struts' motion, and through the mounting to the
         gauges without moving it.
+    heeling
+        Of a model that is heeled or free to roll; its loads go by the struts' motion likewise.
     """
 
     plane: Plane
@@ -99,3 +102,4 @@ class ModelParameters:
     surge: SurgeForces | None = None
     afloat: bool = True
     steering: Steering | None = None
+    heeling: Heeling | None = None
