@@ -14,13 +14,17 @@ class CandidateRun:
     periods
         That are measured; what settles is not among them.
     cost_s
-        Of tank time: waiting, setting, settling and the carriage's way back in it; infinite for a
-        run that is made already, or is none to choose.
+        Of tank time: waiting, settling and the carriage's way back in it; infinite for a run that
+        is made already, or is none to choose.
+    setting_s
+        Of tank time besides, for the first run with this eccentricity and phase: runs with the same
+        are made one after the other.
     """
 
     point: SetPoint
     periods: int
     cost_s: float
+    setting_s: float = 0.0
 
     @property
     def measured_s(self) -> float:

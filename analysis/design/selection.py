@@ -15,6 +15,7 @@ from typing import Final
 
 import numpy as np
 
+from analysis.design.candidate import CandidateRun
 from analysis.design.regression import DesignTarget, Prospects, Regression
 from hardware.description.arrays import BoolArray, FloatArray, IntArray
 
@@ -121,11 +122,10 @@ def select(
     made
         Candidates that are made already, or in any case; they cost nothing more.
     """
-    costs = np.array([one.cost_s for one in prospects.candidates])
     chosen: list[int] = []
     for _ in range(_ROUNDS):
         regressions = prospects.regressions(targets, (*made, *chosen))
-        search = _Search(regressions, costs, time_s, made, chosen)
+        search = _Search(regressions, prospects.candidates, time_s, made, chosen)
         if chosen and search.met:
             break
         search.grow()
@@ -140,15 +140,19 @@ class _Search:
     def __init__(
         self,
         regressions: Sequence[Regression],
-        costs: FloatArray,
+        candidates: Sequence[CandidateRun],
         time_s: float,
         made: Sequence[int],
         chosen: Sequence[int],
     ) -> None:
-        self.costs, self.time_s = costs, time_s
+        self.time_s = time_s
+        self.alone = np.array([one.cost_s for one in candidates])
+        self.setting = np.array([one.setting_s for one in candidates])
+        settings = [(one.point.eccentricity_m, one.point.strut_phase_rad) for one in candidates]
+        self.group = np.unique(np.array(settings), axis=0, return_inverse=True)[1].ravel()
         self.chosen = list(chosen)
         self.targeted = any(np.isfinite(one.wanted).any() for one in regressions)
-        self.states = [_State(one, len(costs)) for one in regressions]
+        self.states = [_State(one, len(candidates)) for one in regressions]
         for candidate in (*made, *chosen):
             self._add(candidate)
 
@@ -157,9 +161,17 @@ class _Search:
             state.add(candidate, times)
 
     @property
+    def costs(self) -> FloatArray:
+        """Tank time of one run more: settings that are among the chosen are not set anew."""
+        there = np.isin(self.group, self.group[self.chosen])
+        return np.asarray(self.alone + np.where(there, 0.0, self.setting))
+
+    @property
     def used_s(self) -> float:
         """Tank time of what is chosen."""
-        return float(self.costs[self.chosen].sum())
+        firsts = np.unique(self.group[self.chosen], return_index=True)[1]
+        set_s = self.setting[np.array(self.chosen, dtype=int)[firsts]].sum()
+        return float(self.alone[self.chosen].sum() + set_s)
 
     @property
     def missing(self) -> float:
@@ -179,21 +191,22 @@ class _Search:
         asked
             Which candidates are, shape ``(n,)``, as the result.
         """
-        gains = np.zeros(len(self.costs))
+        gains = np.zeros(len(self.alone))
         for state in self.states:
             now = state.losses()[0]
             if self.targeted and now <= 0.0:
                 continue
             members = state.regression.members
-            own = np.flatnonzero((asked & np.isfinite(self.costs))[members])
+            own = np.flatnonzero((asked & np.isfinite(self.alone))[members])
             gains[members[own]] += now - state.losses(own)
         return gains
 
     def grow(self) -> None:
         """Take runs in until the targets are met, nothing helps or the time is used up."""
         while len(self.chosen) < MOST_RUNS and not self.met:
-            gains = self.gains(self.costs <= self.time_s - self.used_s)
-            best = int(np.argmax(gains / self.costs))
+            costs = self.costs
+            gains = self.gains(costs <= self.time_s - self.used_s)
+            best = int(np.argmax(gains / costs))
             if not gains[best] > _NOTHING:
                 break
             self.chosen.append(best)
@@ -203,25 +216,26 @@ class _Search:
         """Leave out or exchange runs while that saves time or brings the criterion down."""
         for _ in range(_PASSES):
             before = (self.met, self.used_s, self.missing)
-            for candidate in sorted(set(self.chosen), key=lambda one: -self.costs[one]):
+            for candidate in sorted(set(self.chosen), key=lambda one: -self.alone[one]):
                 self._exchanged(candidate)
             if before == (self.met, self.used_s, self.missing):
                 return
 
     def _exchanged(self, candidate: int) -> None:
         """Put in place of one run nothing, or what does better."""
-        was, own_s = self.missing, float(self.costs[candidate])
-        met = self.met
+        was, met = self.missing, self.met
         self.chosen.remove(candidate)
         self._add(candidate, -1.0)
         if self.met:
             return
-        gains = self.gains(self.costs <= (own_s if met else self.time_s - self.used_s))
+        costs = self.costs
+        own_s = float(costs[candidate])
+        gains = self.gains(costs <= (own_s if met else self.time_s - self.used_s))
         after = self.missing - gains
         best = candidate
         if met:
-            cheap = (after <= 0.0) & (self.costs < own_s)
-            best = int(np.argmin(np.where(cheap, self.costs, np.inf))) if cheap.any() else best
+            cheap = (after <= 0.0) & (costs < own_s)
+            best = int(np.argmin(np.where(cheap, costs, np.inf))) if cheap.any() else best
         elif after.min() < was - _NOTHING:
             best = int(np.argmin(after))
         self.chosen.append(best)
@@ -229,13 +243,13 @@ class _Search:
 
     def in_order(self) -> list[int]:
         """Return the chosen runs, at each place the one that brings most for its time."""
-        left, ordered = list(self.chosen), []
+        left, self.chosen = list(self.chosen), []
         for candidate in left:
             self._add(candidate, -1.0)
         while left:
-            gains = self.gains(np.isin(np.arange(len(self.costs)), left))
-            best = max(left, key=lambda one: (gains[one] / self.costs[one], -self.costs[one]))
+            costs, gains = self.costs, self.gains(np.isin(np.arange(len(self.alone)), left))
+            best = max(left, key=lambda one: (gains[one] / costs[one], -costs[one]))
             left.remove(best)
-            ordered.append(best)
+            self.chosen.append(best)
             self._add(best)
-        return ordered
+        return self.chosen

@@ -4,7 +4,7 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import accumulate
+from itertools import accumulate, islice
 from typing import Final
 
 from analysis.coefficients.body_cycle import BodyCycle
@@ -13,6 +13,7 @@ from analysis.design.expectation import REPEATS, SCATTER, ExpectedCoefficient, e
 from analysis.design.regression import prospects
 from analysis.design.selection import select
 from pmm.design.design_file import DesignFile
+from pmm.design.grid import costs_s
 from pmm.plan.duration import duration_rows
 from pmm.plan.run_plan import RunPlan
 
@@ -80,7 +81,7 @@ def design(file: DesignFile) -> Design:
         chosen = _chosen(file)
     steps = _steps(file, chosen)
     after = steps[-1].known if steps else now
-    used_s = sum(file.grid.candidates[k].cost_s * repeats for k, repeats in chosen)
+    used_s = math.fsum(_costs_s(file, chosen))
     why = tuple(_why(one, file, used_s) for one in after if not one.met)
     return Design(steps, now, after, why)
 
@@ -122,8 +123,7 @@ def _steps(file: DesignFile, chosen: list[tuple[int, int]]) -> tuple[DesignStep,
     if not chosen:
         return ()
     cycles = _cycles(file, order)
-    start_s = math.fsum(duration_rows(file.fixed, file.rig))
-    costs = [file.grid.candidates[k].cost_s * repeats for k, repeats in chosen]
+    start_s = math.fsum(duration_rows(file.fixed, file.rig)) or _closing_s(file)
     return tuple(
         DesignStep(
             file.grid.runs[candidate],
@@ -131,8 +131,23 @@ def _steps(file: DesignFile, chosen: list[tuple[int, int]]) -> tuple[DesignStep,
             start_s + time_s,
             expected(order[:end], cycles[:end], file.targets, file.belief, file.stated),
         )
-        for (candidate, repeats), end, time_s in zip(chosen, ends, accumulate(costs), strict=True)
+        for (candidate, repeats), end, time_s in zip(
+            chosen, ends, accumulate(_costs_s(file, chosen)), strict=True
+        )
     )
+
+
+def _closing_s(file: DesignFile) -> float:
+    """Return the tank time of the zero run behind the last run."""
+    zero = file.tables.zero
+    return 0.0 if zero is None else zero.duration_s + file.tables.defaults.pause_s
+
+
+def _costs_s(file: DesignFile, chosen: Sequence[tuple[int, int]]) -> list[float]:
+    """Return the tank time of each run that is chosen with its repeats, made in this order."""
+    order = [file.grid.runs[k] for k, repeats in chosen for _ in range(repeats)]
+    costs = iter(costs_s(order, file.fixed[-1] if file.fixed else None, file.rig, file.tables.zero))
+    return [math.fsum(islice(costs, repeats)) for _, repeats in chosen]
 
 
 def foreseen(file: DesignFile, more: Sequence[CandidateRun]) -> tuple[ExpectedCoefficient, ...]:

@@ -13,7 +13,7 @@ from analysis.design.candidate import CandidateRun
 from pmm.design.design_tables import DesignLimits
 from pmm.plan import check_table as table
 from pmm.plan.condition_checks import condition_findings
-from pmm.plan.duration import run_s
+from pmm.plan.duration import run_s, setting_s
 from pmm.plan.field_checks import field_findings
 from pmm.plan.findings import PlanFinding, PlanVerdict
 from pmm.plan.limits import limit_findings
@@ -55,13 +55,40 @@ def grid_of(
             left_out[why] += 1
         else:
             kept.append(run)
-    return RunGrid(tuple(kept), tuple(candidate_of(run, rig, zero) for run in kept), dict(left_out))
+    return RunGrid(tuple(kept), tuple(_candidates(kept, rig, zero)), dict(left_out))
 
 
-def candidate_of(run: RunPlan, rig: RigFile, zero: ZeroTable | None) -> CandidateRun:
-    """Return a run with what it costs: its pause and ramps, and its part of the zero runs."""
-    share = 0.0 if zero is None else zero.duration_s / zero.every
-    return CandidateRun(run.set_point, run.periods, run_s(run, None, rig) + share)
+def _candidates(
+    runs: Sequence[RunPlan], rig: RigFile, zero: ZeroTable | None
+) -> Iterator[CandidateRun]:
+    """Yield each run with what it costs; its axes come from the farthest settings."""
+    firsts = {_settings(run): run for run in runs}
+    moves_s = {
+        own: max(setting_s(run, other, rig) for other in (None, *firsts.values()))
+        for own, run in firsts.items()
+    }
+    for run in runs:
+        (cost_s,) = costs_s([run], run, rig, zero)
+        yield CandidateRun(run.set_point, run.periods, cost_s, moves_s[_settings(run)])
+
+
+def _settings(run: RunPlan) -> tuple[float, float]:
+    return run.set_point.eccentricity_m, run.set_point.strut_phase_rad
+
+
+def costs_s(
+    runs: Sequence[RunPlan], before: RunPlan | None, rig: RigFile, zero: ZeroTable | None
+) -> tuple[float, ...]:
+    """Return what each of some runs costs of tank time, with its part of the zero runs.
+
+    Parameters
+    ----------
+    before
+        The run that was made last, whose settings the axes still have; ``None`` for both at 0.
+    """
+    share_s = 0.0 if zero is None else zero.duration_s / zero.every
+    order = (before, *runs)
+    return tuple(run_s(run, last, rig) + share_s for run, last in zip(runs, order, strict=False))
 
 
 def _excluding(found: Iterable[PlanFinding], limits: DesignLimits) -> Iterator[str]:

@@ -13,7 +13,7 @@ from statistics import median
 import numpy as np
 
 from analysis.coefficients.body_cycle import BodyCycle
-from analysis.coefficients.repeats import repeatability, with_repeats
+from analysis.coefficients.repeats import Repeatability, repeatability, with_repeats
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.candidate import CandidateRun
 from analysis.design.expectation import SCATTER, ExpectedCoefficient, expected, made_up
@@ -25,7 +25,7 @@ from pmm.coefficients.stated_inputs import largest
 from pmm.coefficients.workflow import campaign_cycles
 from pmm.design.design_file import DesignFile
 
-_ENOUGH = 3  # runs: fewer say too little of the noise
+_ENOUGH = 3  # runs, or repeats beyond the first of their kind: fewer say too little of the noise
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,9 +59,7 @@ def after(file: DesignFile, parts: Sequence[Measured]) -> DesignFile:
     if not cycles:
         why = "; ".join(f"{name}: {said}" for part in parts for name, said in part.failed.items())
         raise DataError(f"none of the runs that were made can be used{why and f' ({why})'}")
-    known = repeatability(cycles)
-    both = np.maximum(known.relative, file.noise.repeat_relative)
-    spread = replace(known, relative=both, degrees_of_freedom=known.degrees_of_freedom or math.inf)
+    spread = repeating(cycles, file.noise.repeat_relative)
     stated = largest([file.stated, *(part.stated for part in parts)])
     table = {key: one for key, one in file.plan_table.items() if key != "runs"}
     going_on = replace(
@@ -73,8 +71,45 @@ def after(file: DesignFile, parts: Sequence[Measured]) -> DesignFile:
     return replace(
         going_on,
         noise=replace(
-            noise, force_n=times * noise.force_n, displacement_m=times * noise.displacement_m
+            noise,
+            force_n=times * noise.force_n,
+            displacement_m=times * noise.displacement_m,
+            repeat_relative=float(spread.relative.max()),
         ),
+    )
+
+
+def repeating(cycles: Sequence[BodyCycle], stated: float) -> Repeatability:
+    """Return what repeats differ by: what they showed, or what is stated while they are few.
+
+    While they have fewer than three degrees of freedom the larger counts; then what they showed
+    alone, so that nobody makes runs against a scatter that is not there.
+
+    Parameters
+    ----------
+    stated
+        Standard deviation between repeats beyond their scatter, over the load.
+    """
+    known = repeatability(cycles)
+    if known.degrees_of_freedom >= _ENOUGH:
+        return known
+    freedom = known.degrees_of_freedom or math.inf
+    return replace(known, relative=np.maximum(known.relative, stated), degrees_of_freedom=freedom)
+
+
+def repeats_said(cycles: Sequence[BodyCycle], stated: float) -> str:
+    """Say which scatter between repeats uncertainties count on; empty where there is none."""
+    known = repeatability(cycles)
+    shown = f"{100.0 * float(known.relative.max()):.2g} %"
+    freedom = f"{known.degrees_of_freedom:g} degrees of freedom"
+    if known.degrees_of_freedom >= _ENOUGH:
+        return f"repeats differ by {shown} of their load, as they showed with {freedom}"
+    if not stated > 0.0:
+        return ""
+    few = f"repeats with {freedom} showed {shown}" if known.kinds else "no repeat was made"
+    return (
+        f"repeats are taken to differ by {100.0 * stated:.2g} % of their load, as repeat_relative "
+        f"states, or more: {few}, and what they show counts alone from {_ENOUGH} on"
     )
 
 

@@ -37,7 +37,7 @@ def run_s(run: RunPlan, before: RunPlan | None, rig: RigFile) -> float:
     The carriage comes back at the speed of the run, or at 1 m/s where that is less. What the
     operator does by hand is not counted.
     """
-    parked = _setting_s(run, before, rig) + run.pause_before_s
+    parked = setting_s(run, before, rig) + run.pause_before_s
     moving = run.moving_s + 2.0 * (shaft_ramp_s(run, rig) + carriage_ramp_s(run, rig))
     speed = run.set_point.carriage_speed_m_s
     back = tank_length_m(run, rig) / max(speed, 1.0) if speed else 0.0
@@ -50,8 +50,8 @@ def duration_rows(runs: Sequence[RunPlan], rig: RigFile) -> tuple[float, ...]:
     return tuple(run_s(run, last, rig) for run, last in zip(runs, before, strict=False))
 
 
-def _setting_s(run: RunPlan, before: RunPlan | None, rig: RigFile) -> float:
-    """Return the longer of the two axes' moves from the settings of the run before."""
+def setting_s(run: RunPlan, before: RunPlan | None, rig: RigFile) -> float:
+    """Return the longer of the two axes' moves from the settings of the run before, or from 0."""
     was = None if before is None else before.set_point
     ways = (
         (rig.hardware.eccentricity, run.set_point.eccentricity_m, was and was.eccentricity_m),

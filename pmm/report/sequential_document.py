@@ -45,6 +45,7 @@ _TARGETS: Final[tuple[Column[KnownTarget], ...]] = (
     ),
     number("asked for", "wanted", written(".3g")),
     word("unit", "unit"),
+    word("most of it from", "mostly"),
     Column("met", lambda one: "yes" if one.met else "no"),
 )
 _STEPS: Final[tuple[Column[Decision], ...]] = (

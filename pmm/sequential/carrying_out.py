@@ -4,12 +4,13 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import AbstractContextManager, ExitStack, contextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 from typing import Final
 
 from hardware.description.errors import ConfigurationError
+from pmm.coefficients.settings import SETTINGS_FILE
 from pmm.design.design_file import DesignFile
 from pmm.plan.campaign_writer import write_campaign
 from pmm.plan.plan import read_plan_and_rig
@@ -25,6 +26,8 @@ from pmm.sequential.course import CampaignCourse
 from pmm.sequential.growing_plan import PLAN
 from pmm.sequential.look import Decision, Look
 from pmm.sequential.targets import TargetGoal
+from pmm.toml_text import toml_table
+from pmm.whole_file import write_whole
 
 _POLL_S: Final = 0.02
 
@@ -106,6 +109,7 @@ def carry_out_campaign(
     with ExitStack() as stack:
         stack.enter_context(own_campaign(folder))
         _write_made(folder)
+        _keep_stated(file, folder)
         executor = stack.enter_context(_executor(file.rig.realtime or asked.real_time))
         course = CampaignCourse(
             goal, folder, approval, answers, screen.show,
@@ -124,6 +128,14 @@ def _write_made(folder: Path) -> None:
     if (folder / PLAN).exists():
         plan, rig = read_plan_and_rig(folder / PLAN)
         write_campaign(folder, plan, rig, finished_runs(folder, plan, rig))
+
+
+def _keep_stated(file: DesignFile, folder: Path) -> None:
+    """Hand what the design states on to ``pmm coefficients``, unless somebody has said it there."""
+    stated = {key: value for key, value in asdict(file.stated).items() if value}
+    path = folder / SETTINGS_FILE
+    if stated and not path.exists():
+        write_whole(path, f"# As {file.path.name} states\n{toml_table('uncertainty', stated)}")
 
 
 def _opened(

@@ -5,6 +5,7 @@ its own, behind the runs that are made in any case. Zero and control runs stand 
 design says.
 """
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,8 +16,10 @@ from hardware.description.kinds import RunKind
 from pmm.configuration import read_toml
 from pmm.design.design_file import DesignFile
 from pmm.design.plan_writer import plan_head, run_entry
+from pmm.plan.duration import duration_rows
 from pmm.plan.plan import Plan, read_plan_and_rig
 from pmm.plan.plan_tables import Scheme, ZeroTable
+from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.run.campaign_folder import done_runs
 from pmm.toml_text import toml_table
@@ -89,6 +92,12 @@ class GrowingPlan:
         """Whether the zero run behind the last run was made."""
         runs = self.plan.runs
         return bool(runs) and runs[-1].kind is RunKind.ZERO and runs[-1].name in self.done
+
+    def chosen_s(self, rig: RigFile) -> float:
+        """Return the tank time of the chosen runs that were made, with what stands between them."""
+        own = {run.name for run in self.chosen}
+        rows = zip(self.made, duration_rows(self.made, rig), strict=True)
+        return math.fsum(time_s for run, time_s in rows if run.name in own or run.kind in _BETWEEN)
 
     def made_entries(self) -> Iterator[Mapping[str, Any]]:
         """Yield the entries whose runs are complete."""

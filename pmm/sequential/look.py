@@ -36,6 +36,8 @@ class KnownTarget:
         ``None`` where the runs do not determine it.
     wanted
         Largest standard uncertainty that meets it.
+    mostly
+        What most of its variance comes from, with its share; empty where that is not known.
     """
 
     name: str
@@ -43,6 +45,7 @@ class KnownTarget:
     value: float | None
     standard_uncertainty: float | None
     wanted: float
+    mostly: str = ""
 
     @property
     def met(self) -> bool:
@@ -73,7 +76,8 @@ class Decision:
     remark
         The ending, or the reason of a change, in words.
     notes
-        Runs that cannot be used and targets that cannot be met, each in a sentence.
+        Runs that cannot be used, targets that cannot be met, and what repeats are taken to differ
+        by, each in a sentence.
     """
 
     runs: tuple[str, ...]

@@ -10,13 +10,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
+from analysis.design.candidate import CandidateRun
 from analysis.design.expectation import ExpectedCoefficient
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.design.design_file import DesignFile
 from pmm.design.designing import Design, beyond_runs, design, foreseen
-from pmm.design.grid import candidate_of
-from pmm.design.measured import Measured, after, measured
+from pmm.design.grid import costs_s
+from pmm.design.measured import Measured, after, measured, repeats_said
 from pmm.document.notation import clock
 from pmm.plan.duration import duration_rows
 from pmm.plan.run_plan import RunPlan
@@ -51,6 +52,11 @@ class _Standing:
         """Oscillations that are complete."""
         made = () if self.plan is None else self.plan.made
         return tuple(run.name for run in made if run.oscillates)
+
+    def repeats(self, stated: float) -> Iterator[str]:
+        """Yield which scatter between repeats is counted on."""
+        if self.found is not None and self.found.cycles:
+            yield from filter(None, [repeats_said(self.found.cycles, stated)])
 
 
 class TargetGoal:
@@ -94,6 +100,7 @@ class TargetGoal:
         notes = (
             *(f"{name} cannot be used: {why}" for name, why in standing.unusable.items()),
             *(why for why, one in hopeless),
+            *standing.repeats(self._file.noise.repeat_relative),
         )
         made = () if standing.plan is None else standing.plan.made
         look = Look(
@@ -107,12 +114,19 @@ class TargetGoal:
         ending = _ending(found, file, left, hopeless=bool(hopeless))
         if ending is not None and not given:
             return replace(look, ending=ending[0], remark=ending[1])
-        return self._next(look, found, file, left)
+        return self._next(look, found, file, left, made)
 
-    def _next(self, look: Look, found: Design, file: DesignFile, left: Sequence[RunPlan]) -> Look:
+    def _next(
+        self,
+        look: Look,
+        found: Design,
+        file: DesignFile,
+        left: Sequence[RunPlan],
+        made: Sequence[RunPlan],
+    ) -> Look:
         """Return the look with the runs that follow: those that were planned, or others."""
         new = tuple(step.run for step in found.steps for _ in range(step.repeats))
-        new_s, left_s = self._cost_s(new), self._cost_s(left)
+        new_s, left_s = self._cost_s(new, made), self._cost_s(left, made)
         why = self._why_new(found, file, left, new_s, left_s)
         if not why or not new:
             return replace(look, kept=tuple(left), left_s=left_s)
@@ -126,7 +140,7 @@ class TargetGoal:
         """Return why the runs that are planned are not to stay; empty where they are."""
         if not left:
             return "the plan so far does not do" if file.cycles else "the first plan"
-        candidates = [candidate_of(run, file.rig, file.tables.zero) for run in left]
+        candidates = [CandidateRun(run.set_point, run.periods, math.inf) for run in left]
         would = foreseen(file, candidates)
         if _missing(would) > _missing(found.known) + _WORSE:
             worst = max(would, key=_short)
@@ -171,11 +185,13 @@ class TargetGoal:
             runs=tuple(file.grid.runs[k] for k in places),
             candidates=tuple(file.grid.candidates[k] for k in places),
         )
-        return replace(file, grid=grid, time_s=max(file.time_s - self._cost_s(made), 0.0))
+        return replace(file, grid=grid, time_s=max(file.time_s - plan.chosen_s(file.rig), 0.0))
 
-    def _cost_s(self, runs: Sequence[RunPlan]) -> float:
+    def _cost_s(self, runs: Sequence[RunPlan], made: Sequence[RunPlan]) -> float:
+        """Return the tank time of runs that follow those that were made."""
         file = self._file
-        return math.fsum(candidate_of(run, file.rig, file.tables.zero).cost_s for run in runs)
+        before = made[-1] if made else None
+        return math.fsum(costs_s(runs, before, file.rig, file.tables.zero))
 
 
 def _offered(left: Sequence[RunPlan], file: DesignFile) -> Sequence[RunPlan]:
@@ -214,7 +230,7 @@ def _ending(
     if found.steps or (left and not hopeless):
         return None
     short = [_said(one) for one in wanted if file.cycles and not one.met]
-    cheapest_s = min((one.cost_s for one in file.grid.candidates), default=math.inf)
+    cheapest_s = min((one.cost_s + one.setting_s for one in file.grid.candidates), default=math.inf)
     if cheapest_s > file.time_s:
         left_of = f"{clock(file.time_s)} are left of limits.time_h, too little for any run"
         return Ending.TIME, "; ".join([f"{left_of} of the grid", *short])
@@ -227,7 +243,9 @@ def _known(rows: Sequence[ExpectedCoefficient]) -> Iterator[KnownTarget]:
             name = f"{one.name} at {one.where}" if one.where else one.name
             told = math.isfinite(one.standard_uncertainty)
             u, value = (one.standard_uncertainty, one.value) if told else (None, None)
-            yield KnownTarget(name, one.unit, value, u, one.wanted)
+            most = next(iter(one.shares.items()), None)
+            mostly = "" if most is None else f"{most[0]}, {100.0 * most[1]:.0f} %"
+            yield KnownTarget(name, one.unit, value, u, one.wanted, mostly)
 
 
 def _short(one: ExpectedCoefficient) -> float:

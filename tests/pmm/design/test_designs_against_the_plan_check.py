@@ -12,6 +12,7 @@ from pmm.plan.checks import check_plan
 from pmm.plan.duration import duration_rows
 from pmm.plan.findings import PlanVerdict
 from pmm.plan.plan import read_plan_and_rig
+from tests.pmm.sequential.campaigns import written
 
 EXAMPLE = Path("examples/horizontal")
 DESIGN = """
@@ -124,3 +125,14 @@ def test_bad_files_are_one_sentence_each(tmp_path: Path, change: str, words: str
     assert words in said
     assert "design.toml" in said
     assert "Traceback" not in said
+
+
+def test_many_short_runs_of_two_settings_take_the_time_of_their_plan(tmp_path: Path) -> None:
+    target = tmp_path / "designed.toml"
+    design = written(tmp_path, repeat=0.02)
+    words = ["plan", "design", str(design), "--output", str(target), "--json"]
+    told = json.loads(CliRunner().invoke(cli, words).stdout)
+    plan, rig = read_plan_and_rig(target)
+    assert len(plan.runs) > 30
+    whole_s = sum(duration_rows(plan.runs, rig))
+    assert told["steps"][-1]["time_s"] == pytest.approx(whole_s, rel=0.03)
