@@ -14,6 +14,25 @@ from hardware.description.flags import Flag
 from hardware.description.setpoint import SetPoint
 
 
+def sample_numbers(
+    time_s: FloatArray, start_s: float, sample_rate_hz: float, stamps_s: FloatArray | None
+) -> FloatArray:
+    """Turn times into fractional sample numbers; the first sample is number 0.
+
+    Parameters
+    ----------
+    stamps_s
+        Times of samples that are not evenly spaced; between two the numbers run straight, and
+        beyond the ends on at the mean rate.
+    """
+    asked = np.asarray(time_s, dtype=np.float64)
+    if stamps_s is None:
+        return np.asarray((asked - start_s) * sample_rate_hz)
+    beyond = np.minimum(asked - stamps_s[0], 0.0) + np.maximum(asked - stamps_s[-1], 0.0)
+    numbers = np.interp(asked, stamps_s, np.arange(float(stamps_s.size)))
+    return np.asarray(numbers + beyond * sample_rate_hz)
+
+
 class Samples(Protocol):
     """A run's values, shape ``(channels, samples)``: an array, or a file read lazily.
 
@@ -39,13 +58,16 @@ class Recording:
     samples
         Values in SI units, shape ``(channels, samples)``; NaN where a sample is missing.
     sample_rate_hz
-        Samples are evenly spaced; readers refuse or repair what is not.
+        Samples are evenly spaced; the mean rate where ``stamps_s`` says otherwise.
     start_s
         Time of the first sample.
     photocell_edges_s
         Times of the photocell's pulses on the same clock, increasing; ``None`` without one.
     flags
         What the reader noticed or repaired.
+    stamps_s
+        Times of samples that are not evenly spaced, increasing, shape ``(samples,)``; ``None``
+        where they are.
     """
 
     name: str
@@ -57,6 +79,7 @@ class Recording:
     set_point: SetPoint | None = None
     provenance: Mapping[str, str] = field(default_factory=dict)
     flags: tuple[Flag, ...] = ()
+    stamps_s: FloatArray | None = None
 
     @property
     def sample_count(self) -> int:
@@ -66,7 +89,10 @@ class Recording:
     @property
     def end_s(self) -> float:
         """Time of the last sample."""
-        return self.start_s + (self.sample_count - 1) / self.sample_rate_hz
+        last = self.sample_count - 1
+        if self.stamps_s is not None:
+            return float(self.stamps_s[last])
+        return self.start_s + last / self.sample_rate_hz
 
     @property
     def channel_names(self) -> tuple[str, ...]:
@@ -76,12 +102,14 @@ class Recording:
     def time_s(self, start: int = 0, stop: int | None = None) -> FloatArray:
         """Return the times of samples ``start`` to ``stop`` (exclusive)."""
         stop = self.sample_count if stop is None else stop
+        if self.stamps_s is not None:
+            return self.stamps_s[start:stop]
         times: FloatArray = self.start_s + np.arange(start, stop) / self.sample_rate_hz
         return times
 
     def sample_number(self, time_s: FloatArray) -> FloatArray:
         """Turn times into fractional sample numbers; the first sample is number 0."""
-        return (np.asarray(time_s, dtype=np.float64) - self.start_s) * self.sample_rate_hz
+        return sample_numbers(time_s, self.start_s, self.sample_rate_hz, self.stamps_s)
 
     def index(self, name: str) -> int:
         """Return the row of a channel.
@@ -132,12 +160,58 @@ class Recording:
                 f"{self.name}: no samples from {start_s:g} s to {end_s:g} s; the record runs from "
                 f"{self.start_s:g} s to {self.end_s:g} s"
             )
+        return self.part(first, stop)
+
+    def part(self, first: int, stop: int) -> "Recording":
+        """Return samples ``first`` to ``stop`` (exclusive); the photocell's edges stay."""
         rows = tuple(range(len(self.channels)))
+        stamps_s = None if self.stamps_s is None else self.stamps_s[first:stop]
         return replace(
             self,
             samples=_Part(self.samples, rows, first, stop),
-            start_s=self.start_s + first / self.sample_rate_hz,
+            start_s=float(self.time_s(first, first + 1)[0]),
+            stamps_s=stamps_s,
         )
+
+    def complete(self) -> "Recording":
+        """Return unevenly spaced samples without those at which any channel is missing.
+
+        On an even grid a missing sample keeps its place, and the recording is returned as it is.
+
+        Raises
+        ------
+        DataError
+            If no sample is left.
+        """
+        if self.stamps_s is None:
+            return self
+        values = self.samples[:, 0 : self.sample_count]
+        whole = np.isfinite(values).all(axis=0)
+        if whole.all():
+            return self
+        if not whole.any():
+            raise DataError(
+                f"{self.name}: at no time stamp have all of {', '.join(self.channel_names)} a "
+                "value; take fewer channels"
+            )
+        stamps_s = self.stamps_s[whole]
+        return replace(
+            self, samples=values[:, whole], start_s=float(stamps_s[0]), stamps_s=stamps_s
+        )
+
+    def check_even(self, what: str) -> None:
+        """Refuse samples that are not evenly spaced, for what cannot do without.
+
+        Raises
+        ------
+        DataError
+            If they are not; the message says that ``what`` needs it.
+        """
+        if self.stamps_s is not None:
+            raise DataError(
+                f"{self.name}: {what} needs evenly spaced samples, and the time stamps are not; "
+                "resample the record, or, if only the stamps are wrong, give the sample rate"
+            )
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,7 @@ NAMES = (
     "crowd",
     "inertia",
     "comparison",
+    "uneven",
     "recorder",
     "kill",
     "soak",

@@ -72,6 +72,7 @@ def compare(
 
 def _signal(recording: Recording, name: str, from_s: float, to_s: float) -> Signal:
     """Return the longest stretch of a channel without missing samples."""
+    recording.check_even("a comparison of two channels")
     part = recording.between(max(from_s, recording.start_s), min(to_s, recording.end_s))
     values, unit = part.values(name), recording.channels[recording.index(name)].unit
     called = f"{recording.name}: {name}"

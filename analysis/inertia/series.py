@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.inertia.spectrum import Spectrum, spectrum
-from analysis.recording import Recording
+from analysis.recording import Recording, sample_numbers
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
@@ -20,6 +20,7 @@ LONGEST_GAP_PERIODS = 0.5
 _LEFT_OUT = ("gap", "missing")
 FEWEST_SAMPLES_A_PERIOD = 5.0
 ALIASED_SHARE = 0.1
+_BRIDGED = 5.0  # mean intervals that straight lines join where only the way is looked for
 LINE_OVER_MEDIAN = 8.0  # the highest of ten thousand lines of white noise is 3.7
 
 
@@ -67,14 +68,18 @@ def check_sampling(where: str, lines: Spectrum, sample_rate_hz: float, period_s:
 
 @dataclass(frozen=True)
 class Series:
-    """An evenly sampled signal.
+    """A signal, evenly sampled or with stamps of its own.
 
     Attributes
     ----------
+    sample_rate_hz
+        The mean rate where there are stamps.
     values
         Shape ``(samples,)`` in ``unit``; NaN where a sample is missing.
     flags
         What the reader and this package noticed.
+    stamps_s
+        Times of samples that are not evenly spaced, shape ``(samples,)``; ``None`` where they are.
     """
 
     name: str
@@ -84,11 +89,29 @@ class Series:
     start_s: float
     values: FloatArray
     flags: tuple[Flag, ...] = ()
+    stamps_s: FloatArray | None = None
 
     @property
     def time_s(self) -> FloatArray:
         """Times of the samples, shape ``(samples,)``."""
+        if self.stamps_s is not None:
+            return self.stamps_s
         return np.asarray(self.start_s + np.arange(self.values.size) / self.sample_rate_hz)
+
+    def roughly_even(self) -> "Series":
+        """Return the signal on the even grid of its mean rate, to find the way about in it.
+
+        Straight lines join the samples, and longer gaps are NaN: nothing is measured there.
+        """
+        if self.stamps_s is None:
+            return self
+        good = np.isfinite(self.values)
+        stamps_s, size = self.stamps_s[good], self.values.size
+        grid_s = self.start_s + np.arange(size) / self.sample_rate_hz
+        values = np.interp(grid_s, stamps_s, self.values[good])
+        after = np.clip(np.searchsorted(stamps_s, grid_s), 1, stamps_s.size - 1)
+        lost = np.diff(stamps_s)[after - 1] * self.sample_rate_hz > _BRIDGED
+        return replace(self, values=np.where(lost, np.nan, values), stamps_s=None)
 
     @property
     def where(self) -> str:
@@ -128,7 +151,8 @@ class UsablePart:
         """Return less of it, and why."""
         chosen = cut(self.series, start_s, stop_s)
         size = max(round(self.period_s * chosen.sample_rate_hz), 4)
-        first, last = _end_amplitudes(_envelope(chosen.values, size), 0, chosen.values.size, size)
+        envelope = _envelope(chosen.roughly_even().values, size)
+        first, last = _end_amplitudes(envelope, 0, envelope.size, size)
         return replace(
             self, series=chosen, first_amplitude=first, last_amplitude=last, because=because
         )
@@ -158,17 +182,30 @@ def series_from_recording(recording: Recording, channel: str) -> Series:
         if flag.channel in (None, channel) and flag.code not in _LEFT_OUT
     )
     return Series(
-        recording.name, channel, unit, recording.sample_rate_hz, recording.start_s, values, flags
+        recording.name,
+        channel,
+        unit,
+        recording.sample_rate_hz,
+        recording.start_s,
+        values,
+        flags,
+        recording.stamps_s,
     )
 
 
 def cut(series: Series, start_s: float, stop_s: float) -> Series:
     """Return the samples from ``start_s`` to ``stop_s``, both included."""
-    rate = series.sample_rate_hz
-    first = max(int(np.ceil((start_s - series.start_s) * rate - 1e-6)), 0)
-    last = min(int(np.floor((stop_s - series.start_s) * rate + 1e-6)), series.values.size - 1)
+    rate, stamps_s = series.sample_rate_hz, series.stamps_s
+    ends = sample_numbers(np.array([start_s, stop_s]), series.start_s, rate, stamps_s)
+    first = max(int(np.ceil(ends[0] - 1e-6)), 0)
+    last = min(int(np.floor(ends[1] + 1e-6)), series.values.size - 1)
+    values = series.values[first : last + 1]
+    if stamps_s is None:
+        return replace(series, start_s=series.start_s + first / rate, values=values)
+    kept_s = stamps_s[first : last + 1]
+    rate = (kept_s.size - 1) / float(np.ptp(kept_s)) if kept_s.size > 1 else rate
     return replace(
-        series, start_s=series.start_s + first / rate, values=series.values[first : last + 1]
+        series, start_s=float(kept_s[0]), values=values, sample_rate_hz=rate, stamps_s=kept_s
     )
 
 
@@ -185,10 +222,11 @@ def usable_part(series: Series) -> UsablePart:
     DataError
         If nothing swings above the noise, or it is sampled too slowly (aliasing).
     """
-    period = rough_period(series.where, series.values, series.sample_rate_hz)
+    rough = series.roughly_even().values
+    period = rough_period(series.where, rough, series.sample_rate_hz)
     size = max(round(period * series.sample_rate_hz), 4)
-    noise = _noise(series.values)
-    envelope = _envelope(series.values, size)
+    noise = _noise(series)
+    envelope = _envelope(rough, size)
     top = float(np.nanmax(envelope))
     floor = max(DIED_OUT * top, ABOVE_NOISE * noise)
     if not top > floor:
@@ -196,9 +234,9 @@ def usable_part(series: Series) -> UsablePart:
             f"{series.where}: the largest amplitude is {top:.3g} {series.unit} over a noise of "
             f"{noise:.3g}; nothing swings: choose another channel, or release from further out"
         )
-    first = _release(series.values, envelope, size, top)
+    first = _release(rough, envelope, size, top)
     after = np.flatnonzero(np.nan_to_num(envelope[first:], nan=np.inf) < floor)
-    last = first + int(after[0]) if after.size else series.values.size - 1
+    last = first + int(after[0]) if after.size else rough.size - 1
     start_s, stop_s = (series.start_s + k / series.sample_rate_hz for k in (first, last))
     chosen = cut(series, start_s, stop_s)
     how = "falls below the limit" if after.size else "is still there at the record's end"
@@ -206,7 +244,7 @@ def usable_part(series: Series) -> UsablePart:
         f"from {start_s:.4g} s (after the largest swing, {top:.3g} {series.unit}) to "
         f"{stop_s:.4g} s (the amplitude {how}: {floor:.2g} {series.unit})"
     )
-    flags = _gap_flags(chosen, size)
+    flags = _gap_flags(chosen.roughly_even(), size)
     chosen = replace(chosen, flags=(*chosen.flags, *flags))
     ends = _end_amplitudes(envelope, first, last, size)
     return UsablePart(chosen, period, *ends, noise, floor, because)
@@ -218,11 +256,25 @@ def _end_amplitudes(envelope: FloatArray, first: int, last: int, size: int) -> t
     return float(envelope[ends[0]]), float(envelope[ends[1]])
 
 
-def _noise(values: FloatArray) -> float:
+def _noise(series: Series) -> float:
     """Return the noise from third differences, of which a slow oscillation has none."""
-    third = np.diff(values, 3)
+    if series.stamps_s is None:
+        third = np.diff(series.values, 3) / np.sqrt(20.0)
+    else:
+        good = np.isfinite(series.values)
+        third = _third_differences(series.stamps_s[good], series.values[good])
     third = third[np.isfinite(third)]
-    return float(1.4826 * np.median(np.abs(third)) / np.sqrt(20.0)) if third.size else 0.0
+    return float(1.4826 * np.median(np.abs(third))) if third.size else 0.0
+
+
+def _third_differences(stamps_s: FloatArray, values: FloatArray) -> FloatArray:
+    """Return what four successive samples have beside a parabola, of the noise's own size."""
+    count = max(values.size - 3, 0)
+    times = np.stack([stamps_s[k : k + count] for k in range(4)])
+    apart = times[:, np.newaxis] - times + np.eye(4)[:, :, np.newaxis]
+    share = 1.0 / apart.prod(axis=1)
+    share /= np.sqrt((share**2).sum(axis=0))
+    return np.asarray((share * [values[k : k + count] for k in range(4)]).sum(axis=0))
 
 
 def _envelope(values: FloatArray, size: int) -> FloatArray:

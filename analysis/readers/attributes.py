@@ -35,6 +35,7 @@ def check_storable(recording: Recording) -> None:
         For no channels or no samples, channel names that NetCDF or the schema does not allow or
         that appear twice, and units that are not SI.
     """
+    recording.check_even("a recording in NetCDF")
     names = recording.channel_names
     if not names or not recording.sample_count:
         raise DataError(f"{recording.name}: no channels or no samples; there is nothing to keep")

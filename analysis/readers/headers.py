@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 
+from analysis.readers.clock import DATE
 from hardware.description.errors import ConfigurationError
 from hardware.description.units import is_unit
 
@@ -34,7 +35,7 @@ class Header:
     @property
     def is_time(self) -> bool:
         """Whether the name is one that time stamps go by."""
-        return self.name.casefold() in TIME_NAMES
+        return self.name.casefold() in TIME_NAMES and self.unit != DATE
 
 
 def parse_header(number: int, text: str) -> Header:

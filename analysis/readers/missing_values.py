@@ -63,18 +63,16 @@ class _Survey:
             with np.errstate(invalid="ignore"):
                 within = np.abs(values) <= LARGEST
             if not within.all():
-                self._take(values, within, recording.start_s, start, recording.sample_rate_hz)
+                self._take(values, within, recording.time_s(start, stop))
             else:
                 self._open[:] = 0
 
-    def _take(
-        self, values: FloatArray, within: BoolArray, start_s: float, start: int, hz: float
-    ) -> None:
+    def _take(self, values: FloatArray, within: BoolArray, time_s: FloatArray) -> None:
         beyond = ~within & ~np.isnan(values)
         self.beyond += np.count_nonzero(beyond, axis=1)
         for row in np.flatnonzero(beyond.any(axis=1)).tolist():
             at = int(np.argmax(beyond[row]))
-            self.first.setdefault(row, (start_s + (start + at) / hz, float(values[row, at])))
+            self.first.setdefault(row, (float(time_s[at]), float(values[row, at])))
         missing = ~within & ~beyond
         if self._gaps_are_said:
             missing &= ~missing.all(axis=0)

@@ -2,11 +2,11 @@
 
 import csv
 import io
-import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 
+from analysis.readers.clock import read_stamp
 from analysis.readers.columns import TextLayout
 from analysis.readers.headers import Header, parse_header
 from analysis.readers.text_source import TextSource
@@ -17,10 +17,9 @@ from hardware.description.units import is_unit
 MISSING = ("", "NaN", "nan", "NAN", "-nan", "NA", "N/A", "n/a", "#N/A", "null", "NULL", "None")
 
 _SAMPLE_LINES = 20
-_LARGEST_PREAMBLE = 1000
+HEAD_LINES = 1000  # in which a header is looked for
 _LARGEST_TITLE = 20  # lines above the header
 _SEPARATORS = tuple((separator, decimal) for separator in "\t;|, " for decimal in ".,")
-_CLOCK = re.compile(r"(\d{1,2}):([0-5]\d):([0-5]\d(?:[.,]\d*)?)")
 
 
 @dataclass(frozen=True)
@@ -35,6 +34,8 @@ class FoundLayout:
         Lines of the file before the data.
     missing
         Cells that stand for a missing value.
+    first_day
+        Of the first row's date, counted from the year 1: times with dates count from its midnight.
     """
 
     headers: tuple[Header, ...]
@@ -42,6 +43,7 @@ class FoundLayout:
     decimal: str
     first_line: int
     missing: tuple[str, ...]
+    first_day: int = 0
 
     @property
     def fewest_cells(self) -> int:
@@ -56,7 +58,8 @@ class FoundLayout:
     def number(self, cell: str) -> float:
         """Read a cell as a number, NaN where it stands for a missing value.
 
-        A time of day, 14:03:07.25, is the seconds since midnight.
+        A time of day, 14:03:07.25, is the seconds since midnight; with a date, since that of the
+        first row's.
 
         Raises
         ------
@@ -65,13 +68,15 @@ class FoundLayout:
         """
         if cell in self.missing:
             return float("nan")
-        clock = _CLOCK.fullmatch(cell)
-        if clock:
-            hours, minutes, seconds = clock.groups()
-            return 3600.0 * int(hours) + 60.0 * int(minutes) + float(seconds.replace(",", "."))
-        if "_" in cell or (self.decimal != "." and "." in cell):
+        if "_" not in cell and (self.decimal == "." or "." not in cell):
+            try:
+                return float(cell.replace(self.decimal, "."))
+            except ValueError:
+                pass
+        stamp = read_stamp(cell)
+        if stamp is None:
             raise ValueError(cell)
-        return float(cell.replace(self.decimal, "."))
+        return stamp.seconds_since(self.first_day)
 
 
 def split_line(line: str, separator: str) -> list[str]:
@@ -95,8 +100,20 @@ def find_layout(source: TextSource, layout: TextLayout) -> FoundLayout:
     DataError
         If there is no data at all, or none after ``skip_rows``; as :meth:`TextSource.head` does.
     """
-    where, most = str(source.path), layout.skip_rows + _LARGEST_PREAMBLE
-    numbered = list(islice(enumerate(io.StringIO(source.head(most)), 1), most))
+    head = source.head(layout.skip_rows + HEAD_LINES)
+    return layout_of(head, layout, str(source.path))
+
+
+def layout_of(head: str, layout: TextLayout, where: str) -> FoundLayout:
+    """Find header and data in the first lines of a table, as :func:`find_layout` does.
+
+    Parameters
+    ----------
+    where
+        The file's name, for messages.
+    """
+    most = layout.skip_rows + HEAD_LINES
+    numbered = list(islice(enumerate(io.StringIO(head), 1), most))
     lines = [(n, line.strip("\n")) for n, line in numbered[layout.skip_rows :] if line.strip()]
     comments = [(n, line.lstrip()[1:]) for n, line in lines if line.lstrip()[0] in "#%"]
     body = [(n, line) for n, line in lines if line.lstrip()[0] not in "#%"]
@@ -119,8 +136,13 @@ def _without_titles(bare: FoundLayout, body: list[tuple[int, str]]) -> list[tupl
     if not data:
         return body
     needed = len(rows[data]) - (not rows[data][-1])
-    first = next((k for k in range(data) if len(rows[k]) >= needed), 0)
+    first = next((k for k in range(data) if _length(rows[k]) >= needed), 0)
     return body[first:]
+
+
+def _length(cells: list[str]) -> int:
+    """Count cells up to the last that is not empty: a spreadsheet pads its titles."""
+    return max((k for k, cell in enumerate(cells, 1) if cell), default=0)
 
 
 def too_many_cells(where: str, line: int, cells: int, columns: int) -> DataError:
@@ -149,7 +171,7 @@ def _headless(
     names = _header_cells(comments[-1][1], bare.separator) if comments else []
     if len(names) != len(first):
         names = [""] * len(first)
-    return _headed(bare, names, first_line, where)
+    return _headed(bare, names, first, first_line, where)
 
 
 def _with_header(bare: FoundLayout, body: list[tuple[int, str]], where: str) -> FoundLayout:
@@ -166,14 +188,24 @@ def _with_header(bare: FoundLayout, body: list[tuple[int, str]], where: str) -> 
         names.append("")  # every row ends with a separator
     if len(cells) > len(names):
         raise too_many_cells(where, first_number, len(cells), len(names))
-    return _headed(bare, names, last_line, where)
+    return _headed(bare, names, cells, last_line, where)
 
 
-def _headed(bare: FoundLayout, names: Sequence[str], first_line: int, where: str) -> FoundLayout:
+def _headed(
+    bare: FoundLayout, names: Sequence[str], first: Sequence[str], first_line: int, where: str
+) -> FoundLayout:
     if len(names) > MOST_COLUMNS:
         raise DataError(f"{where}: {len(names)} columns; the limit is {MOST_COLUMNS}")
-    headers = tuple(parse_header(number, name) for number, name in enumerate(names, 1))
-    return FoundLayout(headers, bare.separator, bare.decimal, first_line, bare.missing)
+    headers = [parse_header(number, name) for number, name in enumerate(names, 1)]
+    stamps = dict(enumerate(map(read_stamp, first)))
+    for k, stamp in stamps.items():
+        if stamp is not None and k < len(headers):
+            headers[k] = replace(headers[k], unit=stamp.unit, unit_is_suffix=False)
+    days = [stamp.day for stamp in stamps.values() if stamp is not None and stamp.day is not None]
+    first_day = days[0] if days else 0
+    return FoundLayout(
+        tuple(headers), bare.separator, bare.decimal, first_line, bare.missing, first_day
+    )
 
 
 def _header_cells(line: str, separator: str) -> list[str]:
@@ -196,11 +228,13 @@ def _is_units(cells: list[str], names: list[str]) -> bool:
 
 
 def _is_data(layout: FoundLayout, cells: list[str]) -> bool:
+    """Tell a row of numbers; a date or a time alone stands in titles too."""
     try:
         numbers = [layout.number(cell) for cell in cells]
     except ValueError:
         return False
-    return any(number == number for number in numbers)
+    present = [cell for cell, number in zip(cells, numbers, strict=True) if number == number]
+    return any(read_stamp(cell) is None for cell in present)
 
 
 def _separator(lines: list[str], layout: TextLayout, missing: tuple[str, ...]) -> tuple[str, str]:
@@ -216,7 +250,8 @@ def _separator(lines: list[str], layout: TextLayout, missing: tuple[str, ...]) -
         trial = FoundLayout((), separator, decimal, 0, missing)
         rows = [trial.cells(line) for line in lines]
         numeric = sum(_is_data(trial, row) for row in rows)
-        score = (numeric, len(rows[-1]))
+        # A date and its time, a blank between, are one cell where another separator does.
+        score = (numeric, 0 if separator == " " else len(rows[-1]))
         if score > best_score:
             best, best_score = (separator, decimal), score
     return best

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from analysis.readers.clock import CLOCK, DATE
 from analysis.readers.columns import ChannelColumn, ColumnMap
 from analysis.readers.columns_options import COMMAND_LINE
 from analysis.readers.headers import Header, find_header, unit_hint
@@ -117,7 +118,8 @@ def _time(
     if columns.time:
         own = find_header(headers, columns.time.column, where)
         return own, own
-    named = next((header for header in headers if header.is_time), None)
+    by_name = [header for header in headers if header.is_time]
+    named = next(iter(by_name + [header for header in headers if header.unit == CLOCK]), None)
     if columns.sample_rate_hz is not None:
         return None, named
     if named is None:
@@ -130,7 +132,7 @@ def _time(
 
 
 def without_idle(plan: ColumnPlan, table: Mapping[Header, FloatArray], where: str) -> ColumnPlan:
-    """Leave out unnamed columns that carry nothing: a leading index, or no values at all.
+    """Leave out columns that carry nothing: an unnamed index, no values at all, another clock.
 
     Raises
     ------
@@ -151,6 +153,9 @@ def without_idle(plan: ColumnPlan, table: Mapping[Header, FloatArray], where: st
 
 
 def _idle(header: Header, values: FloatArray) -> Flag | None:
+    if header.unit in (CLOCK, DATE):
+        text = f"{header.text or header.generic} holds dates or times of day and is left out"
+        return Flag("clock_column", Severity.NOTE, text)
     if header.text not in ("", "Unnamed: 0"):
         return None
     if np.isnan(values).all():
@@ -184,6 +189,8 @@ def time_factor(header: Header, own_unit: str | None, where: str) -> tuple[float
         If the column's unit is not one of time.
     """
     name = own_unit or header.unit
+    if name == CLOCK:
+        return 1.0, ()
     if name is None:
         text = (
             f"the time column {header.text!r} states no unit; seconds are assumed. If they are "

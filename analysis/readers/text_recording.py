@@ -7,10 +7,11 @@ from typing import Final
 
 import numpy as np
 
+from analysis.readers.clock import CLOCK, past_midnight
 from analysis.readers.columns import ColumnMap, PhotocellColumn
 from analysis.readers.conditioning import repair_missing, saturation_flags, without_spikes
 from analysis.readers.headers import Header
-from analysis.readers.missing_values import without_beyond
+from analysis.readers.missing_values import with_missing_said, without_beyond
 from analysis.readers.photocell import check_edges, edge_flags, edges_of_level, read_edges
 from analysis.readers.reader import Reader
 from analysis.readers.text_layout import find_layout
@@ -85,28 +86,34 @@ def from_columns(
     for row, part, (_, factor, _) in zip(samples, plan.channels, resolved, strict=True):
         np.multiply(_on_grid(table[part.header], base), factor, out=row)
     edges, edges_flags = _edges(columns.photocell, plan, table, base, path, origin.name)
-    recording = without_spikes(
-        without_beyond(
-            Recording(
-                name=origin.name,
-                channels=channels,
-                samples=samples,
-                sample_rate_hz=base.sample_rate_hz,
-                start_s=base.start_s,
-                photocell_edges_s=edges,
-                provenance=_provenance(origin, columns),
-                flags=(
-                    *noticed,
-                    *plan.flags,
-                    *base.flags,
-                    *(flag for _, _, flags in resolved for flag in flags),
-                    *edges_flags,
-                ),
-            )
-        )
+    read = Recording(
+        name=origin.name,
+        channels=channels,
+        samples=samples,
+        sample_rate_hz=base.sample_rate_hz,
+        start_s=base.start_s,
+        photocell_edges_s=edges,
+        provenance=_provenance(origin, columns),
+        flags=(
+            *noticed,
+            *plan.flags,
+            *base.flags,
+            *(flag for _, _, flags in resolved for flag in flags),
+            *edges_flags,
+        ),
+        stamps_s=base.stamps_s,
     )
+    return _repaired(read, samples, where)
+
+
+def _repaired(read: Recording, samples: FloatArray, where: str) -> Recording:
+    """Return a recording without spikes and short gaps, where samples are evenly spaced."""
+    if read.stamps_s is not None:
+        told = with_missing_said(read)
+        return replace(told, flags=(*told.flags, *saturation_flags(samples, read.channels)))
+    recording, channels = without_spikes(without_beyond(read)), read.channels
     for number, row in enumerate(samples):
-        row[:] = recording.samples[number : number + 1, 0 : base.sample_count][0]
+        row[:] = recording.samples[number : number + 1, 0 : recording.sample_count][0]
     flags = (
         *recording.flags,
         *repair_missing(samples, channels, where),
@@ -123,6 +130,9 @@ def _time_base(plan: ColumnPlan, table: Table, columns: ColumnMap, where: str) -
         own_unit = columns.time.unit if columns.time else None
         factor, flags = time_factor(plan.time, own_unit, where)
         time_s = table[plan.time] * factor
+        if plan.time.unit == CLOCK:
+            time_s, passed = past_midnight(time_s)
+            flags += passed
     if columns.sample_rate_hz is None:
         base = fit_time_base(time_s, where)
         return replace(base, flags=flags + base.flags)
@@ -154,7 +164,10 @@ def _edges(
     if plan.photocell is not None:
         level = _on_grid(table[plan.photocell], base)
         places = edges_of_level(level, photocell.threshold, photocell.edge)
-        edges: FloatArray = base.start_s + places / base.sample_rate_hz
+        if base.stamps_s is not None:
+            edges = np.interp(places, np.arange(base.sample_count), base.stamps_s)
+        else:
+            edges = base.start_s + places / base.sample_rate_hz
         return edges, edge_flags(edges, 1.0 / base.sample_rate_hz)
     if photocell.edges_file is not None:
         edges = read_edges(path.parent / photocell.edges_file.replace("{stem}", name))

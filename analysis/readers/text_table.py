@@ -195,5 +195,6 @@ def _number(cells: list[str], header: Header, layout: FoundLayout, where: str) -
         raise DataError(
             f"{where}, column {header.text or header.generic!r}: {cell!r} is not a number; "
             "correct it, leave the column out of the column map, or, where it stands for a "
-            "missing value, list it there under missing"
+            "missing value, list it there under missing (times are 12:00:01.5, or "
+            "2025-03-01 12:00:01.5)"
         ) from None

@@ -1,4 +1,4 @@
-"""From time stamps to an even grid, or to a clear word that there is none."""
+"""From time stamps to an even grid, or to the word that there is none and the stamps count."""
 
 from dataclasses import dataclass
 
@@ -12,6 +12,8 @@ from hardware.description.flags import Flag, Severity
 SILENT_DEVIATION = 1e-6  # the last printed digit
 NOTED_DEVIATION = 1e-2  # rounding; more is called jitter
 LARGEST_DEVIATION = 0.2  # more is no even sampling
+# Of a record of uneven stamps; a longer step is no drop-out but parts two runs.
+LONGEST_STEP = 0.25
 # A gap must be a whole number of intervals to this, or to the jitter's own size.
 GAP_TOLERANCE = 0.05
 
@@ -26,6 +28,9 @@ class TimeBase:
         Sample number of each row, shape ``(rows,)``; ``None`` where row and sample are the same.
     sample_count
         Number of samples of the grid, the missing ones included.
+    stamps_s
+        The rows' own times, shape ``(rows,)``, where they lie on no even grid; the rate is then
+        their mean one.
     """
 
     start_s: float
@@ -33,10 +38,14 @@ class TimeBase:
     sample_count: int
     places: IntArray | None = None
     flags: tuple[Flag, ...] = ()
+    stamps_s: FloatArray | None = None
 
 
 def fit_time_base(time_s: FloatArray, where: str) -> TimeBase:
-    """Fit an even grid to time stamps by least squares.
+    """Fit an even grid to time stamps by least squares; stamps off any such grid count themselves.
+
+    They are off where gaps are not a whole number of intervals, or a stamp lies further than 0.2
+    intervals from the grid.
 
     Parameters
     ----------
@@ -48,9 +57,8 @@ def fit_time_base(time_s: FloatArray, where: str) -> TimeBase:
     Raises
     ------
     DataError
-        For fewer than two rows, missing stamps, time that repeats or runs backwards, gaps that are
-        not a whole number of intervals, more missing than present rows, and stamps further than
-        0.2 intervals from any even grid.
+        For fewer than two rows, missing stamps, time that repeats or runs backwards, more missing
+        than present rows of an even grid, and a step of a quarter of an uneven record.
     """
     _check_increasing(time_s, where)
     steps = np.diff(time_s)
@@ -61,7 +69,9 @@ def fit_time_base(time_s: FloatArray, where: str) -> TimeBase:
     deviation = np.abs(time_s - (start + slope * places)) / slope
     if deviation[0] <= SILENT_DEVIATION:
         start = float(time_s[0])
-    _check_even(time_s, steps / interval, deviation, where)
+    worst = _off_grid(steps / interval, deviation)
+    if worst is not None:
+        return _uneven(time_s, worst, float(steps[worst]) / interval, where)
     rate = _without_rounding_noise(1.0 / slope)
     flags = _deviation_flags(deviation, rate)
     count = int(places[-1]) + 1
@@ -118,22 +128,37 @@ def _without_rounding_noise(rate_hz: float) -> float:
     return short if abs(short - rate_hz) <= 1e-12 * rate_hz else rate_hz
 
 
-def _check_even(time_s: FloatArray, steps: FloatArray, deviation: FloatArray, where: str) -> None:
-    """Refuse uneven stamps; ``steps`` and ``deviation`` are in intervals."""
+def _off_grid(steps: FloatArray, deviation: FloatArray) -> int | None:
+    """Return the worst step of stamps on no even grid; ``steps``, ``deviation`` in intervals."""
     odd = np.abs(steps - np.maximum(np.rint(steps), 1.0))
     gaps = steps >= 1.5
     jitter = float(odd[~gaps].max(initial=0.0))
     bad_gap = gaps & (odd > max(GAP_TOLERANCE, jitter))
     if deviation.max() <= LARGEST_DEVIATION and not bad_gap.any():
-        return
-    worst = int(np.argmax(np.where(bad_gap, 1.0 + odd, odd)))
-    raise DataError(
-        f"{where}: time is not evenly sampled: {steps[worst]:.3g} sample intervals between data "
-        f"rows {worst + 1} and {worst + 2} (t = {time_s[worst]:.6g} s); stamps lie up to "
-        f"{deviation.max():.2g} intervals from an even grid, the limit is {LARGEST_DEVIATION:g}; "
-        "resample the record evenly, or, if only the stamps are wrong, give the sample rate in "
-        "place of the time column"
+        return None
+    return int(np.argmax(np.where(bad_gap, 1.0 + odd, odd)))
+
+
+def _uneven(time_s: FloatArray, worst: int, intervals: float, where: str) -> TimeBase:
+    """Return the stamps as they are; the worst step is ``intervals`` long."""
+    steps, span_s = np.diff(time_s), float(time_s[-1] - time_s[0])
+    longest = int(np.argmax(steps))
+    if steps[longest] > LONGEST_STEP * span_s:
+        raise DataError(
+            f"{where}: {steps[longest]:.4g} s without a sample after t = {time_s[longest]:.6g} s, "
+            f"of {span_s:.4g} s in all (limit {100.0 * LONGEST_STEP:g} %), and time is not evenly "
+            "sampled; split the record into runs"
+        )
+    rate_hz = (time_s.size - 1) / span_s
+    message = (
+        f"time is not evenly sampled: {intervals:.3g} sample intervals between data rows "
+        f"{worst + 1} and {worst + 2} (t = {time_s[worst]:.6g} s), at most {steps[longest]:.3g} s "
+        f"after t = {time_s[longest]:.6g} s. Each stamp counts as it is, {rate_hz:.4g} Hz on "
+        "average; nothing is interpolated, and spikes are not looked for. If the sampling was even "
+        "and only the stamps are wrong, give the sample rate in place of the time column"
     )
+    flag = Flag("time_uneven", Severity.WARNING, message)
+    return TimeBase(float(time_s[0]), rate_hz, time_s.size, None, (flag,), time_s)
 
 
 def _deviation_flags(deviation: FloatArray, rate_hz: float) -> tuple[Flag, ...]:

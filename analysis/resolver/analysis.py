@@ -89,7 +89,8 @@ def analyse(
     check_opening(recording, settings)
     fixed = asked is settings
     reference = _reference(recording, choice, settings, fixed=fixed)
-    chosen = recording.select(settings.channels or _default_channels(recording, reference))
+    names = settings.channels or _default_channels(recording, reference)
+    chosen = recording.select(names).complete()
     edges = _edges(chosen, reference, settings, fixed=fixed)
     sums = period_sums(chosen, reference, settings.harmonics, edges_cycles=edges)
     values = solve_periods(sums)

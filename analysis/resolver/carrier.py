@@ -188,6 +188,7 @@ def demodulate(
     """
     if not carrier_amplitude > 0.0:
         raise ConfigurationError(f"carrier_amplitude = {carrier_amplitude:g}: must be above 0")
+    recording.check_even("a carrier's low-pass")
     rate_hz = recording.sample_rate_hz
     low_pass = design_low_pass(rate_hz, carrier_hz, bandwidth_hz, output_rate_hz)
     if low_pass.outputs(recording.sample_count) < 2:

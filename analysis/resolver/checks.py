@@ -203,7 +203,8 @@ def reference_flags(
     name = reference.channel
     if reference.source is not ReferenceSource.SIGNAL or name is None:
         return ()
-    sums = period_sums(recording.select([name]), reference, 1, edges_cycles=steady.edges_cycles)
+    signal = recording.select([name]).complete()
+    sums = period_sums(signal, reference, 1, edges_cycles=steady.edges_cycles)
     values = solve_periods(sums).coefficients[:, 0]
     size = np.hypot(values[:, 1], values[:, 2])
     usual = float(np.nanmedian(size)) if np.isfinite(size).any() else np.inf

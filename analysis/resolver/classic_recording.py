@@ -45,6 +45,7 @@ def running_average(
     DataError
         If a sample is missing, or there is none at all.
     """
+    recording.check_even("the running average")
     if recording.sample_count == 0:
         raise DataError(f"{recording.name}: no samples; give a recording that has some")
     if keep_every < 1:
@@ -105,6 +106,7 @@ def gated_readings(
     DataError
         If not one gate closes within the recording, or a period has too few samples.
     """
+    recording.check_even("the gated integration of 1963")
     pulses = _pulses(recording, reference) if pulses_s is None else pulses_s
     numbers = recording.sample_number(pulses)
     inside = (numbers >= -SAMPLE_SLACK) & (numbers <= recording.sample_count - 1 + SAMPLE_SLACK)

@@ -22,6 +22,11 @@ from analysis.resolver.sums import PeriodSums
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
+LEAST_EIGENVALUE = 0.25
+"""Below it uneven samples tell a period's harmonics badly: one combination of them has four times
+the variance that even samples give. Drift and steadiness are seen in periods' own values; the
+harmonics and their scatter do without."""
+
 
 @dataclass(frozen=True)
 class PeriodValues:
@@ -70,11 +75,38 @@ class Drift:
 
 
 def solve_periods(sums: PeriodSums) -> PeriodValues:
-    """Solve each period's normal equations alone; a void period gives NaN."""
-    right = np.concatenate((sums.moment, sums.ramp[:, None, :]), axis=1)
-    solved = np.asarray(np.linalg.solve(sums.gram, right.transpose(0, 2, 1)), dtype=np.float64)
+    """Solve each period's normal equations alone; a void period gives NaN.
+
+    One that uneven stamps tell badly is solved with those beside it.
+    """
+    gram, right = sums.gram, np.concatenate((sums.moment, sums.ramp[:, None, :]), axis=1)
+    if sums.uneven:
+        gram, right = _with_neighbours(gram, right)
+    solved = np.asarray(np.linalg.solve(gram, right.transpose(0, 2, 1)), dtype=np.float64)
     solved = solved.transpose(0, 2, 1)
     return PeriodValues(solved[:, :-1], solved[:, -1])
+
+
+def _with_neighbours(gram: FloatArray, right: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Add to periods that are told badly as few of those beside them as it takes."""
+    own, sides, reach = (gram, right), (gram.copy(), right.copy()), 0
+    while (badly := np.flatnonzero(_least_eigenvalue(sides[0]) < LEAST_EIGENVALUE)).size:
+        reach += 1
+        for k in badly:
+            beside = slice(max(k - reach, 0), k + reach + 1)
+            for whole, part in zip(sides, own, strict=True):
+                whole[k] = part[beside].sum(axis=0)
+        if reach >= len(gram):
+            break
+    return sides
+
+
+def _least_eigenvalue(gram: FloatArray) -> FloatArray:
+    """Return how well samples tell all harmonics, shape ``(periods,)``: 1 for many even ones."""
+    size = gram.shape[-1]
+    scale = np.where(np.arange(size) == 0, 1.0, np.sqrt(2.0))
+    count = np.maximum(gram[:, 0, 0], 1.0)[:, None, None]
+    return np.asarray(np.linalg.eigvalsh(gram * np.outer(scale, scale) / count)[:, 0])
 
 
 def usable(sums: PeriodSums) -> PeriodSums:
@@ -203,6 +235,24 @@ def _about_line(values: PeriodValues, slope: FloatArray) -> FloatArray:
     return np.asarray(left - left.mean(axis=0))
 
 
+def _scores(stretch: PeriodSums, slope: FloatArray) -> FloatArray:
+    """What each period moves the stretch's own coefficients by, times the number of periods.
+
+    Of even samples it is what :func:`_about_line` gives. A period that uneven samples tell badly
+    counts as little here as it does in the joint solution.
+    """
+    count, gram = stretch.period_count, stretch.gram
+    coefficients, _ = _solve_gate(stretch, slope)
+    time = np.linalg.solve(gram.sum(axis=0), stretch.ramp.sum(axis=0))[0]
+    drifted = slope[:, None] * (stretch.ramp - time * gram[:, 0])[:, None, :]
+    left = stretch.moment - drifted - coefficients @ gram
+    return np.asarray(
+        np.linalg.solve(gram.sum(axis=0) / count, left.reshape(-1, gram.shape[-1]).T).T.reshape(
+            left.shape
+        )
+    )
+
+
 def _mean_variance(left: FloatArray) -> FloatArray:
     """Variance of one period's mean about the line, shape ``(channels,)``."""
     if len(left) > 2:
@@ -220,7 +270,8 @@ def scatter_of(gate: PeriodSums, stretch: PeriodSums, drift: Drift) -> GateScatt
         nothing = np.full((count, channels, size), np.nan)
         return GateScatter(nothing, freedom, np.ones((channels, size)))
     drifting = drift.source is not DriftSource.NONE
-    left = _about_line(values, _line(values)[0] if drifting else np.zeros(channels))
+    slope = _line(values)[0] if drifting else np.zeros(channels)
+    left = _scores(stretch, slope) if stretch.uneven else _about_line(values, slope)
     if drifting:
         freedom[0] = count - 2.0
     wider = widened(left, stretch.opened_cycle, gate.period_count, drifting)

@@ -23,7 +23,7 @@ def without_gaps(
     Returns
     -------
     Recording
-        The recording itself where nothing is missing.
+        The recording itself where nothing is missing; of uneven samples those that are there.
     tuple of Flag
         ``reference_gap`` where something is, with what was left out.
 
@@ -32,6 +32,8 @@ def without_gaps(
     NoReferenceError
         If every sample is missing, or the one at ``holds_s``.
     """
+    if recording.stamps_s is not None:
+        return recording.select([name]).complete(), ()
     missing = ~np.isfinite(recording.values(name))
     if not missing.any():
         return recording, ()

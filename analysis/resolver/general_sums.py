@@ -28,10 +28,17 @@ class GeneralSums:
     orders: FloatArray
     taper: Taper | None
 
+    @property
+    def uneven(self) -> bool:
+        """Whether the samples have stamps of their own."""
+        return self.recording.stamps_s is not None
+
     def needed(self, gates: Gates) -> BoolArray:
         """Tell which periods the quick sums cannot take."""
-        if self.taper is not None or not np.array_equal(
-            self.orders, np.arange(1.0, len(self.orders) + 1.0)
+        if (
+            self.taper is not None
+            or self.uneven
+            or not np.array_equal(self.orders, np.arange(1.0, len(self.orders) + 1.0))
         ):
             return np.ones(len(gates.opening), dtype=np.bool_)
         starts_early = gates.opening < REACH - 1
@@ -57,6 +64,8 @@ class GeneralSums:
 
     def sum(self, block: FloatArray, first: int, gate: Gates) -> Sums:
         """Sum one period, given in sample numbers of a block that starts at ``first``."""
+        if self.uneven:
+            return self._sum_uneven(block, first, gate)
 
         def cycles(numbers: FloatArray) -> FloatArray:
             since_start_s = (first + numbers) / self.recording.sample_rate_hz
@@ -66,6 +75,20 @@ class GeneralSums:
         straight = self.taper is None and not self._bent(gate)[0]
         turned = gate.cycles_of_first if straight else cycles
         return sum_any(block, gate, turned, self.orders, self.taper)
+
+    def _sum_uneven(self, block: FloatArray, first: int, gate: Gates) -> Sums:
+        """Sum the samples inside a period, each with the weight 1, wherever they lie.
+
+        Weights of edges are those of an even grid. The normal equations need none: what the basis
+        spans comes out exactly.
+        """
+        start, stop = (int(np.ceil(edge[0])) for edge in (gate.opening, gate.closing))
+        times_s = self.recording.time_s(first + start, first + stop)
+        turned = self.reference.cycles_at(times_s)
+        basis = harmonic_basis(turned, self.orders)
+        weighted = basis if self.taper is None else basis * self.taper(turned)
+        intervals = (times_s - self.recording.start_s) * self.recording.sample_rate_hz - first
+        return weighted @ basis.T, block[:, start:stop] @ weighted.T, weighted @ intervals
 
 
 def sum_any(

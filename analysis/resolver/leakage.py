@@ -1,6 +1,7 @@
 """Leakage of a vibration that is no harmonic through an estimator."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -55,7 +56,7 @@ def _respond(
     phase = 2.0 * np.pi * np.outer(frequencies_hz, recording.time_s())
     values = np.concatenate((np.sin(phase), np.cos(phase)))
     channels = tuple(Channel(f"interference_{k}") for k in range(len(values)))
-    probe = Recording("interference", channels, values, recording.sample_rate_hz, recording.start_s)
+    probe = replace(recording, name="interference", channels=channels, samples=values, flags=())
     result = estimator(probe)
     # Rows: in phase and quadrature; columns: a sine's and a cosine's.
     count = len(frequencies_hz)

@@ -55,7 +55,7 @@ def from_signal(recording: Recording, name: str, holds_s: float | None = None) -
 def _in_whole(signal: Recording, name: str) -> PhaseReference:
     """Build the reference of a signal without gaps."""
     duration_s = signal.end_s - signal.start_s
-    frequency_hz = _coarse_frequency_hz(signal.values(name), signal.sample_rate_hz)
+    frequency_hz = _coarse_frequency_hz(_roughly_even(signal, name), signal.sample_rate_hz)
     if frequency_hz * duration_s < 1.0:
         raise _no_reference(signal, name, _no_period(signal))
     middle_s, cycles = _follow(signal, frequency_hz)
@@ -102,6 +102,15 @@ def _no_reference(recording: Recording, name: str, available: str) -> NoReferenc
         f"{recording.name}: no reference found in channel {name!r}: {available}; name another "
         "channel, or give the frequency"
     )
+
+
+def _roughly_even(signal: Recording, name: str) -> FloatArray:
+    """Return a channel on an even grid, for a first look at its spectrum."""
+    values = signal.values(name)
+    if signal.stamps_s is None:
+        return values
+    grid_s = np.linspace(signal.start_s, signal.end_s, len(values))
+    return np.interp(grid_s, signal.stamps_s, values)
 
 
 def _coarse_frequency_hz(values: FloatArray, sample_rate_hz: float) -> float:

@@ -48,6 +48,9 @@ class PeriodSums:
         Shapes ``(periods, K, K)``, ``(periods, channels, K)``, ``(periods, K)``; the sum of the
         weights of a period is its length in samples. The ramp's time runs from the record's first
         sample. A period with a missing sample has NaN in ``moment``.
+    uneven
+        Whether the samples lie at stamps of their own, so that they may tell one period's
+        harmonics badly.
     """
 
     channel_names: tuple[str, ...]
@@ -58,6 +61,7 @@ class PeriodSums:
     gram: FloatArray
     moment: FloatArray
     ramp: FloatArray
+    uneven: bool = False
 
     @property
     def period_count(self) -> int:
@@ -170,6 +174,7 @@ def period_sums(
         gram,
         moment,
         ramp / recording.sample_rate_hz,
+        recording.stamps_s is not None,
     )
 
 
@@ -227,7 +232,9 @@ def _sample_numbers(recording: Recording, cycles: FloatArray, edges_s: FloatArra
 
 
 def _check_sampling(recording: Recording, gates: Gates, highest: float) -> None:
-    fewest = float((gates.closing - gates.opening).min())
+    samples = gates.closing - gates.opening
+    # Of uneven stamps single periods may have too few: they are solved with those beside them.
+    fewest = float(samples.min() if recording.stamps_s is None else np.median(samples))
     if fewest <= 2.0 * highest:
         # Where not even the fundamental is carried, fewer harmonics would not help.
         kind = DataError if fewest <= 2.0 else ConfigurationError

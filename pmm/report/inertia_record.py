@@ -1,5 +1,6 @@
 """The fit over each record, which part of it was used, and what the fit leaves."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -109,8 +110,12 @@ def _smooth(run: RecordAnalysis) -> FloatArray:
 
 def residual_on_grid(run: RecordAnalysis) -> FloatArray:
     """Return the residual on the used part's even samples, NaN where none was recorded."""
-    values = np.full(run.part.series.values.size, np.nan)
-    at = (run.fit.time_s - run.part.series.start_s) * run.part.series.sample_rate_hz
+    series = run.part.series
+    if series.stamps_s is not None:
+        left = replace(series, values=run.fit.residual, stamps_s=run.fit.time_s)
+        return left.roughly_even().values
+    values = np.full(series.values.size, np.nan)
+    at = (run.fit.time_s - series.start_s) * series.sample_rate_hz
     values[np.clip(np.rint(at).astype(int), 0, values.size - 1)] = run.fit.residual
     return values
 

@@ -50,8 +50,9 @@ def _draw_spectra(axes: "Axes", runs: PeriodRuns) -> None:
     for number, run in enumerate(runs.records[:MOST_RUNS]):
         color = PALETTE[number % len(PALETTE)]
         name = shown_name(run.part.series.name)
-        rate = run.part.series.sample_rate_hz
-        hz, amplitude = _lines(run.part.series.values, rate, top_hz)
+        series = run.part.series.roughly_even()
+        rate = series.sample_rate_hz
+        hz, amplitude = _lines(series.values, rate, top_hz)
         axes.semilogy(hz, shown.factor * amplitude, color=color, lw=0.9, label=name)
         hz, rest = _lines(residual_on_grid(run), rate, top_hz)
         axes.semilogy(hz, shown.factor * rest, ":", color=color, lw=0.9, label=f"{name}, residual")

@@ -1,0 +1,86 @@
+"""Times of day and dates as text: ``14:03:07.25``, ``2025-03-01T14:03:07Z``, ``01.03.2025``."""
+
+import re
+from dataclasses import dataclass
+from datetime import date
+from typing import Final
+
+import numpy as np
+
+from hardware.description.arrays import FloatArray
+from hardware.description.flags import Flag, Severity
+
+CLOCK: Final = "hh:mm:ss"  # in place of a unit: a column of times of day, with dates or without
+DATE: Final = "yyyy-mm-dd"
+DAY_S: Final = 86400.0
+# Of a time of day that falls by more than this midnight has passed.
+_MIDNIGHT_S: Final = DAY_S / 2.0
+
+_YEAR_FIRST = r"(?P<year>\d{4})([-/.])(?P<month>\d\d?)\2(?P<day>\d\d?)"
+_DAY_FIRST = r"(?P<d>\d\d?)\.(?P<m>\d\d?)\.(?P<y>\d{4})"
+_TIME = r"(?P<hour>\d\d?):(?P<minute>[0-5]\d):(?P<second>[0-5]\d(?:[.,]\d*)?)"
+_ZONE = r"(?P<zone>Z|(?P<sign>[+-])(?P<zone_hour>\d\d):?(?P<zone_minute>\d\d))?"
+_STAMP = re.compile(rf"(?:(?:{_YEAR_FIRST}|{_DAY_FIRST})(?:[T ]\s*|$))?(?:{_TIME}\s*{_ZONE})?")
+
+
+@dataclass(frozen=True)
+class ClockStamp:
+    """A date, a time of day, or both.
+
+    Attributes
+    ----------
+    day
+        Counted from the year 1; ``None`` where there is no date.
+    second
+        Of the day, less the zone's offset; ``None`` where there is a date alone.
+    """
+
+    day: int | None
+    second: float | None
+
+    @property
+    def unit(self) -> str:
+        """What stands in place of a unit for a column of such stamps."""
+        return DATE if self.second is None else CLOCK
+
+    def seconds_since(self, day: int) -> float:
+        """Return the seconds since a day's midnight; of a time alone those since its own."""
+        days = 0 if self.day is None else self.day - day
+        return DAY_S * days + (self.second or 0.0)
+
+
+def read_stamp(cell: str) -> ClockStamp | None:
+    """Read a cell as a date, a time of day or both; ``None`` where it is none, or no such date."""
+    found = _STAMP.fullmatch(cell) if cell else None
+    if found is None:
+        return None
+    year, month, day = (
+        found[a] or found[b] for a, b in (("year", "y"), ("month", "m"), ("day", "d"))
+    )
+    try:
+        number = date(int(year), int(month), int(day)).toordinal() if year else None
+    except ValueError:
+        return None
+    if not found["hour"]:
+        return ClockStamp(number, None)
+    second = _seconds(found["hour"], found["minute"], found["second"])
+    if found["sign"]:
+        offset = _seconds(found["zone_hour"], found["zone_minute"], "0")
+        second -= offset if found["sign"] == "+" else -offset
+    return ClockStamp(number, second)
+
+
+def _seconds(hours: str, minutes: str, seconds: str) -> float:
+    return 3600.0 * int(hours) + 60.0 * int(minutes) + float(seconds.replace(",", "."))
+
+
+def past_midnight(time_s: FloatArray) -> tuple[FloatArray, tuple[Flag, ...]]:
+    """Let times of day run on over midnight, and say so."""
+    passed = np.concatenate(([0], np.cumsum(np.diff(time_s) < -_MIDNIGHT_S)))
+    if not passed[-1]:
+        return time_s, ()
+    message = (
+        f"the time of day passes midnight {passed[-1]} time(s), first at data row "
+        f"{int(np.argmax(passed > 0)) + 1}; it is counted on from the first day's"
+    )
+    return time_s + DAY_S * passed, (Flag("midnight", Severity.NOTE, message),)
