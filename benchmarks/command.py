@@ -45,6 +45,7 @@ NAMES = (
     "gap_cost",
     "evidence",
     "campaign_boards",
+    "gap_worlds",
     "signs",
 )
 _RESULTS = ROOT / "benchmarks" / "results"

@@ -3,9 +3,11 @@
 import argparse
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
-from benchmarks.boards.rows import BOARDS, RESULTS, Job, jobs_of, keep, kept, measured, missing
+from benchmarks.boards.rows import EVERY, RESULTS, Job, jobs_of, keep, kept, measured, missing
+from benchmarks.boards.worlds import frozen
 from benchmarks.machine import commit, describe
 from tests.sealed.pool import each
 
@@ -18,6 +20,9 @@ def main(arguments: Sequence[str]) -> int:
     now = commit()
     rows = kept(request.board, request.output)
     jobs = jobs_of(request.board, request.campaign, request.seeds)
+    if request.board == "worlds":
+        commit_measured = frozen(rows)
+        jobs = [replace(job, frozen=commit_measured) for job in jobs]
     todo = list(missing(jobs, rows, now if request.again else None))
     print(
         f"{request.board}: {len(jobs) - len(todo)} of {len(jobs)} there, commit {now}", flush=True
@@ -46,7 +51,7 @@ def _measure(todo: Sequence[Job], request: argparse.Namespace, now: str) -> None
 
 def _parse(arguments: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.boards", description=__doc__)
-    parser.add_argument("board", choices=BOARDS)
+    parser.add_argument("board", choices=EVERY)
     parser.add_argument(
         "--campaign", action="append", default=[], metavar="NAME", help="repeatable"
     )

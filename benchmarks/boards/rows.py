@@ -8,25 +8,32 @@ from typing import Any, Final
 
 from benchmarks.boards import friction
 from benchmarks.boards.campaigns import NULLS
+from benchmarks.boards.worlds import CASES, WORLDS
 from benchmarks.machine import ROOT
 
 RESULTS: Final = ROOT / "benchmarks" / "results" / "boards"
 FOLDERS: Final = 10_000  # mutated folders that go through the door
 TYPED: Final = 300  # of them through whole commands
 _SLICES: Final[Mapping[str, tuple[int, int]]] = {"mutations": (FOLDERS, 50), "commands": (TYPED, 5)}
+_WORLDS: Final = "worlds"
 BOARDS: Final = ("nulls", "friction", *_SLICES)
+EVERY: Final = (*BOARDS, _WORLDS)
 
 Line = dict[str, Any]
 
 
 @dataclass(frozen=True)
 class Job:
-    """A case of a board, or a slice of mutated folders: seeds ``first`` to before ``stop``."""
+    """A case of a board, or a slice of mutated folders: seeds ``first`` to before ``stop``.
+
+    ``frozen`` is the commit that is measured, for sealed cases alone.
+    """
 
     board: str
     campaign: str
     first: int
     stop: int
+    frozen: str = ""
 
     @property
     def key(self) -> tuple[str, int]:
@@ -48,11 +55,7 @@ def jobs_of(board: str, campaigns: Sequence[str], seeds: tuple[int, int] | None)
         most, step = _SLICES[board]
         every = [Job(board, "mutated", at, min(at + step, most)) for at in range(0, most, step)]
     else:
-        counts = (
-            friction.SEEDS
-            if board == "friction"
-            else {name: one.seeds for name, one in NULLS.items()}
-        )
+        counts = _counts(board)
         every = [
             Job(board, name, seed, seed + 1)
             for seed in range(max(counts.values()))
@@ -67,12 +70,23 @@ def jobs_of(board: str, campaigns: Sequence[str], seeds: tuple[int, int] | None)
     ]
 
 
+def _counts(board: str) -> Mapping[str, int]:
+    """Return how many seeds of each campaign, or cases of each world, are asked for."""
+    if board == _WORLDS:
+        return dict.fromkeys(WORLDS, 2 * CASES)
+    return friction.SEEDS if board == "friction" else {n: one.seeds for n, one in NULLS.items()}
+
+
 def measured(job: Job) -> Line:
     """Measure one; in whichever process."""
     if job.board in _SLICES:
         from benchmarks.boards.mutated import counted
 
         return {"campaign": job.campaign, **counted(job.board, job.first, job.stop)}
+    if job.board == _WORLDS:
+        from benchmarks.boards.worlds import marked
+
+        return marked(job.campaign, job.first, job.frozen)
     from benchmarks.boards.judged import null, planted
 
     judge = null if job.board == "nulls" else planted

@@ -12,7 +12,9 @@ from benchmarks.boards.friction import snr_of_newton
 from benchmarks.boards.judged import with_outcome
 from benchmarks.boards.mutated import spoiled
 from benchmarks.boards.rows import FOLDERS, Job, jobs_of, keep, kept, missing
+from benchmarks.boards.worlds import frozen
 from benchmarks.campaign_boards import Tally, tallies
+from benchmarks.gap_worlds import counted
 
 
 def test_what_breaks_down_is_wrong_and_what_is_refused_is_not_judged() -> None:
@@ -116,3 +118,43 @@ def test_an_effect_that_it_says_it_cannot_tell_from_friction_is_right() -> None:
     said = {**row, "stated": ["coulomb-friction", "stribeck-friction"]}
     assert with_outcome("friction", said)["outcome"] == "right"
     assert with_outcome("nulls", {"outcome": "refused"}) == {"outcome": "refused"}
+
+
+def test_sealed_cases_of_all_worlds_take_turns_and_are_seeded_by_the_frozen_commit() -> None:
+    jobs = jobs_of("worlds", [], None)
+    assert [one.campaign for one in jobs[:5]] == ["A", "B", "C", "D", "A"]
+    assert len(jobs) == 4 * 600
+    with pytest.raises(SystemExit, match="work tree of that commit"):
+        frozen([{"frozen": "0" * 40}])
+
+
+def test_figures_of_kept_marks_are_those_of_the_answers_themselves() -> None:
+    """Oracle: counts by hand of six lines."""
+    right = {"top_1_by_class": [1.0], "stage": [1.0], "shrinkage_covered": [], "false_alarms": []}
+    wrong = {**right, "top_1_by_class": [0.0]}
+    null = {**{key: [] for key in right}, "false_alarms": [0.0]}
+    alarm = {**null, "false_alarms": [1.0]}
+    lines = [
+        {"campaign": world, "seed": seed, "is_clear": clear, "values": values, "stated": stated,
+         "frozen": "f" * 40}
+        for seed, (world, clear, values, stated) in enumerate(
+            [
+                ("A", True, right, [0.95, 1.0]),
+                ("A", True, wrong, [0.92, 0.0]),
+                ("A", False, wrong, [0.99, 0.0]),  # below SNR 10: in no figure
+                ("A", True, null, [0.5, 1.0]),
+                ("A", True, alarm, None),
+                ("B", True, right, [0.6, 1.0]),
+            ]
+        )
+    ]  # fmt: skip
+    found = counted(lines)
+    rows = {(r["world"], r["figure"]): r for r in found.tables["Figures by world"]}
+    wrong_and_sure = "wrong, of the answers with class probability of 0.9 or more"
+    expected = {"nulls": ("0.500", 2), "top-1 by class": ("0.500", 2), "stage": ("1.000", 2),
+                wrong_and_sure: ("0.500", 2)}  # fmt: skip
+    for figure, (value, count) in expected.items():
+        assert (rows["A", figure]["measured"], rows["A", figure]["n"]) == (value, count), figure
+    assert rows["A", "top-1 by class"][""] == "close"
+    assert ("B", "nulls") not in rows
+    assert found.measured == {"cases_a": 5.0, "cases_b": 1.0}

@@ -5,7 +5,7 @@ and forms. Without it the paired figures are left out; docs/sealed.md says what 
 """
 
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -88,8 +88,23 @@ def _held(low: float, high: float, at_most: float | None) -> str:
 
 def by_world(board: Board, world: str) -> tuple[Held, ...]:
     """Return every figure that has a limit, for a board of a world."""
+    floors = floors_of(board)
+    rows = {
+        row.name: [marks_of(entry) for entry in entries_of(board.truths, row, floors)]
+        for row in board.rows
+    }
+    found = figures_of(rows)
+    whole = {row.name: row.mean for row in score(board).rows}
+    others = [mean for name, mean in whole.items() if name not in (DIAGNOSIS, ORACLE)]
+    if others:
+        ahead = whole[DIAGNOSIS] - max(others)
+        found["ahead_of_others"] = (ahead, ahead, ahead, len(board.truths))
+    return held_to(found, world)
+
+
+def held_to(found: "Mapping[str, Figure]", world: str) -> tuple[Held, ...]:
+    """Hold figures to the limits of a world; those that are not there have no value."""
     limits = tomllib.loads(TABLE.read_text(encoding="utf-8"))["limits"]
-    found = _figures(board)
     out = []
     for key, row in limits.items():
         value, low, high, count = found.get(key, (None, None, None, 0))
@@ -102,44 +117,54 @@ def by_world(board: Board, world: str) -> tuple[Held, ...]:
 Figure = tuple[float | None, float | None, float | None, int]
 
 
-def _figures(board: Board) -> dict[str, Figure]:
-    floors = floors_of(board)
-    rows = {row.name: entries_of(board.truths, row, floors) for row in board.rows}
+@dataclass(frozen=True)
+class Marks:
+    """What one answer adds to the figures.
+
+    Attributes
+    ----------
+    is_clear
+        Whether it counts: nothing is wrong there, or the SNR is 10 or more.
+    values
+        What it adds to each column; nothing to those that do not apply to its case.
+    stated
+        Probability of the class that it says, and 1 where that is right; ``None`` where it failed.
+    """
+
+    is_clear: bool
+    values: Mapping[str, Sequence[float]]
+    stated: Sequence[float] | None
+
+
+def marks_of(entry: Entry) -> Marks:
+    """Return the marks of an answer beside its key."""
+    columns = sorted({*_OWN.values(), *_PAIRED.values()})
+    answer = entry.answer
+    right = float(answer.said in by_class(entry.truth))
+    return Marks(
+        not entry.has_gap or entry.truth.snr >= CLEAR_SNR,
+        {name: tuple(float(one) for one in _COLUMNS[name].values(entry)) for name in columns},
+        None if answer.failed else (class_probability(answer), right),
+    )
+
+
+def figures_of(rows: Mapping[str, Sequence[Marks]]) -> dict[str, Figure]:
+    """Return the figures of the diagnosis, and those beside the oracle where it answered too."""
     ours = rows[DIAGNOSIS]
     out = {key: _mean(_values(ours, column)) for key, column in _OWN.items()}
     if ORACLE in rows:
         for key, column in _PAIRED.items():
             theirs, own = (_values(row, column) for row in (rows[ORACLE], ours))
             out[key] = _mean(theirs - own)
-    said = _said(ours)
+    said = np.array([one.stated for one in ours if one.is_clear and one.stated]).reshape(-1, 2)
     out["sure_and_wrong"] = _mean(1.0 - said[said[:, 0] >= SURE, 1])
     out["calibration_excess"] = _boot(said, _excess, len(said))
-    whole = {row.name: row.mean for row in score(board).rows}
-    others = [mean for name, mean in whole.items() if name not in (DIAGNOSIS, ORACLE)]
-    if others:
-        ahead = whole[DIAGNOSIS] - max(others)
-        out["ahead_of_others"] = (ahead, ahead, ahead, len(ours))
     return out
 
 
-def _clear(entry: Entry) -> bool:
-    return not entry.has_gap or entry.truth.snr >= CLEAR_SNR
-
-
-def _values(entries: Sequence[Entry], column: str) -> FloatArray:
+def _values(marks: Sequence[Marks], column: str) -> FloatArray:
     """Return a column's values; a case that it does not apply to is left out in every row alike."""
-    there = [list(_COLUMNS[column].values(entry)) for entry in entries if _clear(entry)]
-    return np.array([value for values in there for value in values])
-
-
-def _said(entries: Sequence[Entry]) -> FloatArray:
-    """Return class probability and whether it is right, ``(answers, 2)``."""
-    rows = [
-        (class_probability(e.answer), float(e.answer.said in by_class(e.truth)))
-        for e in entries
-        if _clear(e) and not e.answer.failed
-    ]
-    return np.array(rows).reshape(-1, 2)
+    return np.array([value for one in marks if one.is_clear for value in one.values[column]])
 
 
 def class_probability(answer: Answer) -> float:

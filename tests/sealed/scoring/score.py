@@ -82,6 +82,13 @@ def entries_of(
     ]  # fmt: skip
 
 
+def entry_of(answer: Answer, truth: Truth) -> Entry:
+    """Return one answer beside its key, as of a board with no other row."""
+    row = Row("", (answer,))
+    floor = gap(answer.before, truth) if answer.before else 0.0
+    return entries_of([truth], row, [floor])[0]
+
+
 def _own_share(answer: Answer, truth: Truth) -> float | None:
     if not answer.after or gap(answer.before, truth) < SEEN:
         return None

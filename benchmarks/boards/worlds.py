@@ -1,0 +1,85 @@
+"""Sealed cases of worlds A to D: each made, answered and marked by itself, and marks alone kept.
+
+The seed of all cases is the hash of the commit whose diagnosis is measured; every line has it, and
+nothing but that diagnosis adds lines to them.
+"""
+
+import subprocess
+import time
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any, Final
+
+from benchmarks.machine import ROOT
+from tests.sealed.answering import DIAGNOSIS, Asked, answer_case
+from tests.sealed.board import make_one, nulls_of
+from tests.sealed.scoring.answers import read_answer
+from tests.sealed.scoring.by_world import Marks, marks_of
+from tests.sealed.scoring.keys import read_truth
+from tests.sealed.scoring.score import entry_of
+
+Line = dict[str, Any]
+
+WORLDS: Final = ("A", "B", "C", "D")
+CASES: Final = 300  # with something wrong, and as many nulls, in each world
+_MEASURED: Final = ("pmm", "hardware", "analysis", "sim", "tests/sealed")
+
+
+def frozen(rows: Sequence[Line]) -> str:
+    """Return the hash of the commit that is measured: that of the lines, else the present one.
+
+    Raises
+    ------
+    SystemExit
+        If what is checked out differs from it.
+    """
+    name = str(rows[0]["frozen"]) if rows else _git("rev-parse", "HEAD").stdout.strip()
+    if _git("diff", "--quiet", name, "--", *_MEASURED).returncode:
+        raise SystemExit(
+            f"the lines are of commit {name[:7]}, and the diagnosis has changed since: go on in a "
+            "work tree of that commit, with --output for the folder of these lines"
+        )
+    return name
+
+
+def _git(*arguments: str) -> subprocess.CompletedProcess[str]:
+    command = ["git", "-C", str(ROOT), *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def marked(world: str, index: int, commit: str, size: int = CASES) -> Line:
+    """Make a case, have it answered without its key, and return its marks.
+
+    Parameters
+    ----------
+    index
+        From 0, among cases and nulls together.
+    commit
+        Its hash is the seed.
+    """
+    from benchmarks.boards.judged import scratch
+
+    seed = int(commit, 16)
+    with scratch() as folder:
+        name = make_one((seed, index + 1, nulls_of(seed, size, size)[index], folder, world))
+        (folder / "answers").mkdir()
+        began = time.process_time()
+        answer_case(Asked(folder, name, (DIAGNOSIS,)))
+        taken_s = time.process_time() - began
+        truth = read_truth(folder / "keys" / name / "truth.json")
+        answer = read_answer(folder / "answers" / f"{name}.json", _known(), truth)
+        marks = marks_of(entry_of(answer, truth))
+    line = {"campaign": world, "seed": index, "frozen": commit, **asdict(marks)}
+    return {**line, "cpu_s": round(taken_s, 2)}
+
+
+def _known() -> frozenset[str]:
+    from sim.effects.catalogue import catalogue
+
+    return frozenset(catalogue())
+
+
+def marks_in(lines: Sequence[Line], world: str) -> dict[str, list[Marks]]:
+    """Return the marks of a world's lines, as the diagnosis's row."""
+    there = [one for one in lines if one["campaign"] == world and "values" in one]
+    return {DIAGNOSIS: [Marks(one["is_clear"], one["values"], one["stated"]) for one in there]}
