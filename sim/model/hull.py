@@ -31,6 +31,7 @@ from sim.stage import Block
 
 __all__ = ["Hull", "HullCoefficients"]
 
+_NO_MEMORY = constant(np.zeros((2, 2)))
 _FORCES = (signals.FORCE_AFT, signals.FORCE_FORE, signals.FORCE_X)
 _HEELING = (signals.ROLL_MOMENT, signals.HEEL_ANGLE)
 ValueT = TypeVar("ValueT", np.float64, np.complex128)
@@ -213,7 +214,7 @@ def _system(hull: Hull) -> HullSystem:
     to = np.array(
         [to_motion(a, f, hull.half_spacing_m, hull.plane) for a, f in ((1.0, 0.0), (0.0, 1.0))]
     ).T
-    radiation = constant(np.zeros((2, 2))) if hull.radiation is None else hull.radiation
+    radiation = _NO_MEMORY if hull.radiation is None else hull.radiation
     added = np.array(hull.water.added_mass) + radiation.added_mass_infinite
     water_damping = np.array(hull.water.damping)
     restoring = np.array(hull.water.restoring)
@@ -238,7 +239,7 @@ def _system(hull: Hull) -> HullSystem:
     )
 
 
-@lru_cache(maxsize=512)
+@lru_cache(maxsize=256)
 def _steadily(hull: Hull, period: Period) -> HullSteady:
     """Return the model over a period, kept: a rig's motion changes more often than its model."""
     return HullSteady(hull.laws, hull.system, hull.carriage_speed_m_s, period)
