@@ -26,7 +26,8 @@ def report(**options: Any) -> None:
 
     Tables with intervals, figures over frequency and amplitude, the budget of each coefficient,
     checks between runs, what was flagged, and where all of it comes from: versions, hashes and
-    configuration. Options and settings are those of `pmm coefficients`.
+    configuration; propeller and rudder where the folder has steering.toml. Options and settings are
+    those of `pmm coefficients`.
 
     \b
     pmm report campaign/ --system prime --output campaign.html
@@ -39,6 +40,7 @@ def report(**options: Any) -> None:
     from pmm.document.page import write_page
     from pmm.report.coefficients_document import report_document
     from pmm.report.sequential_document import story
+    from pmm.report.steering_document import steering_story
 
     path = _path(options)
     check_file(path, "--output", overwrite=options["overwrite"])
@@ -47,6 +49,7 @@ def report(**options: Any) -> None:
     command = shlex.join([Path(program()).name, *sys.argv[1:]])
     folders = [campaign_folder(one) for one in options["campaigns"]]
     stories = [one for pair in zip(folders, outcome.names, strict=True) for one in story(*pair)]
+    stories += [one for folder in folders for one in steering_story(folder, outcome.result.level)]
     with busy("drawing the page"):
         write_page(
             report_document(outcome, stories), path, title=title, command=command, read=files

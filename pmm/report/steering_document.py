@@ -2,14 +2,17 @@
 
 import math
 from collections.abc import Iterator
+from pathlib import Path
 from statistics import NormalDist
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from analysis.steering.propulsion import SelfPropulsion
+from hardware.description.errors import PmmError
 from pmm.document.content import (
     Column,
+    Content,
     Data,
     Document,
     Figure,
@@ -26,7 +29,8 @@ from pmm.document.flag_lines import flag_notes
 from pmm.document.notation import rounded, written
 from pmm.report.steering_figure import steering_figure
 from pmm.steering.reading import SteeredRun
-from pmm.steering.workflow import CampaignSteering
+from pmm.steering.settings import SETTINGS_FILE
+from pmm.steering.workflow import CampaignSteering, steering_of
 
 SCHEMA: Final = "pmm-steering-1"
 _MEANS: Final = {
@@ -63,6 +67,26 @@ class _Wake(NamedTuple):
 
 def steering_document(found: CampaignSteering, level: float) -> Document:
     """Return what was identified; ``docs/steering.md`` has the keys."""
+    figures = Section("Figures", tuple(steering_figures(found)))
+    content = Section("", _contents(found, level))
+    return Document(found.name, "propeller and rudder", (content, figures), SCHEMA)
+
+
+def steering_story(folder: Path, level: float) -> Iterator[Section]:
+    """Yield a report's section on propeller and rudder of a campaign that has ``steering.toml``."""
+    if not (folder / SETTINGS_FILE).exists():
+        return
+    try:
+        found = steering_of(folder)
+    except PmmError as error:
+        yield Section("Propeller and rudder", (Notes([Note("warning", str(error))]),))
+        return
+    failed = Notes([Note("warning", one.message) for one in found.failed])
+    contents = (*_contents(found, level), failed, *steering_figures(found))
+    yield Section("Propeller and rudder", contents)
+
+
+def _contents(found: CampaignSteering, level: float) -> tuple[Content, ...]:
     told, factor = found.parameters, NormalDist().inv_cdf(0.5 + 0.5 * level)
     rows = [
         _Parameter(name, value, u, value - factor * u, value + factor * u)
@@ -70,7 +94,7 @@ def steering_document(found: CampaignSteering, level: float) -> Document:
             told.names, told.values.tolist(), told.standard_uncertainty.tolist(), strict=True
         )
     ]
-    content = (
+    return (
         _parameters(rows, level),
         Notes([Note("missing", f"{_plain(key)}: {how}") for key, how in told.missing.items()]),
         Data("missing", told.missing),
@@ -84,8 +108,6 @@ def steering_document(found: CampaignSteering, level: float) -> Document:
         Notes(flag_notes(found.left_out)),
         Data("left_out", found.left_out),
     )
-    figures = Section("Figures", tuple(steering_figures(found)))
-    return Document(found.name, "propeller and rudder", (Section("", content), figures), SCHEMA)
 
 
 def steering_figures(found: CampaignSteering) -> Iterator[Figure]:
@@ -197,4 +219,6 @@ def _tows(found: CampaignSteering, factor: float) -> Table[SteeredRun]:
         *data_only("motion", "loads", "loads_u", "rudder_rad", "thrust_n", "thrust_u", "normal_n",
                    "normal_u"),
     )  # fmt: skip
-    return Table("Runs", columns, found.tows, "tows", titled=True, folded=True)
+    return Table(
+        "Runs with propeller and rudder", columns, found.tows, "tows", titled=True, folded=True
+    )

@@ -1,7 +1,7 @@
 """Propeller and rudder of the simulated model, against the MMG paper's equations for KVLCC2.
 
 The equations are written out in the test's own file for one ship on plain numbers
-(``tests/analysis/manoeuvring/kvlcc2.py``); gauges are turned into loads on the model here.
+(``tests/analysis/manoeuvring/published.py``); gauges are turned into loads on the model here.
 """
 
 import math
@@ -20,7 +20,7 @@ from sim.model.steering import Steering
 from sim.rest import state_at_rest
 from sim.rig import SimulatedRig, horizontal_rig
 from sim.run import simulate, steady_run
-from tests.analysis.manoeuvring import kvlcc2 as paper
+from tests.analysis.manoeuvring.published import kvlcc2 as paper
 
 ADVANCE = tuple(float(j) for j in np.linspace(0.0, 0.9, 91))
 THRUST = tuple(paper.K[0] + paper.K[1] * j + paper.K[2] * j * j for j in ADVANCE)

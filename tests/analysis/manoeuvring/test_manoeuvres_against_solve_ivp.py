@@ -16,7 +16,7 @@ from analysis.manoeuvring.ship import Ship
 from analysis.manoeuvring.stability import straight_course
 from analysis.manoeuvring.steering import Propeller
 from hardware.description.errors import ConfigurationError
-from tests.analysis.manoeuvring import kvlcc2
+from tests.analysis.manoeuvring.published import kvlcc2
 
 RATE = math.radians(kvlcc2.RATE)
 

@@ -9,25 +9,30 @@ import pytest
 from analysis.steering.identification import identified
 from analysis.steering.observations import SteeringRuns
 from hardware.description.errors import DataError
-from tests.analysis.manoeuvring import kvlcc2 as paper
+from tests.analysis.manoeuvring.published import Published, kcs
+from tests.analysis.manoeuvring.published import kvlcc2 as paper
 from tests.analysis.steering.captive import (
     CAMPAIGN,
     KNOWN,
     OBLIQUE,
+    RATES,
     STRAIGHT,
     TRUTH,
     TURNING,
+    known,
     runs,
+    truth,
 )
 
 CAMPAIGNS = 200
 NORMAL_95 = 1.959963984540054
 
 
-def test_exact_numbers_give_the_papers_parameters() -> None:
-    found = identified(runs(None), KNOWN)
-    assert found.names == tuple(TRUTH)
-    assert found.values == pytest.approx(list(TRUTH.values()), abs=1e-6)
+@pytest.mark.parametrize("ship", [paper, kcs])
+def test_exact_numbers_give_the_published_parameters(ship: Published) -> None:
+    found = identified(runs(None, ship=ship), known(ship))
+    assert found.names == tuple(truth(ship))
+    assert found.values == pytest.approx(list(truth(ship).values()), abs=1e-6)
     assert found.missing == {}
     assert found.misfit == pytest.approx((0.0, 0.0), abs=1e-5)
 
@@ -99,7 +104,7 @@ def test_runs_that_cannot_tell_are_refused() -> None:
     laid = [one for one in STRAIGHT if one[3] == 10.0]
     with pytest.raises(DataError, match=r"neutral is not known: .* laid at 1 angles"):
         identified(runs(None, (*laid, *laid)), KNOWN)
-    one_rate = [one for one in CAMPAIGN if one[2] == 9.5]
+    one_rate = [one for one in CAMPAIGN if one[2] == RATES[1]]
     with pytest.raises(DataError, match=r"1 - t_P \(make load variation"):
         identified(runs(None, tuple(one_rate)), KNOWN)
     with pytest.raises(DataError, match=r"do not tell .* apart: make oblique tows"):

@@ -7,7 +7,7 @@ import pytest
 
 from analysis.manoeuvring.manoeuvres import zigzag
 from pmm.manoeuvre.quantity import quantity_of
-from tests.analysis.manoeuvring import kvlcc2
+from tests.analysis.manoeuvring.published import kvlcc2
 
 CAMPAIGNS, DRAWS, LEVEL = 300, 100, 0.95
 # Standard uncertainties of a good test, as shares, and how far the linear ones are off together.

@@ -12,7 +12,7 @@ from hardware.description.oscillator import HORIZONTAL_1963
 from hardware.description.setpoint import SetPoint
 from pmm.plan.plan import read_plan
 from pmm.run.surroundings import Surroundings
-from tests.analysis.manoeuvring import kvlcc2 as paper
+from tests.analysis.manoeuvring.published import kvlcc2 as paper
 from tests.pmm.plan.plans import HORIZONTAL_TEXT, write_plan
 from tests.pmm.run.harness import TABLES, at_rest, bench
 from tests.sim.devices.benches import amplifier

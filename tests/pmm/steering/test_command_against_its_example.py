@@ -2,13 +2,15 @@
 
 import json
 import math
+import shutil
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
 
 from pmm.cli import cli
-from tests.analysis.manoeuvring import kvlcc2 as paper
+from pmm.report.steering_document import steering_story
+from tests.analysis.manoeuvring.published import kvlcc2 as paper
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "steering"
 SETTINGS = EXAMPLE / "steering.toml"
@@ -77,6 +79,20 @@ def test_without_a_turn_it_says_what_would_tell_its_lever(tows: Path, tmp_path: 
     told = " ".join(ran.stdout.split())
     assert "l_R is not told by these runs; it takes: yaw with rudder" in told
     assert "it sways without a turn" in told
+
+
+def test_the_report_has_them_where_the_folder_has_the_file(tows: Path, tmp_path: Path) -> None:
+    told = changed(tows, tmp_path / "told", "", "")
+    shutil.copy(SETTINGS, told)
+    ran = pmm("report", told)
+    assert ran.exit_code == 0, ran.output
+    page = (told / "report.html").read_text(encoding="utf-8")
+    assert "lever of the inflow in a turn" in page
+    assert "slope is 1 - t_P" in page
+    (told / "steering.toml").write_text("length_m = 0.0\n", encoding="utf-8")
+    (section,) = steering_story(told, 0.95)
+    (notes,) = section.contents
+    assert "should be above 0" in notes.data()[0]
 
 
 def test_a_tow_that_states_no_rudder_and_no_revolutions_is_named(
