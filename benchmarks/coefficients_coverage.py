@@ -44,6 +44,7 @@ STATED = StatedUncertainties(
 )
 _MANY = Scatter(periods=200)
 """Student's t of few periods has a larger deviation than the budget's by its nature."""
+MADE_UP = {**HORIZONTAL, **CUBIC}
 ACTING = tuple(name for name in STATED.__dataclass_fields__ if getattr(STATED, name) > 0.0)
 
 
@@ -105,9 +106,10 @@ def _read(
     return taken(scattered(struts, generator), made)
 
 
-def cubic_rates(campaigns: int, report: Report) -> dict[str, float]:
+def cubic_rates(
+    campaigns: int, report: Report, truth: Mapping[str, float] = MADE_UP
+) -> dict[str, float]:
     """Return the same for sway, yaw and drift with cubic terms, all harmonics together."""
-    truth = {**HORIZONTAL, **CUBIC}
     points = [(name, point, 0.0) for name, point in amplitudes()]
     points += [(f"drift {k}", points[3 + k][1], angle) for k, angle in enumerate((0.1, -0.2))]
     hits = dict.fromkeys(truth, 0)

@@ -28,7 +28,7 @@ from sim.model.hull import HullCoefficients
 from sim.model.water.force_laws import CrossFlow
 from sim.rig import SimulatedRig, horizontal_rig
 from tests.analysis.coefficients.cycles import simulated, zeroed
-from tests.analysis.coefficients.kvlcc2 import DERIVATIVES
+from tests.analysis.manoeuvring.published import Published, kcs, kvlcc2
 
 ALL = {**HORIZONTAL, **CUBIC}
 ORDERS = 9  # of the motion: what lies above them is rounding
@@ -166,18 +166,18 @@ def test_mariners_cubic_derivatives_put_in_come_out_in_the_prime_system() -> Non
         assert prime_value == pytest.approx(value, rel=2e-4, abs=0.02), name
 
 
-KVLCC2 = {name: one for name, one in DERIVATIVES.items() if name[0] in "YN"}
-
-
-def test_kvlcc2_put_in_comes_out_in_the_mmg_system() -> None:
+@pytest.mark.parametrize("ship", [kvlcc2, kcs])
+def test_a_published_ship_comes_out_in_the_mmg_system(ship: Published) -> None:
     length = 2.9091
-    system = mmg(length, 20.8 * length / 320.0, 0.76, 1000.0)
-    rig = put_in_prime(KVLCC2, system.term_factor)
+    system = mmg(length, ship.D * length / ship.L, 0.76, 1000.0)
+    put_in = {name: one for name, one in ship.HULL.items() if name[0] in "YN"}
+    put_in |= {"Y_vdot": -ship.M_Y, "N_rdot": -ship.J_Z}
+    rig = put_in_prime(put_in, system.term_factor)
     sizes = [(f"{k}", SetPoint(0.2, e, phase, 0.76)) for k, (e, phase) in enumerate(
         [(0.05, 0.0), (0.15, 0.0), (0.05, math.pi), (0.1, math.pi), (0.12, 2.0)])]  # fmt: skip
     found = [simulated(rig, p, name=n, harmonics=5) for n, p in sizes]
-    fit = fit_cycles(found, tuple(KVLCC2), (1, 3))
-    for name, value in KVLCC2.items():
+    fit = fit_cycles(found, tuple(put_in), (1, 3))
+    for name, value in put_in.items():
         own = fit[name] / system.term_factor(term_of(name, Plane.HORIZONTAL))
         assert own == pytest.approx(value, rel=5e-4, abs=2e-5), name
 
