@@ -24,6 +24,7 @@ from analysis.inertia.series import UsablePart, series_from_recording, usable_pa
 from analysis.readers import read_recording
 from analysis.readers.damage import check_whole
 from hardware.description.errors import ConfigurationError, DataError
+from pmm.gap.forced import forced_problem
 from pmm.gap.pendulum_file import GateTable, PendulumCase, Record, read_case
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.benches import bifilar_bench, compound_bench, decay_bench
@@ -38,6 +39,7 @@ _PERIODS_APART = 1.5  # factor: no gap that is told by swings, but another body
 _GATE_AMPLITUDE_RAD = 0.1
 _GATE_SWINGS = 4  # in a window
 _OWN = ("line_excess", "spacing", "amplitude_period")  # each suspension has its own error
+_OWN_DRIVEN = ("sensor_delay",)  # each record has its own clock
 
 
 def load_problem(path: Path) -> PendulumProblem:
@@ -66,16 +68,25 @@ def problem_of(
         Effects of the user's own, by name; the file may have one on.
     """
     scaled = bool(case.suspensions)
+    own = _OWN if scaled else _OWN_DRIVEN
     known = tuple(
-        tolerance(name, deviation, own=scaled and name in _OWN)
-        for name, deviation in case.tolerances.items()
+        tolerance(name, deviation, own=name in own) for name, deviation in case.tolerances.items()
     )
     if scaled:
         trials = tuple(_suspended(case, one, path.parent) for one in case.suspensions)
         problem = PendulumProblem(trials, known, kinds=("period",))
+    elif case.forced:
+        problem = forced_problem(case, path.parent, known)
     else:
         problem = _decay(case, path.parent, known)
     on = [make_effect(one.name, more, **one.parameters) for one in case.effects]
+    seen = {sensor.channel.name for one in problem.trials for sensor in one.bench.sensors}
+    for one in on:
+        if getattr(one, "channel", "") not in ("", *seen):
+            raise ConfigurationError(
+                f"{path}: {one.name} is on for a channel that no record has (channels: "
+                f"{', '.join(sorted(seen))})"
+            )
     return _checked(path, replace(problem, trials=_with(problem.trials, on)))
 
 

@@ -71,7 +71,7 @@ def examine_pendulum(
     case = read_case(path)
     problem, kinds = _prepared(case, path, options)
     causes = causes_for(problem.trials, kinds.values())
-    shown = {one.name for one in causes}
+    shown = {one.kind.name for one in causes}
     hidden = tuple(name for name in kinds if name not in shown) if options.effects else ()
     if not causes:
         raise ConfigurationError(f"--effects: these records cannot show {', '.join(hidden)}")

@@ -27,7 +27,7 @@ def heat_map(found: PendulumDiagnosis) -> "Figure":
     """Draw E/u of each kind of observable and record over its windows, as stated and after."""
     problem = found.problem
     pairs = sorted(set(zip(problem.trial.tolist(), problem.kind.tolist(), strict=True)))
-    names = [f"{problem.trials[trial].name}: {KINDS[kind]}" for trial, kind in pairs]
+    names = [f"{problem.trials[trial].name}: {problem.names[kind]}" for trial, kind in pairs]
     count = max(one.windows.count for one in problem.trials)
     columns = [str(at + 1) if at % _EACH == 0 else "" for at in range(count)]
     breaks = [at for at in range(1, len(pairs)) if pairs[at][0] != pairs[at - 1][0]]

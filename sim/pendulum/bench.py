@@ -26,6 +26,8 @@ class PendulumBench:
     clock_error
         By how much the clock of recorder and timers runs fast; their times are the true ones times
         (1 + clock_error).
+    delay_s
+        By how much it stamps everything late.
     """
 
     body: SwingingBody
@@ -34,6 +36,7 @@ class PendulumBench:
     digitisers: tuple[Digitiser, ...]
     photogates: tuple[Photogate, ...] = ()
     clock_error: float = 0.0
+    delay_s: float = 0.0
 
     def __post_init__(self) -> None:
         if len(self.sensors) != len(self.digitisers):

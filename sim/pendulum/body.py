@@ -1,6 +1,7 @@
 """The stage that swings: what every kind of body has in common."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import ceil
 from typing import Final, Protocol
 
@@ -25,6 +26,10 @@ LONGEST_STEP_RAD: Final = 0.1
 
 class SwingingBody(Protocol):
     """A body with a few coordinates: ``M q'' + C q' + K q = f`` about rest, and more beyond it."""
+
+    def __hash__(self) -> int:
+        """Return the same of equal bodies: what is prepared of one is kept."""
+        ...
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:
@@ -121,7 +126,7 @@ class FreeBody:
         given = np.stack([inputs[signal.name] for signal in self.reads]).astype(np.float64)
         out = np.empty((len(self.writes), block.count))
         sliding = np.array(state.sliding)
-        model, tables, steps = self._prepared(block.sample_rate_hz)
+        model, tables, steps = _prepared(self.body, block.sample_rate_hz)
         clock = (block.first, block.count, 1.0 / block.sample_rate_hz, steps)
         after, free = kernel.run(
             model, tables, clock, given, np.array(state.motion), sliding, state.free, out
@@ -129,25 +134,26 @@ class FreeBody:
         signals = {signal.name: row for signal, row in zip(self.writes, out, strict=True)}
         return BodyState(tuple(after.tolist()), tuple(sliding.tolist()), bool(free)), signals
 
-    def _prepared(self, sample_rate_hz: float) -> tuple[object, object, int]:
-        """Return model, tables and steps a sample, as the compiled loop takes them."""
-        body = self.body
-        rows = np.array([resistance.row for resistance in body.resistances])
-        damping = np.diag(rows[:, 0])
-        steps = steps_per_sample(body, sample_rate_hz)
-        rubbing = tuple(resistance.coulomb > 0.0 for resistance in body.resistances)
-        propagation = propagators(
-            as_rows(body.mass),
-            as_rows(damping),
-            as_rows(body.stiffness),
-            rubbing,
-            1.0 / (sample_rate_hz * steps),
-        )
-        plain = body.kind == LINEAR and all(resistance.linear for resistance in body.resistances)
-        beyond = not plain or bool(np.any(body.parameters))
-        inverse = np.linalg.inv(body.mass)
-        model = (body.kind, body.parameters, inverse, body.stiffness, rows, beyond, any(rubbing))
-        return model, propagation.arrays, steps
+
+@lru_cache(maxsize=16)
+def _prepared(body: SwingingBody, sample_rate_hz: float) -> tuple[object, object, int]:
+    """Return model, tables and steps a sample, as the compiled loop takes them."""
+    rows = np.array([resistance.row for resistance in body.resistances])
+    damping = np.diag(rows[:, 0])
+    steps = steps_per_sample(body, sample_rate_hz)
+    rubbing = tuple(resistance.coulomb > 0.0 for resistance in body.resistances)
+    propagation = propagators(
+        as_rows(body.mass),
+        as_rows(damping),
+        as_rows(body.stiffness),
+        rubbing,
+        1.0 / (sample_rate_hz * steps),
+    )
+    plain = body.kind == LINEAR and all(resistance.linear for resistance in body.resistances)
+    beyond = not plain or bool(np.any(body.parameters))
+    inverse = np.linalg.inv(body.mass)
+    model = (body.kind, body.parameters, inverse, body.stiffness, rows, beyond, any(rubbing))
+    return model, propagation.arrays, steps
 
 
 def natural_frequencies_rad_s(body: SwingingBody) -> FloatArray:

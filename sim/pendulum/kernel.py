@@ -141,6 +141,9 @@ def accelerate(model: Any, t: float, q: FloatArray, v: FloatArray, load: FloatAr
         force[0] += p[0] * np.cos(q[0]) - K[0, 0] * np.sin(q[0])
     else:
         force[0] += p[0]
+        if p[1] > 0.0:  # a periodic force: its frequency, then cosine and sine of four orders
+            for n in range(1, 5):
+                force[0] += p[2 * n] * np.cos(n * p[1] * t) + p[2 * n + 1] * np.sin(n * p[1] * t)
         force -= times(K, q)
     return times(minv, force)
 

@@ -115,7 +115,7 @@ def record(
     count = math.floor(duration_s * sample_rate_hz + 1e-9) + 1
     true_rate_hz = sample_rate_hz * (1.0 + bench.clock_error)
     _, run = chain.run(chain.start(true_rate_hz, seed), count)
-    gates = tuple(_gate(photogate, run, bench.clock_error) for photogate in bench.photogates)
+    gates = tuple(_gate(photogate, run, bench) for photogate in bench.photogates)
     truth = bench.body.truth
     provenance = {
         "origin": "simulated",
@@ -148,8 +148,8 @@ def _check(duration_s: float, sample_rate_hz: float, seed: int) -> None:
         raise ConfigurationError("; ".join(faults))
 
 
-def _gate(gate: "Photogate", run: Signals, clock_error: float) -> GateEdges:
-    times = run[gate.edge_time.name] * (1.0 + clock_error)
+def _gate(gate: "Photogate", run: Signals, bench: PendulumBench) -> GateEdges:
+    times = run[gate.edge_time.name] * (1.0 + bench.clock_error) + bench.delay_s
     blocked = run[gate.blocked.name] > 0.5
     order = np.argsort(times, kind="stable")  # jitter may have swapped two
     return GateEdges(gate.label, times[order], blocked[order])
@@ -192,5 +192,6 @@ def _dataset(
         variables[channel.name] = (schema.TIME, values, described)
     if gates:
         variables[schema.EDGE_TIME] = (schema.EDGE, gates[0].time_s, {schema.UNITS: "s"})
-    time_s = (schema.TIME, np.arange(count) / sample_rate_hz, {schema.UNITS: "s"})
+    stamps = np.arange(count) / sample_rate_hz + bench.delay_s
+    time_s = (schema.TIME, stamps, {schema.UNITS: "s"})
     return xr.Dataset(variables, coords={schema.TIME: time_s})

@@ -83,6 +83,8 @@ class Candidate:
         Where it acts.
     repeats, costly
         As :class:`~sim.effects.effect.Effect` has them.
+    channel
+        The one on which it acts, where several may each have it by itself.
     """
 
     kind: type[Any]
@@ -91,11 +93,12 @@ class Candidate:
     stage: str
     repeats: bool = True
     costly: bool = False
+    channel: str = ""
 
     @property
     def name(self) -> str:
-        """Name of the effect."""
-        return str(self.kind.name)
+        """Name of the effect, and of its channel where it acts on one of several."""
+        return f"{self.kind.name} of {self.channel}" if self.channel else str(self.kind.name)
 
     @property
     def start(self) -> FloatArray:
@@ -108,7 +111,8 @@ class Candidate:
             one.parameter.name: one.value(float(unit))
             for one, unit in zip(self.axes, units, strict=True)
         }
-        return self.kind(**values, **self.held)
+        own = {"channel": self.channel} if self.channel else {}
+        return self.kind(**values, **self.held, **own)
 
     @property
     def reach(self) -> float:

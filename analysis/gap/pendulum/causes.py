@@ -21,6 +21,8 @@ from sim.pendulum.suspension import Suspension
 
 _RANDOM: Final = ("missed_passages", "gate_jitter", "unsteady_release")
 _GATES: Final = ("flag_width", "gate_offset")
+_UNDER_A_FORCE: Final = ("force", "sensor_delay")
+_NOT_UNDER_A_FORCE: Final = ("sensor_offset", "sensor_noise")
 _NEEDS_LINES: Final = ("line_stretch", "line_creep", "off_level", "yaw_pitch_resonance")
 _HUNG: Final = tuple(one.name for one in ON_LINES)
 # A reading's noise shows in the scatter; a power law's damping ratio is that at this amplitude.
@@ -32,6 +34,7 @@ DAMPING: Final = (
     "quadratic_drag",
     "cubic_damping",
     "power_drag",
+    "damping",
 )
 BEYOND_LINEAR: Final = ("quadratic_drag", "cubic_damping", "power_drag")
 STIFFNESS: Final = ("inertia", "restoring", "amplitude_period", "nonlinear_restoring")
@@ -46,15 +49,21 @@ _STAGES: Final[Mapping[str, tuple[str, ...]]] = {
 }
 
 
-def cause(kind: type[Any]) -> Candidate:
-    """Return an effect as a cause; what is no parameter of its size is held."""
+def cause(kind: type[Any], channel: str = "") -> Candidate:
+    """Return an effect as a cause; what is no parameter of its size is held.
+
+    Parameters
+    ----------
+    channel
+        The one on which it acts; empty for all.
+    """
     held = _HELD.get(kind.name, {})
     known = [
         Parameter(name, one.unit, one.typical, one.low, one.high, "")
         for name, one in plausible(kind).items()
     ]
     axes = [_axis(one, tuple(known)) for one in known if one.name not in held]
-    return Candidate(kind, tuple(axes), held, _stage(kind))
+    return Candidate(kind, tuple(axes), held, _stage(kind), channel=channel)
 
 
 def _axis(one: Parameter, siblings: tuple[Parameter, ...]) -> Axis:
@@ -86,7 +95,21 @@ def causes_for(
         unfit += ["yaw_pitch_resonance"]
     if not getattr(first, "linear", False):
         unfit += ["finite_amplitude"]
-    return tuple(cause(one) for one in kinds if one.name not in unfit)
+    unfit += _NOT_UNDER_A_FORCE if trials[0].driven else _UNDER_A_FORCE
+    if not any(one.viscous for one in first.resistances):
+        unfit += ["damping"]
+    fit, seen = [one for one in kinds if one.name not in unfit], _sensors(trials)
+    return tuple(
+        cause(one, channel)
+        for one in fit
+        for channel in (seen if "channel" in one.__dataclass_fields__ else ("",))
+    )
+
+
+def _sensors(trials: Sequence[Trial]) -> tuple[str, ...]:
+    """Return the sensors that may each be off by itself; an empty name where there is one."""
+    seen = {one.bench.sensors[0].channel.name for one in trials if one.driven}
+    return tuple(sorted(seen)) if len(seen) > 1 else ("",)
 
 
 def tolerance(name: str, deviation: float, *, own: bool = False) -> Tolerance:

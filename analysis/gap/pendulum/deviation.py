@@ -1,7 +1,8 @@
 """What stands beside every hypothesis of a pendulum test: how large, and how alike.
 
-A deviation changes with the amplitude, and is alike for records of one body in one set-up where
-their amplitudes are alike; a share of it is each record's own. Light gates tell no amplitude:
+A deviation changes with the amplitude, and is alike for records of one body in one set-up (under a
+known force: of a like frequency) where their amplitudes are alike; a share of it is each record's
+own. Light gates tell no amplitude:
 what they see deviates throughout a record.
 """
 
@@ -73,14 +74,15 @@ def units(problem: PendulumProblem) -> FloatArray:
     """Return how large a deviation of 1 is at each observation, in the observation's unit.
 
     Of the amplitude's logarithm what it is predicted to fall by over the record, an e-fold at
-    least; of the phase all that was turned since the release, so that it is a share of the period;
+    least; of the phase all that was turned since the release, so that it is a share of the period,
+    under a known force a radian;
     of the mean the predicted amplitude; a third harmonic is a share of the amplitude already.
     """
     out = np.ones(len(problem.kind))
     for at, trial in enumerate(problem.trials):
         here = problem.trial == at
         falls = problem.nominal[here & (problem.kind == _DECAY)]
-        turned = trial.windows.reference_rad_s * problem.centre_s
+        turned = 1.0 if trial.driven else trial.windows.reference_rad_s * problem.centre_s
         out = np.where(here & (problem.kind == _PERIOD), turned, out)
         if len(falls):
             out[here & (problem.kind == _DECAY)] = max(float(np.ptp(falls)), 1.0)
@@ -91,8 +93,7 @@ def units(problem: PendulumProblem) -> FloatArray:
 def _likeness(problem: PendulumProblem, rows: NDArray[np.intp]) -> FloatArray:
     """Return how alike a deviation is in some windows, shape ``(rows, rows)``."""
     record, size = problem.trial[rows], _log_size(problem)[rows]
-    bodies = [one.bench.body for one in problem.trials]
-    alike = np.array([[one == other for other in bodies] for one in bodies])
+    alike = np.array([[one.alike(other) for other in problem.trials] for one in problem.trials])
     shared = alike[np.ix_(record, record)] * np.exp(-0.5 * ((size[:, None] - size) / _OCTAVE) ** 2)
     own = record[:, None] == record
     return np.asarray((1.0 - _OWN) * shared + _OWN * own, np.float64)

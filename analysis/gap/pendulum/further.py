@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from analysis.gap.inference.gaussian import Nuisances, posterior
+from analysis.gap.pendulum.driven import DrivenTrial
 from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.trial import Trial
@@ -64,7 +65,7 @@ def propose(
     second: Fit,
     reach: Reach | None = None,
 ) -> tuple[FurtherRecord, ...]:
-    """Rank further records: other suspensions where light gates watch one, else releases.
+    """Rank further records: other suspensions where light gates watch one, forces, releases.
 
     Parameters
     ----------
@@ -74,6 +75,8 @@ def propose(
     made = (
         _suspensions(problem, first, reach or _reach(problem))
         if problem.on_lines
+        else _runs(problem.trials, first)
+        if problem.driven
         else _releases(problem.trials[0], first)
     )
     found = []
@@ -98,6 +101,14 @@ def _releases(trial: Trial, first: Fit) -> Iterator[tuple[str, Trial]]:
             what = f"release at {factor:g} times the amplitude"
             what += ", a record twice as long" if longer > 1 else ", a record as long"
             yield what, _planned(replace(trial, windows=windows, bench=bench), trial, first)
+
+
+def _runs(trials: Sequence[Trial], first: Fit) -> Iterator[tuple[str, Trial]]:
+    """Yield the runs again under smaller and larger forces, as the first answer foretells them."""
+    for trial in (one for one in trials if isinstance(one, DrivenTrial)):
+        for factor in _FACTORS:
+            what = f"{trial.name} again under {factor:g} times the force"
+            yield what, _planned(trial.pushed(factor), trial, first)
 
 
 def _suspensions(problem: PendulumProblem, first: Fit, reach: Reach) -> Iterator[tuple[str, Trial]]:

@@ -66,6 +66,22 @@ class PendulumProblem:
         return len(self.trials) > 2 and self.on_lines
 
     @property
+    def driven(self) -> bool:
+        """Whether the records are of runs under a known force."""
+        return all(one.driven for one in self.trials)
+
+    @cached_property
+    def runs(self) -> NDArray[np.intp]:
+        """Number of each trial's run, shape ``(trials,)``; sensors of one run share it."""
+        names = [one.run or f"#{at}" for at, one in enumerate(self.trials)]
+        return np.array([names.index(one) for one in names])
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """What each of :data:`~analysis.gap.pendulum.swings.KINDS` is called in these records."""
+        return ("amplitude", "phase", *KINDS[2:]) if self.driven else KINDS
+
+    @property
     def on_lines(self) -> bool:
         """Whether light gates watch a body on two lines."""
         return all(one.scaled and isinstance(one.bench.body, Suspension) for one in self.trials)
@@ -147,8 +163,10 @@ class PendulumProblem:
     @cached_property
     def releases(self) -> FloatArray:
         """Columns of how each record began, and of its scale where that is unknown."""
-        columns = []
+        columns: list[FloatArray] = []
         for at, trial in enumerate(self.trials):
+            if trial.driven:
+                continue
             spread = _ANY_SIZE if trial.scaled else FURTHER
             further = trial.release_error(0.2 * spread, 0.0)
             columns.append(self._column(at, further, 0.2))
@@ -156,7 +174,7 @@ class PendulumProblem:
             if trial.scaled:
                 own = (self.trial == at) & (self.kind == 0)
                 columns.append(_ANY_SIZE * own / self.uncertainty)
-        return np.column_stack(columns)
+        return self._stacked(columns)
 
     @cached_property
     def set_ups(self) -> FloatArray:

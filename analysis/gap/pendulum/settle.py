@@ -42,7 +42,7 @@ def _about(found: Settled) -> PendulumProblem:
     free = problem.nuisances.fitted(problem.residual - best.signature)
     first = np.cumsum([0, *(trial.release_columns for trial in problem.trials)])
     trials = tuple(
-        trial.as_released(float(free[at]), float(free[at + 1]))
+        trial if trial.driven else trial.as_released(float(free[at]), float(free[at + 1]))
         for trial, at in zip(problem.trials, first, strict=False)
     )
     return replace(problem, trials=trials, about=best.effects)

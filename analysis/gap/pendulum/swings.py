@@ -6,7 +6,8 @@ A window is a whole number of swings of a reference frequency. In each the recor
 
 so that decay and another frequency within the window do no harm. The phase is that against the
 reference: it rises where the body swings faster. Measured and simulated records pass the same
-windows, so that what a window does to a decay drops out of the difference.
+windows, so that what a window does to a decay drops out of the difference. A motion that has
+settled under a force has a fourth and a fifth harmonic in place of a' and b'.
 """
 
 import math
@@ -20,7 +21,7 @@ from hardware.description.arrays import FloatArray
 
 KINDS: Final = ("decay", "period", "mean", "third in phase", "third in quadrature")
 _DECAY, _PERIOD, _MEAN, _THIRD = 0, 1, 2, 3
-_TERMS = 9
+_TERMS = 9  # 11 of a motion that has settled
 _SAMPLES: Final = 2 * _TERMS  # in a window, at least
 FEWEST_WINDOWS: Final = (
     6  # about a parabola they leave 3 degrees of freedom, of which t has a variance
@@ -70,13 +71,17 @@ def cut_into_windows(
     return Windows(start_s, 2.0 * math.pi / period_s, swings, count)
 
 
-def swings_of_samples(time_s: FloatArray, values: FloatArray, windows: Windows) -> FloatArray:
+def swings_of_samples(
+    time_s: FloatArray, values: FloatArray, windows: Windows, *, steady: bool = False
+) -> FloatArray:
     """Return amplitude (logarithm), phase, mean and third harmonic of each window.
 
     Parameters
     ----------
     time_s, values
         Shape ``(samples,)``; NaN where a sample is missing.
+    steady
+        Whether the motion has settled: nothing decays within a window.
 
     Returns
     -------
@@ -85,11 +90,11 @@ def swings_of_samples(time_s: FloatArray, values: FloatArray, windows: Windows) 
         over the first's amplitude. NaN where a window has too few samples.
     """
     since = time_s - windows.start_s
-    rough = _fitted(since, values, windows, windows.reference_rad_s)
+    rough = _fitted(since, values, windows, windows.reference_rad_s, steady)
     # a second time at the record's own frequency: slopes within a window are then small
     slope = _mean_slope(windows.centres_s, rough[_PERIOD])
     own = windows.reference_rad_s + slope
-    found = _fitted(since, values, windows, own)
+    found = _fitted(since, values, windows, own, steady)
     found[_PERIOD] += slope * windows.centres_s
     return found
 
@@ -102,7 +107,7 @@ def _mean_slope(time_s: FloatArray, phase_rad: FloatArray) -> float:
 
 
 def _fitted(
-    since_s: FloatArray, values: FloatArray, windows: Windows, omega_rad_s: float
+    since_s: FloatArray, values: FloatArray, windows: Windows, omega_rad_s: float, steady: bool
 ) -> FloatArray:
     found = np.full((len(KINDS), windows.count), np.nan)
     inverses: dict[tuple[int, float], FloatArray] = {}  # windows sampled alike share theirs
@@ -114,7 +119,9 @@ def _fitted(
             t = since_s[inside][good] - centre
             key = (t.size, round(float(t[0] + t[-1]) * omega_rad_s, 9))
             if key not in inverses or t.size < good.size:
-                inverses[key] = np.asarray(np.linalg.pinv(_terms(t, omega_rad_s)), np.float64)
+                inverses[key] = np.asarray(
+                    np.linalg.pinv(_terms(t, omega_rad_s, steady)), np.float64
+                )
             solved = inverses[key] @ values[inside][good]
             found[:, at] = _described(solved, omega_rad_s * centre)
     good = np.isfinite(found[_PERIOD])
@@ -122,18 +129,17 @@ def _fitted(
     return found
 
 
-def _terms(t: FloatArray, omega_rad_s: float) -> FloatArray:
+def _terms(t: FloatArray, omega_rad_s: float, steady: bool) -> FloatArray:
     angle = omega_rad_s * t
-    cos, sin = np.cos(angle), np.sin(angle)
-    parts = [np.ones(t.size), cos, sin, t * cos, t * sin]
-    parts += [np.cos(2.0 * angle), np.sin(2.0 * angle), np.cos(3.0 * angle), np.sin(3.0 * angle)]
-    return np.column_stack(parts)
+    waves = [wave(n * angle) for n in range(1, 6 if steady else 4) for wave in (np.cos, np.sin)]
+    slopes = [] if steady else [t * waves[0], t * waves[1]]
+    return np.column_stack([np.ones(t.size), *waves, *slopes])
 
 
 def _described(solved: FloatArray, turned_rad: float) -> FloatArray:
     first = complex(solved[1], -solved[2])
     size = max(abs(first), 1e-300)
-    third = complex(solved[7], -solved[8]) * (first.conjugate() / size) ** 3 / size
+    third = complex(solved[5], -solved[6]) * (first.conjugate() / size) ** 3 / size
     phase = np.angle(first * np.exp(-1j * turned_rad))
     return np.array([math.log(size), phase, solved[0], third.real, third.imag])
 

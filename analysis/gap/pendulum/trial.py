@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any, cast
+from typing import Any, ClassVar, cast
 
 import numpy as np
 
@@ -38,6 +38,8 @@ class Trial:
         Benches that the nominal one may be as well, one standard deviation away each.
     effects
         What the simulation has on already.
+    run
+        Name of the run, where several sensors saw one; empty where it is a run by itself.
     """
 
     name: str
@@ -49,6 +51,13 @@ class Trial:
     scaled: bool = False
     variants: tuple[PendulumBench, ...] = ()
     effects: tuple[PendulumEffect, ...] = ()
+    run: str = ""
+
+    driven: ClassVar[bool] = False  # by a known force; else let go
+
+    def alike(self, other: "Trial") -> float:
+        """Return how alike a deviation is in two records: of one body in one set-up, or not."""
+        return float(self.bench.body == other.bench.body)
 
     @property
     def acts_on(self) -> str:

@@ -14,7 +14,6 @@ from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING, STIFFNESS
 from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.search import WeighedCauses, fit, named
 from analysis.gap.pendulum.settle import Settled
-from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.search.fit import Fit, expected_evidence, joined, nothing
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
@@ -255,7 +254,7 @@ def where(problem: PendulumProblem, after: Settled) -> tuple[KindOfGap, ...]:
     for kind in np.unique(problem.kind):
         rows = problem.kind == kind
         sizes = [float(np.sqrt(np.mean(left[rows] ** 2))) for left in lefts]
-        found.append(KindOfGap(KINDS[kind], int(rows.sum()), *sizes))
+        found.append(KindOfGap(problem.names[kind], int(rows.sum()), *sizes))
     return tuple(found)
 
 

@@ -2,7 +2,8 @@
 
 Half of each record's range of amplitude (in its logarithm) is withheld, first the small swings,
 then the large ones; of one body on several suspensions each suspension in its turn, for light gates
-do not tell an amplitude. Everything is fitted to the rest: releases, tolerances, causes.
+do not tell an amplitude; under a known force each run. Everything is fitted to the rest: releases,
+tolerances, causes.
 """
 
 import math
@@ -22,6 +23,7 @@ _DRAWS = 400
 _SEED = 20261
 _DECAY, _PERIOD = 0, 1
 FEWEST = 5  # windows in either half
+FEWEST_RUNS = 3
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,10 @@ def foretell(problem: PendulumProblem, sets: Sequence[Fit]) -> tuple[WithheldSwi
     Where the records are of several suspensions, each of them is withheld instead.
     """
     if problem.suspensions:
-        return (_left_out(problem, sets),)
+        return (_left_out("each suspension", problem, sets),)
+    if problem.driven:
+        enough = len(set(problem.runs)) >= FEWEST_RUNS
+        return (_left_out("each run", problem, sets),) if enough else ()
     found = []
     for name, large in (("small swings", False), ("large swings", True)):
         hidden = [_hidden(trial, large=large) for trial in problem.trials]
@@ -132,16 +137,16 @@ def _without(problem: PendulumProblem, hidden: Sequence[BoolArray]) -> PendulumP
     return replace(problem, trials=tuple(trials))
 
 
-def _left_out(problem: PendulumProblem, sets: Sequence[Fit]) -> WithheldSwings:
-    """Foretell each suspension from the others."""
+def _left_out(name: str, problem: PendulumProblem, sets: Sequence[Fit]) -> WithheldSwings:
+    """Foretell each run from the others; the sensors of one run belong together."""
     every = np.ones(problem.residual.size, dtype=bool)
     lefts: list[list[tuple[FloatArray, FloatArray]]] = [[] for _ in (None, *sets)]
-    for out in range(len(problem.trials)):
+    for out in np.unique(problem.runs):
         hidden = [
-            np.full(trial.windows.count, number == out)
-            for number, trial in enumerate(problem.trials)
+            np.full(trial.windows.count, run == out)
+            for run, trial in zip(problem.runs, problem.trials, strict=True)
         ]
-        seen, rows = _without(problem, hidden), problem.trial == out
+        seen, rows = _without(problem, hidden), problem.runs[problem.trial] == out
         lefts[0].append(_left(problem, nothing(seen), rows))
         for kept, one in zip(lefts[1:], sets, strict=True):
             kept.append(_left(problem, fit(seen, one.candidates, one.units), rows))
@@ -151,7 +156,7 @@ def _left_out(problem: PendulumProblem, sets: Sequence[Fit]) -> WithheldSwings:
     ]
     sizes = problem.amplitude
     return WithheldSwings(
-        "each suspension",
+        name,
         sum(trial.windows.count for trial in problem.trials),
         (float(sizes.min()), float(sizes.max())),
         _foretold(problem, every, (), plain, plain),

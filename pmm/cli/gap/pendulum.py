@@ -29,8 +29,8 @@ def pendulum(
 ) -> None:
     """Find what separates a free decay, a swing or a bifilar test from its simulation.
 
-    FILE names the records and what is known of the set-up (docs/gap-pendulums.md). "No gap beyond
-    u" is an answer.
+    Or a body on springs or afloat under a known force. FILE names the records and what is known of
+    the set-up (docs/gap-pendulums.md). "No gap beyond u" is an answer.
 
     \b
     pmm gap pendulum roll.toml --page gap.html

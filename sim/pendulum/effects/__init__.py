@@ -38,8 +38,11 @@ CATALOGUE: Final[tuple[type[Any], ...]] = (
     instruments.MissedPassages,
     instruments.GateJitter,
     instruments.WrongClock,
+    instruments.SensorDelay,
     setup.StatedInertiaError,
     setup.RestoringError,
+    setup.DampingError,
+    setup.ForceError,
     *setup.ON_LINES,
 )
 

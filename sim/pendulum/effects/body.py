@@ -15,7 +15,7 @@ from sim.pendulum.effects.base import parameter, resist, slope_to_restoring, sma
 
 @dataclass(frozen=True)
 class BearingFriction:
-    """Dry friction of a bearing or knife edge.
+    """Dry friction of a bearing, a knife edge or a guide.
 
     Attributes
     ----------

@@ -26,6 +26,7 @@ class WrongClock:
     """
 
     clock_error: float = parameter("1", -0.01, 0.01, 1e-4)
+    channel: str = ""
 
     name = "wrong_clock"
     stage = "acquisition"
@@ -34,8 +35,33 @@ class WrongClock:
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
+        _check_stamped(bench, self.name, self.channel)
         error = (1.0 + bench.clock_error) * (1.0 + self.clock_error) - 1.0
         return replace(bench, clock_error=error)
+
+
+@dataclass(frozen=True)
+class SensorDelay:
+    """A recorder that stamps a sensor late, or early: its clock was set wrong, or it takes time.
+
+    Attributes
+    ----------
+    delay_s
+        Stamp less true time, the same at any frequency.
+    """
+
+    delay_s: float = parameter("s", -0.5, 0.5, 0.01)
+    channel: str = ""
+
+    name = "sensor_delay"
+    stage = "acquisition"
+    summary = "all recorded times are the true ones plus a constant"
+    signature = "phase against the force later by w delay; amplitude as is"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        _check_stamped(bench, self.name, self.channel)
+        return replace(bench, delay_s=bench.delay_s + self.delay_s)
 
 
 @dataclass(frozen=True)
@@ -238,6 +264,14 @@ class GateJitter:
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
         return _gates(bench, self.name, lambda gate: replace(gate, jitter_rms_s=self.jitter_rms_s))
+
+
+def _check_stamped(bench: PendulumBench, effect: str, channel: str) -> None:
+    """Refuse another clock for one of several sensors: a test has one recorder."""
+    if len(_chosen(bench, channel)) < len(bench.sensors):
+        raise ConfigurationError(
+            f"{effect}: one clock stamps all sensors of this test; leave channel = {channel!r} out"
+        )
 
 
 def _chosen(bench: PendulumBench, channel: str) -> tuple[Sensor, ...]:

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.body import SwingingBody
-from sim.pendulum.effects.base import parameter, suspension_of
+from sim.pendulum.driven import Driven
+from sim.pendulum.effects.base import parameter, resist, suspension_of
 from sim.pendulum.floating import Floating
 from sim.pendulum.suspension import Suspension
 
@@ -65,6 +66,45 @@ class RestoringError:
         heavy = cast("Any", body)
         changed = replace(heavy, gravity_m_s2=heavy.gravity_m_s2 * (1.0 + self.share))
         return cast("SwingingBody", changed)
+
+
+@dataclass(frozen=True)
+class DampingError:
+    """The linear damping is other than stated."""
+
+    share: float = parameter("1", -0.9, 3.0, 0.1)
+    coordinate: str = ""
+
+    name = "damping"
+    stage = "body"
+    summary = "more of the linear damping that is stated"
+    signature = "amplitude at resonance falls by the share; phase is steeper elsewhere"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on; a body without linear damping stays as it is."""
+        names = [coordinate.name for coordinate in bench.body.coordinates]
+        at = names.index(self.coordinate) if self.coordinate else 0
+        stated = bench.body.resistances[at].viscous
+        return resist(bench, self.coordinate, viscous=self.share * stated)
+
+
+@dataclass(frozen=True)
+class ForceError:
+    """The force on a driven body is other than recorded: its scale, or a wave's transfer."""
+
+    share: float = parameter("1", -0.5, 0.5, 0.02)
+
+    name = "force"
+    stage = "force"
+    summary = "more of the known force, at any frequency"
+    signature = "amplitude grows by the share, phase as is"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on; a body without a force stays as it is."""
+        body = bench.body
+        if not isinstance(body, Driven):
+            return bench
+        return replace(bench, body=replace(body, force=body.force.scaled(1.0 + self.share)))
 
 
 @dataclass(frozen=True)

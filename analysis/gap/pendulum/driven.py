@@ -1,0 +1,182 @@
+"""A body on springs or afloat under a known force: one run, seen by one sensor.
+
+The motion is that to which the body settles under the force's harmonics
+(:mod:`sim.pendulum.driven`). What is observed is the response: each window's amplitude and phase
+are taken against those of the force in the same window, so that a wave that varies slowly does no
+harm. A window of a run is what a window of swings is in a decay.
+"""
+
+import cmath
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, cast
+
+import numpy as np
+
+from analysis.gap.pendulum.swings import KINDS, Windows, cut_into_windows, swings_of_samples
+from analysis.gap.pendulum.trial import Trial
+from hardware.description.arrays import ComplexArray, FloatArray
+from hardware.description.errors import DataError
+from sim.pendulum.driven import ORDERS, Driven, PeriodicForce, settled
+from sim.pendulum.effects.base import PendulumEffect
+
+_DECAY, _PERIOD, _MEAN = (KINDS.index(one) for one in ("decay", "period", "mean"))
+_ORDERS = 23  # of the motion that a window is shown
+_MOST_SAMPLES = 256  # a period: more do not change what a window makes of it
+_OCTAVE = math.log(2.0)  # of frequency, over which a deviation keeps its value
+
+
+@dataclass(frozen=True, eq=False)
+class DrivenTrial(Trial):
+    """A run under a known force, and the bench whose one sensor saw it.
+
+    Attributes
+    ----------
+    samples
+        Of the record in a period of the force.
+    """
+
+    samples: int = 100
+
+    driven: ClassVar[bool] = True
+
+    @property
+    def body(self) -> Driven:
+        """The body with its force."""
+        return cast("Driven", self.bench.body)
+
+    @property
+    def channel(self) -> str:
+        """What the sensor is called."""
+        return self.bench.sensors[0].channel.name
+
+    @property
+    def release_columns(self) -> int:
+        """None: it has settled."""
+        return 0
+
+    def alike(self, other: Trial) -> float:
+        """Return how alike a deviation is: over an octave of frequency, whichever sensor sees."""
+        ratio = other.windows.reference_rad_s / self.windows.reference_rad_s
+        return math.exp(-0.5 * (math.log(ratio) / _OCTAVE) ** 2)
+
+    def simulate(self, effects: Iterable[PendulumEffect] = ()) -> FloatArray:
+        """Return what the record would show with more effects on, shape ``(5, windows)``.
+
+        Raises
+        ------
+        ConfigurationError
+            If the body does not settle.
+        """
+        bench = self.bench.with_effects(self.placed((*self.effects, *effects)))
+        body, (sensor,) = cast("Driven", bench.body), bench.sensors
+        (coordinate,) = body.coordinates
+        signals = [coordinate.displacement, coordinate.rate, coordinate.acceleration]
+        ((felt, weight),) = sensor.weights
+        omega, windows = body.force.omega_rad_s, self.windows
+        turns = 1j * omega * np.arange(1, _ORDERS + 1)
+        read = weight * sensor.gain * turns ** signals.index(felt) / (1.0 + turns * sensor.lag_s)
+        out = self._window(settled(body, _ORDERS) * read).repeat(windows.count, axis=1)
+        late_s = bench.delay_s + bench.clock_error * (windows.start_s + windows.centres_s)
+        out[_PERIOD] -= omega * late_s / (1.0 + bench.clock_error)
+        seen = self.observed[_PERIOD, np.isfinite(self.observed[_PERIOD])]
+        if seen.size:  # the phase that was read is one of many that are whole turns apart
+            turns_apart = float(np.median(seen) - np.median(out[_PERIOD])) / (2.0 * math.pi)
+            out[_PERIOD] += 2.0 * math.pi * round(turns_apart)
+        return out
+
+    def _window(self, harmonics: ComplexArray) -> FloatArray:
+        """Return what a window makes of a periodic signal, shape ``(5, 1)``.
+
+        Measured and simulated motions pass the same windows, as in a decay.
+        """
+        count = min(self.samples, _MOST_SAMPLES)
+        half = np.concatenate([[0.0], 0.5 * count * harmonics])
+        values = np.tile(np.fft.irfft(half, count), self.windows.swings)
+        time_s = np.linspace(0.0, self.windows.length_s, values.size, endpoint=False)
+        return swings_of_samples(
+            time_s, values, replace(self.windows, start_s=0.0, count=1), steady=True
+        )
+
+    def placed(self, effects: Iterable[PendulumEffect]) -> list[PendulumEffect]:
+        """Return the effects that act on this run: those of another sensor do not."""
+        own = ("", self.channel)
+        return super().placed(one for one in effects if getattr(one, "channel", "") in own)
+
+    def pushed(self, factor: float) -> "DrivenTrial":
+        """Return the run under another force of the same frequency."""
+        body: Any = self.body
+        return replace(
+            self, bench=replace(self.bench, body=replace(body, force=body.force.scaled(factor)))
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class KnownForce:
+    """A force over the gate of a run.
+
+    Attributes
+    ----------
+    harmonics
+        Its phase is that at the first window's beginning.
+    first
+        First harmonic of what was recorded: of the force, or of the wave that makes it.
+    seen
+        Windows of that, as :func:`~analysis.gap.pendulum.swings.swings_of_samples` gives them.
+    """
+
+    windows: Windows
+    harmonics: PeriodicForce
+    first: complex
+    seen: FloatArray
+
+    @classmethod
+    def of(cls, name: str, time_s: FloatArray, values: FloatArray, period_s: float) -> "KnownForce":
+        """Find a force's frequency, harmonics and windows in the samples of a gate.
+
+        Parameters
+        ----------
+        period_s
+            Of the force, roughly.
+
+        Raises
+        ------
+        DataError
+            If the gate is shorter than two windows.
+        """
+        start_s, stop_s = float(time_s[0]), float(time_s[-1])
+        rate_hz = (time_s.size - 1) / (stop_s - start_s)
+        for _ in range(2):  # the second time at the force's own frequency
+            windows = cut_into_windows(start_s, stop_s, period_s, rate_hz)
+            if windows.count < 2:
+                raise DataError(f"{name}: no two windows of {period_s:.3g} s; record longer")
+            seen = swings_of_samples(time_s, values, windows, steady=True)
+            slope = np.polyfit(windows.centres_s, seen[_PERIOD], 1)[0]
+            period_s = 2.0 * math.pi / (windows.reference_rad_s + float(slope))
+        since, omega = time_s - start_s, windows.reference_rad_s
+        inside = (since < windows.length_s * windows.count) & np.isfinite(values)
+        turns = np.exp(1j * omega * since[inside, None] * np.arange(1, ORDERS + 1))
+        columns = np.column_stack([np.ones(len(turns)), turns.real, turns.imag])
+        _, *solved = np.linalg.lstsq(columns, values[inside], rcond=None)[0]
+        found = [complex(a, -b) for a, b in zip(solved[:ORDERS], solved[ORDERS:], strict=True)]
+        return cls(windows, PeriodicForce(omega, tuple(found)), found[0], seen)
+
+    def by(self, transfer: complex) -> "KnownForce":
+        """Return the force of a wave by its transfer function; of the first order alone."""
+        made = PeriodicForce(self.harmonics.omega_rad_s, (transfer * self.first,))
+        return replace(self, harmonics=made)
+
+    def response(self, time_s: FloatArray, values: FloatArray) -> FloatArray:
+        """Return what a motion shows against the force, shape ``(5, windows)``.
+
+        A mean is left out, since nothing says where a sensor is zero; so is the third harmonic
+        where that of the force is not known.
+        """
+        found = swings_of_samples(time_s, values, self.windows, steady=True)
+        found[_DECAY] -= self.seen[_DECAY] - math.log(abs(self.first))
+        found[_PERIOD] -= self.seen[_PERIOD] - cmath.phase(self.first)
+        found[_MEAN] = np.nan
+        if len(self.harmonics.harmonics) < 3:
+            found[_MEAN + 1 :] = np.nan
+        return found

@@ -1,0 +1,131 @@
+"""Runs of a body on springs or afloat under a known force, as a pendulum's file names them."""
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from analysis.gap.pendulum.driven import DrivenTrial, KnownForce
+from analysis.gap.pendulum.problem import PendulumProblem, Tolerance
+from analysis.gap.pendulum.swings import KINDS, scatter
+from analysis.inertia.series import rough_period
+from analysis.readers import read_recording
+from analysis.readers.damage import check_whole
+from analysis.recording import Recording
+from hardware.description.arrays import FloatArray
+from hardware.description.channels import Channel
+from hardware.description.errors import ConfigurationError, DataError
+from pmm.gap.pendulum_file import ForcedTable, OverFrequency, PendulumCase, Record
+from sim.acquisition.channels import Digitiser
+from sim.pendulum.bench import PendulumBench
+from sim.pendulum.coordinates import HEAVE, ROLL
+from sim.pendulum.driven import Driven
+from sim.pendulum.floating import Floating
+from sim.pendulum.release import Release
+from sim.pendulum.sensors import Sensor
+
+Read = Callable[[str], Recording]
+_UNSTEADY: Final = 0.25  # of a force's amplitude between two windows, from which it is no one force
+_ANOTHER: Final = 100.0  # factor of amplitude: no gap, but other units
+
+
+@dataclass(frozen=True)
+class _Gate:
+    """Samples of one channel in the gate of a run."""
+
+    name: str
+    unit: str
+    time_s: FloatArray
+    values: FloatArray
+
+
+def forced_problem(
+    case: PendulumCase, folder: Path, known: tuple[Tolerance, ...]
+) -> PendulumProblem:
+    """Read the runs of a file.
+
+    Raises
+    ------
+    ConfigurationError
+        If the file is wrong.
+    DataError
+        If a record is.
+    """
+    if case.floating is None:
+        raise ConfigurationError(f"{case.name}: [[forced]] runs need the body, [floating]")
+    read = cache(lambda name: check_whole(read_recording(folder / name)))
+    trials = [
+        trial
+        for one in case.forced
+        for trial in _run(case.floating, case.over_frequency, one, read)
+    ]
+    kinds = tuple(one for one in KINDS if one != "mean")
+    return PendulumProblem(tuple(trials), known, kinds=kinds)
+
+
+def _run(
+    floating: Floating, over: OverFrequency | None, one: ForcedTable, read: Read
+) -> Iterator[DrivenTrial]:
+    """Yield what each sensor saw of a run."""
+    pushed = _gate(one, one.force, read)
+    rate_hz = (pushed.time_s.size - 1) / float(np.ptp(pushed.time_s))
+    period_s = rough_period(pushed.name, pushed.values - np.nanmean(pushed.values), rate_hz)
+    force = KnownForce.of(pushed.name, pushed.time_s, pushed.values, period_s)
+    if float(np.nanmax(force.seen[0]) - np.nanmin(force.seen[0])) > _UNSTEADY:
+        raise DataError(
+            f"{pushed.name}: its amplitude changes by more than {100 * _UNSTEADY:.0f} % within the "
+            f"gate of run {one.name!r}; state from_s and to_s where it is steady"
+        )
+    body = floating
+    if over is not None:
+        body, transfer = over.at(floating, 1.0 / period_s)
+        force = force.by(transfer) if transfer is not None else force
+    for sensor in one.measured:
+        yield _seen(one, body, force, _gate(one, sensor, read))
+
+
+def _gate(one: ForcedTable, channel: Record, read: Read) -> _Gate:
+    whole = read(channel.record)
+    part = whole.between(
+        whole.start_s if one.from_s is None else one.from_s,
+        whole.end_s if one.to_s is None else one.to_s,
+    )
+    unit = whole.channels[whole.index(channel.channel)].unit
+    return _Gate(channel.channel, unit, part.time_s(), part.values(channel.channel))
+
+
+def _seen(one: ForcedTable, body: Floating, force: KnownForce, seen: _Gate) -> DrivenTrial:
+    """Return what a sensor saw: of a displacement, a rate or an acceleration by its unit."""
+    length, _, per = seen.unit.partition("/")
+    coordinate = ROLL if length == "rad" else HEAVE
+    signals = {"": coordinate.displacement, "s": coordinate.rate, "s2": coordinate.acceleration}
+    if length not in ("m", "rad", "") or per not in signals:
+        raise DataError(
+            f"run {one.name!r}: channel {seen.name!r} is in {seen.unit}; a motion is a "
+            "displacement, a rate or an acceleration, in m or rad: choose another channel"
+        )
+    driven = Driven(
+        body.inertia, body.added_inertia, body.restoring, body.resistance, coordinate,
+        force.harmonics,
+    )  # fmt: skip
+    sensor = Sensor(Channel(seen.name, seen.unit), ((signals[per], 1.0),))
+    bench = PendulumBench(driven, Release((coordinate,), (0.0,)), (sensor,), (Digitiser(),))
+    found = force.response(seen.time_s, seen.values)
+    name = one.name if len(one.measured) == 1 else f"{one.name}, {seen.name}"
+    rate_hz = (seen.time_s.size - 1) / float(np.ptp(seen.time_s))
+    samples = round(rate_hz * force.windows.length_s / force.windows.swings)
+    trial = DrivenTrial(
+        name, bench, coordinate.name, force.windows, found, scatter(found), run=one.name,
+        samples=samples,
+    )  # fmt: skip
+    apart = float(np.nanmedian((trial.observed - trial.simulate())[0]))
+    if abs(apart) > math.log(_ANOTHER):
+        raise DataError(
+            f"{name}: the record is {math.exp(apart):.2g} times as large as the body of the file "
+            "moves under this force: is its inertia, its restoring or the force in other units?"
+        )
+    return trial
