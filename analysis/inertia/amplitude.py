@@ -148,7 +148,7 @@ def _rows(local: LocalPeriods, power: int) -> FloatArray:
     ones = np.ones(local.time_s.size)
     columns = [np.stack([local.time_s - local.time_s[0], ones])]
     if power:
-        columns.append(np.stack([_integral(local, power), local.amplitude**power]))
+        columns.append(np.stack([amplitude_integral(local, power), local.amplitude**power]))
     columns += [
         np.stack([local.stretch == number, 0.0 * ones])
         for number in range(int(local.stretch[-1]) + 1)
@@ -156,7 +156,7 @@ def _rows(local: LocalPeriods, power: int) -> FloatArray:
     return np.asarray(np.stack(columns).transpose(2, 1, 0))
 
 
-def _integral(local: LocalPeriods, power: int) -> FloatArray:
+def amplitude_integral(local: LocalPeriods, power: int) -> FloatArray:
     """Integrate ``A^power`` from the first middle to each, by Gauss and Legendre.
 
     Between the middles the logarithm of the amplitude is Fritsch and Carlson's monotone cubic:

@@ -15,6 +15,7 @@ from analysis.inertia.amplitude import (
 from analysis.inertia.checks import check_amplitude_effect, check_record
 from analysis.inertia.damped_fit import DampedFit, fit_damped
 from analysis.inertia.local_periods import LocalPeriods, local_periods
+from analysis.inertia.own_decay import OwnDecay, own_decay, without_lag
 from analysis.inertia.regime import of_one_regime
 from analysis.inertia.repeats import KnownScatter, Repeated, combine_runs, single_run
 from analysis.inertia.series import Series, UsablePart, usable_part
@@ -25,11 +26,20 @@ from hardware.description.flags import Flag, Severity
 
 @dataclass(frozen=True)
 class ModeAnalysis:
-    """One oscillation of a record: how its period and decay change with amplitude."""
+    """One oscillation of a record: how its period and decay change with amplitude.
+
+    Attributes
+    ----------
+    local
+        Its parts, without what friction does to their phases.
+    decay, rates
+        By a power of the amplitude, and by friction, linear and quadratic damping.
+    """
 
     local: LocalPeriods
     at_no_amplitude: ZeroAmplitude
     decay: PowerDecay
+    rates: OwnDecay
 
 
 @dataclass(frozen=True)
@@ -95,7 +105,9 @@ def analyse_record(series: Series, *, modes: int = 1, pendulum: bool = False) ->
         if not decay.converged:
             message = f"{series.where}: the decay of oscillation {mode + 1} could not be fitted"
             flags.append(Flag("decay_not_converged", Severity.WARNING, message, series.channel))
-        analyses.append(ModeAnalysis(local, zero_amplitude_period(local), decay))
+        rates = own_decay(local)
+        kept = without_lag(local, rates)
+        analyses.append(ModeAnalysis(kept, zero_amplitude_period(kept), decay, rates))
     if pendulum and series.unit == "rad":
         local = analyses[0].local
         flags += check_amplitude_effect(

@@ -2,12 +2,15 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import click
 
 from pmm.cli.group import CommandGroup
 from pmm.cli.options import JSON, PLOT, with_options
+
+if TYPE_CHECKING:
+    from pmm.document.content import Document
 
 
 @click.group(cls=CommandGroup, kind="job")
@@ -29,6 +32,7 @@ _EVERY: Final = with_options(
     click.option("--output", metavar="TOML", help="Write the section [model] there."),
     click.option("--overwrite", is_flag=True, help="Replace that file if it is there."),
     PLOT,
+    click.option("--page", metavar="FILE.html", help="Write a page with figures."),
 )
 _FITS: Final = click.option(
     "--fits",
@@ -62,11 +66,12 @@ def _command(job: str) -> Callable[..., None]:
         output: str | None,
         overwrite: bool,
         plot: str | None,
+        page: str | None,
         with_fits: bool = False,
         properties: str | None = None,
     ) -> None:
+        from pmm.cli.files import check_files
         from pmm.cli.screen import busy, messages, show
-        from pmm.document.style import write_figures
         from pmm.inertia.fits import form_fits
         from pmm.inertia.jobs import do_job
         from pmm.inertia.mass_properties import check_ending, mass_properties
@@ -78,14 +83,14 @@ def _command(job: str) -> Callable[..., None]:
             check_output(Path(target), overwrite=overwrite)
         if properties is not None:
             check_ending(Path(properties))
+        check_files({"--page": page}, [("FILE", Path(file))])
         with busy(f"{job}: {file}"):
             outcome = do_job(job, file)
             fits = form_fits(outcome) if with_fits else None
         told = document(outcome, fits)
         show(told, as_json=as_json)
-        if plot is not None:
-            written = write_figures(told.figures, Path(plot), Path(file).stem)
-            messages().print(f"written: {len(written)} figures in {plot}")
+        options = ("--fits",) if with_fits else ()
+        _draw(told, Path(file), plot, page, ("inertia", job, file, *options))
         if output is not None:
             write_whole(Path(output), model_section(outcome))
             messages().print(f"written: {output}")
@@ -96,6 +101,22 @@ def _command(job: str) -> Callable[..., None]:
             click.get_current_context().exit(1)
 
     return command
+
+
+def _draw(
+    told: "Document", read: Path, plot: str | None, page: str | None, command: tuple[str, ...]
+) -> None:
+    """Write the figures into a folder, and all that was found as a page."""
+    from pmm.cli.screen import messages, pasted
+    from pmm.document.page import write_page
+    from pmm.document.style import write_figures
+
+    if plot is not None:
+        written = write_figures(told.figures, Path(plot), read.stem)
+        messages().print(f"written: {len(written)} figures in {plot}")
+    if page is not None:
+        write_page(told, Path(page), command=pasted(*command, "--page", page), read=[read])
+        messages().print(f"page: {page}")
 
 
 for _job, (_own, _help) in _JOBS.items():

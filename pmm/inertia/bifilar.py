@@ -21,6 +21,7 @@ from pmm.inertia.experiment import Experiment
 from pmm.inertia.lines import line_share, yaw_off_lines
 from pmm.inertia.outcome import Finding, Outcome, PlaneAxes, assessed
 from pmm.inertia.properties import AXES
+from pmm.inertia.sketch import on_two_lines
 from pmm.inertia.stated_values import given, gravity_of
 from pmm.inertia.suspension import Suspended, hang
 
@@ -42,6 +43,10 @@ def run(path: str) -> Outcome:
         test.findings += _findings(one, several=len(suspended) > 1)
         test.flags += one.flags
         test.periods += one.periods
+        depth = one.found.get("depth")
+        below_m = None if depth is None else depth.result.value
+        held = one.table
+        test.sketches.append(on_two_lines(held.name, held.half_spacing_m, held.line_m, below_m))
     gyradii, used = _results(test, suspended)
     test.notes += _air_notes(table, gyradii)
     axes = _tilts(test, gyradii, used)

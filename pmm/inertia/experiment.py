@@ -2,21 +2,26 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Generic, TypeVar
+from pathlib import Path
+from typing import Any, Final, Generic, TypeVar
 
 from analysis.inertia.hanging import HangingCentre
 from analysis.inertia.result import InertiaResult
 from analysis.uncertainty.budget import Budget
 from analysis.uncertainty.estimate import Estimate
 from analysis.uncertainty.redundancy import Redundancy
+from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag
 from hardware.description.oscillator import Plane
 from pmm.inertia.job_table import JobTable
 from pmm.inertia.outcome import Finding, Outcome, PlaneAxes, StaticTest, compare, once
 from pmm.inertia.properties import properties
 from pmm.inertia.reading import Job, read_job
+from pmm.inertia.sketch import Sketch
 from pmm.inertia.sources import PeriodRuns, read_period
 from pmm.inertia.stated_values import flags_of
+
+_PICTURES: Final = (".jpg", ".jpeg", ".png")
 
 TableT = TypeVar("TableT", bound=JobTable)
 
@@ -29,6 +34,8 @@ class Experiment(Generic[TableT]):
     ----------
     missing
         What the mass properties lack while ``body`` is ``None``.
+    sketches
+        Its set-ups, as far as the geometry is known.
     centre
         Of gravity by plumb lines, once they are asked for.
     """
@@ -40,6 +47,7 @@ class Experiment(Generic[TableT]):
     notes: list[str] = field(default_factory=list)
     redundancy: list[Redundancy] = field(default_factory=list)
     statics: list[StaticTest] = field(default_factory=list)
+    sketches: list[Sketch] = field(default_factory=list)
     centre: HangingCentre | None = None
     body: InertiaResult | None = None
     missing: tuple[str, ...] = ()
@@ -60,6 +68,26 @@ class Experiment(Generic[TableT]):
     def table(self) -> TableT:
         """What the job's file says."""
         return self.job.table
+
+    @property
+    def photo(self) -> Path | None:
+        """The file's picture of the set-up.
+
+        Raises
+        ------
+        ConfigurationError
+            If it is not there, or no picture that is shown.
+        """
+        if self.table.photo is None:
+            return None
+        path = self.job.beside(self.table.photo)
+        if path.suffix.lower() not in _PICTURES:
+            raise ConfigurationError(
+                f"{self.job.path}: photo {self.table.photo}: name a file {' or '.join(_PICTURES)}"
+            )
+        if not path.is_file():
+            raise ConfigurationError(f"{self.job.path}: photo {path}: there is no such file")
+        return path
 
     def period(self, source: Any, where: str, *, pendulum: bool = False) -> PeriodRuns:
         """Read a period of the file, with its flags.
@@ -142,4 +170,6 @@ class Experiment(Generic[TableT]):
             axes=axes,
             statics=tuple(self.statics),
             redundancy=(*self.redundancy, *((centre.redundancy,) if centre else ())),
+            sketches=tuple(self.sketches),
+            photo=self.photo,
         )

@@ -22,6 +22,8 @@ class JobTable:
         What moved too and is no part of the model.
     targets
         What the results are held against.
+    photo
+        Of the set-up: a JPEG or PNG file beside this one.
     plane
         Whose inertia ``--output`` writes, pitch or yaw; ``None`` for the one that was measured.
     """
@@ -36,6 +38,7 @@ class JobTable:
     model: ModelTable = field(default_factory=ModelTable)
     take_off: tuple[PartTable, ...] = ()
     targets: tuple[TargetTable, ...] = ()
+    photo: str | None = None
     plane: Plane | None = None
     monte_carlo_seed: int = 0
 

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
+from pathlib import Path
 
 from analysis.inertia.parts import BodyPart
 from analysis.inertia.result import Comparison, InertiaResult, compare_with_target
@@ -13,6 +14,7 @@ from analysis.uncertainty.redundancy import Redundancy
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
+from pmm.inertia.sketch import Sketch
 from pmm.inertia.sources import PeriodRuns
 
 
@@ -100,6 +102,8 @@ class Outcome:
         Of ballast: each weight's name, mass and place.
     line_errors
         Of a plan: line lengths in m, and the gyradius' error per period error by each reading.
+    sketches, photo
+        The set-up: its geometry, and a picture's file.
     """
 
     job: str
@@ -119,6 +123,8 @@ class Outcome:
     placements: tuple[tuple[str, float, float, float, float], ...] = ()
     redundancy: tuple[Redundancy, ...] = ()
     tensor: BodyPart | None = None
+    sketches: tuple[Sketch, ...] = ()
+    photo: Path | None = None
 
     @property
     def agreements(self) -> tuple[Redundancy, ...]:

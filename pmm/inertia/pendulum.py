@@ -18,6 +18,7 @@ from pmm.inertia.hanging import hanging_rules
 from pmm.inertia.job_table import JobTable
 from pmm.inertia.outcome import Finding, Outcome, PlaneAxes, assessed, once
 from pmm.inertia.reading import one_of
+from pmm.inertia.sketch import about_axis
 from pmm.inertia.sources import PeriodRuns, PeriodSource
 from pmm.inertia.stated_values import given, given_or_none, gravity_of
 from pmm.inertia.torsion import TorsionTable, about_rod, in_plane, stiffness
@@ -128,6 +129,8 @@ def _on_axis(test: Experiment[PendulumJob]) -> _Swung:
         depth = below.budget.result
         test.findings.append(assessed("depth_m", "CG below the first axis", below))
     name, words = f"k_{table.axis}_m", f"{table.axis} gyradius"
+    apart_m = None if table.second is None else table.second.apart_m
+    test.sketches.append(about_axis(table.name, {"body": depth.value}, {}, apart_m))
     if table.entrained_air is not None:
         in_air = assessed(f"k_{table.axis}_in_air_m", f"{words}, with its air", own)
         test.findings.append(in_air)

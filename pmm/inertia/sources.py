@@ -222,10 +222,10 @@ def _from_records(
 def _undamped(
     runs: Sequence[RecordAnalysis], mode: int, source: PeriodSource, where: str
 ) -> Repeated:
-    """Join the runs' periods at no amplitude and take the damping out."""
+    """Join the runs' periods at no amplitude and take the damping of small swings out."""
     joined = from_runs(runs, mode, known_scatter=source.known_scatter, what=where)
-    modes = [run.fit.modes[mode] for run in runs]
-    factor = float(np.mean([one.undamped_period_s / one.period_s for one in modes]))
+    period = joined.estimate.value
+    factor = float(np.mean([run.modes[mode].rates.undamped(period) for run in runs])) / period
     estimate = joined.estimate.following(factor * joined.estimate.value, factor)
     return replace(joined, estimate=estimate, runs=tuple(factor * run for run in joined.runs))
 

@@ -22,6 +22,7 @@ from hardware.description.oscillator import Plane
 from pmm.inertia.air import without_air
 from pmm.inertia.experiment import Experiment
 from pmm.inertia.outcome import Finding, Outcome, StaticTest, assessed
+from pmm.inertia.sketch import about_axis
 from pmm.inertia.stated_values import given, given_or_none, gravity_of
 from pmm.inertia.swing_moment import Moment, first_moment
 from pmm.inertia.swing_tables import StateTable, SwingTable
@@ -57,6 +58,15 @@ def run(path: str) -> Outcome:
         if one.moment.static is not None:
             test.redundancy += _agreements(one.key, one.moment.static)
             test.notes += _lever_notes(one, one.moment.static)
+    upper = table.second_pivot
+    test.sketches.append(
+        about_axis(
+            table.name,
+            {_WORDS[key]: states[key].moment.cg.value for key in _DRAWN if key in states},
+            {one.name: one.lever_m for one in table.tare.levers},
+            None if upper is None else upper.pivot_distance_m,
+        )
+    )
     return test.outcome("swing", _PLANES.get(table.model.axis), next_step=step)
 
 
@@ -78,6 +88,7 @@ def _lever_notes(one: _Measured, static: StaticResult) -> Iterator[str]:
 
 
 _STATES = ("tare", "loaded", "second_pivot", "check", "tare_again")
+_DRAWN = ("tare", "loaded")
 _WORDS = {
     "tare": "empty swing",
     "loaded": "swing with model",

@@ -20,6 +20,7 @@ from pmm.report.inertia_amplitude import amplitude_figure
 from pmm.report.inertia_budget import budget_figure
 from pmm.report.inertia_ellipse import ellipse_figure
 from pmm.report.inertia_record import MOST_RUNS, record_figure
+from pmm.report.inertia_setup import photo_figure, setup_figure
 from pmm.report.inertia_spectrum import spectrum_figure
 
 if TYPE_CHECKING:
@@ -35,6 +36,11 @@ _RECORDS: "Final[dict[str, tuple[str, Callable[[PeriodRuns], Figure]]]]" = {
 
 def figures(outcome: Outcome) -> Iterator[content.Figure]:
     """Yield what there is to draw."""
+    if outcome.sketches:
+        draw_setup = partial(setup_figure, outcome.name, outcome.sketches)
+        yield content.Figure("setup", "The set-up, to scale.", draw_setup)
+    if outcome.photo is not None:
+        yield content.Figure("photo", "The set-up.", partial(photo_figure, outcome.photo))
     yield from _records(outcome)
     for test in outcome.statics:
         caption = f"{test.where}. Tilts under weights, and their fit."

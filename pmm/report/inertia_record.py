@@ -23,7 +23,6 @@ _BINS = 2000  # more than a picture has columns
 _MOST_POINTS = 6000
 _POINTS_PER_PERIOD = 16
 _FIT_POINTS_PER_PERIOD = 24
-_MOST_FIT_POINTS = 4000
 
 
 def record_figure(runs: PeriodRuns) -> "Figure":
@@ -63,7 +62,7 @@ def _draw_run(axes: "Axes", run: RecordAnalysis, whole: Series) -> list["Artist"
         float(series.time_s[0]), float(series.time_s[-1]), color=STEADY_SHADE, label="used"
     )
     smooth_s = _smooth(run)
-    fitted = shown.factor * run.fit.values(smooth_s)
+    smooth_s, fitted = thin(smooth_s, shown.factor * run.fit.values(smooth_s), run.part.period_s)
     # a wide band behind the record: neither hides the other, however long the record is
     (fit,) = axes.plot(smooth_s, fitted, color=FIT, lw=2.6, alpha=0.55, label="fit")
     (trace,) = axes.plot(time_s, shown.factor * values, color=TRACE, lw=0.7, label="record")
@@ -95,8 +94,7 @@ def _periods(run: RecordAnalysis) -> str:
     """Return the fit's periods, and what the tables go on with: undamped, at no amplitude."""
     fitted, at_none = (", ".join(f"{one:.5g}" for one in periods) for periods in (
         [mode.period_s for mode in run.fit.modes],
-        [run.period(k).value * mode.undamped_period_s / mode.period_s
-         for k, mode in enumerate(run.fit.modes)],
+        [mode.rates.undamped(run.period(k).value) for k, mode in enumerate(run.modes)],
     ))  # fmt: skip
     return f"{fitted} s as fitted; {at_none} s undamped, at no amplitude"
 
@@ -105,7 +103,7 @@ def _smooth(run: RecordAnalysis) -> FloatArray:
     start, stop = run.fit.time_s[0], run.fit.time_s[-1]
     fastest = min(mode.period_s for mode in run.fit.modes)
     wanted = int(_FIT_POINTS_PER_PERIOD * (stop - start) / fastest)
-    return np.linspace(start, stop, min(max(wanted, 200), _MOST_FIT_POINTS))
+    return np.linspace(start, stop, max(wanted, 200))
 
 
 def residual_on_grid(run: RecordAnalysis) -> FloatArray:

@@ -27,11 +27,12 @@ def swing(
     *,
     noise_rad: float = 2e-4,
     softening: float = 1.0 / 16.0,
+    friction: float = 1e-5,
     gap_s: tuple[float, float] = (0.0, 0.0),
 ) -> RecordAnalysis:
     """A pendulum with friction and drag over a hundred swings, nothing recorded in the gap."""
     t = np.arange(0.0, 300.0, 0.15)
-    size = amplitude(t, 0.1, friction=1e-5, viscous=3e-3, quadratic=3e-2)
+    size = amplitude(t, 0.1, friction=friction, viscous=3e-3, quadratic=3e-2)
     angle = swinging(t, PERIOD_S, size, softening=softening)
     angle += noise_rad * np.random.default_rng(seed).standard_normal(t.size)
     angle[(t > gap_s[0]) & (t < gap_s[1])] = np.nan
@@ -93,7 +94,8 @@ def test_counted_phases_know_the_period_better_than_periods_do() -> None:
 
 
 def test_a_clean_record_gives_law_and_period() -> None:
-    found = swing(noise_rad=0.0).modes[0].at_no_amplitude
+    # Without friction: its lag is not in a smooth amplitude, and would be seen at this precision.
+    found = swing(noise_rad=0.0, friction=0.0).modes[0].at_no_amplitude
     assert found.period.value == pytest.approx(PERIOD_S, rel=2e-7)
     assert found.laws[2].weight > 0.999
     assert found.laws[2].slope == pytest.approx(1.0 / 16.0, rel=0.01)

@@ -60,6 +60,7 @@ def test_figures_of_records_are_drawn(hull: Outcome, tmp_path: Path) -> None:
         path.name for path in write_figures(document(hull).figures, tmp_path, "hull", ("svg",))
     }
     assert written == {
+        "hull-setup.svg",
         "hull-stern-yaw-record.svg",
         "hull-stern-yaw-amplitude.svg",
         "hull-stern-yaw-spectrum.svg",
