@@ -20,8 +20,8 @@ class HullLoads:
     """Loads of the water on the bare hull about the point that its derivatives are about.
 
     A load is ``rho/2 S U^2 c f1 f2 ...`` (times L for a moment) with the coefficient c without
-    dimensions and the factors v/U, r L/U, u/U or their sizes: the ship behaves at each speed as at
-    the one of the test.
+    dimensions and the factors v/U, r L/U, u/U, the rudder's angle or their sizes: the ship behaves
+    at each speed as at the one of the test.
 
     Attributes
     ----------
@@ -42,18 +42,17 @@ class HullLoads:
     values: Mapping[str, FloatArray]
 
     def __post_init__(self) -> None:
-        steered = [name for name in self.values if term_of(name, Plane.HORIZONTAL).rudders]
-        if steered:
-            raise ConfigurationError(
-                f"{', '.join(steered)}: terms of the rudder's angle are not taken beside the "
-                "rudder of [rudder]; leave them out"
-            )
         missing = [name for name in NEEDED if name not in self.values]
         if missing:
             raise ConfigurationError(
                 f"no {', '.join(missing)}: a turning ship needs them; measure or state them "
                 "(0 says that there is none of it)"
             )
+
+    @property
+    def steered(self) -> tuple[str, ...]:
+        """Names of the terms that have the rudder's angle."""
+        return tuple(one for one in self.values if term_of(one, Plane.HORIZONTAL).rudders)
 
     @cached_property
     def _terms(self) -> tuple[tuple[Term, FloatArray], ...]:
@@ -66,10 +65,13 @@ class HullLoads:
         unit = 0.5 * self.density_kg_m3 * self.area_m2 * self.length_m**lengths
         return np.asarray(unit * self.values.get(name, np.zeros(1)))
 
-    def __call__(self, u: FloatArray, v: FloatArray, r: FloatArray) -> FloatArray:
+    def __call__(
+        self, u: FloatArray, v: FloatArray, r: FloatArray, rudder_rad: FloatArray | float = 0.0
+    ) -> FloatArray:
         """Return X, Y and N, shape ``(3, n)``; velocities in m/s and rad/s, of shape ``(n,)``."""
         speed = np.hypot(u, v)
-        reduced = {"u": u / speed, "v": v / speed, "r": r * self.length_m / speed}
+        angle = np.broadcast_to(rudder_rad, speed.shape)
+        reduced = {"u": u / speed, "v": v / speed, "r": r * self.length_m / speed, "d": angle}
         sizes = {f"|{letter}|": np.abs(value) for letter, value in reduced.items()}
         factors = reduced | sizes
         loads = np.zeros((3, *speed.shape))

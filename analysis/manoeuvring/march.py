@@ -78,7 +78,7 @@ def march(
     ends = start.time_s + longest_s
     while running.any():
         way = order_rad - now.rudder_rad
-        rate = np.sign(way) * math.radians(ship.rudder.rate_deg_s)
+        rate = np.sign(way) * math.radians(ship.rudder_rate_deg_s)
         with np.errstate(divide="ignore", invalid="ignore"):
             reach = np.where(way != 0.0, np.abs(way / rate), np.inf)
         lasts = np.minimum(np.minimum(step_s, reach), ends - now.time_s)

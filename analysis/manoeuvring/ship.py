@@ -14,6 +14,7 @@ import numpy as np
 from analysis.manoeuvring.hull import HullLoads
 from analysis.manoeuvring.steering import Flow, Propeller, Rudder
 from hardware.description.arrays import FloatArray
+from hardware.description.errors import ConfigurationError
 
 U, V, R, X, Y, PSI = range(6)
 """Rows of a state: velocities (m/s, rad/s), track (m, x along the approach), heading (rad)."""
@@ -29,15 +30,43 @@ class Ship:
         About the vertical axis through the point of the derivatives, and ahead of it.
     approach_m_s
         Speed on straight course; the revolutions are those that keep it, and stay.
+    rudder
+        ``None`` where the rudder's loads are terms of the hull's: they go with U^2 as the others.
+    helm_deg_s
+        How fast such a rudder is laid.
+
+    Raises
+    ------
+    ConfigurationError
+        If the rudder has loads of its own and in the hull's terms, or none.
     """
 
     hull: HullLoads
     propeller: Propeller
-    rudder: Rudder
+    rudder: Rudder | None
     mass_kg: float
     inertia_kg_m2: float
     cg_x_m: float
     approach_m_s: float
+    helm_deg_s: float = np.nan
+
+    def __post_init__(self) -> None:
+        steered = self.hull.steered
+        if steered and self.rudder is not None:
+            raise ConfigurationError(
+                f"{', '.join(steered)}: terms of the rudder's angle are not taken beside the "
+                "rudder of [rudder]; leave one of them out"
+            )
+        if self.rudder is None and not {"Y_d", "N_d"} <= set(steered):
+            raise ConfigurationError(
+                "no Y_d and N_d: without [rudder] the rudder's loads are terms of its angle; "
+                "measure or state them"
+            )
+
+    @property
+    def rudder_rate_deg_s(self) -> float:
+        """How fast the rudder is laid."""
+        return self.helm_deg_s if self.rudder is None else self.rudder.rate_deg_s
 
     @property
     def count(self) -> int:
@@ -58,8 +87,10 @@ class Ship:
         speed, density = np.hypot(u, v), self.hull.density_kg_m3
         length = self.hull.length_m
         flow = Flow(u, v, speed, np.arctan2(-v, u), r * length / speed)
-        total = self.hull(u, v, r)
+        total = self.hull(u, v, r, rudder_rad)
         total[0] += self.propeller.force(self.propeller.inflow(flow), self.rate_hz, density)
+        if self.rudder is None:
+            return total
         return total + self.rudder.loads(
             flow, rudder_rad, self.propeller, self.rate_hz, length, density
         )

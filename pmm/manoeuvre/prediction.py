@@ -129,7 +129,8 @@ def ship_of(file: ShipFile, trials: int, seed: int) -> Ship:
     area = body.length_m * (body.draught_m if file.hull.system == "mmg" else body.length_m)
     hull = HullLoads(body.length_m, area, file.water.density_kg_m3, values)
     mass = (body.mass_kg, body.inertia_kg_m2, body.cg_x_m)
-    return Ship(hull, file.propeller, file.rudder, *mass, file.speed_m_s)
+    helm = math.nan if file.rudder_rate_deg_s is None else file.rudder_rate_deg_s
+    return Ship(hull, file.propeller, file.rudder, *mass, file.speed_m_s, helm)
 
 
 def _first(hull: HullLoads, count: int) -> HullLoads:

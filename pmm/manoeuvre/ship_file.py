@@ -58,6 +58,10 @@ class ShipFile:
     ----------
     speed_m_s
         Of the approach.
+    rudder
+        ``None`` where the rudder's loads are terms of its angle among the derivatives.
+    rudder_rate_deg_s
+        How fast such a rudder is laid.
     scale
         Ship over what the file describes; 1 where it is the ship itself.
     coefficients
@@ -70,7 +74,8 @@ class ShipFile:
     water: Water
     ship: ShipBody
     propeller: Propeller
-    rudder: Rudder
+    rudder: Rudder | None = None
+    rudder_rate_deg_s: float | None = None
     name: str = "ship"
     scale: float = 1.0
     coefficients: str | None = None
@@ -164,11 +169,25 @@ def read_ship(path: Path) -> ShipFile | SubmergedFile:
     found = validate(kind, seen, faults)
     if below and table["plane"] != Plane.VERTICAL:
         faults.append(Fault(("plane",), "should be vertical, or left out for a ship"))
+    if isinstance(found, ShipFile):
+        faults += _rudder_faults(found)
     plane = Plane.VERTICAL if below else Plane.HORIZONTAL
     faults += _hull_faults(table.get("hull"), plane, ("prime",) if below else SYSTEMS)
     if found is None or faults:
         raise as_error(path, faults, table)
     return found
+
+
+def _rudder_faults(found: ShipFile) -> list[Fault]:
+    if (found.rudder is None) != (found.rudder_rate_deg_s is None):
+        return []
+    return [
+        Fault(
+            ("rudder",),
+            "should be a table with the rudder's parameters, or rudder_rate_deg_s in its place "
+            "where its loads are derivatives (Y_d, N_d, X_dd)",
+        )
+    ]
 
 
 def _hull_faults(hull: Any, plane: Plane, systems: tuple[str, ...]) -> list[Fault]:

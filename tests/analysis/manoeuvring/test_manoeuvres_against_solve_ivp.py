@@ -24,7 +24,8 @@ RATE = math.radians(kvlcc2.RATE)
 class Helm:
     """One ship under SciPy: rudder laid at its rate, then held, until a heading or a turn back."""
 
-    def __init__(self) -> None:
+    def __init__(self, rates=kvlcc2.rates) -> None:  # type: ignore[no-untyped-def]
+        self.rates = rates
         self.state = np.array([kvlcc2.U0, 0.0, 0.0, 0.0, 0.0, 0.0])
         self.delta = 0.0
 
@@ -36,7 +37,7 @@ class Helm:
                 continue
 
             def rates(t: float, y: np.ndarray, moving: bool = moving) -> np.ndarray:
-                return kvlcc2.rates(y, start + sign * RATE * t if moving else order)
+                return self.rates(y, start + sign * RATE * t if moving else order)
 
             def at(t: float, y: np.ndarray) -> float:
                 return float(event(y))
@@ -74,6 +75,44 @@ def test_turning_circle(side: float) -> None:
         (found.tactical_diameter, side * half[4]),
     ):
         assert value[0] == pytest.approx(expected / kvlcc2.L, rel=1e-6)
+
+
+BY_ANGLE = {"Y_d": -0.055, "N_d": 0.026, "X_dd": -0.03, "Y_ddd": 0.02, "N_ddd": -0.01, "Y_vvd": 0.3}
+
+
+def _by_angle(state: np.ndarray, delta: float) -> np.ndarray:
+    """The paper's hull and propeller with a rudder of Abkowitz's terms, written out."""
+    u, v = state[:2]
+    still = replace(kvlcc2, A_R=1e-300)  # no rudder of its own
+    q = 0.5 * kvlcc2.RHO * kvlcc2.L * kvlcc2.D * (u * u + v * v)
+    c, vp2 = BY_ANGLE, v * v / (u * u + v * v)
+    x = q * c["X_dd"] * delta**2
+    y = q * (c["Y_d"] * delta + c["Y_ddd"] * delta**3 + c["Y_vvd"] * vp2 * delta)
+    n = q * kvlcc2.L * (c["N_d"] * delta + c["N_ddd"] * delta**3)
+    unit = 0.5 * kvlcc2.RHO * kvlcc2.L**2 * kvlcc2.D
+    left = np.diag([1.0, 1.0, 1.0]) * kvlcc2.MASS
+    left[0, 0] += kvlcc2.M_X * unit
+    left[1, 1] += kvlcc2.M_Y * unit
+    left[1, 2] = left[2, 1] = kvlcc2.X_G * kvlcc2.MASS
+    left[2, 2] = kvlcc2.I_ZG + kvlcc2.X_G**2 * kvlcc2.MASS + kvlcc2.J_Z * unit * kvlcc2.L**2
+    added = np.linalg.solve(left, [x, y, n])
+    return still.rates(state, 0.0) + np.array([*added, 0.0, 0.0, 0.0])
+
+
+def test_a_rudder_of_abkowitz_terms_turns_as_written_out() -> None:
+    values = kvlcc2.terms() | {name: np.array([one]) for name, one in BY_ANGLE.items()}
+    ship = replace(kvlcc2.ship(), rudder=None, helm_deg_s=kvlcc2.RATE, hull=HullLoads(
+        kvlcc2.L, kvlcc2.L * kvlcc2.D, kvlcc2.RHO, values))  # fmt: skip
+    order, helm = math.radians(35.0), Helm(_by_angle)
+    quarter = helm.until(order, lambda y: y[5] - 0.5 * math.pi)
+    half = helm.until(order, lambda y: y[5] - math.pi)
+    found = turning_circle(ship, order)
+    assert found.advance[0] == pytest.approx(quarter[3] / kvlcc2.L, rel=1e-6)
+    assert found.tactical_diameter[0] == pytest.approx(half[4] / kvlcc2.L, rel=1e-6)
+    with pytest.raises(ConfigurationError, match=r"Y_d, N_d, .* not taken beside the rudder"):
+        replace(ship, rudder=kvlcc2.RUDDER)
+    with pytest.raises(ConfigurationError, match="no Y_d and N_d: without"):
+        replace(kvlcc2.ship(), rudder=None)
 
 
 @pytest.mark.parametrize(("degrees", "side"), [(10.0, 1.0), (20.0, -1.0)])
