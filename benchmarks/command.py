@@ -39,6 +39,7 @@ NAMES = (
     "exact",
     "plan_design",
     "steering",
+    "roll",
     "sequential",
     "campaign",
     "sealed",

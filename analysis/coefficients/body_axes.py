@@ -14,7 +14,7 @@ import numpy as np
 from analysis.coefficients.phasors import Phasors, interleaved
 from analysis.coefficients.stated_uncertainties import STATED
 from analysis.coefficients.tare import Tare
-from analysis.kinematics.body_frame import CHANNELS, UNITS, in_body_axes
+from analysis.kinematics.body_frame import CHANNELS, HEEL, ROLL_MOMENT, UNIT_OF, in_body_axes
 from analysis.kinematics.complex_step import by_parts, pointwise
 from analysis.kinematics.cycle import driven, harmonics, per_part, waves
 from analysis.kinematics.geometry import Geometry, Waves
@@ -57,7 +57,13 @@ class InBodyAxes:
 
 
 def of_struts(
-    struts: Phasors, geometry: Geometry, frequency_hz: float, orders: int, *, asked: bool
+    struts: Phasors,
+    geometry: Geometry,
+    frequency_hz: float,
+    orders: int,
+    *,
+    asked: bool,
+    roll: tuple[str, ...] = (),
 ) -> InBodyAxes:
     """Return the model's phasors about the midpoint.
 
@@ -66,12 +72,14 @@ def of_struts(
     Parameters
     ----------
     struts
-        Displacements and gauges of the aft and the fore strut, with or without ``force_x``, order
-        by order.
+        Displacements and gauges of the aft and the fore strut, with or without ``force_x``, and
+        those that ``roll`` names, order by order.
     geometry
         Numbers, not arrays.
     asked
         Whether the displacements are the set-point's: the photocell's latency acts on them.
+    roll
+        Which of roll moment and heel stand behind the gauges.
     """
     channels = len(struts.names) // (orders + 1)
     omega = 2.0 * math.pi * frequency_hz
@@ -80,18 +88,18 @@ def of_struts(
     parts = struts.real.values
     given = np.array([[value] for value in _given(geometry)])
     inputs = np.concatenate((parts @ maps, given * np.ones(maps.shape[-1])))
-    values, slope = pointwise(lambda waves: _model(geometry, waves), inputs)
+    values, slope = pointwise(lambda waves: _model(geometry, waves, len(roll)), inputs)
     gauged = len(wanted)
     by_struts = by_parts(slope[:, :gauged], maps, orders)
     harmonics_of_body = harmonics(values, orders)
     harmonics_of_body[2] -= geometry.drift_rad
-    names = CHANNELS[: len(values)]
+    names = (*CHANNELS[: len(values) - len(roll)], *roll)
     phasors = Phasors(
         labels(names, orders),
-        UNITS[: len(names)] * (orders + 1),
+        tuple(UNIT_OF[name] for name in names) * (orders + 1),
         struts.real.carried(harmonics_of_body, by_struts),
     )
-    sensitivity = by_struts @ _by_stated(struts.values, channels, omega, asked=asked)
+    sensitivity = by_struts @ _by_stated(struts.values, channels, omega, roll, asked=asked)
     for k, name in enumerate(_GEOMETRY):
         sensitivity[:, STATED.index(name)] += harmonics(slope[:, gauged + k], orders)
     sensitivity[2, STATED.index("alignment_rad")] -= 1.0  # the rotation is from the drift
@@ -100,11 +108,12 @@ def of_struts(
     moved = _moved(harmonics_of_body.reshape(orders + 1, len(names), 2), geometry, omega)
     sensitivity[:, STATED.index("midpoint_x_m")] += moved.ravel()
     moving = Driven(inputs[0:2], inputs[2:4], inputs[4:6])
-    return InBodyAxes(phasors, sensitivity, Tare.of(geometry, moving, channels - 2))
+    gauges = channels - 2 - len(roll)
+    return InBodyAxes(phasors, sensitivity, Tare.of(geometry, moving, gauges))
 
 
 def parts_of_struts(
-    readings: ComplexArray, geometry: Geometry, omega: FloatArray
+    readings: ComplexArray, geometry: Geometry, omega: FloatArray, rolling: int = 0
 ) -> tuple[FloatArray, Tare]:
     """Return the interleaved parts and the ``tare`` of :func:`of_struts` alone, of many runs.
 
@@ -113,7 +122,8 @@ def parts_of_struts(
     Parameters
     ----------
     readings
-        Displacements and gauges, shape ``(runs, orders + 1, 4 or 5)``.
+        Displacements and gauges, shape ``(runs, orders + 1, 4 or more)``; roll moment and heel
+        last, ``rolling`` of them.
     geometry
         Speed and drift of shape ``(runs, 1)``.
     omega
@@ -122,9 +132,16 @@ def parts_of_struts(
     runs, count, channels = readings.shape
     moved = driven(interleaved(readings[..., :2].reshape(runs, -1)), omega)
     read = waves(interleaved(readings[..., 2:].reshape(runs, -1)), channels - 2)
-    parts = harmonics(in_body_axes(geometry, moved, read), count - 1)
+    gauges = channels - 2 - rolling
+    parts = harmonics(in_body_axes(geometry, moved, *_split(read, gauges)), count - 1)
     parts[:, 2] -= np.ravel(geometry.drift_rad)
-    return parts, Tare.of(geometry, moved, channels - 2)
+    return parts, Tare.of(geometry, moved, gauges)
+
+
+def _split(readings: Waves, gauges: int) -> tuple[Waves, Waves | None]:
+    """Return the struts' gauges, and roll moment and heel where there are any."""
+    behind = readings[..., gauges:, :]
+    return readings[..., :gauges, :], behind if behind.shape[-2] else None
 
 
 def _given(geometry: Geometry) -> tuple[float, ...]:
@@ -135,14 +152,17 @@ def _given(geometry: Geometry) -> tuple[float, ...]:
     )
 
 
-def _model(geometry: Geometry, waves: Waves) -> Waves:
+def _model(geometry: Geometry, waves: Waves, rolling: int) -> Waves:
     half, speed, drift = (waves[..., -3 + k, :] for k in range(3))
     exact = replace(geometry, half_spacing_m=half, speed_m_s=speed, drift_rad=drift)
     driven = Driven(waves[..., 0:2, :], waves[..., 2:4, :], waves[..., 4:6, :])
-    return in_body_axes(exact, driven, waves[..., 6:-3, :])
+    readings = waves[..., 6:-3, :]
+    return in_body_axes(exact, driven, *_split(readings, readings.shape[-2] - rolling))
 
 
-def _by_stated(values: ComplexArray, channels: int, omega: float, *, asked: bool) -> FloatArray:
+def _by_stated(
+    values: ComplexArray, channels: int, omega: float, roll: tuple[str, ...], *, asked: bool
+) -> FloatArray:
     """How the struts' phasors follow what is stated of displacements and gauges."""
     shaped = values.reshape(-1, channels)
     order = np.arange(len(shaped))
@@ -161,7 +181,12 @@ def _by_stated(values: ComplexArray, channels: int, omega: float, *, asked: bool
     }
     if asked:
         moves["latency_s"] = {_AFT: later * shaped[:, _AFT], _FORE: later * shaped[:, _FORE]}
+    if ROLL_MOMENT in roll:
+        own = channels - len(roll) + roll.index(ROLL_MOMENT)
+        moves["roll_gauge_relative"] = {own: shaped[:, own]}
     sensitivity = np.zeros((len(shaped), channels, 2, len(STATED)))
+    if HEEL in roll:
+        sensitivity[0, channels - 1, 0, STATED.index("heel_rad")] = 1.0
     for name, columns in moves.items():
         for channel, change in columns.items():
             sensitivity[:, channel, 0, STATED.index(name)] = change.real

@@ -17,12 +17,14 @@ from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.stated_uncertainties import STATED
 from analysis.coefficients.tare import Tare
 from analysis.ideal_rig import mass_matrix, weight_matrix
-from analysis.kinematics.body_frame import CHANNELS
+from analysis.kinematics.body_frame import CHANNELS, HEELED, ROLL_MOMENT
+from analysis.kinematics.body_frame import LOADS as LOAD_CHANNELS
 from hardware.description.arrangement import Arrangement
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
+from hardware.description.heel import Heel
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium
 
@@ -60,7 +62,7 @@ class BodyCycle:
         By order, :data:`analysis.kinematics.body_frame.CHANNELS`: displacement across the tank (m),
         rotation from where the drift sets the model (rad), velocities through the water along and
         across it (m/s), force (N), moment (N m) and, where there is a gauge for it, surge force (N)
-        of the struts on the model.
+        of the struts on the model; of one that heels, their roll moment (N m) and its heel (rad).
     sensitivity
         Slope of the phasors' real numbers by each stated quantity, shape ``(2 n, len(STATED))``.
     mean_known
@@ -82,7 +84,10 @@ class BodyCycle:
         Of the rig, by which motion and loads were made of what was read.
     readings
         Phasors of the struts' displacements and gauges, ``force_x`` last where there is one, shape
-        ``(orders + 1, 4 or 5)``; empty where only motion and loads are known.
+        ``(orders + 1, 4 or 5)``; empty where only motion and loads are known. Roll moment and heel
+        follow.
+    heel, heel_rad
+        How the model heels, and the heel of the run's set-point, to starboard.
     """
 
     name: str
@@ -104,6 +109,13 @@ class BodyCycle:
     arrangement: Arrangement = field(default_factory=Arrangement)
     readings: ComplexArray = field(default_factory=_unread)
     rudder_rad: float = 0.0
+    heel: Heel | None = None
+    heel_rad: float = 0.0
+
+    @property
+    def has_roll(self) -> bool:
+        """Whether the roll moment was measured."""
+        return at_order(ROLL_MOMENT, 0) in self.phasors.names
 
     @property
     def has_surge(self) -> bool:
@@ -113,7 +125,7 @@ class BodyCycle:
     @property
     def channels(self) -> tuple[str, ...]:
         """Names of the channels whose phasors the cycle has."""
-        return CHANNELS if self.has_surge else CHANNELS[:-1]
+        return tuple(name for name in HEELED if at_order(name, 0) in self.phasors.names)
 
     @property
     def motion(self) -> ComplexArray:
@@ -165,6 +177,8 @@ class BodyCycle:
             body=self.body,
             restoring=self.restoring,
             point_ahead_m=self.point_ahead_m,
+            heel=self.heel,
+            heel_rad=self.heel_rad,
         )
 
     def _insensitive(self) -> FloatArray:
@@ -225,7 +239,7 @@ class BodyCycle:
                 readings[n, gauges] -= turn * dry.readings[n, gauges]
             for name in (
                 channel
-                for channel in CHANNELS[4:]
+                for channel in LOAD_CHANNELS
                 if channel in self.channels and channel in dry.channels
             ):
                 place = self.phasors.index(at_order(name, n))

@@ -23,6 +23,7 @@ from analysis.coefficients.campaign_records import (
 )
 from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
 from analysis.coefficients.campaign_solve import GroupCoefficients, solve_group
+from analysis.coefficients.cycle_checks import missing_roll_gauge
 from analysis.coefficients.names import place_of
 from analysis.coefficients.repeats import Repeatability, outliers, repeatability, with_repeats
 from analysis.coefficients.terms import term_of
@@ -108,7 +109,7 @@ def assemble(
         missing=_still_missing(blocks, entries),
         flags=tuple(dict.fromkeys(flag for block in blocks for flag in block.flags)),
     )
-    _check_wanted(coefficients, request)
+    _check_wanted(coefficients, cycles, request)
     whole = with_zero_frequency(coefficients) if request.zero_frequency else coefficients
     others = tuple(_others(coefficients, whole, blocks, cycles))
     return replace(
@@ -155,12 +156,16 @@ def _still_missing(
     return tuple(missing for missing in every if missing.name not in names)
 
 
-def _check_wanted(coefficients: CampaignCoefficients, request: Request) -> None:
+def _check_wanted(
+    coefficients: CampaignCoefficients, cycles: Sequence[BodyCycle], request: Request
+) -> None:
     for name in request.wanted:
         _check_name(name, coefficients, request)
         if coefficients.rows(name):
             continue
         why = [missing.message for missing in coefficients.missing if missing.name == name]
+        if not why and name.startswith("K_") and not all(cycle.has_roll for cycle in cycles):
+            why = [missing_roll_gauge([cycle.name for cycle in cycles if not cycle.has_roll])]
         known = ", ".join(dict.fromkeys(entry.name for entry in coefficients.entries))
         raise DataError(why[0] if why else f"{name} is not determined by these runs ({known} are)")
 

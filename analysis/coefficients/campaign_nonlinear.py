@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from analysis.coefficients.body_cycle import BodyCycle
-from analysis.coefficients.campaign_plan import Request
+from analysis.coefficients.campaign_plan import Request, set_heel_of
 from analysis.coefficients.campaign_records import HIGHER_ORDER, FormChoice, Missing
 from analysis.coefficients.cycle_fit import (
     FIRST,
@@ -20,7 +20,7 @@ from analysis.coefficients.cycle_fit import (
 from analysis.coefficients.form_choice import LINEAR_FORM, choose_form, forms_of, rival_forms
 from analysis.coefficients.identifiability import fundamental_velocities
 from analysis.coefficients.names import Form
-from analysis.coefficients.terms import LOAD_LETTERS, VELOCITY_LETTERS
+from analysis.coefficients.terms import ROLL, VELOCITY_LETTERS, letter_of_load
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
@@ -31,7 +31,7 @@ STATIC_DRIFT = "static drift"
 SURGE_FORCES = "surge"
 
 _LEFT_OUT = "other motion left out"
-_LINEAR_ANGLES = 4  # of the rudder; more of them tell what is cubic
+_LINEAR_ANGLES = 4  # of rudder or heel; more of them tell what is cubic
 _MOVES = 0.05  # of the larger motion at the struts: less tells nothing of its terms
 
 
@@ -60,17 +60,20 @@ def nonlinear_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
     fits, missing = group.fits, group.missing
     motions, cross = _motions(cycles)
     orders = tuple(n for n in HIGHER if n <= min(cycle.orders for cycle in cycles))
-    for row in (0, 1):
+    plane = cycles[0].plane
+    for row in _rows(cycles):
+        angles = _moving_heel(cycles, motions, orders, cross=cross)
         try:
-            choice, richest = choose_form(cycles, row, motions, orders, cross=cross)
+            choice, richest = choose_form(cycles, row, motions, orders, cross=cross, angles=angles)
         except DataError as error:
-            missing.append(Missing(f"{LOAD_LETTERS[cycles[0].plane][row]} terms", str(error)))
+            missing.append(Missing(f"{letter_of_load(plane, row)} terms", str(error)))
             continue
         group.choices.append(choice)
         group.richest.append(richest)
-        forms = forms_of(cycles[0].plane, row, motions, cross=cross)
         of_all: list[tuple[str, CycleFit]] = []
         for method, of, chosen in _methods(cycles, orders):
+            angles = _moving_heel(cycles, motions, chosen, cross=cross)
+            forms = forms_of(plane, row, motions, cross=cross, angles=angles)
             _try_form(of_all, missing, method, of, forms, choice, chosen, request)
         fits += of_all
         for _, several in of_all[:1]:
@@ -78,6 +81,25 @@ def nonlinear_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
     if all(cycle.has_surge for cycle in cycles):
         _surge(group, cycles, motions, cross, request)
     return group
+
+
+def _rows(cycles: Sequence[BodyCycle]) -> tuple[int, ...]:
+    """Return the loads across, about and, where all runs have a gauge for it, in roll."""
+    return (0, 1, *((ROLL,) if all(cycle.has_roll for cycle in cycles) else ()))
+
+
+def _moving_heel(
+    cycles: Sequence[BodyCycle], motions: str, orders: Sequence[int], *, cross: bool
+) -> tuple[str, ...]:
+    """Return the factors of heel that oscillations show at some harmonics, odd together."""
+    sizes = {round(abs(set_heel_of(cycle)), 4) for cycle in cycles}
+    if sizes == {0.0}:
+        return ()
+    v, r = tuple(VELOCITY_LETTERS[cycles[0].plane])
+    own = [letter for letter, here in ((v, "v"), (r, "r")) if here in motions]
+    even = [f"{one}{one}phi" for one in own] + ([f"{v}{r}phi"] if cross else [])
+    odd = [f"{one}phiphi" for one in own] if len(sizes) > 1 else []
+    return (*(even if 2 in orders else ()), *odd)
 
 
 def _single_runs(
@@ -118,7 +140,8 @@ def _methods(
     if orders != FIRST:
         methods.append((HIGHER_ORDER, cycles, orders))
     methods.append((FIRST_HARMONICS, cycles, FIRST))
-    if all(cycle.mean_known for cycle in cycles):
+    heeled = any(map(set_heel_of, cycles))  # a mean holds what does not move
+    if all(cycle.mean_known for cycle in cycles) and not heeled:
         methods.append((QUASI, cycles, QUASI_STEADY))
     return methods
 
@@ -197,6 +220,10 @@ def _surge(
     names += [f"X_{v}{r}"] if cross else []
     even = (0, 2) if means else (2,)
     orders = (0, 1, 2) if cross and means else even
+    if any(map(set_heel_of, cycles)):
+        own = [letter for letter, here in ((v, "v"), (r, "r")) if here in motions]
+        names += [f"X_{letter}phi" for letter in own] + (["X_phiphi"] if means else [])
+        orders = tuple(sorted({1, *orders}))
     _try_surge(fits, cycles, names, orders, request)
 
 
@@ -217,16 +244,16 @@ def static_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
 
     Force and moment take the form that the data support, and what they misfit it by widens their
     intervals; X is the resistance and, where the model was turned, quadratic. A rudder that was
-    laid adds its own terms, as mirrored runs mirror the loads: odd ones, in X even ones.
+    laid and a heel that was set add terms, as mirrored runs mirror the loads: odd ones, in X even.
     """
     plane, speed = cycles[0].plane, cycles[0].speed_m_s
-    odd, even = _rudder_factors(cycles)
+    odd, even = _set_angles(cycles)
     group = GroupFits()
     fits, missing = group.fits, group.missing
-    for row in (0, 1):
-        forms = forms_of(plane, row, "v", steady=True, rudder=odd)
+    for row in _rows(cycles):
+        forms = forms_of(plane, row, "v", steady=True, angles=odd)
         try:
-            choice, richest = choose_form(cycles, row, "v", STATIC, steady=True, rudder=odd)
+            choice, richest = choose_form(cycles, row, "v", STATIC, steady=True, angles=odd)
         except DataError as error:
             missing += [Missing(name, f"{STATIC_DRIFT}: {error}") for name in forms[LINEAR_FORM]]
             continue
@@ -243,16 +270,23 @@ def static_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
     return group
 
 
-def _rudder_factors(cycles: Sequence[BodyCycle]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return the factors of the rudder's terms that static runs may tell: odd ones, even ones."""
+def _set_angles(cycles: Sequence[BodyCycle]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the factors of rudder and heel that static runs may tell: odd ones, even ones."""
     v = VELOCITY_LETTERS[cycles[0].plane][0]
-    angles = {round(cycle.rudder_rad, 4) for cycle in cycles}
-    if angles == {0.0}:
-        return (), ()
-    drifts = {round(cycle.drift_rad, 4) for cycle in cycles if round(cycle.rudder_rad, 4)}
-    cubic = ("ddd",) if len(angles) > _LINEAR_ANGLES else ()
-    turned = bool(drifts - {0.0})
-    return (
-        ("d", *cubic, *((f"{v}{v}d",) if turned else ())),
-        ("dd", *((f"{v}d",) if turned else ())),
-    )
+    odd: list[str] = []
+    even: list[str] = []
+    for letter, angles in (
+        ("d", [round(cycle.rudder_rad, 4) for cycle in cycles]),
+        ("phi", [round(set_heel_of(cycle), 4) for cycle in cycles]),
+    ):
+        if set(angles) == {0.0}:
+            continue
+        pairs = [
+            (angle, round(cycle.drift_rad, 4)) for angle, cycle in zip(angles, cycles, strict=True)
+        ]
+        turned = {abs(angle) for angle, drift in pairs if drift}
+        odd += [letter] + ([letter * 3] if len(set(angles)) > _LINEAR_ANGLES else [])
+        odd += [f"{v}{v}{letter}"] if turned - {0.0} else []
+        odd += [f"{v}{letter * 2}"] if letter == "phi" and len(turned) > 1 else []
+        even += [letter * 2] + ([f"{v}{letter}"] if turned - {0.0} else [])
+    return tuple(odd), tuple(even)

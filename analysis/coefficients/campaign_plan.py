@@ -12,6 +12,7 @@ from analysis.coefficients.identifiability import fundamental_velocities, identi
 from analysis.coefficients.names import Form
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from hardware.description.errors import ConfigurationError
+from hardware.description.heel import Held
 from hardware.description.setpoint import Medium
 
 _SAME_FREQUENCY = 5e-3
@@ -144,7 +145,7 @@ def plan(cycles: Sequence[BodyCycle], request: Request) -> tuple[Group, ...]:
 
 
 def _by_amplitude(cycles: Sequence[BodyCycle], request: Request) -> list[Group]:
-    straight = [cycle for cycle in cycles if cycle.drift_rad == 0.0]
+    straight = [cycle for cycle in cycles if cycle.drift_rad == 0.0 and not set_heel_of(cycle)]
     sizes = _classes([strut_amplitude(cycle) for cycle in straight], _SAME_AMPLITUDE, 0.0)
     classes = [
         tuple(
@@ -161,6 +162,12 @@ def _by_amplitude(cycles: Sequence[BodyCycle], request: Request) -> list[Group]:
     if request.nonlinear and several:
         groups.append(Group(GroupKind.NONLINEAR, tuple(cycles)))
     return groups
+
+
+def set_heel_of(cycle: BodyCycle) -> float:
+    """Return the heel at which a run's model was fixed; 0 where it is upright or free to roll."""
+    fixed = cycle.heel is not None and cycle.heel.held is Held.SET
+    return cycle.heel_rad if fixed else 0.0
 
 
 def _told(cycles: Sequence[BodyCycle], form: Form) -> tuple[int, ...]:

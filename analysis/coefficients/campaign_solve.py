@@ -15,11 +15,12 @@ from analysis.coefficients.campaign_nonlinear import (
 from analysis.coefficients.campaign_plan import Group, GroupKind, Request
 from analysis.coefficients.campaign_records import LINEAR, CoefficientEntry, FormChoice, Missing
 from analysis.coefficients.campaign_result import TrialColumns, no_trials
-from analysis.coefficients.cycle_fit import CycleFit
+from analysis.coefficients.cycle_fit import FIRST, CycleFit, fit_cycles
 from analysis.coefficients.cycle_trials import cycle_trials
 from analysis.coefficients.linear_fit import lacking_places, linear_fit
 from analysis.coefficients.rearrangement import Refits, refits
 from analysis.coefficients.run_agreement import run_flags
+from analysis.coefficients.terms import ROLL, linear_terms
 from analysis.uncertainty.values import UncertainValues, stacked
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
@@ -72,12 +73,32 @@ def _linear(cycles: Sequence[BodyCycle], request: Request) -> GroupCoefficients:
         )
         for k, place in enumerate(linear.places)
     )
-    trials = _fits_trials([(LINEAR, fit)], request)
-    others = refits(cycles, [fit], [])
-    flags = (*linear.flags, *run_flags(fit))
-    return GroupCoefficients(
-        entries, fit.uncertain, trials, missing=missing, flags=flags, others=others
+    fits = [(LINEAR, fit), *_in_roll(cycles, {place.column for place in linear.places}, request)]
+    entries += tuple(
+        _fit_entry(LINEAR, one, k) for _, one in fits[1:] for k in range(len(one.names))
     )
+    trials = _fits_trials(fits, request)
+    others = refits(cycles, [one for _, one in fits], [])
+    flags = (*linear.flags, *(flag for _, one in fits for flag in run_flags(one)))
+    return GroupCoefficients(
+        entries,
+        stacked([one.uncertain for _, one in fits]),
+        trials,
+        missing=missing,
+        flags=flags,
+        others=others,
+    )
+
+
+def _in_roll(
+    cycles: Sequence[BodyCycle], columns: set[int], request: Request
+) -> list[tuple[str, CycleFit]]:
+    """Return the fit of the roll moment where all runs have one, of the motions that are told."""
+    if not all(cycle.has_roll for cycle in cycles):
+        return []
+    every = linear_terms(cycles[0].plane, (ROLL,))
+    names = [name for name in every if "vr".index(name[2]) in columns]
+    return [(LINEAR, fit_cycles(cycles, names, FIRST, stated=request.stated))]
 
 
 def _fits_block(

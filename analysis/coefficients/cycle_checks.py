@@ -1,5 +1,6 @@
 """Whether cycles can be fitted together, and whether they determine all terms."""
 
+import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
@@ -7,7 +8,16 @@ import numpy as np
 
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_model import MOVES, CycleProblem
-from analysis.coefficients.terms import RUDDER_LETTER, SURGE, Term, name_of_term
+from analysis.coefficients.terms import (
+    ANGLES,
+    HEEL_LETTER,
+    ROLL,
+    SURGE,
+    Term,
+    letter_of,
+    name_of_term,
+)
+from analysis.kinematics.body_frame import HEEL
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.setpoint import Medium
 
@@ -61,14 +71,29 @@ def check_determined(problem: CycleProblem) -> None:
     DataError
         Naming the terms of each load that go together and what run would tell them apart.
     """
+    of_heel = [term for term in problem.terms if term.of_roll and term.row != ROLL]
+    if of_heel and HEEL not in problem.channels:
+        names = ", ".join(name_of_term(term, problem.cycles[0].plane) for term in of_heel)
+        raise DataError(f"{names}: these runs have no heel; state [heel] in the campaign file")
     for row, columns in problem.rows:
         if row == SURGE and not all(cycle.has_surge for cycle in problem.cycles):
             lacking = [cycle.name for cycle in problem.cycles if not cycle.has_surge]
             raise DataError(
                 f"X terms need the channel force_x, which {', '.join(lacking)} did not record"
             )
+        if row == ROLL and not all(cycle.has_roll for cycle in problem.cycles):
+            lacking = [cycle.name for cycle in problem.cycles if not cycle.has_roll]
+            raise DataError(missing_roll_gauge(lacking))
         matrix = problem.weighted(problem.nominal[0][..., columns], row)
         _check_apart(problem, matrix, [problem.terms[k] for k in columns])
+
+
+def missing_roll_gauge(runs: Sequence[str]) -> str:
+    """Return what is wrong with runs that do not tell K."""
+    return (
+        f"a missing roll gauge: K terms need the channel roll_moment, which {', '.join(runs)} did "
+        "not record; record it, and state [heel] in the campaign file"
+    )
 
 
 def _check_apart(problem: CycleProblem, matrix: np.ndarray, terms: list[Term]) -> None:
@@ -99,15 +124,22 @@ def _typical(term: Term, problem: CycleProblem) -> float:
     across, turn = np.abs(problem.moved[:, 1:3]).max(axis=(0, 2))
     pace = float(max(across, half * turn))
     omega = 2.0 * np.pi * max(cycle.frequency_hz for cycle in problem.cycles)
-    turning = sum("r" in factor.replace("dot", "") for factor in term.factors)
-    laid = float(np.abs(problem.moved[:, MOVES.index(RUDDER_LETTER)]).max()) ** term.rudders
-    return float(laid * pace**term.degree * omega**term.rates / half**turning)
+    letters = [letter_of(factor) for factor in term.factors]
+    turning, rolling = letters.count("r"), letters.count("p")
+    sizes = np.abs(problem.moved).max(axis=(0, 2))
+    laid = math.prod(float(sizes[MOVES.index(one)]) for one in letters if one in ANGLES)
+    if rolling:
+        laid *= float(sizes[MOVES.index("p")]) ** rolling
+    return float(laid * pace ** (term.degree - rolling) * omega**term.rates / half**turning)
 
 
 def _remedy(terms: Sequence[Term], problem: CycleProblem) -> str:
     """Return which run would tell terms apart, or from nothing."""
-    if any(term.rudders for term in terms):
-        return "runs with the rudder laid at other angles"
+    if any(term.angles for term in terms):
+        heeled = any(HEEL_LETTER in letter_of(one) for term in terms for one in term.factors)
+        return "runs at other " + ("heel angles" if heeled else "angles of the rudder")
+    if any("p" in letter_of(one) for term in terms for one in term.factors):
+        return "a roll decay"
     if not any(cycle.frequency_hz > 0.0 for cycle in problem.cycles):
         return "static runs at another drift angle"
     letters = {f.replace("dot", "").strip("|") for term in terms for f in term.factors}

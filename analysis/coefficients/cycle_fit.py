@@ -23,7 +23,7 @@ from analysis.coefficients.cycle_checks import check_cycles, check_determined
 from analysis.coefficients.cycle_model import CycleProblem
 from analysis.coefficients.names import Form
 from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainties
-from analysis.coefficients.terms import Term, name_of_term, term_of
+from analysis.coefficients.terms import LOAD_WORDS, Term, name_of_term, term_of
 from analysis.uncertainty.values import Contribution, UncertainValues, added
 from hardware.description.arrays import FloatArray
 
@@ -44,9 +44,9 @@ class CycleFit:
     names
         In the order of ``values``; SI units.
     chi_square
-        Weighted squares of the residuals by load (force, moment, surge), shape ``(3,)``.
+        Weighted squares of the residuals by load, as :data:`LOAD_WORDS`, shape ``(4,)``.
     data
-        Numbers fitted by load, shape ``(3,)``.
+        Numbers fitted by load, shape ``(4,)``.
     more
         Inputs besides scatter and what is stated.
     """
@@ -101,7 +101,7 @@ class CycleFit:
     def refitted(self, parts: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return values and squares of other numbers of the cycles, with the same weights.
 
-        The results are values, chi_square: their shapes are ``(trials, n)`` and ``(trials, 3)``.
+        The results are values, chi_square: their shapes are ``(trials, n)`` and ``(trials, 4)``.
 
         Parameters
         ----------
@@ -168,13 +168,13 @@ def fit_terms(
     It raises what :func:`fit_cycles` raises.
     """
     highest = min(cycle.orders for cycle in cycles)
-    even = np.ones((len(cycles), len(orders), 3))
+    even = np.ones((len(cycles), len(orders), len(LOAD_WORDS)))
     first = CycleProblem(tuple(cycles), terms, orders, even, highest, form)
     check_determined(first)
     problem = first.weighed(_weights(first, first.solve_nominal()))
     nominal = problem.solve_nominal()
     chi_square = problem.squares(*problem.nominal, nominal)
-    data = np.zeros(3)
+    data = np.zeros(len(LOAD_WORDS))
     for row, _ in problem.rows:
         data[row] = len(cycles) * problem.real.sum()
     return CycleFit(names, terms, nominal, chi_square, data, problem, stated)

@@ -19,9 +19,9 @@ from analysis.coefficients.least_squares import least_squares
 from analysis.coefficients.names import Form
 from analysis.coefficients.phasors import interleaved
 from analysis.coefficients.stated_uncertainties import STATED
-from analysis.coefficients.term_waves import MOVES, slopes_of, waves_of
-from analysis.coefficients.terms import Term
-from analysis.kinematics.body_frame import CHANNELS
+from analysis.coefficients.term_waves import MOVES, UPRIGHT, slopes_of, waves_of
+from analysis.coefficients.terms import LOAD_WORDS, RUDDER_LETTER, Term
+from analysis.kinematics.body_frame import CHANNELS, HEEL, HEELED, LOADS
 from analysis.kinematics.cycle import basis, mean
 from analysis.uncertainty.values import Contribution
 from hardware.description.arrays import FloatArray
@@ -48,7 +48,7 @@ class CycleProblem:
     orders
         The harmonics that are fitted: (0, 1) is quasi-steady, (1,) needs no zero runs.
     weights
-        One over the standard deviation, shape ``(cycles, orders, 3)``: force, moment, surge.
+        One over the standard deviation of each load, shape ``(cycles, orders, 4)``.
     highest
         Harmonic of the motion that is taken into account: all cycles have it.
     form
@@ -61,6 +61,11 @@ class CycleProblem:
     weights: FloatArray
     highest: int
     form: Form = Form.MANOEUVRING
+
+    @cached_property
+    def channels(self) -> tuple[str, ...]:
+        """Of the cycles' numbers: all, those of heel where a cycle has them."""
+        return HEELED if any(HEEL in cycle.channels for cycle in self.cycles) else CHANNELS
 
     @cached_property
     def parts(self) -> FloatArray:
@@ -82,8 +87,9 @@ class CycleProblem:
     def _filled(self, rows: FloatArray, cycle: BodyCycle) -> FloatArray:
         shaped = rows.reshape(cycle.orders + 1, len(cycle.channels), 2, *rows.shape[1:])
         count = self.highest + 1
-        rows_by_order = np.zeros((count, len(CHANNELS), 2, *rows.shape[1:]))
-        rows_by_order[:, : len(cycle.channels)] = shaped[:count]
+        rows_by_order = np.zeros((count, len(self.channels), 2, *rows.shape[1:]))
+        places = [self.channels.index(name) for name in cycle.channels]
+        rows_by_order[:, places] = shaped[:count]
         return np.concatenate(
             (rows_by_order.reshape(-1, *rows.shape[1:]), np.zeros((1, *rows.shape[1:])))
         )
@@ -135,9 +141,9 @@ class CycleProblem:
         Parameters
         ----------
         values
-            Shape ``(..., terms)``, for :meth:`design` of as many trials: ``(..., 3)``.
+            Shape ``(..., terms)``, for :meth:`design` of as many trials: ``(..., 4)``.
         """
-        squares = np.zeros((*values.shape[:-1], 3))
+        squares = np.zeros((*values.shape[:-1], len(LOAD_WORDS)))
         for row, columns in self.rows:
             fitted = np.einsum("...kbc,...c->...kb", design[..., columns], values[..., columns])
             left = self.weighted((loads[..., row] - fitted)[..., None], row)
@@ -187,15 +193,16 @@ class CycleProblem:
         terms
             Shape ``(trials, cycles, 2 orders, terms)``: in phase and quadrature of each order.
         loads
-            Shape ``(trials, cycles, 2 orders, 3)``: force, moment, surge force; those of the
-            struts in the form that writes these.
+            Shape ``(trials, cycles, 2 orders, 3 or 4)``: force, moment, surge force and of a model
+            that heels the roll moment; those of the struts in the form that writes these.
         """
         return self._design(parts, self.moves(parts))
 
     def _design(self, parts: FloatArray, moves: FloatArray) -> tuple[FloatArray, FloatArray]:
         waves = waves_of(self.terms, moves) @ self.apart
-        shaped = self._shaped(parts)[..., list(self.orders), _LOADS:, :]
-        loads = np.moveaxis(shaped, -1, -2).reshape(*parts.shape[:-1], -1, 3)
+        rows = sum(name in LOADS for name in self.channels)
+        shaped = self._shaped(parts)[..., list(self.orders), _LOADS : _LOADS + rows, :]
+        loads = np.moveaxis(shaped, -1, -2).reshape(*parts.shape[:-1], -1, rows)
         return np.moveaxis(waves, -1, -2), -self.form.sign * loads
 
     @cached_property
@@ -205,29 +212,44 @@ class CycleProblem:
         return mean(max(self.orders) + 1)[:, places]
 
     def _shaped(self, parts: FloatArray) -> FloatArray:
-        return parts[..., :-1].reshape(*parts.shape[:-1], self.highest + 1, len(CHANNELS), 2)
+        return parts[..., :-1].reshape(*parts.shape[:-1], self.highest + 1, len(self.channels), 2)
 
     @cached_property
     def _omega(self) -> FloatArray:
         return np.array([2.0 * math.pi * cycle.frequency_hz for cycle in self.cycles])
 
     @cached_property
-    def _made_of(self) -> tuple[tuple[int, int], ...]:
-        """Channel that each of the moves is of, and how often it is differentiated."""
+    def _made_of(self) -> dict[str, tuple[int, int]]:
+        """Channel that each move is of, and how often it is differentiated."""
         across = _ACROSS[self.form]
         first = int(across == _TRANSLATION)
-        return (_AHEAD, 0), (across, first), (_ROTATION, 1), (across, first + 1), (_ROTATION, 2)
+        found = {
+            "u": (_AHEAD, 0),
+            "v": (across, first),
+            "r": (_ROTATION, 1),
+            "vdot": (across, first + 1),
+            "rdot": (_ROTATION, 2),
+        }
+        if HEEL in self.channels:
+            heel = self.channels.index(HEEL)
+            found |= {"phi": (heel, 0), "p": (heel, 1), "pdot": (heel, 2)}
+        return found
 
     def moves(self, parts: FloatArray) -> FloatArray:
-        """Return :data:`MOVES` over the cycles, shape ``(..., cycles, 6, instants)``."""
+        """Return :data:`MOVES` over the cycles, shape ``(..., cycles, 6 or 9, instants)``."""
         shaped = self._shaped(parts)
         pace = self._omega * (1.0 + parts[..., -1])
-        moves = []
-        for channel, times in self._made_of:
+        moves = {}
+        for name, (channel, times) in self._made_of.items():
             own = shaped[..., channel, :].reshape(*parts.shape[:-1], -1)
-            moves.append((pace**times)[..., None] * (own @ basis(self.highest + 1, times)))
+            moves[name] = (pace**times)[..., None] * (own @ basis(self.highest + 1, times))
         rudder = np.array([cycle.rudder_rad for cycle in self.cycles])[:, None]
-        return np.stack((*moves, np.broadcast_to(rudder, moves[0].shape)), axis=-2)
+        moves[RUDDER_LETTER] = np.broadcast_to(rudder, moves["u"].shape)
+        return np.stack([moves[name] for name in MOVES[: self._moving]], axis=-2)
+
+    @property
+    def _moving(self) -> int:
+        return len(MOVES) if HEEL in self.channels else UPRIGHT
 
     def residual_slopes(self, values: FloatArray, row: int) -> FloatArray:
         """Return how one load's residuals follow a cycle's numbers, terms' values held.
@@ -269,12 +291,12 @@ class CycleProblem:
 
     @cached_property
     def _slopes(self) -> FloatArray:
-        """How the terms follow the moves, ``(cycles, terms, 6, instants)``."""
+        """How the terms follow the moves, ``(cycles, terms, 6 or 9, instants)``."""
         return slopes_of(self.terms, self.moved)
 
     def _load_slope(self, row: int) -> FloatArray:
         slope = np.zeros((2 * len(self.orders), self.parts.shape[1]))
-        place = np.arange(self.parts.shape[1] - 1).reshape(self.highest + 1, len(CHANNELS), 2)
+        place = np.arange(self.parts.shape[1] - 1).reshape(self.highest + 1, len(self.channels), 2)
         rows = place[list(self.orders), _LOADS + row].ravel()
         slope[np.arange(len(rows)), rows] = -self.form.sign
         return slope
@@ -282,13 +304,14 @@ class CycleProblem:
     def _by_numbers(self, over: FloatArray) -> FloatArray:
         """Return what changes per move and instant are per number: the moves' own slope after.
 
-        The rudder is none of a cycle's numbers. Shape ``(cycles, k, 6, instants)`` to
+        The rudder is none of a cycle's numbers. Shape ``(cycles, k, 6 or 9, instants)`` to
         ``(cycles, k, numbers)``.
         """
         count = self.highest + 1
-        slopes = np.zeros((*over.shape[:2], count, len(CHANNELS), 2))
+        slopes = np.zeros((*over.shape[:2], count, len(self.channels), 2))
         by_pace = np.zeros(over.shape[:2])
-        for k, (channel, times) in enumerate(self._made_of):
+        for name, (channel, times) in self._made_of.items():
+            k = MOVES.index(name)
             own = over[:, :, k] @ basis(count, times).T * (self._omega**times)[:, None, None]
             slopes[..., channel, :] += own.reshape(*over.shape[:2], count, 2)
             by_pace += times * np.einsum("kct,kt->kc", over[:, :, k], self.moved[:, k])

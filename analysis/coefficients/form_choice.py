@@ -42,7 +42,7 @@ def forms_of(
     *,
     cross: bool = True,
     steady: bool = False,
-    rudder: Sequence[str] = (),
+    angles: Sequence[str] = (),
 ) -> Mapping[str, tuple[str, ...]]:
     """Return the terms of each form of one load.
 
@@ -54,8 +54,8 @@ def forms_of(
         Whether terms of both motions together are among them, where the runs move in both.
     steady
         Whether the runs are static: a constant stands where there is no acceleration.
-    rudder
-        Factors of terms of the rudder, which every form has.
+    angles
+        Factors of terms of rudder and heel, which every form has.
     """
     v, r = tuple(VELOCITY_LETTERS[plane])
     load = name_of_term(term_of(linear_terms(plane, (row,))[0], plane), plane)[0]
@@ -65,7 +65,7 @@ def forms_of(
         if steady
         else tuple(name for name in linear_terms(plane, (row,)) if name[2] in own)
     )
-    linear += tuple(f"{load}_{factors}" for factors in rudder)
+    linear += tuple(f"{load}_{factors}" for factors in angles)
     cubic = tuple(f"{load}_{letter * 3}" for letter in own)
     quadratic = tuple(f"{load}_{letter}|{letter}|" for letter in own)
     if len(own) == 2 and cross:
@@ -87,15 +87,15 @@ def choose_form(
     *,
     cross: bool = True,
     steady: bool = False,
-    rudder: Sequence[str] = (),
+    angles: Sequence[str] = (),
 ) -> tuple[FormChoice, CycleFit]:
     """Return which form of one load the cycles support, and the fit of the richest.
 
     Parameters
     ----------
     row
-        0 force, 1 moment.
-    motions, cross, steady, rudder
+        0 force, 1 moment, 3 roll moment.
+    motions, cross, steady, angles
         As in :func:`forms_of`.
 
     Raises
@@ -104,7 +104,7 @@ def choose_form(
         If not even the linear terms are determined.
     """
     plane = cycles[0].plane
-    forms = forms_of(plane, row, motions, cross=cross, steady=steady, rudder=rudder)
+    forms = forms_of(plane, row, motions, cross=cross, steady=steady, angles=angles)
     fits = {LINEAR_FORM: fit_cycles(cycles, forms[LINEAR_FORM], orders)}
     for form in [form for form in forms if form != LINEAR_FORM]:
         try:

@@ -13,24 +13,21 @@ from analysis.coefficients.body_axes import labels
 from analysis.coefficients.phasors import Phasors, real_form
 from analysis.coefficients.stated_uncertainties import STATED
 from analysis.coefficients.tare import Tare
-from analysis.kinematics.body_frame import CHANNELS, UNITS
+from analysis.kinematics.body_frame import HEEL, LOADS, UNIT_OF
 from analysis.kinematics.complex_step import by_parts, pointwise
 from analysis.kinematics.cycle import INSTANTS, harmonics, per_part
 from analysis.kinematics.geometry import Waves
 from analysis.kinematics.motion import MotionWaves
-from analysis.kinematics.rigid_body import inertia_terms, weight_terms
+from analysis.kinematics.rigid_body import heel_terms, inertia_terms, weight_terms
 from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
+from hardware.description.heel import Heel, righting_moment
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium
 
-MOVING = 4
-"""Channels of motion; those of the loads follow."""
 INPUTS = ((0, 0), (1, 0), (2, 0), (2, 1), (3, 0), (3, 1), (1, 1), (1, 2))
 _OF_BODY = ("mass_kg", "cg_x_m", "cg_z_m", "inertia_kg_m2")
-_TAKEN = (*_OF_BODY, "restoring_relative", "alignment_rad")
-_KNOWN = len(INPUTS) + len(_TAKEN)  # what comes after it is not uncertain
-_TIMES = np.array([times for _, times in INPUTS])
+_TAKEN = (*_OF_BODY, "restoring_relative", "alignment_rad", "heel_rad")
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +60,8 @@ def on_hull(
     body: Body | None,
     restoring: FloatArray,
     point_ahead_m: float,
+    heel: Heel | None = None,
+    heel_rad: float = 0.0,
 ) -> HullCycle:
     """Return motion through the water and the water's loads.
 
@@ -71,32 +70,32 @@ def on_hull(
     gross, sensitivity, channels
         Of :class:`analysis.coefficients.body_cycle.BodyCycle`.
     """
-    count = len(gross.names) // len(channels)
+    count, inputs = len(gross.names) // len(channels), inputs_of(channels)
     omega = 2.0 * math.pi * frequency_hz
-    maps = per_part(count, len(channels), INPUTS, omega)
+    maps = per_part(count, len(channels), inputs, omega)
     parts = gross.real.values
     moved = parts @ maps
-    stated = stated_at_instants(body, drift_rad, plane, medium)
-    loads = len(channels) - MOVING
+    stated = stated_at_instants(body, drift_rad, plane, medium, heel, heel_rad)
+    rows = [LOADS.index(name) for name in channels if name in LOADS]
     values, slope = pointwise(
-        lambda waves: loads_asked(waves, plane, tare, restoring)[..., :loads, :],
+        lambda waves: loads_asked(waves, plane, tare, restoring, HEEL in channels)[..., rows, :],
         np.concatenate((moved, stated)),
     )
     orders = count - 1
-    net = HullParts(count, len(channels))
-    whole = net.with_loads(by_parts(slope[:, : len(INPUTS)], maps, orders))
+    net = HullParts(count, channels)
+    whole = net.with_loads(by_parts(slope[:, : len(inputs)], maps, orders))
     own = np.zeros((len(parts), len(STATED)))
-    for name, column in zip(_TAKEN, np.moveaxis(slope[:, len(INPUTS) : _KNOWN], 1, 0), strict=True):
+    known = slope[:, len(inputs) : len(inputs) + len(_TAKEN)]  # what comes after is not uncertain
+    for name, column in zip(_TAKEN, np.moveaxis(known, 1, 0), strict=True):
         if body is not None or name not in _OF_BODY:
             own[net.loads, STATED.index(name)] += harmonics(column, orders)
     own[:, STATED.index("density_relative")] += own[:, STATED.index("restoring_relative")]
-    faster = (slope[:, : len(INPUTS)] * (_TIMES[:, None] * moved)).sum(axis=1)
+    times = np.array([often for _, often in inputs])
+    faster = (slope[:, : len(inputs)] * (times[:, None] * moved)).sum(axis=1)
     own[net.loads, STATED.index("frequency_relative")] += harmonics(faster, orders)
     sensitivity = own + whole @ sensitivity
     changes = net.parts(parts, harmonics(values, orders))
-    shift, by_pace, by_speed = to_point(
-        count, len(channels), point_ahead_m, plane, omega, speed_m_s
-    )
+    shift, by_pace, by_speed = to_point(count, channels, point_ahead_m, plane, omega, speed_m_s)
     sensitivity = shift @ sensitivity
     sensitivity[:, STATED.index("frequency_relative")] += by_pace @ changes
     sensitivity[:, STATED.index("speed_m_s")] += by_speed @ changes
@@ -104,19 +103,32 @@ def on_hull(
     return HullCycle(
         Phasors(
             labels(channels, orders),
-            UNITS[: len(channels)] * count,
+            tuple(UNIT_OF[name] for name in channels) * count,
             gross.real.carried(changes, shift @ whole),
         ),
         sensitivity,
     )
 
 
+def inputs_of(channels: tuple[str, ...]) -> tuple[tuple[int, int], ...]:
+    """Return :data:`INPUTS`, and heel with two derivatives where there is one."""
+    if HEEL not in channels:
+        return INPUTS
+    return (*INPUTS, *((channels.index(HEEL), times) for times in range(3)))
+
+
 def stated_at_instants(
-    body: Body | None, drift_rad: float, plane: Plane, medium: Medium
+    body: Body | None,
+    drift_rad: float,
+    plane: Plane,
+    medium: Medium,
+    heel: Heel | None = None,
+    heel_rad: float = 0.0,
 ) -> FloatArray:
     """Return the values of :data:`_TAKEN` at each instant, and then what the struts bear.
 
-    Of mass and m x_G a part, of m z_G a part, less displaced mass and its moments.
+    Of mass and m x_G a part, of m z_G a part, less displaced mass and its moments; of a model that
+    heels I_xx, product and spread, and its righting moments.
     """
     known = (
         (0.0,) * 4 if body is None else (body.mass_kg, body.cg_x_m, body.cg_z_m, body.inertia_kg_m2)
@@ -127,16 +139,20 @@ def stated_at_instants(
         lift = 0.0 if in_air or body.displaced_kg is None else body.displaced_kg
         levers = (lift, lift * body.buoyancy_x_m, lift * body.buoyancy_z_m)
         borne = (float(in_air or not floats), 1.0, *levers)
-    return np.array([[*known, 1.0, drift_rad, *borne]]).T * np.ones(INSTANTS)
+    rolled: tuple[float, ...] = (0.0,) * 5
+    if body is not None and heel is not None:
+        rolled = (*heel.moments(body), *heel.righting(body))
+    return np.array([[*known, 1.0, drift_rad, heel_rad, *borne, *rolled]]).T * np.ones(INSTANTS)
 
 
 class HullParts:
     """Where the loads stand among the parts."""
 
-    def __init__(self, count: int, channels: int) -> None:
-        place = np.arange(2 * count * channels).reshape(count, channels, 2)
-        self.loads = place[:, MOVING:].ravel()
-        self.is_load = np.zeros(2 * count * channels, dtype=bool)
+    def __init__(self, count: int, channels: tuple[str, ...]) -> None:
+        place = np.arange(2 * count * len(channels)).reshape(count, len(channels), 2)
+        own = [k for k, name in enumerate(channels) if name in LOADS]
+        self.loads = place[:, own].ravel()
+        self.is_load = np.zeros(place.size, dtype=bool)
         self.is_load[self.loads] = True
 
     def with_loads(self, asked: FloatArray) -> FloatArray:
@@ -152,14 +168,17 @@ class HullParts:
         return parts
 
 
-def loads_asked(waves: Waves, plane: Plane, tare: Tare, restoring: FloatArray) -> Waves:
-    """What inertia, weight and restoring ask of the struts: force, moment, surge force.
+def loads_asked(
+    waves: Waves, plane: Plane, tare: Tare, restoring: FloatArray, heels: bool = False
+) -> Waves:
+    """What inertia, weight and restoring ask of the struts: force, moment, surge force, in roll.
 
     Less what the latter two ask at rest, as the gauges read it there.
     """
     translation, rotation, u, u_rate, v, v_rate, r, r_rate = np.moveaxis(waves[..., :8, :], -2, 0)
-    taken = np.moveaxis(waves[..., len(INPUTS) :, :], -2, 0)
-    mass, ahead, below, turned, factor, drift, whole, under, *lift = taken
+    rolling, taken = waves[..., 8:11, :], np.moveaxis(waves[..., 8 + 3 * heels :, :], -2, 0)
+    mass, ahead, below, turned, factor, drift, resting, whole, under, *rest = taken
+    lift, rolled = rest[:3], rest[3:]
     state = MotionWaves(
         rotation,
         rotation,
@@ -182,11 +201,24 @@ def loads_asked(waves: Waves, plane: Plane, tare: Tare, restoring: FloatArray) -
     tared = tare.tared(static(still, drift))
     loads += static(translation, rotation + drift)
     loads[..., : tared.shape[-2], :] -= tared
+    in_roll = np.zeros_like(loads[..., :1, :])
+    loads = np.concatenate((loads, in_roll), axis=-2)
+    if heels:
+        by_heel = np.stack((mass * below, *rolled[:3]), axis=-2)
+        loads += np.einsum("...kt,...krt->...rt", by_heel, heel_terms(state, rolling))
+        of_gm, of_bm = rolled[3], rolled[4]
+        loads[..., 3, :] += righting_moment(of_gm, of_bm, rolling[..., 0, :])
+        loads[..., 3, :] -= righting_moment(of_gm, of_bm, resting)
     return np.asarray(loads)
 
 
 def to_point(
-    count: int, channels: int, ahead_m: float, plane: Plane, omega: float, speed_m_s: float
+    count: int,
+    channels: tuple[str, ...],
+    ahead_m: float,
+    plane: Plane,
+    omega: float,
+    speed_m_s: float,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return what takes the parts to a point ahead, and its slopes by ln(omega) and the speed.
 
@@ -194,11 +226,11 @@ def to_point(
     ``q' = v - U E q``: what the seakeeping form writes its loads with, at any angle.
     """
     side = -1.0 if plane is Plane.VERTICAL else 1.0
-    arm, names = side * ahead_m, CHANNELS[:channels]
-    whole = np.eye(count * channels, dtype=np.complex128)
+    arm, names = side * ahead_m, channels
+    whole = np.eye(count * len(names), dtype=np.complex128)
     by_pace, by_speed = np.zeros_like(whole), np.zeros_like(whole)
     for n in range(count):
-        place = {name: n * channels + k for k, name in enumerate(names)}
+        place = {name: n * len(names) + k for k, name in enumerate(names)}
         rate = 1j * n * omega
         way, across, turn = place["translation"], place["across"], place["rotation"]
         whole[across, turn] = by_pace[across, turn] = rate * arm

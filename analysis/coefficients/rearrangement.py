@@ -15,20 +15,21 @@ from analysis.coefficients.body_axes import parts_of_struts
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.hull_cycle import (
-    INPUTS,
-    MOVING,
     HullParts,
+    inputs_of,
     loads_asked,
     stated_at_instants,
     to_point,
 )
 from analysis.coefficients.phasors import interleaved
 from analysis.coefficients.tare import Tare
+from analysis.kinematics.body_frame import CHANNELS, HEEL, HEELED, LOADS
 from analysis.kinematics.cycle import harmonics, waves
 from analysis.kinematics.geometry import Geometry
 from hardware.description.arrangement import Arrangement, Joint
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
+from hardware.description.heel import HeelGauges
 
 _OF_STRUTS: Final = ("joint", "pivot")  # what a turntable has not
 
@@ -97,11 +98,11 @@ def refits(
 
 def _parts(cycles: Sequence[BodyCycle], ways: Sequence[Arrangement]) -> dict[str, FloatArray]:
     """Return the hull's interleaved parts by run and arrangement, ``(2 n, ways)`` of each run."""
-    by_shape: dict[tuple[int, ...], list[BodyCycle]] = {}
+    by_kind: dict[tuple[object, ...], list[BodyCycle]] = {}
     for cycle in cycles:
-        by_shape.setdefault(cycle.readings.shape, []).append(cycle)
+        by_kind.setdefault((cycle.channels, cycle.readings.shape), []).append(cycle)
     parts_of_key: dict[str, FloatArray] = {}
-    for alike in by_shape.values():
+    for alike in by_kind.values():
         gross, tares = zip(*(_gross(alike, way) for way in ways), strict=True)
         parts = _on_hull(np.stack(gross), Tare.stacked(tares), alike)
         parts_of_key |= {part.name: parts[:, k].T for k, part in enumerate(alike)}
@@ -116,11 +117,14 @@ def _gross(cycles: Sequence[BodyCycle], way: Arrangement) -> tuple[FloatArray, T
     stated = cycles[0].arrangement
     if not drift.any() and replace(way, drift_by=stated.drift_by) == stated:
         return own, rests
-    geometry = Geometry(cycles[0].plane, cycles[0].half_spacing_m, way, speed, drift)
+    first = cycles[0]
+    rolling = len([name for name in first.channels if name in HEELED[len(CHANNELS) :]])
+    heeled = first.heel is not None and first.heel.gauges is HeelGauges.HEELED
+    geometry = Geometry(first.plane, first.half_spacing_m, way, speed, drift, heeled)
     omega = np.array([2.0 * np.pi * cycle.frequency_hz for cycle in cycles])
     readings = np.stack([cycle.readings for cycle in cycles])
     try:
-        return parts_of_struts(readings, geometry, omega)
+        return parts_of_struts(readings, geometry, omega, rolling)
     except DataError:  # no force_x, or the struts cannot reach
         return np.full_like(own, np.nan), rests
 
@@ -153,22 +157,31 @@ def _on_hull(gross: FloatArray, tare: Tare, cycles: Sequence[BodyCycle]) -> Floa
         Of one plane, with as many orders and the same channels.
     """
     channels, plane = cycles[0].channels, cycles[0].plane
-    count, loads = cycles[0].orders + 1, len(channels) - MOVING
+    count = cycles[0].orders + 1
+    loads = [LOADS.index(name) for name in channels if name in LOADS]
     omega = np.array([2.0 * math.pi * cycle.frequency_hz for cycle in cycles])
     rates = [
         omega[:, None, None] ** times * waves(gross, len(channels), times) for times in range(3)
     ]
-    moved = np.stack([rates[times][..., channel, :] for channel, times in INPUTS], axis=-2)
+    moved = np.stack(
+        [rates[times][..., channel, :] for channel, times in inputs_of(channels)], axis=-2
+    )
     stated = np.stack(
-        [stated_at_instants(cycle.body, cycle.drift_rad, plane, cycle.medium) for cycle in cycles]
+        [
+            stated_at_instants(
+                cycle.body, cycle.drift_rad, plane, cycle.medium, cycle.heel, cycle.heel_rad
+            )
+            for cycle in cycles
+        ]
     )
     inputs = (moved, np.broadcast_to(stated, (*moved.shape[:-2], *stated.shape[-2:])))
     restoring = np.stack([cycle.restoring for cycle in cycles])
-    asked = loads_asked(np.concatenate(inputs, axis=-2), plane, tare, restoring)[..., :loads, :]
-    net = HullParts(count, len(channels)).parts(gross, harmonics(asked, count - 1))
+    waves_in = np.concatenate(inputs, axis=-2)
+    asked = loads_asked(waves_in, plane, tare, restoring, HEEL in channels)[..., loads, :]
+    net = HullParts(count, channels).parts(gross, harmonics(asked, count - 1))
     turned = np.empty_like(net)
     for k, cycle in enumerate(cycles):
         pace, speed = float(omega[k]), cycle.speed_m_s
-        shift, *_ = to_point(count, len(channels), cycle.point_ahead_m, plane, pace, speed)
+        shift, *_ = to_point(count, channels, cycle.point_ahead_m, plane, pace, speed)
         turned[:, k] = net[:, k] @ shift.T
     return turned

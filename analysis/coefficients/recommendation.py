@@ -112,7 +112,7 @@ def _serves(coefficients: CampaignCoefficients, entry: CoefficientEntry, *, curv
         names = [name_of(place, coefficients.plane, Form.MANOEUVRING) for place in PLACES]
         return entry.name not in names  # the same again in the other form
     term = term_of(entry.name, coefficients.plane)
-    if term.degree < 2 or term.rudders:  # every form has these
+    if term.degree < 2 or term.angles:  # every form has these
         return True
     choices = coefficients.choices_of(entry.name, entry.runs)
     return all(choice.fitted == choice.verdict != LINEAR_FORM for choice in choices)

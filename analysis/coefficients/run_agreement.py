@@ -12,11 +12,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from analysis.coefficients.cycle_fit import CycleFit
+from analysis.coefficients.terms import LOAD_WORDS
 from analysis.uncertainty.redundancy import Redundancy
 from hardware.description.arrays import FloatArray
 from hardware.description.flags import Flag
 
-_LOADS = ("force", "moment", "surge force")
 _DETERMINED = 1e6  # condition of scaled columns beyond which the others tell nothing
 
 
@@ -55,7 +55,7 @@ def run_agreement(fit: CycleFit, row: int) -> Redundancy:
         departure[k] = min(float(norm.isf(chance[k] / 2.0)), math.sqrt(fall))
     names = tuple(fit.names[k] for k in columns)
     data = tuple(cycle.name for cycle in problem.cycles)
-    what = f"{_LOADS[row]} of {len(data)} runs"
+    what = f"{LOAD_WORDS[row]} of {len(data)} runs"
     values = fit.values[columns]
     return Redundancy(
         what, names, data, values, without, departure, chance, whole, freedom, math.nan

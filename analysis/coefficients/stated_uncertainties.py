@@ -42,6 +42,10 @@ class StatedUncertainties:
     density_relative
         Of the water; acts on the restoring, and again where a system without dimensions divides
         by it.
+    heel_rad
+        Of the heel as it was set, or as the inclinometer's zero has it.
+    roll_gauge_relative
+        Of the roll gauge's own gain.
     inertia_degrees_of_freedom
         Of the repeats behind ``inertia_kg_m2``; 0 where it does not rest on any.
     """
@@ -67,6 +71,8 @@ class StatedUncertainties:
     midpoint_x_m: float = 0.0
     alignment_rad: float = 0.0
     density_relative: float = 0.0
+    heel_rad: float = 0.0
+    roll_gauge_relative: float = 0.0
     inertia_degrees_of_freedom: float = 0.0
 
     @property

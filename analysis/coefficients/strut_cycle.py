@@ -20,13 +20,16 @@ from analysis.coefficients.corrections import (
 from analysis.coefficients.phasors import Phasors, joined
 from analysis.coefficients.strut_phasors import CHANNELS_INDEPENDENT, MOTION_ASKED, reading_phasors
 from analysis.ideal_rig import strut_displacements
+from analysis.kinematics.body_frame import HEEL
+from analysis.kinematics.body_frame import ROLL_MOMENT as ROLL
 from analysis.kinematics.geometry import Geometry
 from analysis.resolver.analysis import Analysis
 from analysis.resolver.harmonics import IntervalSource
 from hardware.description.arrays import ComplexArray, FloatArray
-from hardware.description.channels import DISPLACEMENTS, FORCE_X, FORCES
+from hardware.description.channels import DISPLACEMENTS, FORCE_X, FORCES, HEEL_ANGLE, ROLL_MOMENT
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
+from hardware.description.heel import Heel, HeelGauges, Held
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import SetPoint
 
@@ -43,6 +46,7 @@ class StrutCycle:
     orders: int
     mean_known: bool = False
     flags: tuple[Flag, ...] = ()
+    heel: Heel | None = None
 
     def calibrated(self, matrix: FloatArray) -> "StrutCycle":
         """Return it with ``force = matrix @ reading`` at every order, aft and fore.
@@ -84,7 +88,36 @@ class StrutCycle:
     @property
     def geometry(self) -> Geometry:
         """How the run's rig stands."""
-        return Geometry.of(self.oscillator, self.set_point)
+        heeled = self.heel is not None and self.heel.gauges is HeelGauges.HEELED
+        return replace(Geometry.of(self.oscillator, self.set_point), gauges_heel=heeled)
+
+    def heeled(self, heel: Heel) -> "StrutCycle":
+        """Return it with the heel of its model: as it was set, else as it was measured.
+
+        A zero run is made at the heel of rest, so what was measured counts from there.
+
+        Raises
+        ------
+        DataError
+            If a model that is free to roll was not measured in heel.
+        """
+        measured = at_order(HEEL_ANGLE.name, 0) in self.phasors.names
+        if heel.held is Held.FREE and not measured:
+            raise DataError(
+                f"{self.name}: no channel {HEEL_ANGLE.name}, and the model is free to roll: record "
+                "its heel, or fix it and say so in [heel]"
+            )
+        names = labels((HEEL_ANGLE.name,), self.orders)
+        rest = np.zeros(len(names), dtype=np.complex128)
+        rest[0] = self.set_point.heel_rad
+        found = Phasors.of(names, ("rad",) * len(names), rest)
+        others = [name for name in self.phasors.names if name not in names]
+        phasors = self.phasors.select(others)
+        if heel.held is Held.FREE:
+            own = self.phasors.select(names)
+            shifted = own.real.values + found.real.values
+            found = replace(own, real=replace(own.real, values=shifted))
+        return replace(self, phasors=joined(phasors, found), heel=heel)
 
     def model(self) -> BodyCycle:
         """Return motion and loads of the model about the midpoint between the struts.
@@ -93,11 +126,13 @@ class StrutCycle:
         """
         point, oscillator = self.set_point, self.oscillator
         geometry = self.geometry
-        surge = at_order(FORCE_X.name, 0) in self.phasors.names
-        inputs = (*DISPLACEMENTS, *FORCES, *((FORCE_X.name,) if surge else ()))
+        recorded = [n for n in (FORCE_X.name, *_ROLLING) if at_order(n, 0) in self.phasors.names]
+        more = recorded if self.heel is not None else [n for n in recorded if n not in _ROLLING]
+        inputs = (*DISPLACEMENTS, *FORCES, *more)
+        roll = tuple(_ROLLING[name] for name in more if name in _ROLLING)
         ordered = self.phasors.select(labels(inputs, self.orders))
         asked = any(flag.code == MOTION_ASKED.code for flag in self.flags)
-        model = of_struts(ordered, geometry, self.frequency_hz, self.orders, asked=asked)
+        model = of_struts(ordered, geometry, self.frequency_hz, self.orders, asked=asked, roll=roll)
         return BodyCycle(
             self.name,
             oscillator.plane,
@@ -114,7 +149,12 @@ class StrutCycle:
             tare=model.tare,
             arrangement=oscillator.arrangement,
             readings=ordered.values.reshape(self.orders + 1, -1),
+            heel=self.heel,
+            heel_rad=point.heel_rad,
         )
+
+
+_ROLLING = {ROLL_MOMENT.name: ROLL, HEEL_ANGLE.name: HEEL}
 
 
 def measured_cycle(
@@ -139,7 +179,7 @@ def measured_cycle(
         )
     has_sensors = all(name in reading.channel_names for name in DISPLACEMENTS)
     channels = (*(DISPLACEMENTS if has_sensors else ()), *FORCES)
-    channels += (FORCE_X.name,) if FORCE_X.name in reading.channel_names else ()
+    channels += tuple(n for n in (FORCE_X.name, *_ROLLING) if n in reading.channel_names)
     count = reading.order
     phasors = reading_phasors(reading, channels, count)
     tapered = reading.interval_source is IntervalSource.BINS

@@ -1,7 +1,8 @@
 """Terms over a cycle: products of factors, and how they follow each motion.
 
 The factors are the velocities through the water along (u), across (v) and turning (r), and the
-rates of the latter two, at each instant of the averaged cycle, and the rudder's angle (d).
+rates of the latter two, at each instant of the averaged cycle, the rudder's angle (d), and of a
+model that heels its angle (phi), the rate of it (p) and that rate's own.
 """
 
 from collections.abc import Sequence
@@ -11,7 +12,8 @@ import numpy as np
 from analysis.coefficients.terms import Term
 from hardware.description.arrays import FloatArray
 
-MOVES = ("u", "v", "r", "vdot", "rdot", "d")
+MOVES = ("u", "v", "r", "vdot", "rdot", "d", "phi", "p", "pdot")
+UPRIGHT = 6  # moves of a model that does not heel
 
 
 def waves_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
@@ -22,7 +24,7 @@ def waves_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
     Parameters
     ----------
     moves
-        :data:`MOVES`, shape ``(..., 6, instants)``.
+        :data:`MOVES`, shape ``(..., 9, instants)``; without those of heel 6.
     """
     waves = np.empty((*moves.shape[:-2], len(terms), moves.shape[-1]))
     for k, term in enumerate(terms):
@@ -31,8 +33,8 @@ def waves_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
 
 
 def slopes_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
-    """Return how each term follows each motion, shape ``(..., terms, 6, instants)``."""
-    slopes = np.zeros((*moves.shape[:-2], len(terms), len(MOVES), moves.shape[-1]))
+    """Return how each term follows each motion, shape ``(..., terms, 6 or 9, instants)``."""
+    slopes = np.zeros((*moves.shape[:-2], len(terms), *moves.shape[-2:]))
     for k, term in enumerate(terms):
         factors = [_factor(factor, moves) for factor in term.factors]
         for n, name in enumerate(term.factors):

@@ -1,9 +1,10 @@
 """Terms of a manoeuvring model: ``Y_vvr`` is the coefficient of v v r in Y, without factorials.
 
 A name is a load, an underscore and factors: velocities (``u``, ``v``, ``r`` or ``u``, ``w``,
-``q``), their rates (``vdot``, ``rdot``), sizes (``|v|``, ``|r|``) and the rudder's angle ``d`` in
-radians; ``0`` alone is the constant, which others write ``*``. X takes the same. ``Y_d`` and
-``X_vd`` are those of one speed.
+``q``), their rates (``vdot``, ``rdot``), sizes (``|v|``, ``|r|``), the rudder's angle ``d`` and the
+heel ``phi`` in radians, and the rate of roll ``p`` with its own (``pdot``); ``0`` alone is the
+constant, which others write ``*``. X takes the same, and so does K, the moment in roll. ``Y_d``,
+``Y_phi`` and ``X_vd`` are those of one speed.
 """
 
 import re
@@ -13,15 +14,18 @@ from dataclasses import dataclass
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Plane
 
-LOAD_WORDS = ("force", "moment", "surge force")
+LOAD_WORDS = ("force", "moment", "surge force", "roll moment")
 LOAD_LETTERS = {Plane.VERTICAL: "ZM", Plane.HORIZONTAL: "YN"}
 AHEAD_LETTER = "u"
 RUDDER_LETTER = "d"
+HEEL_LETTER = "phi"
+ANGLES = (RUDDER_LETTER, HEEL_LETTER)
 VELOCITY_LETTERS = {Plane.VERTICAL: "wq", Plane.HORIZONTAL: "vr"}
-SURGE = 2  # row of X
+SURGE, ROLL = 2, 3  # rows of X and K
 
-_WORD = re.compile(r"(\w)_((?:[a-z]dot|\|[a-z]\||[a-z])+|[0*])")
-_FACTOR = re.compile(r"[a-z]dot|\|[a-z]\||[a-z]")
+_FACTOR = re.compile(r"phi|[a-z]dot|\|(?:phi|[a-z])\||[a-z]")
+_WORD = re.compile(rf"(\w)_((?:{_FACTOR.pattern})+|[0*])")
+_TURNING = ("r", "p")
 
 
 @dataclass(frozen=True)
@@ -31,10 +35,11 @@ class Term:
     Attributes
     ----------
     row
-        0 force, 1 moment, 2 surge force.
+        0 force, 1 moment, 2 surge force, 3 roll moment.
     factors
         ``"v"``, ``"vdot"``, ``"|v|"`` for the translation, ``"r"``, ``"rdot"``, ``"|r|"`` for the
-        rotation, ``"u"`` ahead and ``"d"`` of the rudder, in either plane; none for the constant.
+        rotation, ``"u"`` ahead and ``"d"`` of the rudder, in either plane, ``"phi"``, ``"p"`` and
+        ``"pdot"`` of heel; none for the constant.
     """
 
     row: int
@@ -43,7 +48,7 @@ class Term:
     @property
     def lengths(self) -> int:
         """Powers of length in a system without dimensions: rotations, and one for a moment."""
-        return sum("r" in f.replace("dot", "") for f in self.factors) + (self.row == 1)
+        return sum(letter_of(one) in _TURNING for one in self.factors) + self._is_moment
 
     @property
     def rates(self) -> int:
@@ -53,23 +58,38 @@ class Term:
     @property
     def degree(self) -> int:
         """Number of velocities and rates among the factors: 1 linear, 2 quadratic, 3 cubic."""
-        return len(self.factors) - self.rudders
+        return len(self.factors) - self.angles
 
     @property
-    def rudders(self) -> int:
-        """How often the rudder's angle is a factor."""
-        return sum(factor.strip("|") == RUDDER_LETTER for factor in self.factors)
+    def angles(self) -> int:
+        """How often an angle that is set, the rudder's or the heel, is a factor."""
+        return sum(letter_of(one) in ANGLES for one in self.factors)
+
+    @property
+    def of_roll(self) -> bool:
+        """Whether it is of the moment in roll, or by heel or roll."""
+        rolls = {HEEL_LETTER, "p"} & {letter_of(one) for one in self.factors}
+        return self.row == ROLL or bool(rolls)
+
+    @property
+    def _is_moment(self) -> bool:
+        return self.row in (1, ROLL)
 
     @property
     def unit(self) -> str:
         """SI unit, radians left out: kg m, N s2/m2, N m s ..."""
         if self.degree == 1 and self.rates == 1:
             return ("kg", "kg m", "kg m2")[self.lengths]
-        turning = self.lengths - (self.row == 1)
-        metres = self.degree - turning - (self.row == 1)
+        turning = self.lengths - self._is_moment
+        metres = self.degree - turning - self._is_moment
         seconds = self.degree + self.rates
         above = "N" + _power("m", -metres) + _power("s", seconds)
         return above + ("/" + _power("m", metres).strip() if metres > 0 else "")
+
+
+def letter_of(factor: str) -> str:
+    """Return what a factor is of: ``r`` of ``rdot`` and of ``|r|``."""
+    return factor.replace("dot", "").strip("|")
 
 
 def _power(letter: str, exponent: int) -> str:
@@ -85,10 +105,10 @@ def term_of(name: str, plane: Plane) -> Term:
         If it means none in this plane.
     """
     velocities = VELOCITY_LETTERS[plane] + AHEAD_LETTER + RUDDER_LETTER
-    loads = LOAD_LETTERS[plane] + "X"
+    loads, rolling = _loads(plane), {HEEL_LETTER, "p"} if plane is Plane.HORIZONTAL else set()
     match = _WORD.fullmatch(name)
-    letters = {letter.strip("|")[0] for letter in _FACTOR.findall(match[2])} if match else set()
-    strange = not letters <= set(velocities) or (match is not None and "ddot" in match[2])
+    letters = {letter_of(one) for one in _FACTOR.findall(match[2])} if match else set()
+    strange = not letters <= {*velocities, *rolling} or (match is not None and "ddot" in match[2])
     if match is None or match[1] not in loads or strange:
         example = "Y_v, Y_vvr, N_r|v|, X_vr" if plane is Plane.HORIZONTAL else "Z_w, Z_w|w|, M_qqq"
         raise ConfigurationError(
@@ -98,25 +118,37 @@ def term_of(name: str, plane: Plane) -> Term:
     row = loads.index(match[1])
     common = dict(zip(velocities, "vr" + AHEAD_LETTER + RUDDER_LETTER, strict=True))
     factors = [
-        re.sub("^(\\|?)[a-z]", lambda m, f=f: m[1] + common[f.strip("|")[0]], f)  # type: ignore[misc]
-        for f in _FACTOR.findall(match[2])
+        one.replace(letter_of(one), common.get(letter_of(one), letter_of(one)), 1)
+        for one in _FACTOR.findall(match[2])
     ]
     return Term(row, tuple(factors))
+
+
+def _loads(plane: Plane) -> str:
+    """Return the letters of the loads by row; a model on a vertical oscillator has no K."""
+    return LOAD_LETTERS[plane] + ("XK" if plane is Plane.HORIZONTAL else "X")
 
 
 def name_of_term(term: Term, plane: Plane) -> str:
     """Return the name of a term: the inverse of :func:`term_of`."""
     letters = dict(zip("vr", VELOCITY_LETTERS[plane], strict=True))
-    loads = LOAD_LETTERS[plane] + "X"
     factors = [
-        re.sub("[vr](?!o)", lambda m: letters[m[0]], factor, count=1) for factor in term.factors
+        one.replace(letter_of(one), letters.get(letter_of(one), letter_of(one)), 1)
+        for one in term.factors
     ]
-    return f"{loads[term.row]}_{''.join(factors) or '0'}"
+    return f"{_loads(plane)[term.row]}_{''.join(factors) or '0'}"
+
+
+def letter_of_load(plane: Plane, row: int) -> str:
+    """Return the letter of a load."""
+    return _loads(plane)[row]
 
 
 def load_of(name: str) -> str:
     """Return the load that a coefficient of either form is of; one of :data:`LOAD_WORDS`."""
     letter = name[1] if name[0] in "ab" else name[0]
+    if letter == "K":
+        return LOAD_WORDS[ROLL]
     return LOAD_WORDS[0 if letter in "YZ23" else 1 if letter in "MN56" else 2]
 
 

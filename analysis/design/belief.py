@@ -157,7 +157,8 @@ def _asked(moving: MotionWaves, points: Sequence[SetPoint], belief: Belief, tare
         ),
         axis=1,
     )
-    return loads_asked(inputs, plane, tare, np.asarray(belief.restoring)[None])
+    asked = loads_asked(inputs, plane, tare, np.asarray(belief.restoring)[None])
+    return np.asarray(asked[..., :_LOADS, :])
 
 
 def _of_water(moving: MotionWaves, geometry: Geometry, belief: Belief) -> Waves:

@@ -26,6 +26,8 @@ class Geometry:
         Of the carriage.
     drift_rad
         Mean heading of the model, bow to starboard (bow up), set as ``arrangement.drift_by`` says.
+    gauges_heel
+        Whether the struts' gauges heel with the model.
     """
 
     plane: Plane
@@ -33,6 +35,7 @@ class Geometry:
     arrangement: Arrangement = field(default_factory=Arrangement)
     speed_m_s: Waves | float = 0.0
     drift_rad: Waves | float = 0.0
+    gauges_heel: bool = False
 
     @classmethod
     def of(cls, oscillator: Oscillator, set_point: SetPoint) -> "Geometry":

@@ -51,6 +51,40 @@ def inertia_terms(motion: MotionWaves, plane: Plane) -> Waves:
     )
 
 
+def heel_terms(motion: MotionWaves, heel: Waves) -> Waves:
+    """Return the loads besides of a body that heels, per m z_G, I_xx, product and spread.
+
+    Horizontal plane, in axes that do not heel; rows force, moment, surge force and roll moment:
+    shape ``(..., 4, 4, instants)``. With s = sin(heel), c = cos(heel), of unit m z_G, product
+    (integral of x z dm) and spread (of (y^2 - z^2) dm):
+
+        Y = s r^2 - s''    N = s (u' - v r)    X = s r' + 2 s' r    K = -c (v' + u r)
+        N = -s''           K = -c r'
+        N = -(s^2 r)'      K = s c r^2
+
+    Parameters
+    ----------
+    heel
+        Angle and its first two derivatives, shape ``(..., 3, instants)``.
+    """
+    u, v, r = np.moveaxis(motion.velocity, -2, 0)
+    u_rate, v_rate, r_rate = np.moveaxis(motion.rate, -2, 0)
+    phi, p, p_rate = np.moveaxis(heel, -2, 0)
+    sine, cosine = np.sin(phi), np.cos(phi)
+    rate, bend, none = cosine * p, cosine * p_rate - sine * p**2, np.zeros_like(r)
+    return _stacked(
+        (
+            sine * r**2 - bend,
+            sine * (u_rate - v * r),
+            sine * r_rate + 2.0 * rate * r,
+            -cosine * (v_rate + u * r),
+        ),
+        (none, none, none, p_rate),
+        (none, -bend, none, -cosine * r_rate),
+        (none, -(sine**2) * r_rate - 2.0 * sine * rate * r, none, sine * cosine * r**2),
+    )
+
+
 def weight(body: Body, motion: MotionWaves) -> Waves:
     """Return the loads on the struts from the weight, in air and in the vertical plane.
 
@@ -74,5 +108,5 @@ def _sum(values: FloatArray, terms: Waves) -> Waves:
     return np.asarray(np.einsum("k,...krt->...rt", values, terms))
 
 
-def _stacked(*terms: tuple[Waves, Waves, Waves]) -> Waves:
+def _stacked(*terms: tuple[Waves, ...]) -> Waves:
     return np.stack([np.stack(term, axis=-2) for term in terms], axis=-3)

@@ -42,6 +42,11 @@ class HullLoads:
     values: Mapping[str, FloatArray]
 
     def __post_init__(self) -> None:
+        rolled = [name for name in self.values if term_of(name, Plane.HORIZONTAL).of_roll]
+        if rolled:
+            raise ConfigurationError(
+                f"{', '.join(rolled)}: the ship stays upright; leave terms of heel and roll out"
+            )
         missing = [name for name in NEEDED if name not in self.values]
         if missing:
             raise ConfigurationError(
@@ -52,7 +57,7 @@ class HullLoads:
     @property
     def steered(self) -> tuple[str, ...]:
         """Names of the terms that have the rudder's angle."""
-        return tuple(one for one in self.values if term_of(one, Plane.HORIZONTAL).rudders)
+        return tuple(one for one in self.values if term_of(one, Plane.HORIZONTAL).angles)
 
     @cached_property
     def _terms(self) -> tuple[tuple[Term, FloatArray], ...]:

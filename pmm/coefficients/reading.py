@@ -22,6 +22,9 @@ from hardware.description.channels import (
     DISPLACEMENTS,
     FORCE_X,
     FORCES,
+    HEEL_ANGLE,
+    HEELING,
+    ROLL_MOMENT,
     units_on,
 )
 from hardware.description.errors import DataError, PmmError
@@ -71,6 +74,7 @@ def _opened(task: Task) -> Recording:
 def _check(recording: Recording, task: Task) -> None:
     """Refuse a recording that lacks a channel, or whose numbers are not in its unit."""
     _check_channels(recording, task)
+    _check_heel(recording, task)
     if task.chain.matrix is None:
         _check_units(recording, task.oscillator.joint)
     elif applied(recording) is not None:
@@ -97,6 +101,23 @@ def _check_channels(recording: Recording, task: Task) -> None:
         )
 
 
+def _check_heel(recording: Recording, task: Task) -> None:
+    """Refuse a heel that nothing tells of, and roll channels in another unit."""
+    if task.heel is None and task.set_point.heel_rad:
+        raise DataError(
+            f"{task.name}: it has a heel, and the campaign file has no table [heel]: say how the "
+            "model is held"
+        )
+    wrong = [
+        f"{one.name} is in {one.unit}, not in {own.unit}"
+        for own in HEELING
+        for one in recording.channels
+        if one.name == own.name and one.unit not in ("", own.unit)
+    ]
+    if wrong and task.heel is not None:
+        raise DataError(f"{recording.name}: {'; '.join(wrong)}; name the right unit in [columns]")
+
+
 def _check_units(recording: Recording, joint: Joint) -> None:
     """Refuse a stated unit that the rig's channel cannot have; a calibration makes its own."""
     made = applied(recording) is not None
@@ -116,15 +137,23 @@ def _check_units(recording: Recording, joint: Joint) -> None:
 
 
 def _at_rest(task: Task, recording: Recording) -> Done:
-    reading = zero_reading(recording, 0.0, (*FORCES, *_surge(recording)))
-    drift_rad = task.set_point.drift_rad
+    reading = zero_reading(recording, 0.0, (*FORCES, *_besides(task, recording)))
+    point = task.set_point
     position, flags = rest_of(task, recording)
-    zero = Zero(task.name, utc_s(recording), task.number, reading, drift_rad, position)
+    zero = Zero(
+        task.name,
+        utc_s(recording),
+        task.number,
+        reading,
+        point.drift_rad,
+        position,
+        point.heel_rad,
+    )
     return _done(task, recording, None, zero, flags=flags)
 
 
 def _turning(task: Task, recording: Recording) -> Done:
-    wanted = (*_USED, *_surge(recording))
+    wanted = (*_USED, *_besides(task, recording))
     channels = tuple(name for name in wanted if name in recording.channel_names)
     if not all(name in channels for name in DISPLACEMENTS):
         channels = tuple(name for name in channels if name not in DISPLACEMENTS)
@@ -140,7 +169,7 @@ def _turning(task: Task, recording: Recording) -> Done:
 
 
 def _towed(task: Task, recording: Recording) -> Done:
-    reading = zero_reading(recording, 0.0, (*FORCES, *_surge(recording)))
+    reading = zero_reading(recording, 0.0, (*FORCES, *_besides(task, recording)))
     struts = static_cycle(task.name, reading, task.oscillator, task.set_point)
     struts, flags = zeroed(struts, task, recording)
     if not struts.mean_known:
@@ -164,6 +193,8 @@ def _model(task: Task, struts: StrutCycle) -> BodyCycle:
     }
     if responses:
         struts = struts.without_response(responses)
+    if task.heel is not None:
+        struts = struts.heeled(task.heel)
     return replace(struts.model(), rudder_rad=task.set_point.rudder_angle_rad)
 
 
@@ -176,9 +207,10 @@ def response_of(one: AmplifierTable) -> Response:
     return lambda s: late(s) * filtered(s)
 
 
-def _surge(recording: Recording) -> tuple[str, ...]:
-    """The surge gauge, where there is one."""
-    return (FORCE_X.name,) if FORCE_X.name in recording.channel_names else ()
+def _besides(task: Task, recording: Recording) -> tuple[str, ...]:
+    """The surge gauge and, of a model that heels, roll gauge and inclinometer: those there are."""
+    wanted = (FORCE_X.name, *((ROLL_MOMENT.name, HEEL_ANGLE.name) if task.heel is not None else ()))
+    return tuple(name for name in wanted if name in recording.channel_names)
 
 
 def _speed_flags(task: Task, recording: Recording) -> tuple[Flag, ...]:

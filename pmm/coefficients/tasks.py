@@ -14,6 +14,7 @@ from analysis.resolver.settings import ResolverSettings
 from hardware.description.arrays import FloatArray
 from hardware.description.attitude import AttitudeSensors
 from hardware.description.flags import Flag, Severity
+from hardware.description.heel import Heel
 from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import Medium, SetPoint
@@ -46,8 +47,8 @@ class Zero:
         Place among all runs of the campaign; ``None`` where the file does not tell.
     reading
         Its ``at_s`` says nothing.
-    drift_rad
-        Drift (trim) at which the model stood.
+    drift_rad, heel_rad
+        Drift (trim) and heel at which the model stood.
     position
         What the sensors of sinkage and trim read; ``None`` without them.
     """
@@ -58,6 +59,7 @@ class Zero:
     reading: ZeroReading
     drift_rad: float = 0.0
     position: RestPosition | None = None
+    heel_rad: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,6 +97,8 @@ class Task:
         Whether the file's SHA-256 is wanted.
     sensors
         Of sinkage and trim; ``None`` where the campaign file states none.
+    heel
+        How the model heels; ``None`` where the campaign file does not say.
     """
 
     source: RecordingSource
@@ -110,6 +114,7 @@ class Task:
     tared: bool = False
     hashed: bool = False
     sensors: AttitudeSensors | None = None
+    heel: Heel | None = None
 
     @property
     def name(self) -> str:
@@ -240,6 +245,7 @@ def work_of(
             tared=campaign.tared,
             hashed=hashed,
             sensors=campaign.attitude,
+            heel=campaign.heel,
         )
         kept = zeros if one.kind is RunKind.ZERO else dry if _is_dry(one) else runs
         kept.append(task)

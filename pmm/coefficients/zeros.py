@@ -13,7 +13,7 @@ from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
 from pmm.coefficients.tasks import Task, Zero
 
-_SAME_TRIM_RAD: Final = 1e-4
+_SAME_RAD: Final = 1e-4
 
 
 def zeroed(
@@ -39,22 +39,25 @@ def zeroed(
 
 
 def _elsewhere(task: Task) -> tuple[Flag, ...]:
-    """Warn of zero runs at another trim, where weight and restoring ask something else at rest."""
-    if task.oscillator.plane is Plane.HORIZONTAL:
+    """Warn of zero runs at another trim or heel, where weight and restoring ask something else."""
+    horizontal = task.oscillator.plane is Plane.HORIZONTAL
+    if horizontal and task.heel is None:
         return ()
-    own = task.set_point.drift_rad
+    key, what = ("heel_rad", "heel") if horizontal else ("drift_rad", "trim")
+    own = getattr(task.set_point, key)
     apart = {
-        zero.name: zero.drift_rad
+        zero.name: getattr(zero, key)
         for zero in task.zeros
-        if zero is not None and abs(zero.drift_rad - own) > _SAME_TRIM_RAD
+        if zero is not None and abs(getattr(zero, key) - own) > _SAME_RAD
     }
+    stated = key.replace("rad", "deg")
     return tuple(
         Flag(
             "zero_elsewhere",
             Severity.WARNING,
-            f"zero run {name} stood at a trim of {math.degrees(there):.3g} deg, the run at "
+            f"zero run {name} stood at a {what} of {math.degrees(there):.3g} deg, the run at "
             f"{math.degrees(own):.3g} deg: what weight and restoring ask at rest differs; make a "
-            "zero run at the run's trim, or state its drift_deg in [[at_rest]]",
+            f"zero run at the run's {what}, or state its {stated} in [[at_rest]]",
             None,
             (task.name,),
         )

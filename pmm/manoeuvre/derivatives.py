@@ -70,9 +70,13 @@ def derivatives_of(
 def _measured(
     file: DerivativeSources, plane: Plane, trials: int, generator: Generator
 ) -> dict[str, FloatArray]:
-    """Return the recommended values of a campaign in the file's system."""
+    """Return the recommended values of a campaign, of a body that stays upright."""
     found = _read(Path(str(file.coefficients)), plane)
-    rows = [k for k in recommended(found) if found.entries[k].speed_m_s > 0.0]
+    rows = [
+        k
+        for k in recommended(found)
+        if found.entries[k].speed_m_s > 0.0 and not term_of(found.entries[k].name, plane).of_roll
+    ]
     speeds = sorted({found.entries[k].speed_m_s for k in rows})
     wanted = file.coefficients_speed_m_s
     if wanted is None and len(speeds) != 1:

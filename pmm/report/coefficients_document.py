@@ -47,6 +47,8 @@ from pmm.report.coefficient_tables import (
     recommended_table,
 )
 from pmm.report.conditions import conditions_table
+from pmm.report.heel import heel_table
+from pmm.report.heel_figure import heel_figures
 
 SCHEMA: Final = "pmm-coefficients-1"
 _LIKELIHOOD = (
@@ -89,7 +91,9 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
             Section("", (pairs("Summary", _summary(outcome)), *_conditions(outcome))),
             Section("Coefficients", (recommended_table(found), *alternatives_tables(found))),
             *stories,
-            Section("Figures", (*figures(found), *attitude_figures(outcome))),
+            Section(
+                "Figures", (*figures(found), *attitude_figures(outcome), *heel_figures(outcome))
+            ),
             Section("What was found", tuple(_findings(found))),
             Section("What was flagged", (Text(("Nothing.",)) if flags.empty else flags,)),
             Section("Uncertainty", (_given(outcome), budget_table(found))),
@@ -100,7 +104,7 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
 
 
 def _conditions(outcome: CampaignOutcome) -> tuple[Content, ...]:
-    return conditions_table(outcome), attitude_table(outcome)
+    return conditions_table(outcome), attitude_table(outcome), heel_table(outcome)
 
 
 def conclusion(found: CampaignCoefficients) -> tuple[Content, ...]:

@@ -19,6 +19,7 @@ ELSEWHERE = {
     "gap": "tests/pmm/gap/test_gap_command_against_its_page.py",
     "manoeuvre": "tests/pmm/manoeuvre/test_command_against_known_derivatives.py",
     "manual": "tests/pmm/plan/test_commands_against_examples.py",
+    "roll": "tests/pmm/coefficients/test_heel_against_its_example.py",
     "steering": "tests/pmm/steering/test_command_against_its_example.py",
     "recordings": "tests/analysis/readers/test_examples_against_their_recipe.py",
 }

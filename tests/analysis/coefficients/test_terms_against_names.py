@@ -17,6 +17,15 @@ factors = st.lists(
 )
 
 
+heeling = st.sampled_from(["v", "rdot", "|r|", "phi", "|phi|", "p", "pdot", "|p|", "u", "d"])
+
+
+@given(st.integers(0, 3), st.lists(heeling, max_size=5))
+def test_terms_of_heel_are_pairs_too(row: int, parts: list[str]) -> None:
+    term = Term(row, tuple(parts))
+    assert term_of(name_of_term(term, Plane.HORIZONTAL), Plane.HORIZONTAL) == term
+
+
 @given(st.integers(0, 1), factors, st.sampled_from(list(Plane)))
 def test_a_name_and_its_term_are_a_pair(row: int, parts: list[str], plane: Plane) -> None:
     term = Term(row, tuple(parts))
@@ -29,13 +38,15 @@ def test_a_name_and_its_term_are_a_pair(row: int, parts: list[str], plane: Plane
      ("Y_r", "N s"), ("N_v", "N s"), ("Y_vvv", "N s3/m3"), ("Y_v|v|", "N s2/m2"),
      ("Y_vvr", "N s3/m2"), ("N_vvv", "N s3/m2"), ("N_rrr", "N m s3"), ("X_vr", "N s2/m"),
      ("Y_0", "N"), ("N_0", "N m"), ("Y_d", "N"), ("N_d", "N m"), ("X_dd", "N"), ("Y_vd", "N s/m"),
-     ("N_vvd", "N s2/m"), ("Y_rd", "N s")],
+     ("N_vvd", "N s2/m"), ("Y_rd", "N s"),
+     ("K_v", "N s"), ("K_p", "N m s"), ("K_pdot", "kg m2"), ("K_phi", "N m"), ("Y_phi", "N"),
+     ("Y_vphiphi", "N s/m"), ("K_rdot", "kg m2"), ("Y_pdot", "kg m")],
 )  # fmt: skip
 def test_units(name: str, unit: str) -> None:
     assert term_of(name, Plane.HORIZONTAL).unit == unit
 
 
-@pytest.mark.parametrize("name", ["Y_w", "Z_v", "Yv", "Y_vv0", "K_v", "Y_", "Y_dot", "Y_ddot"])
+@pytest.mark.parametrize("name", ["Y_w", "Z_v", "Yv", "Y_vv0", "K_w", "Y_", "Y_dot", "Y_ddot"])
 def test_what_is_no_term_is_refused(name: str) -> None:
     with pytest.raises(ConfigurationError, match="is no term in the horizontal plane"):
         term_of(name, Plane.HORIZONTAL)

@@ -1,0 +1,100 @@
+"""The example of a heeled model: what it was made of comes out, in the table, figure and report."""
+
+import json
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner
+
+from analysis.attitude import AttitudeChannel
+from pmm.cli import cli
+from pmm.report.heel import HeelRow
+from pmm.report.heel_figure import heel_figure
+
+EXAMPLE = Path(__file__).parents[3] / "examples" / "roll" / "campaign.toml"
+SPEED_M_S = 1.2
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("roll") / "heeled"
+    done = CliRunner().invoke(cli, ["simulate", str(EXAMPLE), "--output", str(out)])
+    assert done.exit_code == 0, done.stderr
+    return out
+
+
+@pytest.fixture(scope="module")
+def found(folder: Path) -> dict[str, Any]:
+    ran = CliRunner().invoke(cli, ["coefficients", str(folder), "--json"])
+    assert ran.exit_code == 0, ran.stderr
+    return dict(json.loads(ran.stdout))
+
+
+def test_terms_of_heel_and_roll_come_out(found: dict[str, Any]) -> None:
+    made = tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))
+    rows = {row["name"]: row for row in found["recommended"]}
+    put_in = {
+        name.replace("_uu", "_"): value * (SPEED_M_S**2 if "_uu" in name else 1.0)
+        for name, value in made["heel_loads"].items()
+    }
+    told = [name for name in put_in if name in rows]
+    assert {"Y_phi", "N_phi", "K_phi", "X_phiphi", "K_v", "K_r", "K_vdot", "Y_vphiphi"} <= set(told)
+    for name in told:
+        row = rows[name]
+        # At -10 degrees uu is less than the carriage's speed squared under drift: 1 %.
+        allowed = 1.5 * row["half_width"] + 0.015 * abs(put_in[name])
+        assert row["value"] == pytest.approx(put_in[name], abs=allowed), name
+    assert rows["K_v"]["unit"] == "N s"
+    assert rows["K_phi"]["unit"] == "N m"
+
+
+def row_of(row: dict[str, Any]) -> HeelRow:
+    told = {key: row[key] for key in ("run", "speed_m_s", "drift_rad", "frequency_hz", "held")}
+    return HeelRow(
+        **told, heel=AttitudeChannel(**row["heel"]), moment=AttitudeChannel(**row["moment"])
+    )
+
+
+def test_every_run_has_its_heel_and_moment(found: dict[str, Any]) -> None:
+    rows = {row["run"]: row for row in found["heel"]}
+    assert len(rows) == 14
+    assert rows["tow-h-10-b0"]["heel"]["mean"] == pytest.approx(-0.17453, abs=1e-5)
+    k_phi = -0.4502 * SPEED_M_S**2  # N m
+    moment = rows["tow-h-10-b0"]["moment"]
+    assert moment["mean"] == pytest.approx(-0.17453 * k_phi, abs=4.0 * moment["mean_u"])
+    drawn = heel_figure([row_of(row) for row in found["heel"]])
+    assert [axes.get_ylabel() for axes in drawn.axes] == ["K (N m)"] * 2  # the heel was set
+    marks = [part for axes in drawn.axes for part in axes.containers]
+    assert len(marks) == 2 * 14
+
+
+def test_what_is_missing_gets_a_sentence(folder: Path, tmp_path: Path) -> None:
+    text = EXAMPLE.read_text(encoding="utf-8")
+    settings = tmp_path / "coefficients.toml"
+    settings.write_text('wanted = ["K_v"]\n', encoding="utf-8")
+    campaign = folder / "campaign.toml"
+    kept = campaign.read_text(encoding="utf-8")
+
+    def said(changed: str) -> str:
+        campaign.write_text(changed, encoding="utf-8")
+        try:
+            more = ["--settings", str(settings)]
+            ran = CliRunner().invoke(cli, ["coefficients", str(folder), *more])
+        finally:
+            campaign.write_text(kept, encoding="utf-8")
+        assert ran.exit_code != 0
+        return str(ran.stderr)
+
+    heel = text[text.index("[heel]") : text.index("[hull]")]
+    loads = text[text.index("[heel_loads]") : text.index("[acquisition]")]
+    bare = (
+        text.replace(heel, "")
+        .replace(loads, "")
+        .replace("roll_moment = { noise_rms = 0.02, offset = 0.15 }\n", "")
+    )
+    upright = "\n".join(line for line in bare.splitlines() if "heel_deg" not in line)
+    assert "a missing roll gauge: K terms need the channel roll_moment" in said(upright)
+    turned = text.replace("half_spacing_m = 0.8", 'half_spacing_m = 0.8\ngauges = "rig"')
+    assert 'heel needs gauges = "model" in [oscillator]' in said(turned)
