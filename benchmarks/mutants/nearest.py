@@ -1,6 +1,7 @@
 """The test files that a module's mutations are tried on first: those that import it, then wider."""
 
 import ast
+import re
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
@@ -13,12 +14,18 @@ def rings(root: Path, packages: Sequence[str], file: str) -> Iterator[list[str]]
     for one, imported in imports.items():
         for name in imported:
             importers.setdefault(name, set()).add(one)
-    asked, ring = {file}, {file}
+    asked, ring, words = {file}, {file}, _words(file)
     while ring:
         ring = {by for one in ring for by in importers.get(one, ())} - asked
         asked |= ring
-        if tests := sorted(one for one in ring if Path(one).name.startswith("test_")):
-            yield tests
+        tests = [one for one in ring if Path(one).name.startswith("test_")]
+        if tests:
+            yield sorted(tests, key=lambda one: (-len(words & _words(one)), one))
+
+
+def _words(file: str) -> set[str]:
+    """Return the words of a path: tests are named much as what they test."""
+    return {*re.split(r"\W|_", file)}
 
 
 @cache

@@ -59,19 +59,17 @@ class House:
         """
         end, passed = _spent_s() + self.patience_s, 0
         for ring in rings:
-            asked = list(ring)
-            while asked:
+            broken: set[str] = set()
+            while left := [one for one in ring if one not in broken]:
                 with self._mutated(file, mutation):
-                    failed = self._failed(asked, end - _spent_s())
+                    failed = self._failed(left, end - _spent_s(), broken)
                 if failed is None:
                     return {"outcome": "unfinished", "tests": passed}
-                broken = [one for one in failed if not self._is_sound(one)]
-                if len(broken) < len(failed):
-                    by = next(one for one in failed if one not in broken)
-                    return {"outcome": "killed", "by": by, "tests": passed + len(asked)}
-                asked = [one for one in asked if one not in broken]
+                if by := next((one for one in failed if self._is_sound(one)), ""):
+                    return {"outcome": "killed", "by": by, "tests": passed + len(left)}
+                broken.update(failed)
                 if not failed:
-                    passed += len(asked)
+                    passed += len(left)
                     break
         return {"outcome": "survived" if passed else "untested", "tests": passed}
 
@@ -90,11 +88,14 @@ class House:
             self.sound[test] = self._failed([test], self.patience_s) == []
         return self.sound[test]
 
-    def _failed(self, tests: Sequence[str], patience_s: float) -> list[str] | None:
+    def _failed(
+        self, tests: Sequence[str], patience_s: float, left_out: Iterable[str] = ()
+    ) -> list[str] | None:
         """Return the first tests that fail; ``None`` where patience ended before."""
         listed = self.folder / "asked.txt"
         listed.write_text("\n".join(tests), encoding="utf-8")
         options = ["-x", "-q", "-p", "no:cacheprovider", "--timeout", "0"]
+        options += [f"--deselect={one}" for one in left_out]
         if self.workers > 1:
             options += ["-n", str(self.workers)]
         end_s = max(1, round(patience_s))
