@@ -1,6 +1,5 @@
-"""A campaign's table as others quote it, and back: factors, shifts by the mass, names."""
+"""A campaign's table as others quote it: factors, shifts by the mass, names."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -13,7 +12,6 @@ from analysis.coefficients.normalisation import Normalisation
 from analysis.coefficients.quoting import Quoting
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.terms import term_of
-from analysis.uncertainty.values import UncertainValues
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 
@@ -55,33 +53,17 @@ def quoted(
             "--names and --with-mass are of manoeuvring derivatives; take --form manoeuvring"
         )
     factors, shifts = _factors(found, quoting), _shifts(found, quoting, carried)
-    said = found.normalisation + quoting.told(found.plane)
-    slopes = _slopes(found, quoting, carried)
-    changed = _changed(found, factors, shifts, slopes, quoting.name)
-    rows = tuple(_row(one, found, quoting, carried) for one in found.references)
-    return replace(changed, normalisation=said, references=rows)
-
-
-def as_products(
-    found: CampaignCoefficients, quoting: Quoting, carried: Carried = Carried()
-) -> CampaignCoefficients:
-    """Return the campaign in coefficients of products: the inverse of :func:`quoted`.
-
-    Tables beside it are left out.
-    """
-    plain = replace(
+    uncertain = found.uncertain.scaled(factors)
+    uncertain = replace(uncertain, values=uncertain.values + shifts)
+    for label, parts in _slopes(found, quoting, carried).items():
+        uncertain = uncertain.plus(label, parts)
+    return replace(
         found,
-        normalisation=found.normalisation.removesuffix(quoting.told(found.plane)),
-        references=(),
-    )
-    factors, shifts = _factors(found, quoting), _shifts(found, quoting, carried)
-    slopes = {key: -one / factors for key, one in _slopes(found, quoting, carried).items()}
-    return _changed(
-        plain,
-        1.0 / factors,
-        -shifts / factors,
-        slopes,
-        lambda name: quoting.own_name(name, found.plane),
+        normalisation=found.normalisation + quoting.told(found.plane),
+        entries=tuple(replace(one, name=quoting.name(one.name)) for one in found.entries),
+        uncertain=uncertain,
+        trials=found.trials.carried(found.uncertain, uncertain, factors),
+        references=tuple(_row(one, found, quoting, carried) for one in found.references),
     )
 
 
@@ -127,30 +109,6 @@ def _slopes(
         "density_relative": -shifts * stated.density_relative * (carried.system is not None),
     }
     return {key: one for key, one in own.items() if one.any()}
-
-
-def _changed(
-    found: CampaignCoefficients,
-    factors: FloatArray,
-    shifts: FloatArray,
-    slopes: dict[str, FloatArray],
-    name: Callable[[str], str],
-) -> CampaignCoefficients:
-    uncertain = UncertainValues(
-        found.values * factors + shifts,
-        tuple(
-            replace(one, parts=one.parts * factors[one.rows][:, None])
-            for one in found.uncertain.contributions
-        ),
-    )
-    for label, parts in slopes.items():
-        uncertain = uncertain.plus(label, parts)
-    return replace(
-        found,
-        entries=tuple(replace(one, name=name(one.name)) for one in found.entries),
-        uncertain=uncertain,
-        trials=found.trials.carried(found.uncertain, uncertain, factors),
-    )
 
 
 def _row(

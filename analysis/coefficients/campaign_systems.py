@@ -1,4 +1,4 @@
-"""A campaign's table in a system without dimensions, each entry by its own speed, and back."""
+"""A campaign's table in a system without dimensions, each entry by its own speed."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -12,8 +12,6 @@ from analysis.coefficients.names import Form, place_of
 from analysis.coefficients.normalisation import DIMENSIONAL, Normalisation
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.terms import Term, term_of
-from analysis.uncertainty.values import UncertainValues
-from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 
 System = Callable[[float], Normalisation]
@@ -43,8 +41,7 @@ def without_dimensions(
     factors = np.array(
         [_factor(coefficients, e, s) for e, s in zip(coefficients.entries, systems, strict=True)]
     )
-    scaled = _scaled(coefficients, 1.0 / factors, common_name(systems), None)
-    uncertain = scaled.uncertain
+    uncertain = coefficients.uncertain.scaled(1.0 / factors)
     if stated.density_relative > 0.0:
         uncertain = uncertain.plus("density_relative", -uncertain.values * stated.density_relative)
     if stated.speed_m_s > 0.0 and any(system.speed_m_s > 0.0 for system in systems):
@@ -53,25 +50,13 @@ def without_dimensions(
         speeds = np.array([system.speed_m_s or np.inf for system in systems])
         parts = -uncertain.values * powers * stated.speed_m_s / speeds
         uncertain = uncertain.plus("speed_m_s", parts)
-    trials = coefficients.trials.carried(coefficients.uncertain, uncertain, 1.0 / factors)
-    return replace(scaled, uncertain=uncertain, trials=trials)
-
-
-def with_dimensions(coefficients: CampaignCoefficients, system: System) -> CampaignCoefficients:
-    """Return the campaign in SI units: the inverse where the system itself is exact.
-
-    Raises
-    ------
-    ConfigurationError
-        If the campaign is in another system.
-    """
-    systems = [system(entry.speed_m_s) for entry in coefficients.entries]
-    _check_system(coefficients, common_name(systems))
-    factors = np.array(
-        [_factor(coefficients, e, s) for e, s in zip(coefficients.entries, systems, strict=True)]
+    return replace(
+        coefficients,
+        normalisation=common_name(systems),
+        entries=tuple(replace(entry, unit="1") for entry in coefficients.entries),
+        uncertain=uncertain,
+        trials=coefficients.trials.carried(coefficients.uncertain, uncertain, 1.0 / factors),
     )
-    units = tuple(term_of_entry(coefficients, entry).unit for entry in coefficients.entries)
-    return _scaled(coefficients, factors, DIMENSIONAL, units)
 
 
 def _check_system(coefficients: CampaignCoefficients, needed: str) -> None:
@@ -111,24 +96,3 @@ def speed_power(
     """Power of the speed in what the value is divided by."""
     term = term_of_entry(coefficients, entry)
     return 2.0 - term.degree - term.rates if system.speed_m_s > 0.0 else 0.0
-
-
-def _scaled(
-    coefficients: CampaignCoefficients,
-    factors: FloatArray,
-    name: str,
-    units: tuple[str, ...] | None,
-) -> CampaignCoefficients:
-    contributions = tuple(
-        replace(one, parts=one.parts * factors[one.rows][:, None])
-        for one in coefficients.uncertain.contributions
-    )
-    uncertain = UncertainValues(coefficients.values * factors, contributions)
-    texts = units or ("1",) * len(coefficients.entries)
-    return replace(
-        coefficients,
-        normalisation=name,
-        entries=tuple(replace(e, unit=u) for e, u in zip(coefficients.entries, texts, strict=True)),
-        uncertain=uncertain,
-        trials=coefficients.trials.carried(coefficients.uncertain, uncertain, factors),
-    )

@@ -22,7 +22,7 @@ from enum import StrEnum
 from types import MappingProxyType
 from typing import Final
 
-from analysis.coefficients.terms import Term, name_of_term, term_of
+from analysis.coefficients.terms import Term
 from hardware.description.oscillator import Plane
 
 
@@ -87,11 +87,6 @@ class Quoting:
     def name(self, name: str) -> str:
         """Return what a coefficient is quoted as."""
         return _OTHERS[self.names].get(name, name)
-
-    def own_name(self, quoted: str, plane: Plane) -> str:
-        """Return the product's name of what is quoted: the inverse of :meth:`name`."""
-        others = {theirs: ours for ours, theirs in _OTHERS[self.names].items()}
-        return others.get(quoted) or name_of_term(term_of(quoted, plane), plane)
 
     def mass_shift(
         self, term: Term, plane: Plane, mass_kg: float, cg_x_m: float, speed_m_s: float

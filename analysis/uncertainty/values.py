@@ -159,6 +159,13 @@ class UncertainValues:
                 inputs[row].append(k)
         return inputs
 
+    def scaled(self, factors: FloatArray) -> "UncertainValues":
+        """Return each value times its factor, shape ``(n,)``, uncertainties and all."""
+        contributions = tuple(
+            replace(one, parts=one.parts * factors[one.rows][:, None]) for one in self.contributions
+        )
+        return UncertainValues(self.values * factors, contributions)
+
     def mapped(self, matrix: FloatArray) -> "UncertainValues":
         """Return ``matrix @ values``, uncertainties and all; ``matrix`` has the shape (m, n)."""
         return self.carried(matrix @ self.values, matrix)

@@ -41,13 +41,6 @@ def rounded(value: float, half_width: float) -> str:
     return _minus(f"{value:z.{places}f} ± {half_width:.{places}f}")
 
 
-def rounded_phase(phase_deg: float, half_width_deg: float, amplitude: float = 1.0) -> str:
-    """Return a phase with its interval, or that it is open (:func:`is_open`)."""
-    if is_open(half_width_deg, amplitude):
-        return "open"
-    return rounded(phase_deg, half_width_deg)
-
-
 def is_open(phase_half_width_deg: float, amplitude: float) -> bool:
     """Whether a phase is not known: its interval takes in half the circle, or nothing turns."""
     return phase_half_width_deg >= _OPEN_DEG or amplitude == 0.0

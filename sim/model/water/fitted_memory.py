@@ -51,16 +51,6 @@ class FittedMemory:
         return np.array([(one - other) / size for one, other, size in parts])
 
     @property
-    def added_mass_error(self) -> FloatArray:
-        """Largest deviation of the added mass, relative, shape ``(2, 2)``."""
-        return np.asarray(np.abs(self.deviations()[0]).max(axis=0))
-
-    @property
-    def damping_error(self) -> FloatArray:
-        """Largest deviation of the damping, relative, shape ``(2, 2)``."""
-        return np.asarray(np.abs(self.deviations()[1]).max(axis=0))
-
-    @property
     def error(self) -> float:
         """Largest of all deviations."""
         return float(np.abs(self.deviations()).max())

@@ -14,11 +14,12 @@ from analysis.coefficients.campaign import Request, campaign_coefficients
 from analysis.coefficients.campaign_nonlinear import QUASI, STATIC_DRIFT
 from analysis.coefficients.campaign_records import HIGHER_ORDER, LINEAR, ZERO_FREQUENCY
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.campaign_systems import with_dimensions, without_dimensions
-from analysis.coefficients.names import Form
+from analysis.coefficients.campaign_systems import without_dimensions
+from analysis.coefficients.names import Form, place_of
 from analysis.coefficients.normalisation import mmg, prime, seakeeping
 from analysis.coefficients.reference import ReferenceTable, compared, table_of_matrices
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
+from analysis.coefficients.terms import term_of
 from benchmarks.coefficients_campaigns import (
     BODY,
     CUBIC,
@@ -128,32 +129,39 @@ def test_single_runs_are_held_against_all_together(horizontal: CampaignCoefficie
 
 
 @pytest.mark.parametrize("kind", ["prime", "mmg"])
-def test_systems_there_and_back(horizontal: CampaignCoefficients, kind: str) -> None:
+def test_a_system_divides_by_its_factors(horizontal: CampaignCoefficients, kind: str) -> None:
     def system(speed: float):  # type: ignore[no-untyped-def]
         return prime(2.5, speed, 998.0) if kind == "prime" else mmg(2.5, 0.14, speed, 998.0)
 
     there = without_dimensions(horizontal, system)
     assert there.normalisation == system(1.2).name
     assert {entry.unit for entry in there.entries} == {"1"}
-    again = with_dimensions(there, system)
-    np.testing.assert_allclose(again.values, horizontal.values, rtol=1e-12)
-    np.testing.assert_allclose(again.half_widths, horizontal.half_widths, rtol=1e-12)
-    assert [e.unit for e in again.entries] == [e.unit for e in horizontal.entries]
+    factors = [system(e.speed_m_s).term_factor(term_of(e.name, Plane.HORIZONTAL))
+               for e in horizontal.entries]  # fmt: skip
+    np.testing.assert_allclose(there.values * factors, horizontal.values, rtol=1e-12)
+    np.testing.assert_allclose(there.half_widths * factors, horizontal.half_widths, rtol=1e-12)
     with pytest.raises(ConfigurationError, match="not in 'dimensional'"):
         without_dimensions(there, system)
 
 
 @settings(max_examples=20, deadline=None)
 @given(st.floats(0.5, 300.0), st.floats(0.01, 10.0), st.floats(900.0, 1100.0))
-def test_seakeeping_system_there_and_back(length: float, volume: float, density: float) -> None:
+def test_the_seakeeping_system_divides_by_its_factors(
+    length: float, volume: float, density: float
+) -> None:
     def system(_: float):  # type: ignore[no-untyped-def]
         return seakeeping(length, volume, density)
 
     before = SMALL
-    again = with_dimensions(without_dimensions(before, system), system)
-    np.testing.assert_allclose(again.values, before.values, rtol=1e-12)
+    there = without_dimensions(before, system)
+    places = [place_of(e.name, Plane.VERTICAL, Form.SEAKEEPING) for e in before.entries]
+    factors = np.array([system(0.0).place_factor(place) for place in places])
+    np.testing.assert_allclose(there.values * factors, before.values, rtol=1e-12)
     np.testing.assert_allclose(
-        again.uncertain.covariance(), before.uncertain.covariance(), rtol=1e-9, atol=1e-12
+        there.uncertain.covariance() * np.outer(factors, factors),
+        before.uncertain.covariance(),
+        rtol=1e-9,
+        atol=1e-12,
     )
 
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis.coefficients.campaign_quoting import Carried, as_products, quoted
+from analysis.coefficients.campaign_quoting import Carried, quoted
 from analysis.coefficients.campaign_records import HIGHER_ORDER, CoefficientEntry
 from analysis.coefficients.campaign_result import CampaignCoefficients, no_trials
 from analysis.coefficients.campaign_systems import without_dimensions
@@ -132,37 +132,6 @@ def test_gertler_and_hagens_equations_give_the_same_load(w: float, q: float) -> 
     ) + HALF * length**4 * (c["M_q"] * u * q + c["M_|w|q"] * flow * q)  # fmt: skip
     theirs += HALF * length**5 * c["M_q|q|"] * q * abs(q)
     assert theirs == pytest.approx(moment, rel=1e-12)
-
-
-NAMES = {
-    Plane.HORIZONTAL: ("Y_vdot", "Y_v", "Y_r", "N_v", "N_r", "Y_vvr", "N_rrr", "X_vr", "Y_v|v|",
-                       "Y_0", "N_r|v|"),
-    Plane.VERTICAL: ("Z_wdot", "Z_w", "Z_q", "M_w", "M_q", "Z_www", "M_wwq", "X_ww", "Z_w|w|",
-                     "Z_0", "M_q|w|"),
-}  # fmt: skip
-
-
-@given(
-    st.sampled_from(list(Names)), st.booleans(), st.sampled_from(list(Plane)), st.booleans(),
-    st.lists(st.floats(-1e6, 1e6).filter(lambda x: abs(x) > 1e-3), min_size=11, max_size=11),
-)  # fmt: skip
-def test_what_is_quoted_comes_back(names, mass, plane, divided, values) -> None:  # type: ignore[no-untyped-def]
-    start = campaign(dict(zip(NAMES[plane], values, strict=True)), plane)
-    start = without_dimensions(start, system) if divided else start
-    quoting = Quoting(names, mass)
-    stated = StatedUncertainties(mass_kg=3e4, cg_x_m=0.2, speed_m_s=0.01, density_relative=1e-3)
-    carried = Carried(1.7e7, -3.7, system if divided else None, stated)
-    there = quoted(start, quoting, carried)
-    back = as_products(there, quoting, carried)
-    assert back.normalisation == start.normalisation
-    assert [one.name for one in back.entries] == [one.name for one in start.entries]
-    scale = abs(there.values).max() + abs(start.values)
-    np.testing.assert_allclose(back.values / scale, start.values / scale, atol=1e-12)
-    ours, theirs = start.uncertain.covariance(), back.uncertain.covariance()
-    size = np.sqrt(np.diag(there.uncertain.covariance())) + np.sqrt(np.diag(ours))
-    np.testing.assert_allclose(
-        theirs / np.outer(size, size), ours / np.outer(size, size), atol=1e-9
-    )
 
 
 @pytest.mark.parametrize("arm", [-3.7, 0.0])
