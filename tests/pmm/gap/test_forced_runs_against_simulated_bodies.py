@@ -62,7 +62,9 @@ def test_the_examples_record_is_what_its_script_makes() -> None:
     np.testing.assert_allclose(made, kept, atol=6e-4)
 
 
-def recorded(folder: Path, name: str, frequency_hz: float, header: str, scale: float = 1.0) -> None:
+def recorded(
+    folder: Path, name: str, frequency_hz: float, scale: float = 1.0, late_s: float = 0.0
+) -> None:
     """Write a wave and the heave of a body whose impedance and transfer are those of WAVES."""
     share = (frequency_hz - 0.4) / 0.4
     added, damping, size, phase = (
@@ -71,20 +73,47 @@ def recorded(folder: Path, name: str, frequency_hz: float, header: str, scale: f
     omega, time_s = 2.0 * np.pi * frequency_hz, np.arange(0.0, 40.0, 0.05)
     wave = 0.02 * np.exp(1j * (omega * time_s + 0.7))
     heave = wave * size * np.exp(1j * phase)
-    heave = scale * heave / (1000.0 - omega**2 * (50.0 + added) + 1j * omega * damping)
+    heave *= scale * np.exp(-1j * omega * late_s)
+    heave = heave / (1000.0 - omega**2 * (50.0 + added) + 1j * omega * damping)
     noise = np.random.default_rng(3).normal(0.0, 1e-6, (2, time_s.size))
     rows = np.column_stack((time_s, wave.real + noise[0], heave.real + noise[1]))
+    header = "time_s,wave [m],heave [m]"
     np.savetxt(folder / f"{name}.csv", rows, delimiter=",", header=header, comments="")
 
 
 def test_waves_are_forces_by_their_transfer_at_the_runs_frequency(tmp_path: Path) -> None:
     path = tmp_path / "waves.toml"
     path.write_text(BODY + WAVES + RUN.format(name="a", force="wave"))
-    recorded(tmp_path, "a", 0.55, "time_s,wave [m],heave [m]")
+    recorded(tmp_path, "a", 0.55)
     problem = load_problem(path)
     left = problem.observed - problem.nominal
     assert np.abs(left).max() < 1e-3
     assert set(problem.kind) == {0, 1}  # the third harmonic of the force is not known
+
+
+COMPARED = """
+[[effects]]
+name = "sensor_delay"
+parameters = {{ delay_s = 0.045, channel = "{channel}" }}
+[[effects]]
+name = "sensor_gain"
+parameters = {{ gain_error = 0.02, channel = "{channel}" }}
+"""
+
+
+def test_what_a_comparison_told_of_a_sensor_stands_in_the_simulation(tmp_path: Path) -> None:
+    path = tmp_path / "waves.toml"
+    recorded(tmp_path, "a", 0.55, scale=1.02, late_s=0.045)
+    text = BODY + WAVES + RUN.format(name="a", force="wave")
+    path.write_text(text)
+    assert np.abs(load_problem(path).residual).max() > 50.0
+    path.write_text(text + COMPARED.format(channel="heave"))
+    problem = load_problem(path)
+    assert np.abs(problem.observed - problem.nominal).max() < 1e-3
+    path.write_text(text + COMPARED.format(channel="camera"))
+    done = run("pendulum", path)
+    assert done.exit_code == 2
+    assert "for a channel that no record has (channels: heave)" in " ".join(done.stderr.split())
 
 
 @pytest.mark.parametrize(
@@ -101,7 +130,7 @@ def test_runs_that_cannot_be_the_bodys_are_refused(
 ) -> None:
     path = tmp_path / "waves.toml"
     path.write_text(BODY + table + RUN.format(name="a", force="wave"))
-    recorded(tmp_path, "a", frequency_hz, "time_s,wave [m],heave [m]", scale)
+    recorded(tmp_path, "a", frequency_hz, scale)
     done = run("pendulum", path)
     assert done.exit_code in (1, 2)
     assert said in " ".join(done.stderr.split())
