@@ -88,7 +88,8 @@ def analyse(
     asked, settings = settings, with_own_gate(recording, settings)
     check_opening(recording, settings)
     fixed = asked is settings
-    reference = _reference(recording, choice, settings, fixed=fixed)
+    told = _reference(recording, choice, settings, fixed=fixed)
+    reference = told.delayed(settings.delay_s)
     names = settings.channels or _default_channels(recording, reference)
     chosen = recording.select(names).complete()
     edges = _edges(chosen, reference, settings, fixed=fixed)
@@ -119,7 +120,7 @@ def analyse(
         + set_point_flags(recording, reference, gates[0], readings[0])
         + frequency_flags(chosen.channel_names, values, reference)
         + flags
-        + reference_flags(recording, reference, steady, settings)
+        + reference_flags(recording, told, steady, settings)
         + saturation_flags(chosen, float(steady.opened_s[0]), float(steady.closed_s[-1])),
     )
 
@@ -145,7 +146,8 @@ def _reference(
     reference = choose_reference(recording, choice, settings.opens_s)
     if settings.opens_s is None or reference.source is not ReferenceSource.SIGNAL:
         return reference
-    edges_s = reference.times_at(_edges(recording, reference, settings, fixed=fixed))
+    at_once = replace(settings, delay_s=0.0)
+    edges_s = reference.times_at(_edges(recording, reference, at_once, fixed=fixed))
     within = recording.between(float(edges_s[0]), float(edges_s[-1]))
     try:
         chosen = choose_reference(within, choice)
@@ -167,7 +169,8 @@ def _edges(
     """
     if settings.opens_s is None:
         return whole_periods(recording, reference)
-    first = float(reference.cycles_at(np.array([settings.opens_s]))[0])
+    opens_s = settings.opens_s + settings.delay_s
+    first = float(reference.cycles_at(np.array([opens_s]))[0])
     edges = whole_periods(recording, reference, first)
     edges = edges[edges >= first - 1e-9]
     count = len(edges) - 1 if settings.periods is None else settings.periods

@@ -199,12 +199,16 @@ def _turn(phasor: ComplexArray) -> float | None:
 def reference_flags(
     recording: Recording, reference: PhaseReference, steady: PeriodSums, settings: ResolverSettings
 ) -> tuple[Flag, ...]:
-    """Say where a signal that tells the phase does not keep its amplitude in the periods used."""
+    """Say where a signal that tells the phase does not keep its amplitude in the periods used.
+
+    Of channels that waves reach later it is what the signal did so much earlier.
+    """
     name = reference.channel
     if reference.source is not ReferenceSource.SIGNAL or name is None:
         return ()
     signal = recording.select([name]).complete()
-    sums = period_sums(signal, reference, 1, edges_cycles=steady.edges_cycles)
+    edges = steady.edges_cycles - reference.frequency_hz * settings.delay_s
+    sums = period_sums(signal, reference, 1, edges_cycles=edges)
     values = solve_periods(sums).coefficients[:, 0]
     size = np.hypot(values[:, 1], values[:, 2])
     usual = float(np.nanmedian(size)) if np.isfinite(size).any() else np.inf

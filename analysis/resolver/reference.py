@@ -9,7 +9,7 @@ a given frequency for synthetic records; and a reference signal (stroke, displac
 recordings of other systems (:mod:`analysis.resolver.signal_reference`).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
@@ -61,6 +61,16 @@ class PhaseReference:
     def times_at(self, cycles: FloatArray) -> FloatArray:
         """Return the times at which some revolutions are reached."""
         return _interpolate(cycles, self.cycles, self.times_s)
+
+    def delayed(self, delay_s: float) -> "PhaseReference":
+        """Return the reference so much later, its phase carried on at its mean frequency."""
+        if not delay_s:
+            return self
+        return replace(
+            self,
+            times_s=self.times_s + delay_s,
+            cycles=self.cycles + self.frequency_hz * delay_s,
+        )
 
     @property
     def frequency_hz(self) -> float:

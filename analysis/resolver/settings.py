@@ -24,6 +24,9 @@ class ResolverSettings:
         Number of periods from ``opens_s`` on; all that follow if ``None``.
     steady_tolerance
         See :func:`analysis.resolver.steady_stretch.find_steady`.
+    delay_s
+        How much later than the reference's sensor waves reach these channels: their gates open and
+        close so much later, with the reference's phase carried on at its mean frequency.
     hann
         Taper each gate (:mod:`analysis.resolver.hann`): for long gates with interference.
     """
@@ -36,6 +39,7 @@ class ResolverSettings:
     steady_tolerance: float = 0.05
     take_out_drift: bool = True
     hann: bool = False
+    delay_s: float = 0.0
 
 
 def check_settings(settings: ResolverSettings) -> None:
@@ -57,7 +61,11 @@ def check_settings(settings: ResolverSettings) -> None:
 def with_own_gate(recording: Recording, settings: ResolverSettings) -> ResolverSettings:
     """Take the gate that run control had, where it closed within the record."""
     told = recording.provenance
-    if settings.opens_s is not None or not {GATE_OPENED, GATE_PERIODS} <= set(told):
+    if (
+        settings.opens_s is not None
+        or settings.delay_s
+        or not {GATE_OPENED, GATE_PERIODS} <= set(told)
+    ):
         return settings
     try:
         opened_s, periods = float(told[GATE_OPENED]), int(told[GATE_PERIODS])
@@ -76,9 +84,12 @@ def check_opening(recording: Recording, settings: ResolverSettings) -> None:
     ConfigurationError
         If its time lies before the record or after it.
     """
-    if settings.opens_s is None or recording.start_s <= settings.opens_s <= recording.end_s:
+    if settings.opens_s is None:
+        return
+    opens_s = settings.opens_s + settings.delay_s
+    if recording.start_s <= opens_s <= recording.end_s:
         return
     raise ConfigurationError(
-        f"{recording.name}: the gate cannot open at {settings.opens_s:g} s; the record runs "
+        f"{recording.name}: the gate cannot open at {opens_s:g} s; the record runs "
         f"from {recording.start_s:.3f} s to {recording.end_s:.3f} s"
     )

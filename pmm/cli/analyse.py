@@ -74,6 +74,14 @@ _ANY, _POSITIVE = _Finite(positive=False), _Finite()
     help="How far first harmonics may stray in a steady stretch, relative.  [default: 0.05]",
 )
 @click.option(
+    "--delay",
+    "delays",
+    multiple=True,
+    metavar="CHANNEL=S",
+    help="Open a channel's gates so much later than the reference's, for waves that travel from "
+    "one to the other: seconds, or METRES/GROUP_VELOCITY; repeatable.",
+)
+@click.option(
     "--let-through",
     type=_POSITIVE,
     multiple=True,

@@ -87,7 +87,7 @@ def _print(found: "Sequence[tuple[Path, Analysis]]") -> None:
     from pmm.harmonics.rows import run_rows
     from pmm.report.harmonics_tables import first_harmonics_table
 
-    rows = [run_rows(one, file=str(path), level=DEFAULT_LEVEL) for path, one in found]
+    rows = [run_rows((one,), file=str(path), level=DEFAULT_LEVEL) for path, one in found]
     print_content(first_harmonics_table(rows, (FORCE_AFT.name, FORCE_FORE.name)), output())
 
 

@@ -33,6 +33,7 @@ class HarmonicsRequest:
     opens_at: float | None = None
     periods: int | None = None
     steady_tolerance: float | None = None
+    delays: tuple[str, ...] = ()
     let_through: tuple[float, ...] = ()
     classic: bool = False
     carrier: float | None = None
@@ -88,6 +89,31 @@ class HarmonicsRequest:
         if self.column_map:
             return read_column_map(self.column_map)
         return parse_options(self.columns) if self.columns else None
+
+    def delays_s(self) -> dict[str, float]:
+        """Return each late channel's delay behind the reference.
+
+        Raises
+        ------
+        ConfigurationError
+            If one is not ``CHANNEL=SECONDS`` or ``CHANNEL=METRES/SPEED``, or a channel has two.
+        """
+        found: dict[str, float] = {}
+        for text in self.delays:
+            name, _, value = (part.strip() for part in text.rpartition("="))
+            distance, _, speed = value.partition("/")
+            try:
+                delay_s = float(distance) / float(speed or 1.0)
+            except (ValueError, ZeroDivisionError):
+                delay_s = math.nan
+            if not name or name in found or not math.isfinite(delay_s):
+                raise ConfigurationError(
+                    f"--delay {text}: give CHANNEL=SECONDS, or CHANNEL=METRES/SPEED with the "
+                    "distance from the reference's sensor and the waves' group velocity in m/s, "
+                    "once for a channel"
+                )
+            found[name] = delay_s
+        return found
 
     def choice(self, base: ReferenceChoice) -> ReferenceChoice:
         """Return the reference wanted, on top of what a campaign says."""

@@ -6,11 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from analysis.readers import write_recording
-from analysis.resolver.analysis import Analysis, analyse
+from analysis.resolver.analysis import Analysis
 from analysis.resolver.first_harmonics import first_harmonics
 from analysis.resolver.reference import NoReferenceError
 from analysis.resolver.reference_choice import ReferenceChoice
 from analysis.resolver.settings import ResolverSettings
+from analysis.resolver.windows import analyse_windows
 from hardware.description.errors import ConfigurationError, DataError, PmmError
 from hardware.description.flags import Flag
 from pmm.campaign.plausibility import implausible
@@ -104,24 +105,27 @@ def _resolved(
     campaign = source.as_recorded
     choice = request.choice(campaign.reference if campaign else ReferenceChoice())
     settings = request.settings(campaign.analysis if campaign else ResolverSettings())
-    _check_channels(recording, (*settings.channels, choice.channel), columns)
+    delays_s = request.delays_s()
+    _check_channels(recording, (*settings.channels, choice.channel, *delays_s), columns)
     if request.save is not None:
         folder = Path(request.save)
         folder.mkdir(parents=True, exist_ok=True)
         write_recording(recording, folder / f"{source.stem}.nc")
     if request.carrier is not None:
         recording = _detected(recording, settings.channels, request.carrier, request.bandwidth)
-    analysis = analyse(recording, choice, settings)
+    analyses = analyse_windows(recording, choice, settings, delays_s)
     if draw is not None:
-        draw(analysis, source.stem)
+        draw(analyses[0], source.stem)
+        for one in analyses[1:]:
+            draw(one, f"{source.stem}-{one.recording.channel_names[0]}")
     rows = run_rows(
-        analysis,
+        analyses,
         file=str(source.path),
         level=request.level,
         vibrations_hz=request.let_through,
         classic=request.classic,
     )
-    return Resolved(source, rows, first_harmonics(recording, analysis) if campaign else None)
+    return Resolved(source, rows, first_harmonics(recording, analyses[0]) if campaign else None)
 
 
 def _check_channels(

@@ -77,8 +77,13 @@ class ChannelRows:
 
 @dataclass(frozen=True)
 class GateRows:
-    """One gate: where it lies, what its intervals rest on, and its channels."""
+    """One gate: where it lies, what its intervals rest on, and its channels.
 
+    It is gate ``number`` of ``count`` in the window of its channels.
+    """
+
+    number: int
+    count: int
     opened_s: float
     closed_s: float
     periods: int
@@ -112,7 +117,8 @@ class RunRows:
         ``"found steady"``, ``"given"``, ``"run's gate"`` (run control had it) or ``"not steady"``
         (all periods were used).
     window_opened_s, window_closed_s, window_periods
-        The periods that the gates were taken from.
+        The periods that the gates were taken from; where channels have windows of their own, the
+        first of them, and flags and gates tell the others.
     steady_tolerance
         Within which first harmonics keep in a steady stretch, relative to the usual amplitude.
     let_through, classic
@@ -139,17 +145,19 @@ class RunRows:
 
 
 def run_rows(
-    analysis: "Analysis",
+    analyses: "Sequence[Analysis]",
     *,
     file: str,
     level: float,
     vibrations_hz: Sequence[float] = (),
     classic: bool = False,
 ) -> RunRows:
-    """Turn an analysis into rows.
+    """Turn the analyses of a recording into rows.
 
     Parameters
     ----------
+    analyses
+        One for each window that its channels have.
     file
         Where the recording came from.
     level
@@ -159,6 +167,7 @@ def run_rows(
     classic
         Whether to read the modes of 1963 too.
     """
+    analysis = analyses[0]
     steady, recording = analysis.steady_sums, analysis.recording
     return RunRows(
         file=file,
@@ -174,10 +183,14 @@ def run_rows(
         window_closed_s=float(steady.closed_s[-1]),
         window_periods=steady.period_count,
         steady_tolerance=analysis.settings.steady_tolerance,
-        gates=tuple(gate_rows(reading, level) for reading in analysis.readings),
-        flags=analysis.flags,
+        gates=tuple(
+            gate_rows(reading, level, number, len(one.readings))
+            for one in analyses
+            for number, reading in enumerate(one.readings, 1)
+        ),
+        flags=tuple(dict.fromkeys(flag for one in analyses for flag in one.flags)),
         let_through=_let_through(analysis, vibrations_hz),
-        classic=classic_rows(analysis) if classic else (),
+        classic=tuple(row for one in analyses for row in classic_rows(one)) if classic else (),
     )
 
 
@@ -202,7 +215,7 @@ def window_kind(analysis: "Analysis") -> str:
     return "found steady" if steady else "not steady"
 
 
-def gate_rows(reading: "Harmonics", level: float) -> GateRows:
+def gate_rows(reading: "Harmonics", level: float, number: int = 1, count: int = 1) -> GateRows:
     """Turn one gate's harmonics into rows with intervals of some probability, loads first."""
     half_width = reading.half_width(level)
     factor = reading.coverage_factor(level)[1::2]
@@ -223,6 +236,8 @@ def gate_rows(reading: "Harmonics", level: float) -> GateRows:
         )
 
     return GateRows(
+        number=number,
+        count=count,
         opened_s=reading.opened_s,
         closed_s=reading.closed_s,
         periods=reading.periods,

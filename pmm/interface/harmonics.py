@@ -88,9 +88,9 @@ class HarmonicsResult(Result):
         return pd.DataFrame(
             row
             for run in self.runs
-            for number, gate in enumerate(run.gates, 1)
+            for gate in run.gates
             for channel in gate.channels
-            for row in _rows(run, number, gate, channel)
+            for row in _rows(run, gate, channel)
         )
 
     def to_dataset(self) -> "xr.Dataset":
@@ -200,10 +200,8 @@ def harmonics_of(found: Found, request: HarmonicsRequest) -> HarmonicsResult:
     return HarmonicsResult(resolved, failed, found.not_recorded, request)
 
 
-def _rows(
-    run: RunRows, number: int, gate: GateRows, channel: ChannelRows
-) -> Iterator[dict[str, Any]]:
-    about = {"run": run.run, "gate": number, "channel": channel.name}
+def _rows(run: RunRows, gate: GateRows, channel: ChannelRows) -> Iterator[dict[str, Any]]:
+    about = {"run": run.run, "gate": gate.number, "channel": channel.name}
     where = {"unit": channel.unit, "frequency_hz": gate.frequency_hz, "periods": gate.periods}
     mean = (channel.mean.value, channel.mean.half_width, *[math.nan] * 6)
     yield {**about, "order": 0, **_named(mean), **where}

@@ -114,7 +114,7 @@ def harmonics_document(analyses: Sequence[Analysis], name: str) -> Document:
 
 
 def _page_section(analysis: Analysis, anchor: str) -> Section:
-    rows = run_rows(analysis, file=analysis.recording.name, level=PAGE_LEVEL)
+    rows = run_rows((analysis,), file=analysis.recording.name, level=PAGE_LEVEL)
     drawn = (replace(figure, name=f"{anchor}-{figure.name}") for figure in figures(analysis))
     return Section(
         plain(analysis.recording.name),

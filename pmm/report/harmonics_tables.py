@@ -61,9 +61,11 @@ def noticed(flags: Sequence[Flag]) -> Notes:
 
 def gate_tables(rows: RunRows, level: float) -> Iterator[Content]:
     """Yield the table of each gate, loads first, and what was noticed of it."""
-    for k, gate in enumerate(rows.gates, 1):
+    apart = len({tuple(one.name for one in gate.channels) for gate in rows.gates}) > 1
+    for gate in rows.gates:
+        names = f", {', '.join(plain(one.name) for one in gate.channels)}" if apart else ""
         where = (
-            f"Gate {k} of {len(rows.gates)}: {counted(gate.periods, 'period')} from "
+            f"Gate {gate.number} of {gate.count}{names}: {counted(gate.periods, 'period')} from "
             f"{gate.opened_s:.3f} s to {gate.closed_s:.3f} s, {gate.frequency_hz:.6g} Hz"
         )
         told = [row for channel in gate.channels for row in _channel_rows(channel)]
