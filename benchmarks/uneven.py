@@ -18,7 +18,7 @@ from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 
-_RECORDS: Final = 600  # of each test
+_RECORDS: Final = 504  # of each test
 _LOST: Final = 0.2  # of the samples
 _JITTER: Final = 0.3  # of an interval, to either side
 _BURST: Final = 0.3  # of a period, at most

@@ -268,13 +268,17 @@ def _noise(series: Series) -> float:
 
 
 def _third_differences(stamps_s: FloatArray, values: FloatArray) -> FloatArray:
-    """Return what four successive samples have beside a parabola, of the noise's own size."""
+    """Return what four successive samples have beside a parabola, of the noise's own size.
+
+    Of those half that lie nearest to each other, where the oscillation itself leaves least.
+    """
     count = max(values.size - 3, 0)
     times = np.stack([stamps_s[k : k + count] for k in range(4)])
     apart = times[:, np.newaxis] - times + np.eye(4)[:, :, np.newaxis]
     share = 1.0 / apart.prod(axis=1)
-    share /= np.sqrt((share**2).sum(axis=0))
-    return np.asarray((share * [values[k : k + count] for k in range(4)]).sum(axis=0))
+    size = np.sqrt((share**2).sum(axis=0))
+    third = (share * [values[k : k + count] for k in range(4)]).sum(axis=0) / size
+    return np.asarray(third[size >= np.median(size)] if count else third)
 
 
 def _envelope(values: FloatArray, size: int) -> FloatArray:

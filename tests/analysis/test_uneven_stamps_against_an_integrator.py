@@ -1,6 +1,6 @@
 """A fifth of the samples lost on jittered stamps: estimates lie within what they state.
 
-The motions are integrated; 600 records of each kind stand in ``benchmarks/uneven.py``.
+The motions are integrated; 504 records of each kind stand in ``benchmarks/uneven.py``.
 """
 
 import numpy as np
