@@ -41,6 +41,7 @@ class CoefficientEntry:
 LINEAR = "linear"
 HIGHER_ORDER = "higher order, several runs"
 ZERO_FREQUENCY = "zero frequency"
+ROLL_DECAY = "roll decay"
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from analysis.coefficients.campaign_nonlinear import (
 from analysis.coefficients.campaign_records import (
     HIGHER_ORDER,
     LINEAR,
+    ROLL_DECAY,
     ZERO_FREQUENCY,
     CoefficientEntry,
 )
@@ -34,6 +35,7 @@ _FIRST = (
     LINEAR,
     QUASI,
     SURGE_FORCES,
+    ROLL_DECAY,
 )  # single runs are checks on all of these
 
 

@@ -8,6 +8,7 @@ from typing import Any, Final
 
 from analysis.coefficients.names import Form
 from analysis.coefficients.quoting import Names, Quoting
+from analysis.coefficients.roll_decay import RollDecay
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.water import Water
 from hardware.description.errors import ConfigurationError
@@ -133,6 +134,8 @@ class CoefficientSettings:
         File of ``pmm evaluate`` whose matrix is applied.
     calibration_matrix
         The same by hand: force for a reading, aft and fore.
+    roll_decays
+        What K_p and K_pdot come from.
     uncertainty
         Standard uncertainties; what is 0 here is taken from the campaign where it says more.
     """
@@ -158,6 +161,7 @@ class CoefficientSettings:
     uncertainty: StatedUncertainties = field(default_factory=StatedUncertainties)
     amplifiers: dict[str, AmplifierTable] = field(default_factory=dict)
     references: tuple[ReferenceFile, ...] = ()
+    roll_decays: tuple[RollDecay, ...] = ()
 
     __pydantic_config__ = STRICT_TABLE
 

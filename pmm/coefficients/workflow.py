@@ -8,6 +8,8 @@ from pathlib import Path
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_plan import Request
 from analysis.coefficients.campaign_result import CampaignCoefficients
+from analysis.coefficients.roll_decay import NAMES as OF_DECAYS
+from analysis.coefficients.roll_decay import with_decays
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.strut_phasors import MOTION_ASKED
 from hardware.description.body import Body
@@ -160,6 +162,7 @@ def coefficients_of(
         raise DataError(_nothing(folders, failed, missing))
     stated = largest([part.stated for part in parts])
     result = solve_campaign(cycles, request_of(settings, stated), executor, progress)
+    result = with_decays(result, settings.roll_decays, campaigns[0][1].heel, parts[0].body)
     runs = tuple(one for part in parts for one in part.runs)
     return CampaignOutcome(
         tuple(campaign.name for _, campaign in campaigns),
@@ -186,7 +189,7 @@ def request_of(settings: CoefficientSettings, stated: StatedUncertainties) -> Re
     return Request(
         settings.form,
         stated,
-        settings.wanted,
+        tuple(name for name in settings.wanted if not (settings.roll_decays and name in OF_DECAYS)),
         settings.level,
         settings.trials,
         settings.seed,

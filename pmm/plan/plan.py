@@ -179,6 +179,9 @@ def _entry_faults(
     yield from end_faults(entry, defaults, place)
     yield from rig_faults(entry.motion, found.oscillator, place)
     yield from channel_faults(entry, found.channels, place)
+    if any(entry.heels_rad) and found.rig is not None and "heel" not in found.rig.campaign:
+        text = "needs [campaign.heel] in the rig's file: how the model is held in roll"
+        yield Fault((*place, "heels_deg"), text)
 
 
 def _table_faults(table: dict[str, Any], found: RigFileReading) -> Iterator[Fault]:

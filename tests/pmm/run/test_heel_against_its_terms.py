@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from analysis.readers import read_recording
+from hardware.description.errors import ConfigurationError
 from hardware.description.heel import Heel, Held
 from hardware.description.kinds import RunKind
 from hardware.description.oscillator import HORIZONTAL_1963
@@ -74,6 +75,11 @@ def test_a_plan_makes_zero_runs_at_each_heel(tmp_path: Path) -> None:
     assert [one.set_point.heel_rad for one in campaign.at_rest] == [
         run.set_point.heel_rad for run in plan.runs
     ]
+
+
+def test_a_rig_that_says_nothing_of_heel_refuses_it(tmp_path: Path) -> None:
+    with pytest.raises(ConfigurationError, match=r"heels_deg needs \[campaign.heel\] in the rig's"):
+        read_plan(write_plan(tmp_path, PLAN, HORIZONTAL_TEXT))
 
 
 def test_an_operator_is_asked_for_each_heel() -> None:
