@@ -255,6 +255,14 @@ SETTLING: Final = Check(
     "half: a part of the transient counts; twice: a period more of tank",
     (1.0,),
 )
+RIPPLE: Final = Check(
+    "speed ripple, estimate",
+    "with `[campaign.drive.motor]`: warn above {0:.1%}; note below",
+    f"{_OURS}: twice a turn it changes the first harmonic of the motion by a quarter of it",
+    "the shaft gives way to its load: a heavier flywheel, or gains by `pmm devices tune`",
+    "half: warned of where the amplitude is off by 0.1 %; twice: by 0.5 %",
+    (0.01,),
+)
 SAMPLING: Final = Check(
     "6th harmonic [Hz]",
     "warn from half the sample rate",
@@ -274,6 +282,7 @@ CHECKS: Final = (
     FREQUENCY, AMPLITUDE, STROKE, STRUT_PHASE, VELOCITY, ACCELERATION, STRUT_FORCE, GAUGE_FORCE,
     LOAD, SPEED, WAY, BUS, ROTATION, ANGLE_TO_FLOW, FROUDE, REYNOLDS, TURNING, REDUCED_SWAY,
     REDUCED_YAW, REDUCED, WAVE_FREQUENCY, TAU_SWAY, TAU_HEAVE, ECHO, REACH, KEEL, BLOCKAGE,
-    DEPTH, DEPTH_FROUDE, TANK_MODE, STRUCTURE, CYCLES, SETTLING, SAMPLING, CALIBRATION,
+    DEPTH, DEPTH_FROUDE, TANK_MODE, STRUCTURE, CYCLES, SETTLING, RIPPLE, SAMPLING,
+    CALIBRATION,
 )  # fmt: skip
 """In the order of the page."""

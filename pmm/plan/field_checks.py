@@ -1,4 +1,4 @@
-"""What the field advises: tank modes, structural modes, cycles, samples.
+"""What the field advises: tank modes, structural modes, speed ripple, cycles, samples.
 
 None of it refuses a plan.
 """
@@ -7,12 +7,16 @@ import math
 from collections.abc import Iterator
 from typing import Final
 
+import numpy as np
+
 from hardware.description.kinds import RunKind
-from pmm.plan.check_table import CYCLES, SAMPLING, SETTLING, STRUCTURE, TANK_MODE
+from pmm.plan.check_table import CYCLES, RIPPLE, SAMPLING, SETTLING, STRUCTURE, TANK_MODE
 from pmm.plan.findings import PlanFinding, PlanVerdict
+from pmm.plan.motion_peaks import omega_of
 from pmm.plan.rig_file import RigFile
 from pmm.plan.rig_tables import TankTable
 from pmm.plan.run_plan import RunPlan
+from pmm.plan.shaft_load import motor_of, shaft_load
 
 _NEAR_TANK_MODE: Final = TANK_MODE.numbers[0]
 _STRONG_HARMONICS: Final = 3
@@ -26,6 +30,7 @@ def field_findings(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
     yield from _cycles(run)
     yield from _sampling(run, rig)
     yield from _structure(run, rig)
+    yield from _ripple(run, rig)
     if not run.kind.in_air:
         yield from _tank_modes(run, rig)
 
@@ -74,6 +79,23 @@ def _structure(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
                 f"harmonic {order} at {harmonic:.4g} Hz is {off:+.1%} off the mode "
                 f"{mode.name!r} at {mode.frequency_hz:.4g} Hz; keep {near:.0%} off",
             )
+
+
+def _ripple(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
+    """Yield by how much the shaft's speed varies over a turn, where its motor is stated."""
+    motor = motor_of(rig)
+    load = None if motor is None else shaft_load(run, rig, motor)
+    if motor is None or load is None:
+        return
+    from analysis.speed_loop.loop import ShaftLoop
+
+    loop = ShaftLoop(motor, motor.loop, load.added_inertia_kg_m2)
+    parts = np.abs(loop.ripple(load.torques_n_m, omega_of(run)))
+    (limit,), largest = RIPPLE.numbers, float(parts.max())
+    order = int(parts.argmax()) + 1
+    verdict = PlanVerdict.WARN if largest > limit else PlanVerdict.NOTE
+    text = f"{RIPPLE.quantity}: {largest:.2%} at {order} times a turn: {RIPPLE.reason}"
+    yield PlanFinding(verdict, RIPPLE.quantity, largest, limit, run.name, text)
 
 
 def tank_modes_hz(tank: TankTable) -> tuple[float, ...]:

@@ -2,13 +2,14 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim import signals
+from sim.drive.loaded_drive import Unladen
 from sim.drive.prescribed_drive import SHAFT, ShaftMotion
 from sim.drive.shaft_system import TORQUE_DEGREE, ShaftLoop, ShaftSystem
 from sim.mechanism.linkage import Mechanism
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
     from typing import Any
 
     from sim.model.march import Course
+
+
+_LEAST_N_M: Final = 1e-3  # a torque that turns no shaft as far as it is seen
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +46,7 @@ class CoupledMarch:
         states: tuple[float, ...] | None,
         torques: tuple[tuple[float, ...], ...],
         hull_state: HullState,
+        unladen: Unladen,
     ) -> "tuple[ShaftLoop, Course, HullState, dict[str, FloatArray]] | None":
         """Return what the march has come to; ``None`` if a sample does not settle.
 
@@ -50,6 +55,8 @@ class CoupledMarch:
         states, torques
             Of the shaft: its state, and the torques of the last samples; ``None`` and nothing
             before a run's first sample, in which nothing deviates yet.
+        unladen
+            The shaft without its struts.
 
         Raises
         ------
@@ -59,10 +66,10 @@ class CoupledMarch:
         from sim.mechanism.compiled_linkage import linkages_of
         from sim.model.march import march
 
-        told = self.shaft.settings.commanded(self.shaft.frequency_hz, self.block.time_s)
+        told = unladen.motion
         known = 1 if states is None else 0
         course = self._course(told, hull_state, known)
-        shaft = self._shaft_loop(told)
+        shaft = self._shaft_loop(unladen)
         if states is not None:
             shaft.states[TORQUE_DEGREE - 1] = states
             shaft.torques[:TORQUE_DEGREE] = torques
@@ -98,7 +105,8 @@ class CoupledMarch:
             state = forces.at_first_sample(struts)
         course = forces.course(state, struts, known)
         reach = np.hypot(struts[:, :2], self._levers(told)).max()
-        torque = 2.0 * course.scale[0] * reach + np.finfo(np.float64).tiny
+        # At no eccentricity nothing has an arm: the torque's rounding then.
+        torque = max(2.0 * course.scale[0] * reach, _LEAST_N_M)
         more = np.full(len(self.shaft.system.B.T), torque)
         return course._replace(scale=np.concatenate([course.scale, more]))
 
@@ -110,8 +118,7 @@ class CoupledMarch:
         _, motion = self.mechanism.run(None, self.block, told.signals)
         return np.column_stack([motion["lever_aft"], motion["lever_fore"]])
 
-    def _shaft_loop(self, told: ShaftMotion) -> ShaftLoop:
-
+    def _shaft_loop(self, unladen: Unladen) -> ShaftLoop:
         shaft, count = self.shaft, self.block.count
         hold = _hold(shaft.system, 1.0 / self.block.sample_rate_hz)
         n, inputs = shaft.system.B.shape
@@ -128,11 +135,11 @@ class CoupledMarch:
             to_outputs,
             by_torque,
             at_once,
-            np.column_stack(told),
+            np.column_stack([*unladen.motion, unladen.opening]),
             np.zeros((count + TORQUE_DEGREE, n)),
             np.zeros((count + TORQUE_DEGREE, inputs)),
             np.empty((count, 5)),
-            np.array([shaft.inertia_kg_m2, shaft.reflected_inertia_kg_m2, *shaft.friction[::-1]]),
+            np.array([shaft.reflected_inertia_kg_m2, *shaft.friction[::-1]]),
             np.array(shaft.cogging, dtype=np.float64).reshape(-1, 3),
             np.array([*shaft.gap, 0.0]),
         )

@@ -203,13 +203,15 @@ class _Stretch:
         march = coupled_march(self.stage.drive.shaft, self.stage.parts, self.block, self.inputs)
         if swept or march is None:
             return None
-        marched = march.run(before.states, before.torques, self.state[2])
+        unladen = self.stage.drive.unladen(before, self.block)
+        marched = march.run(before.states, before.torques, self.state[2], unladen)
         if marched is None:
             return None
         shaft, _, hull, run = marched
         run[signals.LOAD_TORQUE.name] = self.stage.drive.load(run)
         tail = tuple(tuple(row) for row in shaft.torques[-TORQUE_DEGREE:].tolist())
-        drive = LoadedState(tuple(shaft.states[-1].tolist()), tail)
+        states = tuple(shaft.states[-1].tolist())
+        drive = LoadedState(states, tail, unladen.ahead, unladen.speeds)
         return (drive, self.state[1], hull), {
             signal.name: run[signal.name] for signal in self.stage.writes
         }

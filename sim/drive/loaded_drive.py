@@ -1,7 +1,7 @@
 """A drive whose speed changes under load: a motor, or cranks behind a gear with backlash."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -23,10 +23,32 @@ from sim.stage import Block
 
 
 class LoadedState(NamedTuple):
-    """Deviation of angle, speed and current; ``None`` before the first sample; last torques."""
+    """Where the shaft is; ``None`` and empty before the first sample.
+
+    Attributes
+    ----------
+    states
+        What the load has made of angle, speed and current.
+    torques
+        Of the load, at the last samples.
+    ahead, speeds
+        The same of the command alone: states less what the speed makes of them at once, and the
+        last speeds that were told.
+    """
 
     states: tuple[float, ...] | None = None
     torques: Tail = ()
+    ahead: tuple[float, ...] = ()
+    speeds: Tail = ()
+
+
+class Unladen(NamedTuple):
+    """The shaft's motion without its struts, the opening of its gear (rad), and what is kept."""
+
+    motion: ShaftMotion
+    opening: FloatArray
+    ahead: tuple[float, ...]
+    speeds: Tail
 
 
 @dataclass(frozen=True)
@@ -68,8 +90,9 @@ class LoadedDrive:
                 "out play that friction holds, laws without a compiled form and substituted "
                 "signals, or the gear"
             )
-        told = self.settings.commanded(self.frequency_hz, block.time_s)
-        torque = inputs[signals.LOAD_TORQUE.name] + self._inertia * told.acceleration
+        told, _, ahead, speeds = self.unladen(state, block)
+        torque = inputs[signals.LOAD_TORQUE.name]
+        torque = torque + self.reflected_inertia_kg_m2 * told.acceleration
         system = self.system
         hold = self._hold(block.sample_rate_hz)
         known = 0 if state.states is not None else 1
@@ -80,10 +103,35 @@ class LoadedDrive:
         states = np.empty((block.count, len(system.A)))
         states[:known] = state.states
         states[known:] = hold.run(np.array(state.states), joined)
-        deviation = states @ system.C.T + torque[:, np.newaxis] @ system.D.T
-        shaft = ShaftMotion(*(given + more for given, more in zip(told, deviation.T, strict=True)))
+        shaft = told.beyond(states @ system.C.T + torque[:, np.newaxis] @ system.D.T)
         tail = tuple((value,) for value in joined[-TORQUE_DEGREE:, 0].tolist())
-        return LoadedState(tuple(states[-1].tolist()), tail), shaft.signals
+        return LoadedState(tuple(states[-1].tolist()), tail, ahead, speeds), shaft.signals
+
+    def unladen(self, state: LoadedState, block: Block) -> "Unladen":
+        """Return how the shaft would turn without its struts.
+
+        The told acceleration turns the drive's own inertia J: x' = A x + B J a. A ramp's corner is
+        a step of a, which no polynomial through samples follows; of the told speed w it is a bend.
+        So z = x - B J w is what goes on: z' = A z + A B J w.
+        """
+        told = self.settings.commanded(self.frequency_hz, block.time_s)
+        system = self._alone.system
+        gain = system.B[:, :1] * self._inertia_alone
+        driven = LinearSystem(system.A, system.A @ gain, system.C, system.C @ gain)
+        speeds = told.speed[:, np.newaxis]
+        known = 0 if state.speeds else 1
+        past = np.array(state.speeds) if state.speeds else np.repeat(speeds[:1], TORQUE_DEGREE, 0)
+        first = np.array(state.ahead) if state.speeds else -gain[:, 0] * told.speed[0]
+        joined = np.concatenate([past, speeds[known:]])
+        hold = causal_hold(driven, 1.0 / block.sample_rate_hz, TORQUE_DEGREE)
+        states = np.vstack([np.tile(first, (known, 1)), hold.run(first, joined)])
+        direct = system.D[:, :1].T * self._inertia_alone
+        moved = (
+            states @ driven.C.T + speeds @ driven.D.T + told.acceleration[:, np.newaxis] @ direct
+        )
+        kept = tuple(tuple(row) for row in joined[-TORQUE_DEGREE:].tolist())
+        opening = moved[:, 3] if moved.shape[1] > 3 else np.zeros(block.count)
+        return Unladen(told.beyond(moved), opening, tuple(states[-1].tolist()), kept)
 
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
         """Return the period that the shaft really has under the load, and its harmonics."""
@@ -92,7 +140,11 @@ class LoadedDrive:
         lost = 0.0 if self.motor is None else droop(self.motor)
         real = period.at(free_hz + lost * float(torque[0].real) / (2.0 * math.pi))
         told = self.settings.ripple_over(real)
-        whole = torque + self._inertia * told[signals.SHAFT_ACCELERATION.name]
+        whole = (
+            torque
+            + (self._inertia_alone + self.reflected_inertia_kg_m2)
+            * told[signals.SHAFT_ACCELERATION.name]
+        )
         beyond = told[signals.SHAFT_ANGLE.name].copy()
         beyond[1:] += self.system.response(real.s[1:])[:, 0, 0] * whole[1:]
         return real, shaft_over(real, beyond)
@@ -150,7 +202,6 @@ class LoadedDrive:
             self.settings,
             self.frequency_hz,
             self.system,
-            self._inertia - self.reflected_inertia_kg_m2,
             self.reflected_inertia_kg_m2,
             (
                 sum(guide.coulomb_n for guide in self.guides),
@@ -164,12 +215,16 @@ class LoadedDrive:
         )
 
     @cached_property
-    def _inertia(self) -> float:
-        """What the drive's own acceleration has to turn."""
+    def _alone(self) -> "LoadedDrive":
+        """The drive without the model at its shaft."""
+        return replace(self, reflected_inertia_kg_m2=0.0)
+
+    @cached_property
+    def _inertia_alone(self) -> float:
+        """What the told acceleration has to turn of the drive itself."""
         gear, motor = self.settings.gear, self.motor
         own = 0.0 if motor is None else motor.shaft_inertia_kg_m2
-        own = own if gear is None else gear.crank_inertia_kg_m2
-        return own + self.reflected_inertia_kg_m2
+        return own if gear is None else gear.crank_inertia_kg_m2
 
     def _hold(self, sample_rate_hz: float) -> Hold:
         return causal_hold(self.system, 1.0 / sample_rate_hz, TORQUE_DEGREE)

@@ -29,6 +29,10 @@ class ShaftMotion(NamedTuple):
         """The three by their signals' names."""
         return {signal.name: values for signal, values in zip(SHAFT, self, strict=True)}
 
+    def beyond(self, moved: FloatArray) -> "ShaftMotion":
+        """Return it with a deviation of angle, speed and acceleration, shape ``(samples, 3)``."""
+        return ShaftMotion(*(given + more for given, more in zip(self, moved.T[:3], strict=True)))
+
 
 @dataclass(frozen=True)
 class SpeedRipple:

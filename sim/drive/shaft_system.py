@@ -19,8 +19,8 @@ class ShaftSystem:
     system
         From the torques (load, and what a gear with a clearance gives back) to angle, speed and
         acceleration beyond what the drive is told; with a clearance, its opening too.
-    inertia_kg_m2, reflected_inertia_kg_m2
-        Of the shaft; and what is solved as part of it.
+    reflected_inertia_kg_m2
+        Of the model at the shaft, solved as part of it.
     gap
         Stiffness and half clearance of the gear, or zeros.
     """
@@ -28,7 +28,6 @@ class ShaftSystem:
     settings: DriveSettings
     frequency_hz: float
     system: LinearSystem
-    inertia_kg_m2: float
     reflected_inertia_kg_m2: float
     friction: tuple[float, float]
     cogging: tuple[tuple[float, float, float], ...]
@@ -52,15 +51,16 @@ class ShaftLoop(NamedTuple):
     at_once
         From this sample's inputs alone, where the state is known already.
     told
-        Angle, speed, acceleration that the drive is told, ``(samples, 3)``.
+        Angle, speed, acceleration without the struts' load, and the opening of a gear's clearance
+        then: ``(samples, 4)``.
     states, torques
         At the three samples before the first and, once solved, at each: ``(samples + 3, n)`` and
         ``(samples + 3, 1)``, or 2 with a gear that has a clearance.
     motion
         Filled in: angle, speed, acceleration and both levers, ``(samples, 5)``.
     numbers
-        Inertia of the shaft, and of the model as far as it is solved as the shaft's; viscous and
-        Coulomb friction of each strut's guides.
+        Inertia of the model as far as it is solved as the shaft's; viscous and Coulomb friction of
+        each strut's guides.
     cogging
         Order, torque and phase, one a row.
     gap

@@ -77,10 +77,10 @@ def _shaft_torque(
     total = 0.0
     for i in range(2):
         lever = work[2, 3 + i]
-        total += (work[1, 6 + i] + room[0, i]) * lever + numbers[2] * lever**2 * speed
+        total += (work[1, 6 + i] + room[0, i]) * lever + numbers[1] * lever**2 * speed
         turns = lever * speed
         if turns != 0.0:
-            total += math.copysign(numbers[3], turns) * lever
+            total += math.copysign(numbers[2], turns) * lever
     for row in range(cogging.shape[0]):
         total += cogging[row, 1] * math.sin(cogging[row, 0] * angle + cogging[row, 2])
     return total
@@ -112,7 +112,7 @@ def _turn_shaft(
         work[2, i] = work[15, i]
         for j in range(unknown.size - first):
             work[2, i] += by_torque[j, i] * unknown[first + j]
-    work[15, 5] = work[2, 3]
+    work[15, 5] = work[2, 3] + told[k, 3]
     for i in range(3):
         work[2, i] += told[k, i]
     strut_motion(links, work, struts, k + 1)
@@ -152,7 +152,7 @@ def _respond(
         work[1, j] = total
     _model_loads(laws, hull, by_speed, gap, instants, step_s, given, k, work, room)
     if driven:
-        rest = numbers[0] * told[k, 2] - numbers[1] * (work[2, 2] - told[k, 2])
+        rest = numbers[0] * (told[k, 2] - work[2, 2])
         room[0, loads] = _shaft_torque(numbers, cogging, work, room) + rest
         if shaft_gap[1] > 0.0:
             room[0, loads + 1] = joint_return(shaft_gap, work[15, 5])

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 @click.group(
     cls=CommandGroup,
     package="pmm.cli.devices",
-    names=("scan", "read", "move", "photocell", "gauges", "ports"),
+    names=("scan", "read", "move", "photocell", "gauges", "tune", "ports"),
     kind="job",
 )
 def devices() -> None:
