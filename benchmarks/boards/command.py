@@ -36,6 +36,9 @@ def _measure(todo: Sequence[Job], request: argparse.Namespace, now: str) -> None
     if not todo:
         return
     for done in each(measured, todo, request.workers, _LIMIT_S if request.workers > 1 else None):
+        if done.value is None and done.job.frozen:  # what breaks down by itself has marks
+            print(done.job.campaign, done.job.first, f"asked again next time: {done.failed}")
+            continue
         row = done.value or {
             "campaign": done.job.campaign,
             "seed": done.job.first,

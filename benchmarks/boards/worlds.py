@@ -81,5 +81,5 @@ def _known() -> frozenset[str]:
 
 def marks_in(lines: Sequence[Line], world: str) -> dict[str, list[Marks]]:
     """Return the marks of a world's lines, as the diagnosis's row."""
-    there = [one for one in lines if one["campaign"] == world and "values" in one]
+    there = [one for one in lines if one["campaign"] == world]
     return {DIAGNOSIS: [Marks(one["is_clear"], one["values"], one["stated"]) for one in there]}
