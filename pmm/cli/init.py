@@ -28,6 +28,7 @@ _NEXT = {
     "swing": (("inertia", "swing", "{}/swing.toml"),),
     "bifilar": (("inertia", "bifilar", "{}/bifilar.toml"),),
     "ship": (("manoeuvre", "{}/ship.toml"),),
+    "steering": (("steering", "{}"),),
 }
 _COMMON = (
     click.option("--output", metavar="FOLDER", default=".", show_default=True,
@@ -53,6 +54,7 @@ def init() -> None:
     pmm init campaign run1.csv run2.csv     recordings of another system
     pmm init swing, pmm init bifilar        a pendulum test
     pmm init ship                           a free ship, for its manoeuvres
+    pmm init steering --output campaign     propeller and rudder of a campaign's model
     """  # noqa: D301
 
 
@@ -140,6 +142,17 @@ def bifilar(**options: Any) -> None:
 def ship(**options: Any) -> None:
     """Write ship.toml: derivatives, propeller and rudder of a free ship."""
     _write("ship", options)
+
+
+@_job(
+    _number("--length-m", "M", "Of the model."),
+    _number("--diameter-m", "M", "Of its propeller."),
+    _number("--rudder-area-m2", "M2", "Of its rudder."),
+    _number("--rudder-height-m", "M", "Of its rudder."),
+)
+def steering(**options: Any) -> None:
+    """Write steering.toml: propeller and rudder, beside a campaign's file."""
+    _write("steering", options)
 
 
 def _write(job: str, options: dict[str, Any]) -> None:

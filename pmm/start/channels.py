@@ -6,12 +6,13 @@ from typing import Final
 
 import numpy as np
 
-from hardware.description.channels import DISPLACEMENTS, FORCES
+from hardware.description.channels import DISPLACEMENTS, FORCES, POSITIONS
 from pmm.start import words
 from pmm.start.behaviour import RecordingBehaviour
 from pmm.start.found_campaign import CHANNELS, FoundColumn
-from pmm.start.roles import ANGLE, DISPLACEMENT, FORCE, PULSES, ColumnRole
+from pmm.start.roles import ANGLE, DISPLACEMENT, FORCE, POSITION, PULSES, ColumnRole
 
+_PAIRS: Final = ((DISPLACEMENT, DISPLACEMENTS), (FORCE, FORCES), (POSITION, POSITIONS))
 _LARGEST_M: Final = 1.0  # of an eccentricity in metres; and the smallest of one in millimetres
 
 
@@ -20,12 +21,12 @@ def as_columns(
 ) -> list[FoundColumn]:
     """Return the channels, sure or not, and the columns with the line that keep their names."""
     found: list[FoundColumn] = []
-    for kind, channels in ((DISPLACEMENT, DISPLACEMENTS), (FORCE, FORCES)):
+    for kind, channels in _PAIRS:
         found += _of_struts([role for role in roles if role.kind is kind], channels)
     found += [
         FoundColumn(role.kind.name, role.column, doubt=role.doubt)
         for role in roles
-        if role.kind not in (DISPLACEMENT, FORCE)
+        if role.kind.places == 1
     ]
     found = [_with_unit(one, running) for one in found]
     found.sort(key=lambda one: CHANNELS.index(one.name))

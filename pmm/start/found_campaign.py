@@ -9,14 +9,19 @@ from hardware.description.channels import (
     DISPLACEMENTS,
     FORCE_X,
     FORCES,
+    POSITIONS,
     SHAFT_ANGLE,
+    STEERING,
 )
 from hardware.description.setpoint import Medium
 from hardware.description.units import unit
 
 PHOTOCELL: Final = "photocell"
+ON_MODEL: Final = (*(one.name for one in STEERING), *POSITIONS)
+"""What the model has of its own: the simulation needs to be told of it."""
 CHANNELS: Final = (
-    *FORCES, FORCE_X.name, *DISPLACEMENTS, SHAFT_ANGLE.name, CARRIAGE_SPEED.name, PHOTOCELL,
+    *FORCES, FORCE_X.name, *DISPLACEMENTS, SHAFT_ANGLE.name, CARRIAGE_SPEED.name, *ON_MODEL,
+    PHOTOCELL,
 )  # fmt: skip
 
 

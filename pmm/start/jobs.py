@@ -20,6 +20,7 @@ FILES: Final[Mapping[str, tuple[str, ...]]] = {
     "swing": ("swing.toml",),
     "bifilar": ("bifilar.toml",),
     "ship": ("ship.toml",),
+    "steering": ("steering.toml",),
 }
 
 
@@ -138,10 +139,18 @@ def _ship(task: StartTask) -> Draft:
     return Draft({"ship.toml": render("ship.toml", task.values())}, trial)
 
 
+def _steering(task: StartTask) -> Draft:
+    from pmm.steering.settings import read_steering_settings
+
+    files = {"steering.toml": render("steering.toml", task.values())}
+    return Draft(files, lambda tried: read_steering_settings(tried / "steering.toml"))
+
+
 _DRAFTS: Final[Mapping[str, Callable[[StartTask], Draft]]] = {
     "rig": _rig,
     "campaign": _campaign,
     "swing": _inertia,
     "bifilar": _inertia,
     "ship": _ship,
+    "steering": _steering,
 }

@@ -107,12 +107,19 @@ SHIP: Final = (
     StartQuestion("speed_m_s", "Speed of the approach [m/s]", 0.7, lowest=0.0),
     StartQuestion("scale", "Ship over model", 128.0, lowest=0.0),
 )
+STEERING: Final = (
+    StartQuestion("length_m", "Length of the model [m]", 7.0, lowest=0.0),
+    StartQuestion("diameter_m", "Diameter of its propeller [m]", 0.216, lowest=0.0),
+    StartQuestion("rudder_area_m2", "Area of its rudder [m2]", 0.0539, lowest=0.0),
+    StartQuestion("rudder_height_m", "Height of its rudder [m]", 0.345, lowest=0.0),
+)
 JOBS: Final[Mapping[str, Sequence[StartQuestion]]] = {
     "rig": RIG,
     "campaign": CAMPAIGN,
     "swing": SWING,
     "bifilar": BIFILAR,
     "ship": SHIP,
+    "steering": STEERING,
 }
 
 

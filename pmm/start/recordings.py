@@ -20,6 +20,7 @@ from pmm.start.behaviour import RecordingBehaviour, at_rest, watch
 from pmm.start.channels import as_columns, by_order_of_names
 from pmm.start.found_campaign import (
     CHANNELS,
+    ON_MODEL,
     PHOTOCELL,
     FoundCampaign,
     FoundColumn,
@@ -229,7 +230,7 @@ def _sensors(
 ) -> Iterator[tuple[str, dict[str, float]]]:
     """Yield what the numbers of each channel tell of its sensor, in SI."""
     for name, column in sure.items():
-        if name not in CHANNELS:
+        if name not in CHANNELS or name in ON_MODEL:
             continue
         holding = [look for look in looks if column.column in look.steps]
         # A shaft that turns evenly is sampled at angles of a grid of its own.

@@ -17,6 +17,12 @@ from hardware.description.channels import (
     DISPLACEMENT_AFT,
     FORCE_AFT,
     FORCE_X,
+    POSITION_AFT,
+    PROPELLER_THRUST,
+    PROPELLER_TORQUE,
+    REVOLUTIONS,
+    RUDDER_ANGLE,
+    RUDDER_NORMAL_FORCE,
     SHAFT_ANGLE,
 )
 from pmm.start import words
@@ -59,7 +65,18 @@ ANGLE: Final = ChannelKind(SHAFT_ANGLE.name, (SHAFT_ANGLE.unit,), words.ANGLE)
 SPEED: Final = ChannelKind(CARRIAGE_SPEED.name, (CARRIAGE_SPEED.unit,), words.SPEED)
 ALONG: Final = ChannelKind(FORCE_X.name, (FORCE_X.unit,), words.ALONG)
 PULSES: Final = ChannelKind("photocell", ("V", "1"), words.PULSES)
-KINDS: Final = (DISPLACEMENT, FORCE, ANGLE, SPEED, ALONG, PULSES)
+POSITION: Final = ChannelKind("position", (POSITION_AFT.unit,), words.SINKAGE, 2)
+# What the model has of its own does nothing that tells it: it is known by its name and unit alone.
+BY_NAME: Final = (
+    ChannelKind(RUDDER_ANGLE.name, (RUDDER_ANGLE.unit,), words.RUDDER),
+    ChannelKind(RUDDER_NORMAL_FORCE.name, (RUDDER_NORMAL_FORCE.unit,), words.RUDDER),
+    ChannelKind(PROPELLER_THRUST.name, (PROPELLER_THRUST.unit,), words.THRUST),
+    ChannelKind(PROPELLER_TORQUE.name, (PROPELLER_TORQUE.unit,), words.TORQUE),
+    ChannelKind(REVOLUTIONS.name, (REVOLUTIONS.unit, "rad/s"), words.REVOLUTIONS),
+    POSITION,
+)
+KINDS: Final = (DISPLACEMENT, FORCE, ANGLE, SPEED, ALONG, PULSES, *BY_NAME)
+_ON_MODEL: Final = tuple(word for kind in BY_NAME for word in kind.words)
 
 
 @dataclass(frozen=True)
@@ -148,6 +165,8 @@ def _reasons(
     elif unit and kind is not PULSES:
         yield Evidence(_UNIT, f"its unit is {unit}")
     yield from _of_name(column, kind, telling)
+    if kind in BY_NAME:
+        return
     done = [list(_DOING[kind.name](behaviour, watch)) for watch, behaviour in seen]
     yield from sorted(done, key=lambda one: sum(e.odds for e in one))[(len(done) - 1) // 2]
 
@@ -159,6 +178,12 @@ def _of_name(
         own = column.startswith(kind.name) and (column == FORCE_X.name) == (kind is ALONG)
         yield Evidence(SURE if own else -np.inf, "its name is that of the channel")
         return
+    if kind in BY_NAME:
+        says = words.says(column, kind.words)
+        yield Evidence(_NAME if says else -np.inf, "its name")
+        return
+    if words.says(column, _ON_MODEL):
+        yield Evidence(_AGAINST, "it is called as what the model has of its own")
     if words.says(column, words.OTHERS):
         yield Evidence(_AGAINST, "it is called as what is no part of the oscillator")
     if words.says(column, kind.words):

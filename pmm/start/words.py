@@ -29,6 +29,11 @@ PULSES: Final = (
 ALONG: Final = (
     "fx", "surge", "drag", "resist", "widerst", "längskraft", "laengskraft", "weerstand", "trainée",
 )  # fmt: skip
+RUDDER: Final = ("rudder", "ruder", "roer", "gouvernail", "safran", "timon", "timone")
+THRUST: Final = ("thrust", "schub", "stuwkracht", "poussée", "poussee", "empuje", "spinta")
+TORQUE: Final = ("torque", "drehmoment", "koppel", "couple")
+REVOLUTIONS: Final = ("rpm", "rps", "revs", "revol", "drehzahl", "toerental", "propeller")
+SINKAGE: Final = ("sink", "squat", "absenk", "einsink", "inzinking", "enfonce")
 # What moves or pulls at the same frequency and is no part of the oscillator.
 OTHERS: Final = (
     "wave", "probe", "wp", "wg", "wellen", "golf", "houle", "onda", "bølge", "elevation", "tension",

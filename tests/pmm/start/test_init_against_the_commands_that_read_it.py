@@ -8,6 +8,7 @@ from click.testing import CliRunner, Result
 
 from pmm.cli import cli
 from pmm.start.questions import JOBS
+from pmm.steering.settings import read_steering_settings
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -107,6 +108,19 @@ def test_an_inertia_file_gives_a_number(tmp_path: Path, job: str) -> None:
     found = pmm("inertia", job, tmp_path / f"{job}.toml", "--json")
     assert found.exit_code == 0, found.stderr
     assert json.loads(found.stdout)["results"]
+
+
+def test_propeller_and_rudder_are_those_of_the_answers(tmp_path: Path) -> None:
+    told = {"length-m": 3.0, "diameter-m": 0.1, "rudder-area-m2": 0.01, "rudder-height-m": 0.15}
+    options = [word for name, value in told.items() for word in (f"--{name}", value)]
+    made = pmm("init", "steering", "--yes", "--output", tmp_path, *options)
+    assert made.exit_code == 0, made.stderr
+    read = read_steering_settings(tmp_path / "steering.toml")
+    assert (read.length_m, read.propeller.diameter_m) == (3.0, 0.1)
+    aspect = 0.15**2 / 0.01
+    fujii = 6.13 * aspect / (aspect + 2.25)
+    found = (read.rudder.area_m2, read.rudder.height_m, read.rudder.slope, read.rudder.x_m)
+    assert found == pytest.approx((0.01, 0.15, fujii, -1.5), rel=1e-3)
 
 
 def test_a_ship_turns(tmp_path: Path) -> None:

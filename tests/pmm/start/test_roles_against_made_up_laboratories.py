@@ -82,6 +82,37 @@ def test_the_set_point_is_what_the_struts_did(tmp_path: Path) -> None:
         assert run.remarks == {}
 
 
+def test_what_the_model_has_of_its_own_is_told_by_name_and_unit(tmp_path: Path) -> None:
+    rng = np.random.default_rng(8)
+    time_s = np.arange(4000) / 100.0
+    swing = np.sin(2.0 * np.pi * 0.25 * time_s)
+    noise = rng.standard_normal((13, 4000))
+    struts = [200.0 * swing, 200.0 * swing, 30.0 * swing + noise[0], 25.0 * swing + noise[1]]
+    own = {
+        "Ruderwinkel [deg]": 10.0 + 1e-3 * noise[2],
+        "Ruder Normalkraft [N]": 12.0 + 2.0 * swing + 0.1 * noise[3],
+        "Propellerschub [N]": 40.0 + 0.5 * swing + 0.1 * noise[4],
+        "Drehmoment [N m]": 1.2 + 1e-3 * noise[5],
+        "Drehzahl [rpm]": 600.0 + 0.1 * noise[6],
+        "Absenkung hinten [mm]": 9.0 + 0.2 * noise[7],
+        "Absenkung vorn [mm]": 4.0 + 0.2 * noise[8],
+    }
+    rows = np.stack((time_s, *struts, *own.values()), axis=1)
+    names = "Zeit [s],Weg hinten [mm],Weg vorn [mm],Kraft hinten [N],Kraft vorn [N]"
+    path = tmp_path / "run.csv"
+    np.savetxt(path, rows, "%.6f", ",", header=",".join((names, *own)), comments="")
+    found = find_campaign([path], tmp_path)
+    assert taken(found) == {
+        "displacement_aft": "Weg hinten", "displacement_fore": "Weg vorn",
+        "force_aft": "Kraft hinten", "force_fore": "Kraft vorn",
+        "rudder_angle": "Ruderwinkel", "rudder_normal_force": "Ruder Normalkraft",
+        "propeller_thrust": "Propellerschub", "propeller_torque": "Drehmoment",
+        "revolutions": "Drehzahl", "position_aft": "Absenkung hinten",
+        "position_fore": "Absenkung vorn",
+    }  # fmt: skip
+    assert not {"rudder_angle", "position_aft"} & set(found.sensors)
+
+
 @pytest.mark.parametrize("header", ["pos mm", "pos_mm", "pos / mm", "pos [mm]", "pos"])
 def test_a_stroke_in_millimetres_is_one_of_millimetres(tmp_path: Path, header: str) -> None:
     time_s = np.arange(2000) / 100.0
