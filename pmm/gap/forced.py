@@ -122,6 +122,12 @@ def _seen(one: ForcedTable, body: Floating, force: KnownForce, seen: _Gate) -> D
         name, bench, coordinate.name, force.windows, found, scatter(found), run=one.name,
         samples=samples,
     )  # fmt: skip
+    if not np.isfinite(found[0]).any():
+        raise DataError(
+            f"{name}: {seen.name} has fewer than 18 samples in each window of "
+            f"{force.windows.length_s:.3g} s; state from_s and to_s where it was recorded, or "
+            "sample it faster"
+        )
     apart = float(np.nanmedian((trial.observed - trial.simulate())[0]))
     if abs(apart) > math.log(_ANOTHER):
         raise DataError(

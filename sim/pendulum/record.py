@@ -123,7 +123,7 @@ def record(
         "test": test,
         "seed": str(seed),
         "truth": json.dumps(truth),
-        "bench": json.dumps(asdict(bench)),
+        "bench": json.dumps(asdict(bench), default=str),  # harmonics of a force are complex
     }
     attributes: dict[str, str | float] = {
         schema.ATTR_SCHEMA: schema.SCHEMA,

@@ -91,6 +91,21 @@ def test_waves_are_forces_by_their_transfer_at_the_runs_frequency(tmp_path: Path
     assert set(problem.kind) == {0, 1}  # the third harmonic of the force is not known
 
 
+def test_a_force_that_is_not_steady_in_the_gate_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "waves.toml"
+    path.write_text(BODY + WAVES + RUN.format(name="a", force="wave"))
+    recorded(tmp_path, "a", 0.55)
+    rows = np.loadtxt(tmp_path / "a.csv", delimiter=",", skiprows=1)
+    rows[:, 1] *= np.clip(rows[:, 0] / 20.0, 0.2, 1.0)
+    header = "time_s,wave [m],heave [m]"
+    np.savetxt(tmp_path / "a.csv", rows, delimiter=",", header=header, comments="")
+    done = run("pendulum", path)
+    assert done.exit_code == 1
+    assert "state from_s and to_s where it is steady" in " ".join(done.stderr.split())
+    path.write_text(path.read_text() + "from_s = 21.0\n")
+    assert set(load_problem(path).kind) == {0, 1}
+
+
 COMPARED = """
 [[effects]]
 name = "sensor_delay"

@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 from hardware.description.errors import ConfigurationError
+from sim.pendulum.benches import decay_bench
 from sim.pendulum.coordinates import HEAVE
 from sim.pendulum.driven import Driven, PeriodicForce, settled
+from sim.pendulum.effects import make_effect
+from sim.pendulum.record import record
 from sim.pendulum.resistance import Resistance
 
 MASS, STIFFNESS, FORCE = 70.0, 1000.0, 30.0
@@ -53,6 +56,20 @@ def test_harmonics_of_a_linear_body_are_those_of_its_impedance() -> None:
         w = 3.0 * order
         assert found[order - 1] == pytest.approx(push / (STIFFNESS - w**2 * MASS + 60j * w))
     assert found[1] == found[3] == 0.0
+
+
+def test_record_from_rest_on_comes_to_the_impedances_motion_late_by_the_clock() -> None:
+    force, delay_s = PeriodicForce(3.0, (FORCE * 1j, 0.0, 5.0)), 0.04
+    driven = Driven(50.0, 20.0, STIFFNESS, Resistance(viscous=60.0), HEAVE, force)
+    late = make_effect("sensor_delay", delay_s=delay_s)(decay_bench(driven, release=0.0))
+    run = record(late, duration_s=50.0, sample_rate_hz=20.0, seed=1).dataset
+    true_s = run["time"].values - delay_s
+    expected = np.zeros(true_s.size)
+    for order, push in ((1, FORCE * 1j), (3, 5.0)):
+        w = 3.0 * order
+        reached = push / (STIFFNESS - w**2 * MASS + 60j * w)
+        expected += np.real(reached * np.exp(1j * w * true_s))
+    np.testing.assert_allclose(run["heave"].values[-200:], expected[-200:], atol=1e-8)
 
 
 def test_friction_that_holds_the_body_is_refused() -> None:
