@@ -3,11 +3,14 @@
 import json
 import math
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
+from analysis.readers import read_recording, write_recording
 from pmm.cli import cli
 from pmm.report.steering_document import steering_story
 from tests.analysis.manoeuvring.published import kvlcc2 as paper
@@ -125,6 +128,36 @@ def test_coefficients_have_the_rudders_derivatives(tows: Path) -> None:
         assert rows[name]["unit"] == {"y": "N", "n": "N m"}[load]
     bend = by_rudder("x", paper.U0, 0.0, step) - by_rudder("x", paper.U0, 0.0, -step)
     assert rows["X_dd"]["value"] == pytest.approx(bend / (4.0 * step), rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("channel", "of", "said"),
+    [
+        ("rudder_angle", "zero", "the channel rudder_angle has no neutral; make a zero run with"),
+        ("propeller_thrust", "zero", "the channel propeller_thrust has no zero; make a zero run"),
+        ("revolutions", "tow", "its propeller has no revolutions; record the channel revolutions"),
+        ("rudder_normal_force", "tow", "no channel rudder_normal_force; thrust, the rudder's"),
+    ],
+)
+def test_a_channel_without_its_neutral_or_its_revolutions_is_refused(
+    tows: Path, tmp_path: Path, channel: str, of: str, said: str
+) -> None:
+    text = (tows / "campaign.toml").read_text(encoding="utf-8")
+    head, *records = text.split("[[at_rest]]")
+    tow = records[1].replace("revolutions_hz = 8.0", "")
+    zeros = [one for one in records if 'kind = "zero"' in one]
+    text = "[[at_rest]]".join((head, *(one.split("[[runs]]")[0] for one in (*zeros, tow))))
+    (tmp_path / "campaign.toml").write_text(text, encoding="utf-8")
+    for name in ("zero-1", "zero-2", "straight-tow-b0-n8-d-20"):
+        read = read_recording(tows / f"{name}.nc")
+        spared = name.startswith("zero") != (of == "zero")
+        kept = [one for one in read.channels if spared or one.name != channel]
+        rows = np.array([read.values(one.name) for one in kept])
+        made = replace(read, channels=tuple(kept), samples=rows)
+        write_recording(made, tmp_path / f"{name}.nc")
+    ran = pmm("steering", tmp_path, "--settings", SETTINGS)
+    assert ran.exit_code == 1
+    assert said in " ".join(ran.stderr.split())
 
 
 def test_what_is_wrong_is_said(tows: Path, tmp_path: Path) -> None:
