@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 
 from hardware.description.arrays import FloatArray
-from pmm.console.messages import Frame, Hello, Needles, Notice, SignalTrace
+from pmm.console.messages import CampaignLook, Frame, Hello, Needles, Notice, SignalTrace
+from pmm.document.notation import clock
 from pmm.run.status import ChannelReading, RunOutcome
+from pmm.sequential.look import in_words
 
 _DIGITS = 6
 
@@ -89,6 +91,27 @@ def frame_picture(frame: Frame) -> dict[str, Any]:
         "bus": asdict(frame.bus),
         "loop": {key: _plain(value) for key, value in asdict(frame.loop).items()},
         "needles": needles_picture(frame.needles),
+    }
+
+
+def campaign_picture(told: CampaignLook) -> dict[str, Any]:
+    """Return what a campaign that chooses its runs knows, and what it proposes."""
+    look = told.look
+    keys = ("name", "unit", "value", "standard_uncertainty", "wanted", "met", "mostly")
+    return {
+        "plan": told.plan,
+        "runs": len(look.runs),
+        "time": clock(look.time_s),
+        "known": [{key: _plain(getattr(one, key)) for key in keys} for one in look.known],
+        "proposed": [
+            {"what": in_words(run), "time": clock(cost_s)}
+            for run, cost_s in zip(look.proposed, look.costs_s, strict=True)
+        ],
+        "kept": [run.name for run in look.kept],
+        "left": clock(look.left_s),
+        "remark": look.remark,
+        "ending": "" if look.ending is None else str(look.ending),
+        "notes": list(look.notes),
     }
 
 

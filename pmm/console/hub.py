@@ -8,13 +8,14 @@ from typing import Any, Final
 from pmm.console.client import Client
 from pmm.console.desk import Desk, Holder
 from pmm.console.encoding import (
+    campaign_picture,
     encode,
     hello_picture,
     needles_picture,
     notice_picture,
     outcome_picture,
 )
-from pmm.console.messages import WRITTEN, Frame, Hello, Needles, Notice, Reply, Told
+from pmm.console.messages import WRITTEN, CampaignLook, Frame, Hello, Needles, Notice, Reply, Told
 from pmm.console.pictures import Pictures
 
 _NOTICES: Final = 200
@@ -55,6 +56,7 @@ class Hub:
         self._replied, self._written, self._utc = replied, written, utc
         self._hello, self._connected = "null", False
         self._plans = self._figures = "{}"
+        self._campaign = "null"
         self._finished: list[str] = []
         self._notices: deque[str] = deque(maxlen=_NOTICES)
         self._count, self._began = 0, utc()
@@ -73,6 +75,9 @@ class Hub:
             self._notice(message)
         elif isinstance(message, Reply):
             self._replied(message)
+        elif isinstance(message, CampaignLook):
+            self._campaign = encode(campaign_picture(message))
+            self._tell(f'{{"type":"campaign","campaign":{self._campaign}}}')
         else:
             self._begin(message)
 
@@ -149,7 +154,7 @@ class Hub:
                 f'"needles":{encode(needles_picture(self._needles))},'
                 f'"traces":{self._pictures.traces(0)},"notices":[{",".join(self._notices)}],'
                 f'"plans":{self._plans},"finished":[{",".join(self._finished)}],'
-                f'"figures":{self._figures}'
+                f'"figures":{self._figures},"campaign":{self._campaign}'
             )
         return f'{own[:-1]},{self._common},"desk":{desk}}}'
 

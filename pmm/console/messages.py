@@ -14,6 +14,7 @@ from pmm.plan.plan import Plan
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.lateness import CycleStatistics
 from pmm.run.status import RunOutcome, RunStatus
+from pmm.sequential.look import Look
 
 WRITTEN: Final = "written"  # of a notice: the campaign's file holds the runs so far
 
@@ -39,12 +40,15 @@ class QueuedPlan:
         Where it is recorded.
     runs
         Those that are to be made: what the folder holds complete is left out.
+    chooses
+        Whether it is a design, whose runs are chosen one after the other.
     """
 
     number: int
     plan: Plan
     folder: Path
     runs: tuple[RunPlan, ...]
+    chooses: bool = False
 
 
 @dataclass(frozen=True)
@@ -55,6 +59,7 @@ class PackedPlan:
     plan: Plan
     folder: Path
     pieces: tuple[bytes, ...]
+    chooses: bool = False
 
 
 @dataclass(frozen=True)
@@ -230,7 +235,21 @@ class Frame:
     following: tuple[str, ...] = ()
 
 
-Told = Hello | Notice | Frame | Reply
+@dataclass(frozen=True)
+class CampaignLook:
+    """What a campaign that chooses its runs knows, and what it proposes.
+
+    Attributes
+    ----------
+    plan
+        Number of its design in the queue.
+    """
+
+    plan: int
+    look: Look
+
+
+Told = Hello | Notice | Frame | Reply | CampaignLook
 
 
 _PIECE: Final = 50  # runs: 2 ms
@@ -242,7 +261,7 @@ def pack(plan: QueuedPlan) -> PackedPlan:
     wanted = {run.name for run in plan.runs}
     runs = [(run, run.name in wanted) for run in plan.plan.runs]
     pieces = tuple(pickle.dumps(runs[k : k + _PIECE]) for k in range(0, len(runs), _PIECE))
-    return PackedPlan(plan.number, replace(plan.plan, runs=()), plan.folder, pieces)
+    return PackedPlan(plan.number, replace(plan.plan, runs=()), plan.folder, pieces, plan.chooses)
 
 
 def unpack(packed: PackedPlan) -> QueuedPlan:
@@ -253,4 +272,4 @@ def unpack(packed: PackedPlan) -> QueuedPlan:
         time.sleep(_PAUSE_S)
     plan = replace(packed.plan, runs=tuple(one for one, _ in runs))
     chosen = tuple(one for one, wanted in runs if wanted)
-    return QueuedPlan(packed.number, plan, packed.folder, chosen)
+    return QueuedPlan(packed.number, plan, packed.folder, chosen, packed.chooses)

@@ -17,7 +17,7 @@ from pmm.console.messages import QueuedPlan
 from pmm.plan.checks import check_plan, require_possible
 from pmm.plan.duration import duration_rows
 from pmm.plan.findings import PlanFinding, PlanVerdict, largest_stated
-from pmm.plan.plan import read_plan_and_rig
+from pmm.plan.plan import Plan, read_plan_and_rig
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.run.campaign_folder import chosen_runs, folder_of
@@ -125,7 +125,8 @@ class Plans:
 
     def _possible(self, path: Path) -> CheckedPlan:
         found = self._read(path)
-        require_possible(found.waiting.plan, found.rig, _today())
+        if not found.waiting.chooses:
+            require_possible(found.waiting.plan, found.rig, _today())
         return found
 
     def _known(self, name: str) -> Path:
@@ -148,6 +149,8 @@ class Plans:
 
     def _read(self, path: Path) -> CheckedPlan:
         self._check_rig(path)
+        if "grid" in read_toml(path):
+            return self._read_design(path)
         plan, rig = read_plan_and_rig(path)
         self._check_unchanged(rig)
         folder = folder_of(plan, rig.recorder.folder, None)
@@ -156,6 +159,20 @@ class Plans:
         runs = chosen_runs(plan, rig, folder, resume=True)
         waiting = QueuedPlan(0, plan, folder, runs)
         return CheckedPlan(waiting, rig, check_plan(plan, rig, _today()), duration_rows(runs, rig))
+
+    def _read_design(self, path: Path) -> CheckedPlan:
+        """Read a design: its runs are chosen one after the other, and checked then."""
+        from pmm.design.design_file import read_design
+        from pmm.sequential.targets import TargetGoal
+
+        file = read_design(path)
+        self._check_unchanged(file.rig)
+        folder = file.rig_path.parent / file.rig.recorder.folder / file.name
+        if self.output is not None:
+            folder = self.output / file.name
+        TargetGoal(file, folder)  # refuses what has no end
+        plan = Plan(file.name, path, file.rig_path, (), file.plan_table.get("operator", ""), "")
+        return CheckedPlan(QueuedPlan(0, plan, folder, (), chooses=True), file.rig, (), ())
 
 
 def plan_picture(found: CheckedPlan) -> dict[str, Any]:
@@ -166,6 +183,7 @@ def plan_picture(found: CheckedPlan) -> dict[str, Any]:
         "file": one.plan.path.name,
         "folder": str(one.folder),
         "runs": [_run(run, s) for run, s in zip(one.runs, found.durations_s, strict=True)],
+        "chooses": one.chooses,
         "complete": len(one.plan.runs) - len(one.runs),
         "refused": found.refused,
         "findings": [
@@ -194,12 +212,12 @@ def _run(run: RunPlan, duration_s: float) -> dict[str, Any]:
 
 
 def is_plan(path: Path) -> bool:
-    """Whether a file is a plan, right or wrong: it names a rig and has runs, none to choose."""
+    """Whether a file is a plan, right or wrong: it names a rig and has runs, or some to choose."""
     try:
         table = read_toml(path)
     except PmmError:
         return False
-    return {"runs", "rig"} <= set(table) and not {"oscillator", "grid"} & set(table)
+    return "rig" in table and bool({"runs", "grid"} & set(table)) and "oscillator" not in table
 
 
 def _size(path: Path) -> int:

@@ -24,7 +24,7 @@ class AnswerPosted(Posted):
     """An answer to the rig's question, which is named so that no other one gets it."""
 
     question: str = Field(max_length=2000)
-    answer: str = Field(max_length=200)
+    answer: str = Field(max_length=1000)  # an approval names runs by their numbers
 
 
 class PlanPosted(Posted):

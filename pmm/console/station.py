@@ -12,6 +12,7 @@ from hardware.description.errors import PmmError
 from hardware.errors import as_fault
 from hardware.rig import Rig
 from pmm.console.answers import BrowserAnswers
+from pmm.console.choosing import ChoosingCampaign
 from pmm.console.limits import MOST_WAITING
 from pmm.console.link import Link
 from pmm.console.messages import Hello, LoopOrder, OrderKind, QueuedPlan, Reply
@@ -77,6 +78,7 @@ class Station:
         self._recording: RecorderFactory | None = None
         self._writer = Writer(rig_file, executor)
         self._view = StationView(rig, link, answers, pacer, clock, self._writer, self._plans)
+        self._campaign: ChoosingCampaign | None = None
         self.control = self._controlled(())
 
     def hello(self) -> Hello:
@@ -116,13 +118,48 @@ class Station:
             self._link.tell(self._carry_out(order))
 
     def _go_on(self) -> None:
+        if self._campaign is not None:
+            if self._idle and (self.control.finished or self.control.state is State.IDLE):
+                self._follow(self._campaign)
+            return
         if self._plans.present is not None and self.control.finished and not self._left:
             self._writer.let_go(self._plans.present.number)
         if self.control.finished and self._plans.waiting:
             self._next_plan(goes_on=self.control.state is State.DONE)
 
+    def _follow(self, campaign: ChoosingCampaign) -> None:
+        """Make the next runs of a campaign that chooses them, or end it."""
+        try:
+            plan = campaign.following(self.control.state)
+        except StopIteration:
+            self._end_campaign("has ended")
+            return
+        except PmmError as error:
+            self._end_campaign(str(error), "alarm")
+            return
+        if plan is None:
+            return
+        self._plans.present = plan
+        if self.control.state is State.DONE and self._recording is not None:
+            self._recording.plan = plan.plan
+            self.control.add(plan.runs)
+            return
+        before, self.control = self.control, self._controlled(plan.runs)
+        self.control.follow(before)
+        self.control.request(Command.START)
+
+    def _end_campaign(self, how: str, kind: str = "plan") -> None:
+        if self._campaign is None:
+            return
+        plan = self._campaign.plan
+        self._campaign.close()
+        self._campaign = None
+        self._writer.let_go(plan.number)
+        self._view.notice(kind, f"{plan.plan.name}: {how}", plan=plan.number)
+
     def close(self) -> list[str]:
         """Write what is still to be written; return what went wrong."""
+        self._end_campaign("left")
         return self._writer.close()
 
     @property
@@ -166,7 +203,7 @@ class Station:
         return f"{command} taken; state: {self.control.state}"
 
     def _queue(self, plan: QueuedPlan) -> str:
-        if not plan.runs:
+        if not plan.runs and not plan.chooses:
             raise RunStateError(f"{plan.plan.name}: all its runs are complete in {plan.folder}")
         if len(self._plans.waiting) >= MOST_WAITING:
             raise RunStateError(
@@ -175,8 +212,9 @@ class Station:
             )
         self._writer.begin(plan)
         self._plans.waiting.append(plan)
-        self._view.notice("queue", f"{plan.plan.name}: {len(plan.runs)} runs queued")
-        if self._idle and not self._left:
+        what = "runs to be chosen" if plan.chooses else f"{len(plan.runs)} runs"
+        self._view.notice("queue", f"{plan.plan.name}: {what}, queued")
+        if self._idle and not self._left and self._campaign is None:
             self._next_plan(goes_on=False)
         return f"{plan.plan.name} is queued"
 
@@ -184,6 +222,7 @@ class Station:
         if self._plans.present is not None and number == self._plans.present.number:
             if not self._idle:
                 raise RunStateError(f"{self._plans.present.plan.name} is under way; stop it first")
+            self._end_campaign("left")
             name, self._plans.present = self._plans.present.plan.name, None
             self._writer.let_go(number)
             before, self.control = self.control, self._controlled(())
@@ -215,6 +254,11 @@ class Station:
         self._plans.present = self._plans.waiting.popleft()
         before, self.control = self.control, self._controlled(self._plans.present.runs)
         self.control.follow(before)
+        if self._plans.present.chooses:
+            self._campaign = ChoosingCampaign(
+                self._plans.present, self._answers, self._link.tell, self._executor
+            )
+            goes_on = False
         self._view.notice(
             "plan", f"{self._plans.present.plan.name} is next", plan=self._plans.present.number
         )

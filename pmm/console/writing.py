@@ -43,7 +43,8 @@ class Writer:
         owned = self._owned[plan.number] = own_campaign(plan.folder, patience_s=0.0)
 
         def begin() -> None:
-            keep_sources(plan.plan, self._rig_file, plan.folder)
+            if not plan.chooses:  # whose plan lies in the folder, and grows
+                keep_sources(plan.plan, self._rig_file, plan.folder)
             owned.count()  # now, and not in the loop
 
         self._do(plan, begin)

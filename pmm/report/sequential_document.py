@@ -69,7 +69,7 @@ def look_lines(look: Look) -> Iterator[str]:
         yield f"{look.ending}{f': {look.remark}' if look.remark else ''}"
     elif look.proposed:
         yield f"new plan ({look.remark}), {clock(look.left_s)}:"
-        yield from (f"  {in_words(one)}" for one in look.proposed)
+        yield from (f"  {k}. {in_words(one)}" for k, one in enumerate(look.proposed, 1))
     else:
         yield f"as planned: {counted(len(look.kept), 'run')} more, {clock(look.left_s)}"
 

@@ -97,6 +97,44 @@ def carry_out_campaign(
     RunFailedError
         If a question is asked that nobody can answer.
     """
+    with ExitStack() as stack:
+        executor = stack.enter_context(_executor(file.rig.realtime or asked.real_time))
+        course = stack.enter_context(campaign_course(file, asked, answers, screen.show, executor))
+        jobs = _told(course.jobs(), screen.job)
+        first = _first(jobs, answers, screen.tell)
+        report = RunReport()
+        if first is not None:
+            report = carry_out(first, screen.view, screen.tell, answers, jobs)
+        return MadeCampaign(course.folder, course.ended, report)
+
+
+@contextmanager
+def campaign_course(
+    file: DesignFile,
+    asked: CampaignRequest,
+    answers: Callable[[str], str | None],
+    show: Callable[[Look], None],
+    executor: Executor | None,
+) -> Iterator[CampaignCourse]:
+    """Own a campaign's folder, and give the course of its runs until its design's targets are met.
+
+    Parameters
+    ----------
+    answers
+        Returns what the operator answers to a question, ``None`` as long as nobody does.
+    show
+        Takes what is known after a run.
+    executor
+        Where looks are taken; ``None`` for at once.
+
+    Raises
+    ------
+    ConfigurationError
+        If the design asks for what cannot be, or the folder holds a campaign already and nobody
+        asked to resume it.
+    OwnedElsewhereError
+        If another process is writing into the folder.
+    """
     folder = campaign_folder(asked, file)
     asked.check_folder(folder)
     if (folder / PLAN).exists() and not asked.resume:
@@ -110,17 +148,8 @@ def carry_out_campaign(
         stack.enter_context(own_campaign(folder))
         _write_made(folder)
         _keep_stated(file, folder)
-        executor = stack.enter_context(_executor(file.rig.realtime or asked.real_time))
-        course = CampaignCourse(
-            goal, folder, approval, answers, screen.show,
-            partial(_opened, asked, folder, stack, screen), executor,
-        )  # fmt: skip
-        jobs = course.jobs()
-        first = _first(jobs, answers, screen.tell)
-        report = RunReport()
-        if first is not None:
-            report = carry_out(first, screen.view, screen.tell, answers, jobs)
-        return MadeCampaign(folder, course.ended, report)
+        opened = partial(_opened, asked, folder, stack)
+        yield CampaignCourse(goal, folder, approval, answers, show, opened, executor)
 
 
 def _write_made(folder: Path) -> None:
@@ -138,9 +167,7 @@ def _keep_stated(file: DesignFile, folder: Path) -> None:
         write_whole(path, f"# As {file.path.name} states\n{toml_table('uncertainty', stated)}")
 
 
-def _opened(
-    asked: CampaignRequest, folder: Path, stack: ExitStack, screen: Screen, names: Sequence[str]
-) -> RunJob:
+def _opened(asked: CampaignRequest, folder: Path, stack: ExitStack, names: Sequence[str]) -> RunJob:
     """Return a job of some runs of the folder's plan, checked as ``pmm run`` checks it."""
     job = stack.enter_context(
         run_job(
@@ -155,8 +182,15 @@ def _opened(
         )
     )
     keep_sources(job.plan, job.rig_file, folder)
-    screen.job(job)
     return job
+
+
+def _told(jobs: Iterator[RunJob | None], tell: Callable[[RunJob], None]) -> Iterator[RunJob | None]:
+    """Yield what follows, each job told first, in the thread that shows it."""
+    for job in jobs:
+        if job is not None:
+            tell(job)
+        yield job
 
 
 def _first(

@@ -4,20 +4,24 @@ The campaign's folder is all the state there is: recordings, plan, and what was 
 interrupted goes on from it.
 """
 
+import re
 from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
-from typing import Final, Protocol
+from typing import Final, Protocol, TypeVar
 
-from pmm.run.operator import Answers
 from pmm.run.session import Course, RunJob
 from pmm.sequential.approval import Approval
 from pmm.sequential.look import Decision, Ending, Look, keep_decision
 
-_FIRST: Final = "Approve of these runs? y: yes, n: no, and end"
-_CHANGE: Final = "Approve of these runs? y: yes, k: keep the plan as it was, n: no, and end"
+_YES: Final = "Approve of these runs? y: yes (y 3 1: these alone, in this order)"
+_FIRST: Final = f"{_YES}, n: no, and end"
+_CHANGE: Final = f"{_YES}, k: keep the plan as it was, n: no, and end"
 _BY_OPERATOR: Final = "the operator"
+_NUMBER: Final = re.compile(r"\d{1,6}")
+T = TypeVar("T")
 
 
 class CampaignGoal(Protocol):
@@ -41,7 +45,7 @@ class CampaignCourse:
     open_job
         Checks the folder's plan as any other and makes a job of some of its runs.
     executor
-        Where a look is taken while the rig is watched; ``None`` for at once.
+        Where a look is taken and a plan written while the rig is watched; ``None`` for at once.
     ended
         What was decided last; ``None`` as long as the campaign goes on.
     """
@@ -49,7 +53,7 @@ class CampaignCourse:
     goal: CampaignGoal
     folder: Path
     approval: Approval
-    answers: Answers
+    answers: Callable[[str], str | None]
     show: Callable[[Look], None]
     open_job: Callable[[Sequence[str]], RunJob]
     executor: Executor | None = None
@@ -64,25 +68,32 @@ class CampaignCourse:
             If a file is wrong, or the rig refuses a run; nothing is made of it then.
         """
         question = self.approval.question
-        if question and (yield from self._asked(question, "yn")) == "n":
+        if question and (yield from self._asked(question, "yn"))[0] == "n":
             return
         self.approval.begin()
         while True:
-            look = yield from self._looked()
+            look = yield from self._away(self.goal.look)
             self.show(look)
             look, who = yield from self._decided(look)
             decision = look.decision(who)
             keep_decision(self.folder, decision)
-            due = () if look.ending is Ending.REJECTED else self.goal.plan(look)
-            if not due:
+            job = None
+            if look.ending is not Ending.REJECTED:
+                job = yield from self._away(partial(self._following, look))
+            if job is None:
                 self.ended = decision
                 return
-            yield self.open_job(due)
+            yield job
 
-    def _looked(self) -> Generator[None, None, Look]:
+    def _following(self, look: Look) -> RunJob | None:
+        due = self.goal.plan(look)
+        return self.open_job(due) if due else None
+
+    def _away(self, work: Callable[[], T]) -> Generator[None, None, T]:
+        """Do what takes long, and yield nothing meanwhile."""
         if self.executor is None:
-            return self.goal.look()
-        future = self.executor.submit(self.goal.look)
+            return work()
+        future = self.executor.submit(work)
         while not future.done():
             yield None
         return future.result()
@@ -94,15 +105,28 @@ class CampaignCourse:
         if self.approval.covers(look.proposed):
             return look, self.approval.name
         question = _CHANGE if look.before else _FIRST
-        answer = yield from self._asked(question, "ykn" if look.before else "yn")
-        decided = {"y": look, "k": look.as_before, "n": replace(look, ending=Ending.REJECTED)}
-        return decided[answer], _BY_OPERATOR
+        letters = "ykn" if look.before else "yn"
+        while True:
+            answer = yield from self._asked(question, letters)
+            decided = _decided(look, answer)
+            if decided is not None:
+                return decided, _BY_OPERATOR
 
     def _asked(self, question: str, letters: str) -> Generator[None, None, str]:
-        """Return what the operator answers: one of some letters, asked until it is one."""
+        """Return what the operator answers, asked until it begins with one of some letters."""
         while True:
             answer = self.answers(question)
             if answer is None:
                 yield None
             elif answer[:1].lower() in tuple(letters):
-                return answer[0].lower()
+                return answer.lower()
+
+
+def _decided(look: Look, answer: str) -> Look | None:
+    """Return what an answer makes of a proposal; ``None`` where it names runs wrongly."""
+    if answer[0] == "n":
+        return replace(look, ending=Ending.REJECTED)
+    if answer[0] == "k":
+        return look.as_before
+    named = _NUMBER.findall(answer)
+    return look.chosen([int(one) for one in named]) if named else look

@@ -1,6 +1,7 @@
 """What was known after a run and what was decided then; the campaign's folder keeps all of it."""
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
@@ -100,8 +101,8 @@ class Look:
     ----------
     kept
         Planned runs that stay; none where ``proposed`` takes their place.
-    proposed
-        Runs that are to be planned anew, not named yet.
+    proposed, costs_s
+        Runs that are to be planned anew, not named yet, and the tank time of each.
     before, before_s
         Planned runs that ``proposed`` would take the place of, and their tank time.
     ending
@@ -113,6 +114,7 @@ class Look:
     known: tuple[KnownTarget, ...]
     kept: tuple[RunPlan, ...] = ()
     proposed: tuple[RunPlan, ...] = ()
+    costs_s: tuple[float, ...] = ()
     left_s: float = 0.0
     before: tuple[RunPlan, ...] = ()
     before_s: float = 0.0
@@ -124,8 +126,27 @@ class Look:
     def as_before(self) -> "Look":
         """The same with the plan as it was."""
         return replace(
-            self, kept=self.before, proposed=(), left_s=self.before_s, remark="the plan stays"
-        )
+            self, kept=self.before, proposed=(), costs_s=(), left_s=self.before_s,
+            remark="the plan stays",
+        )  # fmt: skip
+
+    def chosen(self, numbers: Sequence[int]) -> "Look | None":
+        """Return the same with some of the proposed runs alone, in an order of one's own.
+
+        Parameters
+        ----------
+        numbers
+            Of the runs, from 1; ``None`` is returned where one is not proposed or stands twice.
+        """
+        if len(set(numbers)) < len(numbers) or not set(numbers) <= {
+            *range(1, len(self.proposed) + 1)
+        }:
+            return None
+        costs_s = tuple(self.costs_s[k - 1] for k in numbers)
+        return replace(
+            self, proposed=tuple(self.proposed[k - 1] for k in numbers), costs_s=costs_s,
+            left_s=math.fsum(costs_s),
+        )  # fmt: skip
 
     def decision(self, approved: str = "") -> Decision:
         """Return it as it is kept."""

@@ -126,12 +126,19 @@ class TargetGoal:
     ) -> Look:
         """Return the look with the runs that follow: those that were planned, or others."""
         new = tuple(step.run for step in found.steps for _ in range(step.repeats))
-        new_s, left_s = self._cost_s(new, made), self._cost_s(left, made)
+        each_s, left_s = self._costs_s(new, made), math.fsum(self._costs_s(left, made))
+        new_s = math.fsum(each_s)
         why = self._why_new(found, file, left, new_s, left_s)
         if not why or not new:
             return replace(look, kept=tuple(left), left_s=left_s)
         return replace(
-            look, proposed=new, left_s=new_s, before=tuple(left), before_s=left_s, remark=why
+            look,
+            proposed=new,
+            costs_s=each_s,
+            left_s=new_s,
+            before=tuple(left),
+            before_s=left_s,
+            remark=why,
         )
 
     def _why_new(
@@ -187,11 +194,11 @@ class TargetGoal:
         )
         return replace(file, grid=grid, time_s=max(file.time_s - plan.chosen_s(file.rig), 0.0))
 
-    def _cost_s(self, runs: Sequence[RunPlan], made: Sequence[RunPlan]) -> float:
-        """Return the tank time of runs that follow those that were made."""
+    def _costs_s(self, runs: Sequence[RunPlan], made: Sequence[RunPlan]) -> tuple[float, ...]:
+        """Return the tank time of each of some runs that follow those that were made."""
         file = self._file
         before = made[-1] if made else None
-        return math.fsum(costs_s(runs, before, file.rig, file.tables.zero))
+        return costs_s(runs, before, file.rig, file.tables.zero)
 
 
 def _offered(left: Sequence[RunPlan], file: DesignFile) -> Sequence[RunPlan]:

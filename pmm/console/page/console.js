@@ -6,6 +6,7 @@ import { Alarms, Facts, showProgress, showState } from "./status.js";
 import { Stream, post } from "./stream.js";
 import { byId, text } from "./svg.js";
 import { Traces } from "./traces.js";
+import { Until } from "./until.js";
 
 const readings = new Readings(), traces = new Traces(), facts = new Facts(), alarms = new Alarms();
 const finished = new Finished(), coefficients = new Coefficients();
@@ -30,6 +31,7 @@ function draw() {
     showProgress(frame, plans.known);
     plans.show(frame);
   }
+  until.show(frame, holder === "you");
   showQuestion(frame);
 }
 
@@ -56,7 +58,7 @@ function showButtons(frame) {
 }
 
 function showQuestion(frame) {
-  byId("question").hidden = !frame.question;
+  byId("question").hidden = !frame.question || until.asks(frame);
   text(byId("question-text"), frame.question);
 }
 
@@ -104,6 +106,7 @@ function begin(snapshot) {
   coefficients.take(snapshot.figures);
   alarms.begin(snapshot.notices);
   plans.take(snapshot.plans);
+  until.take(snapshot.campaign);
   showDesk(snapshot.desk);
   if (snapshot.needles) readings.show(snapshot.needles);
   shown = false;
@@ -118,6 +121,7 @@ const stream = new Stream({
   desk: showDesk,
   notice: (one) => alarms.add(one),
   plans: (one) => plans.take(one.plans),
+  campaign: (one) => until.take(one.campaign),
   finished: (one) => {
     finished.add(one.entry);
     if (latest?.run === one.entry.run) readings.settle(one.entry.needles);
@@ -131,6 +135,7 @@ const stream = new Stream({
   },
 });
 const plans = new Plans(stream);
+const until = new Until(stream, say);
 
 commands.forEach((one) => one.addEventListener("click", () => command(one.dataset.command)));
 addEventListener("keydown", (event) => {

@@ -44,6 +44,7 @@ export class Plans {
   }
 
   said({ plan, said }) {
+    if (plan.chooses) return [html("p", {}, `${said ?? "a design"}: its runs are chosen one after the other, to ${plan.folder}`)];
     const minutes = Math.ceil(plan.runs.reduce((sum, one) => sum + one.duration_s, 0) / 60);
     const done = plan.complete ? `, ${plan.complete} complete already` : "";
     const first = html("p", {}, `${said ?? (plan.refused ? "the rig cannot run it" : "it can be run")}: ${plan.runs.length} runs${done}, at most ${minutes} min, to ${plan.folder}`);
@@ -63,7 +64,7 @@ export class Plans {
         const answer = await post(this.stream, "/api/plans/drop", { number: one });
         text(byId("plan-said"), answer.ok ? answer.said : answer.error);
       });
-      return html("li", {}, `${this.known[one].name}, ${this.known[one].runs.length} runs ${k || frame.plan !== one ? "(waits) " : ""}`, button);
+      return html("li", {}, `${this.known[one].name}, ${this.known[one].chooses ? "a design" : `${this.known[one].runs.length} runs`} ${k || frame.plan !== one ? "(waits) " : ""}`, button);
     }));
   }
 }

@@ -3,6 +3,7 @@
 import io
 from collections.abc import Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from threading import Event
 from typing import cast
@@ -90,6 +91,17 @@ def test_the_plan_stays_as_it_was_on_demand(tmp_path: Path) -> None:
     kept = read_decisions(tmp_path)[1]
     assert (kept.added, len(kept.kept), kept.left_s) == ((), 1, 9.0)
     assert kept.approved == "the operator"
+
+
+def test_runs_are_left_out_and_put_in_another_order(tmp_path: Path) -> None:
+    two, three = (replace(ONE, periods=n) for n in (2, 3))
+    offer = Look((), 0.0, (), proposed=(ONE, two, three), costs_s=(9.0, 5.0, 7.0), left_s=21.0)
+    goal = Scripted(tmp_path, [offer, LAST])
+    # A number that is not offered, and one that stands twice, are asked for again.
+    assert _jobs(_course(goal, "y 4\ny 1 1\ny 3, 1\n")) == [("next",)]
+    (decided,) = [one for one in read_decisions(tmp_path) if one.added]
+    assert [one.rpartition(", ")[2] for one in decided.added] == ["3 periods", "4 periods"]
+    assert decided.left_s == 16.0
 
 
 def test_who_does_not_attend_gets_no_envelope(tmp_path: Path) -> None:

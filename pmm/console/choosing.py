@@ -1,0 +1,103 @@
+"""A campaign that chooses its runs, under the console: the course that ``pmm run --until`` takes.
+
+What the terminal prints goes to the browsers, and the operator's answers come from there.
+"""
+
+from collections.abc import Callable, Generator
+from concurrent.futures import Executor, Future
+from contextlib import ExitStack
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final, TypeVar
+
+from pmm.console.answers import BrowserAnswers
+from pmm.console.messages import CampaignLook, QueuedPlan
+from pmm.run.states import State
+from pmm.sequential.look import Look
+
+if TYPE_CHECKING:
+    from pmm.sequential.course import CampaignCourse
+
+_AGAIN: Final = "The campaign was stopped. Go on with it? y: yes"
+_ENDED: Final = frozenset({State.STOPPED, State.IDLE})
+T = TypeVar("T")
+
+
+class ChoosingCampaign:
+    """Says which runs follow, asked once a cycle while the rig is at rest.
+
+    Parameters
+    ----------
+    plan
+        The design as it was queued, with its number and folder.
+    tell
+        Takes what is known after a run.
+    executor
+        Where files are read and looks are taken: the loop waits for none of it.
+    """
+
+    def __init__(
+        self,
+        plan: QueuedPlan,
+        answers: BrowserAnswers,
+        tell: Callable[[CampaignLook], None],
+        executor: Executor | None,
+    ) -> None:
+        self.plan = plan
+        self._answers, self._tell, self._executor = answers, tell, executor
+        self._stack, self._made = ExitStack(), False
+        self._jobs = self._course()
+
+    def following(self, state: State) -> QueuedPlan | None:
+        """Return the runs that follow; ``None`` as long as that is not known.
+
+        Raises
+        ------
+        StopIteration
+            If nothing follows.
+        PmmError
+            If a file is wrong, or the rig refuses a run.
+        """
+        if self._made and state in _ENDED:
+            if (self._answers(_AGAIN) or "")[:1].lower() != "y":
+                return None
+            self._made = False
+        found = next(self._jobs)
+        self._made = self._made or found is not None
+        return found
+
+    def close(self) -> None:
+        """Let go of the folder, once what is under way there is done."""
+        self._jobs.close()
+        if self._executor is None:
+            self._stack.close()
+        else:
+            self._executor.submit(self._stack.close)
+
+    def _course(self) -> Generator[QueuedPlan | None, None, None]:
+        course = yield from self._away(self._begun)
+        for job in course.jobs():
+            yield None if job is None else replace(self.plan, plan=job.plan, runs=job.runs)
+
+    def _begun(self) -> "CampaignCourse":
+        from pmm.design.design_file import read_design
+        from pmm.sequential.carrying_out import CampaignRequest, campaign_course
+
+        file = read_design(self.plan.plan.path)
+        asked = CampaignRequest(
+            str(self.plan.folder), None, resume=True, accept_changes=False, real_time=True,
+            check_folder=lambda _: None,
+        )  # fmt: skip
+        return self._stack.enter_context(
+            campaign_course(file, asked, self._answers, self._show, self._executor)
+        )
+
+    def _show(self, look: Look) -> None:
+        self._tell(CampaignLook(self.plan.number, look))
+
+    def _away(self, work: Callable[[], T]) -> Generator[None, None, T]:
+        if self._executor is None:
+            return work()
+        future: Future[T] = self._executor.submit(work)
+        while not future.done():
+            yield None
+        return future.result()
