@@ -29,6 +29,7 @@ NAMES = (
     "latency",
     "crowd",
     "inertia",
+    "contradictions",
     "comparison",
     "uneven",
     "recorder",
