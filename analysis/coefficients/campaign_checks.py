@@ -151,7 +151,8 @@ def restoring_pairs(cycles: Sequence[BodyCycle]) -> list[Pair]:
 
     The load in phase with the motion is ``C + G - omega^2 (M + A)``; the model's part is taken off,
     and what is left is extrapolated to zero frequency. At forward speed incidence adds damping to
-    it, so only runs at rest serve; two frequencies or more are needed.
+    it, so only runs at rest serve; two frequencies or more are needed. Three at which the water's
+    memory is strong tell nothing of zero frequency: such a pair is left out.
     """
     if cycles[0].plane is not Plane.VERTICAL:
         return []
@@ -160,7 +161,8 @@ def restoring_pairs(cycles: Sequence[BodyCycle]) -> list[Pair]:
         pure = [cycle for cycle in cycles if _serves(cycle, column)]
         if len({round(cycle.frequency_hz, 4) for cycle in pure}) < 2:
             continue
-        pairs += [_restoring(pure, row, column) for row in (0, 1)]
+        found = (_restoring(pure, row, column) for row in (0, 1))
+        pairs += [pair for pair in found if pair is not None]
     return pairs
 
 
@@ -171,10 +173,12 @@ def _serves(cycle: BodyCycle, column: int) -> bool:
     return bool(size[1 - column] <= _PURE * size[column])
 
 
-def _restoring(cycles: Sequence[BodyCycle], row: int, column: int) -> Pair:
+def _restoring(cycles: Sequence[BodyCycle], row: int, column: int) -> Pair | None:
     name = f"C{'35'[row]}{'35'[column]}"
     stiffness = stacked([_stiffness(cycle, row, column) for cycle in cycles])
     intercept = extrapolate(name, [cycle.frequency_hz for cycle in cycles], stiffness)
+    if not intercept.checked:
+        return None
     known = UncertainValues(np.array([float(cycles[0].restoring[row, column])]))
     both = stacked([intercept.uncertain, known])
     texts = (f"the load in phase of {len(cycles)} runs", "hydrostatics")

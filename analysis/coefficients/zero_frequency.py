@@ -3,7 +3,8 @@
 Added mass and damping of a fluid with decaying memory are even functions of the frequency, so
 polynomials in its square are fitted: constant, linear, quadratic. Their values at zero are averaged
 by the weights that Akaike's criterion gives them, and what they differ by is part of the
-uncertainty.
+uncertainty. Three frequencies that reject a straight line, as with a memory that is strong there,
+leave nothing to check the quadratic one by: then all that the polynomials differ by is.
 """
 
 from collections.abc import Sequence
@@ -16,6 +17,7 @@ from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
 _DEGREES = (0, 1, 2)
+_REJECTED = 25.0  # squares left, over their variance: five standard deviations
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,10 +31,13 @@ class Extrapolation:
         (``extrapolation of NAME``).
     weights
         Of the polynomials, by their degree.
+    checked
+        Whether the data are described by a polynomial that they could have contradicted.
     """
 
     uncertain: UncertainValues
     weights: tuple[float, ...]
+    checked: bool = True
 
 
 def extrapolate(name: str, frequency_hz: Sequence[float], values: UncertainValues) -> Extrapolation:
@@ -69,10 +74,13 @@ def extrapolate(name: str, frequency_hz: Sequence[float], values: UncertainValue
     singles = np.array([row @ values.values for row in fits])
     value = values.mapped((weights @ np.array(fits))[None, :])
     between = float(weights @ (singles - value.values[0]) ** 2)
+    checked = not (spare == 0 and len(fits) == len(_DEGREES) and squares[-2] > _REJECTED)
+    if not checked:
+        between += float(np.max((singles - singles[-1]) ** 2))  # nothing checks the highest one
     lack = (dispersion - 1.0) * float((weights @ np.array(fits)) ** 2 @ variance)
     label = f"extrapolation of {name}"
     whole = value.plus(label, np.array([np.sqrt(between + lack)]))
-    return Extrapolation(whole, tuple(float(weight) for weight in weights))
+    return Extrapolation(whole, tuple(float(weight) for weight in weights), checked)
 
 
 def _own_variance(values: UncertainValues) -> FloatArray:
