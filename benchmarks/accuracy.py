@@ -46,7 +46,7 @@ _CASES = (
 
 def run(quick: bool, report: Report) -> Outcome:
     """Draw frequencies and phases; collect every method's errors."""
-    trials = 20 if quick else 400
+    trials = 5 if quick else 400
     rms: dict[str, Row] = {name: {"method": name} for name in (*RIVALS, _OURS)}
     largest: dict[str, Row] = {name: {"method": name} for name in (*RIVALS, _OURS)}
     measured = {}

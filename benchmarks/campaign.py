@@ -119,7 +119,7 @@ def _timed(call: Callable[[], Any]) -> tuple[float, float, Any]:
 
 @contextmanager
 def _watched() -> Iterator[list[float]]:
-    import psutil  # type: ignore[import-untyped]
+    import psutil
 
     own, peak, over = psutil.Process(), [0.0], threading.Event()
 

@@ -133,7 +133,7 @@ def made_struts(point: SetPoint, made: Made, name: str) -> StrutCycle:
     line = np.arctan2(fore - aft, 2.0 * HALF_M)
     read = _gauges(*_exerted(point, made, aft, line), line)
     rest = np.zeros(1)
-    read -= _gauges(0j * rest, _hanging(made, rest), rest)
+    read -= _gauges(rest.astype(np.complex128), _hanging(made, rest), rest)
     channels = (*DISPLACEMENTS, *FORCES, FORCE_X.name)
     units = ("m", "m", "N", "N", "N")
     count = 4 if made.surge is None else 5

@@ -95,7 +95,7 @@ def _loop(folder: Path, window_s: float) -> list[Row]:
     from tests.pmm.console.chromium import browser, console, plan, rig_in
 
     folder.mkdir(parents=True)
-    found: dict[int, list[Row]] = {0: [], _BROWSERS: []}
+    found: dict[int, list[dict[str, Any]]] = {0: [], _BROWSERS: []}
     with ExitStack() as stack:
         one = stack.enter_context(console(rig_in(folder / "rig"), folder / "out"))
         watcher = stack.enter_context(Watcher(one.address))
@@ -111,7 +111,7 @@ def _loop(folder: Path, window_s: float) -> list[Row]:
     return [_late(count, windows) for count, windows in found.items()]
 
 
-def _late(browsers: int, windows: list[Row]) -> Row:
+def _late(browsers: int, windows: list[dict[str, Any]]) -> Row:
     """Return the medians over windows of ten seconds, and the worst of all."""
     median = {key: statistics.median(one[key] for one in windows) for key in ("p50_s", "p99_s")}
     return {
@@ -174,7 +174,7 @@ def _levels(
 
 def _tree(pid: int) -> list[psutil.Process]:
     """Return a browser's processes, without its driver."""
-    return psutil.Process(pid).children(recursive=True)
+    return list(psutil.Process(pid).children(recursive=True))
 
 
 def _cpu_s(processes: list[psutil.Process]) -> float:

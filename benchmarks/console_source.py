@@ -141,9 +141,10 @@ class Watcher:
 
     def __enter__(self) -> "Watcher":
         from websockets.sync.client import connect
+        from websockets.typing import Origin
 
         url = self._address.replace("http", "ws") + f"/stream?session={_SESSION}"
-        opened = connect(url, origin=self._address, max_size=None)  # type: ignore[arg-type]
+        opened = connect(url, origin=Origin(self._address), max_size=None)
         self._stream = self._held.enter_context(opened)
         self._stream.recv()
         return self

@@ -58,7 +58,7 @@ def _batches(noise: Noise, periods: int, trials: int) -> Iterator[_Batch]:
 
 def run(quick: bool, report: Report) -> Outcome:
     """Draw trials of every noise and gate."""
-    trials = 100 if quick else 20_000
+    trials = 20 if quick else 20_000
     rows: list[Row] = []
     for name, noise in NOISES.items():
         for periods in _GATES:

@@ -15,11 +15,12 @@ _QUICKLY: Final = 0x0002  # CiA 402: quick stop, which is active low
 def main() -> None:
     """Run the command line given behind the file."""
     import can
+    from can.interfaces import BACKENDS
 
     from pmm.cli import main as pmm
     from sim.devices.bus import SimulatedBus
 
-    can.interface.BACKENDS.setdefault("pmm-simulated", ("sim.devices.bus", "SimulatedBus"))
+    BACKENDS.setdefault("pmm-simulated", ("sim.devices.bus", "SimulatedBus"))
     times = os.open(sys.argv.pop(1), os.O_WRONLY | os.O_CREAT | os.O_APPEND)
     send = SimulatedBus.send
 

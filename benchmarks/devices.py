@@ -6,8 +6,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
-import can
 import numpy as np
+from can.interfaces import BACKENDS
 
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from hardware.pacing import FreeRunning, Pacer, RealTime
@@ -48,8 +48,8 @@ def _amplifier(node: int, channel: str) -> dict[str, Any]:
 
 def tables(rate_hz: float) -> dict[str, Any]:
     """Return the tables of a rig of three drives and two amplifiers."""
-    axis = {"speed": 0.01, "acceleration": 0.1, "quick_stop": 1.0, "standard_uncertainty": 1e-5}
-    axis |= {"driver": "cia402-axis", "tolerance": 1e-4}
+    axis: dict[str, Any] = {"driver": "cia402-axis", "tolerance": 1e-4}
+    axis |= {"speed": 0.01, "acceleration": 0.1, "quick_stop": 1.0, "standard_uncertainty": 1e-5}
     return {
         "bus": {
             "interface": "pmm-simulated",
@@ -78,7 +78,7 @@ def tables(rate_hz: float) -> dict[str, Any]:
 @contextmanager
 def _turning(rate_hz: float) -> Iterator[tuple[Rig, World]]:
     """Open a rig whose shaft turns at speed, axes homed where they stand."""
-    can.interface.BACKENDS.setdefault("pmm-simulated", ("sim.devices.bus", "SimulatedBus"))
+    BACKENDS.setdefault("pmm-simulated", ("sim.devices.bus", "SimulatedBus"))
     configuration = read_rig(tables(rate_hz), DRIVERS)
     around = PlantConditions(carriage_speed_m_s=1.2)
     world = World(configuration, Scene(vertical_rig(), around, _ECCENTRICITY_M, _PHASE_RAD))

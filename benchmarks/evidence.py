@@ -48,7 +48,7 @@ def run(quick: bool, report: Report) -> Outcome:
         report(f"{effect.name}: {number + 1} of {len(every)}")
         problem = problem_of(rig, record(rig, [effect], 900 + number))
         rows.append(_row(problem, effect.name, size, quick))
-    told = [row for row in rows if row["parameters"] <= 3]
+    told = [row for row in rows if float(row["parameters"]) <= 3]
     off = np.abs([float(row["Laplace - nested"]) for row in told])
     measured = {"median_nats": float(np.median(off)), "worst_nats": float(off.max())}
     return Outcome(

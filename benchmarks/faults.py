@@ -28,7 +28,8 @@ def run(quick: bool, report: Report) -> Outcome:
         return _counted(storms.TRIALS.few(2), cuts.TRIALS.few(20), None)
     report("counting")
     fuzz = json.loads(_FUZZ.read_text(encoding="utf-8"))
-    return _counted(*(one.TRIALS.read(one.TRIALS.file) for one in (storms, cuts)), fuzz)
+    sequences, power = (one.TRIALS.read(one.TRIALS.file) for one in (storms, cuts))
+    return _counted(sequences, power, fuzz)
 
 
 def _counted(

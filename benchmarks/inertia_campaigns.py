@@ -257,11 +257,12 @@ def swing_moment(model: RigidPart | None, bow: float, generator: Generator) -> E
             lambda one: replace(one, non_linearity=bow) if one.non_linearity else one
         )
 
+    effects: list[Any] = [make_effect("sensor_noise", noise_rms=5e-5), bent]
     records = simulate_swing_static(
         weights_kg.tolist(),
         lever_m * (1.0 + LEVER_RELATIVE * generator.standard_normal()),
         model=model,
-        effects=[make_effect("sensor_noise", noise_rms=5e-5), bent],
+        effects=effects,
         seed=int(generator.integers(2**31)),
         sample_rate_hz=16.0,
     )

@@ -11,8 +11,8 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias, cast
 
-import can
 import numpy as np
+from can.interfaces import BACKENDS
 from numpy.typing import NDArray
 
 from hardware.carry_over import opening_of
@@ -60,15 +60,20 @@ def tables(name: str) -> dict[str, Any]:
 
 def record(pace: Pace, folder: Path, seconds: float) -> None:
     """Record a simulated rig and close the run; say every sample on the output."""
-    can.interface.BACKENDS.setdefault("pmm-simulated", ("sim.devices.bus", "SimulatedBus"))
+    BACKENDS.setdefault("pmm-simulated", ("sim.devices.bus", "SimulatedBus"))
     described = tables(_NAME)
     configuration = read_rig(described, DRIVERS)
     world = World(configuration, Scene(vertical_rig(), PlantConditions(1.2), 0.02, 0.5))
     taps: list[Any] = []
+
+    def observe(frame: Any) -> None:
+        for tap in taps:
+            tap(frame)
+
     with (
         running(_NAME, world),
         Rig(configuration, lambda: world.time_s, FreeRunning(), lambda _: None,
-            observers=(lambda frame: [tap(frame) for tap in taps] and None,)) as rig,
+            observers=(observe,)) as rig,
     ):  # fmt: skip
         shaft = cast("Shaft", rig.shaft)
         rig.prepare()

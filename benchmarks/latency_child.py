@@ -49,7 +49,7 @@ class Noted:
             self._found.extend((time.monotonic(), late_s))
             return late_s
 
-        pacer.wait = noted  # type: ignore[method-assign]
+        pacer.wait = noted  # type: ignore[assignment, method-assign]
 
     def write(self, path: Path) -> None:
         """Write them, shape ``(cycles, 2)``."""
@@ -57,11 +57,11 @@ class Noted:
 
 
 def _pmm(file: str, *words: str) -> None:
-    import can
+    from can.interfaces import BACKENDS
 
     from pmm.cli import cli
 
-    can.interface.BACKENDS.setdefault("pmm-simulated", ("sim.devices.bus", "SimulatedBus"))
+    BACKENDS.setdefault("pmm-simulated", ("sim.devices.bus", "SimulatedBus"))
     found = Noted()
     found.watch(RealTime)
     try:

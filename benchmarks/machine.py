@@ -81,6 +81,5 @@ def _load() -> str:
 
 
 def _blas() -> str:
-    build = np.show_config(mode="dicts")
-    blas = build["Build Dependencies"]["blas"] if isinstance(build, dict) else {}
+    blas = np.show_config(mode="dicts")["Build Dependencies"]["blas"]
     return f"{blas.get('name', 'unknown')} {blas.get('version', '')}".strip()

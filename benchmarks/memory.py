@@ -52,7 +52,7 @@ def _rival(path: Path, data_gib: float, rows: list[Row], notes: list[str]) -> No
     if importlib.util.find_spec("psutil") is None:
         notes.append("The rival was left out: psutil, which tells the memory left, is missing.")
         return
-    import psutil  # type: ignore[import-untyped]
+    import psutil
 
     available_gib = psutil.virtual_memory().available / _GIB
     if available_gib < 2.0 * data_gib:

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-import can
+from can.interfaces import BACKENDS
 
 from analysis.readers import read_recording
 from benchmarks.devices import tables
@@ -67,7 +67,7 @@ class _Watching:
 
 @contextmanager
 def _control(rate_hz: float, periods: int, folder: Path, view: View) -> Iterator[RunControl]:
-    can.interface.BACKENDS.setdefault("pmm-simulated", ("sim.devices.bus", "SimulatedBus"))
+    BACKENDS.setdefault("pmm-simulated", ("sim.devices.bus", "SimulatedBus"))
     whole = tables(rate_hz)
     whole["bus"] = {**whole["bus"], "channel": _NAME}
     configuration = read_rig(whole, DRIVERS)

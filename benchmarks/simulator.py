@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
-from benchmarks.simulator_rivals import METHODS, ModelOnGauges
+from benchmarks.simulator_rivals import METHODS, Method, ModelOnGauges
 from benchmarks.timing import Contender, interleave
 from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
@@ -199,7 +199,7 @@ def _rivals(quick: bool, report: Report) -> tuple[list[Row], float, float]:
 
 
 def _rival(
-    method: str, time_s: FloatArray, true: FloatArray, error: float
+    method: Method, time_s: FloatArray, true: FloatArray, error: float
 ) -> tuple[Contender, float]:
     """Return an integrator at the loosest tolerance, by factors of 10, that errs no more."""
     for exponent in range(-3, -12, -1):

@@ -4,13 +4,14 @@ The equations are written down anew, as a user would: heave and pitch, in NumPy.
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final, Literal
 
 import numpy as np
 
 from hardware.description.arrays import FloatArray
 
-METHODS = ("RK45", "DOP853", "LSODA")
+Method = Literal["RK45", "DOP853", "LSODA"]
+METHODS: Final[tuple[Method, ...]] = ("RK45", "DOP853", "LSODA")
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +72,7 @@ class ModelOnGauges:
             [v, turn, second, v - 2.0 * self.memory_ratio * w * second - w**2 * first]
         )
 
-    def forces(self, time_s: FloatArray, method: str, tolerance: float) -> FloatArray:
+    def forces(self, time_s: FloatArray, method: Method, tolerance: float) -> FloatArray:
         """Return the force of each strut by ``solve_ivp``, shape ``(2, times)``."""
         from scipy.integrate import solve_ivp
 

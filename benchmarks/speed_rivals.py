@@ -74,7 +74,7 @@ def curve_fit(samples: FloatArray, rate_hz: float, frequency_hz: float) -> Float
 
 def ulia(samples: FloatArray, rate_hz: float, frequency_hz: float) -> FloatArray:
     """Lock in to a cosine, each harmonic executed; average the middle as its manual does."""
-    from ulia import ULIA  # type: ignore[import-untyped]
+    from ulia import ULIA
 
     count = samples.shape[1]
     reference = np.cos(2.0 * np.pi * frequency_hz * (np.arange(count) / rate_hz))
@@ -92,7 +92,7 @@ def ulia(samples: FloatArray, rate_hz: float, frequency_hz: float) -> FloatArray
 
 def rota_order(samples: FloatArray, rate_hz: float, frequency_hz: float) -> FloatArray:
     """Track three orders over eight revolutions; average the envelopes away from the ends."""
-    from rota.extract import tracked_harmonics  # type: ignore[import-untyped]
+    from rota.extract import tracked_harmonics
 
     speed_rpm = np.full(samples.shape[1], 60.0 * frequency_hz)
     tracked = tracked_harmonics(samples.T, rate_hz, speed_rpm, _ORDERS, window_revs=8.0)

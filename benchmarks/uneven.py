@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -82,7 +82,8 @@ def _body(seed: int, forced: bool) -> _Body:
     end_s = (_PERIODS + 1) * period_s
     found = solve_ivp(slope, (0.0, end_s), start, "DOP853", rtol=1e-10, atol=1e-12,
                       dense_output=True)  # fmt: skip
-    return _Body(period_s, decay, lambda time_s: found.sol(time_s)[0], body.forced)
+    solution: Any = found.sol
+    return _Body(period_s, decay, lambda time_s: solution(time_s)[0], body.forced)
 
 
 def _decay(seed: int, samples: float, bursts: bool) -> list[bool]:
@@ -129,7 +130,7 @@ def _harmonics(seed: int, samples: float, bursts: bool) -> list[bool]:
     true = np.array([one[1] for one in body.forced]) * np.exp(-1j * order * ahead)
     expected = np.stack([-true.imag, true.real], axis=1).ravel()
     off = np.abs(reading.coefficients[0, 1:] - expected)
-    return (off <= reading.half_width()[0, 1:]).tolist()
+    return [bool(one) for one in off <= reading.half_width()[0, 1:]]
 
 
 def run(quick: bool, report: Report) -> Outcome:

@@ -5,7 +5,8 @@ from typing import Final
 
 import numpy as np
 
-from benchmarks.boards.folder import FloatArray, Folder, Record
+from benchmarks.boards.folder import Folder, Record
+from hardware.description.arrays import FloatArray
 
 Random = np.random.Generator
 Mutation = Callable[[Folder, Random], None]

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Final
 
 import can
+from can.interfaces import BACKENDS
 
 from benchmarks.fuzz.promises import REFUSED
 from benchmarks.kill_child import tables
@@ -83,7 +84,7 @@ class _Bus:
 
 def frames(_folder: Path, stack: ExitStack) -> Callable[[bytes], object]:
     """Return what takes a frame."""
-    can.interface.BACKENDS.setdefault("pmm-simulated", ("sim.devices.bus", "SimulatedBus"))
+    BACKENDS.setdefault("pmm-simulated", ("sim.devices.bus", "SimulatedBus"))
     bus = _Bus()
     stack.callback(bus.close)
     return bus.take

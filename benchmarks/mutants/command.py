@@ -4,8 +4,8 @@
 on the test files that import its module, then on those that import it through another, as far as
 patience goes. The draw is seeded: the same sources give the same mutations, each kind as often.
 ``--before`` takes a checkout of an earlier state: then only mutations are drawn that stand once in
-both, and what survives now is tried there too. It goes on where it was broken off; a line of the
-results is one mutation.
+both, and what survives now is tried there too. It goes on where it was broken off, also on later
+sources; a line of the results is one mutation.
 """
 
 import argparse
@@ -13,13 +13,14 @@ import json
 import shutil
 import tempfile
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
+from benchmarks.machine import commit, describe
 from benchmarks.mutants.nearest import rings
 from benchmarks.mutants.sites import Mutation, mutations
 from benchmarks.mutants.trial import Covering, House, Outcome
@@ -109,19 +110,23 @@ def tried(
     request: argparse.Namespace, now: State, before: State | None
 ) -> Iterator[dict[str, Any]]:
     """Yield the outcome of each mutation that the results do not have yet."""
-    known = {one["number"] for one in _kept(request.output) if one["seed"] == request.seed}
+    known = {_told(row) for row in _kept(request.output)}
     ones = drawn(now.root, request.packages, request.count, request.seed, request.before)
     for number, (file, one) in enumerate(ones):
-        if number in known:
+        if _told(vars(one)) in known:
             continue
         row = {
             "seed": request.seed, "number": number, "file": file, "line": one.line,
             "kind": one.kind, "text": one.text, "before": one.before, "after": one.after,
-            **now.judge(file, one),
+            **now.judge(file, one), "commit": commit(), "cpu": describe()["cpu"],
         }  # fmt: skip
         if before and row["outcome"] != "killed":
             row["earlier"] = before.again(one)
         yield row
+
+
+def _told(row: Mapping[str, Any]) -> tuple[str, ...]:
+    return tuple(row[key] for key in ("kind", "text", "before", "after"))
 
 
 def _kept(output: Path) -> list[dict[str, Any]]:
