@@ -147,8 +147,11 @@ def test_measured_derivatives_are_made_without_dimensions_and_keep_what_they_sha
         ("wake = 0.40", "wak = 0.40", 2, "propeller.wak is not a known key; did you mean wake?"),
         ("temperature_deg_c = 15.0", "temperature_deg_c = 55.0", 2, "outside 0 to 40 degrees"),
         ('system = "mmg"', 'system = "bis"', 2, "hull.system should be one of mmg, prime"),
-        ("N_rrr = -0.013", "N_rpr = -0.013", 2, "hull.values.N_rpr is no derivative"),
+        ("N_rrr = -0.013", "N_rxr = -0.013", 2, "hull.values.N_rxr is no derivative"),
         ("N_r = 0.0010", "N_rr = 0.0010", 2, "N_rr has no value in [hull.values]"),
+        ("speed_m_s = 1.179", "speed_m_s = 1.179\nrudder_rate_deg_s = 15.8", 2,
+         "rudder should be a table with the rudder's parameters, or rudder_rate_deg_s in its"),
+        ("X_0 = -0.022", "X_0 = -0.022\nY_d = -0.05", 2, "Y_d: terms of the rudder's angle are"),
         ("# coefficients =", "coefficients =", 1, "not what `pmm coefficients --json` printed"),
     ],
 )  # fmt: skip
@@ -158,6 +161,22 @@ def test_what_cannot_be_is_refused_by_a_sentence(
     assert old in TEXT
     found, output = _run(_written(tmp_path, TEXT.replace(old, new)), "--trials", "0")
     assert (found, said in " ".join(output.split())) == (status, True), output
+
+
+def test_a_rudder_stands_among_the_derivatives_where_its_table_is_left_out(tmp_path: Path) -> None:
+    text = TEXT[: TEXT.index("[rudder]")]
+    text = text.replace("speed_m_s = 1.179", "speed_m_s = 1.179\nrudder_rate_deg_s = 15.8")
+    text = text.replace("X_0 = -0.022", "X_0 = -0.022\nY_d = -0.055\nN_d = 0.026\nX_dd = -0.03")
+    file = read_ship(Path(_written(tmp_path, text)))
+    assert isinstance(file, ShipFile)
+    ship = ship_of(file, 0, 0)
+    assert (ship.rudder, ship.rudder_rate_deg_s) == (None, 15.8)
+    ahead, still = np.full(1, 1.179), np.zeros(1)
+    state = np.array([ahead, still, still, still, still, still])
+    laid = ship.loads(state, np.full(1, 0.1)) - ship.loads(state, still)
+    unit = 0.5 * file.water.density_kg_m3 * 7.0 * 0.455 * 1.179**2
+    expected = unit * np.array([-0.03 * 0.01, -0.055 * 0.1, 7.0 * 0.026 * 0.1])
+    np.testing.assert_allclose(laid[:, 0], expected, rtol=1e-6)
 
 
 def test_a_body_below_the_surface_keeps_depth_up_to_its_critical_speed() -> None:
