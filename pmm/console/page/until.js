@@ -22,7 +22,7 @@ export class Until {
     this.told = told;
     byId("until").hidden = !told;
     if (!told) return;
-    text(byId("until-made"), `${told.runs} runs, ${told.time}`);
+    text(byId("until-made"), `${told.runs} ${told.runs === 1 ? "run" : "runs"}, ${told.time}`);
     byId("known").replaceChildren(...told.known.map(bar));
     byId("until-notes").replaceChildren(...told.notes.map((one) => html("li", {}, one)));
     const remark = told.remark ? ` (${told.remark})` : "";

@@ -67,7 +67,7 @@ def test_runs_are_moved_left_out_and_approved(tmp_path: Path, chromium: Browser)
         ActionChains(page.driver).send_keys(Keys.DELETE).perform()
         assert _proposed(page) == dragged[:-1]
         page.click("#approve")
-        page.until(lambda: "1 runs" in page.text("#until-made"), "what one run told")
+        page.until(lambda: "1 run," in page.text("#until-made"), "what one run told")
         (decided,) = read_decisions(one.output / "heave-pitch")[:1]
         assert list(decided.added) == [_in_words(shown) for shown in dragged[:-1]]
         assert decided.approved == "the operator"
