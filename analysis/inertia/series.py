@@ -20,6 +20,7 @@ LONGEST_GAP_PERIODS = 0.5
 _LEFT_OUT = ("gap", "missing")
 FEWEST_SAMPLES_A_PERIOD = 5.0
 ALIASED_SHARE = 0.1
+_SEEN = 0.5  # of a period's samples; a quarter of them may lie where the motion passes zero
 _BRIDGED = 5.0  # mean intervals that straight lines join where only the way is looked for
 LINE_OVER_MEDIAN = 8.0  # the highest of ten thousand lines of white noise is 3.7
 
@@ -290,7 +291,7 @@ def _envelope(values: FloatArray, size: int) -> FloatArray:
     mean = np.convolve(filled, window, "same") / count
     square = np.convolve(filled**2, window, "same") / count
     envelope = np.sqrt(2.0 * np.maximum(square - mean**2, 0.0))
-    envelope[np.convolve(good.astype(np.float64), window, "same") < 0.25 * window.size] = np.nan
+    envelope[np.convolve(good.astype(np.float64), window, "same") < _SEEN * window.size] = np.nan
     return np.asarray(envelope)
 
 
