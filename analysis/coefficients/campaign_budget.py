@@ -40,6 +40,8 @@ _WORDS = {
     "midpoint_x_m": "alignment, model along the rig",
     "alignment_rad": "alignment, heading",
     "density_relative": "density",
+    "heel_rad": "heel",
+    "roll_gauge_relative": "calibration, roll gauge",
 }
 _DIGIT = 0.1
 

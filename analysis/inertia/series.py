@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from analysis.inertia.envelope import end_amplitudes, envelope_of, noise_of, release
 from analysis.inertia.spectrum import Spectrum, spectrum
 from analysis.recording import Recording, sample_numbers
 from hardware.description.arrays import FloatArray
@@ -13,14 +14,12 @@ from hardware.description.flags import Flag, Severity
 SWINGING_UNITS = ("rad", "m", "rad/s", "m/s2", "V")
 DIED_OUT = 0.03  # of the first amplitude
 ABOVE_NOISE = 3.0  # times the noise's standard deviation
-RELEASED = 0.9  # of the largest amplitude
 LONGEST_GAP_PERIODS = 0.5
 # What the reader says of missing samples: void for means over whole cycles, but the fits here leave
 # them out, and usable_part flags them by their length in periods.
 _LEFT_OUT = ("gap", "missing")
 FEWEST_SAMPLES_A_PERIOD = 5.0
 ALIASED_SHARE = 0.1
-_SEEN = 0.5  # of a period's samples; a quarter of them may lie where the motion passes zero
 _BRIDGED = 5.0  # mean intervals that straight lines join where only the way is looked for
 LINE_OVER_MEDIAN = 8.0  # the highest of ten thousand lines of white noise is 3.7
 
@@ -152,8 +151,8 @@ class UsablePart:
         """Return less of it, and why."""
         chosen = cut(self.series, start_s, stop_s)
         size = max(round(self.period_s * chosen.sample_rate_hz), 4)
-        envelope = _envelope(chosen.roughly_even().values, size)
-        first, last = _end_amplitudes(envelope, 0, envelope.size, size)
+        envelope = envelope_of(chosen.roughly_even().values, size)
+        first, last = end_amplitudes(envelope, 0, envelope.size, size)
         return replace(
             self, series=chosen, first_amplitude=first, last_amplitude=last, because=because
         )
@@ -226,8 +225,8 @@ def usable_part(series: Series) -> UsablePart:
     rough = series.roughly_even().values
     period = rough_period(series.where, rough, series.sample_rate_hz)
     size = max(round(period * series.sample_rate_hz), 4)
-    noise = _noise(series)
-    envelope = _envelope(rough, size)
+    noise = noise_of(series.values, series.stamps_s)
+    envelope = envelope_of(rough, size)
     top = float(np.nanmax(envelope))
     floor = max(DIED_OUT * top, ABOVE_NOISE * noise)
     if not top > floor:
@@ -235,7 +234,7 @@ def usable_part(series: Series) -> UsablePart:
             f"{series.where}: the largest amplitude is {top:.3g} {series.unit} over a noise of "
             f"{noise:.3g}; nothing swings: choose another channel, or release from further out"
         )
-    first = _release(rough, envelope, size, top)
+    first = release(rough, envelope, size, top)
     after = np.flatnonzero(np.nan_to_num(envelope[first:], nan=np.inf) < floor)
     last = first + int(after[0]) if after.size else rough.size - 1
     start_s, stop_s = (series.start_s + k / series.sample_rate_hz for k in (first, last))
@@ -247,64 +246,8 @@ def usable_part(series: Series) -> UsablePart:
     )
     flags = _gap_flags(chosen.roughly_even(), size)
     chosen = replace(chosen, flags=(*chosen.flags, *flags))
-    ends = _end_amplitudes(envelope, first, last, size)
+    ends = end_amplitudes(envelope, first, last, size)
     return UsablePart(chosen, period, *ends, noise, floor, because)
-
-
-def _end_amplitudes(envelope: FloatArray, first: int, last: int, size: int) -> tuple[float, float]:
-    """Return the amplitude half a period within either end."""
-    ends = np.clip([first + size // 2, last - size // 2], 0, envelope.size - 1)
-    return float(envelope[ends[0]]), float(envelope[ends[1]])
-
-
-def _noise(series: Series) -> float:
-    """Return the noise from third differences, of which a slow oscillation has none."""
-    if series.stamps_s is None:
-        third = np.diff(series.values, 3) / np.sqrt(20.0)
-    else:
-        good = np.isfinite(series.values)
-        third = _third_differences(series.stamps_s[good], series.values[good])
-    third = third[np.isfinite(third)]
-    return float(1.4826 * np.median(np.abs(third))) if third.size else 0.0
-
-
-def _third_differences(stamps_s: FloatArray, values: FloatArray) -> FloatArray:
-    """Return what four successive samples have beside a parabola, of the noise's own size.
-
-    Of those half that lie nearest to each other, where the oscillation itself leaves least.
-    """
-    count = max(values.size - 3, 0)
-    times = np.stack([stamps_s[k : k + count] for k in range(4)])
-    apart = times[:, np.newaxis] - times + np.eye(4)[:, :, np.newaxis]
-    share = 1.0 / apart.prod(axis=1)
-    size = np.sqrt((share**2).sum(axis=0))
-    third = (share * [values[k : k + count] for k in range(4)]).sum(axis=0) / size
-    return np.asarray(third[size >= np.median(size)] if count else third)
-
-
-def _envelope(values: FloatArray, size: int) -> FloatArray:
-    """Return the amplitude over the period around each sample, gaps left out."""
-    good = np.isfinite(values)
-    filled = np.where(good, values - np.nanmean(values[good]), 0.0)
-    window = np.ones(min(size, values.size))
-    count = np.maximum(np.convolve(good.astype(np.float64), window, "same"), 1.0)
-    mean = np.convolve(filled, window, "same") / count
-    square = np.convolve(filled**2, window, "same") / count
-    envelope = np.sqrt(2.0 * np.maximum(square - mean**2, 0.0))
-    envelope[np.convolve(good.astype(np.float64), window, "same") < _SEEN * window.size] = np.nan
-    return np.asarray(envelope)
-
-
-def _release(values: FloatArray, envelope: FloatArray, size: int, top: float) -> int:
-    """Return the sample after the largest swing: where the body hangs free."""
-    high = np.flatnonzero(np.nan_to_num(envelope) >= RELEASED * top)
-    edge = size // 2 + 1
-    if high[0] <= edge:
-        return 0
-    near = values[max(high[0] - size, 0) : high[0] + size]
-    centre = float(np.nanmean(values))
-    peak = max(high[0] - size, 0) + int(np.nanargmax(np.abs(near - centre)))
-    return int(min(peak + size // 2, values.size - 1))
 
 
 def _gap_flags(series: Series, size: int) -> tuple[Flag, ...]:

@@ -11,10 +11,11 @@ from analysis.resolver.checks import (
     reference_flags,
     saturation_flags,
 )
-from analysis.resolver.estimate import PeriodValues, resolve, solve_periods
+from analysis.resolver.estimate import resolve
 from analysis.resolver.hann import resolve_hann
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.leakage import measured_leakage
+from analysis.resolver.period_values import PeriodValues, solve_periods
 from analysis.resolver.reference import NoReferenceError, PhaseReference, ReferenceSource
 from analysis.resolver.reference_choice import ReferenceChoice, choose_reference
 from analysis.resolver.set_point import set_point_flags

@@ -3,8 +3,8 @@
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.estimate import PeriodValues, solve_periods, usable
 from analysis.resolver.harmonics import DriftSource, Harmonics, IntervalSource
+from analysis.resolver.period_values import PeriodValues, solve_periods, usable
 from analysis.resolver.reference import PhaseReference, ReferenceSource
 from analysis.resolver.settings import ResolverSettings
 from analysis.resolver.sums import PeriodSums, period_sums

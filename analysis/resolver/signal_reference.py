@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.estimate import solve_periods
 from analysis.resolver.gaps import gap_in_words, without_gaps
+from analysis.resolver.period_values import solve_periods
 from analysis.resolver.reference import (
     NoReferenceError,
     PhaseReference,

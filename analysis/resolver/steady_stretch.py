@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.resolver.estimate import PeriodValues
+from analysis.resolver.period_values import PeriodValues
 from hardware.description.arrays import BoolArray, ComplexArray, FloatArray
 
 _PRESENT = 0.2  # of the usual amplitude: below it nothing moves yet, or no longer

@@ -11,7 +11,7 @@ import numpy as np
 
 from analysis.recording import Recording
 from analysis.resolver.analysis import Analysis, analyse
-from analysis.resolver.estimate import PeriodValues, solve_periods
+from analysis.resolver.period_values import PeriodValues, solve_periods
 from analysis.resolver.reference_choice import ReferenceChoice
 from analysis.resolver.settings import ResolverSettings
 from analysis.resolver.steady_stretch import find_steady

@@ -6,7 +6,7 @@ import numpy as np
 
 from analysis.recording import Recording
 from analysis.resolver.analysis import Analysis
-from analysis.resolver.estimate import solve_periods, usable
+from analysis.resolver.period_values import solve_periods, usable
 from analysis.resolver.steady_stretch import limits
 
 

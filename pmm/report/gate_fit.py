@@ -4,8 +4,8 @@ import numpy as np
 
 from analysis.resolver.analysis import Analysis
 from analysis.resolver.basis import harmonic_basis
-from analysis.resolver.estimate import solve_periods, usable
 from analysis.resolver.harmonics import Harmonics
+from analysis.resolver.period_values import solve_periods, usable
 from analysis.resolver.sums import PeriodSums
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError

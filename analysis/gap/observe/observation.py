@@ -19,7 +19,7 @@ from analysis.gap.observe.shaft_angle import turns_per_period, unwrapped
 from analysis.gap.observe.spectrum import Lines, quiet_lines, repeating
 from analysis.recording import Recording
 from analysis.resolver.analysis import Analysis, analyse
-from analysis.resolver.estimate import solve_periods, usable
+from analysis.resolver.period_values import solve_periods, usable
 from analysis.resolver.reference import ReferenceSource
 from analysis.resolver.reference_choice import ReferenceChoice
 from analysis.resolver.settings import ResolverSettings

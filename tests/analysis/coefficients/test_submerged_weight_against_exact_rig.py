@@ -53,7 +53,7 @@ def test_a_restoring_run_agrees_with_what_its_body_says() -> None:
 
 def test_nothing_is_left_of_the_load_in_phase() -> None:
     """Weight and buoyancy taken off, no restoring remains: hydrostatics are given as none."""
-    cycles = [cycle_of(pitched(SUBMERGED, hertz), str(hertz), 3) for hertz in (0.1, 0.2, 0.3)]
+    cycles = [cycle_of(pitched(SUBMERGED, hertz), str(hertz), 3) for hertz in (0.1, 0.15, 0.2, 0.3)]
     pairs = {pair.name: pair.both.values for pair in restoring_pairs(cycles)}
     weight = abs(weight_matrix(body_of(SUBMERGED), Plane.VERTICAL, Medium.WATER)[1, 1])
     assert pairs["C55"] == pytest.approx([0.0, 0.0], abs=1e-4 * weight)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis.resolver.estimate import solve_periods
+from analysis.resolver.period_values import solve_periods
 from analysis.resolver.reference import from_frequency
 from analysis.resolver.steady_stretch import Stretch, find_steady, limits
 from analysis.resolver.sums import period_sums

@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from analysis.recording import Recording
 from analysis.resolver import sums as sums_module
-from analysis.resolver.estimate import resolve, solve_periods
+from analysis.resolver.estimate import resolve
 from analysis.resolver.general_sums import sum_any
+from analysis.resolver.period_values import solve_periods
 from analysis.resolver.photocell import from_photocell
 from analysis.resolver.reference import PhaseReference, ReferenceSource, from_frequency
 from analysis.resolver.sample_sums import ROW
