@@ -8,14 +8,14 @@ import numpy as np
 
 from analysis.readers import write_recording
 from analysis.recording import Recording
-from hardware.description.channels import POSITIONS_OF_MODEL, STANDARD, STEERING, Channel
+from hardware.description.channels import CARRIAGE_SPEED, STANDARD, Channel
 from hardware.description.setpoint import SetPoint
 from sim.rig import vertical_rig
 from tests.analysis.ideal_run import IdealRun, LinearHull, ideal_run
 
 RATE_HZ, SECONDS, SPEED = 200.0, 60.0, 1.2
 CHANNELS = (
-    *(one for one in STANDARD if one not in (*STEERING, *POSITIONS_OF_MODEL)),
+    *STANDARD[: STANDARD.index(CARRIAGE_SPEED) + 1],
     Channel("wave", "m"),
 )
 _NOISE = (1e-5, 5e-6, 5e-6, 0.05, 0.05, 0.05, 1e-3, 1e-3)
