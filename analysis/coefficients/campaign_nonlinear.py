@@ -20,6 +20,7 @@ from analysis.coefficients.cycle_fit import (
 from analysis.coefficients.form_choice import LINEAR_FORM, choose_form, forms_of, rival_forms
 from analysis.coefficients.identifiability import fundamental_velocities
 from analysis.coefficients.names import Form
+from analysis.coefficients.resistance_form import fit_surge
 from analysis.coefficients.terms import ROLL, VELOCITY_LETTERS, letter_of_load
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
@@ -234,9 +235,14 @@ def _try_surge(
     orders: tuple[int, ...],
     request: Request,
 ) -> None:
-    before = len(fits.fits)
-    _try(fits.fits, fits.missing, SURGE_FORCES, cycles, names, orders, request)
-    fits.richest.extend(fit for _, fit in fits.fits[before:])
+    try:
+        fit, choice = fit_surge(cycles, names, orders, stated=request.stated)
+    except DataError as error:
+        fits.missing += [Missing(name, f"{SURGE_FORCES}: {error}") for name in names]
+        return
+    fits.fits.append((SURGE_FORCES, fit))
+    fits.richest.append(fit)
+    fits.choices += [] if choice is None else [choice]
 
 
 def static_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:

@@ -28,7 +28,8 @@ def waves_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
     """
     waves = np.empty((*moves.shape[:-2], len(terms), moves.shape[-1]))
     for k, term in enumerate(terms):
-        waves[..., k, :] = _product([_factor(factor, moves) for factor in term.factors], moves)
+        wave = _product([_factor(factor, moves) for factor in term.product], moves)
+        waves[..., k, :] = wave / term.divisor
     return waves
 
 
@@ -36,12 +37,12 @@ def slopes_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
     """Return how each term follows each motion, shape ``(..., terms, 6 or 9, instants)``."""
     slopes = np.zeros((*moves.shape[:-2], len(terms), *moves.shape[-2:]))
     for k, term in enumerate(terms):
-        factors = [_factor(factor, moves) for factor in term.factors]
-        for n, name in enumerate(term.factors):
+        factors = [_factor(factor, moves) for factor in term.product]
+        for n, name in enumerate(term.product):
             others = _product(factors[:n] + factors[n + 1 :], moves)
             place = MOVES.index(name.strip("|"))
             own = np.sign(moves[..., place, :]) if "|" in name else 1.0
-            slopes[..., k, place, :] += own * others
+            slopes[..., k, place, :] += own * others / term.divisor
     return slopes
 
 

@@ -40,10 +40,23 @@ class Term:
         ``"v"``, ``"vdot"``, ``"|v|"`` for the translation, ``"r"``, ``"rdot"``, ``"|r|"`` for the
         rotation, ``"u"`` ahead and ``"d"`` of the rudder, in either plane, ``"phi"``, ``"p"`` and
         ``"pdot"`` of heel; none for the constant.
+    of_speed_m_s
+        Of a term that goes with the square of u besides, and is that of this speed.
     """
 
     row: int
     factors: tuple[str, ...]
+    of_speed_m_s: float | None = None
+
+    @property
+    def product(self) -> tuple[str, ...]:
+        """The factors that stand in the term's wave, divided by :attr:`divisor`."""
+        return self.factors if self.of_speed_m_s is None else (*self.factors, "u", "u")
+
+    @property
+    def divisor(self) -> float:
+        """The square of the speed that the term is of; 1 where it is of none."""
+        return 1.0 if self.of_speed_m_s is None else self.of_speed_m_s**2
 
     @property
     def lengths(self) -> int:

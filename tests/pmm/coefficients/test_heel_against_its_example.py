@@ -50,6 +50,19 @@ def test_terms_of_heel_and_roll_come_out(found: dict[str, Any]) -> None:
     assert rows["K_phi"]["unit"] == "N m"
 
 
+def test_the_surge_terms_come_out_of_a_resistance_that_swings(found: dict[str, Any]) -> None:
+    made = tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))["surge"]
+    rows = {row["name"]: row for row in found["recommended"]}
+    put_in = {"X_0": made["x_uu"] * SPEED_M_S**2} | {
+        name: made[name.lower()] for name in ("X_rr", "X_vr")
+    }
+    for name, value in put_in.items():
+        assert rows[name]["value"] == pytest.approx(value, abs=1.5 * rows[name]["half_width"]), name
+        assert rows[name]["misfit"] < 1.5  # X_rr was 3.7 off, and this 7.9, by a constant one
+    (choice,) = [one for one in found["coefficients"]["choices"] if one["load"] == "surge force"]
+    assert "a resistance that goes with u^2 as the model turns" in choice["message"]
+
+
 def row_of(row: dict[str, Any]) -> HeelRow:
     told = {key: row[key] for key in ("run", "speed_m_s", "drift_rad", "frequency_hz", "held")}
     return HeelRow(

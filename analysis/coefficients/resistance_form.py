@@ -1,0 +1,79 @@
+"""Whether the resistance is constant as the model turns, or goes with u^2: what the data support.
+
+A model that yaws on a steady carriage is slowed and hastened along its own axis, so that its
+resistance swings at twice the frequency, as r^2 does with the other sign: taken as constant, what
+it swings by is fitted to X_rr and X_vr, which it does not follow.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from statistics import fmean
+
+from analysis.coefficients.body_cycle import BodyCycle
+from analysis.coefficients.campaign_records import FormChoice
+from analysis.coefficients.cycle_fit import CycleFit, fit_cycles, fit_terms
+from analysis.coefficients.form_choice import DECIDES, times
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
+from analysis.coefficients.terms import LOAD_WORDS, SURGE
+from hardware.description.errors import DataError
+
+BY_SPEED = "resistance by u^2"
+CONSTANT = "constant resistance"
+
+
+def fit_surge(
+    cycles: Sequence[BodyCycle],
+    names: Sequence[str],
+    orders: tuple[int, ...],
+    *,
+    stated: StatedUncertainties = StatedUncertainties(),  # noqa: B008 - frozen
+) -> tuple[CycleFit, FormChoice | None]:
+    """Return the fit of X, and how it was found that resistance goes with u^2 where it does.
+
+    ``X_0`` is the resistance at the carriage's speed U either way: ``X_0`` or ``X_0 (u/U)^2``, as
+    many terms. The first is taken unless the other is :data:`DECIDES` times as well supported.
+
+    Raises
+    ------
+    ConfigurationError, DataError
+        As :func:`analysis.coefficients.cycle_fit.fit_cycles` does.
+    """
+    constant = fit_cycles(cycles, names, orders, stated=stated)
+    speed = fmean(cycle.speed_m_s for cycle in cycles)
+    if "X_0" not in names or not speed > 0.0:
+        return constant, None
+    terms = tuple(
+        term if term.factors else replace(term, of_speed_m_s=speed) for term in constant.terms
+    )
+    try:
+        other = fit_terms(cycles, terms, constant.names, orders, stated=stated)
+    except DataError:
+        return constant, None
+    squares = (float(other.chi_square[SURGE]), float(constant.chi_square[SURGE]))
+    spare = float(other.data[SURGE]) - len(names)
+    dispersion = max(1.0, squares[0] / spare) if spare > 0 else 1.0
+    difference = (squares[1] - squares[0]) / dispersion
+    ratio = math.exp(min(difference / 2.0, 700.0))
+    if ratio < DECIDES:
+        return constant, None
+    count, weight = len(names), 1.0 / (1.0 + 1.0 / ratio)
+    criteria = (squares[0] / dispersion + 2.0 * count, squares[1] / dispersion + 2.0 * count)
+    why = (
+        f"a resistance that goes with u^2 as the model turns is {times(ratio)} as well supported "
+        "as a constant one: X_0 is that at the carriage's speed"
+    )
+    return other, FormChoice(
+        LOAD_WORDS[SURGE],
+        tuple(cycle.name for cycle in cycles),
+        (BY_SPEED, CONSTANT),
+        (count, count),
+        squares,
+        criteria,
+        (weight, 1.0 - weight),
+        dispersion,
+        BY_SPEED,
+        BY_SPEED,
+        ratio,
+        why,
+    )
