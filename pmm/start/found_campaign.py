@@ -9,6 +9,7 @@ from hardware.description.channels import (
     DISPLACEMENTS,
     FORCE_X,
     FORCES,
+    HEELING,
     POSITIONS,
     SHAFT_ANGLE,
     STEERING,
@@ -17,7 +18,7 @@ from hardware.description.setpoint import Medium
 from hardware.description.units import unit
 
 PHOTOCELL: Final = "photocell"
-ON_MODEL: Final = (*(one.name for one in STEERING), *POSITIONS)
+ON_MODEL: Final = (*(one.name for one in (*STEERING, *HEELING)), *POSITIONS)
 """What the model has of its own: the simulation needs to be told of it."""
 CHANNELS: Final = (
     *FORCES, FORCE_X.name, *DISPLACEMENTS, SHAFT_ANGLE.name, CARRIAGE_SPEED.name, *ON_MODEL,

@@ -17,10 +17,12 @@ from hardware.description.channels import (
     DISPLACEMENT_AFT,
     FORCE_AFT,
     FORCE_X,
+    HEEL_ANGLE,
     POSITION_AFT,
     PROPELLER_THRUST,
     PROPELLER_TORQUE,
     REVOLUTIONS,
+    ROLL_MOMENT,
     RUDDER_ANGLE,
     RUDDER_NORMAL_FORCE,
     SHAFT_ANGLE,
@@ -73,6 +75,8 @@ BY_NAME: Final = (
     ChannelKind(PROPELLER_THRUST.name, (PROPELLER_THRUST.unit,), words.THRUST),
     ChannelKind(PROPELLER_TORQUE.name, (PROPELLER_TORQUE.unit,), words.TORQUE),
     ChannelKind(REVOLUTIONS.name, (REVOLUTIONS.unit, "rad/s"), words.REVOLUTIONS),
+    ChannelKind(ROLL_MOMENT.name, (ROLL_MOMENT.unit,), words.ROLL_MOMENT),
+    ChannelKind(HEEL_ANGLE.name, (HEEL_ANGLE.unit,), words.HEEL),
     POSITION,
 )
 KINDS: Final = (DISPLACEMENT, FORCE, ANGLE, SPEED, ALONG, PULSES, *BY_NAME)

@@ -34,6 +34,11 @@ THRUST: Final = ("thrust", "schub", "stuwkracht", "poussée", "poussee", "empuje
 TORQUE: Final = ("torque", "drehmoment", "koppel", "couple")
 REVOLUTIONS: Final = ("rpm", "rps", "revs", "revol", "drehzahl", "toerental", "propeller")
 SINKAGE: Final = ("sink", "squat", "absenk", "einsink", "inzinking", "enfonce")
+# A roll that is an angle may be that of any floating body; a moment called so is one of a gauge.
+HEEL: Final = (
+    "heel", "krängung", "kraengung", "helling", "gîte", "gite", "escora", "sbandamento",
+)  # fmt: skip
+ROLL_MOMENT: Final = ("roll", "mx", "rolkoppel", *HEEL)
 # What moves or pulls at the same frequency and is no part of the oscillator.
 OTHERS: Final = (
     "wave", "probe", "wp", "wg", "wellen", "golf", "houle", "onda", "bølge", "elevation", "tension",

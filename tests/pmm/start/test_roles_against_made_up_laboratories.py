@@ -96,6 +96,8 @@ def test_what_the_model_has_of_its_own_is_told_by_name_and_unit(tmp_path: Path) 
         "Drehzahl [rpm]": 600.0 + 0.1 * noise[6],
         "Absenkung hinten [mm]": 9.0 + 0.2 * noise[7],
         "Absenkung vorn [mm]": 4.0 + 0.2 * noise[8],
+        "Rollmoment [N m]": 3.0 * swing + 0.05 * noise[9],
+        "Krängung [deg]": 10.0 + 1e-3 * noise[10],
     }
     rows = np.stack((time_s, *struts, *own.values()), axis=1)
     names = "Zeit [s],Weg hinten [mm],Weg vorn [mm],Kraft hinten [N],Kraft vorn [N]"
@@ -108,9 +110,10 @@ def test_what_the_model_has_of_its_own_is_told_by_name_and_unit(tmp_path: Path) 
         "rudder_angle": "Ruderwinkel", "rudder_normal_force": "Ruder Normalkraft",
         "propeller_thrust": "Propellerschub", "propeller_torque": "Drehmoment",
         "revolutions": "Drehzahl", "position_aft": "Absenkung hinten",
-        "position_fore": "Absenkung vorn",
+        "position_fore": "Absenkung vorn", "roll_moment": "Rollmoment",
+        "heel_angle": "Krängung",
     }  # fmt: skip
-    assert not {"rudder_angle", "position_aft"} & set(found.sensors)
+    assert not {"rudder_angle", "position_aft", "roll_moment"} & set(found.sensors)
 
 
 @pytest.mark.parametrize("header", ["pos mm", "pos_mm", "pos / mm", "pos [mm]", "pos"])
