@@ -24,10 +24,9 @@ from pmm.campaign.recording_source import COMPLETE, RecordingSource
 from pmm.campaign.runs import AtRest, Run
 from pmm.coefficients.settings import AmplifierTable
 
-_OTHER_STEERING = (
-    "it oscillates with a laid rudder, or its propeller turns at another rate than in most runs; "
-    "`pmm steering` takes such runs"
-)
+_BY_STEERING = "`pmm steering FOLDER` takes such runs"
+_LAID = f"it oscillates with a laid rudder; {_BY_STEERING}"
+_OTHER_RATE = f"its propeller turns at another rate than in most runs; {_BY_STEERING}"
 _NO_STEERING = (
     "it states neither rudder_angle_deg nor revolutions_hz in the campaign file; give them where a "
     "propeller turned or a rudder was there"
@@ -256,8 +255,9 @@ def _other_steering(one: Run | AtRest, usual_hz: float, *, with_steering: bool) 
     """Say why a run's rudder or propeller is not as it is wanted, as :func:`_why_not` does."""
     if with_steering:
         return None if one.rudder_angle_rad or one.revolutions_hz else _NO_STEERING
-    laid = one.rudder_angle_rad and one.kind.oscillates
-    return _OTHER_STEERING if laid or one.revolutions_hz != usual_hz else None
+    if one.rudder_angle_rad and one.kind.oscillates:
+        return _LAID
+    return _OTHER_RATE if one.revolutions_hz != usual_hz else None
 
 
 def _why_not(one: Run | AtRest, leave_out: Sequence[str]) -> str | None:

@@ -18,8 +18,9 @@ from hardware.description.errors import PmmError
 from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator
 from pmm.campaign.campaign import Campaign
+from pmm.campaign.water import TankWater
 from pmm.coefficients.reading import read_cycle, read_zero
-from pmm.coefficients.settings import CoefficientSettings, settings_of
+from pmm.coefficients.settings import CoefficientSettings, ShipTable, settings_of
 from pmm.coefficients.stated_inputs import chain_of, oscillator_of, stated_of
 from pmm.coefficients.tasks import Done, Failed, Task, work_of
 from pmm.coefficients.workflow import request_of
@@ -41,6 +42,8 @@ class InWater:
         Of the loads by the velocity across the model, at each speed; ``None`` where no run drifts.
     failed
         Runs that could not be used, and why.
+    ship, water
+        What the tows' Froude and Reynolds numbers are of, as far as the files state it.
     """
 
     restoring: tuple[Restoring, ...] = ()
@@ -48,6 +51,8 @@ class InWater:
     tows: tuple[Tow, ...] = ()
     derivatives: CampaignCoefficients | None = None
     failed: tuple[Failed, ...] = ()
+    ship: ShipTable = field(default_factory=ShipTable)
+    water: TankWater | None = None
 
     @property
     def straight(self) -> tuple[Tow, ...]:
@@ -84,6 +89,8 @@ def in_water(campaign: Campaign, folder: Path) -> InWater:
         tuple(found.tows),
         found.derivatives(),
         tuple(failed),
+        settings.ship.within(campaign.water),
+        campaign.water,
     )
 
 

@@ -104,7 +104,9 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
 
 
 def _conditions(outcome: CampaignOutcome) -> tuple[Content, ...]:
-    return conditions_table(outcome), attitude_table(outcome), heel_table(outcome)
+    speeds = (one.speed_m_s for one in outcome.result.entries)
+    conditions = conditions_table(speeds, outcome.settings.ship, outcome.water)
+    return conditions, attitude_table(outcome), heel_table(outcome)
 
 
 def conclusion(found: CampaignCoefficients) -> tuple[Content, ...]:

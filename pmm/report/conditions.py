@@ -1,63 +1,75 @@
-"""At which Froude and Reynolds numbers a campaign was measured: a row for each carriage speed."""
+"""At which Froude and Reynolds numbers was measured: of each carriage speed, or in each row."""
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from typing import Final
+from collections.abc import Callable, Iterable, Iterator
+from typing import Final, TypeVar
 
 from analysis.water import Water, froude_number, reynolds_number
-from pmm.coefficients.workflow import CampaignOutcome
-from pmm.document.content import Column, Table, number
-from pmm.document.notation import NOT_KNOWN, written
+from hardware.description.units import STANDARD_GRAVITY_M_S2
+from pmm.campaign.water import TankWater
+from pmm.coefficients.settings import ShipTable
+from pmm.document.content import Column, Table
+from pmm.document.notation import written
+
+Row = TypeVar("Row")
+NOTE: Final = "Fn = U / sqrt(g L), Re = U L / nu, F_nh = U / sqrt(g h)."
 
 
-@dataclass(frozen=True)
-class ConditionRow:
-    """The numbers of one speed; ``None`` where length, water or depth are not known."""
-
-    speed_m_s: float
-    froude_number: float | None
-    reynolds_number: float | None
-    depth_froude_number: float | None
-
-
-def _known(form: str) -> Callable[[float | None], str]:
-    return lambda value: NOT_KNOWN if value is None else written(form)(value)
-
-
-_COLUMNS: Final[tuple[Column[ConditionRow], ...]] = (
-    number("U", "speed_m_s", written("g"), "m/s"),
-    number("Fn", "froude_number", _known(".4f")),
-    number("Re", "reynolds_number", _known(".4g")),
-    number("F_nh", "depth_froude_number", _known(".3f")),
-)
-_NOTE: Final = "Fn = U / sqrt(g L), Re = U L / nu, F_nh = U / sqrt(g h)."
-
-
-def conditions_table(outcome: CampaignOutcome) -> Table[ConditionRow]:
-    """Return the numbers at every speed of the campaign, with the water that they hold for.
+def conditions_table(
+    speeds_m_s: Iterable[float], ship: ShipTable, water: Water | None
+) -> Table[float]:
+    """Return the numbers at every speed but 0, with the water that they hold for.
 
     There are no rows where neither the model's length nor the water's depth is known.
     """
-    rows = tuple(_rows(outcome))
-    notes = (_NOTE, _water_text(outcome.water, outcome.settings.ship.density))
-    return Table("Conditions", _COLUMNS, rows, "conditions", titled=True, notes=notes)
+    known = ship.length_m is not None or _depth_m(water) is not None
+    rows = sorted(set(speeds_m_s) - {0.0}) if known else []
+    columns: tuple[Column[float], ...] = (
+        Column("U", _itself, "speed_m_s", written("g"), "m/s", number=True),
+        *condition_columns(_itself, ship.length_m, water, ship.gravity_m_s2),
+    )
+    notes = (NOTE, _water_text(water, ship))
+    return Table("Conditions", columns, rows, "conditions", titled=True, notes=notes, filled=True)
 
 
-def _rows(outcome: CampaignOutcome) -> Iterator[ConditionRow]:
-    ship, water = outcome.settings.ship, outcome.water
-    length, depth = ship.length_m, None if water is None else water.depth_m
-    if length is None and depth is None:
-        return
-    for speed in sorted({one.speed_m_s for one in outcome.result.entries} - {0.0}):
-        yield ConditionRow(
-            speed,
-            None if length is None else froude_number(speed, length, ship.gravity_m_s2),
-            None if length is None or water is None else reynolds_number(speed, length, water),
-            None if depth is None else froude_number(speed, depth, ship.gravity_m_s2),
-        )
+def condition_columns(
+    speed_m_s: Callable[[Row], float],
+    length_m: float | None,
+    water: Water | None,
+    gravity_m_s2: float = STANDARD_GRAVITY_M_S2,
+) -> Iterator[Column[Row]]:
+    """Yield Fn, Re and F_nh of a row with a speed; of a filled table those that are known.
+
+    Programs get ``None`` where length, water or depth are not known.
+    """
+
+    def froude(over_m: float | None) -> Callable[[Row], float | None]:
+        if over_m is None:
+            return lambda _: None
+        return lambda row: froude_number(speed_m_s(row), over_m, gravity_m_s2)
+
+    def reynolds(row: Row) -> float | None:
+        if length_m is None or water is None:
+            return None
+        return reynolds_number(speed_m_s(row), length_m, water)
+
+    yield Column("Fn", froude(length_m), "froude_number", _known(".4f"), number=True)
+    yield Column("Re", reynolds, "reynolds_number", _known(".4g"), number=True)
+    yield Column("F_nh", froude(_depth_m(water)), "depth_froude_number", _known(".3f"), number=True)
 
 
-def _water_text(water: Water | None, density_kg_m3: float) -> str:
+def _itself(speed_m_s: float) -> float:
+    return speed_m_s
+
+
+def _known(form: str) -> Callable[[float | None], str]:
+    return lambda value: "" if value is None else written(form)(value)
+
+
+def _depth_m(water: Water | None) -> float | None:
+    return water.depth_m if isinstance(water, TankWater) else None
+
+
+def _water_text(water: Water | None, ship: ShipTable) -> str:
     if water is None:
         return "Re needs [water] in the campaign file, Fn length_m in coefficients.toml."
     kind = f"salt water of {water.salinity_g_kg:g} g/kg" if water.salinity_g_kg else "fresh water"
@@ -66,8 +78,8 @@ def _water_text(water: Water | None, density_kg_m3: float) -> str:
         f"{water.kinematic_viscosity_m2_s:.4e} m²/s, rho = {water.density_kg_m3:.2f} kg/m³"
         + (
             ""
-            if density_kg_m3 == water.density_kg_m3
-            else f"; rho = {density_kg_m3:.2f} kg/m³ is stated and was taken"
+            if ship.density == water.density_kg_m3
+            else f"; rho = {ship.density:.2f} kg/m³ is stated and was taken"
         )
         + "."
     )

@@ -26,6 +26,7 @@ from pmm.evaluation.control_chart import Chart
 from pmm.evaluation.evaluation import Evaluation
 from pmm.evaluation.rig_tests import GaugeResponse, GaugeZeros, RungMode
 from pmm.report.coefficients_document import conclusion
+from pmm.report.conditions import conditions_table
 from pmm.report.slow_tests import chart_figure, drift_figure, resistance_figure, restoring_figure
 
 SCHEMA: Final = "pmm-evaluation-1"
@@ -83,6 +84,7 @@ def evaluation_document(found: Evaluation) -> Document:
         _restoring(water.restoring),
         Data("restoring", water.restoring),
         _tows(water.tows),
+        conditions_table((one.speed_m_s for one in water.tows), water.ship, water.water),
         Data("tows", water.tows),
         *(() if derivatives is None else conclusion(derivatives)),
         Data("derivatives", derivatives and to_dict(derivatives)),

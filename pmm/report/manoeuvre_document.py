@@ -5,11 +5,14 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Final
 
+from pmm.coefficients.settings import ShipTable
 from pmm.document.content import Column, Data, Document, Figure, Section, Table, Text, word
 from pmm.document.notation import NOT_KNOWN, counted, written
 from pmm.manoeuvre.prediction import Prediction
 from pmm.manoeuvre.quantity import ManoeuvreQuantity
+from pmm.manoeuvre.ship_file import SubmergedFile
 from pmm.manoeuvre.submerged import DepthKeeping
+from pmm.report.conditions import conditions_table
 from pmm.report.manoeuvre_figures import spiral_figure, turning_figure, zigzag_figure
 
 SCHEMA: Final = "pmm-manoeuvre-1"
@@ -28,7 +31,7 @@ def manoeuvre_document(found: Prediction) -> Document:
         found.file.name,
         "manoeuvres",
         (
-            Section("", (Text(tuple(_head(found))), _table(found), _criteria(found))),
+            Section("", (Text(tuple(_head(found))), _table(found), _criteria(found), _at(found))),
             Section("Figures", tuple(figures(found))),
             Section("", (Data("rate_hz", float(found.ship.rate_hz[0])),)),
         ),
@@ -82,8 +85,16 @@ def depth_document(found: DepthKeeping) -> Document:
         f"roots at {file.speed_m_s:g} m/s; weight and buoyancy are taken as equal",
         f"intervals from {counted(found.draws, 'draw')} of the derivatives",
     )
-    contents = (Text(head), _table(found), Text(tuple(_said(found))))
+    contents = (Text(head), _table(found), Text(tuple(_said(found))), _at(found))
     return Document(file.name, "depth keeping", (Section("", contents),), SCHEMA)
+
+
+def _at(found: Prediction | DepthKeeping) -> Table[float]:
+    """Return the numbers of the approach, of what the file describes."""
+    file = found.file
+    length_m = file.body.length_m if isinstance(file, SubmergedFile) else file.ship.length_m
+    ship = ShipTable(length_m).within(file.water)
+    return conditions_table([file.speed_m_s], ship, file.water)
 
 
 def _said(found: DepthKeeping) -> Iterator[str]:

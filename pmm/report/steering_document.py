@@ -2,9 +2,10 @@
 
 import math
 from collections.abc import Iterator
+from operator import attrgetter
 from pathlib import Path
 from statistics import NormalDist
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -27,6 +28,7 @@ from pmm.document.content import (
 )
 from pmm.document.flag_lines import flag_notes
 from pmm.document.notation import rounded, written
+from pmm.report.conditions import NOTE, condition_columns
 from pmm.report.steering_figure import steering_figure
 from pmm.steering.reading import SteeredRun
 from pmm.steering.settings import SETTINGS_FILE
@@ -101,7 +103,7 @@ def _contents(found: CampaignSteering, level: float) -> tuple[Content, ...]:
         Data("covariance", told.covariance.tolist()),
         Text(list(_fit(found))),
         Data("misfit", dict(zip(("loads", "inflow"), told.misfit, strict=True))),
-        _propulsion(told.self_propulsion, factor),
+        _propulsion(found, factor),
         _wakes(found, factor),
         _tows(found, factor),
         Data("failed", [one.message for one in found.failed]),
@@ -153,7 +155,7 @@ def _fit(found: CampaignSteering) -> Iterator[str]:
     )
 
 
-def _propulsion(rows: tuple[SelfPropulsion, ...], factor: float) -> Table[SelfPropulsion]:
+def _propulsion(found: CampaignSteering, factor: float) -> Table[SelfPropulsion]:
     def told(heading: str, key: str, unit: str, u: str) -> Column[SelfPropulsion]:
         return Column(
             heading,
@@ -168,9 +170,18 @@ def _propulsion(rows: tuple[SelfPropulsion, ...], factor: float) -> Table[SelfPr
         told("thrust", "thrust_n", "N", "thrust_u"),
         told("revolutions", "rate_hz", "1/s", "rate_u"),
         number("J", "advance", written(".4g")),
+        *_conditions(found),
         *data_only("resistance_n", "resistance_u", "thrust_n", "thrust_u", "rate_hz", "rate_u"),
     )
-    return Table("Self-propulsion point", columns, rows, "self_propulsion", titled=True)
+    rows = found.parameters.self_propulsion
+    return Table(
+        "Self-propulsion point", columns, rows, "self_propulsion", titled=True, filled=True,
+        notes=(NOTE,),
+    )  # fmt: skip
+
+
+def _conditions(found: CampaignSteering) -> Iterator[Column[Any]]:
+    return condition_columns(attrgetter("speed_m_s"), found.settings.length_m, found.water)
 
 
 def _wakes(found: CampaignSteering, factor: float) -> Table[_Wake]:
@@ -187,9 +198,10 @@ def _wakes(found: CampaignSteering, factor: float) -> Table[_Wake]:
         number("r", "turning_rad_s", written(".3g"), "rad/s"),
         Column("w_P", lambda one: rounded(one.wake, factor * one.standard_uncertainty),
                number=True),
+        *_conditions(found),
         *data_only("wake", "standard_uncertainty"),
     )  # fmt: skip
-    return Table("Wake by thrust identity", columns, rows, "wakes", titled=True)
+    return Table("Wake by thrust identity", columns, rows, "wakes", titled=True, filled=True)
 
 
 def _tows(found: CampaignSteering, factor: float) -> Table[SteeredRun]:

@@ -16,6 +16,7 @@ from hardware.description.flags import Flag, Severity
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
+from pmm.campaign.water import TankWater
 from pmm.coefficients.reading import read_zero
 from pmm.coefficients.settings import settings_of
 from pmm.coefficients.stated_inputs import chain_of, oscillator_of
@@ -38,6 +39,8 @@ class CampaignSteering:
         As they were read, in their order; the same as the equations take them.
     failed, left_out
         Runs that could not be used, and those that are none of propeller and rudder, and why.
+    water
+        Of the campaign, where its file says.
     """
 
     name: str
@@ -48,6 +51,7 @@ class CampaignSteering:
     parameters: SteeringParameters
     failed: tuple[Failed, ...]
     left_out: tuple[Flag, ...] = ()
+    water: TankWater | None = None
 
 
 def steering_of(folder: Path, given: Path | None = None) -> CampaignSteering:
@@ -86,6 +90,7 @@ def steering_of(folder: Path, given: Path | None = None) -> CampaignSteering:
         parameters,
         tuple(failed),
         (*work.left_out, *map(_sways, filter(only_sways, work.runs))),
+        campaign.water,
     )
 
 

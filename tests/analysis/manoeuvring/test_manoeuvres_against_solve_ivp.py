@@ -16,28 +16,27 @@ from analysis.manoeuvring.ship import Ship
 from analysis.manoeuvring.stability import straight_course
 from analysis.manoeuvring.steering import Propeller
 from hardware.description.errors import ConfigurationError
-from tests.analysis.manoeuvring.published import kvlcc2
-
-RATE = math.radians(kvlcc2.RATE)
+from tests.analysis.manoeuvring.published import Published, kcs, kvlcc2
 
 
 class Helm:
     """One ship under SciPy: rudder laid at its rate, then held, until a heading or a turn back."""
 
-    def __init__(self, rates=kvlcc2.rates) -> None:  # type: ignore[no-untyped-def]
-        self.rates = rates
-        self.state = np.array([kvlcc2.U0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    def __init__(self, rates=None, ship: Published = kvlcc2) -> None:  # type: ignore[no-untyped-def]
+        self.rates = ship.rates if rates is None else rates
+        self.rate_rad_s = math.radians(ship.RATE)
+        self.state = np.array([ship.U0, 0.0, 0.0, 0.0, 0.0, 0.0])
         self.delta = 0.0
 
     def until(self, order: float, event) -> np.ndarray:  # type: ignore[no-untyped-def]
         sign = math.copysign(1.0, order - self.delta)
-        start, lasts = self.delta, abs(order - self.delta) / RATE
+        start, lasts = self.delta, abs(order - self.delta) / self.rate_rad_s
         for moving, span in ((True, lasts), (False, 1000.0)):
             if span == 0.0:
                 continue
 
             def rates(t: float, y: np.ndarray, moving: bool = moving) -> np.ndarray:
-                return self.rates(y, start + sign * RATE * t if moving else order)
+                return self.rates(y, start + sign * self.rate_rad_s * t if moving else order)
 
             def at(t: float, y: np.ndarray) -> float:
                 return float(event(y))
@@ -47,7 +46,7 @@ class Helm:
                 rates, (0.0, span), self.state, "DOP853", events=at, rtol=1e-10, atol=1e-12
             )
             self.state = found.y[:, -1]
-            self.delta = start + sign * RATE * found.t[-1] if moving else order
+            self.delta = start + sign * self.rate_rad_s * found.t[-1] if moving else order
             if found.status == 1:
                 return self.state
         raise AssertionError("the event did not come")
@@ -63,18 +62,18 @@ def test_rates_are_those_of_the_paper() -> None:
     assert ship.rate_hz[0] == pytest.approx(kvlcc2.N, rel=1e-12)
 
 
-@pytest.mark.parametrize("side", [1.0, -1.0])
-def test_turning_circle(side: float) -> None:
-    order, helm = side * math.radians(35.0), Helm()
+@pytest.mark.parametrize(("ship", "side"), [(kvlcc2, 1.0), (kvlcc2, -1.0), (kcs, 1.0), (kcs, -1.0)])
+def test_turning_circle(ship: Published, side: float) -> None:
+    order, helm = side * math.radians(35.0), Helm(ship=ship)
     quarter = helm.until(order, lambda y: side * y[5] - 0.5 * math.pi)
     half = helm.until(order, lambda y: side * y[5] - math.pi)
-    found = turning_circle(kvlcc2.ship(), order)
+    found = turning_circle(ship.ship(), order)
     for value, expected in (
         (found.advance, quarter[3]),
         (found.transfer, side * quarter[4]),
         (found.tactical_diameter, side * half[4]),
     ):
-        assert value[0] == pytest.approx(expected / kvlcc2.L, rel=1e-6)
+        assert value[0] == pytest.approx(expected / ship.L, rel=1e-6)
 
 
 BY_ANGLE = {"Y_d": -0.055, "N_d": 0.026, "X_dd": -0.03, "Y_ddd": 0.02, "N_ddd": -0.01, "Y_vvd": 0.3}
@@ -115,9 +114,10 @@ def test_a_rudder_of_abkowitz_terms_turns_as_written_out() -> None:
         replace(kvlcc2.ship(), rudder=None)
 
 
+@pytest.mark.parametrize("ship", [kvlcc2, kcs])
 @pytest.mark.parametrize(("degrees", "side"), [(10.0, 1.0), (20.0, -1.0)])
-def test_zigzag(degrees: float, side: float) -> None:
-    size, helm, way = math.radians(degrees), Helm(), side
+def test_zigzag(ship: Published, degrees: float, side: float) -> None:
+    size, helm, way = math.radians(degrees), Helm(ship=ship), side
     helm.until(way * size, lambda y: way * y[5] - size)
     expected = []
     for _ in range(2):
@@ -126,7 +126,7 @@ def test_zigzag(degrees: float, side: float) -> None:
         expected.append(way * top[5] - size)
         helm.until(order, lambda y, way=way: -way * y[5] - size)
         way = -way
-    found = zigzag(kvlcc2.ship(), side * size, size)
+    found = zigzag(ship.ship(), side * size, size)
     np.testing.assert_allclose(found.overshoots_rad[:, 0], expected, rtol=1e-6)
 
 

@@ -15,7 +15,10 @@ from hardware.description.channels import Channel
 from hardware.description.setpoint import SetPoint
 from pmm.campaign.campaign_file import read_campaign
 from pmm.cli import cli
+from pmm.document.data import as_data
+from pmm.evaluation.evaluation import Evaluation
 from pmm.evaluation.water_tests import InWater, in_water
+from pmm.report.evaluation_document import evaluation_document
 from pmm.report.slow_tests import drift_figure
 
 HALF_M = 0.5
@@ -276,3 +279,21 @@ def test_a_campaign_without_such_runs_says_nothing(tmp_path: Path) -> None:
     path = tmp_path / "campaign.toml"
     path.write_text('[[runs]]\nname = "a"\nfrequency_hz = 1.0\neccentricity_mm = 20.0\n')
     assert in_water(read_campaign(path), tmp_path) == InWater()
+
+
+def test_tows_have_their_froude_and_reynolds_numbers(tmp_path: Path) -> None:
+    (tmp_path / "coefficients.toml").write_text("[ship]\nlength_m = 2.5\n", encoding="utf-8")
+    text = campaign_of_tows(tmp_path, (4.0,)) + "[water]\ntemperature_deg_c = 15.0\n"
+    found = evaluated(tmp_path, text, "horizontal")
+    told = as_data(evaluation_document(Evaluation((), None, (), (), (), found)))
+    speeds = sorted({one.speed_m_s for one in found.tows})
+    assert told["conditions"] == [
+        {
+            "speed_m_s": speed,
+            "froude_number": pytest.approx(speed / math.sqrt(9.80665 * 2.5)),
+            "reynolds_number": pytest.approx(speed * 2.5 / 1.1386e-6, rel=1e-4),
+            "depth_froude_number": None,
+        }
+        for speed in speeds
+    ]
+    assert speeds

@@ -14,7 +14,7 @@ from analysis.coefficients.campaign_records import HIGHER_ORDER, CoefficientEntr
 from analysis.coefficients.campaign_result import CampaignCoefficients, no_trials
 from analysis.coefficients.exchange import to_dict
 from analysis.coefficients.names import Form
-from analysis.manoeuvring.manoeuvres import turning_circle
+from analysis.manoeuvring.manoeuvres import turning_circle, zigzag
 from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.oscillator import Plane
 from pmm.cli import cli
@@ -29,6 +29,7 @@ from pmm.manoeuvre.ship_file import (
     read_ship,
 )
 from pmm.manoeuvre.submerged import body_of
+from tests.analysis.manoeuvring.published import kcs
 
 ROOT = Path(__file__).parents[3]
 EXAMPLE = ROOT / "examples" / "manoeuvre" / "kvlcc2.toml"
@@ -59,6 +60,9 @@ def rows() -> Rows:
     assert status == 0, output
     found = json.loads(output[output.index("{") :])
     assert found["schema"] == "pmm-manoeuvre-1"
+    (row,) = found["conditions"]
+    assert row["froude_number"] == pytest.approx(1.179 / math.sqrt(9.80665 * 7.0))
+    assert row["reynolds_number"] == pytest.approx(1.179 * 7.0 / 1.1386e-6, rel=1e-4)
     return {(one["manoeuvre"], one["name"]): one for one in found["quantities"]}
 
 
@@ -69,6 +73,22 @@ def test_the_json_has_every_quantity_with_its_interval_and_criterion(rows: Rows)
     assert (advance["limit"], advance["within"]) == (4.5, 1.0)
     assert rows["zig-zag 10/10, port", "overshoot 1"]["limit"] == 20.0
     assert rows["turning circle 35°, port", "transfer"]["limit"] is None
+
+
+def test_the_file_of_kcs_turns_as_its_published_numbers() -> None:
+    status, output = _run(str(EXAMPLE.with_name("kcs.toml")), "--trials", "0", "--json")
+    assert status == 0, output
+    rows = {(one["manoeuvre"], one["name"]): one for one in json.loads(output)["quantities"]}
+    circle, way = turning_circle(kcs.ship(), 35.0 * DEGREES), "turning circle 35°, starboard"
+    for name in ("advance", "transfer", "tactical_diameter"):
+        told = rows[way, name.replace("_", " ")]
+        assert told["value"] == pytest.approx(getattr(circle, name)[0], rel=1e-4)
+    for degrees in (10.0, 20.0):
+        swung = zigzag(kcs.ship(), degrees * DEGREES, degrees * DEGREES).overshoots_rad[:, 0]
+        way = f"zig-zag {degrees:g}/{degrees:g}, starboard"
+        for k, overshoot in enumerate(swung[:2], 1):
+            told = rows[way, f"overshoot {k}"]
+            assert told["value"] == pytest.approx(overshoot / DEGREES, rel=1e-3)
 
 
 def test_the_page_beside_the_free_running_model_says_what_is_computed(rows: Rows) -> None:

@@ -2,9 +2,11 @@
 
 import json
 import math
+import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -13,10 +15,18 @@ from click.testing import CliRunner, Result
 from analysis.readers import read_recording, write_recording
 from pmm.cli import cli
 from pmm.report.steering_document import steering_story
+from pmm.steering.workflow import CampaignSteering, steering_of
 from tests.analysis.manoeuvring.published import kvlcc2 as paper
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "steering"
 SETTINGS = EXAMPLE / "steering.toml"
+DEPTH_M = 4.0
+WATER = f"""\
+[water]
+temperature_deg_c = 15.0
+depth_m = {DEPTH_M}
+
+"""
 PUT_IN = {
     "1-t_P": 1.0 - paper.T_P, "w_P0": paper.W_P0, "t_R": paper.T_R, "a_H": paper.A_H,
     "x_H'": paper.X_H, "epsilon": paper.EPSILON, "kappa": paper.KAPPA, "gamma_R+": paper.GAMMA[0],
@@ -33,23 +43,50 @@ def tows(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("steering") / "tows"
     made = pmm("simulate", EXAMPLE / "campaign.toml", "--output", folder)
     assert made.exit_code == 0, made.output
+    campaign = folder / "campaign.toml"
+    text = campaign.read_text(encoding="utf-8")
+    campaign.write_text(text.replace("[oscillator]", f"{WATER}[oscillator]"), encoding="utf-8")
     return folder
 
 
-def changed(folder: Path, place: Path, old: str, new: str) -> Path:
+class Told(NamedTuple):
+    """One run of the command on the whole example."""
+
+    document: dict[str, Any]
+    figures: Path
+    found: CampaignSteering
+
+
+@pytest.fixture(scope="module")
+def told(tows: Path, tmp_path_factory: pytest.TempPathFactory) -> Told:
+    kept: list[CampaignSteering] = []
+
+    def keeping(folder: Path, given: Path) -> CampaignSteering:
+        kept.append(steering_of(folder, given))
+        return kept[0]
+
+    figures = tmp_path_factory.mktemp("figures")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("pmm.steering.workflow.steering_of", keeping)
+        ran = pmm("steering", tows, "--settings", SETTINGS, "--plot", figures, "--json")
+    assert ran.exit_code == 0, ran.output
+    return Told(json.loads(ran.stdout), figures, kept[0])
+
+
+def changed(folder: Path, place: Path, *changes: tuple[str, str]) -> Path:
     place.mkdir()
     for one in folder.glob("*.nc"):
         (place / one.name).symlink_to(one)
     text = (folder / "campaign.toml").read_text(encoding="utf-8")
-    assert old in text
-    (place / "campaign.toml").write_text(text.replace(old, new), encoding="utf-8")
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    (place / "campaign.toml").write_text(text, encoding="utf-8")
     return place
 
 
-def test_the_parameters_are_those_put_in(tows: Path, tmp_path: Path) -> None:
-    ran = pmm("steering", tows, "--settings", SETTINGS, "--plot", tmp_path, "--json")
-    assert ran.exit_code == 0, ran.output
-    found = json.loads(ran.stdout)
+def test_the_parameters_are_those_put_in(told: Told) -> None:
+    found = told.document
     rows = {one["name"]: one for one in found["parameters"]}
     assert list(rows) == list(PUT_IN)
     for name, value in PUT_IN.items():
@@ -65,53 +102,76 @@ def test_the_parameters_are_those_put_in(tows: Path, tmp_path: Path) -> None:
     resistance = -paper.hull(paper.U0, 0.0, 0.0)[0]
     assert point["rate_hz"] == pytest.approx(paper.N, rel=1e-3)
     assert point["resistance_n"] == pytest.approx(resistance, rel=2e-3)
-    assert {one.suffix for one in tmp_path.iterdir()} == {".svg", ".png"}
+    assert {one.suffix for one in told.figures.iterdir()} == {".svg", ".png"}
 
 
-def test_people_read_names_intervals_and_what_is_missing(tows: Path) -> None:
-    told = pmm("steering", tows, "--settings", SETTINGS, "--level", "0.9").stdout
-    assert "thrust deduction factor" in told
-    assert "90 % interval" in told
-    assert "lever of the inflow in a turn" in told
+def test_what_has_a_speed_has_its_froude_and_reynolds_number(told: Told) -> None:
+    rows = [*told.document["self_propulsion"], *told.document["wakes"]]
+    assert len(rows) > 3
+    for row in rows:
+        speed = row["speed_m_s"]
+        assert row["froude_number"] == pytest.approx(speed / math.sqrt(9.80665 * paper.L))
+        assert row["depth_froude_number"] == pytest.approx(speed / math.sqrt(9.80665 * DEPTH_M))
+        assert row["reynolds_number"] == pytest.approx(speed * paper.L / 1.1386e-6, rel=1e-4)
 
 
-def test_without_a_turn_it_says_what_would_tell_its_lever(tows: Path, tmp_path: Path) -> None:
-    swaying = changed(tows, tmp_path / "sway", "strut_phase_deg = 180.0", "strut_phase_deg = 0.0")
-    ran = pmm("steering", swaying, "--settings", SETTINGS)
+def test_people_read_names_intervals_and_the_numbers_that_are_known(
+    told: Told, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def shown(found: CampaignSteering) -> str:
+        monkeypatch.setattr("pmm.steering.workflow.steering_of", lambda *_: found)
+        return pmm("steering", EXAMPLE, "--level", "0.9").stdout
+
+    text = shown(told.found)
+    assert "thrust deduction factor" in text
+    assert "90 % interval" in text
+    assert "lever of the inflow in a turn" in text
+    assert all(re.search(rf" {head}(?! =)\s", text) for head in ("Fn", "Re", "w_P"))
+    text = shown(replace(told.found, water=None))
+    assert re.search(r" Fn(?! =)\s", text)
+    assert not re.search(r" Re(?! =)\s", text)
+
+
+def test_what_is_left_out_is_named_and_what_would_tell_the_rest(tows: Path, tmp_path: Path) -> None:
+    """Sway in place of yaw, and a tow that states no rudder and no revolutions."""
+    ahead = "drift_deg = 0.0\n"
+    stated = f"{ahead}rudder_angle_deg = -20\nrevolutions_hz = 8.0\n"
+    still = ("strut_phase_deg = 180.0", "strut_phase_deg = 0.0")
+    ran = pmm("steering", changed(tows, tmp_path / "a", still, (stated, ahead)),
+              "--settings", SETTINGS)  # fmt: skip
     assert ran.exit_code == 0, ran.output
     told = " ".join(ran.stdout.split())
     assert "l_R is not told by these runs; it takes: yaw with rudder" in told
     assert "it sways without a turn" in told
+    assert "straight-tow-b0-n8-d-20: left out: it states neither rudder_angle_deg nor" in told
 
 
 def test_the_report_has_them_where_the_folder_has_the_file(tows: Path, tmp_path: Path) -> None:
-    told = changed(tows, tmp_path / "told", "", "")
-    shutil.copy(SETTINGS, told)
-    ran = pmm("report", told)
+    folder = _of_few_runs(tows, tmp_path / "told")
+    shutil.copy(SETTINGS, folder)
+    ran = pmm("report", folder)
     assert ran.exit_code == 0, ran.output
-    page = (told / "report.html").read_text(encoding="utf-8")
-    assert "lever of the inflow in a turn" in page
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert "flow straightening, bow to port" in page
     assert "slope is 1 - t_P" in page
-    (told / "steering.toml").write_text("length_m = 0.0\n", encoding="utf-8")
-    (section,) = steering_story(told, 0.95)
+    (folder / "steering.toml").write_text("length_m = 0.0\n", encoding="utf-8")
+    (section,) = steering_story(folder, 0.95)
     (notes,) = section.contents
-    assert "should be above 0" in notes.data()[0]
+    assert "should be above 0" in notes.data[0]
 
 
-def test_a_tow_that_states_no_rudder_and_no_revolutions_is_named(
-    tows: Path, tmp_path: Path
-) -> None:
-    ahead = "drift_deg = 0.0\n"
-    stated = f"{ahead}rudder_angle_deg = -20\nrevolutions_hz = 8.0\n"
-    bare = changed(tows, tmp_path / "bare", stated, ahead)
-    told = " ".join(pmm("steering", bare, "--settings", SETTINGS).stdout.split())
-    assert "straight-tow-b0-n8-d-20: left out: it states neither rudder_angle_deg nor" in told
+def _of_few_runs(tows: Path, place: Path) -> Path:
+    """The tows alone, without the oscillations."""
+    text = (tows / "campaign.toml").read_text(encoding="utf-8")
+    return changed(tows, place, (text[text.index("[[runs]]") :], ""))
 
 
 def test_coefficients_have_the_rudders_derivatives(tows: Path) -> None:
     found = json.loads(pmm("coefficients", tows, "--json").stdout)
-    laid = [one for one in found["left_out"] if "takes such runs" in one["message"]]
-    assert len(laid) == 16  # of 21 tows and 6 oscillations the tows at 10 1/s stay: what most have
+    why = [one["message"] for one in found["left_out"]]
+    assert sum("oscillates with a laid rudder; `pmm steering FOLDER`" in one for one in why) == 4
+    # Of 21 tows and 6 oscillations the tows at 10 1/s stay: what most have.
+    assert sum("takes such runs" in one for one in why) == 16
     rows = {one["name"]: one for one in found["recommended"]}
     step = 1e-4
 
@@ -166,7 +226,8 @@ def test_what_is_wrong_is_said(tows: Path, tmp_path: Path) -> None:
     ran = pmm("steering", tows, "--settings", bad)
     assert ran.exit_code == 2
     assert "propeller" in ran.stderr
-    no_zero = changed(tows, tmp_path / "a", 'zero_before = "zero-1"\nzero_after = "zero-2"', "")
+    zeros = ('zero_before = "zero-1"\nzero_after = "zero-2"', "")
+    no_zero = changed(_of_few_runs(tows, tmp_path / "few"), tmp_path / "a", zeros)
     ran = pmm("steering", no_zero, "--settings", SETTINGS)
     assert ran.exit_code == 1
     assert "no zero run is named" in ran.stderr
