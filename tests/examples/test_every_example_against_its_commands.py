@@ -13,6 +13,7 @@ from pmm.cli import cli
 EXAMPLES = Path(__file__).parents[2] / "examples"
 ELSEWHERE = {
     "driver-text-amplifier": "tests/hardware/test_example_driver_against_contract.py",
+    "afloat": "tests/pmm/gap/test_forced_runs_against_simulated_bodies.py",
     "comparison": "tests/pmm/comparison/test_compare_command_against_its_example.py",
     "decay": "tests/pmm/gap/test_pendulum_command_against_simulated_bodies.py",
     "foreign": "tests/examples/test_foreign_campaign_against_what_it_was_made_of.py",

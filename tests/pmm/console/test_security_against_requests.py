@@ -85,7 +85,7 @@ def test_every_command_is_logged_with_time_and_origin(tmp_path: Path) -> None:
         ("command", {"command": "fly"}, "command"),
         ("command", {"command": "start", "speed": 2}, "speed"),
         ("plans/drop", {"number": "one"}, "number"),
-        ("answer", {"question": "", "answer": "x" * 201}, "answer"),
+        ("answer", {"question": "", "answer": "x" * 1001}, "answer"),
     ],
 )
 def test_what_is_no_such_request_is_refused_by_name(
