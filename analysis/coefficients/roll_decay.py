@@ -38,6 +38,8 @@ class RollDecay:
         Share of critical damping.
     u_gm_m, u_inertia_kg_m2
         Standard uncertainties of metacentric height and inertia of ``[heel]``.
+    period_degrees_of_freedom, damping_degrees_of_freedom
+        Of the standard uncertainties of both.
 
     Raises
     ------
@@ -52,6 +54,8 @@ class RollDecay:
     u_gm_m: float = 0.0
     u_inertia_kg_m2: float = 0.0
     speed_m_s: float = 0.0
+    period_degrees_of_freedom: float = math.inf
+    damping_degrees_of_freedom: float = math.inf
 
     def __post_init__(self) -> None:
         if not (self.period_s > 0.0 and 0.0 < self.damping_ratio < 1.0):
@@ -119,15 +123,21 @@ def _of_decay(
     at = np.array([decay.period_s, decay.damping_ratio, heel.gm_m, heel.inertia_kg_m2, k_phi])
     slopes = np.stack([found(at + 1e-30j * one).imag / 1e-30 for one in np.eye(len(at))], axis=1)
     stated = {
-        f"period of the roll decay at {decay.speed_m_s:g} m/s": decay.u_period_s,
-        f"damping ratio of the roll decay at {decay.speed_m_s:g} m/s": decay.u_damping_ratio,
-        "gm_m": decay.u_gm_m,
-        "inertia_x_kg_m2": decay.u_inertia_kg_m2,
+        f"period of the roll decay at {decay.speed_m_s:g} m/s": (
+            decay.u_period_s,
+            decay.period_degrees_of_freedom,
+        ),
+        f"damping ratio of the roll decay at {decay.speed_m_s:g} m/s": (
+            decay.u_damping_ratio,
+            decay.damping_degrees_of_freedom,
+        ),
+        "gm_m": (decay.u_gm_m, np.inf),
+        "inertia_x_kg_m2": (decay.u_inertia_kg_m2, np.inf),
     }
     both = np.arange(len(NAMES))
     contributions = [
-        Contribution(label, np.inf, both, spread * slopes[:, [k]])
-        for k, (label, spread) in enumerate(stated.items())
+        Contribution(label, freedom, both, spread * slopes[:, [k]])
+        for k, (label, (spread, freedom)) in enumerate(stated.items())
         if spread > 0.0
     ]
     contributions += [

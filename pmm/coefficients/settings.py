@@ -14,6 +14,7 @@ from analysis.water import Water
 from hardware.description.errors import ConfigurationError
 from hardware.description.toml import is_number
 from hardware.description.units import STANDARD_GRAVITY_M_S2
+from pmm.coefficients.decay_file import fill_decays
 from pmm.configuration import STRICT_TABLE, Fault, as_error, limit_faults, read_toml, validate
 
 SETTINGS_FILE: Final = "coefficients.toml"
@@ -183,7 +184,9 @@ def read_settings(path: Path) -> CoefficientSettings:
     table = read_toml(path)
     faults: list[Fault] = list(limit_faults(table))
     faults += _value_faults(table)
-    found = validate(CoefficientSettings, _with_folder(table, path.parent), faults)
+    seen = _with_folder(table, path.parent)
+    faults += fill_decays(seen, path.parent)
+    found = validate(CoefficientSettings, seen, faults)
     if found is None or faults:
         raise as_error(path, faults, table)
     return found
