@@ -12,6 +12,7 @@ from analysis.steering.inflow import Inflow, wake_name
 from analysis.steering.load_factors import LoadFactors
 from analysis.steering.observations import Particulars, SteeringRuns
 from hardware.description.arrays import FloatArray
+from hardware.description.errors import DataError
 
 _STEP = 1e-6
 
@@ -55,12 +56,23 @@ def self_propulsion(
     ----------
     excess
         What the standard uncertainties are multiplied by: the residuals' excess.
+
+    Raises
+    ------
+    DataError
+        If the towing force leaves the propeller nothing to do.
     """
     hull, wake = 4 + condition, flow.names.index(wake_name(condition))
     own = np.array([loads.values[0], loads.values[hull], flow.values[wake]])
     slopes = np.stack((loads.by_data[0], loads.by_data[hull], flow.by_data[wake]))
     spread = runs.followed(slopes)
     speed = float(runs.motions[0, condition])
+    if towing_force_n >= -own[1]:
+        raise DataError(
+            f"towing_force_n = {towing_force_n:g} is not below the resistance of {-own[1]:.4g} N "
+            f"at {speed:.4g} m/s: nothing is left for the propeller; state F_D, the friction's "
+            "deduction"
+        )
 
     def point(at: FloatArray) -> FloatArray:
         thrust = (-at[1] - towing_force_n) / at[0]

@@ -189,7 +189,7 @@ def _wakes(found: CampaignSteering, factor: float) -> Table[_Wake]:
     rows = [
         _Wake(*one)
         for one in np.stack(
-            (np.hypot(u, v), np.degrees(np.arctan2(-v, u)), r, wake, spread), axis=1
+            (np.hypot(u, v), np.round(np.degrees(np.arctan2(-v, u)), 9), r, wake, spread), axis=1
         ).tolist()
     ]
     columns: tuple[Column[_Wake], ...] = (

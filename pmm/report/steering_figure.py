@@ -38,7 +38,8 @@ def _normal_force(axes: "Axes", found: CampaignSteering) -> None:
         angles = np.degrees(runs.rudder_rad[rows])
         axes.errorbar(
             angles, runs.values[4, rows], 2.0 * runs.uncertainty[4, rows], fmt="o", color=colour,
-            markersize=3.5, label=f"{drift:.3g}°, {turning:.2g}, {rate:.3g} 1/s",
+            markersize=3.5,
+            label=f"{round(drift, 6):.3g}°, {round(turning, 6):.2g}, {rate:.3g} 1/s",
         )  # fmt: skip
         if (curve := _fitted(found, condition, rate, angles)) is not None:
             axes.plot(*curve, color=colour)

@@ -86,6 +86,13 @@ def read_steering_settings(path: Path) -> SteeringSettings:
         for place, value in sizes.items():
             if not value > 0.0:
                 faults.append(Fault(place, f"= {value:g} should be above 0"))
+        diameter_m, height_m = found.propeller.diameter_m, found.rudder.height_m
+        if diameter_m > height_m > 0.0:
+            text = (
+                f"= {diameter_m:g} is above rudder.height_m = {height_m:g}: the race would be "
+                "wider than the rudder is high; are both in metres?"
+            )
+            faults.append(Fault(("propeller", "diameter_m"), text))
     if found is None or faults:
         raise as_error(path, faults, table)
     return found

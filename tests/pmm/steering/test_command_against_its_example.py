@@ -234,3 +234,21 @@ def test_what_is_wrong_is_said(tows: Path, tmp_path: Path) -> None:
     ran = pmm("steering", EXAMPLE, "--settings", SETTINGS)
     assert ran.exit_code == 2
     assert "no such file" in ran.stderr
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "said"),
+    [
+        ("diameter_m = 0.216", "diameter_m = 216.0", "above rudder.height_m = 0.345"),
+        ("towing_force_n = 0.0", "towing_force_n = 100.0", "nothing is left for the propeller"),
+    ],
+)
+def test_numbers_that_cannot_belong_together_are_refused(
+    tows: Path, tmp_path: Path, before: str, after: str, said: str
+) -> None:
+    text = SETTINGS.read_text(encoding="utf-8")
+    assert before in text
+    (tmp_path / "steering.toml").write_text(text.replace(before, after), encoding="utf-8")
+    ran = pmm("steering", tows, "--settings", tmp_path / "steering.toml")
+    assert ran.exit_code in {1, 2}
+    assert said in " ".join(ran.stderr.split())
