@@ -13,9 +13,12 @@ from analysis.coefficients.campaign_nonlinear import HIGHER_ORDER
 from analysis.coefficients.normalisation import mmg
 from hardware.description.setpoint import SetPoint
 from sim.rig import horizontal_rig, vertical_rig
-from tests.analysis.coefficients.test_nonlinear_against_put_in_values import KVLCC2, put_in_prime
+from tests.analysis.coefficients.kvlcc2 import DERIVATIVES
+from tests.analysis.coefficients.test_nonlinear_against_put_in_values import put_in_prime
 from tests.pmm.coefficients.campaigns import head, pair, record
 from tests.pmm.coefficients.test_command_against_put_in_values import done, run
+
+KVLCC2 = {name: one for name, one in DERIVATIVES.items() if name[0] in "YN"}
 
 
 def test_a_repeat_with_another_load_is_named(tmp_path: Path) -> None:
