@@ -1,10 +1,8 @@
 """Gains of a speed loop: as much integral action as its margins allow.
 
 The integral gain is what a slow load meets: the speed that a load step takes in all, integrated, is
-one over it. It is made as large as it goes while L keeps clear of the point -1,
-
-    |1 / (1 + L)| <= M  and  |L / (1 + L)| <= M  at every frequency
-
+one over it. It is made as large as it goes while L keeps clear of the point -1:
+``|1 / (1 + L)| <= M`` and ``|L / (1 + L)| <= M`` at every frequency
 (Astrom and Hagglund 1995, Astrom, Panagopoulos and Hagglund 1998). Both are quadratic in the
 integral gain where the proportional one is given, so that it is found without a search.
 """
