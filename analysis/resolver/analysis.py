@@ -15,6 +15,7 @@ from analysis.resolver.estimate import resolve
 from analysis.resolver.hann import resolve_hann
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.leakage import measured_leakage
+from analysis.resolver.local_polynomial import resolve_local
 from analysis.resolver.period_values import PeriodValues, solve_periods
 from analysis.resolver.reference import NoReferenceError, PhaseReference, ReferenceSource
 from analysis.resolver.reference_choice import ReferenceChoice, choose_reference
@@ -237,8 +238,8 @@ def _reading(
     *,
     intervals: bool,
 ) -> Harmonics:
-    if settings.hann:
-        result = _under_hann(recording, reference, gate, settings)
+    if settings.hann or settings.local_polynomials:
+        result = _by_bins(recording, reference, gate, settings)
     else:
         around = steady if steady.period_count > gate.period_count else None
         drifting = settings.take_out_drift
@@ -248,10 +249,11 @@ def _reading(
     return replace(result, flags=gate_flags(gate, result))
 
 
-def _under_hann(
+def _by_bins(
     recording: Recording, reference: PhaseReference, gate: PeriodSums, settings: ResolverSettings
 ) -> Harmonics:
-    return resolve_hann(
+    estimator = resolve_hann if settings.hann else resolve_local
+    return estimator(
         recording,
         reference,
         gate.edges_cycles,
@@ -288,8 +290,8 @@ def let_through(
     reference, settings = analysis.reference, analysis.settings
 
     def estimator(probe: Recording) -> Harmonics:
-        if settings.hann:
-            return _under_hann(probe, reference, gate, settings)
+        if settings.hann or settings.local_polynomials:
+            return _by_bins(probe, reference, gate, settings)
         edges = gate.edges_cycles
         sums = period_sums(probe, reference, settings.harmonics, edges_cycles=edges)
         return resolve(probe, sums, take_out_drift=settings.take_out_drift)

@@ -29,6 +29,8 @@ class ResolverSettings:
         close so much later, with the reference's phase carried on at its mean frequency.
     hann
         Taper each gate (:mod:`analysis.resolver.hann`): for long gates with interference.
+    local_polynomials
+        Take what a transient leaks off each harmonic (:mod:`analysis.resolver.local_polynomial`).
     """
 
     channels: tuple[str, ...] = ()
@@ -39,6 +41,7 @@ class ResolverSettings:
     steady_tolerance: float = 0.05
     take_out_drift: bool = True
     hann: bool = False
+    local_polynomials: bool = False
     delay_s: float = 0.0
 
 
@@ -54,6 +57,8 @@ def check_settings(settings: ResolverSettings) -> None:
         value = getattr(settings, name)
         if value is not None and value < 1:
             raise ConfigurationError(f"{name} = {value} makes no sense; it must be 1 or more")
+    if settings.hann and settings.local_polynomials:
+        raise ConfigurationError("hann and local_polynomials are two estimators; take one")
     if settings.periods is not None and settings.opens_s is None:
         raise ConfigurationError("a number of periods needs the time at which the gate opens")
 

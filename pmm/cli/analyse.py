@@ -104,6 +104,25 @@ _ANY, _POSITIVE = _Finite(positive=False), _Finite()
     help="Keep signals up to here of those on a carrier.  [default: 50]",
 )
 @click.option("--hann", is_flag=True, help="Taper each gate: for long gates with interference.")
+@click.option(
+    "--local-polynomials",
+    is_flag=True,
+    help="Take what a transient leaks off each harmonic: for runs that had not settled.",
+)
+@click.option(
+    "--response-to",
+    metavar="CHANNEL",
+    help="Tell how the other channels of the first gate respond to this one at its lines, and how "
+    "much stands between them: with --harmonics up to the highest line.",
+)
+@click.option(
+    "--line",
+    "lines",
+    type=_COUNT,
+    multiple=True,
+    metavar="N",
+    help="A harmonic that --response-to was given; repeatable.  [default: those where it moves]",
+)
 @click.option("--no-drift", is_flag=True, help="Leave a linear drift in.")
 @click.option(
     "--map",
@@ -201,7 +220,7 @@ def _each(
     doing, jobs, draw = "analysing", 1, None
     if plot is not None:
         doing, jobs = "analysing and plotting", min(cores(), len(sources))
-        draw = partial(_draw, Path(plot))
+        draw = partial(_draw, Path(plot), request)
     with open_executor(max(1, jobs)) as executor:
         # Of the run at hand; another process has no screen.
         shown: list[Callable[[float], None]] = [untold]
@@ -216,11 +235,11 @@ def _each(
             yield one
 
 
-def _draw(folder: Path, analysis: "Analysis", name: str) -> None:
+def _draw(folder: Path, request: "HarmonicsRequest", analysis: "Analysis", name: str) -> None:
     from pmm.document.style import write_figures
     from pmm.report.plots import figures
 
-    write_figures(figures(analysis), folder, name)
+    write_figures(figures(analysis, request.response_to, request.lines), folder, name)
 
 
 def _check(sources: "Sequence[Source]", request: "HarmonicsRequest", plot: str | None) -> None:

@@ -39,6 +39,9 @@ class HarmonicsRequest:
     carrier: float | None = None
     bandwidth: float | None = None
     hann: bool = False
+    local_polynomials: bool = False
+    response_to: str | None = None
+    lines: tuple[int, ...] = ()
     no_drift: bool = False
     column_map: str | None = None
     columns: tuple[str, ...] = ()
@@ -70,6 +73,8 @@ class HarmonicsRequest:
             )
         if self.bandwidth is not None and self.carrier is None:
             raise ConfigurationError("--bandwidth belongs to --carrier; give both or neither")
+        if self.lines and self.response_to is None:
+            raise ConfigurationError("--line belongs to --response-to; say which channel moves")
         there = [Path(self.save or "") / f"{one.stem}.nc" for one in sources if self.save]
         there = [path for path in there if path.exists()]
         if there:
@@ -136,6 +141,7 @@ class HarmonicsRequest:
             "periods": self.periods,
             "steady_tolerance": self.steady_tolerance,
             "hann": self.hann or None,
+            "local_polynomials": self.local_polynomials or None,
             "take_out_drift": False if self.no_drift else None,
         }
         return replace(base, **{key: value for key, value in given.items() if value is not None})

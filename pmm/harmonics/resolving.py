@@ -106,7 +106,8 @@ def _resolved(
     choice = request.choice(campaign.reference if campaign else ReferenceChoice())
     settings = request.settings(campaign.analysis if campaign else ResolverSettings())
     delays_s = request.delays_s()
-    _check_channels(recording, (*settings.channels, choice.channel, *delays_s), columns)
+    named = (*settings.channels, choice.channel, request.response_to, *delays_s)
+    _check_channels(recording, named, columns)
     if request.save is not None:
         folder = Path(request.save)
         folder.mkdir(parents=True, exist_ok=True)
@@ -124,6 +125,8 @@ def _resolved(
         level=request.level,
         vibrations_hz=request.let_through,
         classic=request.classic,
+        response_to=request.response_to,
+        lines=request.lines,
     )
     return Resolved(source, rows, first_harmonics(recording, analyses[0]) if campaign else None)
 

@@ -11,6 +11,7 @@ from hardware.description.dataset import GATE_OPENED
 from hardware.description.flags import Flag
 from pmm.document.labels import units_loads_first
 from pmm.harmonics.classic_rows import ClassicRow, classic_rows
+from pmm.harmonics.response_rows import ResponseRows, response_rows
 
 if TYPE_CHECKING:
     from analysis.resolver.analysis import Analysis
@@ -121,7 +122,7 @@ class RunRows:
         first of them, and flags and gates tell the others.
     steady_tolerance
         Within which first harmonics keep in a steady stretch, relative to the usual amplitude.
-    let_through, classic
+    let_through, classic, response
         What was asked for besides, of the first gate.
     """
 
@@ -142,6 +143,7 @@ class RunRows:
     flags: tuple[Flag, ...]
     let_through: tuple[LetThrough, ...] = ()
     classic: tuple[ClassicRow, ...] = ()
+    response: ResponseRows | None = None
 
 
 def run_rows(
@@ -151,6 +153,8 @@ def run_rows(
     level: float,
     vibrations_hz: Sequence[float] = (),
     classic: bool = False,
+    response_to: str | None = None,
+    lines: Sequence[int] = (),
 ) -> RunRows:
     """Turn the analyses of a recording into rows.
 
@@ -166,6 +170,9 @@ def run_rows(
         Frequencies for which to tell what the first gate lets through.
     classic
         Whether to read the modes of 1963 too.
+    response_to, lines
+        Channel on which the others' response is wanted, and the harmonics that it was given; found
+        where they are not stated.
     """
     analysis = analyses[0]
     steady, recording = analysis.steady_sums, analysis.recording
@@ -191,6 +198,9 @@ def run_rows(
         flags=tuple(dict.fromkeys(flag for one in analyses for flag in one.flags)),
         let_through=_let_through(analysis, vibrations_hz),
         classic=tuple(row for one in analyses for row in classic_rows(one)) if classic else (),
+        response=response_rows(analysis.readings[0], response_to, lines, level)
+        if response_to is not None
+        else None,
     )
 
 

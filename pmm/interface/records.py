@@ -53,6 +53,9 @@ class Records:
         opens_at_s: float | None = None,
         periods: int | None = None,
         take_out_drift: bool = True,
+        local_polynomials: bool = False,
+        response_to: str | None = None,
+        lines: Sequence[int] = (),
         column_map: str | None = None,
         calibration: str | None = None,
         level: float = 0.95,
@@ -78,6 +81,11 @@ class Records:
             Where the first gate opens, and how many periods are used after it.
         take_out_drift
             Whether a linear drift is taken out.
+        local_polynomials
+            Whether what a transient leaks is taken off each harmonic.
+        response_to, lines
+            Channel on which the others' response is wanted, and the harmonics that it was given;
+            by default those at which it moves.
         column_map
             TOML that says which column of a text file is what.
         calibration
@@ -105,6 +113,9 @@ class Records:
             opens_at=opens_at_s,
             periods=periods,
             no_drift=not take_out_drift,
+            local_polynomials=local_polynomials,
+            response_to=response_to,
+            lines=tuple(lines),
             column_map=column_map,
             calibration=calibration,
             level=level,

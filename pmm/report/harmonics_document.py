@@ -15,6 +15,7 @@ from pmm.harmonics.rows import RunRows, run_rows, window_kind
 from pmm.report.gate_fit import WINDOWS
 from pmm.report.harmonics_tables import classic_tables, gate_tables, noticed
 from pmm.report.plots import figures
+from pmm.report.response_tables import response_tables
 
 SCHEMA: Final = "pmm-analysis-1"
 PAGE_LEVEL: Final = 0.95
@@ -100,6 +101,7 @@ def run_section(rows: RunRows, level: float) -> Section:
             *gate_tables(rows, level),
             Text(vibrations),
             *classic_tables(rows.classic),
+            *response_tables(rows.response),
             noticed(rows.flags),
         ),
     )

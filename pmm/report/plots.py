@@ -5,7 +5,7 @@
 record and how much of it the resolver lets through.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import Final
 
@@ -13,6 +13,7 @@ from analysis.resolver.analysis import Analysis
 from pmm.document.content import Figure
 from pmm.report.gate import gate_figure
 from pmm.report.phasors import phasor_figure
+from pmm.report.response_figure import response_figure
 from pmm.report.spectrum import spectrum_figure
 
 __all__ = ["FIGURES", "figures", "gate_figure", "phasor_figure", "spectrum_figure"]
@@ -26,9 +27,18 @@ _CAPTIONS: Final = {
     "spectrum": "Amplitude spectrum over the gate, and the part of a vibration that the resolver "
     "lets through into each harmonic.",
 }
+_RESPONSE: Final = (
+    "Gain, phase and coherence of the loads at the lines of the motion, and their harmonics: those "
+    "excited, and between them what odd and even distortions leave beside the noise (dashes)."
+)
 
 
-def figures(analysis: Analysis) -> Iterator[Figure]:
-    """Yield the figures of an analysis's first reading."""
+def figures(
+    analysis: Analysis, response_to: str | None = None, lines: Sequence[int] = ()
+) -> Iterator[Figure]:
+    """Yield the figures of an analysis's first reading; with the response to a channel if asked."""
     for kind, draw in FIGURES.items():
         yield Figure(kind, _CAPTIONS[kind], partial(draw, analysis))
+    if response_to in analysis.recording.channel_names:
+        draw_response = partial(response_figure, analysis.readings[0], response_to, lines)
+        yield Figure("response", _RESPONSE, draw_response)
