@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from hardware.description.arrangement import DriftBy, Joint
 from hardware.description.attitude import AttitudeSensors, HeaveAndPitch
 from hardware.description.body import Body
-from hardware.description.channels import HEELING, POSITIONS, STEERING
+from hardware.description.channels import COMMANDS, HEELING, POSITIONS, STEERING
 from hardware.description.errors import ConfigurationError
 from hardware.description.heel import Heel
 from hardware.description.motor import UNKNOWN_KEYS_REFUSED
@@ -22,6 +22,7 @@ from sim.drive.carriage import Carriage, CarriageSettings
 from sim.drive.loaded_drive import LoadedDrive
 from sim.drive.prescribed_drive import ConstantSpeedDrive, DriveSettings
 from sim.gauges.dynamometer import Dynamometer, Dynamometers
+from sim.mechanism.command import Command
 from sim.mechanism.linkage import Mechanism, Setting
 from sim.model.attitude import Attitude, Squat
 from sim.model.heel import Heeling
@@ -133,7 +134,8 @@ class SimulatedRig:
                 reflected_inertia(hull.system.mass, set_point),
             )
             stages = (carriage, Coupled(loaded, mechanism, hull))
-        behind = (*self._sensed(hull), self.dynamometers, self.acquisition)
+        told = self._told(mechanism, set_point.frequency_hz)
+        behind = (*told, *self._sensed(hull), self.dynamometers, self.acquisition)
         seen = () if self.photocell is None else (self.photocell,)
         return Chain((*stages, *behind, *seen))
 
@@ -190,6 +192,11 @@ class SimulatedRig:
     def _positions(self) -> list[str]:
         names = (line.channel.name for line in self.acquisition.lines)
         return [name for name in names if name in POSITIONS]
+
+    def _told(self, mechanism: Mechanism, frequency_hz: float) -> tuple["Stage[Any]", ...]:
+        """Return the stage of the commands, where they are recorded."""
+        recorded = any(line.channel.name in COMMANDS for line in self.acquisition.lines)
+        return (Command(mechanism, self.drive, frequency_hz),) if recorded else ()
 
     def _sensed(self, hull: Hull) -> tuple["Stage[Any]", ...]:
         """Return the stage of sinkage and trim, where they are recorded."""

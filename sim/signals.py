@@ -57,6 +57,10 @@ DISPLACEMENT_FORE = of_channel(channels.DISPLACEMENT_FORE)
 VELOCITY_FORE = Signal("velocity_fore", "m/s")
 ACCELERATION_FORE = Signal("acceleration_fore", "m/s2")
 
+# Where the struts would be if drive and linkage did as they are told.
+COMMAND_AFT = of_channel(channels.COMMAND_AFT)
+COMMAND_FORE = of_channel(channels.COMMAND_FORE)
+
 # Of each strut, aft and fore: displacement, velocity, acceleration.
 STRUT_MOTIONS = (
     (DISPLACEMENT_AFT, VELOCITY_AFT, ACCELERATION_AFT),

@@ -60,6 +60,9 @@ class Channel:
 SHAFT_ANGLE = Channel("shaft_angle", "rad")
 DISPLACEMENT_AFT = Channel("displacement_aft", "m")
 DISPLACEMENT_FORE = Channel("displacement_fore", "m")
+# Where the drives were told to have the struts, as they gave it to be recorded.
+COMMAND_AFT = Channel("command_aft", "m")
+COMMAND_FORE = Channel("command_fore", "m")
 FORCE_AFT = Channel("force_aft", "N")
 FORCE_FORE = Channel("force_fore", "N")
 FORCE_X = Channel("force_x", "N")
@@ -95,6 +98,7 @@ def units_on(joint: Joint) -> Mapping[str, str]:
 
 # Names of the struts' channels, aft first; and all that a rig records, in the order of a recording.
 DISPLACEMENTS: Final = (DISPLACEMENT_AFT.name, DISPLACEMENT_FORE.name)
+COMMANDS: Final = (COMMAND_AFT.name, COMMAND_FORE.name)
 FORCES: Final = (FORCE_AFT.name, FORCE_FORE.name)
 STEERING: Final = (
     RUDDER_ANGLE, REVOLUTIONS, PROPELLER_THRUST, PROPELLER_TORQUE, RUDDER_NORMAL_FORCE,
@@ -104,5 +108,5 @@ POSITIONS_OF_MODEL: Final = (POSITION_AFT, POSITION_FORE)
 POSITIONS: Final = (POSITION_AFT.name, POSITION_FORE.name)
 STANDARD: Final = (
     SHAFT_ANGLE, DISPLACEMENT_AFT, DISPLACEMENT_FORE, FORCE_AFT, FORCE_FORE, FORCE_X,
-    CARRIAGE_SPEED, *STEERING, *POSITIONS_OF_MODEL, *HEELING,
+    CARRIAGE_SPEED, *STEERING, *POSITIONS_OF_MODEL, *HEELING, COMMAND_AFT, COMMAND_FORE,
 )  # fmt: skip

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from analysis.gap.observe.components import GapRun
+from analysis.gap.observe.following import Following, following
 from analysis.gap.observe.observation import Observed, observe
 from analysis.gap.observe.sensors import as_recorded, resolved
 from analysis.recording import Recording
@@ -24,6 +25,7 @@ from pmm.gap.at_rest import check_recorded_alike, damage_of, records_at_rest
 from pmm.gap.cut_short import cut_short
 from sim.rig import SimulatedRig
 
+_Read = tuple[Run, Observed, Following]
 _ABOVE: Final = 1.2  # of the oscillator's largest frequency and eccentricity
 
 
@@ -83,7 +85,8 @@ def load_campaign(
     rig = unlimited(campaign.rig())
     left_out: dict[str, str] = {}
     damaged: dict[str, tuple[Flag, ...]] = {}
-    found: list[tuple[Run, Observed]] = []
+    found: list[_Read] = []
+    unlike: dict[str, str] = {}
     for run in campaign.runs:
         if run.name in withheld or not run.frequency_hz > 0.0:
             continue
@@ -93,23 +96,26 @@ def load_campaign(
             recording = open_recording(RecordingSource.of(campaign, run, path.parent))
             damaged |= damage_of(run.name, recording)
             observed = observe(_only(recording, sensors), campaign.reference, campaign.analysis)
-            found.append((run, observed))
+            followed, unlike[run.name] = following(recording)
+            found.append((run, observed, followed))
         except (PmmError, OSError) as error:
             left_out[run.name] = str(error).removeprefix(f"{run.name}: ")
     reference = _usual_reference(found)
-    for run, one in found:
+    for run, one, _ in found:
         if one.reference_channel != reference:
             own = one.reference_channel or "the photocell"
             left_out[run.name] = f"its phase comes from {own}, not as in most runs"
-    kept = [pair for pair in found if pair[0].name not in left_out]
+    kept = [three for three in found if three[0].name not in left_out]
     runs = tuple(_gap_runs(campaign, kept))
     at_rest, unused, harmed = records_at_rest(campaign, path.parent, sensors)
-    cut = {run.name: said for run, one in kept if (said := cut_short(one.analysis))}
+    cut = {run.name: said for run, one, _ in kept if (said := cut_short(one.analysis))}
     rig = as_recorded(rig, (*runs, *at_rest), reference)
     known, still = resolved(rig, (*runs, *at_rest))
-    notes = {
-        name: "; ".join(filter(None, (cut.get(name), still.get(name)))) for name in cut | still
+    every = {
+        name: "; ".join(filter(None, (cut.get(name), still.get(name), unlike.get(name))))
+        for name in (*cut, *still, *unlike)
     }
+    notes = {name: said for name, said in every.items() if said}
     usable, usable_at_rest = known[: len(runs)], known[len(runs) :]
     return Loaded(
         campaign, rig, usable, left_out | unused, reference, usable_at_rest, notes, damaged | harmed
@@ -151,9 +157,9 @@ def unlimited(rig: SimulatedRig) -> SimulatedRig:
     return replace(rig, oscillator=free)
 
 
-def _usual_reference(found: Sequence[tuple[Run, Observed]]) -> str | None:
+def _usual_reference(found: Sequence[_Read]) -> str | None:
     """Return the reference that most runs have: phases from different ones cannot be compared."""
-    references = [one.reference_channel for _, one in found]
+    references = [one.reference_channel for _, one, _ in found]
     return max(references, key=references.count) if references else None
 
 
@@ -165,8 +171,8 @@ def _only(recording: Recording, sensors: Sequence[str]) -> Recording:
     return replace(recording.select(names), photocell_edges_s=edges)
 
 
-def _gap_runs(campaign: Campaign, found: Sequence[tuple[Run, Observed]]) -> Iterator[GapRun]:
-    for run, one in found:
+def _gap_runs(campaign: Campaign, found: Sequence[_Read]) -> Iterator[GapRun]:
+    for run, one, followed in found:
         yield GapRun(
             run.name,
             run.set_point,
@@ -175,4 +181,5 @@ def _gap_runs(campaign: Campaign, found: Sequence[tuple[Run, Observed]]) -> Iter
             one.analysis.stretch.period_count,
             one.analysis.recording.sample_rate_hz,
             one.lead_s,
+            following=followed,
         )

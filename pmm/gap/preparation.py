@@ -6,6 +6,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Final
 
+from analysis.gap.forward.commanded import KnownSetting, commanded
 from analysis.gap.judge.diagnosis import Settings
 from analysis.gap.observe.components import GapRun
 from analysis.gap.observe.observation import COMPARED
@@ -18,7 +19,7 @@ from pmm.campaign.campaign import Campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.coefficients.settings import CoefficientSettings, settings_of
 from pmm.coefficients.systems import check_dimensions
-from pmm.gap.case import Case, read_case
+from pmm.gap.case import Case, read_case, stated_tolerances
 from pmm.gap.hold_out import held_out_runs
 from pmm.gap.load import Loaded, campaign_of, load_campaign
 from sim.effects.effect import Effect
@@ -49,6 +50,8 @@ class Prepared:
         How the user has coefficients reported: ``coefficients.toml`` beside the campaign file.
     damaged
         What is not what was written, by run.
+    commanded
+        The settings that recorded commands told; the tolerances of ``case`` are about these.
     """
 
     campaign: Campaign
@@ -61,6 +64,7 @@ class Prepared:
     cut_short: Mapping[str, str] = field(default_factory=dict)
     reporting: CoefficientSettings = field(default_factory=CoefficientSettings)
     damaged: Mapping[str, tuple[Flag, ...]] = field(default_factory=dict)
+    commanded: tuple[KnownSetting, ...] = ()
 
 
 def prepare(
@@ -96,6 +100,13 @@ def prepare(
     progress("reading")
     loaded = load_campaign(file, (), lambda name: progress(f"reading {name}"), sensors)
     progress("looking for recordings that cannot be right")
+    known_of = [run for run in loaded.runs if run.name not in held_out]
+    told = commanded(
+        loaded.rig, known_of, case.tolerances, on, campaign.reference.channel,
+        stated_tolerances(file).keys(),
+    )  # fmt: skip
+    loaded = replace(loaded, rig=told.rig)
+    case = replace(case, tolerances=told.tolerances)
     there, fitted, withheld, left_out = _sorted(loaded, case, on, held_out, file)
     if len(fitted) < _FEWEST:
         why = "".join(f"; {name}: {reason}" for name, reason in left_out.items())
@@ -117,8 +128,9 @@ def prepare(
     cut = {name: said for name, said in loaded.cut_short.items() if name not in left_out}
     used = tuple(fitted), tuple(withheld)
     return Prepared(
-        campaign, case, left_out, there, *used, settings, cut, reporting, loaded.damaged
-    )
+        campaign, case, left_out, there, *used, settings, cut, reporting, loaded.damaged,
+        told.told,
+    )  # fmt: skip
 
 
 def _reporting(folder: Path, water: Water | None) -> CoefficientSettings:

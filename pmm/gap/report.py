@@ -21,7 +21,7 @@ from pmm.gap.conclusion import Conclusion
 from pmm.gap.examination import Examined
 from pmm.gap.hull_report import Convention
 from pmm.gap.rows import ControlRow, Ranked, RegimeRow
-from pmm.gap.run_notes import noise_notes, odd_note, odd_one, run_notes
+from pmm.gap.run_notes import command_notes, noise_notes, odd_note, odd_one, run_notes
 from pmm.gap.sizes import HowLarge, how_large, own_sizes
 from pmm.gap.steps import StepRow, step_row
 from pmm.gap.words import Remedies, joined, sentences
@@ -120,6 +120,7 @@ def _notes(examined: Examined, odd: str) -> Iterator[str]:
         yield f"memory of the water, {memory}"
     yield from run_notes(examined)
     yield from noise_notes(examined)
+    yield from command_notes(examined)
     if examined.cause is not None:
         yield from _of_cause(examined, examined.cause)
         return

@@ -5,6 +5,7 @@ from typing import Final
 
 from analysis.gap.judge.withheld import gap_of
 from analysis.gap.observe.sensors import heard_rms
+from analysis.uncertainty.estimate import Estimate
 from pmm.gap.examination import Examined
 
 NOTED: Final = 2.0  # times: a specification's noise is often meant as a largest one
@@ -28,6 +29,21 @@ def noise_notes(examined: Examined) -> Iterator[str]:
                 f"{line.channel.name}: white noise of {found:.2g} {unit} is heard, "
                 f"{own:.2g} {unit} are stated as noise_rms; what is heard is used"
             )
+
+
+def command_notes(examined: Examined) -> Iterator[str]:
+    """Yield what commands and measured positions told of the settings."""
+    for one in examined.ready.commanded:
+        added = "" if one.added_m is None else f" and {_off(one.added_m)}"
+        yield (
+            f"{one.name}: {_off(one.off)}{added} off, by command and measured position of "
+            f"{one.runs} runs; the simulation has it so, within {one.key} = {one.tolerance:.2g}"
+        )
+
+
+def _off(one: Estimate) -> str:
+    unit = "" if one.unit == "1" else f" {one.unit}"
+    return f"{one.value:+.3g} ± {one.half_width():.2g}{unit}"
 
 
 def odd_one(examined: Examined) -> str:

@@ -20,7 +20,9 @@ from pmm.gap.preparation import Prepared, campaign_file, prepare
 
 SCHEMA: Final = "pmm-gap-tolerances-1"
 _LEARNT: Final = 0.9  # tolerances: a number known no better afterwards was not shown by these runs
+_STATED: Final = "stated in "
 _AS_USUAL: Final = "default: "
+_COMMANDED: Final = "commands and measured positions"
 _SAID: Final = (
     "Standard deviations about what the campaign states; what stays within them is no gap. Moved: "
     "by how many tolerances each number is off from what is stated, with its standard uncertainty, "
@@ -98,7 +100,7 @@ def tolerance_document(folder: Path, options: Options) -> Document:
     ready = prepare(folder, known, more, options.sensors, options.hold_out)
     rows = tuple(_rows(ready, campaign_file(folder)))
     table = Table("Tolerances", _COLUMNS, rows, "tolerances")
-    stated = sum(not one.source.startswith(_AS_USUAL) for one in rows)
+    stated = sum(one.source.startswith(_STATED) for one in rows)
     said = f"{stated} of {len(rows)} tolerances are stated, the others are as usual."
     section = Section("", (Text((said,), strong=True), Text((_SAID,)), table))
     return Document(ready.campaign.name, "what may be off without a gap", (section,), SCHEMA)
@@ -108,9 +110,11 @@ def _rows(ready: Prepared, file: Path) -> Iterator[ToleranceRow]:
     tolerances, stated = ready.case.tolerances, stated_tolerances(file)
     problem = problem_of(ready.there.rig, ready.fitted, ready.settings, ready.there.free)
     moved = _shown(problem)
+    commanded = {one.key for one in ready.commanded}
     for one in fields(tolerances):
         told = one.metadata
-        where = f"stated in {stated[one.name][1]}" if one.name in stated else ""
+        where = f"{_STATED}{stated[one.name][1]}" if one.name in stated else ""
+        where = _COMMANDED if one.name in commanded else where
         yield ToleranceRow(
             one.name,
             getattr(tolerances, one.name),

@@ -47,6 +47,8 @@ _SOURCES = {
     channels.POSITION_FORE: signals.POSITION_FORE,
     channels.ROLL_MOMENT: signals.ROLL_MOMENT,
     channels.HEEL_ANGLE: signals.HEEL_ANGLE,
+    channels.COMMAND_AFT: signals.COMMAND_AFT,
+    channels.COMMAND_FORE: signals.COMMAND_FORE,
 }
 
 
@@ -76,6 +78,8 @@ class Acquisition:
     position_fore: Digitiser | None = None
     roll_moment: Digitiser | None = None
     heel_angle: Digitiser | None = None
+    command_aft: Digitiser | None = None
+    command_fore: Digitiser | None = None
 
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
     name = "acquisition"

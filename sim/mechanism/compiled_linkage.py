@@ -18,7 +18,7 @@ def linkages_of(mechanism: Mechanism) -> FloatArray:
     rows = []
     rod = mechanism.rod_length_m
     for setting, phase_rad in mechanism.struts:
-        eccentricity = mechanism.eccentricity_m + setting.eccentricity_error_m
+        eccentricity = setting.eccentricity_m(mechanism.eccentricity_m)
         offset = setting.rod_offset_m
         rows.append(
             (

@@ -30,6 +30,8 @@ class Setting:
 
     Attributes
     ----------
+    gain
+        Factor of the eccentricity: an axis that does not go as far as it is commanded.
     eccentricity_error_m
         Added to the eccentricity.
     phase_error_rad
@@ -48,8 +50,13 @@ class Setting:
     slot_tilt_rad: float = 0.0
     rod_offset_m: float = 0.0
     half_play_m: float = 0.0
+    gain: float = 1.0
 
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
+
+    def eccentricity_m(self, set_m: float) -> float:
+        """Return the eccentricity where this much was set."""
+        return self.gain * set_m + self.eccentricity_error_m
 
 
 @dataclass(frozen=True)
@@ -159,7 +166,7 @@ class Mechanism:
         setting, phase_rad = strut
         if setting == _AS_SET:
             return self.displacement(angle + phase_rad)
-        eccentricity = self.eccentricity_m + setting.eccentricity_error_m
+        eccentricity = setting.eccentricity_m(self.eccentricity_m)
         real = replace(
             self, eccentricity_m=eccentricity / math.cos(setting.slot_tilt_rad), aft=_AS_SET
         )

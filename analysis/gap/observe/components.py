@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.gap.observe.following import Following
 from analysis.gap.observe.plateau import Plateau
 from analysis.gap.observe.spectrum import Lines
 from hardware.description.arrays import BoolArray, ComplexArray, FloatArray
@@ -177,6 +178,8 @@ class GapRun:
         What is done to a rig that stands; ``None`` for nothing.
     preload_n
         Of a run that turns: a dead weight on the model that takes up play in the joints.
+    following
+        How each strut follows its command, by the displacement's channel.
     """
 
     name: str
@@ -189,6 +192,7 @@ class GapRun:
     stands_at_m: tuple[float, float] | None = None
     applied: Excitation | None = None
     preload_n: float = 0.0
+    following: Following = field(default_factory=dict)
 
     @property
     def turns(self) -> bool:
