@@ -48,6 +48,7 @@ NAMES = (
     "evidence",
     "campaign_boards",
     "gap_worlds",
+    "forced",
     "signs",
 )
 _RESULTS = ROOT / "benchmarks" / "results"

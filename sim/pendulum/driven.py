@@ -100,14 +100,19 @@ def settled(body: Driven, orders: int) -> ComplexArray:
 
 def _linear(body: Driven) -> ComplexArray:
     """Return the displacement's harmonics without what is not linear, a resonance kept finite."""
-    omega = body.force.omega_rad_s * (1.0 + np.arange(len(body.force.harmonics)))
+    orders = np.arange(1.0, len(body.force.harmonics) + 1.0, dtype=np.float64)
+    return np.asarray(np.array(body.force.harmonics) / impedance(body, orders), np.complex128)
+
+
+def impedance(body: Driven, orders: FloatArray) -> ComplexArray:
+    """Return force over displacement at some orders of the force, but for what is not linear."""
+    omega = body.force.omega_rad_s * orders
     mass, stiffness = float(body.mass[0, 0]), body.restoring
     least = 0.0
     if not body.resistance.linear or body.resistance.coulomb:
         least = 2.0 * _FEWEST_RATIO * math.sqrt(mass * stiffness)
     damping = max(body.resistance.viscous, least)
-    impedance = stiffness - omega**2 * mass + 1j * omega * damping
-    return np.asarray(np.array(body.force.harmonics) / impedance, np.complex128)
+    return np.asarray(stiffness - omega**2 * mass + 1j * omega * damping, np.complex128)
 
 
 def _repeating(body: Driven, linear: ComplexArray) -> FloatArray:

@@ -75,8 +75,8 @@ def units(problem: PendulumProblem) -> FloatArray:
 
     Of the amplitude's logarithm what it is predicted to fall by over the record, an e-fold at
     least; of the phase all that was turned since the release, so that it is a share of the period,
-    under a known force a radian;
-    of the mean the predicted amplitude; a third harmonic is a share of the amplitude already.
+    under a known force a radian; of the mean the predicted amplitude. A third harmonic is a share
+    of the amplitude already; under a known force it is what a force of that order makes.
     """
     out = np.ones(len(problem.kind))
     for at, trial in enumerate(problem.trials):
@@ -84,6 +84,7 @@ def units(problem: PendulumProblem) -> FloatArray:
         falls = problem.nominal[here & (problem.kind == _DECAY)]
         turned = 1.0 if trial.driven else trial.windows.reference_rad_s * problem.centre_s
         out = np.where(here & (problem.kind == _PERIOD), turned, out)
+        out = np.where(here & (problem.kind > _MEAN), trial.third_harmonic, out)
         if len(falls):
             out[here & (problem.kind == _DECAY)] = max(float(np.ptp(falls)), 1.0)
             out[here & (problem.kind == _MEAN)] = float(np.exp(falls.max()))

@@ -18,7 +18,8 @@ from analysis.gap.pendulum.swings import KINDS, Windows, cut_into_windows, swing
 from analysis.gap.pendulum.trial import Trial
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.errors import DataError
-from sim.pendulum.driven import ORDERS, Driven, PeriodicForce, settled
+from sim.pendulum.bench import PendulumBench
+from sim.pendulum.driven import ORDERS, Driven, PeriodicForce, impedance, settled
 from sim.pendulum.effects.base import PendulumEffect
 
 _DECAY, _PERIOD, _MEAN = (KINDS.index(one) for one in ("decay", "period", "mean"))
@@ -70,13 +71,8 @@ class DrivenTrial(Trial):
             If the body does not settle.
         """
         bench = self.bench.with_effects(self.placed((*self.effects, *effects)))
-        body, (sensor,) = cast("Driven", bench.body), bench.sensors
-        (coordinate,) = body.coordinates
-        signals = [coordinate.displacement, coordinate.rate, coordinate.acceleration]
-        ((felt, weight),) = sensor.weights
-        omega, windows = body.force.omega_rad_s, self.windows
-        turns = 1j * omega * np.arange(1, _ORDERS + 1)
-        read = weight * sensor.gain * turns ** signals.index(felt) / (1.0 + turns * sensor.lag_s)
+        body, windows = cast("Driven", bench.body), self.windows
+        omega, read = body.force.omega_rad_s, _read(bench, np.arange(1.0, _ORDERS + 1))
         out = self._window(settled(body, _ORDERS) * read).repeat(windows.count, axis=1)
         late_s = bench.delay_s + bench.clock_error * (windows.start_s + windows.centres_s)
         out[_PERIOD] -= omega * late_s / (1.0 + bench.clock_error)
@@ -85,6 +81,13 @@ class DrivenTrial(Trial):
             turns_apart = float(np.median(seen) - np.median(out[_PERIOD])) / (2.0 * math.pi)
             out[_PERIOD] += 2.0 * math.pi * round(turns_apart)
         return out
+
+    @property
+    def third_harmonic(self) -> float:
+        """What a force of the third order makes that is as large as one of the first, over 3."""
+        bench, orders = self.bench.with_effects(self.placed(self.effects)), np.array([1.0, 3.0])
+        shown = np.abs(_read(bench, orders) / impedance(cast("Driven", bench.body), orders))
+        return float(shown[1] / shown[0] / orders[1])
 
     def _window(self, harmonics: ComplexArray) -> FloatArray:
         """Return what a window makes of a periodic signal, shape ``(5, 1)``.
@@ -110,6 +113,17 @@ class DrivenTrial(Trial):
         return replace(
             self, bench=replace(self.bench, body=replace(body, force=body.force.scaled(factor)))
         )
+
+
+def _read(bench: PendulumBench, orders: FloatArray) -> ComplexArray:
+    """Return what a bench's one sensor shows of the displacement at some orders of the force."""
+    body, (sensor,) = cast("Driven", bench.body), bench.sensors
+    (coordinate,) = body.coordinates
+    signals = [coordinate.displacement, coordinate.rate, coordinate.acceleration]
+    ((felt, weight),) = sensor.weights
+    turns = 1j * body.force.omega_rad_s * orders
+    lag = 1.0 + turns * sensor.lag_s
+    return np.asarray(weight * sensor.gain * turns ** signals.index(felt) / lag, np.complex128)
 
 
 @dataclass(frozen=True, eq=False)

@@ -60,6 +60,11 @@ class Trial:
         return float(self.bench.body == other.bench.body)
 
     @property
+    def third_harmonic(self) -> float:
+        """Share of the amplitude that a deviation of 1 is in the third harmonic."""
+        return 1.0
+
+    @property
     def acts_on(self) -> str:
         """The coordinate as effects name it: empty where the body has only one."""
         return self.coordinate if isinstance(self.bench.body, Suspension) else ""

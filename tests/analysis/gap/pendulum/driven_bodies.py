@@ -39,6 +39,8 @@ class Made:
     gain: float = 1.0
     delay_s: float = 0.0
     clock: float = 0.0
+    damping: float = DAMPING
+    stiffness: float = STIFFNESS
 
     def motion(self, frequency_hz: float, force_n: float, time_s: FloatArray) -> FloatArray:
         """Return the displacement from rest on, by the equation of motion."""
@@ -47,8 +49,8 @@ class Made:
         def free(t: float, x: FloatArray) -> float:
             q, v = x
             pushed = force_n * math.cos(omega * t) - self.hardening * q**3
-            resisted = DAMPING * v + self.quadratic * abs(v) * v
-            return float(pushed - resisted - STIFFNESS * q)
+            resisted = self.damping * v + self.quadratic * abs(v) * v
+            return float(pushed - resisted - self.stiffness * q)
 
         def rate(t: float, x: FloatArray) -> list[float]:
             return [x[1], (free(t, x) - sign * self.friction_n) / MASS_KG]

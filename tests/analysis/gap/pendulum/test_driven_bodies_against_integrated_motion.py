@@ -1,9 +1,13 @@
 """What a body under a known force has, put into its equation of motion, against a linear body."""
 
+from functools import cache
+
+import numpy as np
 import pytest
 
 from analysis.gap.pendulum.causes import causes_for
-from analysis.gap.pendulum.search import weigh
+from analysis.gap.pendulum.problem import PendulumProblem
+from analysis.gap.pendulum.search import WeighedCauses, weigh
 from analysis.gap.pendulum.verdict import CAUSE, judge
 from tests.analysis.gap.pendulum.driven_bodies import MASS_KG, STIFFNESS, Made, driven
 
@@ -30,20 +34,52 @@ PUT_IN = {
 }
 
 
+# what is left out of the catalogue: all that would explain it
+WITHHELD = {
+    "bearing_friction": ("bearing_friction",),
+    "quadratic_drag": ("quadratic_drag", "cubic_damping"),
+    "nonlinear_restoring": ("nonlinear_restoring",),
+}
+
+
+@cache
+def problem_with(name: str) -> PendulumProblem:
+    return driven(PUT_IN[name][0], RUNS, 3, KNOWN)
+
+
+def weighed_without(problem: PendulumProblem, names: tuple[str, ...] = ()) -> WeighedCauses:
+    left = [name for name in TRIED if name not in names]
+    return weigh(problem, [one for one in causes_for(problem.trials) if one.name in left], most=1)
+
+
 @pytest.mark.parametrize("name", PUT_IN)
 def test_what_is_put_in_is_named_with_its_size(name: str) -> None:
-    made, size = PUT_IN[name]
-    problem = driven(made, RUNS, 3, KNOWN)
-    tried = [one for one in causes_for(problem.trials) if one.name in TRIED]
-    weighed = weigh(problem, tried, most=1)
+    weighed = weighed_without(problem_with(name))
     assert judge(weighed).said == CAUSE
     assert weighed.answers.best == name
     best = weighed.sets[name]
     (axis,) = best.axes
-    assert axis.value(float(best.units[0])) == pytest.approx(size, rel=0.02)
+    assert axis.value(float(best.units[0])) == pytest.approx(PUT_IN[name][1], rel=0.02)
+
+
+@pytest.mark.parametrize("name", WITHHELD)
+def test_what_the_catalogue_does_not_have_is_called_nothing_else(name: str) -> None:
+    weighed = weighed_without(problem_with(name), WITHHELD[name])
+    shares = weighed.answers.by_answer
+    assert shares["unknown"] > max(share for one, share in shares.items() if one != "unknown")
+    assert judge(weighed).said in ("unknown", "untold")
 
 
 def test_nothing_put_in_is_none() -> None:
-    problem = driven(Made(), RUNS, 5, KNOWN)
-    tried = [one for one in causes_for(problem.trials) if one.name in TRIED]
-    assert weigh(problem, tried, most=1).answers.by_answer["none"] > 0.5
+    assert weighed_without(driven(Made(), RUNS, 5, KNOWN)).answers.by_answer["none"] > 0.5
+
+
+def test_a_third_harmonic_is_what_a_force_of_that_order_makes() -> None:
+    time_s = np.append(0.0, np.arange(40.0, 50.0, 0.005))
+    for trial, (frequency_hz, force_n) in zip(
+        driven(Made(), RUNS[:2], 5, {}).trials, RUNS, strict=False
+    ):
+        first, third = (
+            np.std(Made().motion(order * frequency_hz, force_n, time_s)[1:]) for order in (1, 3)
+        )
+        assert trial.third_harmonic == pytest.approx(third / first / 3.0, rel=1e-3)
