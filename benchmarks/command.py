@@ -49,6 +49,7 @@ NAMES = (
     "campaign_boards",
     "gap_worlds",
     "forced",
+    "gap_loop",
     "signs",
 )
 _RESULTS = ROOT / "benchmarks" / "results"

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from benchmarks.boards import friction
+from benchmarks.boards import friction, loops
 from benchmarks.boards.campaigns import NULLS
 from benchmarks.boards.worlds import CASES, WORLDS
 from benchmarks.machine import ROOT
@@ -15,9 +15,10 @@ RESULTS: Final = ROOT / "benchmarks" / "results" / "boards"
 FOLDERS: Final = 10_000  # mutated folders that go through the door
 TYPED: Final = 300  # of them through whole commands
 _SLICES: Final[Mapping[str, tuple[int, int]]] = {"mutations": (FOLDERS, 50), "commands": (TYPED, 5)}
-_WORLDS: Final = "worlds"
+_WORLDS, _LOOPS = "worlds", "loops"
+SEALED: Final = (_WORLDS, _LOOPS)
 BOARDS: Final = ("nulls", "friction", *_SLICES)
-EVERY: Final = (*BOARDS, _WORLDS)
+EVERY: Final = (*BOARDS, *SEALED)
 
 Line = dict[str, Any]
 
@@ -74,6 +75,8 @@ def _counts(board: str) -> Mapping[str, int]:
     """Return how many seeds of each campaign, or cases of each world, are asked for."""
     if board == _WORLDS:
         return dict.fromkeys(WORLDS, 2 * CASES)
+    if board == _LOOPS:
+        return dict.fromkeys(loops.WORLDS, loops.CASES)
     return friction.SEEDS if board == "friction" else {n: one.seeds for n, one in NULLS.items()}
 
 
@@ -87,6 +90,8 @@ def measured(job: Job) -> Line:
         from benchmarks.boards.worlds import marked
 
         return marked(job.campaign, job.first, job.frozen)
+    if job.board == _LOOPS:
+        return loops.pursued(job.campaign, job.first, job.frozen)
     from benchmarks.boards.judged import null, planted
 
     judge = null if job.board == "nulls" else planted

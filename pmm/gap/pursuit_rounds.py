@@ -16,6 +16,7 @@ from pmm.gap.report import GapReport, gap_report
 from pmm.gap.words import joined
 
 SURE: Final = 0.95
+LEAST: Final = 1.0  # log odds that a run is worth making for
 _POSSIBLE: Final = 0.02  # probability from which on an answer is still to be told from the others
 
 

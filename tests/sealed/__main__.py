@@ -160,25 +160,13 @@ def leave_out_command(
 @click.option("--page", type=FILE, help="Write the page there.")
 @click.option("--docs", type=click.Path(exists=True, file_okay=False, path_type=Path),
               help="Keep the score in this folder's scores/, write its scoreboard.md.")  # fmt: skip
-@click.option(
-    "--carry-out/--no-carry-out",
-    default=True,
-    show_default=True,
-    help="Carry the proposed runs out in the sealed reality.",
-)
-@WORKERS
 def score_command(
-    board: Path,
-    json_file: Path | None,
-    page: Path | None,
-    docs: Path | None,
-    carry_out: bool,
-    workers: int,
+    board: Path, json_file: Path | None, page: Path | None, docs: Path | None
 ) -> None:
-    """Score BOARD, its proposed runs carried out; without --docs nothing is kept."""
+    """Score BOARD; without --docs nothing is kept."""
     from tests.sealed.steps import shown
 
-    shown(board, json_file, page, docs, workers if carry_out else None)
+    shown(board, json_file, page, docs)
 
 
 @main.command("limits")
@@ -280,7 +268,7 @@ def whole_command(
     steps.answered(output, workers, limit_s, scheduler)
     steps.others(output, workers, limit_s, (), scheduler)
     steps.left_out_answered(output, workers, limit_s, most, scheduler)
-    steps.scored(output, docs if commit is not None and where == "A" else None, workers)
+    steps.scored(output, docs if commit is not None and where == "A" else None)
     held(output, steps.limits_file(docs, number, where) if commit else output / "limits.json")
 
 

@@ -9,7 +9,7 @@ from tests.sealed.scoreboard import write_scoreboard
 from tests.sealed.scores import dumped, keep, refuse_another
 from tests.sealed.scoring.board import read_board
 from tests.sealed.scoring.page import write_page
-from tests.sealed.scoring.score import CarryOut, Score, score
+from tests.sealed.scoring.score import Score, score
 from tests.sealed.scoring.tables import tables
 
 if TYPE_CHECKING:
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
 def score_board(
     board: Path,
-    carry_out: CarryOut | None,
     *,
     json_file: Path | None = None,
     page: Path | None = None,
@@ -40,7 +39,7 @@ def score_board(
     read = read_board(board)
     if docs is not None:
         refuse_another(docs, read.seed)
-    found, made_on = score(read, carry_out), describe()
+    found, made_on = score(read), describe()
     _print(output(), found)
     if json_file is not None:
         json_file.write_text(dumped(found, made_on))

@@ -141,28 +141,24 @@ def _answer(
                 click.echo(f"{given.case}, {row}: failed, {why}", err=True)
 
 
-def scored(board: Path, docs: Path | None, workers: int) -> None:
+def scored(board: Path, docs: Path | None) -> None:
     """Score a board; without a folder of documentation its JSON stays beside it."""
     shown(board, board / "scoreboard.json" if docs is None else None, board / "scoreboard.html",
-          docs, workers)  # fmt: skip
+          docs)  # fmt: skip
 
 
-def shown(
-    board: Path, json_file: Path | None, page: Path | None, docs: Path | None, workers: int | None
-) -> None:
-    """Score a board, its proposed runs carried out by so many workers, or not at all.
+def shown(board: Path, json_file: Path | None, page: Path | None, docs: Path | None) -> None:
+    """Score a board.
 
     Raises
     ------
     click.ClickException
         If the board is not whole, or its score cannot be kept.
     """
-    from tests.sealed.carrying_out import carrier
     from tests.sealed.scored import score_board
 
-    carry_out = None if workers is None else carrier(board, workers)
     with in_words():
-        score_board(board, carry_out, json_file=json_file, page=page, docs=docs)
+        score_board(board, json_file=json_file, page=page, docs=docs)
 
 
 def scoreboard(docs: Path) -> None:

@@ -46,7 +46,6 @@ def _measured(score: Score) -> Iterator[tuple[str, float]]:
         "pairs_clear": "pairs_clear",
         "shrinkage_covered": "shrinkage_covered",
         "shrinkage_covered_not_too_often": "shrinkage_covered",
-        "next_run": "next_run",
         "case_s": "seconds",
     }
     for key, column in whole.items():

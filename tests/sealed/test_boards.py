@@ -17,9 +17,11 @@ from analysis.readers.columns_toml import read_column_map
 from analysis.recording import Recording
 from tests.sealed.board import generate, jobs_of, nulls_of
 from tests.sealed.generator import catalogue, outside
-from tests.sealed.generator.further import carried_out, case_of, parsed, possible
+from tests.sealed.generator.ceiling import Library
+from tests.sealed.generator.further import added, carried_out, case_of, parsed
 from tests.sealed.generator.rig import Run
-from tests.sealed.generator.worth import Told
+from tests.sealed.generator.signatures import Projection
+from tests.sealed.generator.worth import DRAWS, Told
 
 HERE = Path(__file__).parent
 SEED, CASES, NULLS = 5, 2, 3
@@ -142,31 +144,47 @@ def test_further_runs_are_carried_out(board: Path, tmp_path: Path) -> None:
         assert np.std(force) == pytest.approx(scatter, rel=0.15)
 
 
-def test_possible_further_runs_are_understood(board: Path) -> None:
-    rng = np.random.default_rng(1)
+def test_a_further_run_is_one_of_its_campaign(board: Path, tmp_path: Path) -> None:
+    for name in sorted(path.name for path in (board / "cases").iterdir()):
+        folder = shutil.copytree(board / "cases" / name, tmp_path / name)
+        case = case_of(board / "keys" / name)
+        run = parsed({"frequency_hz": 0.9, "drift_rad": 0.1}, case.campaign.runs[-1])
+        added(case, run, folder, 1)
+        last = tomllib.loads((folder / "campaign.toml").read_text())["runs"][-1]
+        read = read_recording(folder / last["file"])
+        assert read.name == last["name"] == "further-1"
+        assert (last["frequency_hz"], last["drift_rad"]) == (0.9, 0.1)
+        turned = read.sample_count / read.sample_rate_hz * 0.9
+        assert turned == pytest.approx(last["periods"] + 1, rel=0.01)
+
+
+def test_wrong_further_runs_are_named() -> None:
     last = Run("run-01", 0.8, 0.02)
-    told = board / "cases" / "case-0001" / "case.toml"
-    kinds = {parsed(possible(told, rng), last).kind for _ in range(60)}
-    assert kinds == {"oscillation", "rest", "check-weight", "injection"}
     with pytest.raises(ValueError, match="'wiggle'"):
         parsed({"kind": "wiggle"}, last)
     with pytest.raises(ValueError, match="unknown \\['weight_n'\\]"):
         parsed({"kind": "rest", "weight_n": 3.0}, last)
 
 
-def test_runs_told_apart_and_together_tell_the_same(board: Path) -> None:
+def test_runs_told_one_by_one_tell_what_all_rows_together_tell(board: Path) -> None:
     case = case_of(board / "keys" / "case-0002")
-    first, last = (replace(case.situation, runs=runs) for runs in
-                   (case.situation.runs[:1], case.situation.runs[1:2]))  # fmt: skip
-    both = replace(case.situation, runs=case.situation.runs[:2])
-    sizes = [(catalogue.BY_NAME[name], 1e-3) for name in ("gain-error", "mass-error")]
-    stacked = Told.by(case, first, sizes).beside(Told.by(case, last, sizes))
-    whole = Told.by(case, both, sizes)
-    for name in ("given", "own", "effects", "truth"):
-        assert np.allclose(getattr(stacked, name), getattr(whole, name), atol=1e-9)
-    effects = [effect for effect, _ in sizes]
-    odds = [told.log_odds(effects, {"mass-error"}, (1,)) for told in (stacked, whole)]
-    assert odds[0] == pytest.approx(odds[1], abs=1e-6)
+    runs = case.situation.runs[:2]
+    effects = [catalogue.BY_NAME[name] for name in ("gain-error", "mass-error", "zero-offset")]
+    sizes = [(effect, 1e-3) for effect in effects]
+    told = Told.by(case, runs[:1], sizes) + Told.by(case, runs[1:], sizes)
+    situation = replace(case.situation, runs=runs)
+    projection = Projection.of(situation, case.campaign.known)
+    shown = [situation.signature(effect, 1e-3) for effect in effects]
+    library = Library.out_of(effects, shown, projection)
+    p = situation.parameters
+    for one in case.content.effects:
+        p = one.put(p)
+    there = library.units.T @ projection.left(situation.gap(p))
+    scores = library.scores(library.noise(np.random.default_rng([1]))[:DRAWS] + there) / 2.0
+    odds = scores[:, 1] - np.logaddexp(scores[:, 0], scores[:, 2])
+    assert told.log_odds({"mass-error"}, (1,)) == pytest.approx(float(np.mean(odds)), abs=1e-5)
+    classes = library.classes()
+    assert told.classes() == {name: tuple(classes[name]) for name in library.names}
 
 
 def test_the_generator_knows_nothing_of_the_project() -> None:

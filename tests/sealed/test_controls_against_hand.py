@@ -14,7 +14,6 @@ from tests.sealed import answering
 from tests.sealed.__main__ import main
 from tests.sealed.answering import answer_case, still_asked
 from tests.sealed.board import generate, jobs_of
-from tests.sealed.carrying_out import carrier
 from tests.sealed.controls import CONTROLS, at_random
 from tests.sealed.peers import by_bic, largest, sparse, structural
 from tests.sealed.peers.scene import Remainder, Scene, scene
@@ -191,26 +190,6 @@ def test_rows_that_nobody_knows_are_named(null_board: Path) -> None:
     done = CliRunner().invoke(main, ["rows", str(null_board), "--only", "nogap"])
     assert done.exit_code == 2
     assert "no rows nogap" in done.output
-
-
-def test_proposals_meet_one_and_the_same_random_run(
-    null_board: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    told: list[dict[str, object]] = []
-
-    def values(key: Path, runs: list[dict[str, object]]) -> list[float]:
-        told.append(runs[-1])
-        assert key == null_board / "keys" / "case-0001"
-        return [float(run.get("weight_n", 3.0)) for run in runs]  # type: ignore[arg-type]
-
-    monkeypatch.setattr("tests.sealed.generator.worth.values", values)
-    carry_out = carrier(null_board, 1)
-    (mine, random), (none, again) = (
-        carry_out([("case-0001", run)])["case-0001"] for run in ({"weight_n": 7.0}, None)
-    )
-    assert (mine, none) == (7.0, 0.0)
-    assert random == again
-    assert told[0] == told[1]
 
 
 def _said(found: dict[str, dict[str, float]]) -> str:

@@ -160,18 +160,18 @@ def test_a_page_without_scores_is_refused(tmp_path: Path) -> None:
 def test_score_keeps_what_it_may_and_refuses_before_it_scores(docs: Path, tmp_path: Path) -> None:
     board = handmade.write(tmp_path / "board")
     shown = tmp_path / "shown.json"
-    done = _run("score", str(board), "--no-carry-out", "--json", str(shown))
+    done = _run("score", str(board), "--json", str(shown))
     assert done.exit_code == 0
     assert json.loads(shown.read_text())["made_on"]["commit"] == machine.commit()
     toml = board / "board.toml"
     for seed, said in (("7", "for development"), (FIRST, "scored once")):
         toml.write_text(toml.read_text().replace('seed = "7"', f'seed = "{seed}"'))
-        done = _run("score", str(board), "--no-carry-out", "--docs", str(docs))
+        done = _run("score", str(board), "--docs", str(docs))
         assert done.exit_code == 1
         assert said in done.output
     assert len(list((docs / "scores").iterdir())) == 2
     toml.write_text(toml.read_text().replace(FIRST, "c" * 40))
-    assert _run("score", str(board), "--no-carry-out", "--docs", str(docs)).exit_code == 0
+    assert _run("score", str(board), "--docs", str(docs)).exit_code == 0
     assert [one.name for one in all_scores(docs)] == ["aaaaaaa", "000bbbb", "ccccccc"]
     assert "The newest board, ccccccc," in (docs / "scoreboard.md").read_text()
 

@@ -1,23 +1,21 @@
 """Further runs, carried out in a case's own reality."""
 
 import json
-import tomllib
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from tests.sealed.generator.case import Case, make
-from tests.sealed.generator.recordings import write_netcdf
+from tests.sealed.generator.recordings import set_point, write_netcdf
 from tests.sealed.generator.rig import Run
+from tests.sealed.generator.toml import table
 
 # Number of the noise of a further run; those of the campaign count from 0.
 FIRST = 1000
 _KEYS = {
     "oscillation": ("frequency_hz", "eccentricity_m", "strut_phase_rad", "carriage_speed_m_s",
-                    "medium", "preload_n", "periods"),
+                    "medium", "drift_rad", "preload_n", "periods"),
     "rest": (),
     "check-weight": ("weight_n", "strut"),
     "injection": ("frequency_hz", "force_n"),
@@ -58,23 +56,11 @@ def carried_out(case: Case, wanted: Mapping[str, Any], output: Path, number: int
     write_netcdf(output, record, run, case.campaign.rig)
 
 
-def possible(case_toml: Path, rng: np.random.Generator) -> dict[str, Any]:
-    """Return a random further run that the rig of a case can do: the control of a proposal."""
-    rig = tomllib.loads(case_toml.read_text())["rig"]
-    kinds = ["oscillation"] * 6 + list(rig["special"])
-    kind = str(rng.choice(kinds))
-    if kind == "rest":
-        return {"kind": kind}
-    if kind == "check-weight":
-        return {"kind": kind, "weight_n": 50.0, "strut": str(rng.choice(["aft", "fore"]))}
-    frequency = float(rng.uniform(rig["frequency_hz"]["low"], rig["frequency_hz"]["high"]))
-    if kind == "injection":
-        return {"kind": kind, "frequency_hz": frequency, "force_n": 50.0}
-    spans = {name: rig[name] for name in ("eccentricity_m", "carriage_speed_m_s")}
-    drawn = {name: float(rng.uniform(span["low"], span["high"])) for name, span in spans.items()}
-    medium = str(rng.choice(rig["media"]))
-    if medium == "air":
-        drawn["carriage_speed_m_s"] = 0.0
-    phase = float(rng.choice(rig["strut_phase_rad"]))
-    return {"kind": kind, "frequency_hz": frequency, "strut_phase_rad": phase, "medium": medium,
-            **drawn}  # fmt: skip
+def added(case: Case, run: Run, folder: Path, number: int) -> None:
+    """Carry a further run out into a case's folder, and enter it in its campaign file."""
+    named = replace(run, name=f"further-{number}")
+    record = case.recorded(named, FIRST + number)
+    write_netcdf(folder / f"{named.name}.nc", record, named, case.campaign.rig)
+    rows = {"name": named.name, **set_point(named), "periods": named.periods}
+    with (folder / "campaign.toml").open("a") as file:
+        file.write("\n" + table("[[runs]]", rows | {"file": f"{named.name}.nc"}))

@@ -1,22 +1,107 @@
-"""What a further run is worth to a linear matcher: the log-odds of the true class."""
+"""What runs tell a linear matcher of the catalogue's effects, and of what is truly there.
 
-from collections.abc import Mapping, Sequence
+All that matters of a run is the products of its signatures with each other, its own scatter taken
+out: those of several runs are added, and what all runs share is taken out of the sum.
+"""
+
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
+from scipy.special import logsumexp
 
 from tests.sealed.generator.case import Case
-from tests.sealed.generator.ceiling import Library, applicable
+from tests.sealed.generator.ceiling import SAME, VANISHES, applicable
 from tests.sealed.generator.effect import Effect
 from tests.sealed.generator.features import StalledError
-from tests.sealed.generator.further import case_of, parsed
 from tests.sealed.generator.parameters import FloatArray
+from tests.sealed.generator.rig import Run
 from tests.sealed.generator.signatures import Projection, Situation
 
 DRAWS = 300
 Sizes = Sequence[tuple[Effect, float]]
+
+
+def sizes_of(case: Case) -> Sizes:
+    """Return the effects that a case's rig can have, each at a size that stalls no shaft."""
+    known = [effect for effect in case.campaign.effects if applicable(effect, case.campaign)]
+    return [(effect, case.situation.tamed(effect, effect.typical)[0]) for effect in known]
+
+
+@dataclass(frozen=True)
+class Told:
+    """What some runs tell.
+
+    Attributes
+    ----------
+    effects
+        Of the catalogue, in the order of the products.
+    given
+        How many priors all runs share.
+    products
+        Of what a prior's standard deviation changes, of what each effect does, and of what is truly
+        there, ``(given + effects + 1, given + effects + 1)``.
+    """
+
+    effects: tuple[Effect, ...]
+    given: int
+    products: FloatArray
+
+    @classmethod
+    def by(cls, case: Case, runs: Sequence[Run], sizes: Sizes) -> Self:
+        """Return what runs tell of a case."""
+        situation = replace(case.situation, runs=tuple(runs))
+        p = situation.parameters
+        for effect in case.content.effects:
+            p = effect.put(p)
+        known = case.campaign.known
+        shown = [
+            *(situation.of_prior(prior) for prior in known),
+            *(_signature(situation, effect, size) for effect, size in sizes),
+            _gap(situation, p),
+        ]
+        left = Projection.out_of(situation.of_pulses()).left(np.column_stack(shown))
+        return cls(tuple(effect for effect, _ in sizes), len(known), left.T @ left)
+
+    def __add__(self, other: "Told") -> "Told":
+        """Return what both tell."""
+        return replace(self, products=self.products + other.products)
+
+    def classes(self) -> dict[str, tuple[str, ...]]:
+        """Return for each effect that is seen what these runs cannot tell from it, and itself."""
+        seen, _, gram, _ = self._units()
+        names = [self.effects[at].name for at in seen]
+        return {
+            name: tuple(sorted(names[j] for j in np.flatnonzero(np.abs(row) > SAME)))
+            for name, row in zip(names, gram, strict=True)
+        }
+
+    def log_odds(self, right: set[str], seed: Sequence[int]) -> float:
+        """Return the mean log odds of the right effects, each weighed by what it explains."""
+        seen, signed, gram, matched = self._units()
+        root = np.linalg.cholesky(gram + 1e-9 * np.eye(len(seen)))
+        noise = np.random.default_rng(list(seed)).standard_normal((DRAWS, len(seen))) @ root.T
+        products = noise + matched
+        scores = np.where(signed, products, np.maximum(products, 0.0)) ** 2 / 2.0
+        own = np.array([self.effects[at].name in right for at in seen])
+        if own.all() or not own.any():
+            return 0.0
+        return float(
+            np.mean(logsumexp(scores[:, own], axis=1) - logsumexp(scores[:, ~own], axis=1))
+        )
+
+    def _units(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Return which effects are seen, their signs, products of units, and those with truth."""
+        shared, mixed = self.products[: self.given, : self.given], self.products[: self.given]
+        mixed = mixed[:, self.given :]
+        taken = mixed.T @ np.linalg.solve(np.eye(self.given) + shared, mixed)
+        left = self.products[self.given :, self.given :] - taken
+        norms = np.sqrt(np.maximum(np.diagonal(left)[:-1], 0.0))
+        seen = np.flatnonzero(norms > VANISHES)
+        gram = left[np.ix_(seen, seen)] / np.outer(norms[seen], norms[seen])
+        signed = np.array([self.effects[at].signed for at in seen])
+        return seen, signed, gram, left[seen, -1] / norms[seen]
 
 
 def _signature(situation: Situation, effect: Effect, size: float) -> FloatArray:
@@ -26,96 +111,8 @@ def _signature(situation: Situation, effect: Effect, size: float) -> FloatArray:
         return np.zeros_like(situation.base(None))
 
 
-@dataclass(frozen=True)
-class Told:
-    """What some runs tell, nuisances still in it: columns over the runs' features.
-
-    Attributes
-    ----------
-    given
-        Of the priors that all runs share.
-    own
-        Of each run's own scatter.
-    effects
-        Of the catalogue's effects.
-    truth
-        Of what is there.
-    """
-
-    given: FloatArray
-    own: FloatArray
-    effects: FloatArray
-    truth: FloatArray
-
-    @classmethod
-    def by(cls, case: Case, situation: Situation, sizes: Sizes) -> Self:
-        """Return what a situation's runs tell of a case."""
-        p = situation.parameters
-        for effect in case.content.effects:
-            p = effect.put(p)
-        known = case.campaign.known
-        return cls(
-            np.column_stack([situation.of_prior(prior) for prior in known]),
-            situation.of_pulses(),
-            np.column_stack([_signature(situation, effect, size) for effect, size in sizes]),
-            situation.gap(p),
-        )
-
-    def beside(self, other: "Told") -> "Told":
-        """Return what both tell."""
-        own = np.zeros((len(self.own) + len(other.own), self.own.shape[1] + other.own.shape[1]))
-        own[: len(self.own), : self.own.shape[1]] = self.own
-        own[len(self.own) :, self.own.shape[1] :] = other.own
-        return Told(
-            np.vstack([self.given, other.given]),
-            own,
-            np.vstack([self.effects, other.effects]),
-            np.concatenate([self.truth, other.truth]),
-        )
-
-    def log_odds(self, effects: Sequence[Effect], right: set[str], seed: Sequence[int]) -> float:
-        """Return the mean log-odds of the right effects, each weighed by what it explains."""
-        projection = Projection.out_of(np.column_stack([self.given, self.own]))
-        library = Library.out_of(effects, list(self.effects.T), projection)
-        noise = library.noise(np.random.default_rng(list(seed)))[:DRAWS]
-        signature = projection.left(self.truth)
-        scores = library.scores(noise + library.units.T @ signature) / 2.0
-        weights = np.exp(scores - scores.max(axis=1, keepdims=True))
-        weights /= weights.sum(axis=1, keepdims=True)
-        own = weights[:, [name in right for name in library.names]].sum(axis=1)
-        own = np.clip(own, 1e-9, 1.0 - 1e-9)
-        return float(np.mean(np.log(own / (1.0 - own))))
-
-
-def values(key: Path, wanted: Sequence[Mapping[str, Any]]) -> list[float]:
-    """Return by how much each further run alone raises the log-odds of the true class.
-
-    Parameters
-    ----------
-    key
-        Folder of the case's key.
-    wanted
-        Further runs, as docs/sealed.md describes them.
-
-    Raises
-    ------
-    ValueError
-        For a case that no effect of the catalogue is right for: it has no true class.
-    """
-    case = case_of(key)
-    right = {name for answer in case.right for name in answer}
-    if not right:
-        raise ValueError(f"{key.name}: nothing of the catalogue is right, so no run has a worth")
-    effects = [effect for effect in case.campaign.effects if applicable(effect, case.campaign)]
-    sizes = [(e, case.situation.tamed(e, e.typical)[0]) for e in effects]
-    told = Told.by(case, case.situation, sizes)
-    seed = (case.seed, case.index, 4)
-    before = told.log_odds(effects, right, seed)
-    last = case.campaign.runs[-1]
-    runs = [parsed(run, last) for run in wanted]
-    out = []
-    for run in runs:
-        alone = replace(case.situation, runs=(run,))
-        further = told.beside(Told.by(case, alone, sizes))
-        out.append(further.log_odds(effects, right, seed) - before)
-    return out
+def _gap(situation: Situation, p: FloatArray) -> FloatArray:
+    try:
+        return situation.gap(p)
+    except StalledError:
+        return np.zeros_like(situation.base(None))

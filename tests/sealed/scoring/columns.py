@@ -14,7 +14,6 @@ from tests.sealed.scoring.right import best_name, brier, by_class, exactly, is_s
 from tests.sealed.scoring.shrinkage import Shrunk
 
 CLEAR: Final = 10.0  # sigma left of each member of a pair, its rivals taken out
-TIE: Final = 0.01  # log-odds within which two runs are worth the same
 TIE_SHARE: Final = 0.01  # of a gap, within which two answers shrink it alike
 
 
@@ -28,16 +27,12 @@ class Entry:
         True gaps on the withheld runs; ``None`` where nothing is foretold or can shrink.
     own_share
         True shrinkage from the answer's own gap before, which its interval speaks of.
-    gains
-        Log-odds of the true class that the proposed run adds, and a random one; ``None`` where
-        they were not carried out.
     """
 
     answer: Answer
     truth: Truth
     shrunk: Shrunk | None = None
     own_share: float | None = None
-    gains: tuple[float, float] | None = None
 
     @property
     def has_gap(self) -> bool:
@@ -148,15 +143,6 @@ def _ahead(part: Callable[[Shrunk], float | None]) -> Values:
     return ahead
 
 
-def _won(twins: bool) -> Values:
-    def won(entry: Entry) -> Iterable[float]:
-        if entry.gains is not None and (entry.truth.kind == "twin") is twins:
-            ahead = entry.gains[0] - entry.gains[1]
-            yield 0.5 if abs(ahead) < TIE else float(ahead > 0.0)
-
-    return won
-
-
 def _seconds(entry: Entry) -> Iterable[float]:
     if entry.answer.seconds is not None:
         yield entry.answer.seconds
@@ -216,8 +202,6 @@ COLUMNS: Final = (
     Column("brier", "Brier", lambda e: (brier(e.answer, e.truth),), mean, falls=True),
     Column("magnitudes", "magnitudes covered", _magnitudes),
     Column("shrinkage_covered", "shrinkage covered", _covered),
-    Column("next_run", "next run beats random", _won(twins=False)),
-    Column("next_run_twins", "the same, twins", _won(twins=True)),
     Column("separates_twins", "next run tells twins apart",
            _when(lambda e: e.truth.kind == "twin", _separates)),
     Column("seconds", "processor time (s)", _seconds, median, falls=True),
