@@ -24,7 +24,7 @@ from sim.drive.prescribed_drive import ConstantSpeedDrive, DriveSettings
 from sim.gauges.dynamometer import Dynamometer, Dynamometers
 from sim.mechanism.command import Command
 from sim.mechanism.linkage import Mechanism, Setting
-from sim.model.attitude import Attitude, Squat
+from sim.model.attitude import PositionSensors, Squat
 from sim.model.heel import Heeling
 from sim.model.heel_terms import HeelTerms
 from sim.model.hull import Hull, HullCoefficients
@@ -203,7 +203,7 @@ class SimulatedRig:
         if self.attitude is None or not self._positions:
             return ()
         squat = self.squat if hull.afloat else None
-        return (Attitude(self.attitude, squat or Squat(), hull),)
+        return (PositionSensors(self.attitude, squat or Squat(), hull),)
 
     def _check_heel(self, set_point: SetPoint) -> None:
         faults = []

@@ -18,7 +18,7 @@ from analysis.kinematics.body_frame import CHANNELS, HEEL, ROLL_MOMENT, UNIT_OF,
 from analysis.kinematics.complex_step import by_parts, pointwise
 from analysis.kinematics.cycle import driven, harmonics, per_part, waves
 from analysis.kinematics.geometry import Geometry, Waves
-from analysis.kinematics.motion import Driven
+from analysis.kinematics.motion import DrivenDisplacements
 from hardware.description.arrays import ComplexArray, FloatArray
 
 _AFT, _FORE = 0, 1
@@ -107,7 +107,7 @@ def of_struts(
     sensitivity[:, STATED.index("frequency_relative")] += harmonics(faster.sum(axis=1), orders)
     moved = _moved(harmonics_of_body.reshape(orders + 1, len(names), 2), geometry, omega)
     sensitivity[:, STATED.index("midpoint_x_m")] += moved.ravel()
-    moving = Driven(inputs[0:2], inputs[2:4], inputs[4:6])
+    moving = DrivenDisplacements(inputs[0:2], inputs[2:4], inputs[4:6])
     gauges = channels - 2 - len(roll)
     return InBodyAxes(phasors, sensitivity, Tare.of(geometry, moving, gauges))
 
@@ -155,7 +155,7 @@ def _given(geometry: Geometry) -> tuple[float, ...]:
 def _model(geometry: Geometry, waves: Waves, rolling: int) -> Waves:
     half, speed, drift = (waves[..., -3 + k, :] for k in range(3))
     exact = replace(geometry, half_spacing_m=half, speed_m_s=speed, drift_rad=drift)
-    driven = Driven(waves[..., 0:2, :], waves[..., 2:4, :], waves[..., 4:6, :])
+    driven = DrivenDisplacements(waves[..., 0:2, :], waves[..., 2:4, :], waves[..., 4:6, :])
     readings = waves[..., 6:-3, :]
     return in_body_axes(exact, driven, *_split(readings, readings.shape[-2] - rolling))
 

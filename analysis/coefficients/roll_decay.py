@@ -15,8 +15,9 @@ import numpy as np
 
 from analysis.coefficients.campaign_records import ROLL_DECAY, CoefficientEntry
 from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
+from analysis.kinematics.complex_step import pointwise
+from analysis.kinematics.geometry import Waves
 from analysis.uncertainty.values import Contribution, UncertainValues, stacked
-from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.heel import Heel
@@ -114,14 +115,14 @@ def _of_decay(
     flow = coefficients.uncertain.taken(rows[:1])
     k_phi = float(flow.values[0]) if rows else 0.0
 
-    def found(inputs: FloatArray) -> FloatArray:
-        period, ratio, metacentric, inertia, of_flow = inputs
+    def damping_and_added(inputs: Waves) -> Waves:
+        period, ratio, metacentric, inertia, of_flow = np.moveaxis(inputs, -2, 0)
         omega = 2.0 * np.pi / (period * np.sqrt(1.0 - ratio**2))
         stiff = per_metre * metacentric - of_flow
-        return np.array([-2.0 * ratio * stiff / omega, inertia - stiff / omega**2])
+        return np.stack([-2.0 * ratio * stiff / omega, inertia - stiff / omega**2], axis=-2)
 
     at = np.array([decay.period_s, decay.damping_ratio, heel.gm_m, heel.inertia_kg_m2, k_phi])
-    slopes = np.stack([found(at + 1e-30j * one).imag / 1e-30 for one in np.eye(len(at))], axis=1)
+    values, slopes = (one[..., 0] for one in pointwise(damping_and_added, at[:, np.newaxis]))
     stated = {
         f"period of the roll decay at {decay.speed_m_s:g} m/s": (
             decay.u_period_s,
@@ -143,4 +144,4 @@ def _of_decay(
     contributions += [
         replace(one, rows=both, parts=slopes[:, [-1]] @ one.dense(1)) for one in flow.contributions
     ]
-    return UncertainValues(found(at), tuple(contributions))
+    return UncertainValues(values, tuple(contributions))

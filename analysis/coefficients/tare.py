@@ -11,7 +11,7 @@ import numpy as np
 
 from analysis.kinematics.cycle import INSTANTS
 from analysis.kinematics.geometry import Geometry
-from analysis.kinematics.motion import Driven, motion
+from analysis.kinematics.motion import DrivenDisplacements, motion
 from analysis.kinematics.projection import ROWS, check_surge_spared, load_matrix
 from hardware.description.arrays import FloatArray
 
@@ -37,10 +37,10 @@ class Tare:
     of_load: FloatArray = field(default_factory=_unturned)
 
     @classmethod
-    def of(cls, geometry: Geometry, moved: Driven, gauges: int) -> "Tare":
+    def of(cls, geometry: Geometry, moved: DrivenDisplacements, gauges: int) -> "Tare":
         """Return that of a rig which moves so, with or without the X gauge (3 or 2)."""
         still = np.zeros((*np.shape(geometry.drift_rad)[:-1], 2, 1))
-        there = motion(geometry, Driven(still, still, still))
+        there = motion(geometry, DrivenDisplacements(still, still, still))
         line = motion(geometry, moved).line_rad
         if gauges < len(ROWS):
             check_surge_spared(geometry)

@@ -13,7 +13,7 @@ from analysis.comparison.fit import ComparisonFit, fit
 from analysis.comparison.linear import ComparisonProblem, Model, NothingInCommonError
 from analysis.comparison.result import ChannelComparison
 from analysis.comparison.settings import ComparisonSettings
-from analysis.comparison.told import FittedComparison, Signal, told
+from analysis.comparison.told import ComparedSignal, FittedComparison, told
 from analysis.comparison.warp import Warped
 from analysis.recording import Recording
 from hardware.description.arrays import FloatArray
@@ -70,7 +70,7 @@ def compare(
     return told(found, leading, following, settings)
 
 
-def _signal(recording: Recording, name: str, from_s: float, to_s: float) -> Signal:
+def _signal(recording: Recording, name: str, from_s: float, to_s: float) -> ComparedSignal:
     """Return the longest stretch of a channel without missing samples."""
     recording.check_even("a comparison of two channels")
     part = recording.between(max(from_s, recording.start_s), min(to_s, recording.end_s))
@@ -81,7 +81,7 @@ def _signal(recording: Recording, name: str, from_s: float, to_s: float) -> Sign
     if not moving.size or np.ptp(moving) <= _ROUNDING * np.abs(moving).max():
         raise DataError(f"{called} does not move, so that nothing can be compared with it")
     if not missing.any():
-        return Signal(called, without_line(values), part.sample_rate_hz, part.start_s, unit)
+        return ComparedSignal(called, without_line(values), part.sample_rate_hz, part.start_s, unit)
     bounds = np.flatnonzero(np.concatenate(([True], missing, [True])))
     longest = int(np.argmax(np.diff(bounds)))
     start, stop = int(bounds[longest]), int(bounds[longest + 1]) - 1
@@ -92,16 +92,21 @@ def _signal(recording: Recording, name: str, from_s: float, to_s: float) -> Sign
     )
     flags = (Flag("longest_stretch", Severity.WARNING, message, name),)
     kept = without_line(values[start:stop])
-    return Signal(called, kept, part.sample_rate_hz, float(start_s), unit, flags)
+    return ComparedSignal(called, kept, part.sample_rate_hz, float(start_s), unit, flags)
 
 
-def _most_lag(leading: Signal, following: Signal, settings: ComparisonSettings) -> float:
+def _most_lag(
+    leading: ComparedSignal, following: ComparedSignal, settings: ComparisonSettings
+) -> float:
     shorter_s = min(len(one.values) / one.rate_hz for one in (leading, following))
     return settings.most_lag_s or min(_MOST_LAG_S, shorter_s / 4.0)
 
 
 def _problem(
-    leading: list[Signal], following: Signal, settings: ComparisonSettings, most_lag_s: float
+    leading: list[ComparedSignal],
+    following: ComparedSignal,
+    settings: ComparisonSettings,
+    most_lag_s: float,
 ) -> ComparisonProblem:
     one = leading[0]
     ends_s = [a.start_s + len(a.values) / a.rate_hz + most_lag_s for a in (one, following)]

@@ -22,7 +22,7 @@ _WRONG_ORDER: Final = 0.7  # power of the frequency with which a gain grows: ano
 
 
 @dataclass(frozen=True)
-class Signal:
+class ComparedSignal:
     """A channel's samples without gaps, without their mean and slope."""
 
     name: str
@@ -46,8 +46,8 @@ class FittedComparison:
 
 def told(
     found: FittedComparison,
-    leading: Sequence[Signal],
-    following: Signal,
+    leading: Sequence[ComparedSignal],
+    following: ComparedSignal,
     settings: ComparisonSettings,
 ) -> ChannelComparison:
     """Return the comparison; intervals are widened where parts scatter more than they should."""

@@ -3,7 +3,7 @@
 import numpy as np
 
 from analysis.kinematics.geometry import Geometry, Waves
-from analysis.kinematics.motion import Driven, motion
+from analysis.kinematics.motion import DrivenDisplacements, motion
 from analysis.kinematics.projection import loads
 
 CHANNELS = ("translation", "rotation", "ahead", "across", "force", "moment", "surge_force")
@@ -16,7 +16,7 @@ LOADS = ("force", "moment", "surge_force", ROLL_MOMENT)
 
 
 def in_body_axes(
-    geometry: Geometry, driven: Driven, readings: Waves, roll: Waves | None = None
+    geometry: Geometry, driven: DrivenDisplacements, readings: Waves, roll: Waves | None = None
 ) -> Waves:
     """Return motion and loads of the model about its reference point.
 

@@ -11,7 +11,7 @@ from functools import lru_cache
 import numpy as np
 
 from analysis.kinematics.geometry import Waves
-from analysis.kinematics.motion import Driven
+from analysis.kinematics.motion import DrivenDisplacements
 from hardware.description.arrays import FloatArray
 
 INSTANTS = 64  # |v|v folds back 1e-5 of itself, what is smooth nothing at 30 degrees
@@ -34,11 +34,11 @@ def waves(parts: Waves, channels: int, times: int = 0) -> Waves:
     return np.asarray(by_channel @ basis(shaped.shape[-3], times))
 
 
-def driven(parts: Waves, omega: Waves | float) -> Driven:
+def driven(parts: Waves, omega: Waves | float) -> DrivenDisplacements:
     """Return what two channels of displacements drive; ``omega`` of shape ``(...)``."""
     speed = np.asarray(omega)[..., None, None]
     value, rate, acceleration = (waves(parts, 2, n) * speed**n for n in range(3))
-    return Driven(value, rate, acceleration)
+    return DrivenDisplacements(value, rate, acceleration)
 
 
 def harmonics(over: Waves, orders: int) -> Waves:

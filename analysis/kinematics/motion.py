@@ -20,7 +20,7 @@ from hardware.description.errors import DataError
 
 
 @dataclass(frozen=True, eq=False)
-class Driven:
+class DrivenDisplacements:
     """Displacements that the rig drives: of the aft and fore strut, m; or of a turntable, m, rad.
 
     Arrays of shape ``(..., 2, instants)``: displacements about the positions that the drift sets,
@@ -56,7 +56,7 @@ class MotionWaves:
     rate: Waves
 
 
-def motion(geometry: Geometry, driven: Driven) -> MotionWaves:
+def motion(geometry: Geometry, driven: DrivenDisplacements) -> MotionWaves:
     """Return the model's motion in body axes.
 
     Raises
@@ -84,7 +84,7 @@ def motion(geometry: Geometry, driven: Driven) -> MotionWaves:
     )
 
 
-def _line(geometry: Geometry, driven: Driven) -> tuple[Waves, Waves, Waves]:
+def _line(geometry: Geometry, driven: DrivenDisplacements) -> tuple[Waves, Waves, Waves]:
     """Angle of the struts' line in the rig with its first and second derivative."""
     if geometry.has_table:
         set_to = geometry.turned(DriftBy.STRUTS_OFFSET)
@@ -110,7 +110,7 @@ def _line(geometry: Geometry, driven: Driven) -> tuple[Waves, Waves, Waves]:
 
 
 def _reference_point(
-    geometry: Geometry, driven: Driven, line: Waves, turning: Waves, bending: Waves
+    geometry: Geometry, driven: DrivenDisplacements, line: Waves, turning: Waves, bending: Waves
 ) -> tuple[Waves, tuple[Waves, Waves], tuple[Waves, Waves]]:
     """Its place across the rig, its velocity and its acceleration, ahead and across."""
     if geometry.has_table:
@@ -136,7 +136,7 @@ def _across_tank(geometry: Geometry, ahead: Waves, across: Waves) -> Waves:
     return np.asarray(ahead * np.sin(rig) + across * np.cos(rig))
 
 
-def _ends(driven: Driven, index: int) -> tuple[Waves, Waves, Waves]:
+def _ends(driven: DrivenDisplacements, index: int) -> tuple[Waves, Waves, Waves]:
     return (
         driven.value[..., index, :],
         driven.rate[..., index, :],

@@ -17,7 +17,7 @@ from sim.acquisition.channels import Digitiser
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.benches import decay_bench
 from sim.pendulum.coordinates import HEAVE
-from sim.pendulum.driven import Driven, PeriodicForce
+from sim.pendulum.driven import DrivenBody, PeriodicForce
 from sim.pendulum.record import record
 from sim.pendulum.resistance import Resistance
 from sim.pendulum.sensors import Sensor
@@ -35,7 +35,7 @@ def bench(frequency_hz: float) -> PendulumBench:
     """Return a body of 50 kg that moves 20 kg of water, on springs of 1 kN/m."""
     force = PeriodicForce(2.0 * math.pi * frequency_hz, (FORCE_N,))
     resistance = Resistance(viscous=60.0, coulomb=FRICTION_N)
-    body = Driven(50.0, 20.0, 1000.0, resistance, HEAVE, force)
+    body = DrivenBody(50.0, 20.0, 1000.0, resistance, HEAVE, force)
     accelerometer = Sensor(Channel("acceleration", "m/s2"), ((HEAVE.acceleration, 1.0),))
     seen = decay_bench(body, release=0.0)
     return replace(

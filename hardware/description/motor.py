@@ -5,9 +5,9 @@ is fed forward (voltage for the back-EMF of a shunt motor), so that without load
 speed nothing deviates. Load is what the struts ask, and what the inertia asks during a ramp.
 """
 
-from collections.abc import Hashable
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Final, Protocol
+from typing import Final
 
 import numpy as np
 
@@ -57,42 +57,12 @@ class Guides:
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
 
-class Motor(Hashable, Protocol):
-    """What every motor states for the drive."""
-
-    @property
-    def cogging(self) -> tuple[Cogging, ...]:
-        """Torques that vary with the angle."""
-        ...
-
-    @property
-    def guides(self) -> Guides:
-        """Friction of the struts' guides."""
-        ...
-
-    @property
-    def shaft_inertia_kg_m2(self) -> float:
-        """Of motor and gear, at the crank shaft."""
-        ...
-
-    def plant(self, added_inertia_kg_m2: float) -> tuple[FloatArray, FloatArray]:
-        """Return A and B of the states (speed, current) under (command, load torque)."""
-        ...
-
-    @property
-    def loop(self) -> SpeedLoop:
-        """The speed controller."""
-        ...
-
-
 @dataclass(frozen=True)
-class ShuntMotor:
-    """A direct-current shunt motor at constant field, with a gear; 1 hp by default.
+class Motor(ABC):
+    """A motor with its gear and its speed loop.
 
     Attributes
     ----------
-    resistance_ohm, inductance_h, constant_v_s
-        Of the armature; volts per rad/s and newton metres per ampere are the same number.
     inertia_kg_m2
         Of the rotor, at the motor.
     gear_ratio
@@ -100,15 +70,16 @@ class ShuntMotor:
     gear_inertia_kg_m2, bearing_n_m_s
         Flywheel, gear and viscous bearings, at the crank.
     loop
-        Nothing by default: the motor runs at its voltage and slows down under load.
+        The speed controller; all zero where the motor runs at what is fed forward.
+    cogging
+        Torques that vary with the shaft's angle.
+    guides
+        Friction of the struts' guides.
     """
 
-    resistance_ohm: float = 2.5
-    inductance_h: float = 0.02
-    constant_v_s: float = 1.1
-    inertia_kg_m2: float = 0.012
+    inertia_kg_m2: float
     gear_ratio: float = 20.0
-    gear_inertia_kg_m2: float = 0.5
+    gear_inertia_kg_m2: float = 0.0
     bearing_n_m_s: float = 0.0
     loop: SpeedLoop = SpeedLoop()
     cogging: tuple[Cogging, ...] = ()
@@ -122,20 +93,49 @@ class ShuntMotor:
         return self.inertia_kg_m2 * self.gear_ratio**2 + self.gear_inertia_kg_m2
 
     def plant(self, added_inertia_kg_m2: float) -> tuple[FloatArray, FloatArray]:
-        """Return A and B of the states (speed, current) under (voltage, load torque)."""
+        """Return A and B of the states (speed, current) under (command, load torque)."""
         inertia = self.shaft_inertia_kg_m2 + added_inertia_kg_m2
-        constant = self.constant_v_s * self.gear_ratio
-        resistance, inductance = self.resistance_ohm, self.inductance_h
+        torque, by_speed, by_current, by_command = self._electric()
         A = [
-            [-self.bearing_n_m_s / inertia, constant / inertia],
-            [-constant / inductance, -resistance / inductance],
+            [-self.bearing_n_m_s / inertia, torque * self.gear_ratio / inertia],
+            [by_speed * self.gear_ratio, by_current],
         ]
-        return np.array(A), np.array([[0.0, -1.0 / inertia], [1.0 / inductance, 0.0]])
+        return np.array(A), np.array([[0.0, -1.0 / inertia], [by_command, 0.0]])
+
+    @abstractmethod
+    def _electric(self) -> tuple[float, float, float, float]:
+        """Return torque per ampere, and what speed, current and command add to the current.
+
+        Torque and speed are the motor's own; the last three are rates, per second.
+        """
 
 
 @dataclass(frozen=True)
-class Servo:
-    """A servo motor with a current loop of its own, and a gear.
+class ShuntMotor(Motor):
+    """A direct-current shunt motor at constant field, with a gear; 1 hp by default.
+
+    Its command is a voltage. Without gains it runs at its voltage and slows down under load.
+
+    Attributes
+    ----------
+    resistance_ohm, inductance_h, constant_v_s
+        Of the armature; volts per rad/s and newton metres per ampere are the same number.
+    """
+
+    inertia_kg_m2: float = 0.012
+    gear_inertia_kg_m2: float = 0.5
+    resistance_ohm: float = 2.5
+    inductance_h: float = 0.02
+    constant_v_s: float = 1.1
+
+    def _electric(self) -> tuple[float, float, float, float]:
+        own = self.inductance_h
+        return self.constant_v_s, -self.constant_v_s / own, -self.resistance_ohm / own, 1.0 / own
+
+
+@dataclass(frozen=True)
+class Servo(Motor):
+    """A servo motor with a current loop of its own, and a gear; its command is a current.
 
     Attributes
     ----------
@@ -145,27 +145,12 @@ class Servo:
         Bandwidth of the current loop, a first-order lag.
     """
 
+    inertia_kg_m2: float = 0.002
+    gear_inertia_kg_m2: float = 0.2
+    loop: SpeedLoop = SpeedLoop(proportional=2.0, integral=10.0)
     constant_n_m_a: float = 0.8
     current_loop_hz: float = 200.0
-    inertia_kg_m2: float = 0.002
-    gear_ratio: float = 20.0
-    gear_inertia_kg_m2: float = 0.2
-    bearing_n_m_s: float = 0.0
-    loop: SpeedLoop = SpeedLoop(proportional=2.0, integral=10.0)
-    cogging: tuple[Cogging, ...] = ()
-    guides: Guides = Guides()
 
-    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
-
-    @property
-    def shaft_inertia_kg_m2(self) -> float:
-        """Of motor and gear, at the crank shaft."""
-        return self.inertia_kg_m2 * self.gear_ratio**2 + self.gear_inertia_kg_m2
-
-    def plant(self, added_inertia_kg_m2: float) -> tuple[FloatArray, FloatArray]:
-        """Return A and B of the states (speed, current) under (current command, load torque)."""
-        inertia = self.shaft_inertia_kg_m2 + added_inertia_kg_m2
+    def _electric(self) -> tuple[float, float, float, float]:
         rate = 2.0 * np.pi * self.current_loop_hz
-        constant = self.constant_n_m_a * self.gear_ratio
-        A = [[-self.bearing_n_m_s / inertia, constant / inertia], [0.0, -rate]]
-        return np.array(A), np.array([[0.0, -1.0 / inertia], [rate, 0.0]])
+        return self.constant_n_m_a, 0.0, -rate, rate

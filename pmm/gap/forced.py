@@ -23,7 +23,7 @@ from pmm.gap.pendulum_file import ForcedTable, OverFrequency, PendulumCase, Reco
 from sim.acquisition.channels import Digitiser
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.coordinates import HEAVE, ROLL
-from sim.pendulum.driven import Driven
+from sim.pendulum.driven import DrivenBody
 from sim.pendulum.floating import Floating
 from sim.pendulum.release import Release
 from sim.pendulum.sensors import Sensor
@@ -108,7 +108,7 @@ def _seen(one: ForcedTable, body: Floating, force: KnownForce, seen: _Gate) -> D
             f"run {one.name!r}: channel {seen.name!r} is in {seen.unit}; a motion is a "
             "displacement, a rate or an acceleration, in m or rad: choose another channel"
         )
-    driven = Driven(
+    driven = DrivenBody(
         body.inertia, body.added_inertia, body.restoring, body.resistance, coordinate,
         force.harmonics,
     )  # fmt: skip

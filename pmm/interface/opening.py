@@ -7,7 +7,7 @@ from pathlib import Path
 
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.file_names import CAMPAIGN_FILE
-from pmm.interface.records import Kind, Records
+from pmm.interface.records import RecordKind, Records
 
 
 def open(path: str | Path) -> Records:  # noqa: A001
@@ -32,10 +32,10 @@ def open(path: str | Path) -> Records:  # noqa: A001
             raise ConfigurationError(
                 f"{path}: a folder without a {CAMPAIGN_FILE}; open one of its recordings"
             )
-        return Records(path, Kind.CAMPAIGN)
+        return Records(path, RecordKind.CAMPAIGN)
     if path.suffix != ".toml":
-        return Records(path, Kind.RECORDING)
-    return Records(path, Kind.CAMPAIGN if _is_campaign(path) else Kind.PENDULUM)
+        return Records(path, RecordKind.RECORDING)
+    return Records(path, RecordKind.CAMPAIGN if _is_campaign(path) else RecordKind.PENDULUM)
 
 
 def _is_campaign(path: Path) -> bool:
@@ -94,4 +94,4 @@ def simulate(
         overwrite=overwrite,
     )
     planned.carry_out()
-    return Records(planned.folder, Kind.CAMPAIGN)
+    return Records(planned.folder, RecordKind.CAMPAIGN)

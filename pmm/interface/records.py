@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 Job: TypeAlias = Literal["swing", "bifilar", "pendulum", "incline", "combine", "ballast", "plan"]
 
 
-class Kind(StrEnum):
+class RecordKind(StrEnum):
     """What a path is."""
 
     RECORDING = "a recording"
@@ -32,9 +32,9 @@ class Records:
     """A recording, the recordings of a campaign, or those of a pendulum test."""
 
     path: Path
-    kind: Kind
+    kind: RecordKind
 
-    def _require(self, *kinds: Kind) -> None:
+    def _require(self, *kinds: RecordKind) -> None:
         if self.kind not in kinds:
             raise ConfigurationError(
                 f"{self.path}: this is {self.kind}, and what you ask is told by "
@@ -102,7 +102,7 @@ class Records:
         """
         from pmm.interface.harmonics import harmonics_of
 
-        self._require(Kind.RECORDING, Kind.CAMPAIGN)
+        self._require(RecordKind.RECORDING, RecordKind.CAMPAIGN)
         request = HarmonicsRequest(
             reference=reference,
             frequency=frequency_hz,
@@ -172,7 +172,7 @@ class Records:
         from pmm.coefficients.request import campaign_folder
         from pmm.interface.coefficients import campaign_coefficients
 
-        self._require(Kind.CAMPAIGN)
+        self._require(RecordKind.CAMPAIGN)
         options: dict[str, Any] = {
             "settings": settings,
             "form": form,
@@ -220,7 +220,7 @@ class Records:
         from pmm.gap.examination import Options
         from pmm.interface.gap import campaign_gap
 
-        self._require(Kind.CAMPAIGN)
+        self._require(RecordKind.CAMPAIGN)
         options = Options(tuple(effects), tuple(without), tuple(sensors), tuple(hold_out))
         return campaign_gap(self.path, options, jobs)
 
@@ -240,5 +240,5 @@ class Records:
         from pmm.inertia.jobs import do_job
         from pmm.interface.inertia import InertiaResult
 
-        self._require(Kind.PENDULUM)
+        self._require(RecordKind.PENDULUM)
         return InertiaResult(do_job(job, str(self.path)))

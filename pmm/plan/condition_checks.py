@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from analysis.kinematics.geometry import Geometry
-from analysis.kinematics.motion import Driven, MotionWaves, motion
+from analysis.kinematics.motion import DrivenDisplacements, MotionWaves, motion
 from analysis.water import Water, froude_number, reynolds_number
 from hardware.description import kinds
 from hardware.description.oscillator import Plane
@@ -77,7 +77,7 @@ def motion_of(run: RunPlan, rig: RigFile) -> MotionWaves:
     angle = np.linspace(0.0, 2.0 * math.pi, _INSTANTS, endpoint=False)
     struts = np.stack((angle, angle + point.strut_phase_rad))
     wave, slope = point.eccentricity_m * np.sin(struts), point.eccentricity_m * np.cos(struts)
-    driven = Driven(wave, omega * slope, -(omega**2) * wave)
+    driven = DrivenDisplacements(wave, omega * slope, -(omega**2) * wave)
     return motion(Geometry.of(rig.oscillator, run.set_point), driven)
 
 

@@ -17,7 +17,7 @@ from pmm.plan.shaft_load import ShaftLoad, motor_of, shaft_load
 
 
 @dataclass(frozen=True)
-class Setting:
+class LoopSetting:
     """A setting of the loop, by its name: ``"stated"``, ``"found"``, ``"proposed"``."""
 
     name: str
@@ -48,7 +48,7 @@ class Tuning:
         Probability of the intervals.
     """
 
-    settings: tuple[Setting, ...]
+    settings: tuple[LoopSetting, ...]
     unit: str
     record: SpeedRecord | None = None
     found: IdentifiedLoop | None = None
@@ -114,7 +114,7 @@ def tuned(
         RunRipple(name, tuple(_ripple(loop, load, run) for loop in loops.values()))
         for name, (run, load) in loads.items()
     ]
-    named = tuple(Setting(name, loop) for name, loop in loops.items())
+    named = tuple(LoopSetting(name, loop) for name, loop in loops.items())
     unit = "A s/rad and A/rad" if isinstance(stated.motor, Servo) else "V s/rad and V/rad"
     return Tuning(named, unit, record, found, ripples)
 

@@ -20,7 +20,7 @@ from pmm.document.content import (
     word,
 )
 from pmm.document.notation import rounded, written
-from pmm.plan.tuning import RunRipple, Setting, Tuning
+from pmm.plan.tuning import LoopSetting, RunRipple, Tuning
 from pmm.report.devices_document import SCHEMA
 from pmm.report.tune_figure import bode_figure, record_figure, step_figure
 
@@ -38,11 +38,11 @@ class _Number:
 
 def _of(
     heading: str, key: str, value: Callable[[ShaftLoop], float], unit: str = ""
-) -> Column[Setting]:
+) -> Column[LoopSetting]:
     return Column(heading, lambda one: value(one.loop), key, written(".4g"), unit, number=True)
 
 
-_SETTINGS: Final[tuple[Column[Setting], ...]] = (
+_SETTINGS: Final[tuple[Column[LoopSetting], ...]] = (
     word("gains", "name"),
     _of("proportional", "proportional", lambda loop: loop.controller.proportional),
     _of("integral", "integral", lambda loop: loop.controller.integral),

@@ -17,7 +17,7 @@ _HANGS_UP: Final = ("SIGHUP",)  # a terminal that is closed; twice by the shell 
 _HALTS: Final = ("SIGTSTP", "SIGTTIN", "SIGTTOU")
 
 
-class Answers:
+class OperatorAnswers:
     """Answers to questions, line by line, without ever waiting for one.
 
     The lines are read in a thread of their own, from the first question on.
@@ -115,6 +115,6 @@ def _known(names: Sequence[str]) -> list[signal.Signals]:
     return [signal.Signals[name] for name in names if name in signal.Signals.__members__]
 
 
-def standard_input() -> Answers:
+def standard_input() -> OperatorAnswers:
     """Return the answers that are typed in or piped."""
-    return Answers(sys.stdin)
+    return OperatorAnswers(sys.stdin)

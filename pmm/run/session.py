@@ -31,7 +31,7 @@ from pmm.run.campaign_folder import (
     kept_runs,
 )
 from pmm.run.journal import Taps
-from pmm.run.operator import Answers, Interrupts
+from pmm.run.operator import Interrupts, OperatorAnswers
 from pmm.run.recorder_factory import RecorderFactory, utc_now
 from pmm.run.rehearsal import rehearse
 from pmm.run.run_control import RunControl
@@ -138,7 +138,7 @@ def carry_out(
     job: RunJob,
     view: Callable[[Ask], AbstractContextManager[View]],
     tell: Callable[[str], object],
-    answers: Answers,
+    answers: OperatorAnswers,
     course: Course = _NOTHING_FOLLOWS,
 ) -> RunReport:
     """Run the loop until all runs are made, Ctrl-C ends it, or a fault does.
@@ -205,7 +205,7 @@ class _Loop:
 
     control: RunControl
     rig: Rig
-    answers: Answers
+    answers: OperatorAnswers
     interrupts: Interrupts
     executor: Executor | None
     _written: int = 0

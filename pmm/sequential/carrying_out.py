@@ -18,7 +18,7 @@ from pmm.plan.rig_file import is_simulated
 from pmm.real_time import step_back
 from pmm.recorder.campaign_owner import own_campaign
 from pmm.run.campaign_folder import finished_runs, keep_sources
-from pmm.run.operator import Answers
+from pmm.run.operator import OperatorAnswers
 from pmm.run.session import Ask, RunFailedError, RunJob, RunReport, carry_out, run_job
 from pmm.run.view import View
 from pmm.sequential.approval import approval_of
@@ -85,7 +85,7 @@ def campaign_folder(asked: CampaignRequest, file: DesignFile) -> Path:
 
 
 def carry_out_campaign(
-    file: DesignFile, asked: CampaignRequest, screen: Screen, answers: Answers
+    file: DesignFile, asked: CampaignRequest, screen: Screen, answers: OperatorAnswers
 ) -> MadeCampaign:
     """Make run after run until the design's targets are met, or nothing more is to be made.
 
@@ -194,7 +194,7 @@ def _told(jobs: Iterator[RunJob | None], tell: Callable[[RunJob], None]) -> Iter
 
 
 def _first(
-    jobs: Iterator[RunJob | None], answers: Answers, tell: Callable[[str], object]
+    jobs: Iterator[RunJob | None], answers: OperatorAnswers, tell: Callable[[str], object]
 ) -> RunJob | None:
     """Return the first job, before the rig is opened; ``None`` where nothing is to be made."""
     asked = ""

@@ -44,7 +44,7 @@ _EVEN: Final = 0.2  # of its mean: a carriage's speed keeps within
 _SWINGS: Final = 0.5  # share of the variance in the line: what oscillates is no carriage's speed
 
 
-class Evidence(NamedTuple):
+class RoleEvidence(NamedTuple):
     """One reason for or against a role, with its power of ten."""
 
     odds: float
@@ -147,7 +147,7 @@ def _total(odds: FloatArray, given: Mapping[int, int]) -> float:
     return float(sum(odds[row, kind] for row, kind in given.items()))
 
 
-def _doubt(reasons: Sequence[Evidence], instead: Sequence[str]) -> str:
+def _doubt(reasons: Sequence[RoleEvidence], instead: Sequence[str]) -> str:
     if instead:
         return f"{' and '.join(instead)} may be it as well"
     against = [reason.said for reason in reasons if reason.odds < 0.0]
@@ -158,16 +158,16 @@ def _doubt(reasons: Sequence[Evidence], instead: Sequence[str]) -> str:
 
 def _reasons(
     column: str, kind: ChannelKind, telling: Sequence[RecordingBehaviour]
-) -> Iterator[Evidence]:
+) -> Iterator[RoleEvidence]:
     """Yield what speaks for a role and against it; what a column does, in most recordings."""
     seen = [(one, one.columns[column]) for one in telling if column in one.columns]
     if len(seen) < len(telling):
-        yield Evidence(_AGAINST, "it is not in every recording")
+        yield RoleEvidence(_AGAINST, "it is not in every recording")
     unit = seen[0][1].unit
     if unit not in ("", *kind.units):
-        yield Evidence(-np.inf, f"it is in {unit}")
+        yield RoleEvidence(-np.inf, f"it is in {unit}")
     elif unit and kind is not PULSES:
-        yield Evidence(_UNIT, f"its unit is {unit}")
+        yield RoleEvidence(_UNIT, f"its unit is {unit}")
     yield from _of_name(column, kind, telling)
     if kind in BY_NAME:
         return
@@ -177,77 +177,81 @@ def _reasons(
 
 def _of_name(
     column: str, kind: ChannelKind, telling: Sequence[RecordingBehaviour]
-) -> Iterator[Evidence]:
+) -> Iterator[RoleEvidence]:
     if column in CHANNELS:  # our own name says it, and no other
         own = column.startswith(kind.name) and (column == FORCE_X.name) == (kind is ALONG)
-        yield Evidence(SURE if own else -np.inf, "its name is that of the channel")
+        yield RoleEvidence(SURE if own else -np.inf, "its name is that of the channel")
         return
     if kind in BY_NAME:
         says = words.says(column, kind.words)
-        yield Evidence(_NAME if says else -np.inf, "its name")
+        yield RoleEvidence(_NAME if says else -np.inf, "its name")
         return
     if words.says(column, _ON_MODEL):
-        yield Evidence(_AGAINST, "it is called as what the model has of its own")
+        yield RoleEvidence(_AGAINST, "it is called as what the model has of its own")
     if words.says(column, words.OTHERS):
-        yield Evidence(_AGAINST, "it is called as what is no part of the oscillator")
+        yield RoleEvidence(_AGAINST, "it is called as what is no part of the oscillator")
     if words.says(column, kind.words):
-        yield Evidence(_NAME, "its name")
+        yield RoleEvidence(_NAME, "its name")
     elif any(words.says(column, one.words) for one in KINDS):
-        yield Evidence(-_NAME, "its name is that of something else")
+        yield RoleEvidence(-_NAME, "its name is that of something else")
     axes = {words.axis_of(name) for one in telling for name in one.columns} - {""}
     if kind in (FORCE, ALONG) and words.axis_of(column) and len(axes) > 1:
         named = ", ".join(sorted(axes))
-        yield Evidence(_AGAINST, f"it is one of a balance's axes ({named}), not of a strut's gauge")
+        yield RoleEvidence(
+            _AGAINST, f"it is one of a balance's axes ({named}), not of a strut's gauge"
+        )
 
 
-def _displacement(one: Behaviour, watch: RecordingBehaviour) -> Iterator[Evidence]:
+def _displacement(one: Behaviour, watch: RecordingBehaviour) -> Iterator[RoleEvidence]:
     if not one.part.carried or one.turn:
-        yield Evidence(-np.inf, "it does not move at the line")
+        yield RoleEvidence(-np.inf, "it does not move at the line")
         return
     clean = float(np.clip(-np.log10(max(one.part.beside, 1e-12)) - _CLEAN, -1.0, 1.0))
-    yield Evidence(_DOES * clean, f"{100.0 * one.part.beside:.2g} % of it is beside the line")
+    yield RoleEvidence(_DOES * clean, f"{100.0 * one.part.beside:.2g} % of it is beside the line")
     like = [
         other for other in watch.columns.values() if other.unit == one.unit and other.part.carried
     ]
     driver = min(like, key=lambda other: other.part.beside)
     apart = abs(one.part.first) / max(abs(driver.part.first), 1e-300)
     if not 1.0 - _OTHER_STRUT < apart < 1.0 / (1.0 - _OTHER_STRUT):
-        yield Evidence(_AGAINST, f"its amplitude is {apart:.2g} times that of the cleanest motion")
+        yield RoleEvidence(
+            _AGAINST, f"its amplitude is {apart:.2g} times that of the cleanest motion"
+        )
 
 
-def _force(one: Behaviour, _: RecordingBehaviour) -> Iterator[Evidence]:
+def _force(one: Behaviour, _: RecordingBehaviour) -> Iterator[RoleEvidence]:
     if one.part.carried:
-        yield Evidence(_DOES, "it answers at the line")
+        yield RoleEvidence(_DOES, "it answers at the line")
     else:
-        yield Evidence(_AGAINST, "it does not answer at the line")
+        yield RoleEvidence(_AGAINST, "it does not answer at the line")
 
 
-def _angle(one: Behaviour, _: RecordingBehaviour) -> Iterator[Evidence]:
+def _angle(one: Behaviour, _: RecordingBehaviour) -> Iterator[RoleEvidence]:
     if one.turn is None:
-        yield Evidence(-np.inf, "it does not turn once in each period")
+        yield RoleEvidence(-np.inf, "it does not turn once in each period")
         return
-    yield Evidence(1.5 * _DOES, "it rises by one turn in each period")
+    yield RoleEvidence(1.5 * _DOES, "it rises by one turn in each period")
     if one.turn.wraps:
-        yield Evidence(_DOES, "it begins anew after each turn")
+        yield RoleEvidence(_DOES, "it begins anew after each turn")
 
 
-def _speed(one: Behaviour, _: RecordingBehaviour) -> Iterator[Evidence]:
+def _speed(one: Behaviour, _: RecordingBehaviour) -> Iterator[RoleEvidence]:
     if one.part.carried and one.part.beside < _SWINGS:
-        yield Evidence(_AGAINST, "it swings with the line")
+        yield RoleEvidence(_AGAINST, "it swings with the line")
     elif one.spread <= _EVEN * abs(one.mean):
-        yield Evidence(_DOES, "it is even")
+        yield RoleEvidence(_DOES, "it is even")
 
 
-def _along(_one: Behaviour, _watch: RecordingBehaviour) -> Iterator[Evidence]:
-    yield Evidence(-_NAME, "few rigs have a gauge along the model")
+def _along(_one: Behaviour, _watch: RecordingBehaviour) -> Iterator[RoleEvidence]:
+    yield RoleEvidence(-_NAME, "few rigs have a gauge along the model")
 
 
-def _pulses(one: Behaviour, _: RecordingBehaviour) -> Iterator[Evidence]:
+def _pulses(one: Behaviour, _: RecordingBehaviour) -> Iterator[RoleEvidence]:
     odds = 3.0 * _DOES if one.pulses else -np.inf
-    yield Evidence(odds, "it has one pulse in each period")
+    yield RoleEvidence(odds, "it has one pulse in each period")
 
 
-_DOING: Final[Mapping[str, Callable[[Behaviour, RecordingBehaviour], Iterator[Evidence]]]] = {
+_DOING: Final[Mapping[str, Callable[[Behaviour, RecordingBehaviour], Iterator[RoleEvidence]]]] = {
     DISPLACEMENT.name: _displacement,
     FORCE.name: _force,
     ANGLE.name: _angle,

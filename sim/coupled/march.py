@@ -11,7 +11,7 @@ from hardware.description.errors import ConfigurationError
 from sim import signals
 from sim.drive.loaded_drive import Unladen
 from sim.drive.prescribed_drive import SHAFT, ShaftMotion
-from sim.drive.shaft_system import TORQUE_DEGREE, ShaftLoop, ShaftSystem
+from sim.drive.shaft_system import TORQUE_DEGREE, MarchedShaft, ShaftSystem
 from sim.mechanism.linkage import Mechanism
 from sim.model.block_forces import HullState, marched_state
 from sim.model.hull import Hull
@@ -47,7 +47,7 @@ class CoupledMarch:
         torques: tuple[tuple[float, ...], ...],
         hull_state: HullState,
         unladen: Unladen,
-    ) -> "tuple[ShaftLoop, Course, HullState, dict[str, FloatArray]] | None":
+    ) -> "tuple[MarchedShaft, Course, HullState, dict[str, FloatArray]] | None":
         """Return what the march has come to; ``None`` if a sample does not settle.
 
         Parameters
@@ -118,7 +118,7 @@ class CoupledMarch:
         _, motion = self.mechanism.run(None, self.block, told.signals)
         return np.column_stack([motion["lever_aft"], motion["lever_fore"]])
 
-    def _shaft_loop(self, unladen: Unladen) -> ShaftLoop:
+    def _shaft_loop(self, unladen: Unladen) -> MarchedShaft:
         shaft, count = self.shaft, self.block.count
         hold = _hold(shaft.system, 1.0 / self.block.sample_rate_hz)
         n, inputs = shaft.system.B.shape
@@ -128,7 +128,7 @@ class CoupledMarch:
         by_torque[:, : len(shaft.system.D)] = shaft.system.D.T
         at_once = by_torque + 0.0
         by_torque += hold[1][-1].T @ to_outputs
-        return ShaftLoop(
+        return MarchedShaft(
             True,
             hold[0],
             hold[1],

@@ -34,7 +34,7 @@ class ShaftSystem:
     gap: tuple[float, float]
 
 
-class ShaftLoop(NamedTuple):
+class MarchedShaft(NamedTuple):
     """The drive, ready to march.
 
     Attributes

@@ -40,7 +40,7 @@ class Squat:
 
 
 @dataclass(frozen=True)
-class Attitude:
+class PositionSensors:
     """What the sensors of position have of a model that its struts move."""
 
     sensors: AttitudeSensors

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hardware.description.arrays import FloatArray
-from sim.drive.shaft_system import ShaftLoop
+from sim.drive.shaft_system import MarchedShaft
 from sim.model.broyden import add_struts, settle
 from sim.model.law_table import LawTable
 from sim.solve.compilation import compile_loop
@@ -215,7 +215,7 @@ def march(
     model: ModelLoop,
     table: LawTable,
     course: Course,
-    shaft: ShaftLoop,
+    shaft: MarchedShaft,
     links: FloatArray,
     outputs: FloatArray,
 ) -> int:

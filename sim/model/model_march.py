@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from hardware.description.arrays import FloatArray
-from sim.drive.shaft_system import ShaftLoop
+from sim.drive.shaft_system import MarchedShaft
 from sim.model.law_point import Acting
 from sim.model.law_table import LawTable, has_number, table_of
 from sim.model.system import LOAD_DEGREE, HullSystem
@@ -143,10 +143,10 @@ def march_model(marching: Marching, course: "Course") -> FloatArray | None:
 
 
 @lru_cache(maxsize=1)
-def _undriven() -> tuple[ShaftLoop, FloatArray]:
+def _undriven() -> tuple[MarchedShaft, FloatArray]:
     """Return a shaft that drives nothing, and its linkages."""
     flat, deep = np.zeros((0, 0)), np.zeros((0, 0, 0))
-    shaft = ShaftLoop(
+    shaft = MarchedShaft(
         False, flat, deep, flat, flat, flat, flat, flat, flat, flat, np.zeros(4), flat, np.zeros(3)
     )  # fmt: skip
     return shaft, np.zeros((2, 5))

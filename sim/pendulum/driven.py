@@ -50,7 +50,7 @@ class PeriodicForce:
 
 
 @dataclass(frozen=True)
-class Driven(Floating):
+class DrivenBody(Floating):
     """One free motion of a body on springs or afloat, under a force.
 
     ``(I + A) q'' + B q' + ... + C q + ... = f(t)``; A and B are those at the force's frequency.
@@ -69,7 +69,7 @@ class Driven(Floating):
 
 
 @lru_cache(maxsize=256)  # sensors of one run see one motion
-def settled(body: Driven, orders: int) -> ComplexArray:
+def settled(body: DrivenBody, orders: int) -> ComplexArray:
     """Return the harmonics of the displacement that a body settles to under its force.
 
     A linear body's are F_n / (C - n^2 w^2 (I + A) + i n w B). Any other's are those of the motion
@@ -98,13 +98,13 @@ def settled(body: Driven, orders: int) -> ComplexArray:
     return np.asarray(found, np.complex128)
 
 
-def _linear(body: Driven) -> ComplexArray:
+def _linear(body: DrivenBody) -> ComplexArray:
     """Return the displacement's harmonics without what is not linear, a resonance kept finite."""
     orders = np.arange(1.0, len(body.force.harmonics) + 1.0, dtype=np.float64)
     return np.asarray(np.array(body.force.harmonics) / impedance(body, orders), np.complex128)
 
 
-def impedance(body: Driven, orders: FloatArray) -> ComplexArray:
+def impedance(body: DrivenBody, orders: FloatArray) -> ComplexArray:
     """Return force over displacement at some orders of the force, but for what is not linear."""
     omega = body.force.omega_rad_s * orders
     mass, stiffness = float(body.mass[0, 0]), body.restoring
@@ -115,7 +115,7 @@ def impedance(body: Driven, orders: FloatArray) -> ComplexArray:
     return np.asarray(stiffness - omega**2 * mass + 1j * omega * damping, np.complex128)
 
 
-def _repeating(body: Driven, linear: ComplexArray) -> FloatArray:
+def _repeating(body: DrivenBody, linear: ComplexArray) -> FloatArray:
     """Return the displacement over a period of the motion that repeats, shape ``(samples,)``."""
     from scipy.optimize import fsolve
 
@@ -140,7 +140,7 @@ def _repeating(body: Driven, linear: ComplexArray) -> FloatArray:
     return ran[0, :-1]
 
 
-def _period(body: Driven, state: FloatArray) -> FloatArray:
+def _period(body: DrivenBody, state: FloatArray) -> FloatArray:
     """Return displacement and rate over a period from a state, shape ``(2, samples + 1)``."""
     (one,) = body.coordinates
     rows = (RELEASE_HOLD, one.held, one.kick)

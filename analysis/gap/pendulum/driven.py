@@ -19,7 +19,7 @@ from analysis.gap.pendulum.trial import Trial
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.errors import DataError
 from sim.pendulum.bench import PendulumBench
-from sim.pendulum.driven import ORDERS, Driven, PeriodicForce, impedance, settled
+from sim.pendulum.driven import ORDERS, DrivenBody, PeriodicForce, impedance, settled
 from sim.pendulum.effects.base import PendulumEffect
 
 _DECAY, _PERIOD, _MEAN = (KINDS.index(one) for one in ("decay", "period", "mean"))
@@ -43,9 +43,9 @@ class DrivenTrial(Trial):
     driven: ClassVar[bool] = True
 
     @property
-    def body(self) -> Driven:
+    def body(self) -> DrivenBody:
         """The body with its force."""
-        return cast("Driven", self.bench.body)
+        return cast("DrivenBody", self.bench.body)
 
     @property
     def channel(self) -> str:
@@ -71,7 +71,7 @@ class DrivenTrial(Trial):
             If the body does not settle.
         """
         bench = self.bench.with_effects(self.placed((*self.effects, *effects)))
-        body, windows = cast("Driven", bench.body), self.windows
+        body, windows = cast("DrivenBody", bench.body), self.windows
         omega, read = body.force.omega_rad_s, _read(bench, np.arange(1.0, _ORDERS + 1))
         out = self._window(settled(body, _ORDERS) * read).repeat(windows.count, axis=1)
         late_s = bench.delay_s + bench.clock_error * (windows.start_s + windows.centres_s)
@@ -86,7 +86,7 @@ class DrivenTrial(Trial):
     def third_harmonic(self) -> float:
         """What a force of the third order makes that is as large as one of the first, over 3."""
         bench, orders = self.bench.with_effects(self.placed(self.effects)), np.array([1.0, 3.0])
-        shown = np.abs(_read(bench, orders) / impedance(cast("Driven", bench.body), orders))
+        shown = np.abs(_read(bench, orders) / impedance(cast("DrivenBody", bench.body), orders))
         return float(shown[1] / shown[0] / orders[1])
 
     def _window(self, harmonics: ComplexArray) -> FloatArray:
@@ -117,7 +117,7 @@ class DrivenTrial(Trial):
 
 def _read(bench: PendulumBench, orders: FloatArray) -> ComplexArray:
     """Return what a bench's one sensor shows of the displacement at some orders of the force."""
-    body, (sensor,) = cast("Driven", bench.body), bench.sensors
+    body, (sensor,) = cast("DrivenBody", bench.body), bench.sensors
     (coordinate,) = body.coordinates
     signals = [coordinate.displacement, coordinate.rate, coordinate.acceleration]
     ((felt, weight),) = sensor.weights

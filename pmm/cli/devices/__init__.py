@@ -147,9 +147,9 @@ def opened(configuration: "RigConfiguration", *, free_running: bool = False) -> 
 
 def _asking(*, absent: bool) -> Callable[[str], str | None]:
     """Return what asks a person on the error stream; where nobody answers, a simulated rig acts."""
-    from pmm.run.operator import Answers
+    from pmm.run.operator import OperatorAnswers
 
-    answers, asked = Answers(sys.stdin), ""
+    answers, asked = OperatorAnswers(sys.stdin), ""
 
     def ask(question: str) -> str | None:
         nonlocal asked

@@ -41,7 +41,7 @@ CATALOGUE: Final[tuple[type[Any], ...]] = (
     instruments.SensorDelay,
     setup.StatedInertiaError,
     setup.RestoringError,
-    setup.DampingError,
+    setup.PendulumDampingError,
     setup.ForceError,
     *setup.ON_LINES,
 )

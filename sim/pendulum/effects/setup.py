@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.body import SwingingBody
-from sim.pendulum.driven import Driven
+from sim.pendulum.driven import DrivenBody
 from sim.pendulum.effects.base import parameter, resist, suspension_of
 from sim.pendulum.floating import Floating
 from sim.pendulum.suspension import Suspension
@@ -69,7 +69,7 @@ class RestoringError:
 
 
 @dataclass(frozen=True)
-class DampingError:
+class PendulumDampingError:
     """The linear damping is other than stated."""
 
     share: float = parameter("1", -0.9, 3.0, 0.1)
@@ -102,7 +102,7 @@ class ForceError:
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on; a body without a force stays as it is."""
         body = bench.body
-        if not isinstance(body, Driven):
+        if not isinstance(body, DrivenBody):
             return bench
         return replace(bench, body=replace(body, force=body.force.scaled(1.0 + self.share)))
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from analysis.kinematics.complex_step import by_parts, pointwise
 from analysis.kinematics.cycle import driven, harmonics, per_part, waves
 from analysis.kinematics.geometry import Geometry
-from analysis.kinematics.motion import Driven, motion
+from analysis.kinematics.motion import DrivenDisplacements, motion
 from hardware.description.arrangement import Arrangement, Joint
 from hardware.description.errors import DataError
 from hardware.description.oscillator import Plane
@@ -94,7 +94,7 @@ def test_slopes_are_what_small_steps_show(joint: Joint) -> None:
 
     def at_instants(waves: np.ndarray) -> np.ndarray:
         steps = (waves[..., k : k + 2, :] for k in (0, 2, 4))
-        return motion(geometry_of(rig), Driven(*steps)).rate
+        return motion(geometry_of(rig), DrivenDisplacements(*steps)).rate
 
     parts = parts_of(rig)
     maps = per_part(len(rig.coordinates), 2, [(k, n) for n in range(3) for k in (0, 1)], rig.omega)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from analysis.kinematics.geometry import Geometry
-from analysis.kinematics.motion import Driven, motion
+from analysis.kinematics.motion import DrivenDisplacements, motion
 from hardware.description.arrangement import Arrangement, DriftBy, Joint
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Plane
 from hardware.description.setpoint import SetPoint
@@ -38,7 +38,7 @@ def test_struts_set_apart_as_asked_have_the_drift(
     assert {found[2], found[3]} in ({"up", "down"}, {"to port", "to starboard"})
     offset = sign * float(found[1]) / 1e3
     still = np.zeros((2, 1))
-    driven = Driven(np.array([[-offset], [offset]]), still, still)
+    driven = DrivenDisplacements(np.array([[-offset], [offset]]), still, still)
     made = motion(Geometry(plane, HALF, Arrangement(joint), speed_m_s=1.0), driven)
     assert made.rotation_rad == pytest.approx(drift_rad, abs=1e-5)
     toward = {Plane.HORIZONTAL: ("starboard", "port"), Plane.VERTICAL: ("up", "down")}[plane]

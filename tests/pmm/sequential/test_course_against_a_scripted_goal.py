@@ -14,7 +14,7 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.setpoint import SetPoint
 from pmm.plan.run_plan import RunPlan
-from pmm.run.operator import Answers
+from pmm.run.operator import OperatorAnswers
 from pmm.run.session import RunJob
 from pmm.sequential.approval import approval_of
 from pmm.sequential.course import CampaignCourse
@@ -56,7 +56,7 @@ def _course(
     def opened(names: Sequence[str]) -> RunJob:
         return cast("RunJob", tuple(names))
 
-    answers = Answers(io.StringIO(typed))
+    answers = OperatorAnswers(io.StringIO(typed))
     approval = approval_of(approve, simulated=True)
     return CampaignCourse(goal, goal.folder, approval, answers, lambda _: None, opened, executor)
 

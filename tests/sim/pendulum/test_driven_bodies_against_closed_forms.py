@@ -8,7 +8,7 @@ import pytest
 from hardware.description.errors import ConfigurationError
 from sim.pendulum.benches import decay_bench
 from sim.pendulum.coordinates import HEAVE
-from sim.pendulum.driven import Driven, PeriodicForce, settled
+from sim.pendulum.driven import DrivenBody, PeriodicForce, settled
 from sim.pendulum.effects import make_effect
 from sim.pendulum.record import record
 from sim.pendulum.resistance import Resistance
@@ -18,10 +18,10 @@ OMEGA = math.sqrt(STIFFNESS / MASS)
 ORDERS = 23
 
 
-def body(ratio: float, resistance: Resistance) -> Driven:
+def body(ratio: float, resistance: Resistance) -> DrivenBody:
     """Return a body under a cosine at a share of its natural frequency."""
     force = PeriodicForce(ratio * OMEGA, (FORCE,))
-    return Driven(50.0, 20.0, STIFFNESS, resistance, HEAVE, force)
+    return DrivenBody(50.0, 20.0, STIFFNESS, resistance, HEAVE, force)
 
 
 @pytest.mark.parametrize("ratio", [0.7, 1.3, 1.6])
@@ -51,7 +51,7 @@ def test_force_and_drag_do_the_same_work_over_a_period(ratio: float) -> None:
 
 def test_harmonics_of_a_linear_body_are_those_of_its_impedance() -> None:
     force = PeriodicForce(3.0, (FORCE, 0.0, 5j))
-    found = settled(Driven(50.0, 20.0, STIFFNESS, Resistance(viscous=60.0), HEAVE, force), 4)
+    found = settled(DrivenBody(50.0, 20.0, STIFFNESS, Resistance(viscous=60.0), HEAVE, force), 4)
     for order, push in ((1, FORCE), (3, 5j)):
         w = 3.0 * order
         assert found[order - 1] == pytest.approx(push / (STIFFNESS - w**2 * MASS + 60j * w))
@@ -60,7 +60,7 @@ def test_harmonics_of_a_linear_body_are_those_of_its_impedance() -> None:
 
 def test_record_from_rest_on_comes_to_the_impedances_motion_late_by_the_clock() -> None:
     force, delay_s = PeriodicForce(3.0, (FORCE * 1j, 0.0, 5.0)), 0.04
-    driven = Driven(50.0, 20.0, STIFFNESS, Resistance(viscous=60.0), HEAVE, force)
+    driven = DrivenBody(50.0, 20.0, STIFFNESS, Resistance(viscous=60.0), HEAVE, force)
     late = make_effect("sensor_delay", delay_s=delay_s)(decay_bench(driven, release=0.0))
     run = record(late, duration_s=50.0, sample_rate_hz=20.0, seed=1).dataset
     true_s = run["time"].values - delay_s

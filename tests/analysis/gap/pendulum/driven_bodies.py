@@ -19,7 +19,7 @@ from hardware.description.channels import Channel
 from sim.acquisition.channels import Digitiser
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.coordinates import HEAVE
-from sim.pendulum.driven import Driven
+from sim.pendulum.driven import DrivenBody
 from sim.pendulum.release import Release
 from sim.pendulum.resistance import Resistance
 from sim.pendulum.sensors import Sensor
@@ -97,7 +97,9 @@ def driven(
         pushed += noise.normal(0.0, NOISE_N, stamps.size)
         moved += noise.normal(0.0, NOISE_M, stamps.size)
         force = KnownForce.of("force", stamps, pushed, 1.0 / frequency_hz)
-        body = Driven(50.0, 20.0, STIFFNESS, Resistance(viscous=DAMPING), HEAVE, force.harmonics)
+        body = DrivenBody(
+            50.0, 20.0, STIFFNESS, Resistance(viscous=DAMPING), HEAVE, force.harmonics
+        )
         sensor = Sensor(Channel("heave", "m"), ((HEAVE.displacement, 1.0),))
         bench = PendulumBench(body, Release((HEAVE,), (0.0,)), (sensor,), (Digitiser(),))
         found = force.response(stamps, moved)
