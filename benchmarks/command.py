@@ -33,6 +33,7 @@ NAMES = (
     "comparison",
     "uneven",
     "recorder",
+    "archive",
     "kill",
     "soak",
     "faults",

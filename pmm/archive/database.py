@@ -8,7 +8,7 @@ from typing import Final
 
 from hardware.description.errors import ConfigurationError
 
-VERSION: Final = 1
+VERSION: Final = 2
 _TABLES: Final = """
 CREATE TABLE campaigns (
     id INTEGER PRIMARY KEY, folder TEXT NOT NULL UNIQUE, campaign TEXT NOT NULL,
@@ -40,7 +40,7 @@ CREATE TABLE coefficients (
     value REAL, standard_uncertainty REAL, half_width REAL, level REAL NOT NULL);
 CREATE INDEX coefficients_by_name ON coefficients (name, campaign);
 CREATE TABLE verdicts (
-    campaign INTEGER NOT NULL REFERENCES campaigns ON DELETE CASCADE,
+    campaign INTEGER PRIMARY KEY REFERENCES campaigns ON DELETE CASCADE,
     verdict TEXT NOT NULL, answer TEXT, probability REAL);
 CREATE TABLE refusals (
     campaign INTEGER NOT NULL REFERENCES campaigns ON DELETE CASCADE, text TEXT NOT NULL);

@@ -1,16 +1,14 @@
-"""What the archive answers: campaigns, runs by condition, one run, trends, all harmonics."""
+"""What the archive answers: campaigns, runs and coefficients by condition, one run."""
 
 import sqlite3
-from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Final
 
-from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.errors import ConfigurationError
 from pmm.archive.contents import changes
-from pmm.archive.control_chart import ChartPoint, control_chart
 from pmm.archive.expression import NUMBER, TEXT, KnownColumn, read_condition
 from pmm.archive.indexing import stamps
 
@@ -20,8 +18,14 @@ _OF_RUN: Final = {
     "eccentricity_m": NUMBER, "strut_phase_rad": NUMBER, "carriage_speed_m_s": NUMBER,
     "medium": TEXT, "drift_rad": NUMBER, "recording": TEXT, "sha256": TEXT, "recorded_utc": TEXT,
 }  # fmt: skip
-RUN_COLUMNS: Final = {
+_CAMPAIGN_COLUMNS: Final = {
     **{name: KnownColumn(f"campaigns.{name}", TEXT) for name in _OF_CAMPAIGN},
+    "verdict": KnownColumn("verdicts.verdict", TEXT),
+    "answer": KnownColumn("verdicts.answer", TEXT),
+    "probability": KnownColumn("verdicts.probability", NUMBER),
+}
+RUN_COLUMNS: Final = {
+    **_CAMPAIGN_COLUMNS,
     **{name: KnownColumn(f"runs.{name}", kind) for name, kind in _OF_RUN.items()},
 }
 _AMPLITUDE: Final = (
@@ -36,37 +40,63 @@ HARMONIC_COLUMNS: Final = {
     "quadrature_half_width": KnownColumn("harmonics.quadrature_half_width", NUMBER),
     "amplitude": KnownColumn(_AMPLITUDE, NUMBER),
 }
-_RUNS: Final = "runs JOIN campaigns ON campaigns.id = runs.campaign"
+FILED_HARMONICS: Final = {
+    **{name: one for name, one in RUN_COLUMNS.items() if name != "sha256"},
+    **{name: one for name, one in HARMONIC_COLUMNS.items() if name != "amplitude"},
+    "channel": KnownColumn("harmonics.channel", TEXT),
+    "order": KnownColumn("harmonics.ord", NUMBER),
+}
+COEFFICIENT_COLUMNS: Final = {
+    **_CAMPAIGN_COLUMNS,
+    "recorded_utc": KnownColumn("campaigns.recorded_utc", TEXT),
+    "coefficient": KnownColumn("coefficients.name", TEXT),
+    "unit": KnownColumn("coefficients.unit", TEXT),
+    **{
+        name: KnownColumn(f"coefficients.{name}", NUMBER)
+        for name in ("speed_m_s", "frequency_hz", "value", "standard_uncertainty", "half_width")
+    },
+}
+# Of tables whose rows have a campaign.
+_WITH_CAMPAIGN: Final = (
+    "JOIN campaigns ON campaigns.id = {0}.campaign "
+    "LEFT JOIN verdicts ON verdicts.campaign = {0}.campaign"
+)
+_RUNS: Final = f"runs {_WITH_CAMPAIGN.format('runs')}"
+_HARMONICS: Final = (
+    f"harmonics JOIN runs ON runs.id = harmonics.run {_WITH_CAMPAIGN.format('runs')}"
+)
+_COEFFICIENTS: Final = f"coefficients {_WITH_CAMPAIGN.format('coefficients')}"
 _IN_ORDER: Final = " ORDER BY campaigns.folder, runs.id"
 Row = Mapping[str, Any]
 
 
-def _rows(connection: sqlite3.Connection, sql: str, values: Sequence[object] = ()) -> list[Row]:
+def rows_of(
+    connection: sqlite3.Connection, sql: str, values: Sequence[object] | Mapping[str, object] = ()
+) -> list[Row]:
+    """Return the rows of a query, each by the names of its columns."""
     return [dict(one) for one in connection.execute(sql, values)]
 
 
 def _select(columns: Mapping[str, KnownColumn]) -> str:
-    return "SELECT " + ", ".join(f"{one.sql} AS {name}" for name, one in columns.items())
+    return "SELECT " + ", ".join(f'{one.sql} AS "{name}"' for name, one in columns.items())
 
 
 def campaigns(connection: sqlite3.Connection) -> list[Row]:
     """Return all campaigns, each with what is not as it was when it was added."""
-    rows = _rows(
+    rows = rows_of(
         connection,
-        "SELECT id, folder, campaign, hull, recorded_utc, sha256, analysed, diagnosed, "
+        "SELECT id, folder, campaigns.campaign, hull, recorded_utc, sha256, analysed, diagnosed, "
         "(SELECT count(*) FROM runs WHERE campaign = campaigns.id) AS runs, "
         "(SELECT count(*) FROM runs WHERE campaign = campaigns.id AND recording IS NOT NULL) "
         "AS recorded, "
-        "(SELECT verdict FROM verdicts WHERE campaign = campaigns.id) AS verdict, "
-        "(SELECT answer FROM verdicts WHERE campaign = campaigns.id) AS answer, "
-        "(SELECT probability FROM verdicts WHERE campaign = campaigns.id) AS probability "
-        "FROM campaigns ORDER BY folder",
+        "verdict, answer, probability FROM campaigns "
+        "LEFT JOIN verdicts ON verdicts.campaign = campaigns.id ORDER BY folder",
     )
     return [{**row, **_found_now(connection, row)} for row in rows]
 
 
 def _found_now(connection: sqlite3.Connection, row: Row) -> Row:
-    refused = _rows(connection, "SELECT text FROM refusals WHERE campaign = ?", (row["id"],))
+    refused = rows_of(connection, "SELECT text FROM refusals WHERE campaign = ?", (row["id"],))
     return {
         "changes": list(changes(Path(row["folder"]), stamps(connection, row["id"]))),
         "refused": [one["text"] for one in refused],
@@ -87,24 +117,48 @@ def find_runs(
     condition = read_condition(expression, columns)
     if channel is None:
         sql = f"{_select(columns)} FROM {_RUNS} WHERE {condition.sql}{_IN_ORDER}"
-        return _rows(connection, sql, condition.parameters)
+        return rows_of(connection, sql, condition.parameters)
     _check_channel(connection, channel)
     sql = (
-        f"{_select(columns)} FROM harmonics JOIN runs ON runs.id = harmonics.run "
-        "JOIN campaigns ON campaigns.id = runs.campaign "
+        f"{_select(columns)} FROM {_HARMONICS} "
         f"WHERE harmonics.channel = ? AND harmonics.ord = ? AND {condition.sql}"
         f"{_IN_ORDER}, harmonics.gate"
     )
-    return _rows(connection, sql, (channel, order, *condition.parameters))
+    return rows_of(connection, sql, (channel, order, *condition.parameters))
+
+
+def find_coefficients(connection: sqlite3.Connection, expression: str) -> list[Row]:
+    """Return the campaigns' coefficients that fulfil a condition.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`pmm.archive.expression.read_condition`; or if no campaign has been analysed.
+    """
+    condition = read_condition(expression, COEFFICIENT_COLUMNS)
+    found = rows_of(
+        connection,
+        f"{_select(COEFFICIENT_COLUMNS)} FROM {_COEFFICIENTS} WHERE {condition.sql} "
+        "ORDER BY campaigns.folder, coefficients.rowid",
+        condition.parameters,
+    )
+    if not found and not rows_of(connection, "SELECT 1 FROM coefficients LIMIT 1"):
+        raise ConfigurationError(what_is_there("coefficients", "", ()))
+    return found
 
 
 def _check_channel(connection: sqlite3.Connection, channel: str) -> None:
-    names = [one["channel"] for one in _rows(connection, "SELECT DISTINCT channel FROM harmonics")]
+    names = [
+        one["channel"] for one in rows_of(connection, "SELECT DISTINCT channel FROM harmonics")
+    ]
     if channel not in names:
-        raise ConfigurationError(f"no channel {channel!r}; {_there('channels', channel, names)}")
+        raise ConfigurationError(
+            f"no channel {channel!r}; {what_is_there('channels', channel, names)}"
+        )
 
 
-def _there(what: str, name: str, names: Sequence[str]) -> str:
+def what_is_there(what: str, name: str, names: Sequence[str]) -> str:
+    """Return what there is instead of a name, the nearest first."""
     if not names:
         return "nothing is analysed yet: pmm archive add FOLDER... --analyse"
     near = get_close_matches(name, names, n=1, cutoff=0.4)
@@ -125,7 +179,7 @@ def the_run(connection: sqlite3.Connection, name: str, campaign: str | None) -> 
     ConfigurationError
         If there is none, or there are several.
     """
-    found = _rows(
+    found = rows_of(
         connection,
         f"{_select(RUN_COLUMNS)}, runs.id AS id, campaigns.id AS campaign_id FROM {_RUNS} "
         f"WHERE runs.run = ?{_IN_ORDER}",
@@ -135,7 +189,7 @@ def the_run(connection: sqlite3.Connection, name: str, campaign: str | None) -> 
         folder = str(Path(campaign).resolve())
         found = [one for one in found if campaign == one["campaign"] or folder == one["folder"]]
     if not found:
-        names = [one["run"] for one in _rows(connection, "SELECT DISTINCT run FROM runs")]
+        names = [one["run"] for one in rows_of(connection, "SELECT DISTINCT run FROM runs")]
         near = get_close_matches(name, names, n=1, cutoff=0.4)
         hint = f"did you mean {near[0]!r}?" if near else "pmm archive find lists them"
         where = "" if campaign is None else f" of campaign {campaign!r}"
@@ -158,13 +212,13 @@ class ShownRun:
 def show_run(connection: sqlite3.Connection, name: str, campaign: str | None) -> ShownRun:
     """Return one run; it raises what :func:`the_run` raises."""
     run = the_run(connection, name, campaign)
-    harmonics = _rows(
+    harmonics = rows_of(
         connection,
         'SELECT gate, channel, ord AS "order", unit, in_phase, quadrature, in_phase_half_width, '
         "quadrature_half_width FROM harmonics WHERE run = ? ORDER BY gate, channel, ord",
         (run["id"],),
     )
-    notes = _rows(
+    notes = rows_of(
         connection,
         "SELECT time_utc, run, author, text FROM notes WHERE campaign = ? AND run IN (?, '') "
         "ORDER BY time_utc, rowid",
@@ -174,60 +228,10 @@ def show_run(connection: sqlite3.Connection, name: str, campaign: str | None) ->
     return ShownRun(told, harmonics, notes)
 
 
-@dataclass(frozen=True)
-class Trend:
-    """A coefficient over time, of one model at one speed and frequency, with its control chart."""
-
-    name: str
-    hull: str
-    unit: str
-    speed_m_s: float
-    frequency_hz: float
-    rows: tuple[Row, ...]
-    chart: tuple[ChartPoint, ...]
-
-
-def trends(connection: sqlite3.Connection, name: str, probability: float) -> tuple[Trend, ...]:
-    """Return a coefficient's values, earliest first, a trend for what can be compared.
-
-    Speeds are the same within 1 mm/s, frequencies within 0.1 mHz.
-
-    Raises
-    ------
-    DataError
-        If no campaign has it; the message names the nearest and all.
-    """
-    rows = _rows(
-        connection,
-        "SELECT campaigns.recorded_utc, campaigns.campaign, campaigns.folder, campaigns.hull, "
-        "coefficients.unit, speed_m_s, frequency_hz, value, standard_uncertainty, half_width "
-        "FROM coefficients JOIN campaigns ON campaigns.id = coefficients.campaign "
-        "WHERE name = ? AND value IS NOT NULL ORDER BY campaigns.recorded_utc, campaigns.folder",
-        (name,),
-    )
-    if not rows:
-        names = [one["name"] for one in _rows(connection, "SELECT DISTINCT name FROM coefficients")]
-        raise DataError(f"no coefficient {name!r}; {_there('coefficients', name, names)}")
-    groups: dict[tuple[str, str, float, float], list[Row]] = defaultdict(list)
-    for row in rows:
-        key = (row["hull"], row["unit"], round(row["speed_m_s"], 3), round(row["frequency_hz"], 4))
-        groups[key].append(row)
-    return tuple(
-        Trend(name, *key, tuple(found), control_chart([one["value"] for one in found], probability))
-        for key, found in sorted(groups.items())
-    )
-
-
 def all_harmonics(connection: sqlite3.Connection) -> list[Row]:
-    """Return every harmonic with its run's set-point, for files."""
-    columns = {
-        name: one
-        for name, one in (RUN_COLUMNS | HARMONIC_COLUMNS).items()
-        if name not in ("sha256", "amplitude")
-    }
-    return _rows(
+    """Return every harmonic with its run's set-point: :data:`FILED_HARMONICS`."""
+    return rows_of(
         connection,
-        f'{_select(columns)}, harmonics.channel, harmonics.ord AS "order" FROM harmonics '
-        "JOIN runs ON runs.id = harmonics.run JOIN campaigns ON campaigns.id = runs.campaign"
-        f"{_IN_ORDER}, gate, channel, ord",
+        f"{_select(FILED_HARMONICS)} FROM {_HARMONICS}"
+        f"{_IN_ORDER}, harmonics.gate, harmonics.channel, harmonics.ord",
     )

@@ -101,24 +101,39 @@ def list_campaigns(file: str, as_json: bool) -> None:
 @click.option("--channel", metavar="NAME", help="Show a harmonic of this channel with each run.")
 @click.option("--order", type=click.IntRange(min=0), default=1, show_default=True,
               help="Of that harmonic; 0 is the mean.")  # fmt: skip
+@click.option("--coefficients", is_flag=True, help="Find coefficients instead of runs.")
 @FILE
 @JSON
-def find(expression: str, channel: str | None, order: int, file: str, as_json: bool) -> None:
-    """Find the runs that fulfil a condition.
+def find(expression: str, channel: str | None, order: int, coefficients: bool, file: str,
+         as_json: bool) -> None:  # fmt: skip
+    """Find the runs, or the coefficients, that fulfil a condition.
 
     Columns, = != < <= > >=, and, or, not, brackets, numbers, quoted texts. With --channel in_phase,
-    quadrature, amplitude, gate and unit are columns too.
+    quadrature, amplitude, gate and unit are columns too; with --coefficients coefficient, value,
+    standard_uncertainty and half_width.
 
     \b
     pmm archive find "hull = 'KVLCC2' and frequency_hz > 0.5"
     pmm archive find "kind = 'oscillation' and amplitude > 10" --channel force_aft
+    pmm archive find "coefficient = 'Z_w' and speed_m_s > 1" --coefficients
+    pmm archive find "answer = 'coulomb-friction' and probability > 0.9"
     """  # noqa: D301
+    from hardware.description.errors import ConfigurationError
     from pmm.archive.database import open_archive
-    from pmm.archive.queries import find_runs
+    from pmm.archive.queries import find_coefficients, find_runs
     from pmm.cli.screen import show
-    from pmm.report.archive_document import find_document
+    from pmm.report.archive_document import coefficients_found_document, find_document
 
+    if coefficients and channel is not None:
+        raise ConfigurationError(
+            "--channel and --coefficients: runs have channels, campaigns have coefficients; "
+            "ask for one of both"
+        )
     with open_archive(Path(file)) as connection:
+        if coefficients:
+            found = find_coefficients(connection, expression)
+            show(coefficients_found_document(found, expression, file), as_json=as_json)
+            return
         rows = find_runs(connection, expression, channel, order)
     show(find_document(rows, expression, channel, order, file), as_json=as_json)
 
@@ -168,28 +183,48 @@ def note(run: str, text: str, campaign: str | None, author: str | None, file: st
 
 @archive.command()
 @click.argument("name", metavar="NAME")
+@click.option("--run", metavar="RUN", help="Compare a run with its repeats; NAME is a channel.")
+@click.option("--order", type=click.IntRange(min=0), default=1, show_default=True,
+              help="Harmonic of that channel; 0 is the mean.")  # fmt: skip
+@CAMPAIGN
 @PLOT
 @click.option("--level", type=float, default=_LIMITS, show_default=True, callback=probability,
               metavar="P", help="Probability of the limits.")  # fmt: skip
 @FILE
 @JSON
-def trend(name: str, plot: str | None, level: float, file: str, as_json: bool) -> None:
-    """Show a coefficient over time, and which campaign's is not as the others'.
+def trend(
+    name: str,
+    run: str | None,
+    order: int,
+    campaign: str | None,
+    plot: str | None,
+    level: float,
+    file: str,
+    as_json: bool,
+) -> None:
+    """Show a coefficient, or a run's repeats, over time, and what is not as the others.
+
+    With --run the harmonics of a channel are compared over all runs, of any campaign, that have
+    the hull, medium and set-point of that run.
 
     \b
     pmm archive trend Z_w --plot plots
+    pmm archive trend force_aft --run heave-0.50
     """  # noqa: D301
     from pmm.archive.database import open_archive
-    from pmm.archive.queries import trends
+    from pmm.archive.trends import coefficient_trends, repeat_trends
     from pmm.cli.files import check_folder
     from pmm.cli.screen import messages, show
     from pmm.document.style import write_figures
-    from pmm.report.archive_document import trend_document, trend_figures
+    from pmm.report.archive_trend_document import trend_document, trend_figures
 
     if plot is not None:
         check_folder(Path(plot), "--plot")
     with open_archive(Path(file)) as connection:
-        found = trends(connection, name, level)
+        if run is None:
+            found = coefficient_trends(connection, name, level)
+        else:
+            found = repeat_trends(connection, run, campaign, name, order, level)
     show(trend_document(found, level), as_json=as_json)
     if plot is not None:
         files = write_figures(trend_figures(found), Path(plot), "archive")
@@ -197,23 +232,35 @@ def trend(name: str, plot: str | None, level: float, file: str, as_json: bool) -
 
 
 @archive.command()
-@click.option("--parquet", metavar="FILE", required=True, help="Write all harmonics there.")
+@click.option("--parquet", metavar="FILE", required=True, help="The file to write.")
+@click.option("--coefficients", is_flag=True, help="Write coefficients instead of harmonics.")
 @click.option("--overwrite", is_flag=True, help="Replace a file that is there.")
 @FILE
-def export(parquet: str, overwrite: bool, file: str) -> None:
-    """Write all harmonics, each with its run's set-point, as a Parquet file.
+def export(parquet: str, coefficients: bool, overwrite: bool, file: str) -> None:
+    """Write all harmonics, each with its run's set-point, or all coefficients as a Parquet file.
 
     \b
     pmm archive export --parquet harmonics.parquet
+    pmm archive export --parquet coefficients.parquet --coefficients
     """  # noqa: D301
     from pmm.archive.database import open_archive
     from pmm.archive.parquet import write_parquet
-    from pmm.archive.queries import all_harmonics
+    from pmm.archive.queries import (
+        COEFFICIENT_COLUMNS,
+        FILED_HARMONICS,
+        all_harmonics,
+        find_coefficients,
+    )
     from pmm.cli.files import check_files
     from pmm.cli.screen import messages
 
     check_files({"--parquet": parquet}, [("--archive", Path(file))], overwrite=overwrite)
     with open_archive(Path(file)) as connection:
-        rows = all_harmonics(connection)
-    write_parquet(rows, Path(parquet))
-    messages().print(f"written: {parquet}, {len(rows)} harmonics")
+        if coefficients:
+            what, columns = "coefficients", COEFFICIENT_COLUMNS
+            rows = find_coefficients(connection, "coefficient != ''")
+        else:
+            what, columns = "harmonics", FILED_HARMONICS
+            rows = all_harmonics(connection)
+    write_parquet(columns, rows, Path(parquet))
+    messages().print(f"written: {parquet}, {len(rows)} {what}")

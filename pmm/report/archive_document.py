@@ -1,20 +1,24 @@
-"""What ``pmm archive`` shows: campaigns, runs that were found, one run, trends."""
+"""What ``pmm archive`` shows: campaigns, what was found, one run."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from operator import itemgetter
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
-from pmm.archive.control_chart import FEWEST, ChartPoint
 from pmm.archive.indexing import AddedFolder
-from pmm.archive.queries import HARMONIC_COLUMNS, RUN_COLUMNS, Row, ShownRun, Trend
+from pmm.archive.queries import (
+    COEFFICIENT_COLUMNS,
+    HARMONIC_COLUMNS,
+    RUN_COLUMNS,
+    Row,
+    ShownRun,
+)
 from pmm.archive.results import LEVEL
 from pmm.document.content import (
     Column,
     Content,
     Data,
     Document,
-    Figure,
     Note,
     Notes,
     Section,
@@ -25,7 +29,6 @@ from pmm.document.content import (
     word,
 )
 from pmm.document.notation import NOT_KNOWN, counted, rounded
-from pmm.report.archive_figure import trend_figure
 
 SCHEMA: Final = "pmm-archive-1"
 _MOST: Final = 100  # rows for people; JSON holds all
@@ -72,7 +75,7 @@ def list_document(rows: list[Row], archive: str) -> Document:
     columns: tuple[Column[Row], ...] = (
         _cell("campaign", "campaign"),
         _cell("hull", "hull"),
-        Column("recorded", itemgetter("recorded_utc"), "recorded_utc", _day),
+        Column("recorded", itemgetter("recorded_utc"), "recorded_utc", day),
         Column("runs", lambda one: f"{one['recorded']} of {one['runs']}", number=True),
         Column("", lambda one: _STATES[bool(one["analysed"])]),
         Column("gap", _gap),
@@ -100,7 +103,8 @@ def _warnings(rows: list[Row]) -> Iterator[Note]:
             yield Note("not found", f"{row['campaign']}: {text}")
 
 
-def _day(time_utc: str | None) -> str:
+def day(time_utc: str | None) -> str:
+    """Return the day of a time."""
     return NOT_KNOWN if time_utc is None else time_utc[:10]
 
 
@@ -148,20 +152,43 @@ def find_document(
     )
 
 
+def coefficients_found_document(rows: list[Row], expression: str, archive: str) -> Document:
+    """Return the coefficients that were found, each with its campaign."""
+    shown = (
+        _cell("campaign", "campaign", once=True),
+        _cell("hull", "hull", once=True),
+        _cell("coefficient", "coefficient"),
+        _cell("U", "speed_m_s", "m/s", form=".4g"),
+        _cell("f", "frequency_hz", "Hz", form=".4g"),
+        Column("value", _interval("value", "half_width"), number=True),
+        _cell("unit", "unit"),
+    )
+    rest = _data(*(name for name in COEFFICIENT_COLUMNS if name not in {one.key for one in shown}))
+    told = [f"{counted(len(rows), 'coefficient')}: {expression}"]
+    told += [f"the first {_MOST} are shown; --json has all"] if len(rows) > _MOST else []
+    return _document(
+        archive,
+        "coefficients found",
+        Table("Coefficients", (*shown, *rest), rows, "coefficients", most=_MOST),
+        Text(told),
+        Data("expression", expression),
+    )
+
+
 def _harmonic_cells() -> tuple[Column[Row], ...]:
     return (
         _cell("gate", "gate", form="d"),
-        Column("in phase", _interval("in_phase"), number=True),
-        Column("quadrature", _interval("quadrature"), number=True),
+        Column("in phase", _interval("in_phase", "in_phase_half_width"), number=True),
+        Column("quadrature", _interval("quadrature", "quadrature_half_width"), number=True),
         _cell("unit", "unit"),
     )
 
 
-def _interval(key: str) -> Any:
+def _interval(key: str, half_width: str) -> Any:
     def told(row: Row) -> str:
         if row[key] is None:
             return NOT_KNOWN
-        half = row[f"{key}_half_width"]
+        half = row[half_width]
         return rounded(row[key], 0.0 if half is None else half)
 
     return told
@@ -192,79 +219,3 @@ def show_document(found: ShownRun) -> Document:
         Text([] if found.harmonics else ["not analysed: pmm archive add FOLDER --analyse"]),
         Table("Notes", notes, found.notes, "notes", titled=True),
     )  # fmt: skip
-
-
-class _TrendRow(NamedTuple):
-    trend: Trend
-    row: Mapping[str, Any]
-    point: ChartPoint
-
-
-def trend_document(found: tuple[Trend, ...], probability: float) -> Document:
-    """Return a coefficient over time with its control chart."""
-    name = found[0].name
-    rows = [
-        _TrendRow(trend, row, point)
-        for trend in found
-        for row, point in zip(trend.rows, trend.chart, strict=True)
-    ]
-
-    def of_row(heading: str | None, key: str) -> Column[_TrendRow]:
-        return Column(heading, lambda one: one.row[key], key)
-
-    columns: tuple[Column[_TrendRow], ...] = (
-        of_row("hull", "hull"),
-        Column("U", lambda one: one.trend.speed_m_s, "speed_m_s", "{:.4g}".format, "m/s",
-               number=True),
-        Column("f", lambda one: one.trend.frequency_hz, "frequency_hz", "{:.4g}".format, "Hz",
-               number=True),
-        Column("recorded", lambda one: one.row["recorded_utc"], "recorded_utc", _day),
-        of_row("campaign", "campaign"),
-        Column(name, lambda one: rounded(one.row["value"], one.row["half_width"] or 0.0),
-               unit=found[0].unit if len({one.unit for one in found}) == 1 else "", number=True),
-        Column("limits", lambda one: f"{one.point.low:.4g} to {one.point.high:.4g}"
-               if one.point.low == one.point.low else NOT_KNOWN, number=True),
-        Column("", lambda one: "outside" if one.point.outside else ""),
-        *(of_row(None, key) for key in ("folder", "unit", "value", "standard_uncertainty",
-                                        "half_width")),
-        Column(None, lambda one: one.point.low, "low"),
-        Column(None, lambda one: one.point.high, "high"),
-        Column(None, lambda one: one.point.outside, "outside"),
-    )  # fmt: skip
-    contents = (
-        Table("Trend", columns, rows, "trend"),
-        Data("name", name),
-        Data("probability", probability),
-        Notes(list(_outside(rows, probability))),
-        Text(list(_too_few(found)), faint=True),
-    )
-    figures = Section("Figures", tuple(trend_figures(found)))
-    return Document(name, "trend", (Section("", contents), figures), f"{SCHEMA}-trend")
-
-
-def _outside(rows: list[_TrendRow], probability: float) -> Iterator[Note]:
-    for one in rows:
-        if one.point.outside:
-            yield Note(
-                "outside",
-                f"{one.row['campaign']} ({_day(one.row['recorded_utc'])}): {one.row['value']:.4g} "
-                f"is not within {one.point.low:.4g} to {one.point.high:.4g}, where the other "
-                f"campaigns let it be expected with {100.0 * probability:g} %",
-            )
-
-
-def _too_few(found: tuple[Trend, ...]) -> Iterator[str]:
-    few = sum(len(one.rows) < FEWEST for one in found)
-    if few:
-        yield f"limits take {FEWEST} campaigns of one hull, speed and frequency"
-
-
-def trend_figures(found: tuple[Trend, ...]) -> Iterator[Figure]:
-    """Yield a figure for each hull, speed and frequency."""
-    caption = (
-        "Each campaign's value with its interval, and the limits that the other campaigns set "
-        "for it; what lies outside is marked."
-    )
-    for k, one in enumerate(found, 1):
-        name = f"trend-{k}" if len(found) > 1 else "trend"
-        yield Figure(name, caption, lambda one=one: trend_figure(one))  # type: ignore[misc]

@@ -1,11 +1,11 @@
-"""The figure of a coefficient over time: intervals, limits, and what lies outside."""
+"""The figure of a value over time: intervals, limits, and what lies outside."""
 
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pmm.archive.queries import Trend
+from pmm.archive.trends import Trend
 from pmm.document.style import PALETTE, STEADY_SHADE, TRACE, drawing
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def trend_figure(found: Trend) -> "Figure":
                         label="limits by the others")  # fmt: skip
         axes.axhline(values.mean(), color=TRACE, linewidth=0.6, label="mean")
         axes.errorbar(times, values, halves, fmt="o", color=PALETTE[0], markersize=4.0,
-                      label="campaigns")  # fmt: skip
+                      label="measured")  # fmt: skip
         if outside.any():
             axes.plot(times[outside], values[outside], "s", color=PALETTE[1], label="outside",
                       fillstyle="none", markersize=9.0)  # fmt: skip

@@ -147,6 +147,57 @@ def test_a_trend_has_what_was_put_in(file: Path, tmp_path: Path) -> None:
     assert "no coefficient 'Z_x'; did you mean 'Z_w'?" in done.stderr
 
 
+def test_coefficients_and_verdicts_are_found(copy: Path, file: Path) -> None:
+    every = told("find", "coefficient = 'Z_w'", "--coefficients", "--archive", file)["coefficients"]
+    trend = told("trend", "Z_w", "--archive", file)["trend"]
+    assert [one["value"] for one in every] == [one["value"] for one in trend]
+    least = min(one["value"] for one in every)
+    words = f"coefficient = 'Z_w' and value > {least!r}"
+    (kept,) = told("find", words, "--coefficients", "--archive", file)["coefficients"]
+    assert kept["value"] == max(one["value"] for one in every)
+    known = Analyses(None, lambda _: GapVerdict("effect", "coulomb-friction", 0.97))
+    with open_archive(copy / "a.sqlite") as connection:
+        add_folder(connection, copy / "march", known, NOW)
+    rows = _found(copy / "a.sqlite", "answer = 'coulomb-friction' and probability > 0.9")
+    assert {one["campaign"] for one in rows} == {"march"}
+    assert len(rows) == 4
+    for words in (("--coefficients", "--channel", "force_aft"), ("--coefficients",)):
+        done = job("find", "value > 0", *words, "--archive", copy / "a.sqlite", status=2)
+        assert "ask for one of both" in done.stderr or "nothing is analysed yet" in done.stderr
+
+
+def test_a_repeated_run_is_compared_with_its_past(copy: Path) -> None:
+    """The same recording five times, the last one's force made larger in the file by hand."""
+    file = copy / "a.sqlite"
+    told("add", copy / "march", "--analyse", "--archive", file)
+    with open_archive(file) as connection, connection:
+        (first,) = connection.execute(
+            "SELECT * FROM runs WHERE run = 'one-0.6-20' AND campaign = "
+            "(SELECT id FROM campaigns WHERE campaign = 'march')"
+        ).fetchall()
+        names = [name for name in first.keys() if name != "id"]  # noqa: SIM118
+        for n, larger in enumerate((1.001, 0.999, 1.0005, 1.3)):
+            row = {**first, "run": f"again-{n}", "recorded_utc": f"2025-04-{n + 1:02d}T00:00:00"}
+            added = connection.execute(
+                f"INSERT INTO runs ({', '.join(names)}) "  # noqa: S608
+                f"VALUES ({', '.join('?' * len(names))})",
+                [row[name] for name in names],
+            ).lastrowid
+            connection.execute(
+                "INSERT INTO harmonics SELECT campaign, ?, gate, channel, ord, unit, in_phase * ?, "
+                "quadrature * ?, in_phase_half_width, quadrature_half_width FROM harmonics "
+                "WHERE run = ?",
+                (added, larger, larger, first["id"]),
+            )
+    rows = told("trend", "force_aft", "--run", "again-3", "--archive", file)["trend"]
+    runs = ["one-0.6-20", "again-0", "again-1", "again-2", "again-3"]
+    assert [one["run"] for one in rows] == runs * 2
+    assert [one["part"] for one in rows] == ["in phase"] * 5 + ["quadrature"] * 5
+    assert [one["run"] for one in rows if one["outside"]] == ["again-3"] * 2
+    done = job("trend", "force_aff", "--run", "again-3", "--archive", file, status=1)
+    assert "no harmonic 1 of 'force_aff'; did you mean 'force_aft'?" in done.stderr
+
+
 def test_parquet_reads_back(file: Path, tmp_path: Path) -> None:
     pq = pytest.importorskip("pyarrow.parquet")
     path = tmp_path / "harmonics.parquet"
@@ -159,6 +210,9 @@ def test_parquet_reads_back(file: Path, tmp_path: Path) -> None:
     assert [[one[k] for k in keys] for one in rows] == [[one[k] for k in keys] for one in every]
     done = job("export", "--parquet", path, "--archive", file, status=1)
     assert "there already" in done.stderr
+    job("export", "--parquet", path, "--coefficients", "--overwrite", "--archive", file)
+    every = told("find", "coefficient != ''", "--coefficients", "--archive", file)["coefficients"]
+    assert pq.read_table(path).to_pylist() == every
 
 
 def _answers(file: Path) -> list[Any]:
@@ -298,6 +352,6 @@ def test_a_campaign_outside_is_said_and_marked(tmp_path: Path) -> None:
     assert outside == [False] * 4 + [True, False]
     plots = tmp_path / "plots"
     words = " ".join(job("trend", "M_q", "--plot", plots, "--archive", file).stdout.split())
-    assert "test-5 (2025-05-01): -13 is not within" in words
+    assert "test-5 (2025-05-01): M_q -13 is not within" in words
     assert {one.name for one in plots.iterdir()} == {"archive-trend.svg", "archive-trend.png"}
     assert "outside" in (plots / "archive-trend.svg").read_text(encoding="utf-8")

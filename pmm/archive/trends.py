@@ -1,0 +1,127 @@
+"""What should come out the same each time: a coefficient over campaigns, a repeated run."""
+
+import sqlite3
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import Final
+
+from hardware.description.errors import DataError
+from pmm.archive.control_chart import ChartPoint, control_chart
+from pmm.archive.queries import Row, rows_of, the_run, what_is_there
+
+_PARTS: Final = {"in_phase": "in phase", "quadrature": "quadrature"}
+# A set-point is the same within what drives and drawings state.
+_REPEATS: Final = """
+SELECT coalesce(runs.recorded_utc, campaigns.recorded_utc) AS recorded_utc, runs.run,
+    campaigns.campaign, campaigns.folder, campaigns.hull, harmonics.unit,
+    runs.carriage_speed_m_s AS speed_m_s, runs.frequency_hz, in_phase, quadrature,
+    in_phase_half_width, quadrature_half_width, NULL AS standard_uncertainty
+FROM runs JOIN campaigns ON campaigns.id = runs.campaign
+JOIN harmonics ON harmonics.run = runs.id
+    AND gate = (SELECT min(gate) FROM harmonics WHERE run = runs.id)
+WHERE channel = :channel AND ord = :order AND hull = :hull AND kind = :kind AND medium = :medium
+    AND (frequency_hz IS :frequency_hz OR abs(frequency_hz - :frequency_hz) <= 1e-4)
+    AND (eccentricity_m IS :eccentricity_m OR abs(eccentricity_m - :eccentricity_m) <= 1e-5)
+    AND (strut_phase_rad IS :strut_phase_rad OR abs(strut_phase_rad - :strut_phase_rad) <= 2e-3)
+    AND (carriage_speed_m_s IS :carriage_speed_m_s
+         OR abs(carriage_speed_m_s - :carriage_speed_m_s) <= 1e-3)
+    AND (drift_rad IS :drift_rad OR abs(drift_rad - :drift_rad) <= 2e-4)
+ORDER BY 1, campaigns.folder, runs.id
+"""
+
+
+@dataclass(frozen=True)
+class Trend:
+    """A value over time, of one model at one speed and frequency, with its control chart."""
+
+    name: str
+    hull: str
+    unit: str
+    speed_m_s: float
+    frequency_hz: float
+    rows: tuple[Row, ...]
+    chart: tuple[ChartPoint, ...]
+
+
+def _trend(name: str, rows: list[Row], probability: float) -> Trend:
+    first = rows[0]
+    return Trend(
+        name,
+        first["hull"],
+        first["unit"],
+        first["speed_m_s"],
+        first["frequency_hz"],
+        tuple(rows),
+        control_chart([one["value"] for one in rows], probability),
+    )
+
+
+def coefficient_trends(
+    connection: sqlite3.Connection, name: str, probability: float
+) -> tuple[Trend, ...]:
+    """Return a coefficient's values, earliest first, a trend for what can be compared.
+
+    Speeds are the same within 1 mm/s, frequencies within 0.1 mHz.
+
+    Raises
+    ------
+    DataError
+        If no campaign has it; the message names the nearest and all.
+    """
+    rows = rows_of(
+        connection,
+        "SELECT campaigns.recorded_utc, campaigns.campaign, campaigns.folder, campaigns.hull, "
+        "coefficients.unit, round(speed_m_s, 3) AS speed_m_s, "
+        "round(frequency_hz, 4) AS frequency_hz, value, standard_uncertainty, half_width "
+        "FROM coefficients JOIN campaigns ON campaigns.id = coefficients.campaign "
+        "WHERE name = ? AND value IS NOT NULL ORDER BY campaigns.recorded_utc, campaigns.folder",
+        (name,),
+    )
+    if not rows:
+        found = rows_of(connection, "SELECT DISTINCT name FROM coefficients")
+        there = what_is_there("coefficients", name, [one["name"] for one in found])
+        raise DataError(f"no coefficient {name!r}; {there}")
+    groups: dict[tuple[object, ...], list[Row]] = defaultdict(list)
+    for row in rows:
+        groups[row["hull"], row["unit"], row["speed_m_s"], row["frequency_hz"]].append(row)
+    return tuple(_trend(name, found, probability) for _, found in sorted(groups.items()))
+
+
+def repeat_trends(
+    connection: sqlite3.Connection,
+    run: str,
+    campaign: str | None,
+    channel: str,
+    order: int,
+    probability: float,
+) -> tuple[Trend, ...]:
+    """Return a harmonic of all runs of one run's hull, medium and set-point, earliest first.
+
+    A run's first gate counts. In phase and quadrature are a trend each; a mean has the first only.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`pmm.archive.queries.the_run`.
+    DataError
+        If the run has no such harmonic.
+    """
+    set_to = the_run(connection, run, campaign)
+    rows = rows_of(connection, _REPEATS, {**set_to, "channel": channel, "order": order})
+    if not any((one["folder"], one["run"]) == (set_to["folder"], run) for one in rows):
+        found = rows_of(
+            connection, "SELECT DISTINCT channel FROM harmonics WHERE run = ?", (set_to["id"],)
+        )
+        there = what_is_there("channels", channel, [one["channel"] for one in found])
+        raise DataError(f"run {run!r} has no harmonic {order} of {channel!r}; {there}")
+    trends = []
+    for part, said in _PARTS.items():
+        told: list[Row] = [
+            {**one, "value": one[part], "half_width": one[f"{part}_half_width"]}
+            for one in rows
+            if one[part] is not None
+        ]
+        if told:
+            name = f"{channel}, harmonic {order}, {said}" if order else f"{channel}, mean"
+            trends.append(_trend(name, told, probability))
+    return tuple(trends)
