@@ -32,7 +32,7 @@ NOT_SEPARABLE = "not separable"
 
 DECIDES = 20.0  # evidence ratio: 1 in 20 is what the intervals leave open too
 BEYOND_DOUBT = 1e6  # an evidence ratio above is not counted out
-_DESCRIBES = 3.0  # squares left over by the richest form, for each degree of freedom
+DESCRIBES = 3.0  # squares left over by the richest form, for each degree of freedom
 
 
 def forms_of(
@@ -115,10 +115,10 @@ def choose_form(
     best = min(criteria.values())
     weights = {form: math.exp((best - value) / 2.0) for form, value in criteria.items()}
     verdict, fitted, ratio, why = _verdict(criteria)
-    if dispersion > _DESCRIBES:
+    if dispersion > DESCRIBES:
         why += (
             f"; but even the richest leaves {dispersion:.3g} times what scatter explains (limit "
-            f"{_DESCRIBES:g}): no form describes these runs"
+            f"{DESCRIBES:g}): no form describes these runs"
         )
     ranked = sorted(criteria, key=lambda form: criteria[form])
     total = sum(weights.values())

@@ -14,6 +14,7 @@ import numpy as np
 from analysis.coefficients.body_axes import parts_of_struts
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
+from analysis.coefficients.form_choice import DESCRIBES
 from analysis.coefficients.hull_cycle import (
     HullParts,
     inputs_of,
@@ -136,14 +137,19 @@ def _refitted(fit: CycleFit, table: Mapping[str, FloatArray]) -> tuple[FloatArra
 
 
 def _evidence(fit: CycleFit, table: Mapping[str, FloatArray]) -> FloatArray:
-    """Half the difference of the squares, less by what even the better leaves over."""
+    """Half the difference of the squares, less by what even the better leaves over.
+
+    Where the better leaves more than :data:`DESCRIBES` allows, the form is wrong whatever the
+    arrangement is, and the squares are no evidence of it.
+    """
     squares, row = _refitted(fit, table)[1], fit.terms[0].row
     spare = fit.data[row] - len(fit.terms)
     if not spare > 0.0:
         return np.zeros(len(squares))
     stated = fit.chi_square[row]
     dispersion = np.maximum(1.0, np.minimum(squares[:, row], stated) / spare)
-    return np.asarray((stated - squares[:, row]) / (2.0 * dispersion))
+    apart = (stated - squares[:, row]) / (2.0 * dispersion)
+    return np.where(dispersion > DESCRIBES, 0.0, apart)
 
 
 def _on_hull(gross: FloatArray, tare: Tare, cycles: Sequence[BodyCycle]) -> FloatArray:

@@ -1,5 +1,9 @@
 """Whether the resistance is constant as the model turns, or goes with u^2: what the data support.
 
+``X_vv`` is that of a model that keeps its speed u ahead, in tows and oscillations alike. A tow at a
+drift angle keeps the carriage's speed and loses u, so that there X_0 goes with u^2 by definition:
+``X_0 + X_vv v^2`` at the speed U along the track is ``X_0 (u/U)^2 + (X_vv + X_0/U^2) v^2``.
+
 A model that yaws on a steady carriage is slowed and hastened along its own axis, so that its
 resistance swings at twice the frequency, as r^2 does with the other sign: taken as constant, what
 it swings by is fitted to X_rr and X_vr, which it does not follow.
@@ -9,6 +13,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from statistics import fmean
+from typing import Final
 
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_records import FormChoice
@@ -20,6 +25,7 @@ from hardware.description.errors import DataError
 
 BY_SPEED = "resistance by u^2"
 CONSTANT = "constant resistance"
+PROPELLED: Final = "propeller_turns"  # flag of a run whose X_0 holds a propeller's thrust
 
 
 def fit_surge(
@@ -32,7 +38,8 @@ def fit_surge(
     """Return the fit of X, and how it was found that resistance goes with u^2 where it does.
 
     ``X_0`` is the resistance at the carriage's speed U either way: ``X_0`` or ``X_0 (u/U)^2``, as
-    many terms. The first is taken unless the other is :data:`DECIDES` times as well supported.
+    many terms. Of oscillations the first is taken unless the other is :data:`DECIDES` times as well
+    supported; tows at one speed cannot tell them, and take the second.
 
     Raises
     ------
@@ -46,6 +53,8 @@ def fit_surge(
     terms = tuple(
         term if term.factors else replace(term, of_speed_m_s=speed) for term in constant.terms
     )
+    if not any(cycle.frequency_hz for cycle in cycles):
+        return fit_terms(cycles, terms, constant.names, orders, stated=stated), None
     try:
         other = fit_terms(cycles, terms, constant.names, orders, stated=stated)
     except DataError:

@@ -23,8 +23,10 @@ from hardware.description.arrays import FloatArray
 STEP_LENGTHS = 0.04  # of a step, in L/U of the approach: overshoots to 1e-6 of themselves
 _LONGEST_LENGTHS = 120.0  # of a phase: a ship that takes longer does not come there
 _TURNED = 4.0 * math.pi  # after which a turn is steady
-_SPIRAL_STEP = 0.1
-_SPIRAL_HOLDS = 20.0  # L/U for each rudder angle
+_SPIRAL_STEP = 0.25  # where the turn ends does not depend on it
+_SPIRAL_HOLDS = 10.0  # L/U of one hold; a rudder angle is held until the turn is steady
+_SPIRAL_MOST = 60  # holds of one angle
+_SPIRAL_STEADY = 1e-6  # r' changes by less in L/U: KCS at rudder 0, dying in 60 L/U, has 6e-5 left
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,8 @@ class Spiral:
     rudder_rad
         Angles, from starboard to port, shape ``(k,)``.
     down, up
-        r' = r L / U with the rudder going to port and coming back, shape ``(k, n)``.
+        r' = r L / U with the rudder going to port and coming back, shape ``(k, n)``; NaN where the
+        turn was not steady after the longest hold.
     """
 
     rudder_rad: FloatArray
@@ -144,17 +147,32 @@ def zigzag(
 
 
 def spiral(ship: Ship, largest_rad: float, step_rad: float) -> Spiral:
-    """Hold rudder angles from starboard to port and back, each until the turn is steady."""
+    """Hold rudder angles from starboard to port and back, each until the turn is steady.
+
+    So no lag is left in the loop, other than of a ship that takes longer than 600 L/U.
+    """
     count = round(largest_rad / step_rad)
     angles = step_rad * np.arange(count, -count - 1, -1, dtype=np.float64)
     unit, now = scale_s(ship), approach(ship)
     reached = []
     for angle in (*angles, *angles[-2::-1]):
-        now = march(ship, now, angle, None, _SPIRAL_HOLDS * unit, _SPIRAL_STEP * unit)
-        speed = np.hypot(now.state[U], now.state[V])
-        reached.append(now.state[R] * ship.hull.length_m / speed)
+        for _ in range(_SPIRAL_MOST):
+            now = march(ship, now, angle, None, _SPIRAL_HOLDS * unit, _SPIRAL_STEP * unit)
+            turn, change = _turning(ship, now)
+            steady = np.abs(change) * unit < _SPIRAL_STEADY
+            if steady.all():
+                break
+        reached.append(np.where(steady, turn, np.nan))
     down = np.array(reached[: len(angles)])
     return Spiral(np.asarray(angles), down, np.array(reached[len(angles) - 1 :])[::-1])
+
+
+def _turning(ship: Ship, now: ShipState) -> tuple[FloatArray, FloatArray]:
+    """Return r' = r L / U and how fast it changes, 1/s."""
+    u, v, r = now.state[[U, V, R]]
+    du, dv, dr = ship.rates(now.state, now.rudder_rad)[[U, V, R]]
+    speed, length = np.hypot(u, v), ship.hull.length_m
+    return r * length / speed, length / speed * (dr - r * (u * du + v * dv) / speed**2)
 
 
 def _way(moments: list[ShipState]) -> FloatArray:

@@ -12,6 +12,7 @@ from analysis.coefficients.corrections import (
     Response,
     zero_reading,
 )
+from analysis.coefficients.resistance_form import PROPELLED
 from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static_cycle
 from analysis.recording import Recording
 from analysis.resolver.analysis import analyse
@@ -195,7 +196,17 @@ def _model(task: Task, struts: StrutCycle) -> BodyCycle:
         struts = struts.without_response(responses)
     if task.heel is not None:
         struts = struts.heeled(task.heel)
-    return replace(struts.model(), rudder_rad=task.set_point.rudder_angle_rad)
+    cycle = replace(struts.model(), rudder_rad=task.set_point.rudder_angle_rad)
+    rate = task.set_point.revolutions_hz
+    return replace(cycle, flags=(*cycle.flags, *((_propelled(rate),) if rate else ())))
+
+
+def _propelled(rate_hz: float) -> Flag:
+    text = (
+        f"its propeller turned at {rate_hz:g} 1/s: X_0 is no resistance, it has the propeller's "
+        "thrust in it, and all terms are those of model, propeller and rudder together"
+    )
+    return Flag(PROPELLED, Severity.NOTE, text, FORCE_X.name)
 
 
 def response_of(one: AmplifierTable) -> Response:

@@ -8,6 +8,7 @@ NOT_KNOWN: Final = "–"
 _NEGLIGIBLE: Final = 1e-8  # of a value: its digits would run on without saying more
 _SIGNIFICANT: Final = 4  # digits where no interval says how many
 _NAMED: Final = 12  # names in one line; JSON holds all
+_PLACES: Final = 6  # before and behind the point; others are written with a power of ten
 _OPEN_DEG: Final = 90.0  # half-width of a phase that is not known
 
 
@@ -39,6 +40,22 @@ def rounded(value: float, half_width: float) -> str:
     # 0.0996 rounds to 0.10: the exponent after rounding counts.
     places = max(0, 1 - int(f"{half_width:.1e}".partition("e")[2]))
     return _minus(f"{value:z.{places}f} ± {half_width:.{places}f}")
+
+
+def between(low: float, high: float) -> str:
+    """Return ``low to high`` with two digits of the width; a dash where the ends are not known."""
+    if not (math.isfinite(low) and math.isfinite(high)):
+        return NOT_KNOWN
+    largest = max(abs(low), abs(high))
+    if not high - low > _NEGLIGIBLE * largest:
+        return _minus(f"{low:.{_SIGNIFICANT}g} to {high:.{_SIGNIFICANT}g}")
+    places = 1 - math.floor(math.log10(high - low))
+    if places <= _PLACES and largest < 10.0**_PLACES:
+        ends = [f"{round(one, places):z.{max(places, 0)}f}" for one in (low, high)]
+    else:
+        digits = max(2, places + 1 + math.floor(math.log10(largest)))
+        ends = [f"{one:.{digits}g}" for one in (low, high)]
+    return _minus(" to ".join(ends))
 
 
 def is_open(phase_half_width_deg: float, amplitude: float) -> bool:

@@ -11,6 +11,7 @@ from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.exchange import from_dict
 from analysis.coefficients.normalisation import DIMENSIONAL, Normalisation
 from analysis.coefficients.recommendation import recommended
+from analysis.coefficients.resistance_form import PROPELLED
 from analysis.coefficients.terms import term_of
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
@@ -44,16 +45,24 @@ def derivatives_of(
 ) -> dict[str, FloatArray]:
     """Return each derivative without dimensions: the value itself, and behind it each draw.
 
+    A ship's resistance goes with the square of its speed along the track, a measured ``X_vv`` is
+    that at a constant speed ahead: it is converted, ``X_vv' - X_0'``.
+
     Raises
     ------
     ConfigurationError
         If one is measured and stated, or the coefficients are of another plane, in a system, or of
-        several speeds.
+        several speeds; if the only resistance is that of runs whose propeller turned.
     DataError
         If the file of coefficients cannot be read.
     """
     stated = file.hull
-    values = {} if file.coefficients is None else _measured(file, plane, trials, generator)
+    values: dict[str, FloatArray] = {}
+    in_thrust: FloatArray | None = None
+    if file.coefficients is not None:
+        values, propelled = _measured(file, plane, trials, generator)
+        in_thrust = values.pop("X_0") if propelled else None
+    ahead = "X_vv" in values
     twice = sorted(set(values) & set(stated.values))
     if twice:
         raise ConfigurationError(
@@ -64,13 +73,25 @@ def derivatives_of(
         spread = stated.uncertainty.get(name, 0.0)
         draws = spread * generator.standard_normal(trials)
         values[name] = value + np.concatenate(([0.0], draws))
+    if in_thrust is not None and "X_0" not in values:
+        raise ConfigurationError(
+            f"{file.coefficients}: X_0 is that of runs whose propeller turned, its thrust less the "
+            "resistance; state the resistance alone as X_0 in [hull.values] (below 0; `pmm "
+            "steering` tells it at the self-propulsion point), or tow without the propeller"
+        )
+    resistance = values.get("X_0") if in_thrust is None else in_thrust
+    if ahead and resistance is not None:
+        values["X_vv"] = values["X_vv"] - resistance
     return values
 
 
 def _measured(
     file: DerivativeSources, plane: Plane, trials: int, generator: Generator
-) -> dict[str, FloatArray]:
-    """Return the recommended values of a campaign, of a body that stays upright."""
+) -> tuple[dict[str, FloatArray], bool]:
+    """Return the recommended values of a campaign, of a body that stays upright.
+
+    With whether a propeller turned in the runs that tell ``X_0``.
+    """
     found = _read(Path(str(file.coefficients)), plane)
     rows = [
         k
@@ -94,10 +115,13 @@ def _measured(
     system, own = file.system_at(speed), found.uncertain.taken(rows)
     drawn = np.column_stack((own.values, own.drawn(trials, generator)))
     names = [found.entries[k].name for k in rows]
-    return {
+    turned = {run for flag in found.flags if flag.code == PROPELLED for run in flag.runs}
+    told_by = {run for k in rows if found.entries[k].name == "X_0" for run in found.entries[k].runs}
+    values = {
         name: row / system.term_factor(term_of(name, plane))
         for name, row in zip(names, drawn, strict=True)
     }
+    return values, bool(turned & told_by)
 
 
 def _read(path: Path, plane: Plane) -> CampaignCoefficients:

@@ -24,12 +24,14 @@ from analysis.manoeuvring.stability import Straight, straight_course
 from hardware.description.arrays import FloatArray
 from hardware.description.oscillator import Plane
 from pmm.manoeuvre.derivatives import derivatives_of
+from pmm.manoeuvre.plausibility import doubts_of_ship
 from pmm.manoeuvre.quantity import FullScale, ManoeuvreQuantity, quantity_of
 from pmm.manoeuvre.ship_file import ShipFile
 
 SIDES = {"starboard": 1.0, "port": -1.0}
 _HELM, _SPIRAL_LARGEST, _SPIRAL_STEP = (math.radians(one) for one in (35.0, 20.0, 5.0))
 _SPIRAL_SHIPS = 101
+LOOP = "r' loop at rudder 0"
 
 Progress = Callable[[str], None]
 
@@ -51,6 +53,11 @@ class Prediction:
     def length_over_speed_s(self) -> float:
         """L/U of the approach at full scale, s."""
         return scale_s(self.ship) * math.sqrt(self.file.scale)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """A sentence on each number of the file that is not believed."""
+        return doubts_of_ship(self.file, self.ship)
 
     @cached_property
     def quantities(self) -> tuple[ManoeuvreQuantity, ...]:
@@ -81,7 +88,7 @@ class Prediction:
                 limit = limits.get((angle, k), math.nan)
                 yield self._of(what, name, "°", np.degrees(values), limit)
         straight = self.straight
-        yield self._of("spiral", "r' loop at rudder 0", "1", self.spiral.height)
+        yield self._of("spiral", LOOP, "1", self.spiral.height)
         yield self._of("straight course", "C' of the bare hull", "1", straight.criterion)
         yield self._of("straight course", "C' with rudder", "1", straight.with_rudder)
         yield self._of("straight course", "largest root L/U", "1", straight.root)

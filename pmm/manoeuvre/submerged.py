@@ -9,6 +9,7 @@ from analysis.manoeuvring.depth import SubmergedBody
 from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from pmm.manoeuvre.derivatives import derivatives_of
+from pmm.manoeuvre.plausibility import doubts_of_body
 from pmm.manoeuvre.quantity import FullScale, ManoeuvreQuantity, quantity_of
 from pmm.manoeuvre.ship_file import SubmergedFile
 
@@ -21,6 +22,7 @@ class DepthKeeping:
     level: float
     draws: int
     quantities: tuple[ManoeuvreQuantity, ...]
+    doubts: tuple[str, ...]
 
 
 def depth_keeping(file: SubmergedFile, trials: int, seed: int, level: float) -> DepthKeeping:
@@ -41,7 +43,7 @@ def depth_keeping(file: SubmergedFile, trials: int, seed: int, level: float) -> 
     for name, one in file.planes.items():
         speeds = body.reversal_speed_m_s(one.force, one.moment)
         found.append(quantity_of(f"planes {name}", "reversal speed", "m/s", speeds, level, knots))
-    return DepthKeeping(file, level, trials, tuple(found))
+    return DepthKeeping(file, level, trials, tuple(found), doubts_of_body(file, body))
 
 
 def body_of(file: SubmergedFile, trials: int, seed: int) -> SubmergedBody:

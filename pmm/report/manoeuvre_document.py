@@ -6,9 +6,20 @@ from functools import partial
 from typing import Final
 
 from pmm.coefficients.settings import ShipTable
-from pmm.document.content import Column, Data, Document, Figure, Section, Table, Text, word
-from pmm.document.notation import NOT_KNOWN, counted, written
-from pmm.manoeuvre.prediction import Prediction
+from pmm.document.content import (
+    Column,
+    Data,
+    Document,
+    Figure,
+    Note,
+    Notes,
+    Section,
+    Table,
+    Text,
+    word,
+)
+from pmm.document.notation import NOT_KNOWN, between, counted, written
+from pmm.manoeuvre.prediction import LOOP, Prediction
 from pmm.manoeuvre.quantity import ManoeuvreQuantity
 from pmm.manoeuvre.ship_file import SubmergedFile
 from pmm.manoeuvre.submerged import DepthKeeping
@@ -20,8 +31,13 @@ _CAPTIONS: Final = {
     "turning": "Turning circles with 35 degrees of rudder, in ship's lengths from where the rudder "
     "was laid; thin lines are draws of the derivatives.",
     "zigzag": "Heading (and rudder, dashed) of the zig-zags over time; thin lines are draws.",
-    "spiral": "Rate of turn over rudder angle, the rudder going to port and coming back.",
+    "spiral": "Rate of turn over rudder angle, the rudder going to port and coming back, each "
+    "angle held until r' changes by less than 1e-6 in L/U; what does not in 600 L/U is not drawn.",
 }
+_UNSTEADY: Final = (
+    "The spiral's turn is not steady after 600 L/U with the rudder amidships: the ship is close to "
+    "neutral stability, and no loop is told."
+)
 _SURE: Final = 0.975
 
 
@@ -31,7 +47,16 @@ def manoeuvre_document(found: Prediction) -> Document:
         found.file.name,
         "manoeuvres",
         (
-            Section("", (Text(tuple(_head(found))), _table(found), _criteria(found), _at(found))),
+            Section(
+                "",
+                (
+                    Text(tuple(_head(found))),
+                    _doubts(found),
+                    _table(found),
+                    _criteria(found),
+                    _at(found),
+                ),
+            ),
             Section("Figures", tuple(figures(found))),
             Section("", (Data("rate_hz", float(found.ship.rate_hz[0])),)),
         ),
@@ -70,7 +95,7 @@ def _value(one: ManoeuvreQuantity) -> str:
 
 
 def _interval(one: ManoeuvreQuantity) -> str:
-    return f"{one.low:.4g} to {one.high:.4g}" if math.isfinite(one.low) else NOT_KNOWN
+    return between(one.low, one.high)
 
 
 def _full(one: ManoeuvreQuantity) -> str:
@@ -85,8 +110,12 @@ def depth_document(found: DepthKeeping) -> Document:
         f"roots at {file.speed_m_s:g} m/s; weight and buoyancy are taken as equal",
         f"intervals from {counted(found.draws, 'draw')} of the derivatives",
     )
-    contents = (Text(head), _table(found), Text(tuple(_said(found))), _at(found))
+    contents = (Text(head), _doubts(found), _table(found), Text(tuple(_said(found))), _at(found))
     return Document(file.name, "depth keeping", (Section("", contents),), SCHEMA)
+
+
+def _doubts(found: Prediction | DepthKeeping) -> Notes:
+    return Notes([Note("doubt", one) for one in found.doubts], "doubts")
 
 
 def _at(found: Prediction | DepthKeeping) -> Table[float]:
@@ -121,8 +150,10 @@ def _table(found: Prediction | DepthKeeping) -> Table[ManoeuvreQuantity]:
         ),
     )
     failed = max(one.failed for one in found.quantities)
+    loop = next((one for one in found.quantities if one.name == LOOP), None)
+    unsteady = loop is not None and not math.isfinite(loop.value)
     left = f"Up to {failed} draws are in no interval: they came to no end, or have no such speed."
-    notes = (left,) if failed else ()
+    notes = (*((left,) if failed else ()), *((_UNSTEADY,) if unsteady else ()))
     name = "Manoeuvres"
     return Table(name, columns, found.quantities, "quantities", titled=True, notes=notes)
 

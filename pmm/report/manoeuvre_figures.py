@@ -76,7 +76,7 @@ def spiral_figure(found: Prediction) -> "Figure":
         for label, rates, colour, style in ways:
             axes.plot(rudder, rates[:, 0], style, color=colour, markersize=4.0, label=label)
             if rates.shape[1] > 1:
-                low, high = np.quantile(rates[:, 1:], (tail, 1.0 - tail), axis=1)
+                low, high = np.transpose([_band(row[1:], tail) for row in rates])
                 axes.fill_between(rudder, low, high, color=colour, alpha=_FAINT, linewidth=0.0)
         axes.axhline(0.0, color="black", linewidth=0.6)
         axes.axvline(0.0, color="black", linewidth=0.6)
@@ -85,6 +85,15 @@ def spiral_figure(found: Prediction) -> "Figure":
         axes.legend(loc="upper left")
         figure.suptitle(f"{found.file.name}: spiral")
     return figure
+
+
+def _band(draws: FloatArray, tail: float) -> tuple[float, float]:
+    """Return the ends of the interval of the draws that came to a steady turn."""
+    known = draws[np.isfinite(draws)]
+    if not known.size:
+        return np.nan, np.nan
+    low, high = np.quantile(known, (tail, 1.0 - tail))
+    return float(low), float(high)
 
 
 def _histories(log: Log) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -27,9 +27,10 @@ from pmm.document.content import (
     word,
 )
 from pmm.document.flag_lines import flag_notes
-from pmm.document.notation import rounded, written
+from pmm.document.notation import between, rounded, written
 from pmm.report.conditions import NOTE, condition_columns
 from pmm.report.steering_figure import steering_figure
+from pmm.steering.plausibility import doubts
 from pmm.steering.reading import SteeredRun
 from pmm.steering.settings import SETTINGS_FILE
 from pmm.steering.workflow import CampaignSteering, steering_of
@@ -98,6 +99,7 @@ def _contents(found: CampaignSteering, level: float) -> tuple[Content, ...]:
     ]
     return (
         _parameters(rows, level),
+        Notes([Note("doubt", one) for one in doubts(told)], "doubts"),
         Notes([Note("missing", f"{_plain(key)}: {how}") for key, how in told.missing.items()]),
         Data("missing", told.missing),
         Data("covariance", told.covariance.tolist()),
@@ -133,7 +135,7 @@ def _parameters(rows: list[_Parameter], level: float) -> Table[_Parameter]:
         number("u", "standard_uncertainty", written(".2g")),
         Column(
             f"{100.0 * level:g} % interval",
-            lambda one: f"{one.low:.4g} to {one.high:.4g}",
+            lambda one: between(one.low, one.high),
             number=True,
         ),
         *data_only("low", "high"),

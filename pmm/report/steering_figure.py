@@ -1,5 +1,6 @@
 """The figure of propeller and rudder: normal force over rudder angle, force over thrust."""
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _POINTS = 61
+_MARKS = (("o", "-"), ("s", "--"), ("^", ":"), ("D", "-."))
 
 
 def steering_figure(found: CampaignSteering) -> "Figure":
@@ -32,17 +34,19 @@ def steering_figure(found: CampaignSteering) -> "Figure":
 
 def _normal_force(axes: "Axes", found: CampaignSteering) -> None:
     runs, drawn = found.runs, _groups(found.runs)
-    for colour, ((condition, rate), rows) in zip(_colours(len(drawn)), drawn.items(), strict=True):
+    for (colour, mark, line), ((condition, rate), rows) in zip(
+        _looks(), drawn.items(), strict=False
+    ):
         u, v, r = runs.motions[:, condition]
         drift, turning = np.degrees(np.arctan2(-v, u)), r * found.known.length_m / np.hypot(u, v)
         angles = np.degrees(runs.rudder_rad[rows])
         axes.errorbar(
-            angles, runs.values[4, rows], 2.0 * runs.uncertainty[4, rows], fmt="o", color=colour,
+            angles, runs.values[4, rows], 2.0 * runs.uncertainty[4, rows], fmt=mark, color=colour,
             markersize=3.5,
             label=f"{round(drift, 6):.3g}°, {round(turning, 6):.2g}, {rate:.3g} 1/s",
         )  # fmt: skip
         if (curve := _fitted(found, condition, rate, angles)) is not None:
-            axes.plot(*curve, color=colour)
+            axes.plot(*curve, line, color=colour)
     axes.set_xlabel("rudder angle (°)")
     axes.set_ylabel("normal force (N)")
     axes.legend(title="drift, r L/U, revolutions", fontsize=7.0, title_fontsize=7.5, ncols=2)
@@ -55,8 +59,11 @@ def _groups(runs: SteeringRuns) -> dict[tuple[int, float], list[int]]:
     return found
 
 
-def _colours(count: int) -> list[str]:
-    return [PALETTE[k % len(PALETTE)] for k in range(count)]
+def _looks() -> Iterator[tuple[str, str, str]]:
+    """Yield colour, mark and line of one series after another: none is like another's."""
+    for mark, line in _MARKS:
+        for colour in PALETTE:
+            yield colour, mark, line
 
 
 def _fitted(
@@ -79,17 +86,17 @@ def _fitted(
 
 def _load_variation(axes: "Axes", found: CampaignSteering) -> None:
     runs, slope = found.runs, found.parameters["1-t_P"]
-    for colour, condition in zip(PALETTE, runs.straight, strict=False):
+    for mark, condition in zip("osD^v", runs.straight, strict=False):
         rows = runs.condition == condition
         turned = np.abs(runs.rudder_rad[rows]) < np.radians(0.5)
         thrust, along = runs.values[3, rows][turned], runs.values[0, rows][turned]
         if not len(thrust):
             continue
         speed = runs.motions[0, condition]
-        axes.plot(thrust, along, "o", color=colour, label=f"{speed:.3g} m/s")
+        axes.plot(thrust, along, mark, color=TRACE, label=f"{speed:.3g} m/s")
         ends = np.array([thrust.min(), thrust.max()])
         offset = float(np.mean(along - slope * thrust))
-        axes.plot(ends, offset + slope * ends, color=colour)
+        axes.plot(ends, offset + slope * ends, color=TRACE)
     axes.axhline(0.0, color=TRACE, linewidth=0.6)
     axes.set_xlabel("thrust (N)")
     axes.set_ylabel("X, force along the model (N)")

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pmm.document.notation import is_open, rounded
+from pmm.document.notation import between, is_open, rounded
 from pmm.harmonics.rows import floored
 
 
@@ -30,6 +30,22 @@ from pmm.harmonics.rows import floored
 )
 def test_against_hand(value: float, half_width: float, text: str) -> None:
     assert rounded(value, half_width) == text
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "text"),
+    [
+        (1.0894, 1.0906, "1.0894 to 1.0906"),
+        (-0.01453, -0.01171, "−0.0145 to −0.0117"),
+        (984.7, 1020.1, "985 to 1020"),
+        (98470.0, 102010.0, "98500 to 102000"),
+        (1.2345e-9, 1.2346e-9, "1.2345e−09 to 1.2346e−09"),
+        (2.5, 2.5, "2.5 to 2.5"),
+        (math.nan, 1.0, "–"),
+    ],
+)
+def test_ends_have_the_digits_of_their_width(low: float, high: float, text: str) -> None:
+    assert between(low, high) == text
 
 
 @given(

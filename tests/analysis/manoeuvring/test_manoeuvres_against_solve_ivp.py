@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
+from scipy.optimize import fsolve
 
 from analysis.manoeuvring import imo
 from analysis.manoeuvring.hull import HullLoads
@@ -162,7 +163,28 @@ def test_port_mirrors_starboard() -> None:
     for name in ("advance", "transfer", "tactical_diameter", "steady_drift_rad"):
         assert getattr(port, name)[0] == pytest.approx(getattr(starboard, name)[0], rel=1e-9)
     found = spiral(ship, math.radians(5.0), math.radians(5.0))
-    np.testing.assert_allclose(found.up, -found.down[::-1], atol=2e-3)
+    np.testing.assert_allclose(found.up, -found.down[::-1], atol=1e-4)
+
+
+def test_a_spiral_has_no_lag() -> None:
+    """Each turn is where the paper's equations stand still, near to neutral stability too."""
+    found = spiral(kvlcc2.ship(), math.radians(5.0), math.radians(5.0))
+    for k, rudder in enumerate(found.rudder_rad.tolist()):
+        for turn in (float(found.down[k, 0]), float(found.up[k, 0])):
+
+            def still(motion: np.ndarray, angle: float = rudder) -> np.ndarray:
+                rates = kvlcc2.rates(np.array([*motion, 0.0, 0.0, 0.0]), angle)
+                return np.asarray(rates[:3])
+
+            near = [kvlcc2.U0, -0.4 * turn * kvlcc2.U0, turn * kvlcc2.U0 / kvlcc2.L]
+            u, v, r = fsolve(still, near, xtol=1e-12)
+            assert r * kvlcc2.L / math.hypot(u, v) == pytest.approx(turn, abs=2e-4)
+
+
+def test_a_turn_that_is_not_steady_has_no_number(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("analysis.manoeuvring.manoeuvres._SPIRAL_MOST", 1)
+    found = spiral(kvlcc2.ship(), math.radians(5.0), math.radians(5.0))
+    assert np.isnan(found.height).all(), "20 L/U leave a lag in the loop of KVLCC2"
 
 
 @given(st.floats(2.0, 100.0))

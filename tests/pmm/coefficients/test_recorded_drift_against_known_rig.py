@@ -89,9 +89,7 @@ def folder_of(tmp_path: Path) -> Path:
 
 
 def put_in(row: dict[str, Any]) -> float:
-    """What was simulated; resistance follows U cos(beta), so that drift alone finds it in X_vv."""
-    if row["name"] == "X_vv" and row["frequency_hz"] == 0.0:
-        return PUT_IN["X_vv"] + 8.0
+    """What was simulated: resistance follows U cos(beta), and X_vv holds none of it."""
     return PUT_IN.get(row["name"], 0.0)
 
 

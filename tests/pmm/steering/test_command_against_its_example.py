@@ -172,6 +172,9 @@ def test_coefficients_have_the_rudders_derivatives(tows: Path) -> None:
     assert sum("oscillates with a laid rudder; `pmm steering FOLDER`" in one for one in why) == 4
     # Of 21 tows and 6 oscillations the tows at 10 1/s stay: what most have.
     assert sum("takes such runs" in one for one in why) == 16
+    codes = {one["code"] for one in found["coefficients"]["flags"]}
+    assert "propeller_turns" in codes
+    assert "arrangement_doubted" not in codes, "no form describes these runs: they tell no rig"
     rows = {one["name"]: one for one in found["recommended"]}
     step = 1e-4
 
