@@ -2,8 +2,8 @@
 
 The motion is that to which the body settles under the force's harmonics
 (:mod:`sim.pendulum.driven`). What is observed is the response: each window's amplitude and phase
-are taken against those of the force in the same window, so that a wave that varies slowly does no
-harm. A window of a run is what a window of swings is in a decay.
+are taken against those of the force in the same window, so that of a wave that varies slowly only
+what the body remembers does harm. A window of a run is what a window of swings is in a decay.
 """
 
 import cmath

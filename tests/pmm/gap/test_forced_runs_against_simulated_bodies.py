@@ -138,6 +138,7 @@ def test_what_a_comparison_told_of_a_sensor_stands_in_the_simulation(tmp_path: P
     [
         (0.9, WAVES, 1.0, "ends at 0.4 and 0.8 Hz, and a run is at 0.9 Hz"),
         (0.6, WAVES, 1e3, "is its inertia, its restoring or the force in other units?"),
+        (0.6, WAVES, 57.3, "is its inertia, its restoring or the force in other units?"),
         (0.6, WAVES.replace("force_phase_rad", "# "), 1.0, "force and force_phase_rad go together"),
         (0.6, WAVES.replace("[0.4, 0.8]", "[0.8, 0.4]"), 1.0, "frequency_hz has to rise"),
     ],
