@@ -11,6 +11,7 @@ from analysis.gap.observe.following import Following, following
 from analysis.gap.observe.observation import Observed, observe
 from analysis.gap.observe.sensors import as_recorded, resolved
 from analysis.recording import Recording
+from hardware.description.channels import COMMANDS
 from hardware.description.errors import ConfigurationError, PmmError
 from hardware.description.flags import Flag
 from hardware.description.oscillator import Range
@@ -96,7 +97,7 @@ def load_campaign(
             recording = open_recording(RecordingSource.of(campaign, run, path.parent))
             damaged |= damage_of(run.name, recording)
             observed = observe(_only(recording, sensors), campaign.reference, campaign.analysis)
-            followed, unlike[run.name] = following(recording)
+            followed, unlike[run.name] = _followed(recording)
             found.append((run, observed, followed))
         except (PmmError, OSError) as error:
             left_out[run.name] = str(error).removeprefix(f"{run.name}: ")
@@ -155,6 +156,14 @@ def unlimited(rig: SimulatedRig) -> SimulatedRig:
         force_per_strut_n=math.inf,
     )
     return replace(rig, oscillator=free)
+
+
+def _followed(recording: Recording) -> tuple[Following, str]:
+    """Compare struts with their commands; say what needs samples on a grid and is left out."""
+    if recording.stamps_s is None:
+        return following(recording)
+    told = ", no commands with positions" if {*COMMANDS} & {*recording.channel_names} else ""
+    return {}, f"uneven time stamps: only means and harmonics are compared{told}"
 
 
 def _usual_reference(found: Sequence[_Read]) -> str | None:

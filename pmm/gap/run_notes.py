@@ -14,8 +14,11 @@ NOTED: Final = 2.0  # times: a specification's noise is often meant as a largest
 def run_notes(examined: Examined) -> Iterator[str]:
     """Yield notes about single runs, but the odd one."""
     yield from _not_foretold(examined)
+    alike: dict[str, list[str]] = {}
     for name, said in examined.ready.cut_short.items():
-        yield f"run {name}: {said}"
+        alike.setdefault(said, []).append(name)
+    for said, names in alike.items():
+        yield f"run{'s' * (len(names) > 1)} {', '.join(names)}: {said}"
 
 
 def noise_notes(examined: Examined) -> Iterator[str]:

@@ -41,7 +41,8 @@ def zigzag(time_s: FloatArray, values: FloatArray, bins: int) -> Trace:
     if len(time_s) <= 2 * bins:
         return Trace(time_s, values)
     edges = _edges(len(time_s), bins)
-    return Trace(_middles(time_s[0], time_s[-1], edges), _extremes(values, edges[:-1]), True)
+    ends_s = time_s[edges[:-1]], time_s[edges[1:] - 1]
+    return Trace(_middles(*ends_s), _extremes(values, edges[:-1]), True)
 
 
 def tops(x: FloatArray, values: FloatArray, bins: int) -> tuple[FloatArray, FloatArray]:
@@ -68,18 +69,18 @@ def overview(recording: Recording, bins: int) -> Trace:
         _extremes(recording.samples[:, some[0] : some[-1]], some[:-1] - some[0])
         for some in _blocks(edges)
     ]
-    time_s = _middles(recording.start_s, recording.end_s, edges)
-    return Trace(time_s, np.concatenate(parts, axis=1), True)
+    firsts, lasts = edges[:-1].tolist(), (edges[1:] - 1).tolist()
+    ends_s = [np.concatenate([recording.time_s(k, k + 1) for k in at]) for at in (firsts, lasts)]
+    return Trace(_middles(*ends_s), np.concatenate(parts, axis=1), True)
 
 
 def _edges(count: int, bins: int) -> IntArray:
     return np.asarray(np.linspace(0, count, bins + 1), dtype=np.int64)
 
 
-def _middles(first_s: float, last_s: float, edges: IntArray) -> FloatArray:
+def _middles(first_s: FloatArray, last_s: FloatArray) -> FloatArray:
     """Times of the two points of each bin: both at its middle."""
-    middle = (edges[:-1] + edges[1:] - 1) / 2.0
-    return np.repeat(first_s + middle * (last_s - first_s) / (edges[-1] - 1), 2)
+    return np.repeat((first_s + last_s) / 2.0, 2)
 
 
 def _blocks(edges: IntArray) -> Iterator[IntArray]:

@@ -14,7 +14,7 @@ from pmm.document.labels import axis_label, display, loads_first, shown_name
 from pmm.document.notation import counted
 from pmm.document.style import FIT, PALETTE, TRACE, drawing
 from pmm.report.envelope import tops
-from pmm.report.gate_fit import caption, gate_sums, reading_of
+from pmm.report.gate_fit import caption, fitted, gate_sums, reading_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -72,7 +72,7 @@ def gate_spectrum(analysis: Analysis, reading: Harmonics) -> tuple[FloatArray, F
     The results are frequency_hz, amplitude, periods: their shapes are ``(lines,)`` and ``(channels,
     lines)``, in each channel's unit; the number of whole periods m that the lines rest on. The
     first line is 1/(m T), the last one lies below the Nyquist frequency and a little above the
-    highest harmonic.
+    highest harmonic. On uneven time stamps the resolver's harmonics stand for theirs.
     """
     gate = gate_sums(analysis, reading)
     sound = np.isfinite(gate.moment).all(axis=(1, 2))
@@ -86,8 +86,29 @@ def gate_spectrum(analysis: Analysis, reading: Harmonics) -> tuple[FloatArray, F
     )
     highest = max(8, 2 * reading.order + 2) * periods
     lines = np.arange(1, max(2, min(highest, int(np.ceil((closing - opening) / 2.0)) - 1)) + 1)
-    amplitude = _lines(recording, reading, float(opening), float(closing), len(lines))
+    if recording.stamps_s is not None:
+        part = recording.between(float(opened_s), float(closed_s))
+        amplitude = _lines_beside(analysis, reading, part, lines / float(closed_s - opened_s))
+        kept = np.arange(1, min(reading.order, len(lines) // periods) + 1)
+        amplitude[:, kept * periods - 1] = reading.amplitude[:, kept - 1]
+    else:
+        amplitude = _lines(recording, reading, float(opening), float(closing), len(lines))
     return lines / float(closed_s - opened_s), amplitude, periods
+
+
+def _lines_beside(
+    analysis: Analysis, reading: Harmonics, part: Recording, lines_hz: FloatArray
+) -> FloatArray:
+    """Amplitudes of what the fit leaves of samples that lie on no grid.
+
+    The fit is taken off first: on such samples a strong line leaks into all others.
+    """
+    time_s = part.time_s()
+    left = part.samples[:, 0 : part.sample_count] - fitted(analysis, reading, time_s)
+    there = np.isfinite(left)
+    left = np.where(there, left, 0.0)
+    lines = [left @ np.exp(-2j * np.pi * hz * time_s) for hz in lines_hz]
+    return np.asarray(2.0 * np.abs(np.stack(lines, axis=1)) / there.sum(axis=1)[:, None])
 
 
 def _lines(

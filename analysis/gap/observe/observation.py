@@ -2,7 +2,8 @@
 
 Harmonics come from the resolver. What does not repeat with the shaft shows in the rest: trends of
 mean and harmonics from the first cycles to the last, scatter of the photocell's intervals and of
-the harmonics from cycle to cycle, and power between the harmonics.
+the harmonics from cycle to cycle, and power between the harmonics. That takes samples on a grid:
+where each has a time of its own, cycles are not alike and lines leak, and it is not looked for.
 """
 
 from collections.abc import Iterator, Set
@@ -108,7 +109,8 @@ def observe(
     found = [*_harmonics(analysis, moving), *_frequency(analysis, recording)]
     timed = phased is whole and analysis.reference.source is ReferenceSource.PHOTOCELL
     found += _pulses(recording) if timed else ()
-    if analysis.stretch.period_count >= _FEW_PERIODS:
+    even = recording.stamps_s is None
+    if even and analysis.stretch.period_count >= _FEW_PERIODS:
         makers = (
             (_TRENDS, _trends(analysis, moving)),
             (_SCATTERS, _scatter(analysis, moving, timed=timed)),
@@ -125,7 +127,7 @@ def observe(
         seen = replace(
             seen,
             steps=steps_of(steady),
-            quiet=_quiet(analysis, moving),
+            quiet=_quiet(analysis, moving) if even else {},
             plateaus=_plateaus(steady),
             turns_per_period=turns_per_period(steady, frequency_hz),
         )

@@ -32,8 +32,8 @@ def turns_per_period(recording: Recording, frequency_hz: float) -> float:
     if SHAFT_ANGLE.name not in recording.channel_names:
         return float("nan")
     angle = recording.values(SHAFT_ANGLE.name)
-    steps = np.diff(angle)
-    steps = steps[np.abs(steps) <= 0.5 * np.ptp(angle)]
-    if not steps.size:
+    steps, taken_s = np.diff(angle), np.diff(recording.time_s())
+    kept = np.abs(steps) <= 0.5 * np.ptp(angle)
+    if not kept.any():
         return float("nan")
-    return float(np.mean(steps)) * recording.sample_rate_hz / frequency_hz / (2.0 * np.pi)
+    return float(steps[kept].sum() / taken_s[kept].sum()) / frequency_hz / (2.0 * np.pi)

@@ -96,6 +96,45 @@ def test_a_long_trace_touches_every_extreme_and_is_read_in_parts() -> None:
     assert trace.time_s[int(np.nanargmax(trace.values[0]))] == pytest.approx(123.456, abs=7.1)
 
 
+def thinned_out() -> Recording:
+    """Return the run with three of five rows left, at random, and a second without any."""
+    whole, rng = run(), np.random.default_rng(3)
+    kept = rng.random(whole.sample_count) < 0.6
+    kept[400:500] = False
+    at = np.flatnonzero(kept)
+    time_s, values = whole.time_s()[at], whole.samples[:, 0 : whole.sample_count][:, at]
+    rate_hz = (len(at) - 1) / float(np.ptp(time_s))
+    return replace(
+        whole,
+        samples=values,
+        stamps_s=time_s,
+        start_s=float(time_s[0]),
+        sample_rate_hz=rate_hz,
+    )
+
+
+def test_uneven_samples_are_drawn_at_their_times() -> None:
+    """A ramp of the time itself: what is drawn of each stretch is about its middle."""
+    recording = thinned_out()
+    time_s = recording.time_s()
+    ramp = replace(recording, samples=np.array([time_s]), channels=recording.channels[:1])
+    for trace in (overview(ramp, 60), zigzag(time_s, np.array([time_s]), 60)):
+        low, high = trace.values[0, ::2], trace.values[0, 1::2]
+        assert trace.thinned
+        assert trace.time_s[::2] == pytest.approx((low + high) / 2.0)
+
+
+def test_the_spectrum_of_uneven_samples_has_the_harmonics_and_no_leakage_of_them() -> None:
+    analysis = analysed(thinned_out())
+    reading = analysis.readings[0]
+    frequency_hz, amplitude, periods = gate_spectrum(analysis, reading)
+    at = periods * np.arange(1, reading.order + 1) - 1
+    assert frequency_hz[at] == pytest.approx(reading.frequency_hz * np.arange(1, reading.order + 1))
+    assert amplitude[:, at] == pytest.approx(reading.amplitude)
+    beside = np.delete(amplitude, at, axis=1)
+    assert np.median(beside[1]) < 0.01 * reading.amplitude[1, 0]
+
+
 def test_short_traces_are_handed_through_and_tops_keep_their_place() -> None:
     x = np.arange(50.0)
     assert zigzag(x, x[None], 25).values is not None
