@@ -58,7 +58,8 @@ def strut_displacements(
 
         cos(2 m psi):  2 L binom(1/2, m) (-k^2/4)^m 2F1(m - 1/2, m + 1/2; 2m + 1; k^2)
 
-    and half of that for the mean (m = 0), before L is taken off.
+    and half of that for the mean (m = 0), before L is taken off. A motion of many lines has each at
+    its own harmonic.
 
     They are phasors in m, of the shape ``(orders + 1, 2)``, columns aft and fore.
 
@@ -74,8 +75,16 @@ def strut_displacements(
     """
     if orders < 1:
         raise ConfigurationError(f"orders = {orders}; it must be 1 or more")
-    angles = np.array([0.0, set_point.strut_phase_rad])
     displacements = np.zeros((orders + 1, 2), dtype=np.complex128)
+    if set_point.lines:
+        for line in set_point.lines:
+            if line.order <= orders:
+                ahead = line.phase_rad + np.array([0.0, line.strut_phase_rad])
+                displacements[line.order] += (
+                    set_point.eccentricity_m * line.share * np.exp(1j * ahead)
+                )
+        return displacements
+    angles = np.array([0.0, set_point.strut_phase_rad])
     displacements[1] = set_point.eccentricity_m * np.exp(1j * angles)
     if oscillator.rod_length_m is None:
         return displacements

@@ -110,6 +110,7 @@ class SimulatedRig:
         """
         self._check_joint(set_point)
         self._check_steering(set_point)
+        self._check_lines(set_point)
         self._check_attitude()
         self._check_heel(set_point)
         check_within(self.oscillator, set_point)
@@ -120,6 +121,7 @@ class SimulatedRig:
             self.oscillator.rod_length_m,
             self.linkage_aft,
             self.linkage_fore,
+            set_point.lines,
         )
         hull = self._hull(set_point, carriage.mean_m_s)
         stages: tuple[Stage[Any], ...]
@@ -145,7 +147,9 @@ class SimulatedRig:
                 'joint = "yaw_table": a turntable is analysed but not simulated; simulate '
                 '"slides_on_model" or "slides_on_rig", which have two struts'
             )
-        apart = abs(math.sin(set_point.strut_phase_rad / 2.0)) * set_point.eccentricity_m
+        apart = set_point.eccentricity_m * max(
+            abs(math.sin(line.strut_phase_rad / 2.0)) for line in set_point.every_line
+        )
         sine = apart / self.oscillator.half_spacing_m
         if self.oscillator.drift_by is DriftBy.STRUTS_OFFSET:
             sine += abs(math.sin(set_point.drift_rad))
@@ -176,6 +180,13 @@ class SimulatedRig:
         ]
         if faults:
             raise ConfigurationError("; ".join(faults))
+
+    def _check_lines(self, set_point: SetPoint) -> None:
+        if set_point.lines and (self.drive.motor is not None or self.drive.gear is not None):
+            raise ConfigurationError(
+                "lines are followed by struts with drives of their own: leave motor and gear of "
+                "the shaft out of [drive]"
+            )
 
     def _check_attitude(self) -> None:
         faults = []

@@ -27,6 +27,10 @@ if TYPE_CHECKING:
 MOST = 1e7
 
 
+# Of the highest line: what a cubic force makes of it is kept. Points of a period, per order kept.
+_OVERTONES, _POINTS = 3, 4
+
+
 _FINITE = (
     "strut_phase_rad", "carriage_speed_m_s", "drift_rad", "rudder_angle_rad", "revolutions_hz",
     "heel_rad",
@@ -88,6 +92,9 @@ def steady_run(
     rig: SimulatedRig, set_point: SetPoint, *, orders: int = 12, points: int = 128
 ) -> SteadyState:
     """Return the periodic steady state of a rig at a set-point; see :func:`steady_state`."""
+    if set_point.lines:
+        orders = max(orders, _OVERTONES * max(line.order for line in set_point.lines))
+        points = max(points, _POINTS * orders)
     return steady_state(rig.chain(set_point), Period(set_point.frequency_hz, orders, points))
 
 

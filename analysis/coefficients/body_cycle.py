@@ -88,6 +88,8 @@ class BodyCycle:
         follow.
     heel, heel_rad
         How the model heels, and the heel of the run's set-point, to starboard.
+    lines
+        Harmonics at which a motion of many frequencies has its lines; empty for a single sine.
     """
 
     name: str
@@ -111,6 +113,7 @@ class BodyCycle:
     rudder_rad: float = 0.0
     heel: Heel | None = None
     heel_rad: float = 0.0
+    lines: tuple[int, ...] = ()
 
     @property
     def has_roll(self) -> bool:

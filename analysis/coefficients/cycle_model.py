@@ -22,7 +22,7 @@ from analysis.coefficients.stated_uncertainties import STATED
 from analysis.coefficients.term_waves import MOVES, UPRIGHT, slopes_of, waves_of
 from analysis.coefficients.terms import LOAD_WORDS, RUDDER_LETTER, Term
 from analysis.kinematics.body_frame import CHANNELS, HEEL, HEELED, LOADS
-from analysis.kinematics.cycle import basis, mean
+from analysis.kinematics.cycle import basis, instants_of, mean
 from analysis.uncertainty.values import Contribution
 from hardware.description.arrays import FloatArray
 
@@ -209,7 +209,7 @@ class CycleProblem:
     def apart(self) -> FloatArray:
         """What takes waves apart into the fitted harmonics, shape ``(instants, 2 orders)``."""
         places = [2 * n + part for n in self.orders for part in (0, 1)]
-        return mean(max(self.orders) + 1)[:, places]
+        return mean(max(self.orders) + 1, instants_of(self.highest + 1))[:, places]
 
     def _shaped(self, parts: FloatArray) -> FloatArray:
         return parts[..., :-1].reshape(*parts.shape[:-1], self.highest + 1, len(self.channels), 2)

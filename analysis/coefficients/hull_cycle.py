@@ -15,7 +15,7 @@ from analysis.coefficients.stated_uncertainties import STATED
 from analysis.coefficients.tare import Tare
 from analysis.kinematics.body_frame import HEEL, LOADS, UNIT_OF
 from analysis.kinematics.complex_step import by_parts, pointwise
-from analysis.kinematics.cycle import INSTANTS, harmonics, per_part
+from analysis.kinematics.cycle import harmonics, per_part
 from analysis.kinematics.geometry import Waves
 from analysis.kinematics.motion import MotionWaves
 from analysis.kinematics.rigid_body import heel_terms, inertia_terms, weight_terms
@@ -79,7 +79,7 @@ def on_hull(
     rows = [LOADS.index(name) for name in channels if name in LOADS]
     values, slope = pointwise(
         lambda waves: loads_asked(waves, plane, tare, restoring, HEEL in channels)[..., rows, :],
-        np.concatenate((moved, stated)),
+        np.concatenate((moved, stated * np.ones(moved.shape[-1]))),
     )
     orders = count - 1
     net = HullParts(count, channels)
@@ -125,7 +125,7 @@ def stated_at_instants(
     heel: Heel | None = None,
     heel_rad: float = 0.0,
 ) -> FloatArray:
-    """Return the values of :data:`_TAKEN` at each instant, and then what the struts bear.
+    """Return the values of :data:`_TAKEN`, and then what the struts bear, shape ``(k, 1)``.
 
     Of mass and m x_G a part, of m z_G a part, less displaced mass and its moments; of a model that
     heels I_xx, product and spread, and its righting moments.
@@ -142,7 +142,7 @@ def stated_at_instants(
     rolled: tuple[float, ...] = (0.0,) * 5
     if body is not None and heel is not None:
         rolled = (*heel.moments(body), *heel.righting(body))
-    return np.array([[*known, 1.0, drift_rad, heel_rad, *borne, *rolled]]).T * np.ones(INSTANTS)
+    return np.array([[*known, 1.0, drift_rad, heel_rad, *borne, *rolled]]).T
 
 
 class HullParts:

@@ -180,7 +180,10 @@ def _on_hull(gross: FloatArray, tare: Tare, cycles: Sequence[BodyCycle]) -> Floa
             for cycle in cycles
         ]
     )
-    inputs = (moved, np.broadcast_to(stated, (*moved.shape[:-2], *stated.shape[-2:])))
+    inputs = (
+        moved,
+        np.broadcast_to(stated, (*moved.shape[:-2], stated.shape[-2], moved.shape[-1])),
+    )
     restoring = np.stack([cycle.restoring for cycle in cycles])
     waves_in = np.concatenate(inputs, axis=-2)
     asked = loads_asked(waves_in, plane, tare, restoring, HEEL in channels)[..., loads, :]

@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from analysis.kinematics.cycle import INSTANTS
 from analysis.kinematics.geometry import Geometry
 from analysis.kinematics.motion import DrivenDisplacements, motion
 from analysis.kinematics.projection import ROWS, check_surge_spared, load_matrix
@@ -17,7 +16,7 @@ from hardware.description.arrays import FloatArray
 
 
 def _unturned() -> FloatArray:
-    return np.eye(len(ROWS))[..., None] * np.ones(INSTANTS)
+    return np.eye(len(ROWS))[..., None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +29,7 @@ class Tare:
         Of the reference point, as :attr:`analysis.kinematics.motion.MotionWaves.across_m`.
     of_load
         Loads in body axes, at each instant of the cycle, of what the gauges read of a unit load at
-        rest: shape ``(..., 3, 2 or 3, INSTANTS)``, by force, moment and surge force at rest.
+        rest: shape ``(..., 3, 2 or 3, instants or 1)``, by force, moment and surge force at rest.
     """
 
     place_m: FloatArray = field(default_factory=lambda: np.zeros(()))
@@ -61,6 +60,6 @@ class Tare:
         Parameters
         ----------
         load
-            Force, moment and surge force of the struts, shape ``(..., 3, INSTANTS)``.
+            Force, moment and surge force of the struts, shape ``(..., 3, instants)``.
         """
         return np.asarray(np.einsum("...kt,...krt->...rt", load, self.of_load))

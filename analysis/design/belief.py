@@ -153,7 +153,8 @@ def _asked(moving: MotionWaves, points: Sequence[SetPoint], belief: Belief, tare
         (
             np.stack((moving.across_m, moving.rotation_rad - drift), axis=1),
             rates.reshape(len(points), -1, rates.shape[-1]),
-            [stated_at_instants(belief.body, one.drift_rad, plane, one.medium) for one in points],
+            np.ones(rates.shape[-1])
+            * [stated_at_instants(belief.body, one.drift_rad, plane, one.medium) for one in points],
         ),
         axis=1,
     )

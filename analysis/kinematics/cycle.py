@@ -15,12 +15,18 @@ from analysis.kinematics.motion import DrivenDisplacements
 from hardware.description.arrays import FloatArray
 
 INSTANTS = 64  # |v|v folds back 1e-5 of itself, what is smooth nothing at 30 degrees
+_PER_ORDER = 2  # resolved to twice the highest line, so that a cube folds back beyond the lines
+
+
+def instants_of(count: int) -> int:
+    """Return at how many instants cycles are reckoned of so many orders, the mean included."""
+    return max(INSTANTS, 1 << (_PER_ORDER * count - 1).bit_length())
 
 
 def waves(parts: Waves, channels: int, times: int = 0) -> Waves:
     """Return the waves of interleaved parts, or their derivative by theta.
 
-    The result has the shape ``(..., channels, INSTANTS)``.
+    The result has the shape ``(..., channels, instants)``.
 
     Parameters
     ----------
@@ -44,9 +50,9 @@ def driven(parts: Waves, omega: Waves | float) -> DrivenDisplacements:
 def harmonics(over: Waves, orders: int) -> Waves:
     """Return interleaved parts of waves: the inverse of :func:`waves` at the orders there are.
 
-    Shape ``(..., k, INSTANTS)`` to ``(..., 2 * k * (orders + 1))``.
+    Shape ``(..., k, instants)`` to ``(..., 2 * k * (orders + 1))``.
     """
-    by_channel = (over @ mean(orders + 1)).reshape(*over.shape[:-1], orders + 1, 2)
+    by_channel = (over @ mean(orders + 1, over.shape[-1])).reshape(*over.shape[:-1], orders + 1, 2)
     return np.asarray(np.moveaxis(by_channel, -2, -3).reshape(*over.shape[:-2], -1))
 
 
@@ -55,7 +61,7 @@ def per_part(
 ) -> FloatArray:
     """Return the waves of some channels, differentiated in time, per interleaved part.
 
-    The result has the shape ``(len(wanted), 2 * channels * count, INSTANTS)``.
+    The result has the shape ``(len(wanted), 2 * channels * count, instants)``.
 
     Parameters
     ----------
@@ -64,24 +70,26 @@ def per_part(
     wanted
         Channel, and how often it is differentiated.
     """
-    parts = np.zeros((len(wanted), count, channels, 2, INSTANTS))
+    points = instants_of(count)
+    parts = np.zeros((len(wanted), count, channels, 2, points))
     for k, (channel, times) in enumerate(wanted):
         parts[k, :, channel] = omega**times * basis(count, times).reshape(count, 2, -1)
-    return parts.reshape(len(wanted), -1, INSTANTS)
+    return parts.reshape(len(wanted), -1, points)
 
 
 @lru_cache(maxsize=32)
-def basis(count: int, times: int) -> FloatArray:
-    """Return sine and cosine of each order, differentiated; shape ``(2 * count, INSTANTS)``."""
+def basis(count: int, times: int, points: int | None = None) -> FloatArray:
+    """Return sine and cosine of each order, differentiated; shape ``(2 * count, instants)``."""
+    points = points or instants_of(count)
     order = np.arange(count)[:, None]
-    angle = order * 2.0 * np.pi * np.arange(INSTANTS) / INSTANTS + times * np.pi / 2.0
+    angle = order * 2.0 * np.pi * np.arange(points) / points + times * np.pi / 2.0
     basis = (order**times)[:, None] * np.stack((np.sin(angle), np.cos(angle)), axis=1)
     basis[0] = [[float(times == 0)], [0.0]]  # the mean is real
-    return np.asarray(basis, dtype=np.float64).reshape(2 * count, INSTANTS)
+    return np.asarray(basis, dtype=np.float64).reshape(2 * count, points)
 
 
 @lru_cache(maxsize=32)
-def mean(count: int) -> FloatArray:
-    """Return what gives the parts back of waves, shape ``(INSTANTS, 2 * count)``."""
-    scale = np.where(np.arange(2 * count) < 2, 1.0, 2.0) / INSTANTS
-    return np.asarray(basis(count, 0).T * scale, dtype=np.float64)
+def mean(count: int, points: int) -> FloatArray:
+    """Return what gives the parts back of waves, shape ``(instants, 2 * count)``."""
+    scale = np.where(np.arange(2 * count) < 2, 1.0, 2.0) / points
+    return np.asarray(basis(count, 0, points).T * scale, dtype=np.float64)

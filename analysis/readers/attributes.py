@@ -15,7 +15,7 @@ from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
-from hardware.description.setpoint import Medium, SetPoint
+from hardware.description.setpoint import SetPoint
 from hardware.description.units import is_unit, unit
 
 # How far a stored time may lie from the even grid, in sample intervals.
@@ -167,8 +167,7 @@ def parse_run(
 def _set_point(text: str | None) -> SetPoint | None:
     if text is None:
         return None
-    fields = json.loads(text)
-    return SetPoint(**{**fields, "medium": Medium(fields.get("medium", Medium.WATER))})
+    return SetPoint.read(json.loads(text))
 
 
 def _flags(text: str) -> tuple[Flag, ...]:

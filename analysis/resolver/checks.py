@@ -89,7 +89,10 @@ def _drift(result: Harmonics) -> list[Flag]:
 
 
 def _transient(values: PeriodValues, result: Harmonics) -> list[Flag]:
-    """A first harmonic that is still on its way: a sure and notable trend over the periods."""
+    """A first harmonic that is still on its way: a sure and notable trend over the periods.
+
+    Notable beside the channel's largest harmonic: where others are excited it may be next to none.
+    """
     first = values.coefficients[:, :, 1:3]
     time = np.arange(len(first)) - (len(first) - 1) / 2.0
     slope = np.einsum("p,pci->ci", time, first) / (time @ time)
@@ -97,7 +100,8 @@ def _transient(values: PeriodValues, result: Harmonics) -> list[Flag]:
     error = np.sqrt((left**2).sum(axis=0) / (len(first) - 2) / (time @ time))
     change = np.abs(slope) * (len(first) - 1)
     amplitude = result.amplitude[:, 0]
-    sure = (np.abs(slope) > _SURE * error) & (change > _NOTABLE * amplitude[:, None])
+    largest = result.amplitude.max(axis=1)
+    sure = (np.abs(slope) > _SURE * error) & (change > _NOTABLE * largest[:, None])
     flags = []
     alone = (result.half_width() / result.widening)[:, 1:3].max(axis=1)  # a trend has memory itself
     moves = amplitude > alone  # else noise trends by itself

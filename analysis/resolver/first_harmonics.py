@@ -17,7 +17,7 @@ _UNITS = (DISPLACEMENT_AFT.unit, FORCE_AFT.unit)
 def first_harmonics(recording: Recording, analysis: Analysis) -> RunHarmonics | None:
     """Return the first harmonics over the first gate, also of the channel that tells the phase.
 
-    It is ``None`` for a recording without a set-point.
+    It is ``None`` for a recording without a set-point, or with a motion of many lines.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ def first_harmonics(recording: Recording, analysis: Analysis) -> RunHarmonics | 
         With all its channels, as it was read.
     """
     told, reading = recording.set_point, analysis.readings[0]
-    if told is None:
+    if told is None or told.lines:
         return None
     first = dict(_first(reading))
     for name in CHECKED:

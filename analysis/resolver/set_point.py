@@ -24,7 +24,8 @@ def set_point_flags(
     """Return ``set_point_differs`` for each quantity that differs from the set-point.
 
     Compared are the frequency over the first gate, and amplitudes and phase of the struts'
-    displacements where they are recorded, as the reference or otherwise.
+    displacements where they are recorded, as the reference or otherwise; of a motion of many lines
+    those of the largest.
 
     Parameters
     ----------
@@ -39,14 +40,15 @@ def set_point_flags(
     flags = []
     if abs(reading.frequency_hz - told) > _FREQUENCY * told:
         flags.append(_flag("frequency", told, reading.frequency_hz, "Hz", _FREQUENCY, None))
-    eccentricity_m = recording.set_point.eccentricity_m
-    moved = dict(_phasors(recording, reference, gate, reading))
+    line = max(recording.set_point.every_line, key=lambda line: line.share)
+    eccentricity_m = recording.set_point.eccentricity_m * line.share
+    moved = dict(_phasors(recording, reference, gate, reading, line.order))
     for name, phasor_m in moved.items():
         found_m = abs(phasor_m)
         if abs(found_m - eccentricity_m) > _ECCENTRICITY * eccentricity_m:
             told_mm, found_mm = 1e3 * eccentricity_m, 1e3 * found_m
             flags.append(_flag("eccentricity", told_mm, found_mm, "mm", _ECCENTRICITY, name))
-    return (*flags, *_phase_flags(recording.set_point.strut_phase_rad, moved))
+    return (*flags, *_phase_flags(line.strut_phase_rad, moved))
 
 
 def _phase_flags(told_rad: float, moved: Mapping[str, complex]) -> Iterator[Flag]:
@@ -66,32 +68,38 @@ def _phase_flags(told_rad: float, moved: Mapping[str, complex]) -> Iterator[Flag
 
 
 def _phasors(
-    recording: Recording, reference: PhaseReference, gate: PeriodSums, reading: Harmonics
+    recording: Recording,
+    reference: PhaseReference,
+    gate: PeriodSums,
+    reading: Harmonics,
+    order: int,
 ) -> Iterator[tuple[str, complex]]:
-    """Phasors of the first harmonics of the displacements that are there, in metres."""
+    """Phasors of a harmonic of the displacements that are there, in metres."""
     for strut in (DISPLACEMENT_AFT, DISPLACEMENT_FORE):
         name = strut.name
-        if name in reading.channel_names:
+        if name in reading.channel_names and order <= reading.order:
             row = reading.channel_names.index(name)
-            unit, phasor = reading.units[row], _phasor(reading, row)
+            unit, phasor = reading.units[row], _phasor(reading, row, order)
         elif name in recording.channel_names:
             unit = recording.channels[recording.index(name)].unit
-            phasor = _resolved(recording.select([name]), reference, gate)
+            phasor = _resolved(recording.select([name]), reference, gate, order)
         else:
             continue
         if unit == strut.unit and not cmath.isnan(phasor):
             yield name, phasor
 
 
-def _phasor(reading: Harmonics, row: int) -> complex:
-    return complex(*reading.coefficients[row, 1:3])
+def _phasor(reading: Harmonics, row: int, order: int) -> complex:
+    return complex(*reading.coefficients[row, 2 * order - 1 : 2 * order + 1])
 
 
-def _resolved(recording: Recording, reference: PhaseReference, gate: PeriodSums) -> complex:
+def _resolved(
+    recording: Recording, reference: PhaseReference, gate: PeriodSums, order: int
+) -> complex:
     """Phasor over a gate; NaN where it has no period without missing samples."""
-    sums = period_sums(recording, reference, 1, edges_cycles=gate.edges_cycles)
+    sums = period_sums(recording, reference, order, edges_cycles=gate.edges_cycles)
     try:
-        return _phasor(resolve(recording, sums), 0)
+        return _phasor(resolve(recording, sums), 0, order)
     except DataError:
         return complex("nan")
 

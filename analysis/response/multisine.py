@@ -5,10 +5,15 @@ all of them at once, without leakage. What it costs is amplitude: the lines shar
 how well they do is the crest factor.
 """
 
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
+from hardware.description.lines import Line, peak_of
 
 _POINTS_PER_LINE = 16  # of a period, per harmonic of the highest line: the peak to 0.5 %
 
@@ -75,3 +80,77 @@ def odd_lines_with_gaps(lowest: int, highest: int, group: int, seed: int) -> tup
         for first in range(0, len(odd) - group + 1, group)
     }
     return tuple(n for n in odd if n not in left_out)
+
+
+def multisine(
+    orders: Sequence[int], weights: FloatArray, strut_phases_rad: Sequence[float] = (0.0,)
+) -> tuple[Line, ...]:
+    """Return lines with Schroeder's phases whose peak is the eccentricity.
+
+    Parameters
+    ----------
+    weights
+        Amplitude of each line over the others'.
+    strut_phases_rad
+        Of the lines in turn, from the first again after the last: 0 and pi make one run sway and
+        yaw.
+    """
+    phases = schroeder_phases(np.asarray(weights, dtype=np.float64))
+    lines = [
+        Line(
+            order,
+            float(weight),
+            float(phase),
+            strut_phases_rad[k % len(strut_phases_rad)],
+        )
+        for k, (order, weight, phase) in enumerate(zip(orders, weights, phases, strict=True))
+    ]
+    peak = peak_of(lines)
+    return tuple(replace(line, share=line.share / peak) for line in lines)
+
+
+def lines_of(samples: FloatArray, highest: int, least: float = 1e-3) -> tuple[Line, ...]:
+    """Return the lines of one period of any motion: a chirp, or one that was recorded.
+
+    The mean is left out, and what is smaller than ``least`` of the largest line.
+
+    Parameters
+    ----------
+    samples
+        Of the aft strut over the period, evenly spaced, in any unit; shape ``(samples,)``. The fore
+        strut moves with it.
+    highest
+        Highest harmonic that is kept.
+
+    Raises
+    ------
+    ConfigurationError
+        If nothing moves, or the samples do not carry that harmonic.
+    """
+    if len(samples) <= 2 * highest:
+        raise ConfigurationError(
+            f"{len(samples)} samples of the period cannot carry harmonic {highest}; give more than "
+            f"{2 * highest}"
+        )
+    spectrum = 2j * np.fft.rfft(samples)[: highest + 1] / len(samples)
+    size = np.abs(spectrum)
+    size[0] = 0.0
+    kept = np.flatnonzero((size > least * size.max()) & (size > 0.0))
+    if not kept.size:
+        raise ConfigurationError("the motion given does not move; give one period that does")
+    lines = [Line(int(n), float(size[n]), float(np.angle(spectrum[n]))) for n in kept]
+    peak = peak_of(lines)
+    return tuple(replace(line, share=line.share / peak) for line in lines)
+
+
+def chirp(lowest: int, highest: int) -> tuple[Line, ...]:
+    """Return the lines of a sweep from one harmonic to another that repeats with the base period.
+
+    Its angle is ``2 pi (lowest t + turns t^2)`` for t from 0 to 1, with so many turns more that it
+    ends on a whole one; harmonics a tenth beyond the highest are kept.
+    """
+    count = _POINTS_PER_LINE * highest
+    t = np.arange(count) / count
+    turns = round((highest - lowest) / 2.0)
+    sweep = np.sin(2.0 * np.pi * (lowest * t + turns * t**2))
+    return lines_of(sweep, highest + math.ceil(highest / 10.0))

@@ -1,10 +1,15 @@
 """What a run was told to do."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
 
 from hardware.description.errors import ConfigurationError
+from hardware.description.lines import Line, peak_of
 from hardware.description.oscillator import Oscillator
+
+_WHOLE = 1.01  # of the eccentricity: a peak that is found on a finer grid is still it
 
 
 class Medium(StrEnum):
@@ -20,8 +25,10 @@ class SetPoint:
 
     Attributes
     ----------
+    frequency_hz
+        Of the shaft; of a motion of many lines the base frequency.
     eccentricity_m
-        Amplitude ``e`` of each strut's motion (half the stroke).
+        Amplitude ``e`` of each strut's motion (half the stroke), the peak of all lines together.
     strut_phase_rad
         Phase ``phi`` of the fore strut ahead of the aft strut: 0 gives pure heave or sway, pi pure
         pitch or yaw about the midpoint.
@@ -36,6 +43,8 @@ class SetPoint:
         Rate of the propeller, positive to drive ahead; 0 where it stands or there is none.
     heel_rad
         Heel at which the model is fixed, or rests where it is free to roll; positive to starboard.
+    lines
+        Of a motion of many frequencies, each with its own strut phase; empty for a single sine.
     """
 
     frequency_hz: float
@@ -47,6 +56,19 @@ class SetPoint:
     rudder_angle_rad: float = 0.0
     revolutions_hz: float = 0.0
     heel_rad: float = 0.0
+    lines: tuple[Line, ...] = ()
+
+    @property
+    def every_line(self) -> tuple[Line, ...]:
+        """The lines of the motion: one of a single sine."""
+        return self.lines or (Line(1, strut_phase_rad=self.strut_phase_rad),)
+
+    @classmethod
+    def read(cls, fields: Mapping[str, Any]) -> "SetPoint":
+        """Return the set-point of a document's fields, as :func:`dataclasses.asdict` makes them."""
+        medium = Medium(fields.get("medium", Medium.WATER))
+        lines = tuple(Line(**one) for one in fields.get("lines", ()))
+        return cls(**{**fields, "medium": medium, "lines": lines})
 
 
 def check_within(oscillator: Oscillator, set_point: SetPoint) -> None:
@@ -59,8 +81,16 @@ def check_within(oscillator: Oscillator, set_point: SetPoint) -> None:
         each value and its limits.
     """
     faults = []
+    orders = [line.order for line in set_point.every_line]
     for name, value, allowed in (
-        ("frequency_hz", set_point.frequency_hz, oscillator.frequency_hz),
+        *(
+            (
+                "frequency_hz" if n == 1 else f"line {n}",
+                n * set_point.frequency_hz,
+                oscillator.frequency_hz,
+            )
+            for n in (min(orders), max(orders))
+        ),
         ("eccentricity_m", set_point.eccentricity_m, oscillator.eccentricity_m),
     ):
         if value not in allowed:
@@ -68,5 +98,21 @@ def check_within(oscillator: Oscillator, set_point: SetPoint) -> None:
                 f"{name} = {value:g} is outside {allowed.low:g} to {allowed.high:g} "
                 f"of the {oscillator.plane} oscillator"
             )
+    faults += _line_faults(oscillator, set_point)
     if faults:
-        raise ConfigurationError("; ".join(faults))
+        raise ConfigurationError("; ".join(dict.fromkeys(faults)))
+
+
+def _line_faults(oscillator: Oscillator, set_point: SetPoint) -> list[str]:
+    if not set_point.lines:
+        return []
+    faults = []
+    peak = peak_of(set_point.lines)
+    if peak > _WHOLE:
+        faults.append(
+            f"the lines together reach {peak:.4g} times eccentricity_m, which is their peak; "
+            "lower their shares"
+        )
+    if oscillator.rod_length_m is not None:
+        faults.append("lines are followed by position-controlled struts, not by a crank with a rod")
+    return faults

@@ -8,6 +8,7 @@ from analysis.resolver.reference_choice import ReferenceChoice
 from hardware.description.body import Body
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.known_loads import KnownMass, LoadStep
+from hardware.description.lines import Line
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.campaign.model_uncertainty import ModelUncertainty
@@ -46,6 +47,7 @@ class Asked:
     rudder_angle_rad: float = 0.0
     revolutions_hz: float = 0.0
     heel_rad: float = 0.0
+    lines: tuple[Line, ...] = ()
 
     @property
     def set_point(self) -> SetPoint:
@@ -60,6 +62,7 @@ class Asked:
             self.rudder_angle_rad,
             self.revolutions_hz,
             self.heel_rad,
+            self.lines,
         )
 
 
@@ -72,7 +75,7 @@ class Run(Asked):
     name
         Unique within the campaign; its recording is called so.
     frequency_hz, eccentricity_m, strut_phase_rad, carriage_speed_m_s, medium, drift_rad
-    rudder_angle_rad, revolutions_hz, heel_rad
+    rudder_angle_rad, revolutions_hz, heel_rad, lines
         As in :class:`hardware.description.setpoint.SetPoint`.
     periods
         Whole periods wanted.

@@ -8,6 +8,7 @@ from pathlib import Path
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_plan import Request
 from analysis.coefficients.campaign_result import CampaignCoefficients
+from analysis.coefficients.line_cycles import by_lines
 from analysis.coefficients.roll_decay import NAMES as OF_DECAYS
 from analysis.coefficients.roll_decay import with_decays
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
@@ -227,11 +228,11 @@ def campaign_cycles(
     body, models = body_of(campaign, settings.inertia, has_dry=bool(work.dry))
     found = _recordings(work, executor, progress, with_dry=body is None)
     wet, dry = _sorted(found, {task.name for task in work.dry})
+    wet = [with_own_body(one, campaign, settings, body) for one in wet]
+    cycles = [one.about(settings.point_ahead_m) for cycle in wet for one in by_lines(cycle)]
     if body is None:
-        wet = [without_dry(one, dry, campaign) if one.frequency_hz > 0.0 else one for one in wet]
-    cycles = [
-        with_own_body(one, campaign, settings, body).about(settings.point_ahead_m) for one in wet
-    ]
+        dry = [one for cycle in dry for one in by_lines(cycle)]
+        cycles = [without_dry(one, dry, campaign) if one.frequency_hz else one for one in cycles]
     done = [one for one in found if isinstance(one, Done)]
     gauges = [one.calibration for one in done if one.calibration is not None]
     return CampaignCycles(

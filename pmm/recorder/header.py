@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from hardware.description.channels import Channel
 from hardware.description.errors import DataError
-from hardware.description.setpoint import Medium, SetPoint
+from hardware.description.setpoint import SetPoint
 from hardware.roles import Reading
 
 _NOTHING: Mapping[str, Any] = MappingProxyType({})
@@ -125,7 +125,7 @@ class RunHeader:
                 **{
                     **fields,
                     "channels": tuple(Channel(**one) for one in fields["channels"]),
-                    "set_point": point and SetPoint(**{**point, "medium": Medium(point["medium"])}),
+                    "set_point": point and SetPoint.read(point),
                     "readings": {key: Reading(**one) for key, one in fields["readings"].items()},
                     "live": LiveSettings(**fields["live"]),
                 }

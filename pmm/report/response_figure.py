@@ -67,6 +67,7 @@ def _column(
     phase.errorbar(at, turned, wide, fmt="o-", ms=3, color=PALETTE[0])
     phase.set_ylabel("phase (deg)")
     coherence.plot(at, response.coherence, "o-", ms=3, color=PALETTE[0])
+    coherence.set_ylim(min(0.9, 0.9 * float(response.coherence.min())), 1.01)
     coherence.set_ylabel("coherence")
     own = np.abs(phasors_of(reading, output)[np.array(response.orders) - 1])
     lines.semilogy(at, own, "o", ms=4, color=PALETTE[0], label="excited")
@@ -75,6 +76,7 @@ def _column(
         color, mark = _MARKS[one.degree]
         lines.semilogy(where, one.amplitudes, mark, ms=4, color=color, label=str(one.degree))
         lines.semilogy(where, one.noise, "_", color=TRACE)
+    lines.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
     lines.set_ylabel(f"amplitude ({response.unit.rpartition('/')[0]})")
     lines.set_xlabel("frequency (Hz)")
     lines.legend(ncols=3)

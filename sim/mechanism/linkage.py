@@ -8,6 +8,7 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
+from hardware.description.lines import Line
 from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from sim import signals
 from sim.mechanism.play import JointMotion, PlayState, follow_with_play
@@ -68,6 +69,7 @@ class Mechanism:
 
         d = e sin(th)                                         scotch yoke
         d = e sin(th) + sqrt(L^2 - e^2 cos^2(th)) - L         crank with a rod of length L
+        d = e sum a_k sin(n_k th + phase_k)                   struts that follow lines
 
     Velocity and acceleration follow by the chain rule from the shaft's speed and acceleration; no
     samples are differenced.
@@ -79,6 +81,9 @@ class Mechanism:
         lies to the other side of the crank.
     aft, fore
         How each strut's linkage differs from what was set.
+    lines
+        Of position-controlled struts, whose master angle the shaft's is, each with its own strut
+        phase; empty for yoke and crank.
 
     Raises
     ------
@@ -92,6 +97,7 @@ class Mechanism:
     rod_length_m: float | None = None
     aft: Setting = Setting()
     fore: Setting = Setting()
+    lines: tuple[Line, ...] = ()
 
     name = "mechanism"
     reads = (
@@ -125,7 +131,7 @@ class Mechanism:
         written: dict[str, FloatArray] = {}
         after = list(state or (None, None))
         for i, (strut, names) in enumerate(zip(self.struts, _WRITES, strict=True)):
-            d, slope, curvature = self._strut(strut, angle)
+            d, slope, curvature = self._strut(i, angle)
             motion = JointMotion(d, slope * speed, curvature * speed**2 + slope * acceleration)
             values: tuple[FloatArray, ...] = (*motion, slope)
             if strut[0].half_play_m and block.count:
@@ -141,8 +147,8 @@ class Mechanism:
         beyond = period.values(inputs[signals.SHAFT_ANGLE.name])
         angle = period.omega_rad_s * period.time_s + beyond
         written: dict[str, np.ndarray] = {}
-        for strut, names in zip(self.struts, _WRITES, strict=True):
-            d, slope, curvature = self._strut(strut, angle)
+        for i, (strut, names) in enumerate(zip(self.struts, _WRITES, strict=True)):
+            d, slope, curvature = self._strut(i, angle)
             if strut[0].half_play_m:
                 speed = period.values(inputs[signals.SHAFT_SPEED.name])
                 gained = period.values(inputs[signals.SHAFT_ACCELERATION.name])
@@ -160,17 +166,31 @@ class Mechanism:
         """Each strut's setting, and the crank angle (rad) by which it is ahead: aft, fore."""
         return (self.aft, 0.0), (self.fore, self.strut_phase_rad)
 
-    def _strut(
-        self, strut: tuple[Setting, float], angle: FloatArray
+    def _strut(self, number: int, angle: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return what :meth:`displacement` does of the aft strut (0) or the fore one (1)."""
+        setting, phase_rad = self.struts[number]
+        if not self.lines:
+            return self._linkage(setting, angle + phase_rad)
+        whole = (np.zeros_like(angle), np.zeros_like(angle), np.zeros_like(angle))
+        for line in self.lines:
+            ahead = line.phase_rad + number * line.strut_phase_rad
+            single = replace(self, eccentricity_m=self.eccentricity_m * line.share, lines=())
+            own = replace(setting, eccentricity_error_m=setting.eccentricity_error_m * line.share)
+            for times, part in enumerate(single._linkage(own, line.order * angle + ahead)):
+                whole[times][...] += line.order**times * part
+        return whole
+
+    def _linkage(
+        self, setting: Setting, angle: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        setting, phase_rad = strut
+        """Return what :meth:`displacement` does of a linkage that differs from what was set."""
         if setting == _AS_SET:
-            return self.displacement(angle + phase_rad)
+            return self.displacement(angle)
         eccentricity = setting.eccentricity_m(self.eccentricity_m)
         real = replace(
             self, eccentricity_m=eccentricity / math.cos(setting.slot_tilt_rad), aft=_AS_SET
         )
-        turned = angle + (phase_rad + setting.phase_error_rad + setting.slot_tilt_rad)
+        turned = angle + (setting.phase_error_rad + setting.slot_tilt_rad)
         return real.displacement(turned, setting.rod_offset_m)
 
     def displacement(

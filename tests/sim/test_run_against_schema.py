@@ -32,7 +32,7 @@ def test_dataset_follows_the_schema(tmp_path: Path) -> None:
     assert run.attrs[schema.ATTR_SCHEMA] == schema.SCHEMA
     assert run.attrs[schema.ATTR_NAME] == "heave 1"
     assert run.attrs[schema.ATTR_SAMPLE_RATE] == 200.0
-    assert SetPoint(**json.loads(run.attrs[schema.ATTR_SET_POINT])) == SET_POINT
+    assert SetPoint.read(json.loads(run.attrs[schema.ATTR_SET_POINT])) == SET_POINT
     assert json.loads(run.attrs[schema.ATTR_FLAGS]) == []
     provenance = json.loads(run.attrs[schema.ATTR_PROVENANCE])
     assert provenance["seed"] == "3"

@@ -1,0 +1,64 @@
+"""A motion of many frequencies: lines at harmonics of one base frequency.
+
+Each strut follows its own table over the turn of one master angle ``theta``, as an electronic cam
+or a position-controlled axis does:
+
+    d_aft = e sum over lines of a_k sin(n_k theta + phase_k)
+    d_fore = e sum over lines of a_k sin(n_k theta + phase_k + strut_phase_k)
+
+A chirp that repeats, or a motion that was recorded, are such sums too.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hardware.description.arrays import FloatArray
+
+_POINTS_PER_LINE = 32  # of a turn, per harmonic of the highest line: a peak to 0.5 %
+
+
+@dataclass(frozen=True)
+class Line:
+    """One line of a motion.
+
+    Attributes
+    ----------
+    order
+        n: which harmonic of the base frequency, 1 or more.
+    share
+        a: its amplitude over the set-point's eccentricity.
+    phase_rad
+        Of the aft strut.
+    strut_phase_rad
+        Of the fore strut ahead of the aft one at this line.
+    """
+
+    order: int
+    share: float = 1.0
+    phase_rad: float = 0.0
+    strut_phase_rad: float = 0.0
+
+
+def struts_over_turn(lines: Sequence[Line], times: int = 0) -> FloatArray:
+    """Return both struts over a turn, per eccentricity, differentiated by the angle.
+
+    The result has the shape ``(2, points)``, aft and fore.
+
+    Parameters
+    ----------
+    times
+        How often it is differentiated.
+    """
+    order = np.array([line.order for line in lines], dtype=np.float64)
+    theta = np.linspace(0.0, 2.0 * np.pi, _POINTS_PER_LINE * int(order.max()), endpoint=False)
+    size = np.array([line.share for line in lines]) * order**times
+    phase = np.array([[line.phase_rad, line.phase_rad + line.strut_phase_rad] for line in lines])
+    turned = order[:, None, None] * theta + (phase + times * np.pi / 2.0)[..., None]
+    return np.asarray(np.einsum("k,kst->st", size, np.sin(turned)))
+
+
+def peak_of(lines: Sequence[Line], times: int = 0) -> float:
+    """Return the largest displacement of either strut over the eccentricity, or its derivative."""
+    return float(np.abs(struts_over_turn(lines, times)).max())
