@@ -1,4 +1,9 @@
-"""Times of day and dates as text: ``14:03:07.25``, ``2025-03-01T14:03:07Z``, ``01.03.2025``."""
+"""Times of day and dates as text: ``14:03:07.25``, ``2025-03-01T14:03:07Z``, ``01.03.2025``.
+
+``03/04/2025 2:03:07 PM`` may be in March or in April. Only the time since the first row counts, and
+a record lasts less than a fortnight: of the two orders that with the shorter time is right, as the
+other changes the month where this changes the day.
+"""
 
 import re
 from dataclasses import dataclass
@@ -17,10 +22,17 @@ DAY_S: Final = 86400.0
 _MIDNIGHT_S: Final = DAY_S / 2.0
 
 _YEAR_FIRST = r"(?P<year>\d{4})([-/.])(?P<month>\d\d?)\2(?P<day>\d\d?)"
-_DAY_FIRST = r"(?P<d>\d\d?)\.(?P<m>\d\d?)\.(?P<y>\d{4})"
-_TIME = r"(?P<hour>\d\d?):(?P<minute>[0-5]\d):(?P<second>[0-5]\d(?:[.,]\d*)?)"
+_YEAR_LAST = r"(?P<a>\d\d?)(?P<sign_between>[-/.])(?P<b>\d\d?)(?P=sign_between)(?P<y>\d{4})"
+_TIME = (
+    r"(?P<hour>\d\d?):(?P<minute>[0-5]\d):(?P<second>[0-5]\d(?:[.,]\d*)?)"
+    r"(?:\s*(?P<half>[AaPp])\.?[Mm]\.?)?"
+)
 _ZONE = r"(?P<zone>Z|(?P<sign>[+-])(?P<zone_hour>\d\d):?(?P<zone_minute>\d\d))?"
-_STAMP = re.compile(rf"(?:(?:{_YEAR_FIRST}|{_DAY_FIRST})(?:[T ]\s*|$))?(?:{_TIME}\s*{_ZONE})?")
+_STAMP = re.compile(rf"(?:(?:{_YEAR_FIRST}|{_YEAR_LAST})(?:[T ]\s*|$))?(?:{_TIME}\s*{_ZONE})?")
+
+
+Days = tuple[int | None, int | None]
+NO_DAY: Final[Days] = (None, None)
 
 
 @dataclass(frozen=True)
@@ -29,13 +41,14 @@ class ClockStamp:
 
     Attributes
     ----------
-    day
-        Counted from the year 1; ``None`` where there is no date.
+    days
+        Counted from the year 1, with the day before the month and with the month before the day;
+        ``None`` where there is no such date. Both alike where the order is sure.
     second
         Of the day, less the zone's offset; ``None`` where there is a date alone.
     """
 
-    day: int | None
+    days: Days
     second: float | None
 
     @property
@@ -43,10 +56,11 @@ class ClockStamp:
         """What stands in place of a unit for a column of such stamps."""
         return DATE if self.second is None else CLOCK
 
-    def seconds_since(self, day: int) -> float:
+    def seconds_since(self, first: Days) -> float:
         """Return the seconds since a day's midnight; of a time alone those since its own."""
-        days = 0 if self.day is None else self.day - day
-        return DAY_S * days + (self.second or 0.0)
+        pairs = zip(self.days, first, strict=True)
+        since = [own - day for own, day in pairs if own is not None and day is not None]
+        return DAY_S * min(since, key=abs, default=0) + (self.second or 0.0)
 
 
 def read_stamp(cell: str) -> ClockStamp | None:
@@ -54,20 +68,32 @@ def read_stamp(cell: str) -> ClockStamp | None:
     found = _STAMP.fullmatch(cell) if cell else None
     if found is None:
         return None
-    year, month, day = (
-        found[a] or found[b] for a, b in (("year", "y"), ("month", "m"), ("day", "d"))
-    )
-    try:
-        number = date(int(year), int(month), int(day)).toordinal() if year else None
-    except ValueError:
+    days = NO_DAY
+    if found["year"]:
+        days = (_day(found["year"], found["month"], found["day"]),) * 2
+    elif found["y"]:
+        day_first = _day(found["y"], found["b"], found["a"])
+        sure = found["sign_between"] == "."
+        days = day_first, day_first if sure else _day(found["y"], found["a"], found["b"])
+    if (found["year"] or found["y"]) and days == NO_DAY:
         return None
     if not found["hour"]:
-        return ClockStamp(number, None)
-    second = _seconds(found["hour"], found["minute"], found["second"])
+        return ClockStamp(days, None)
+    hour = found["hour"]
+    if found["half"]:
+        hour = str(int(hour) % 12 + 12 * (found["half"] in "pP"))
+    second = _seconds(hour, found["minute"], found["second"])
     if found["sign"]:
         offset = _seconds(found["zone_hour"], found["zone_minute"], "0")
         second -= offset if found["sign"] == "+" else -offset
-    return ClockStamp(number, second)
+    return ClockStamp(days, second)
+
+
+def _day(year: str, month: str, day: str) -> int | None:
+    try:
+        return date(int(year), int(month), int(day)).toordinal()
+    except ValueError:
+        return None
 
 
 def _seconds(hours: str, minutes: str, seconds: str) -> float:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 
-from analysis.readers.clock import read_stamp
+from analysis.readers.clock import NO_DAY, Days, read_stamp
 from analysis.readers.columns import TextLayout
 from analysis.readers.headers import Header, parse_header
 from analysis.readers.text_source import TextSource
@@ -35,7 +35,7 @@ class FoundLayout:
     missing
         Cells that stand for a missing value.
     first_day
-        Of the first row's date, counted from the year 1: times with dates count from its midnight.
+        Of the first row's date: times with dates count from its midnight.
     """
 
     headers: tuple[Header, ...]
@@ -43,7 +43,7 @@ class FoundLayout:
     decimal: str
     first_line: int
     missing: tuple[str, ...]
-    first_day: int = 0
+    first_day: Days = NO_DAY
 
     @property
     def fewest_cells(self) -> int:
@@ -201,8 +201,8 @@ def _headed(
     for k, stamp in stamps.items():
         if stamp is not None and k < len(headers):
             headers[k] = replace(headers[k], unit=stamp.unit, unit_is_suffix=False)
-    days = [stamp.day for stamp in stamps.values() if stamp is not None and stamp.day is not None]
-    first_day = days[0] if days else 0
+    days = [one.days for one in stamps.values() if one is not None and one.days != NO_DAY]
+    first_day = days[0] if days else NO_DAY
     return FoundLayout(
         tuple(headers), bare.separator, bare.decimal, first_line, bare.missing, first_day
     )

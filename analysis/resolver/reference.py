@@ -19,6 +19,8 @@ from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 
 _WRAP_IN_DEGREES = 50.0  # no shaft turns as far between two samples: radians wrap by 2 pi
+_STRAYS = 4.0  # times the median distance from the line: no knot of a motion that is steady
+_SWEEPS = 4
 KNOTS_PER_REVOLUTION = 256  # of an encoder: enough to follow gear ripple, few enough to keep
 
 
@@ -63,14 +65,29 @@ class PhaseReference:
         return _interpolate(cycles, self.cycles, self.times_s)
 
     def delayed(self, delay_s: float) -> "PhaseReference":
-        """Return the reference so much later, its phase carried on at its mean frequency."""
+        """Return the reference so much later, its phase carried on at its usual frequency."""
         if not delay_s:
             return self
         return replace(
             self,
             times_s=self.times_s + delay_s,
-            cycles=self.cycles + self.frequency_hz * delay_s,
+            cycles=self.cycles + self._usual_hz() * delay_s,
         )
+
+    def _usual_hz(self) -> float:
+        """Return the frequency of most knots: those where a motion starts or stops are left out.
+
+        There the phase is that of an amplitude that changes, off by a degree or so.
+        """
+        times_s, cycles = self.times_s, self.cycles
+        for _ in range(_SWEEPS):
+            line = np.polynomial.Polynomial.fit(times_s, cycles, 1)
+            left = np.abs(cycles - line(times_s))
+            kept = left <= _STRAYS * float(np.median(left))
+            if kept.sum() < max(2, len(self.cycles) // 2):
+                break
+            times_s, cycles = times_s[kept], cycles[kept]
+        return float(line.deriv()(times_s[0]))
 
     @property
     def frequency_hz(self) -> float:

@@ -106,9 +106,9 @@ class HarmonicsRequest:
         found: dict[str, float] = {}
         for text in self.delays:
             name, _, value = (part.strip() for part in text.rpartition("="))
-            distance, _, speed = value.partition("/")
+            distance, _, speed = value.replace(" ", "").partition("/")
             try:
-                delay_s = float(distance) / float(speed or 1.0)
+                delay_s = float(distance.rstrip("sm")) / float(speed.removesuffix("m/s") or 1.0)
             except (ValueError, ZeroDivisionError):
                 delay_s = math.nan
             if not name or name in found or not math.isfinite(delay_s):

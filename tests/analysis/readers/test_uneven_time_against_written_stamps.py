@@ -72,6 +72,10 @@ CLOCKS: dict[str, tuple[str, Callable[[datetime], str]]] = {
     "with a blank": ("Time,", lambda t: str(t)),
     "blank and tab": ("Time\t", lambda t: str(t)),
     "day first": ("Zeit;", lambda t: t.strftime("%d.%m.%Y %H:%M:%S,%f")),
+    "month first": ("Time,", lambda t: t.strftime("%m/%d/%Y %H:%M:%S.%f")),
+    "month first, twelve hours": ("Time\t", lambda t: t.strftime("%m/%d/%Y %I:%M:%S.%f %p")),
+    "day first, slashes": ("Time;", lambda t: t.strftime("%d/%m/%Y %H:%M:%S.%f")),
+    "day first, dashes": ("Time;", lambda t: t.strftime("%d-%m-%Y %H:%M:%S.%f")),
     "date beside": ("Date,Time,", lambda t: t.strftime("%Y-%m-%d,%H:%M:%S.%f")),
     "date beside, blanks": ("Date Time ", lambda t: str(t)),
 }
@@ -85,6 +89,18 @@ def test_clocks_run_on_over_midnight(tmp_path: Path, kind: str) -> None:
     assert found.channel_names == ("F",)
     assert found.start_s == pytest.approx(86399.9, abs=1e-3)
     assert found.end_s - found.start_s == pytest.approx(1.991, abs=1e-3)
+
+
+@pytest.mark.parametrize("order", ["%d/%m/%Y", "%m/%d/%Y"])
+@pytest.mark.parametrize("day", ["2025-03-04", "2025-11-11", "2025-12-12", "2025-12-31"])
+def test_days_that_may_be_months_are_told_by_the_next(tmp_path: Path, order: str, day: str) -> None:
+    """Before and after midnight: the other order would leave a month between."""
+    start = datetime.fromisoformat(f"{day} 23:59:59.5")
+    times = [start + timedelta(milliseconds=10 * k) for k in range(100)]
+    stamps = [one.strftime(f"{order} %H:%M:%S.%f") for one in times]
+    found = written(tmp_path, "Time,", stamps)
+    assert found.start_s == pytest.approx(86399.5)
+    assert found.end_s - found.start_s == pytest.approx(0.99)
 
 
 def test_a_zone_is_taken_off_and_no_such_date_is_refused(tmp_path: Path) -> None:
