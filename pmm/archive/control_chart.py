@@ -43,9 +43,12 @@ def control_chart(values: Sequence[float], probability: float) -> tuple[ChartPoi
     if n < FEWEST:
         return tuple(ChartPoint(one, math.nan, math.nan) for one in values)
     factor = float(stdtrit(n - 2, 0.5 + 0.5 * probability)) * math.sqrt(1.0 + 1.0 / (n - 1))
-    found = []
-    for k, value in enumerate(values):
-        others = np.delete(np.asarray(values, float), k)
-        middle, half = float(others.mean()), factor * float(others.std(ddof=1))
-        found.append(ChartPoint(value, middle - half, middle + half))
-    return tuple(found)
+    all_values = np.asarray(values, float)
+    off = all_values - all_values.mean()
+    middle = all_values - off * n / (n - 1)
+    squares = np.sum(off**2) - off**2 * n / (n - 1)  # of the others about their own mean
+    half = factor * np.sqrt(np.maximum(squares, 0.0) / (n - 2))
+    return tuple(
+        ChartPoint(*map(float, one))
+        for one in zip(all_values, middle - half, middle + half, strict=True)
+    )

@@ -148,13 +148,10 @@ def find_coefficients(connection: sqlite3.Connection, expression: str) -> list[R
 
 
 def _check_channel(connection: sqlite3.Connection, channel: str) -> None:
-    names = [
-        one["channel"] for one in rows_of(connection, "SELECT DISTINCT channel FROM harmonics")
-    ]
-    if channel not in names:
-        raise ConfigurationError(
-            f"no channel {channel!r}; {what_is_there('channels', channel, names)}"
-        )
+    if not rows_of(connection, "SELECT 1 FROM harmonics WHERE channel = ? LIMIT 1", (channel,)):
+        rows = rows_of(connection, "SELECT DISTINCT channel FROM harmonics")
+        there = what_is_there("channels", channel, [one["channel"] for one in rows])
+        raise ConfigurationError(f"no channel {channel!r}; {there}")
 
 
 def what_is_there(what: str, name: str, names: Sequence[str]) -> str:

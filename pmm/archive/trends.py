@@ -10,14 +10,14 @@ from pmm.archive.control_chart import ChartPoint, control_chart
 from pmm.archive.queries import Row, rows_of, the_run, what_is_there
 
 _PARTS: Final = {"in_phase": "in phase", "quadrature": "quadrature"}
-# A set-point is the same within what drives and drawings state.
+# A set-point is the same within what drives and drawings state. CROSS: the runs come first.
 _REPEATS: Final = """
 SELECT coalesce(runs.recorded_utc, campaigns.recorded_utc) AS recorded_utc, runs.run,
     campaigns.campaign, campaigns.folder, campaigns.hull, harmonics.unit,
     runs.carriage_speed_m_s AS speed_m_s, runs.frequency_hz, in_phase, quadrature,
     in_phase_half_width, quadrature_half_width, NULL AS standard_uncertainty
 FROM runs JOIN campaigns ON campaigns.id = runs.campaign
-JOIN harmonics ON harmonics.run = runs.id
+CROSS JOIN harmonics ON harmonics.run = runs.id
     AND gate = (SELECT min(gate) FROM harmonics WHERE run = runs.id)
 WHERE channel = :channel AND ord = :order AND hull = :hull AND kind = :kind AND medium = :medium
     AND (frequency_hz IS :frequency_hz OR abs(frequency_hz - :frequency_hz) <= 1e-4)
