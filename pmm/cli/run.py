@@ -35,8 +35,9 @@ _INTERRUPTED = 130  # what a shell reports of a command that Ctrl-C ended
 )
 @click.option(
     "--until",
-    type=click.Choice(["targets"]),
-    help="PLAN.toml is a design: choose run after run until its targets are met.",
+    type=click.Choice(["targets", "cause"]),
+    help="PLAN.toml is a design: choose run after run until its targets are met, or until it is "
+    "known why rig and simulation differ.",
 )
 @click.option(
     "--approve",
@@ -65,7 +66,8 @@ def run(
     recording is closed. Twice stops at once. Nothing resumes by itself: --resume does.
     Axes that are set by hand are asked for; readings are typed in, or piped, one a line.
     With --until targets the file is a design (docs/plan-design.md): after each run the coefficients
-    are found again and the rest is planned anew; you approve of each change.
+    are found again and the rest is planned anew; you approve of each change. --until cause takes a
+    design with [gap] and goes on until one class of causes has a probability over 0.95.
 
     \b
     pmm run examples/vertical/plan.toml --output my-campaign
@@ -90,7 +92,7 @@ def run(
             _refuse(bool(only), "--only", until)
             _refuse(dry_run, "--dry-run", until)
             found = carried_out_until(
-                plan, output, approve, resume, accept_changes, real_time, as_json=as_json
+                plan, until, output, approve, resume, accept_changes, real_time, as_json=as_json
             )
     if found.fault:
         from pmm.run.session import RunFailedError

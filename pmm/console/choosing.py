@@ -15,6 +15,7 @@ from pmm.run.states import State
 from pmm.sequential.look import Look
 
 if TYPE_CHECKING:
+    from pmm.run.session import RunJob
     from pmm.sequential.course import CampaignCourse
 
 _AGAIN: Final = "The campaign was stopped. Go on with it? y: yes"
@@ -78,8 +79,9 @@ class ChoosingCampaign:
         for job in course.jobs():
             yield None if job is None else replace(self.plan, plan=job.plan, runs=job.runs)
 
-    def _begun(self) -> "CampaignCourse":
+    def _begun(self) -> "CampaignCourse[RunJob]":
         from pmm.design.design_file import read_design
+        from pmm.gap.rig_pursuit import goal_of
         from pmm.sequential.carrying_out import CampaignRequest, campaign_course
 
         file = read_design(self.plan.plan.path)
@@ -88,7 +90,7 @@ class ChoosingCampaign:
             check_folder=lambda _: None,
         )  # fmt: skip
         return self._stack.enter_context(
-            campaign_course(file, asked, self._answers, self._show, self._executor)
+            campaign_course(file, goal_of, asked, self._answers, self._show, self._executor)
         )
 
     def _show(self, look: Look) -> None:

@@ -103,9 +103,10 @@ def campaign_picture(told: CampaignLook) -> dict[str, Any]:
         "runs": len(look.runs),
         "time": clock(look.time_s),
         "known": [{key: _plain(getattr(one, key)) for key in keys} for one in look.known],
+        "causes": [{**asdict(one), "met": one.met} for one in look.causes],
         "proposed": [
-            {"what": in_words(run), "time": clock(cost_s)}
-            for run, cost_s in zip(look.proposed, look.costs_s, strict=True)
+            {"what": in_words(run), "time": clock(cost_s), "why": why}
+            for run, cost_s, why in zip(look.proposed, look.costs_s, look.whys, strict=True)
         ],
         "kept": [run.name for run in look.kept],
         "left": clock(look.left_s),

@@ -26,7 +26,7 @@ from hardware.description.setpoint import Medium
 from pmm.campaign.model_uncertainty import take_uncertainty
 from pmm.coefficients.stated_inputs import largest, of_gauges, of_model
 from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
-from pmm.design.design_tables import DesignTables
+from pmm.design.design_tables import DesignTables, GapTable
 from pmm.design.grid import RunGrid, grid_of
 from pmm.design.targets import targets_of
 from pmm.plan.expansion import all_of, expand
@@ -36,7 +36,7 @@ from pmm.plan.plan_tables import PlanTables
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 
-_OWN: Final = ("grid", "believed", "targets", "noise", "stated", "limits")
+_OWN: Final = ("grid", "believed", "targets", "noise", "stated", "limits", "gap")
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +59,8 @@ class DesignFile:
         That the runs to be chosen may take.
     cycles
         Of the runs that were made before, as they were measured; none where none was.
+    gap
+        How a cause is looked for; ``None`` where targets are to be met.
     """
 
     name: str
@@ -76,6 +78,7 @@ class DesignFile:
     targets: tuple[DesignTarget, ...]
     time_s: float
     cycles: tuple[BodyCycle, ...] = ()
+    gap: GapTable | None = None
 
 
 def read_design(path: Path) -> DesignFile:
@@ -159,7 +162,8 @@ def _design(
         points = [run.set_point for run in grid.runs]
         targets = targets_of(tables.targets, belief, points, faults)
     hours = tables.limits.time_h
-    if not targets and hours is None and not faults:
+    faults += _gap_faults(tables.gap)
+    if not targets and hours is None and tables.gap is None and not faults:
         faults.append(Fault(("targets",), "are missing, and so is limits.time_h; give either"))
     if faults or belief is None:
         raise as_error(path, faults, original)
@@ -167,8 +171,15 @@ def _design(
     return DesignFile(
         plan.name or path.resolve().parent.name, path, plan_table, found.rig_path, rig, kept,
         fixed, made, grid, belief, _noise(tables, rig), _stated(tables, rig), targets,
-        np.inf if hours is None else 3600.0 * hours,
+        np.inf if hours is None else 3600.0 * hours, gap=tables.gap,
     )  # fmt: skip
+
+
+def _gap_faults(gap: GapTable | None) -> Iterator[Fault]:
+    if gap is not None and not 0.0 < gap.least_log_odds <= 20.0:
+        yield Fault(("gap", "least_log_odds"), f"= {gap.least_log_odds:g} should be in (0, 20]")
+    if gap is not None and not 1 <= gap.batch <= 5:
+        yield Fault(("gap", "batch"), f"= {gap.batch} should be from 1 to 5")
 
 
 def _tells(run: RunPlan) -> bool:

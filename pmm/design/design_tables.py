@@ -51,6 +51,25 @@ class DesignLimits:
 
 
 @dataclass(frozen=True)
+class GapTable:
+    """A campaign that is made until it is known why rig and simulation differ.
+
+    Attributes
+    ----------
+    least_log_odds
+        Expected log odds below which a run is not worth making.
+    batch
+        Runs that are proposed at once, at most.
+    effects
+        Names to restrict the catalogue to; all of it if there are none.
+    """
+
+    least_log_odds: float = 1.0
+    batch: int = 1
+    effects: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class DesignTables:
     """All tables of the file that a plan does not have.
 
@@ -62,6 +81,8 @@ class DesignTables:
         By coefficient, a standard uncertainty or a text in per cent of what is believed.
     stated
         Standard uncertainties that no run lowers; what is 0 is taken from the rig's file.
+    gap
+        Where the campaign is to find a cause in place of targets.
     """
 
     noise: NoiseTable
@@ -69,5 +90,6 @@ class DesignTables:
     believed: Mapping[str, float] = field(default_factory=dict)
     stated: StatedUncertainties = field(default_factory=StatedUncertainties)
     limits: DesignLimits = field(default_factory=DesignLimits)
+    gap: GapTable | None = None
 
     __pydantic_config__ = STRICT_TABLE

@@ -26,6 +26,7 @@ from analysis.gap.quality.recentring import Recentred, repeating_only
 from analysis.gap.search.fit import Fit, at
 from analysis.gap.search.polynomial import polynomial
 from hardware.description.arrays import FloatArray
+from hardware.description.setpoint import SetPoint
 from pmm.campaign.campaign import Campaign
 from pmm.gap.conclusion import EFFECT, Conclusion, Weighing, verdict_of
 from pmm.gap.own_effects import chosen_effects, try_own
@@ -51,12 +52,15 @@ class Options:
         Channels to use; all if empty.
     hold_out
         Runs that nobody looks at until the end, as :func:`pmm.gap.hold_out.held_out_runs` says.
+    runs
+        What may be proposed, in place of what case or oscillator says; none for that.
     """
 
     effects: tuple[str, ...] = ()
     without: tuple[str, ...] = ()
     sensors: tuple[str, ...] = ()
     hold_out: tuple[str, ...] = ()
+    runs: tuple[SetPoint, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,6 +190,9 @@ def examine(
     """
     known, more = chosen_effects(options.effects, options.without)
     ready = prepare(folder, known, more, options.sensors, options.hold_out, progress)
+    if options.runs and ready.settings.choices is not None:
+        choices = replace(ready.settings.choices, runs=options.runs)
+        ready = replace(ready, settings=replace(ready.settings, choices=choices))
     there, tolerances = ready.there, ready.case.tolerances
     try_own(more, there.rig, ready.fitted)
     found = diagnose(there.rig, ready.fitted, ready.settings, executor, progress)

@@ -1,4 +1,4 @@
-"""A campaign that is pursued until its gap is known: what its folder says is planned and made.
+"""The folder of a campaign that is pursued, its runs made by whoever can: plans, what was recorded.
 
 Round ``N`` is the plan ``next-N.toml`` beside the campaign file, its runs are ``next-N-1``, ...; a
 run is made once the campaign file names it. The folder is all the state there is, so that whoever
@@ -18,7 +18,6 @@ from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.campaign.recording_source import RecordingSource, open_recording
 from pmm.campaign.runs import AtRest, Run
-from pmm.campaign.simulation import simulate_runs
 from pmm.configuration import Fault, as_error, read_toml, validate
 from pmm.gap.appending import append_tables
 from pmm.gap.next_plan import plan_text
@@ -26,11 +25,9 @@ from pmm.plan.ordering import runs_of
 from pmm.plan.plan_tables import PlanTables
 from pmm.plan.plan_units import EXTRA_KEYS, expand_units
 from pmm.plan.run_plan import RunPlan
-from pmm.recorder.campaign_owner import own_campaign
 from pmm.recorder.files import RECORDING
 from pmm.toml_text import toml_table
 from pmm.whole_file import write_whole
-from sim.effects.effect import Effect
 
 Maker = Callable[[Path, Campaign, Sequence[Run]], None]
 """Makes the recordings of runs in a folder; the campaign has the runs that were made."""
@@ -53,12 +50,13 @@ class Pursued:
     folder: Path
     campaign: Campaign
     plans: tuple[Path, ...]
-    open: tuple[Run, ...]
+    open: tuple[RunPlan, ...]
 
     @property
     def set_points(self) -> frozenset[SetPoint]:
         """What was made or is planned."""
-        return frozenset(one.set_point for one in (*self.campaign.runs, *self.open))
+        made = {one.set_point for one in self.campaign.runs}
+        return frozenset(made | {one.set_point for one in self.open})
 
 
 def pursued(folder: Path) -> Pursued:
@@ -90,7 +88,7 @@ def _number(path: Path) -> int:
     return int(number)
 
 
-def _planned(path: Path, campaign: Campaign) -> list[Run]:
+def _planned(path: Path, campaign: Campaign) -> list[RunPlan]:
     """Return the oscillations of a plan; its rig is the campaign's oscillator."""
     table = read_toml(path)
     faults: list[Fault] = []
@@ -102,7 +100,7 @@ def _planned(path: Path, campaign: Campaign) -> list[Run]:
         raise ConfigurationError(
             f"{path.parent / CAMPAIGN_FILE}: no table [oscillator]; proposed runs need it"
         )
-    return [_run(one) for one in runs_of(tables, campaign.oscillator, ()) if one.oscillates]
+    return [one for one in runs_of(tables, campaign.oscillator, ()) if one.oscillates]
 
 
 def _run(one: RunPlan) -> Run:
@@ -121,20 +119,6 @@ def _run(one: RunPlan) -> Run:
     )
 
 
-def worth_making(
-    there: Pursued, proposals: Sequence[Proposal], least: float
-) -> tuple[Proposal, ...]:
-    """Return the runs that the rig can make by itself, are new, and worth ``least`` log odds."""
-    return tuple(
-        one
-        for one in proposals
-        if one.set_point is not None
-        and not one.force_n
-        and one.gain >= least
-        and one.set_point not in there.set_points
-    )
-
-
 def write_round(there: Pursued, proposals: Sequence[Proposal]) -> Path:
     """Write the plan of the next round, whole or not at all, and return where it is."""
     name = f"{_PREFIX}{_number(there.plans[-1]) + 1 if there.plans else 1}"
@@ -143,42 +127,23 @@ def write_round(there: Pursued, proposals: Sequence[Proposal]) -> Path:
     return path
 
 
-def simulated_by(path: Path, campaign: Campaign) -> Maker:
-    """Return what makes runs on a simulated rig.
+def recorded(folder: Path, make: Maker | None, appear: Callable[[], bool]) -> dict[str, str]:
+    """Take in what has been recorded of the open runs; return those that are missing, and why.
 
     Parameters
     ----------
-    path
-        The rig as it truly is: a campaign file, its effects among it.
-    campaign
-        That is pursued.
-
-    Raises
-    ------
-    ConfigurationError
-        If the file cannot be read or describes another oscillator.
+    make
+        Makes the recordings; ``None`` where somebody else does.
+    appear
+        Waits until recordings may have appeared; returns whether to look again.
     """
-    truth = read_campaign(path)
-    if truth.oscillator != campaign.oscillator:
-        raise ConfigurationError(
-            f"{path}: describes another oscillator than campaign {campaign.name!r}; simulate on "
-            "the rig that the campaign was made on"
-        )
-    truth.rig()  # refuses what cannot be simulated, before anything is diagnosed
-    return _Simulated(truth, truth.effects_on())
-
-
-@dataclass(frozen=True)
-class _Simulated:
-    truth: Campaign
-    effects: tuple[Effect, ...]
-
-    def __call__(self, folder: Path, campaign: Campaign, runs: Sequence[Run]) -> None:
-        whole = replace(self.truth, runs=(*campaign.runs, *runs), at_rest=campaign.at_rest)
-        missing = [one for one in runs if _recording(folder, one) is None]
-        seed = self.truth.simulation.seed
-        with own_campaign(folder):
-            list(simulate_runs(whole, missing, folder, seed, overwrite=False, effects=self.effects))
+    while True:
+        there = pursued(folder)
+        if there.open and make is not None:
+            make(folder, there.campaign, [_run(one) for one in there.open])
+        missing = take_in(there)
+        if not missing or not appear():
+            return missing
 
 
 def take_in(there: Pursued) -> dict[str, str]:
@@ -193,8 +158,8 @@ def take_in(there: Pursued) -> dict[str, str]:
     """
     missing: dict[str, str] = {}
     tables: list[str] = []
-    for run in there.open:
-        file = _recording(there.folder, run)
+    for run in map(_run, there.open):
+        file = recording_of(there.folder, run)
         try:
             if file is None:
                 missing[run.name] = f"no {run.name}.nc"
@@ -210,7 +175,7 @@ def take_in(there: Pursued) -> dict[str, str]:
     return missing
 
 
-def _recording(folder: Path, run: Run) -> str | None:
+def recording_of(folder: Path, run: Run) -> str | None:
     """Return where a run's recording lies in the folder; ``None`` where it is not there."""
     names = (f"{run.name}.nc", f"{run.name}/{RECORDING}")
     return next((name for name in names if (folder / name).is_file()), None)

@@ -22,7 +22,14 @@ from pmm.document.content import (
 )
 from pmm.document.notation import clock, counted, written
 from pmm.document.style import PALETTE, TRACE, drawing
-from pmm.sequential.look import Decision, KnownTarget, Look, in_words, read_decisions
+from pmm.sequential.look import (
+    Decision,
+    KnownCause,
+    KnownTarget,
+    Look,
+    in_words,
+    read_decisions,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
@@ -59,29 +66,54 @@ _STEPS: Final[tuple[Column[Decision], ...]] = (
 )
 
 
+_CAUSES: Final[tuple[Column[KnownCause], ...]] = (
+    word("cause", "name"),
+    number("probability", "probability", "{:.3f}".format),
+    Column("alike in these runs", lambda one: ", ".join(one.alike)),
+    Column("known", lambda one: "yes" if one.met else "no"),
+)
+_PURSUED: Final[tuple[Column[Decision], ...]] = (
+    *_STEPS[:3],
+    Column("most probable", lambda one: one.causes[0].name if one.causes else ""),
+    Column("probability", lambda one: _probability(one), written="{:.3f}".format, number=True),
+    *_STEPS[-2:],
+)
+
+
 def look_lines(look: Look) -> Iterator[str]:
     """Yield what an operator is told after a run: what is known, and what is to be made."""
     made = f"after {counted(len(look.runs), 'run')}, {clock(look.time_s)}"
-    known = "; ".join(_in_words(one) for one in look.known) or "nothing is known yet"
+    causes = [f"{one.name} {one.probability:.3f}" for one in look.causes]
+    known = "; ".join([*map(_in_words, look.known), *causes]) or "nothing is known yet"
     yield f"{made}: {known}"
     yield from look.notes
     if look.ending is not None:
         yield f"{look.ending}{f': {look.remark}' if look.remark else ''}"
     elif look.proposed:
         yield f"new plan ({look.remark}), {clock(look.left_s)}:"
-        yield from (f"  {k}. {in_words(one)}" for k, one in enumerate(look.proposed, 1))
+        for k, (one, why) in enumerate(zip(look.proposed, look.whys, strict=True), 1):
+            yield f"  {k}. {in_words(one)}{f' ({why})' if why else ''}"
     else:
         yield f"as planned: {counted(len(look.kept), 'run')} more, {clock(look.left_s)}"
 
 
-def sequential_document(name: str, folder: Path, decisions: Sequence[Decision]) -> Document:
-    """Return what was known after each run of a campaign; ``docs/run-control.md`` has the keys."""
+def sequential_document(
+    name: str, folder: Path, decisions: Sequence[Decision], waiting: str = ""
+) -> Document:
+    """Return what was known after each run of a campaign; ``docs/run-control.md`` has the keys.
+
+    Parameters
+    ----------
+    waiting
+        What recordings are waited for, in a sentence; empty where none are.
+    """
     last = decisions[-1]
     told = (
-        Text([_said(name, last)]),
+        Text([waiting or _said(name, last)]),
         *_contents(name, decisions),
         Data("folder", folder),
-        Data("ending", last.ending),
+        Data("ending", "waiting" if waiting else last.ending),
+        Data("remark", waiting or last.remark),
         Data("runs", last.runs),
         Data("decisions", decisions),
     )
@@ -99,6 +131,12 @@ def story(folder: Path, name: str) -> Iterator[Section]:
 def _contents(name: str, decisions: Sequence[Decision]) -> tuple[Content, ...]:
     """Return tables and figure of what was known after each run."""
     last = decisions[-1]
+    if any(one.causes for one in decisions):
+        return (
+            Table("Causes", _CAUSES, last.causes, titled=True),
+            Table("What was known after each run", _PURSUED, decisions, titled=True),
+            Notes([Note("note", one) for one in last.notes]),
+        )
     return (
         Table("Targets", _TARGETS, last.known, titled=True),
         Table("What was known after each run", _STEPS, decisions, titled=True),
@@ -171,6 +209,10 @@ def _then(one: Decision) -> str:
 def _ratio(known: Sequence[KnownTarget], name: str) -> float:
     found = next((one for one in known if one.name == name), None)
     return math.nan if found is None else _number(found.standard_uncertainty) / found.wanted
+
+
+def _probability(one: Decision) -> float:
+    return one.causes[0].probability if one.causes else math.nan
 
 
 def _number(value: float | None) -> float:

@@ -7,7 +7,7 @@ from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
-from typing import Final
+from typing import Final, TypeVar
 
 from hardware.description.errors import ConfigurationError
 from pmm.coefficients.settings import SETTINGS_FILE
@@ -22,14 +22,16 @@ from pmm.run.operator import OperatorAnswers
 from pmm.run.session import Ask, RunFailedError, RunJob, RunReport, carry_out, run_job
 from pmm.run.view import View
 from pmm.sequential.approval import approval_of
-from pmm.sequential.course import CampaignCourse
+from pmm.sequential.course import CampaignCourse, CampaignGoal
 from pmm.sequential.growing_plan import PLAN
 from pmm.sequential.look import Decision, Look
-from pmm.sequential.targets import TargetGoal
 from pmm.toml_text import toml_table
 from pmm.whole_file import write_whole
 
 _POLL_S: Final = 0.02
+JobT = TypeVar("JobT")
+Goal = Callable[[DesignFile, Path], CampaignGoal]
+"""Makes the goal of a design's campaign in its folder."""
 
 
 @dataclass(frozen=True)
@@ -85,9 +87,9 @@ def campaign_folder(asked: CampaignRequest, file: DesignFile) -> Path:
 
 
 def carry_out_campaign(
-    file: DesignFile, asked: CampaignRequest, screen: Screen, answers: OperatorAnswers
+    file: DesignFile, goal: Goal, asked: CampaignRequest, screen: Screen, answers: OperatorAnswers
 ) -> MadeCampaign:
-    """Make run after run until the design's targets are met, or nothing more is to be made.
+    """Make run after run until the goal is reached, or nothing more is to be made.
 
     Raises
     ------
@@ -99,9 +101,11 @@ def carry_out_campaign(
     """
     with ExitStack() as stack:
         executor = stack.enter_context(_executor(file.rig.realtime or asked.real_time))
-        course = stack.enter_context(campaign_course(file, asked, answers, screen.show, executor))
+        course = stack.enter_context(
+            campaign_course(file, goal, asked, answers, screen.show, executor)
+        )
         jobs = _told(course.jobs(), screen.job)
-        first = _first(jobs, answers, screen.tell)
+        first = next_job(jobs, answers, screen.tell)
         report = RunReport()
         if first is not None:
             report = carry_out(first, screen.view, screen.tell, answers, jobs)
@@ -111,12 +115,13 @@ def carry_out_campaign(
 @contextmanager
 def campaign_course(
     file: DesignFile,
+    goal: Goal,
     asked: CampaignRequest,
     answers: Callable[[str], str | None],
     show: Callable[[Look], None],
     executor: Executor | None,
-) -> Iterator[CampaignCourse]:
-    """Own a campaign's folder, and give the course of its runs until its design's targets are met.
+) -> Iterator[CampaignCourse[RunJob]]:
+    """Own a campaign's folder, and give the course of its runs until its goal is reached.
 
     Parameters
     ----------
@@ -143,13 +148,13 @@ def campaign_course(
             "another folder"
         )
     approval = approval_of(asked.approve, simulated=is_simulated(file.rig.hardware))
-    goal = TargetGoal(file, folder)
+    aim = goal(file, folder)
     with ExitStack() as stack:
         stack.enter_context(own_campaign(folder))
         _write_made(folder)
         _keep_stated(file, folder)
         opened = partial(_opened, asked, folder, stack)
-        yield CampaignCourse(goal, folder, approval, answers, show, opened, executor)
+        yield CampaignCourse(aim, folder, approval, answers, show, opened, executor)
 
 
 def _write_made(folder: Path) -> None:
@@ -193,10 +198,16 @@ def _told(jobs: Iterator[RunJob | None], tell: Callable[[RunJob], None]) -> Iter
         yield job
 
 
-def _first(
-    jobs: Iterator[RunJob | None], answers: OperatorAnswers, tell: Callable[[str], object]
-) -> RunJob | None:
-    """Return the first job, before the rig is opened; ``None`` where nothing is to be made."""
+def next_job(
+    jobs: Iterator[JobT | None], answers: OperatorAnswers, tell: Callable[[str], object]
+) -> JobT | None:
+    """Return the next job, while no rig is open; ``None`` where nothing is to be made.
+
+    Raises
+    ------
+    RunFailedError
+        If a question is asked that nobody can answer.
+    """
     asked = ""
     for job in jobs:
         if job is not None:

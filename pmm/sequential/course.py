@@ -5,14 +5,13 @@ interrupted goes on from it.
 """
 
 import re
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Final, Protocol, TypeVar
+from typing import Final, Generic, Protocol, TypeVar
 
-from pmm.run.session import Course, RunJob
 from pmm.sequential.approval import Approval
 from pmm.sequential.look import Decision, Ending, Look, keep_decision
 
@@ -22,6 +21,7 @@ _CHANGE: Final = f"{_YES}, k: keep the plan as it was, n: no, and end"
 _BY_OPERATOR: Final = "the operator"
 _NUMBER: Final = re.compile(r"\d{1,6}")
 T = TypeVar("T")
+JobT = TypeVar("JobT")
 
 
 class CampaignGoal(Protocol):
@@ -35,7 +35,7 @@ class CampaignGoal(Protocol):
 
 
 @dataclass
-class CampaignCourse:
+class CampaignCourse(Generic[JobT]):
     """Tells what follows, run after run.
 
     Attributes
@@ -43,7 +43,7 @@ class CampaignCourse:
     show
         Shows what is known and what is proposed.
     open_job
-        Checks the folder's plan as any other and makes a job of some of its runs.
+        Makes a job of some runs of the folder's plan, by their names.
     executor
         Where a look is taken and a plan written while the rig is watched; ``None`` for at once.
     ended
@@ -55,11 +55,11 @@ class CampaignCourse:
     approval: Approval
     answers: Callable[[str], str | None]
     show: Callable[[Look], None]
-    open_job: Callable[[Sequence[str]], RunJob]
+    open_job: Callable[[Sequence[str]], JobT]
     executor: Executor | None = None
     ended: Decision | None = None
 
-    def jobs(self) -> Course:
+    def jobs(self) -> Iterator[JobT | None]:
         """Yield what is to be made next, and nothing as long as that is not known.
 
         Raises
@@ -77,7 +77,7 @@ class CampaignCourse:
             look, who = yield from self._decided(look)
             decision = look.decision(who)
             keep_decision(self.folder, decision)
-            job = None
+            job: JobT | None = None
             if look.ending is not Ending.REJECTED:
                 job = yield from self._away(partial(self._following, look))
             if job is None:
@@ -85,7 +85,7 @@ class CampaignCourse:
                 return
             yield job
 
-    def _following(self, look: Look) -> RunJob | None:
+    def _following(self, look: Look) -> JobT | None:
         due = self.goal.plan(look)
         return self.open_job(due) if due else None
 

@@ -22,6 +22,7 @@ from pmm.plan.plan_tables import Scheme, ZeroTable
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.run.campaign_folder import done_runs
+from pmm.sequential.look import Look
 from pmm.toml_text import toml_table
 from pmm.whole_file import write_whole
 
@@ -126,6 +127,17 @@ def read_growing(folder: Path, design: DesignFile) -> GrowingPlan | None:
         )
     own = tuple(entries[len(given) :])
     return GrowingPlan(plan, own, frozenset(done_runs(folder, plan.runs)))
+
+
+def planned(folder: Path, design: DesignFile, look: Look) -> tuple[str, ...]:
+    """Write the plan as it was decided; return the names of the runs to be made now."""
+    before = read_growing(folder, design)
+    if before is None and not look.proposed and not design.fixed:
+        return ()
+    if look.proposed or look.ending is not None or before is None:
+        write_growing(folder, design, before, look.proposed)
+    now = read_growing(folder, design)
+    return () if now is None else tuple(run.name for run in now.due)
 
 
 def write_growing(

@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Final
 
 from hardware.description.errors import ConfigurationError
+from hardware.description.kinds import Motion
+from hardware.description.setpoint import Medium
 from pmm.configuration import Fault, as_error, validate
 from pmm.plan.run_plan import RunPlan
 from pmm.whole_file import write_whole
@@ -20,6 +22,7 @@ class Ending(StrEnum):
     """Why a campaign needs no further runs, or gets none."""
 
     MET = "all targets are met"
+    KNOWN = "the cause is known"
     TIME = "the time is used up"
     EXHAUSTED = "nothing left would help"
     REJECTED = "the operator did not approve"
@@ -55,6 +58,33 @@ class KnownTarget:
 
 
 @dataclass(frozen=True)
+class KnownCause:
+    """How probable one cause of a gap is.
+
+    Attributes
+    ----------
+    name
+        Its effects, or a verdict such as ``"none"`` or ``"unknown"``.
+    probability
+        Of the most probable cause with all that is alike, of the others by themselves.
+    wanted
+        Probability above which it is known.
+    alike
+        What these runs cannot tell from it.
+    """
+
+    name: str
+    probability: float
+    wanted: float
+    alike: tuple[str, ...] = ()
+
+    @property
+    def met(self) -> bool:
+        """Whether it is known."""
+        return self.probability > self.wanted
+
+
+@dataclass(frozen=True)
 class Decision:
     """What was known, and what was decided.
 
@@ -78,7 +108,9 @@ class Decision:
         The ending, or the reason of a change, in words.
     notes
         Runs that cannot be used, targets that cannot be met, and what repeats are taken to differ
-        by, each in a sentence.
+        by, each in a sentence; of a gap what is said of it.
+    causes
+        Of a gap that is pursued, the most probable first.
     """
 
     runs: tuple[str, ...]
@@ -91,6 +123,7 @@ class Decision:
     ending: str = ""
     remark: str = ""
     notes: tuple[str, ...] = ()
+    causes: tuple[KnownCause, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,8 +134,9 @@ class Look:
     ----------
     kept
         Planned runs that stay; none where ``proposed`` takes their place.
-    proposed, costs_s
-        Runs that are to be planned anew, not named yet, and the tank time of each.
+    proposed, costs_s, reasons
+        Runs that are to be planned anew, not named yet, the tank time of each, and why each is
+        proposed; no reasons where all serve the same.
     before, before_s
         Planned runs that ``proposed`` would take the place of, and their tank time.
     ending
@@ -121,12 +155,19 @@ class Look:
     ending: Ending | None = None
     remark: str = ""
     notes: tuple[str, ...] = ()
+    causes: tuple[KnownCause, ...] = ()
+    reasons: tuple[str, ...] = ()
+
+    @property
+    def whys(self) -> tuple[str, ...]:
+        """Why each run is proposed; empty texts where all serve the same."""
+        return self.reasons or ("",) * len(self.proposed)
 
     @property
     def as_before(self) -> "Look":
         """The same with the plan as it was."""
         return replace(
-            self, kept=self.before, proposed=(), costs_s=(), left_s=self.before_s,
+            self, kept=self.before, proposed=(), costs_s=(), reasons=(), left_s=self.before_s,
             remark="the plan stays",
         )  # fmt: skip
 
@@ -145,6 +186,7 @@ class Look:
         costs_s = tuple(self.costs_s[k - 1] for k in numbers)
         return replace(
             self, proposed=tuple(self.proposed[k - 1] for k in numbers), costs_s=costs_s,
+            reasons=tuple(self.reasons[k - 1] for k in numbers if self.reasons),
             left_s=math.fsum(costs_s),
         )  # fmt: skip
 
@@ -154,7 +196,7 @@ class Look:
         return Decision(
             self.runs, self.time_s, self.known, tuple(one.name for one in self.kept),
             tuple(map(in_words, self.proposed)), self.left_s, approved,
-            "" if ended is None else str(ended), self.remark, self.notes,
+            "" if ended is None else str(ended), self.remark, self.notes, self.causes,
         )  # fmt: skip
 
 
@@ -167,6 +209,9 @@ def in_words(run: RunPlan) -> str:
     """Return motion, settings and length of a run."""
     point = run.set_point
     words = [str(run.motion), f"{point.frequency_hz:g} Hz", f"{1e3 * point.eccentricity_m:.4g} mm"]
+    if run.motion is Motion.PHASE:
+        words += [f"strut phase {math.degrees(point.strut_phase_rad):.4g} deg"]
+    words += ["in air"] if point.medium is Medium.AIR else []
     words += [f"{point.carriage_speed_m_s:g} m/s"] if point.carriage_speed_m_s else []
     words += [f"drift {point.drift_rad:.3g} rad"] if point.drift_rad else []
     return ", ".join([*words, f"{run.periods} periods"])

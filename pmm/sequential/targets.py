@@ -24,8 +24,8 @@ from pmm.plan.run_plan import RunPlan
 from pmm.sequential.growing_plan import (
     GrowingPlan,
     check_order,
+    planned,
     read_growing,
-    write_growing,
 )
 from pmm.sequential.look import Ending, KnownTarget, Look
 from pmm.sequential.remembering import Remembering
@@ -79,13 +79,7 @@ class TargetGoal:
 
     def plan(self, look: Look) -> tuple[str, ...]:
         """Write the plan as it was decided; return the names of the runs to be made now."""
-        before = read_growing(self._folder, self._file)
-        if before is None and not look.proposed and not self._file.fixed:
-            return ()
-        if look.proposed or look.ending is not None or before is None:
-            write_growing(self._folder, self._file, before, look.proposed)
-        now = read_growing(self._folder, self._file)
-        return () if now is None else tuple(run.name for run in now.due)
+        return planned(self._folder, self._file, look)
 
     def look(self) -> Look:
         """Return what is known and what is to be made, from what the folder holds.

@@ -17,9 +17,8 @@ import numpy as np
 from analysis.gap.design.proposals import Proposal
 from hardware.description.errors import PmmError
 from hardware.description.setpoint import Medium, SetPoint
+from pmm.gap.causes import LEAST, SURE, worth_making
 from pmm.gap.examination import Examined, examine
-from pmm.gap.pursuit import pursued, worth_making
-from pmm.gap.pursuit_rounds import LEAST, SURE
 from tests.sealed.generator.case import Case, make
 from tests.sealed.generator.files import write_open
 from tests.sealed.generator.further import added, parsed
@@ -79,7 +78,7 @@ class _Looping:
         return [one for one in self.points if one not in self.made]
 
 
-Chooses = Callable[[_Looping, Path, Examined], SetPoint | None]
+Chooses = Callable[[_Looping, Examined], SetPoint | None]
 
 
 def looped(seed: int, index: int, where: str, scratch: Path) -> Loop | str:
@@ -149,7 +148,7 @@ def _stands(told: _Looping, start: Path, first: Examined, way: str) -> Iterator[
     told.made, found, last = [], first, told.case.campaign.runs[-1]
     yield _stand(told, found)
     while len(told.made) < MOST and found.conclusion.probability <= SURE:
-        point = _CHOOSES[way](told, folder, found)
+        point = _CHOOSES[way](told, found)
         if point is None:
             return
         told.made.append(point)
@@ -167,17 +166,18 @@ def _stand(told: _Looping, found: Examined) -> Stand:
     )
 
 
-def _ours(told: _Looping, folder: Path, found: Examined) -> SetPoint | None:
-    worth = worth_making(pursued(folder), found.diagnosis.proposals, LEAST)
+def _ours(told: _Looping, found: Examined) -> SetPoint | None:
+    made = frozenset(run.set_point for run in found.campaign.runs)
+    worth = worth_making(made, found.diagnosis.proposals, LEAST)
     return worth[0].set_point if worth else None
 
 
-def _random(told: _Looping, _: Path, __: Examined) -> SetPoint | None:
+def _random(told: _Looping, _: Examined) -> SetPoint | None:
     rng = np.random.default_rng([told.case.seed, told.case.index, 6, len(told.made)])
     return told.left[int(rng.integers(len(told.left)))] if told.left else None
 
 
-def _space_filling(told: _Looping, _: Path, __: Examined) -> SetPoint | None:
+def _space_filling(told: _Looping, _: Examined) -> SetPoint | None:
     """Return the run that is farthest from all that were made, each setting over its own span."""
     own = [_setting(run) for run in told.case.campaign.runs]
     made = np.array(own + [_setting(one) for one in told.made])
@@ -196,7 +196,7 @@ def _setting(one: SetPoint | Run) -> tuple[float, ...]:
     )  # fmt: skip
 
 
-def _oracle(told: _Looping, _: Path, __: Examined) -> SetPoint | None:
+def _oracle(told: _Looping, _: Examined) -> SetPoint | None:
     so_far = told.own
     for one in told.made:
         so_far = so_far + told.told[one]

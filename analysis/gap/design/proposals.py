@@ -56,6 +56,8 @@ class Choices:
     ----------
     special
         What can be measured besides; ``PRELOAD`` is a weight on the model while it oscillates.
+    runs
+        The oscillations themselves, in place of steps between the limits; none for these steps.
     """
 
     frequency_hz: Range
@@ -66,6 +68,7 @@ class Choices:
     drift_rad: tuple[float, ...] = (0.0,)
     special: tuple[FurtherMeasurement, ...] = tuple(FurtherMeasurement)
     force_limit_n: float = math.inf
+    runs: tuple[SetPoint, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -224,7 +227,10 @@ def _weighed(
 
 
 def set_points(choices: Choices) -> Iterator[SetPoint]:
-    """Yield what a rig can do, in steps; in numbers of three digits, as people set them."""
+    """Yield what a rig can do: its runs, or steps in numbers of three digits, as people set."""
+    if choices.runs:
+        yield from choices.runs
+        return
     frequencies = _steps(choices.frequency_hz, _FREQUENCIES, 8.0)
     radii = _steps(choices.eccentricity_m, _RADII, 5.0)
     speeds, phases = choices.carriage_speed_m_s, choices.strut_phase_rad

@@ -9,10 +9,9 @@ from pmm.cli.gap.options import LOOKS, Looks, engine
 from pmm.cli.options import JSON, jobs_option
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from pmm.gap.examination import Examined
-    from pmm.gap.pursuit_rounds import Look
 
 _EVERY_S = 2.0
 
@@ -20,7 +19,9 @@ _EVERY_S = 2.0
 @click.command()
 @click.argument("folder", metavar="FOLDER")
 @click.option(
-    "--approve", type=click.Choice(["all"]), help="Approve of all runs.  [default: ask for each]"
+    "--approve",
+    metavar="all|ENVELOPE.toml",
+    help="Approve of all runs, or of those within an envelope.  [default: ask for each]",
 )
 @click.option(
     "--simulated",
@@ -73,30 +74,54 @@ def pursue(
     pmm gap pursue my-campaign
     pmm gap pursue my-campaign --approve all --simulated truth.toml
 
-    Exit status: 0 known, exhausted, waiting or not approved; 1 the data say no; 2 the request was
-    wrong.
+    Exit status: 0 known, exhausted, waiting or not approved; 1 the data say no, or nobody answers;
+    2 the request was wrong.
     """  # noqa: D301
     from pmm.parallel import one_thread
 
     one_thread()  # the matrices are small: threads would wait for each other
-    from pmm.cli.screen import show
-    from pmm.gap.pursuit import pursued, simulated_by
-    from pmm.gap.pursuit_document import pursuit_document
-    from pmm.gap.pursuit_rounds import Ways
-    from pmm.gap.pursuit_rounds import pursue as pursued_until_known
+    from pmm.cli.screen import messages, show
+    from pmm.gap.causes import CauseGoal, found_of
+    from pmm.gap.folder_place import FolderPlace
+    from pmm.gap.pursuit import pursued, recorded
+    from pmm.gap.simulated_runs import simulated_by
+    from pmm.report.sequential_document import look_lines, sequential_document
+    from pmm.run.operator import standard_input
+    from pmm.sequential.approval import approval_of
+    from pmm.sequential.carrying_out import next_job
+    from pmm.sequential.course import CampaignCourse
+    from pmm.sequential.look import read_decisions
 
     looks, path = Looks(**chosen), Path(folder)
     campaign = pursued(path).campaign
-    ways = Ways(
-        lambda: _examined(looks, path, jobs),
-        _asked if approve is None else _shown,
-        None if simulated is None else simulated_by(Path(simulated), campaign),
-        _waiting(60.0 * wait),
-        worth,
-        batch,
+    make = None if simulated is None else simulated_by(Path(simulated), campaign)
+    answers, tell, appear = standard_input(), messages().print, _waiting(60.0 * wait)
+    goal = CauseGoal(
+        FolderPlace(path), lambda: found_of(_examined(looks, path, jobs), worth), worth, batch
     )
-    found = pursued_until_known(path, ways)
-    show(pursuit_document(campaign.name, found), as_json=as_json)
+    course = CampaignCourse(
+        goal,
+        path,
+        approval_of(approve, simulated=True),  # plans are written: pmm run asks for itself
+        answers,
+        lambda look: tell("\n".join(look_lines(look)), markup=False),
+        tuple,
+    )
+    following, missing = course.jobs(), dict[str, str]()
+    while not missing and next_job(following, answers, tell) is not None:
+        missing = recorded(path, make, appear)
+    document = sequential_document(campaign.name, path, read_decisions(path), _missing(missing))
+    show(document, as_json=as_json)
+
+
+def _missing(missing: "Mapping[str, str]") -> str:
+    """Say what a pursuit waits for; empty where it does not."""
+    if not missing:
+        return ""
+    return (
+        f"Waiting for {', '.join(missing)} ({'; '.join(missing.values())}): put the recordings "
+        "into the folder, or take a run that cannot be made out of its plan, and call again."
+    )
 
 
 def _examined(looks: Looks, path: Path, jobs: int | None) -> "Examined":
@@ -105,28 +130,6 @@ def _examined(looks: Looks, path: Path, jobs: int | None) -> "Examined":
 
     with doing("reading") as told, engine(looks, jobs) as executor:
         return examine(path, looks.options, executor, told)
-
-
-def _shown(look: "Look") -> bool:
-    from pmm.cli.screen import messages
-    from pmm.gap.pursuit_document import look_lines
-
-    for line in look_lines(look):
-        messages().print(line, markup=False)
-    return True
-
-
-def _asked(look: "Look") -> bool:
-    """Show what is proposed and ask for approval at the terminal."""
-    from hardware.description.errors import ConfigurationError
-
-    _shown(look)
-    try:
-        return click.confirm("Approve of these runs?", err=True)
-    except click.Abort:
-        raise ConfigurationError(
-            "nobody answers whether these runs are to be made; --approve all approves of them"
-        ) from None
 
 
 def _waiting(seconds: float) -> "Callable[[], bool]":

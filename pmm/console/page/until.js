@@ -23,7 +23,7 @@ export class Until {
     byId("until").hidden = !told;
     if (!told) return;
     text(byId("until-made"), `${told.runs} ${told.runs === 1 ? "run" : "runs"}, ${told.time}`);
-    byId("known").replaceChildren(...told.known.map(bar));
+    byId("known").replaceChildren(...told.known.map(bar), ...told.causes.map(cause));
     byId("until-notes").replaceChildren(...told.notes.map((one) => html("li", {}, one)));
     const remark = told.remark ? ` (${told.remark})` : "";
     text(byId("until-said"), told.ending ? `Ended: ${told.ending}${remark}`
@@ -46,7 +46,8 @@ export class Until {
     const one = this.told.proposed[number - 1];
     const away = html("button", { class: "small", "aria-label": `Leave out ${one.what}` }, "Leave out");
     away.addEventListener("click", () => this.leaveOut(number));
-    const item = html("li", { draggable: "true", tabindex: "0", "data-number": number }, `${one.what}, ${one.time} `, away);
+    const why = one.why ? [html("small", {}, one.why)] : [];
+    const item = html("li", { draggable: "true", tabindex: "0", "data-number": number }, `${one.what}, ${one.time} `, away, ...why);
     item.addEventListener("keydown", (event) => this.pressed(event, number));
     item.addEventListener("dragstart", (event) => event.dataTransfer.setData("text/plain", String(number)));
     item.addEventListener("dragover", (event) => event.preventDefault());
@@ -114,4 +115,13 @@ function bar(one) {
     html("span", {}, `${one.met ? "✓ " : ""}${one.name}: ${said}`),
     html("progress", { max: 1, value: share, "aria-label": `${one.name}, how near to what is asked for` }),
     html("small", {}, `${one.wanted} asked for${mostly}`));
+}
+
+// So does that of a cause, as its probability comes up to what makes it known.
+function cause(one) {
+  const alike = one.alike.length ? `; alike in these runs: ${one.alike.join(", ")}` : "";
+  return html("li", { "data-met": one.met ? "yes" : "no" },
+    html("span", {}, `${one.met ? "✓ " : ""}${one.name}: ${one.probability.toFixed(3)}`),
+    html("progress", { max: 1, value: Math.min(1, one.probability / one.wanted), "aria-label": `${one.name}, how near to being known` }),
+    html("small", {}, `known above ${one.wanted}${alike}`));
 }

@@ -31,7 +31,10 @@ def _one_diagnosis_of_one_campaign() -> Iterator[None]:
 
 
 def _shared(
-    asked: Path, options: Options, executor: Executor | None, progress: Callable[[str], None]
+    asked: Path,
+    options: Options,
+    executor: Executor | None = None,
+    progress: Callable[[str], None] = lambda _: None,
 ) -> Examined:
     own = any(one.endswith(".py") for one in options.effects)  # may have changed
     if executor is not None or own or not asked.exists():

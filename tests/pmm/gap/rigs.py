@@ -18,9 +18,9 @@ RUNS = ("heave-0.50-20", "heave-0.80-20", "heave-1.10-20", "heave-0.80-10", "air
 _MADE: dict[tuple[str, ...], Path] = {}  # pytest keeps its folders until it ends
 
 
-def run(*arguments: str | Path) -> Result:
-    """Run ``pmm`` in this process."""
-    return CliRunner().invoke(cli, [str(one) for one in arguments])
+def run(*arguments: str | Path, given: str | None = None) -> Result:
+    """Run ``pmm`` in this process; ``given`` is what is typed."""
+    return CliRunner().invoke(cli, [str(one) for one in arguments], input=given)
 
 
 def short(names: Sequence[str] = RUNS) -> str:

@@ -54,11 +54,14 @@ def test_a_pursuit_that_starts_unsure_finds_it(whole: tuple[Path, Result]) -> No
     rig, done = whole
     assert done.exit_code == 0, done.output
     found = json.loads(done.stdout)
-    first, last = found["rounds"][0], found["rounds"][-1]
-    assert first["class_probability"] < 0.95 < last["class_probability"]
-    assert (found["ending"], last["answer"]) == ("known", "coulomb-friction")
+    first, last = found["decisions"][0], found["decisions"][-1]
+    assert first["causes"][0]["probability"] < 0.95 < last["causes"][0]["probability"]
+    assert (found["ending"], last["causes"][0]["name"]) == (
+        "the cause is known", "coulomb-friction",
+    )  # fmt: skip
     added = [one.name for one in read_campaign(rig / "campaign.toml").runs[len(NAMES) :]]
-    assert len(added) == last["runs"] - first["runs"] > 0
+    assert last["runs"] == [*first["runs"], *added]
+    assert added
     assert all((rig / f"{name}.nc").is_file() for name in added)
 
 
@@ -73,7 +76,7 @@ def test_a_pursuit_killed_after_its_last_plan_goes_on(
     (rig / f"{last}.nc").unlink()
     resumed = pursue(rig, start)
     assert (rig / "campaign.toml").read_text() == (there / "campaign.toml").read_text()
-    assert json.loads(resumed.stdout)["rounds"] == json.loads(done.stdout)["rounds"][-1:]
+    assert json.loads(resumed.stdout)["decisions"] == json.loads(done.stdout)["decisions"]
 
 
 def test_a_folder_waits_for_its_recordings(rig: Path, whole: tuple[Path, Result]) -> None:
@@ -81,7 +84,8 @@ def test_a_folder_waits_for_its_recordings(rig: Path, whole: tuple[Path, Result]
     shutil.copy(made / "next-1.toml", rig)
     before = (rig / "campaign.toml").read_text()
     waiting = json.loads(run("gap", "pursue", rig, *ONLY).stdout)
-    assert (waiting["ending"], waiting["rounds"]) == ("waiting", [])
+    assert waiting["ending"] == "waiting"
+    assert all(not one["causes"] for one in waiting["decisions"])  # nothing was diagnosed
     name = read_campaign(made / "campaign.toml").runs[len(NAMES)].name
     (rig / f"{name}.nc").write_bytes(b"half a recording")
     half = json.loads(run("gap", "pursue", rig, *ONLY).stdout)
@@ -92,8 +96,15 @@ def test_a_folder_waits_for_its_recordings(rig: Path, whole: tuple[Path, Result]
 
 def test_nobody_to_ask_is_said_and_nothing_written(rig: Path) -> None:
     found = run("gap", "pursue", rig, *ONLY)
-    assert found.exit_code == 2
-    assert "--approve all approves" in str(found.stderr)
+    assert found.exit_code == 1
+    assert "nobody answers: Approve of these runs?" in str(found.stderr)
+    assert not list(rig.glob("next-*.toml"))
+
+
+def test_what_is_not_approved_is_not_planned(rig: Path, start: Path) -> None:
+    told = ("gap", "pursue", rig, "--simulated", start / "truth.toml", *ONLY)
+    found = json.loads(run(*told, given="n\n").stdout)
+    assert found["ending"] == "the operator did not approve"
     assert not list(rig.glob("next-*.toml"))
 
 
@@ -101,9 +112,8 @@ def test_what_would_tell_outside_is_said_when_the_rig_can_do_no_more(rig: Path) 
     (rig / "case.toml").write_text(ONE_RUN_MADE_ALREADY)
     twins = ("--effects", "coulomb-friction,cable", *ONLY[2:])
     found = json.loads(run("gap", "pursue", rig, *twins).stdout)
-    assert (found["ending"], found["rounds"][-1]["proposed"]) == ("exhausted", [])
-    assert any("cable disconnected" in one for one in found["measures"])
-    assert found["measures"][0] in found["remark"]
+    assert (found["ending"], found["decisions"][-1]["added"]) == ("nothing left would help", [])
+    assert "cable disconnected" in found["remark"]
 
 
 @pytest.mark.parametrize(
