@@ -107,7 +107,7 @@ def _read(
     path = Path(one.file)
     if not path.is_file():
         raise ConfigurationError(f"reference {path}: no such file")
-    if path.suffix.lower() == ".nc":
+    if path.suffix.lower() in (".nc", ".1"):
         yield _radiation(one, plane, form, fitted)
         return
     text = path.read_text(encoding="utf-8-sig")
@@ -121,17 +121,17 @@ def _radiation(
     one: ReferenceFile, plane: Plane, form: Form, fitted: Sequence[Campaign]
 ) -> Reference:
     """Return a table of added mass and damping over frequency as a reference."""
-    from sim.model.water.table_files import read_capytaine, read_heave_csv, read_hull_csv
+    from sim.model.water.radiation_file import RadiationFile
+    from sim.model.water.wamit_file import FirstColumn
 
-    path = Path(one.file)
-    if path.suffix.lower() == ".nc":
-        found = read_capytaine(path, plane, one.rotation_sign)
-    elif "radiating_dof" in path.read_text(encoding="utf-8-sig"):
-        found = read_hull_csv(path, plane, one.body, one.rotation_sign)
-    elif plane is Plane.VERTICAL:
-        found = read_heave_csv(path)
-    else:
-        raise DataError(f"reference {path}: heave alone is of no use to the horizontal oscillator")
+    found = RadiationFile(
+        one.file,
+        body=one.body,
+        rotation_sign=one.rotation_sign,
+        density_kg_m3=one.density_kg_m3,
+        length_m=one.length_m,
+        first_column=FirstColumn(one.first_column),
+    ).table(plane)
     memory = _memory_of(one, fitted)
     allowance, flag = one.allowance_relative, None
     if memory is not None:

@@ -4,7 +4,7 @@ from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 from analysis.coefficients.names import Form
 from analysis.coefficients.quoting import Names, Quoting
@@ -99,6 +99,8 @@ class ReferenceFile:
         Where the file does not say it.
     body
         Which one of a table with several hulls.
+    density_kg_m3, length_m, first_column
+        Of WAMIT's tables; see :class:`sim.model.water.radiation_file.RadiationFile`.
     """
 
     file: str
@@ -107,6 +109,9 @@ class ReferenceFile:
     speed_m_s: float = 0.0
     body: str | None = None
     rotation_sign: int = 1
+    density_kg_m3: float | None = None
+    length_m: float = 1.0
+    first_column: Literal["period", "frequency"] = "period"
 
 
 @dataclass(frozen=True)

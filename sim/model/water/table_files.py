@@ -107,7 +107,7 @@ def read_hull_csv(
         pairs[key] = (a, b)
     omega = sorted({key[0] for key in pairs})
     values = np.array([[[_pair(path, pairs, w, f, m) for m in dofs] for f in dofs] for w in omega])
-    values = values.reshape(len(omega), 2, 2, 2) * _signs(rotation_sign)[..., None]
+    values = values.reshape(len(omega), 2, 2, 2) * coupling_signs(rotation_sign)[..., None]
     name = f"{path.name} ({body})"
     return RadiationTable(plane, np.array(omega), values[..., 0], values[..., 1], name=name)
 
@@ -131,7 +131,7 @@ def read_capytaine(path: Path, plane: Plane, rotation_sign: int = 1) -> Radiatio
         _check_capytaine(path, dataset)
         order = ("omega", "influenced_dof", "radiating_dof")
         both = [
-            _matrices(path, dataset[name], plane, order) * _signs(rotation_sign)
+            _matrices(path, dataset[name], plane, order) * coupling_signs(rotation_sign)
             for name in ("added_mass", "radiation_damping")
         ]
         omega = np.asarray(dataset["omega"].values, dtype=np.float64)
@@ -184,7 +184,14 @@ def _matrices(
     return np.asarray(chosen.values, dtype=np.float64)
 
 
-def _signs(rotation_sign: int) -> FloatArray:
+def coupling_signs(rotation_sign: int) -> FloatArray:
+    """Return what a plane's matrices are multiplied by for the sense of a file's rotation.
+
+    Raises
+    ------
+    DataError
+        If it is not 1 or -1.
+    """
     if rotation_sign not in (-1, 1):
         raise DataError(f"rotation_sign = {rotation_sign} must be 1 or -1")
     return np.array([[1.0, rotation_sign], [rotation_sign, 1.0]])
