@@ -42,6 +42,7 @@ NAMES = (
     "plan_design",
     "steering",
     "roll",
+    "multisine",
     "sequential",
     "campaign",
     "sealed",

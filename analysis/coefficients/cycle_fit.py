@@ -135,7 +135,8 @@ def fit_cycles(
     ----------
     cycles
         Of one oscillator, with what is known to be taken off; any frequencies, amplitudes, drift
-        angles. Static runs tell through order 0 alone.
+        angles. Static runs tell through order 0 alone, runs of many lines through all harmonics up
+        to the highest line.
     names
         Of the terms, as :mod:`analysis.coefficients.terms` writes them.
     orders
@@ -167,17 +168,30 @@ def fit_terms(
 
     It raises what :func:`fit_cycles` raises.
     """
-    highest = min(cycle.orders for cycle in cycles)
-    even = np.ones((len(cycles), len(orders), len(LOAD_WORDS)))
-    first = CycleProblem(tuple(cycles), terms, orders, even, highest, form)
+    fitted = [_fitted(cycle, orders) for cycle in cycles]
+    every = tuple(sorted(set().union(*fitted)))
+    highest = max((cycle.orders for cycle in cycles if cycle.lines), default=0)
+    highest = highest or min(cycle.orders for cycle in cycles)
+    chosen = np.array([[float(n in own) for n in every] for own in fitted])
+    even = np.repeat(chosen[..., None], len(LOAD_WORDS), axis=2)
+    first = CycleProblem(tuple(cycles), terms, every, even, highest, form)
     check_determined(first)
     problem = first.weighed(_weights(first, first.solve_nominal()))
     nominal = problem.solve_nominal()
     chi_square = problem.squares(*problem.nominal, nominal)
     data = np.zeros(len(LOAD_WORDS))
     for row, _ in problem.rows:
-        data[row] = len(cycles) * problem.real.sum()
+        data[row] = (np.repeat(chosen, 2, axis=1) * problem.real).sum()
     return CycleFit(names, terms, nominal, chi_square, data, problem, stated)
+
+
+def _fitted(cycle: BodyCycle, orders: tuple[int, ...]) -> set[int]:
+    """Return which harmonics of a cycle are fitted: of a motion of many lines all up to the last.
+
+    What is not linear mixes its lines into every harmonic.
+    """
+    lines = range(1, max(cycle.lines) + 1) if cycle.lines else ()
+    return {*orders, *lines}
 
 
 def _weights(problem: CycleProblem, first: FloatArray) -> FloatArray:
@@ -200,11 +214,13 @@ def _weights(problem: CycleProblem, first: FloatArray) -> FloatArray:
         for k, cycle in enumerate(problem.cycles):
             whole[k, :, row] = residual_variance(problem, cycle, slope[k])
     if not np.isfinite(whole).all():
-        return np.ones_like(whole)
+        return problem.weights
     own = np.array([_fewest(cycle) for cycle in problem.cycles])[:, None, None]
-    shrunk = trusted(whole, own, whole.mean(axis=0))
+    there = problem.weights
+    mean = (there * whole).sum(axis=0) / np.maximum(there.sum(axis=0), 1.0)
+    shrunk = trusted(whole, own, mean)
     floor = 1e-9 * np.abs(problem.parts).max() + 1e-300
-    return np.asarray(1.0 / np.maximum(np.sqrt(shrunk), floor))
+    return np.asarray(there / np.maximum(np.sqrt(shrunk), floor))
 
 
 def residual_variance(

@@ -48,9 +48,10 @@ class CycleProblem:
     orders
         The harmonics that are fitted: (0, 1) is quasi-steady, (1,) needs no zero runs.
     weights
-        One over the standard deviation of each load, shape ``(cycles, orders, 4)``.
+        One over the standard deviation of each load, shape ``(cycles, orders, 4)``; 0 for what is
+        not fitted of a cycle.
     highest
-        Harmonic of the motion that is taken into account: all cycles have it.
+        Harmonic of the motion that is taken into account; a cycle of fewer has nothing beyond.
     form
         Which velocity goes with the translation: through the water, or across the tank.
     """
@@ -89,7 +90,7 @@ class CycleProblem:
         count = self.highest + 1
         rows_by_order = np.zeros((count, len(self.channels), 2, *rows.shape[1:]))
         places = [self.channels.index(name) for name in cycle.channels]
-        rows_by_order[:, places] = shaped[:count]
+        rows_by_order[: len(shaped), places] = shaped[:count]
         return np.concatenate(
             (rows_by_order.reshape(-1, *rows.shape[1:]), np.zeros((1, *rows.shape[1:])))
         )
