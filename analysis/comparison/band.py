@@ -10,6 +10,7 @@ from hardware.description.errors import DataError
 
 _POWER: Final = 0.999  # part of a channel's power that lies below its edge
 _TAPER: Final = 0.2  # of a record, both ends together
+_LONGEST: Final = 1 << 18  # samples that are transformed at a time: a band needs no finer lines
 _OVER_FLOOR: Final = 10.0  # a line of noise lies higher once in a thousand, by 10 ln 2
 _RATE: Final = 15.0  # working rate over the edge, where the record is sampled faster
 _LEAST_RATE: Final = 8.0  # the same, below which a record is sampled anew: 1e-5 of a quintic spline
@@ -74,9 +75,10 @@ def _edge(values: FloatArray, rate_hz: float) -> tuple[float, float]:
     from scipy.fft import next_fast_len, rfft
     from scipy.signal.windows import tukey
 
-    count = len(values)
-    spectrum = rfft(values * tukey(count, _TAPER), next_fast_len(count, real=True))
-    power = np.abs(spectrum) ** 2
+    pieces = -(-len(values) // _LONGEST)
+    count = len(values) // pieces
+    parts = values[: count * pieces].reshape(pieces, count) * tukey(count, _TAPER)
+    power = (np.abs(rfft(parts, next_fast_len(count, real=True))) ** 2).sum(axis=0)
     frequency_hz = np.arange(len(power)) * rate_hz / (2.0 * (len(power) - 1.0))
     above = np.maximum(power - _OVER_FLOOR * np.median(power), 0.0)
     power = above if above.sum() > 0.5 * power.sum() else power

@@ -170,9 +170,11 @@ def _with_dead_band(
     of the noise at the frequencies that it makes: other things bend a sensor's line too.
     """
     near = fit(problem, replace(straight.model, half=0.0), lines=True)
+    half, u = _half(problem, near)
+    if half < _SEEN * u:  # its noise is the lowest that there can be
+        return straight, np.array([half, u])
     bent = fit(problem, near.model)
-    half, u = float(bent.model.half or 0.0), float(bent.uncertainty[problem.channels + 2])
-    u = math.hypot(u, 0.5 * bent.noise_spread / abs(bent.model.gains[0]))
+    half, u = _half(problem, bent)
     answer = np.array([half, u])
     made = np.abs(bent.columns[problem.channels + 2] * half) ** 2 > bent.noise
     if half < _SEEN * u or bent.count != straight.count or not made.any():
@@ -180,3 +182,10 @@ def _with_dead_band(
     before = straight.squares_under(bent.noise, made) - 2.0 * made.sum()
     after = bent.squares_under(bent.noise, made) - 2.0 * made.sum()
     return (bent if after < _EXPLAINS * before else straight), answer
+
+
+def _half(problem: ComparisonProblem, found: ComparisonFit) -> tuple[float, float]:
+    """Return half a dead band as it was fitted, and its uncertainty, the reversals' noise in it."""
+    u = float(found.uncertainty[problem.channels + 2])
+    spread = 0.5 * found.noise_spread / abs(found.model.gains[0])
+    return float(found.model.half or 0.0), math.hypot(u, spread)

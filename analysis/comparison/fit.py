@@ -121,11 +121,11 @@ def fit(problem: ComparisonProblem, model: Model, *, lines: bool = False) -> Com
             noise, bins = np.ones(linear.target.size), _strongest(linear.channels[0])
         if not step:
             model = replace(model, gains=_gains(linear, bins, noise))
-            linear = linearised(problem, model)
-        columns = linear.columns(bins)
+        columns = linear.columns(model.gains, bins)
         theta, inverse = _solved(columns, linear.left(model.gains), noise)
         before, model = model, _moved(model, theta)
-        residual = linear.left(model.gains) - theta[problem.channels :] @ linear.others
+        others = linear.others(before.gains)
+        residual = linear.left(model.gains) - theta[problem.channels :] @ others
         hidden = (columns.conj() * (inverse @ columns)).sum(axis=0).real if step else 0.0
         noise, reach = _smoothed(np.abs(residual) ** 2 + hidden, linear.target, lines=lines)
         power = _around(np.abs(model.gains @ linear.channels) ** 2, 1)
@@ -138,7 +138,7 @@ def fit(problem: ComparisonProblem, model: Model, *, lines: bool = False) -> Com
     left, shown = (np.abs(one[bins]) ** 2 for one in (residual, linear.target))
     if left.sum() > _UNEXPLAINED * shown.sum():
         raise NothingInCommonError
-    columns = linear.columns(bins)
+    columns = linear.columns(before.gains, bins)
     freedom = max(2.0 * (2 * reach + 1) - len(columns), 1.0)
     # The weights are of the same record: they cost twice what their own scatter is.
     covariance = _covariance(columns, noise, linear) * (1.0 + 4.0 / freedom)

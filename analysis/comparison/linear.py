@@ -67,31 +67,30 @@ class Linear:
     taper: FloatArray
     target: ComplexArray
     channels: ComplexArray
-    motion: ComplexArray
-    slide: ComplexArray
+    motions: ComplexArray
+    slides: ComplexArray
     by_play: ComplexArray
     side: ComplexArray | None
     drift: ComplexArray
     first_bin: int
 
-    @property
-    def others(self) -> ComplexArray:
-        """The derivatives by all but the gains."""
-        side = () if self.side is None else (self.side,)
-        return np.array([self.motion, self.slide, *side, *self.drift])
+    def others(self, gains: FloatArray) -> ComplexArray:
+        """Return the derivatives by all but the gains."""
+        side = () if self.side is None else (gains[0] * self.side,)
+        return np.array([gains @ self.motions, gains @ self.slides, *side, *self.drift])
 
     def left(self, gains: FloatArray) -> ComplexArray:
         """Return what the channels leave of the second one."""
         left: ComplexArray = self.target - gains @ self.channels - gains[0] * self.by_play
         return left
 
-    def columns(self, stands_out: BoolArray) -> ComplexArray:
+    def columns(self, gains: FloatArray, stands_out: BoolArray) -> ComplexArray:
         """Return the derivatives, without the channels where they are noise."""
-        rows = [*(self.channels * stands_out), self.motion * stands_out, self.slide * stands_out]
+        rows = np.concatenate((self.channels, self.others(gains)))
+        rows[: len(self.channels) + 2] *= stands_out
         if self.side is not None:
-            rows[0] = rows[0] + self.by_play
-            rows.append(self.side)
-        return np.array([*rows, *self.drift])
+            rows[0] += self.by_play
+        return rows
 
 
 def linearised(problem: ComparisonProblem, model: Model) -> Linear:
@@ -122,21 +121,20 @@ def linearised(problem: ComparisonProblem, model: Model) -> Linear:
         return np.asarray(rfft(values * taper)[low : high + 1])
 
     values = [problem.first.values(asked_s, 0, k) for k in range(problem.channels)]
-    slopes = [problem.first.values(asked_s, 1, k) for k in range(problem.channels)]
-    motion = -(model.gains @ np.array(slopes))
+    motions = [-problem.first.values(asked_s, 1, k) for k in range(problem.channels)]
     play = play_at(problem, model, time_s)
     if play is not None:
-        motion = np.where(play.pushed, motion, 0.0)
+        motions = [np.where(play.pushed, one, 0.0) for one in motions]
     begin = where.stretch.start + start
     return Linear(
         begin,
         taper,
         spectrum(second.derivatives[0][begin : begin + count]),
         np.array([spectrum(one) for one in values]),
-        spectrum(motion),
-        spectrum(motion * (time_s - where.mid_s)),
+        np.array([spectrum(one) for one in motions]),
+        np.array([spectrum(one * (time_s - where.mid_s)) for one in motions]),
         spectrum(np.zeros(count) if play is None else play.values - values[0]),
-        None if play is None else spectrum(-model.gains[0] * play.side),
+        None if play is None else spectrum(-play.side),
         np.array([spectrum(np.ones(count)), spectrum(np.linspace(-1.0, 1.0, count))]),
         low,
     )
