@@ -7,9 +7,14 @@ from difflib import get_close_matches
 
 from analysis.readers.clock import DATE
 from hardware.description.errors import ConfigurationError
-from hardware.description.units import is_unit
+from hardware.description.units import is_unit, unit
 
-TIME_NAMES = ("time", "times", "t", "timestamp", "zeit", "temps", "tid", "tijd")
+_LOGGERS = {"millis": "ms", "micros": "us"}  # what the clocks of small loggers count
+TIME_NAMES = (
+    "time", "times", "t", "timestamp", "zeit", "temps", "tid", "tijd", "seconds", "sec", "epoch",
+    *_LOGGERS,
+)  # fmt: skip
+_TIME_WORDS = {"time", "zeit", "temps", "tijd"}
 
 _BRACKETS = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]$")
 _SEPARATORS = re.compile(r"\s+in\s+|\s*[,/]\s*|_|\s+")
@@ -34,8 +39,12 @@ class Header:
 
     @property
     def is_time(self) -> bool:
-        """Whether the name is one that time stamps go by."""
-        return self.name.casefold() in TIME_NAMES and self.unit != DATE
+        """Whether the name is one that time stamps go by, or has such a word and a time's unit."""
+        called = self.name.casefold()
+        if called in TIME_NAMES:
+            return self.unit != DATE
+        in_time = self.unit is not None and is_unit(self.unit) and unit(self.unit).si == "s"
+        return in_time and not _TIME_WORDS.isdisjoint(re.split(r"[\W_]+", called))
 
 
 def parse_header(number: int, text: str) -> Header:
@@ -47,13 +56,13 @@ def parse_header(number: int, text: str) -> Header:
     text = text.strip()
     match = _BRACKETS.match(text)
     if match:
-        name, unit = match["name"].strip(), match["unit"].strip()
-        return Header(number, text, name or f"column_{number}", unit or None)
+        name, stated = match["name"].strip(), match["unit"].strip()
+        return Header(number, text, name or f"column_{number}", stated or None)
     for separator in _SEPARATORS.finditer(text):
         name, suffix = text[: separator.start()], text[separator.end() :]
         if name and suffix not in _NO_SUFFIX and is_unit(suffix):
             return Header(number, text, name, suffix, unit_is_suffix=True)
-    return Header(number, text, text or f"column_{number}", None)
+    return Header(number, text, text or f"column_{number}", _LOGGERS.get(text.casefold()))
 
 
 def unit_hint(name: str) -> str:

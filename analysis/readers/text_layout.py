@@ -168,7 +168,11 @@ def _headless(
     first_line: int,
     where: str,
 ) -> FoundLayout:
-    names = _header_cells(comments[-1][1], bare.separator) if comments else []
+    lines = [line for _, line in comments[-2:]]
+    names = _header_cells(lines[-1], bare.separator) if lines else []
+    above = _header_cells(lines[0], bare.separator) if len(lines) > 1 else []
+    if len(above) == len(first):
+        names = _with_units(above, bare.cells(lines[1])) or names
     if len(names) != len(first):
         names = [""] * len(first)
     return _headed(bare, names, first, first_line, where)
@@ -177,9 +181,8 @@ def _headless(
 def _with_header(bare: FoundLayout, body: list[tuple[int, str]], where: str) -> FoundLayout:
     (last_line, header), *rows = body
     names = _header_cells(header, bare.separator)
-    if rows and _is_units(bare.cells(rows[0][1]), names):
-        (last_line, units), *rows = rows
-        names = [f"{a} [{b}]" for a, b in zip(names, bare.cells(units), strict=True)]
+    if rows and (united := _with_units(names, bare.cells(rows[0][1]))):
+        names, (last_line, _), *rows = united, *rows
     if not rows:
         raise DataError(f"{where}: there are no rows of data under the header")
     first_number, first = rows[0]
@@ -221,10 +224,16 @@ def _header_cells(line: str, separator: str) -> list[str]:
     return cells
 
 
-def _is_units(cells: list[str], names: list[str]) -> bool:
-    """Tell a line of units: as many cells as names, no number among them, a known unit."""
-    numbers = [cell for cell in cells if cell[-1:].isdigit()]
-    return len(cells) == len(names) and not numbers and any(map(is_unit, cells))
+def _with_units(names: list[str], cells: list[str]) -> list[str] | None:
+    """Return names with the units of a line below them; ``None`` where it is none of units.
+
+    It has as many cells as names, no number among them, and a known unit; brackets may be round it.
+    """
+    units = [cell.strip("()[]") for cell in cells]
+    numbers = [cell for cell in units if cell[-1:].isdigit()]
+    if len(units) != len(names) or numbers or not any(map(is_unit, units)):
+        return None
+    return [f"{a} [{b}]" for a, b in zip(names, units, strict=True)]
 
 
 def _is_data(layout: FoundLayout, cells: list[str]) -> bool:

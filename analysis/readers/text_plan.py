@@ -125,8 +125,9 @@ def _time(
     if named is None:
         names = ", ".join(header.text or header.generic for header in headers)
         raise DataError(
-            f"{where}: no column is named as time (columns: {names}); name it in the column map, "
-            "or give the sample rate; where these are no headers, say skip_rows (lines before them)"
+            f"{where}: no column is named as time (columns: {names}); name it in the column map "
+            f"(time={headers[0].name}:ms), or give the sample rate; where these are no headers, "
+            "say skip_rows (lines before them)"
         )
     return named, named
 
