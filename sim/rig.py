@@ -232,6 +232,12 @@ class SimulatedRig:
                 faults.append("[heel] is for the horizontal oscillator")
             if self.drive.motor is not None or self.drive.gear is not None:
                 faults.append("[heel] needs a drive without motor and gear")
+            heeling = self._heeling(set_point)
+            if heeling is not None and heeling.free and not heeling.righting[0] > 0.0:
+                below = "gm_m above 0" if heeling.in_water else "a centre of gravity below its axis"
+                faults.append(
+                    f"a model that is free to roll, and nothing rights it: it takes {below}"
+                )
         if faults:
             raise ConfigurationError("; ".join(faults))
 

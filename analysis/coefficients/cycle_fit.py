@@ -12,6 +12,7 @@ A single run is fitted by giving it alone.
 """
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -254,15 +255,33 @@ def _fewest(cycle: BodyCycle) -> float:
     )
 
 
+def _luck(problem: CycleProblem, degrees_of_freedom: float) -> float:
+    """Return by how much a cycle's scatter is larger than it seems, where others tell the same.
+
+    A cycle whose periods happened to scatter little has a large weight for it, so that the sum of
+    weighted variances comes out too small. If its estimated variance is off by the part e, its
+    weights are off by -t e, with t the trust in it and its part of the mean (:func:`trusted`), and
+    what it adds to the coefficients by -t e (1 - F), F its share of what tells them. The mean of
+    e^2 is 2 over the degrees of freedom, halved where both parts of a harmonic make one weight.
+    """
+    freedom, count = max(degrees_of_freedom, 1.0), len(problem.cycles)
+    trust = (1.0 + _POOLED_FREEDOM / count / freedom) / (freedom + _POOLED_FREEDOM)
+    return float(2.0 * trust * len(problem.orders) / problem.real.sum())
+
+
 def _contributions(fit: CycleFit) -> tuple[Contribution, ...]:
     """Scatter by source, of all cycles that share it, then each stated uncertainty."""
     problem, stated = fit.problem, fit.stated
     slopes = problem.followed(fit.values)
     everywhere, contributions = np.arange(len(problem.terms)), []
     by_stated = np.zeros((len(everywhere), len(STATED)))
-    for slope, cycle in zip(slopes, problem.cycles, strict=True):
+    known = [one.label for cycle in problem.cycles for one in cycle.hull.phasors.real.contributions]
+    serves = Counter(known)
+    for slope, share, cycle in zip(slopes, problem.shares, problem.cycles, strict=True):
         for source in cycle.hull.phasors.real.contributions:
             parts = slope @ problem.scatter(cycle, source)
+            if serves[source.label] == 1:
+                parts += _luck(problem, source.degrees_of_freedom) * (parts - share @ parts)
             contributions.append(
                 Contribution(source.label, source.degrees_of_freedom, everywhere, parts)
             )

@@ -290,6 +290,24 @@ class CycleProblem:
             changes[:, columns] = inverse @ total
         return changes
 
+    @property
+    def shares(self) -> FloatArray:
+        """What part of the coefficients each cycle tells, ``(cycles, terms, terms)``; 1 in sum.
+
+        The cycle's own normal equations over those of all.
+        """
+        count = len(self.cycles)
+        shares = np.zeros((count, len(self.terms), len(self.terms)))
+        design, _ = self.nominal
+        for row, columns in self.rows:
+            matrix = self._weight(row)[..., None] * design[..., columns]
+            scale = 1.0 / np.sqrt((matrix**2).sum(axis=(0, 1)))
+            matrix = matrix * scale
+            own = matrix.transpose(0, 2, 1) @ matrix
+            told = np.linalg.solve(own.sum(axis=0), own)
+            shares[np.ix_(range(count), columns, columns)] = scale[:, None] * told / scale
+        return shares
+
     @cached_property
     def _slopes(self) -> FloatArray:
         """How the terms follow the moves, ``(cycles, terms, 6 or 9, instants)``."""

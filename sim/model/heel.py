@@ -44,6 +44,12 @@ class Heeling:
         """Whether it rolls by itself."""
         return self.heel.held is Held.FREE
 
+    @property
+    def righting(self) -> tuple[float, float]:
+        """What rights it, as :func:`hardware.description.heel.righting_moment` takes it."""
+        hanging = STANDARD_GRAVITY_M_S2 * self.body.mass_kg * self.body.cg_z_m, 0.0
+        return self.heel.righting(self.body) if self.in_water else hanging
+
     def rolling(
         self, at: BodyMotion, before: tuple[float, ...], step_s: float
     ) -> tuple[FloatArray, tuple[float, ...]]:
@@ -118,10 +124,9 @@ class Heeling:
         """Return the moments on the model in roll over the instants of a motion."""
         inertia, product, spread = self._moments
         arm = self.body.mass_kg * self.body.cg_z_m
+        righting = self.righting
         given = dict(self.terms.by_rolling("K", _motion(at))) if self.in_water else {}
         added = given.pop(("pdot",), np.zeros(1))
-        upright = (STANDARD_GRAVITY_M_S2 * arm, 0.0)
-        righting = self.heel.righting(self.body) if self.in_water else upright
         return RollCourse(
             inertia - float(np.ravel(added)[0]),
             arm * at.across + product * at.r_rate,

@@ -64,6 +64,14 @@ def test_the_search_expects_what_the_fit_does() -> None:
     searched = prospects(runs, WHOLE, noise, stated).regressions(TARGETS, every)
     spread = np.sqrt(np.concatenate([np.diag(covariance(one, every)) for one in searched]))
     assert [one.name for one in fitted] == [name for one in searched for name in one.names]
+    ratio = np.array([one.standard_uncertainty for one in fitted]) / spread
+    # The fit widens for weights that luck made, of three periods most; the search knows no luck.
+    assert ratio.min() > 0.999
+    assert ratio.max() < 1.06
+    known = [replace(one, periods=10**6) for one in RUNS]
+    fitted = expected(known, made_up(known, WHOLE, noise), TARGETS, WHOLE, stated)
+    searched = prospects(known, WHOLE, noise, stated).regressions(TARGETS, every)
+    spread = np.sqrt(np.concatenate([np.diag(covariance(one, every)) for one in searched]))
     assert spread == pytest.approx([one.standard_uncertainty for one in fitted], rel=1e-3)
     inputs = {label for one in fitted for label in one.shares}
     assert inputs == {SCATTER, REPEATS, "mass_kg", "lag_s", "force_gain_relative"}
