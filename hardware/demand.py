@@ -12,7 +12,8 @@ class Demand(str):
     ----------
     part
         What is to be changed: an axis by its name, ``"carriage"``, ``"medium"``, ``"mass"``, or
-        ``"load"`` of the channel in :attr:`channel`.
+        ``"load"`` of the channel in :attr:`channel`; ``"lines"``, whose value is a JSON list of
+        :class:`hardware.description.lines.Line`.
     value
         The wanted value in SI units (a word for the medium); ``None`` where something is read only.
     per_unit

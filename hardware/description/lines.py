@@ -41,7 +41,7 @@ class Line:
     strut_phase_rad: float = 0.0
 
 
-def struts_over_turn(lines: Sequence[Line], times: int = 0) -> FloatArray:
+def struts_over_turn(lines: Sequence[Line], times: int = 0, least: int = 0) -> FloatArray:
     """Return both struts over a turn, per eccentricity, differentiated by the angle.
 
     The result has the shape ``(2, points)``, aft and fore.
@@ -50,9 +50,12 @@ def struts_over_turn(lines: Sequence[Line], times: int = 0) -> FloatArray:
     ----------
     times
         How often it is differentiated.
+    least
+        Points of the turn, if they are not to be more for the highest line.
     """
     order = np.array([line.order for line in lines], dtype=np.float64)
-    theta = np.linspace(0.0, 2.0 * np.pi, _POINTS_PER_LINE * int(order.max()), endpoint=False)
+    points = max(least, _POINTS_PER_LINE * int(order.max()))
+    theta = np.linspace(0.0, 2.0 * np.pi, points, endpoint=False)
     size = np.array([line.share for line in lines]) * order**times
     phase = np.array([[line.phase_rad, line.phase_rad + line.strut_phase_rad] for line in lines])
     turned = order[:, None, None] * theta + (phase + times * np.pi / 2.0)[..., None]

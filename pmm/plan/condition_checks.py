@@ -14,6 +14,7 @@ from analysis.kinematics.geometry import Geometry
 from analysis.kinematics.motion import DrivenDisplacements, MotionWaves, motion
 from analysis.water import Water, froude_number, reynolds_number
 from hardware.description import kinds
+from hardware.description.lines import struts_over_turn
 from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from pmm.plan import check_table as table
@@ -74,10 +75,11 @@ def condition_findings(
 def motion_of(run: RunPlan, rig: RigFile) -> MotionWaves:
     """Return a run's exact motion over one turn of the shaft, struts moving as sines."""
     point, omega = run.set_point, omega_of(run)
-    angle = np.linspace(0.0, 2.0 * math.pi, _INSTANTS, endpoint=False)
-    struts = np.stack((angle, angle + point.strut_phase_rad))
-    wave, slope = point.eccentricity_m * np.sin(struts), point.eccentricity_m * np.cos(struts)
-    driven = DrivenDisplacements(wave, omega * slope, -(omega**2) * wave)
+    place, slope, curvature = (
+        omega**times * point.eccentricity_m * struts_over_turn(point.every_line, times, _INSTANTS)
+        for times in range(3)
+    )
+    driven = DrivenDisplacements(place, slope, curvature)
     return motion(Geometry.of(rig.oscillator, run.set_point), driven)
 
 

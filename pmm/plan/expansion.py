@@ -2,11 +2,16 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from itertools import product
 from typing import Any
 
+import numpy as np
+
+from analysis.response.multisine import multisine
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.known_loads import LoadDirection, LoadStep
+from hardware.description.lines import Line
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.plan.plan_tables import Defaults, PlanEntry, first_of
@@ -128,6 +133,9 @@ def _run(
         revolutions,
         heel,
     )
+    if entry.lines:
+        lines = _lines(entry, oscillator, set_point, speed)
+        set_point = replace(set_point, strut_phase_rad=0.0, lines=lines)
     return RunPlan(
         name=_name(entry, one),
         kind=entry.kind,
@@ -140,6 +148,20 @@ def _run(
         pause_before_s=first_of(entry.pause_s, defaults.pause_s),
         **_lengths(entry, defaults, oscillates=frequency > 0.0),
     )
+
+
+def _lines(
+    entry: PlanEntry, oscillator: Oscillator, point: SetPoint, speed_m_s: float
+) -> tuple[Line, ...]:
+    """Return the lines of a run: of the same strut velocity each, with the motion's strut phase."""
+    motion, half = entry.motion or Motion.NONE, oscillator.half_spacing_m
+    phases = [
+        point.strut_phase_rad
+        if motion is Motion.PHASE
+        else strut_phase_of(motion, n * point.frequency_hz, speed_m_s, half)
+        for n in entry.lines
+    ]
+    return multisine(entry.lines, 1.0 / np.array(entry.lines), phases)
 
 
 def _lengths(entry: PlanEntry, defaults: Defaults, *, oscillates: bool) -> dict[str, Any]:

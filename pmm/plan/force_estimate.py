@@ -6,7 +6,7 @@ frequency; velocities are those through the water, so that a pure yaw has no swa
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -89,20 +89,43 @@ def force_peak_n(run: RunPlan, rig: RigFile) -> float | None:
 
     It is ``None`` where the rig's file describes no model.
     """
-    found = force_estimate(run, rig)
-    if found is None:
+    found = [force_estimate(one, rig) for one in single_sines(run)]
+    sizes = [np.abs(one.forces) for one in found if one is not None]
+    if not sizes:
         return None
-    return float(np.abs(found.forces).max()) * rod_factor(run, rig.oscillator)
+    return float(np.sum(sizes, axis=0).max()) * rod_factor(run, rig.oscillator)
+
+
+def single_sines(run: RunPlan) -> tuple[RunPlan, ...]:
+    """Return a run for each line of a motion; their peaks together are its at most."""
+    point = run.set_point
+    if not point.lines:
+        return (run,)
+    return tuple(
+        replace(
+            run,
+            set_point=replace(
+                point,
+                frequency_hz=line.order * point.frequency_hz,
+                eccentricity_m=line.share * point.eccentricity_m,
+                strut_phase_rad=line.strut_phase_rad,
+                lines=(),
+            ),
+        )
+        for line in point.lines
+    )
 
 
 def expected_readings(run: RunPlan, rig: RigFile) -> dict[str, Expected]:
     """Return what each strut's gauge should read; empty where the file tells too little.
 
     A calibration's matrix makes readings of forces, as it does in the rig. A memory of the water
-    (``[campaign.radiation]``) is not in the estimate, so that in water nothing is expected then.
+    (``[campaign.radiation]``) is not in the estimate, so that in water nothing is expected then; of
+    a motion of many lines nothing is, for the first harmonic may be none of them.
     """
     in_water = run.set_point.medium is Medium.WATER
     unknown = in_water and (rig.hull is None or "radiation" in rig.campaign)
+    unknown = unknown or bool(run.set_point.lines)
     found = None if unknown or not run.oscillates else force_estimate(run, rig)
     if found is None:
         return {}

@@ -47,7 +47,9 @@ def _turning(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
         return
     frequency, oscillator, limits = run.set_point.frequency_hz, rig.oscillator, rig.limits
     allowed = oscillator.frequency_hz
-    yield _Bound(table.FREQUENCY, frequency, allowed.low, allowed.high, "oscillator")
+    orders = [line.order for line in run.set_point.every_line]
+    for order in dict.fromkeys((min(orders), max(orders))):
+        yield _Bound(table.FREQUENCY, order * frequency, allowed.low, allowed.high, "oscillator")
     low, high = _ends(rig.hardware.shaft, "lowest_frequency_hz", "highest_frequency_hz")
     yield _Bound(table.FREQUENCY, frequency, low, high, "the shaft's drive")
     for check, value, limit in (

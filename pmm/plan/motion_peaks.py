@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 
+from hardware.description.lines import peak_of
 from hardware.description.oscillator import Oscillator
 from pmm.plan.run_plan import RunPlan
 
@@ -19,12 +20,19 @@ def omega_of(run: RunPlan) -> float:
 
 def velocity_peak_m_s(run: RunPlan, oscillator: Oscillator) -> float:
     """Return the largest velocity of a strut: ``omega e``, or that of a crank with its rod."""
-    return omega_of(run) * run.set_point.eccentricity_m * _velocity_factor(run, oscillator)
+    pace = omega_of(run) * run.set_point.eccentricity_m
+    return pace * _velocity_factor(run, oscillator) * _of_lines(run, 1)
 
 
 def acceleration_peak_m_s2(run: RunPlan, oscillator: Oscillator) -> float:
     """Return the largest acceleration of a strut: ``omega^2 e``, times ``1 + e / L`` of a crank."""
-    return omega_of(run) ** 2 * run.set_point.eccentricity_m * rod_factor(run, oscillator)
+    pace = omega_of(run) ** 2 * run.set_point.eccentricity_m
+    return pace * rod_factor(run, oscillator) * _of_lines(run, 2)
+
+
+def _of_lines(run: RunPlan, times: int) -> float:
+    """Return by how much many lines together are faster than a sine of the base frequency."""
+    return peak_of(run.set_point.lines, times) if run.set_point.lines else 1.0
 
 
 def _ratio(run: RunPlan, oscillator: Oscillator) -> float:

@@ -22,8 +22,8 @@ _MATRIX: Final = _GATE | {
 }
 _REST: Final = {"duration_s", "medium"}
 _TAKES: Final[dict[RunKind, set[str]]] = {
-    RunKind.OSCILLATION: _MATRIX | _SET,
-    RunKind.DRY: _MATRIX - {"drifts_rad"},
+    RunKind.OSCILLATION: _MATRIX | _SET | {"lines"},
+    RunKind.DRY: (_MATRIX - {"drifts_rad"}) | {"lines"},
     RunKind.KNOWN_MASS: (_MATRIX - {"drifts_rad"}) | {"known_mass"},
     RunKind.RESTORING: _MATRIX - {"speeds_m_s", "drifts_rad"},
     RunKind.CHECK_WEIGHT: _REST | {"channels", "loads_n"},
@@ -97,6 +97,8 @@ def _number_faults(entry: PlanEntry, place: Place) -> Iterator[Fault]:
         yield Fault((*place, "loads_n"), "should be one number: about how hard the push is")
     if entry.kind in (RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW) and 0.0 in entry.speeds_m_s:
         yield Fault((*place, "speeds_m_s"), "has 0; a tow needs a speed above 0")
+    if entry.lines and (entry.lines[0] < 1 or list(entry.lines) != sorted(set(entry.lines))):
+        yield Fault((*place, "lines"), "should be rising harmonics, each from 1 on and once")
     yield from gate_faults(entry, place)
 
 

@@ -83,6 +83,9 @@ class PlanEntry:
         Of the rudder, positive to turn to starboard; of the propeller.
     heels_rad
         Heel angles, positive to starboard.
+    lines
+        Harmonics of each frequency, which is the base of a motion of many lines; one run has them
+        all, with amplitudes as one over their order.
     channels, loads_n
         Gauges and their loads, of check weights and pushes.
     medium
@@ -109,6 +112,7 @@ class PlanEntry:
     duration_s: float | None = None
     target_relative: float | None = None
     max_periods: int | None = None
+    lines: tuple[int, ...] = ()
     channels: tuple[str, ...] = ()
     loads_n: tuple[float, ...] = ()
     known_mass: KnownMass | None = None

@@ -62,8 +62,12 @@ def motor_of(rig: RigFile) -> ShuntMotor | Servo | None:
 
 
 def shaft_load(run: RunPlan, rig: RigFile, motor: ShuntMotor | Servo) -> ShaftLoad | None:
-    """Return the estimate for a run that oscillates; ``None`` without a model in the rig's file."""
-    found = force_estimate(run, rig) if run.oscillates else None
+    """Return the estimate for a run that oscillates; ``None`` without a model in the rig's file.
+
+    Struts that follow lines have drives of their own: the shaft bears nothing of them.
+    """
+    bears = run.oscillates and not run.set_point.lines
+    found = force_estimate(run, rig) if bears else None
     if found is None:
         return None
     point = run.set_point

@@ -1,15 +1,17 @@
 """What only people can change, asked for one by one: carriage, medium, loads, added mass."""
 
+import json
 import math
 from collections import deque
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Final
 
 from analysis.kinematics.geometry import Geometry
 from hardware.demand import Demand
 from hardware.description.arrangement import DriftBy
 from hardware.description.kinds import RunKind
+from hardware.description.lines import Line
 from hardware.description.oscillator import Oscillator, Plane
 from hardware.description.setpoint import SetPoint
 from hardware.driver import Prompt
@@ -30,6 +32,8 @@ class Surroundings:
         Mean heading of the model to the tow, however it is set.
     rudder_angle_rad, revolutions_hz, heel_rad
         Of the rudder, of the propeller and of the model.
+    lines
+        That the struts follow.
     """
 
     medium: str = "water"
@@ -38,6 +42,7 @@ class Surroundings:
     rudder_angle_rad: float = 0.0
     revolutions_hz: float = 0.0
     heel_rad: float = 0.0
+    lines: tuple[Line, ...] = ()
     mass_kg: float = 0.0
     load: tuple[str, float] = ("", 0.0)
 
@@ -47,6 +52,8 @@ class Surroundings:
         yield from self._change_mass(run)
         yield from self._change_drift(run, oscillator)
         yield from self._change_settings(run.set_point)
+        if run.oscillates:
+            yield from self._change_lines(run.set_point)
         wanted = run.load if run.kind is RunKind.CHECK_WEIGHT else None
         yield from self._change_load(
             ("", 0.0) if wanted is None else (wanted.channel, wanted.force_n)
@@ -109,6 +116,20 @@ class Surroundings:
             if value != getattr(self, key):
                 setattr(self, key, value)
                 yield Demand(f"{part}: {words(value)}", part, value)
+
+    def _change_lines(self, point: SetPoint) -> Iterator[Demand]:
+        if point.lines == self.lines:
+            return
+        self.lines = point.lines
+        orders = ", ".join(str(line.order) for line in point.lines)
+        what = (
+            f"let each strut follow its table of lines {orders} over a turn of the master angle, "
+            "as the run's header.json has them"
+            if orders
+            else "let the struts follow a single sine again"
+        )
+        table = json.dumps([asdict(line) for line in point.lines])
+        yield Demand(f"lines: {what}; press Enter when it is so", "lines", table)
 
 
 class Questions:

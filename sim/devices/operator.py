@@ -1,9 +1,11 @@
 """The operator of a simulated rig: does with the simulation what a rig asks its operator for."""
 
+import json
 from collections.abc import Callable
 from typing import Final
 
 from hardware.demand import Demand
+from hardware.description.lines import Line
 from hardware.description.setpoint import Medium
 from hardware.driver import Prompt
 from sim.devices.faults import inject
@@ -99,11 +101,16 @@ def _ballast(world: World, question: Demand) -> None:
     world.plant.load(float(question.value or 0.0), question.at_m)
 
 
+def _follow(world: World, question: Demand) -> None:
+    world.plant.surround(lines=tuple(Line(**one) for one in json.loads(str(question.value))))
+
+
 _DOING: Final[dict[str, Callable[[World, Demand], None]]] = {
     "carriage": _setting("carriage_speed_m_s"),
     "medium": _immerse,
     "load": _load,
     "mass": _ballast,
+    "lines": _follow,
     "drift": _setting("drift_rad"),
     "rudder": _setting("rudder_angle_rad"),
     "propeller": _setting("revolutions_hz"),

@@ -6,9 +6,10 @@ sample; from there the changed chain goes on. A run in which nothing changes cos
 a sample.
 """
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, Final
 
+from hardware.description.lines import Line
 from hardware.description.setpoint import Medium, SetPoint
 from sim import signals
 from sim.chain import Chain, ChainState
@@ -32,6 +33,7 @@ class PlantConditions:
     rudder_angle_rad: float = 0.0
     revolutions_hz: float = 0.0
     heel_rad: float = 0.0
+    lines: tuple[Line, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -202,8 +204,10 @@ class Plant:
         eccentricity, phase = self._linkage
         rig = replace(self._rig, drive=following(self._rig.drive, self.profile))
         around = self._around
-        any_hz = self._rig.oscillator.frequency_hz.high
-        conditions = {key: one for key, one in asdict(around).items() if key != "seed"}
+        highest = max((line.order for line in around.lines), default=1)
+        any_hz = self._rig.oscillator.frequency_hz.high / highest
+        own = fields(around)
+        conditions = {one.name: getattr(around, one.name) for one in own if one.name != "seed"}
         return rig.chain(SetPoint(any_hz, eccentricity, phase, **conditions))
 
     def _run(self, chain: Chain, state: ChainState, count: int) -> _Stretch:

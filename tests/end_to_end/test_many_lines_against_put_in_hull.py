@@ -5,15 +5,13 @@ what takes two runs for each frequency with single sines.
 """
 
 import json
-import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from analysis.response.multisine import multisine
 from pmm.cli import cli
-from pmm.toml_text import toml_value
 
 BASE_HZ = 0.1
 ORDERS = (3, 5, 7, 9, 11, 13, 15, 17)
@@ -21,47 +19,14 @@ HULL = {
     "Y_vdot": -62.0, "Y_v": -120.0, "N_vdot": -2.0, "N_v": -40.0,
     "Y_rdot": -2.0, "Y_r": 15.0, "N_rdot": -18.0, "N_r": -35.0,
 }  # fmt: skip
-HEAD = """
-name = "lines"
-[oscillator]
-preset = "horizontal-1963"
-[model]
-mass_kg = 70.0
-inertia_kg_m2 = 27.5
-cg_x_m = -0.02
-[hull]
-added_mass = [[62.0, 2.0], [2.0, 18.0]]
-damping = [[120.0, -15.0], [40.0, 35.0]]
-[acquisition]
-displacement_aft = { noise_rms = 2e-5 }
-displacement_fore = { noise_rms = 2e-5 }
-force_aft = { noise_rms = 0.05 }
-force_fore = { noise_rms = 0.05 }
-[simulation]
-sample_rate_hz = 50.0
-settling_periods = 1
-"""
-
-
-def run_table(name: str, strut_phase_rad: float) -> str:
-    weights = 1.0 / np.array(ORDERS, dtype=float)
-    lines = [
-        {"order": one.order, "share": one.share, "phase_rad": one.phase_rad,
-         "strut_phase_rad": one.strut_phase_rad}
-        for one in multisine(ORDERS, weights, (strut_phase_rad,))
-    ]  # fmt: skip
-    return (
-        f'\n[[runs]]\nname = "{name}"\nfrequency_hz = {BASE_HZ}\neccentricity_m = 0.06\n'
-        f"periods = 6\nlines = {toml_value(lines)}\n"
-    )
+EXAMPLE = Path(__file__).parents[2] / "examples" / "lines" / "campaign.toml"
 
 
 @pytest.fixture(scope="module")
 def told(tmp_path_factory: pytest.TempPathFactory) -> dict:  # type: ignore[type-arg]
     folder = tmp_path_factory.mktemp("lines")
-    file, made = folder / "campaign.toml", folder / "made"
-    file.write_text(HEAD + run_table("sway", 0.0) + run_table("yaw", math.pi), encoding="utf-8")
-    simulated = CliRunner().invoke(cli, ["simulate", str(file), "--output", str(made)])
+    made = folder / "made"
+    simulated = CliRunner().invoke(cli, ["simulate", str(EXAMPLE), "--output", str(made)])
     assert simulated.exit_code == 0, simulated.output
     shown = CliRunner().invoke(cli, ["coefficients", str(made), "--json"])
     assert shown.exit_code == 0, shown.output

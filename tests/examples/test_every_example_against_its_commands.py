@@ -18,6 +18,7 @@ ELSEWHERE = {
     "decay": "tests/pmm/gap/test_pendulum_command_against_simulated_bodies.py",
     "foreign": "tests/examples/test_foreign_campaign_against_what_it_was_made_of.py",
     "gap": "tests/pmm/gap/test_gap_command_against_its_page.py",
+    "lines": "tests/end_to_end/test_many_lines_against_put_in_hull.py",
     "manoeuvre": "tests/pmm/manoeuvre/test_command_against_known_derivatives.py",
     "manual": "tests/pmm/plan/test_commands_against_examples.py",
     "roll": "tests/pmm/coefficients/test_heel_against_its_example.py",
