@@ -10,7 +10,10 @@ _RIDGE: Final = 1e-12  # of the largest singular value: what keeps coinciding co
 
 
 def least_squares(
-    system: FloatArray, target: FloatArray, conditions: FloatArray, least: FloatArray
+    system: FloatArray,
+    target: FloatArray,
+    conditions: FloatArray | None = None,
+    least: FloatArray | None = None,
 ) -> FloatArray:
     """Return the x that brings system x nearest to the target, with conditions x >= least.
 
@@ -30,27 +33,24 @@ def least_squares(
     left, sizes, right = np.linalg.svd(system / norm, full_matrices=False)
     back = (right.T / np.maximum(sizes, _RIDGE * sizes[0])) / norm[:, None]
     start = left.T @ target
-    if least.size:
+    if conditions is not None and least is not None and least.size:
         matrix = conditions @ back
-        start = start + _least_distance(matrix, least - matrix @ start)
+        start = start + _shortest(matrix, least - matrix @ start)
     found: FloatArray = back @ start
     return found
 
 
-def _least_distance(matrix: FloatArray, least: FloatArray) -> FloatArray:
+def _shortest(matrix: FloatArray, least: FloatArray) -> FloatArray:
     """Return the shortest x with matrix x >= least; zero where there is none."""
     from scipy.optimize import nnls
 
     size = np.linalg.norm(matrix, axis=1)
-    size = np.where(size > 0.0, size, 1.0)
-    matrix, least = matrix / size[:, None], least / size
-    scale = float(np.abs(least).max()) or 1.0
-    system = np.vstack([matrix.T, least / scale])
-    aim = np.zeros(len(system))
-    aim[-1] = 1.0
+    system = np.vstack([matrix.T, least]) / np.where(size > 0.0, size, 1.0)
+    scale = float(np.abs(system[-1]).max()) or 1.0
+    system[-1] /= scale
+    aim = np.append(np.zeros(len(system) - 1), 1.0)
     try:
-        multipliers, _ = nnls(system, aim)
+        rest = system @ nnls(system, aim)[0] - aim
     except RuntimeError:
-        return np.zeros(len(system) - 1)
-    rest = system @ multipliers - aim
-    return np.zeros(len(rest) - 1) if rest[-1] == 0.0 else -rest[:-1] / rest[-1] * scale
+        return aim[:-1]
+    return -rest[:-1] / rest[-1] * scale if rest[-1] else aim[:-1]

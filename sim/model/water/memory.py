@@ -89,16 +89,15 @@ def _fitted(
     elements, k = samples.values.shape
     most = min(_MOST_CHOSEN, max(_FEWEST, int(_SHARE * 2 * k * elements / (1 + elements))))
     counts = range(_FEWEST, most + 1) if states is None else (states,)
-    tried: list[tuple[float, PartialFractions]] = []
+    tried: list[tuple[float, int, PartialFractions]] = []
     for count in counts:
-        plain = fitted_residues(samples, fitted_poles(samples, count))
-        tried.append((_per_freedom(samples, plain), plain))
-        if tried[-1][0] > uncertainty:
-            continue
-        found = passive_fit(samples, plain.poles)
-        if _per_freedom(samples, found) <= uncertainty:
-            return found, _loss(samples, found, plain)
-    fits = [(passive_fit(samples, one.poles), one) for _, one in sorted(tried, key=_first)[:2]]
+        plain, _ = fitted_residues(samples, fitted_poles(samples, count))
+        tried.append((_per_freedom(samples, plain), count, plain))
+        if tried[-1][0] <= uncertainty:
+            found = passive_fit(samples, plain.poles)
+            if _per_freedom(samples, found) <= uncertainty:
+                return found, _loss(samples, found, plain)
+    fits = [(passive_fit(samples, one.poles), one) for *_, one in sorted(tried)[:2]]
     found, plain = min(fits, key=lambda pair: _per_freedom(samples, pair[0]))
     return found, _loss(samples, found, plain)
 
@@ -106,10 +105,6 @@ def _fitted(
 def _loss(samples: SampledTable, found: PartialFractions, plain: PartialFractions) -> float:
     misfit = plain.misfit(samples)
     return found.misfit(samples) / misfit if misfit > 0.0 else 1.0
-
-
-def _first(pair: tuple[float, PartialFractions]) -> float:
-    return pair[0]
 
 
 def _per_freedom(samples: SampledTable, fit: PartialFractions) -> float:
@@ -177,7 +172,8 @@ class _Target:
         values = elements(self.table.added_mass) - 1j * elements(self.table.damping) / omega
         infinite = self.table.added_mass_infinite
         known = None if infinite is None else infinite[first, second] / unit
-        return SampledTable(omega / self.middle, values, 1.0 / scale_a, omega / scale_b, known)
+        weights = np.hstack([1.0 / scale_a, omega / scale_b])
+        return SampledTable(omega / self.middle, values, weights, known)
 
     def state_space(
         self, dofs: tuple[int, ...], fit: PartialFractions

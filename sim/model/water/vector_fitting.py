@@ -10,12 +10,15 @@ An iteration finds s(w) M and s(w) on the same poles; the zeros of the latter ar
 (Gustavsen and Semlyen, IEEE Trans. Power Delivery 14(3), 1999; relaxed: Gustavsen, 21(3), 2006).
 """
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from hardware.description.arrays import ComplexArray, FloatArray
+from sim.model.water.conditions import least_squares
 
 _ITERATIONS: Final = 12
 _SETTLED: Final = 1e-3  # relative improvement of an iteration that is none
@@ -36,24 +39,31 @@ class SampledTable:
         Shape ``(k,)``, rising, above 0.
     values
         A + B/(i w), shape ``(e, k)``.
-    weight_real, weight_imag
-        What a deviation of its real part, of its imaginary part is multiplied with, ``(e, k)``.
+    weights
+        What deviations of real parts, then of imaginary ones are multiplied with, ``(e, 2 k)``.
     infinite
         Value at infinite frequency, shape ``(e,)``; ``None`` where it is fitted along.
     """
 
     omega: FloatArray
     values: ComplexArray
-    weight_real: FloatArray
-    weight_imag: FloatArray
+    weights: FloatArray
     infinite: FloatArray | None
 
     def weighted(self, element: int, functions: ComplexArray) -> FloatArray:
         """Return real and imaginary parts of ``(k, ...)`` one below the other, weighted."""
-        shape = (-1, *(1,) * (functions.ndim - 1))
-        real = functions.real * self.weight_real[element].reshape(shape)
-        imag = functions.imag * self.weight_imag[element].reshape(shape)
-        return np.concatenate([real, imag])
+        both = np.concatenate([functions.real, functions.imag])
+        return np.asarray((both.T * self.weights[element]).T, np.float64)
+
+    @property
+    def sought(self) -> ComplexArray:
+        """The values, less the end value where it is known, shape ``(e, k)``."""
+        return self.values if self.infinite is None else self.values - self.infinite[:, None]
+
+    def with_end(self, functions: ComplexArray) -> ComplexArray:
+        """Return functions, and a constant beside them where the end value is fitted along."""
+        ones = np.ones((len(functions), int(self.infinite is None)))
+        return np.hstack([functions, ones])
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,47 +87,59 @@ class PartialFractions:
     def deviations(self, samples: SampledTable) -> FloatArray:
         """Return the weighted deviations from the samples, shape ``(e, 2 k)``."""
         fitted = self.residues @ basis(self.poles, samples.omega).T + self.infinite[:, None]
-        off = fitted - samples.values
-        return np.array([samples.weighted(e, row) for e, row in enumerate(off)])
+        return np.array([samples.weighted(e, row) for e, row in enumerate(fitted - samples.values)])
 
     def misfit(self, samples: SampledTable) -> float:
         """Return the root mean square of the weighted deviations."""
         return float(np.sqrt(np.mean(self.deviations(samples) ** 2)))
 
 
-def basis(poles: ComplexArray, omega: FloatArray) -> ComplexArray:
-    """Return 1/(s - p) of real poles; 1/(s - p) + 1/(s - p*), i/(s - p) - i/(s - p*) of pairs.
+def basis(
+    poles: ComplexArray, omega: FloatArray, strength: ComplexArray | float = 1.0, power: int = 1
+) -> ComplexArray:
+    """Return 1/(s - p), of pairs 1/(s - p) + 1/(s - p*), then i/(s - p) - i/(s - p*) of pairs.
 
     At s = i w, shape ``(k, n)``.
+
+    Parameters
+    ----------
+    strength, power
+        In place of 1, of p* its conjugate; and of s - p. With the residues and a power of 2 these
+        are the slopes to the poles' real parts, then to their imaginary ones.
     """
-    columns: list[ComplexArray] = []
-    s = np.asarray(1j * omega, np.complex128)
-    for pole in poles:
-        one = 1.0 / (s - pole)
-        if pole.imag == 0.0:
-            columns.append(one)
-            continue
-        other = 1.0 / (s - pole.conjugate())
-        columns += [one + other, 1j * one - 1j * other]
-    return np.stack(columns, axis=-1)
+    s = np.asarray(1j * omega, np.complex128)[:, None]
+    one, other = strength / (s - poles) ** power, np.conj(strength) / (s - poles.conj()) ** power
+    paired = poles.imag != 0.0
+    return np.hstack([np.where(paired, one + other, one), 1j * (one - other)[:, paired]])
+
+
+def pole_slopes(poles: ComplexArray, residues: FloatArray, omega: FloatArray) -> ComplexArray:
+    """Return the derivatives of one element in the order of :func:`moved_poles`."""
+    strength = residues[: poles.size].astype(np.complex128)
+    strength[poles.imag != 0.0] += 1j * residues[poles.size :]
+    return basis(poles, omega, strength, 2)
+
+
+def moved_poles(poles: ComplexArray, motion: FloatArray) -> ComplexArray:
+    """Return the poles after a motion of their real parts, then of the pairs' imaginary ones."""
+    imag = poles.imag.copy()
+    imag[imag != 0.0] += motion[poles.size :]
+    return poles.real + motion[: poles.size] + 1j * np.abs(imag)
 
 
 def state_matrix(poles: ComplexArray) -> FloatArray:
-    """Return the real matrix, blocks of 1 and 2, whose outputs are the functions of basis."""
-    size = len(input_column(poles))
-    state, first = np.zeros((size, size)), 0
-    for pole in poles:
-        own = slice(first, first + 1 + (pole.imag != 0.0))
-        re, im = pole.real, pole.imag
-        state[own, own] = [[re]] if im == 0.0 else [[re, im], [-im, re]]
-        first = own.stop
+    """Return the real matrix whose outputs are the functions of :func:`basis`."""
+    pairs = np.flatnonzero(poles.imag)
+    second = poles.size + np.arange(pairs.size)
+    state = np.diag(np.concatenate([poles.real, poles.real[pairs]]))
+    state[pairs, second], state[second, pairs] = poles.imag[pairs], -poles.imag[pairs]
     return state
 
 
 def input_column(poles: ComplexArray) -> FloatArray:
-    """Return the input of the blocks, shape ``(n,)``; also what residues count in their sum."""
-    parts = [np.array([1.0]) if p.imag == 0.0 else np.array([2.0, 0.0]) for p in poles]
-    return np.concatenate(parts)
+    """Return the input of that matrix, shape ``(n,)``; also what residues count in their sum."""
+    paired = poles.imag != 0.0
+    return np.concatenate([1.0 + paired, np.zeros(np.count_nonzero(paired))])
 
 
 def starting_poles(samples: SampledTable, count: int) -> ComplexArray:
@@ -134,7 +156,7 @@ def fitted_poles(samples: SampledTable, count: int) -> ComplexArray:
     poles = admissible(samples, starting_poles(samples, count))
     best, least = poles, np.inf
     for _ in range(_ITERATIONS):
-        found = fitted_residues(samples, poles)
+        found, _ = fitted_residues(samples, poles)
         misfit = found.misfit(samples)
         if misfit < least:
             best, settled = poles, misfit > (1.0 - _SETTLED) * least
@@ -145,52 +167,65 @@ def fitted_poles(samples: SampledTable, count: int) -> ComplexArray:
     return best
 
 
-def fitted_residues(samples: SampledTable, poles: ComplexArray) -> PartialFractions:
-    """Return the best residues of given poles."""
-    free, known = sum_free(poles), samples.infinite
-    functions = _with_infinite(samples, basis(poles, samples.omega) @ free)
-    found = []
-    for e, values in enumerate(samples.values):
-        target = values if known is None else values - known[e]
-        system = samples.weighted(e, functions)
-        found.append(np.linalg.lstsq(system, samples.weighted(e, target), rcond=None)[0])
-    numbers = np.array(found)
-    residues = numbers[:, : free.shape[1]] @ free.T
-    return PartialFractions(poles, residues, numbers[:, -1] if known is None else known)
+@dataclass(frozen=True, eq=False)
+class Cuts:
+    """Where, and along what, the damping is asked to be the least.
+
+    Attributes
+    ----------
+    omega, least
+        Shape ``(c,)``.
+    factors
+        What the elements count along that direction, shape ``(c, e)``.
+    """
+
+    omega: FloatArray
+    factors: FloatArray
+    least: FloatArray
+
+    def damping(self, element: int, functions: ComplexArray) -> FloatArray:
+        """Return the damping of an element's functions along the directions, ``(c, any)``."""
+        return -(self.omega * self.factors[:, element])[:, None] * functions.imag
 
 
-def _with_infinite(samples: SampledTable, functions: ComplexArray) -> ComplexArray:
-    """Return the functions, and a constant beside them where the end value is fitted along."""
-    if samples.infinite is not None:
-        return functions
-    return np.column_stack([functions, np.ones(len(functions))])
+def fitted_residues(
+    samples: SampledTable,
+    poles: ComplexArray,
+    cuts: Cuts | None = None,
+    around: FloatArray | None = None,
+    cost: float = 0.0,
+) -> tuple[PartialFractions, FloatArray]:
+    """Return the best residues of given poles, and what the poles move by.
 
-
-def pole_slopes(poles: ComplexArray, residues: FloatArray, omega: FloatArray) -> ComplexArray:
-    """Return the derivative of one element to each pole, or to both parts of a pair's."""
-    columns: list[ComplexArray] = []
-    s, first = np.asarray(1j * omega, np.complex128), 0
-    for pole in poles:
-        one = 1.0 / (s - pole) ** 2
-        if pole.imag == 0.0:
-            columns.append(residues[first] * one)
-            first += 1
-            continue
-        own = complex(residues[first], residues[first + 1])
-        other = 1.0 / (s - pole.conjugate()) ** 2
-        left, right = own * one, own.conjugate() * other
-        columns += [left + right, 1j * (left - right)]
-        first += 2
-    return np.stack(columns, axis=-1)
-
-
-def moved_poles(poles: ComplexArray, motion: FloatArray) -> ComplexArray:
-    """Return the poles after a motion in the order of :func:`pole_slopes`."""
-    count = int(np.count_nonzero(poles.imag == 0.0))
-    real, pairs = motion[:count], motion[count:].reshape(-1, 2)
-    moved = poles + np.concatenate([real, pairs @ np.array([1.0, 1j])])
-    upper = np.where(poles.imag == 0.0, moved, moved.real + 1j * np.abs(moved.imag))
-    return np.asarray(upper, np.complex128)
+    Parameters
+    ----------
+    around
+        Residues about which the poles may move, shape ``(e, n)``; ``None`` where they stay.
+    cost
+        Of a motion of a pole by its own size.
+    """
+    elements, free = range(len(samples.values)), sum_free(poles)
+    cuts = cuts or Cuts(np.zeros(0), np.zeros((0, len(elements))), np.zeros(0))
+    own = samples.with_end(basis(poles, samples.omega) @ free)
+    there = np.zeros((cuts.omega.size, own.shape[1]), np.complex128)  # no end value damps
+    there[:, : free.shape[1]] = basis(poles, cuts.omega) @ free
+    system = block_diag(*[samples.weighted(e, own) for e in elements])
+    target = np.concatenate([samples.weighted(e, samples.sought[e]) for e in elements])
+    conditions = np.hstack([cuts.damping(e, there) for e in elements])
+    if around is not None:
+        sizes = np.abs(np.append(poles, poles[poles.imag != 0.0]))
+        system = block_diag(system, np.diag(cost / sizes))
+        system[: target.size, -sizes.size :] = np.vstack(
+            [samples.weighted(e, pole_slopes(poles, around[e], samples.omega)) for e in elements]
+        )
+        slopes = [cuts.damping(e, pole_slopes(poles, around[e], cuts.omega)) for e in elements]
+        conditions = np.hstack([conditions, np.sum(slopes, axis=0)])
+        target = np.append(target, np.zeros(sizes.size))
+    found = least_squares(system, target, conditions, cuts.least)
+    numbers, motion = np.split(found, [own.shape[1] * len(elements)])
+    numbers = numbers.reshape(len(elements), -1)
+    end = numbers[:, -1] if samples.infinite is None else samples.infinite
+    return PartialFractions(poles, numbers[:, : free.shape[1]] @ free.T, end), motion
 
 
 def sum_free(poles: ComplexArray) -> FloatArray:
@@ -220,25 +255,17 @@ def admissible(samples: SampledTable, poles: ComplexArray) -> ComplexArray:
 def _relocated(samples: SampledTable, found: PartialFractions) -> ComplexArray:
     """Return the zeros of the scaling function: one step of relaxed vector fitting."""
     functions = basis(found.poles, samples.omega)
-    own = _with_infinite(samples, functions @ sum_free(found.poles))
+    own = samples.with_end(functions @ sum_free(found.poles))
     scaling = np.column_stack([functions, np.ones(len(functions))])
-    lower, size = [], 0.0
-    for e, row in enumerate(samples.values - found.infinite[:, None]):
-        left, right = samples.weighted(e, own), samples.weighted(e, -row[:, None] * scaling)
-        q = np.linalg.qr(left)[0]
-        lower.append(right - q @ (q.T @ right))
-        size += float(np.sum(samples.weighted(e, row) ** 2))
-    # Not the scaling's end value but its sum is one: the relaxed form, so that it is not zero.
-    k = len(samples.omega)
-    relaxed = np.sqrt(size) / k * scaling.real.sum(axis=0)
-    system = np.vstack([*lower, relaxed])
-    norm = np.linalg.norm(system, axis=0)
-    norm = np.where(norm > 0.0, norm, 1.0)
-    target = np.append(np.zeros(len(system) - 1), np.sqrt(size))
-    scale = np.linalg.lstsq(system / norm, target, rcond=None)[0] / norm
-    *moved, end = scale
-    end = end if abs(end) > 1e-8 else 1e-8
-    return _zeros(found.poles, np.array(moved) / end)
+    rows = samples.values - found.infinite[:, None]
+    left = block_diag(*[samples.weighted(e, own) for e in range(len(rows))])
+    right = [samples.weighted(e, -row[:, None] * scaling) for e, row in enumerate(rows)]
+    size = math.sqrt(sum(float(np.sum(samples.weighted(e, r) ** 2)) for e, r in enumerate(rows)))
+    # Not the scaling's end value but its mean is one: the relaxed form, so that it is not zero.
+    relaxed = np.append(np.zeros(left.shape[1]), size * scaling.real.mean(axis=0))
+    system = np.vstack([np.hstack([left, np.vstack(right)]), relaxed])
+    *moved, end = least_squares(system, np.append(np.zeros(len(left)), size))[left.shape[1] :]
+    return _zeros(found.poles, np.array(moved) / (end if abs(end) > 1e-8 else 1e-8))
 
 
 def _zeros(poles: ComplexArray, residues: FloatArray) -> ComplexArray:
