@@ -241,8 +241,8 @@ def usable_part(series: Series) -> UsablePart:
     chosen = cut(series, start_s, stop_s)
     how = "falls below the limit" if after.size else "is still there at the record's end"
     because = (
-        f"from {start_s:.4g} s (after the largest swing, {top:.3g} {series.unit}) to "
-        f"{stop_s:.4g} s (the amplitude {how}: {floor:.2g} {series.unit})"
+        f"from {start_s:.7g} s (after the largest swing, {top:.3g} {series.unit}) to "
+        f"{stop_s:.7g} s (the amplitude {how}: {floor:.2g} {series.unit})"
     )
     flags = _gap_flags(chosen.roughly_even(), size)
     chosen = replace(chosen, flags=(*chosen.flags, *flags))

@@ -136,8 +136,16 @@ def _without_titles(bare: FoundLayout, body: list[tuple[int, str]]) -> list[tupl
     if not data:
         return body
     needed = len(rows[data]) - (not rows[data][-1])
-    first = next((k for k in range(data) if _length(rows[k]) >= needed), 0)
+    wide = [k for k in range(data) if _length(rows[k]) >= needed] or [0]
+    first = next((k for k in wide if not _is_title(bare, rows, k)), wide[0])
     return body[first:]
+
+
+def _is_title(bare: FoundLayout, rows: list[list[str]], k: int) -> bool:
+    """Tell a line with a number or a date in it, but for numbers of channels over their units."""
+    cells = [cell for cell in rows[k] if cell]
+    named = [cell for cell in cells if not _is_data(bare, [cell]) and read_stamp(cell) is None]
+    return len(named) < len(cells) and _with_units(rows[k], rows[k + 1]) is None
 
 
 def _length(cells: list[str]) -> int:
@@ -233,7 +241,7 @@ def _with_units(names: list[str], cells: list[str]) -> list[str] | None:
     numbers = [cell for cell in units if cell[-1:].isdigit()]
     if len(units) != len(names) or numbers or not any(map(is_unit, units)):
         return None
-    return [f"{a} [{b}]" for a, b in zip(names, units, strict=True)]
+    return [f"{a} [{b}]" if b else a for a, b in zip(names, units, strict=True)]
 
 
 def _is_data(layout: FoundLayout, cells: list[str]) -> bool:

@@ -55,6 +55,11 @@ _UNITS: dict[str, Unit] = {
     "-": Unit("1", 1.0),
     "1": Unit("1", 1.0),
 }
+# As spreadsheets and loggers write them.
+_ALIASES = {
+    "µs": "us", "μs": "us", "sec": "s", "°": "deg", "°/s": "deg/s", "N·m": "N m", "m/s²": "m/s2",
+    "°C": "degC",
+}  # fmt: skip
 
 
 def unit(name: str) -> Unit:
@@ -66,7 +71,7 @@ def unit(name: str) -> Unit:
         If the name is not known; the message lists the known ones.
     """
     try:
-        return _UNITS[name.strip()]
+        return _UNITS[_plain(name)]
     except KeyError:
         known = ", ".join(_UNITS)
         raise ConfigurationError(f"unknown unit {name!r}; known units: {known}") from None
@@ -74,9 +79,13 @@ def unit(name: str) -> Unit:
 
 def is_unit(name: str) -> bool:
     """Tell whether ``name`` is a unit that :func:`unit` knows."""
-    return name.strip() in _UNITS
+    return _plain(name) in _UNITS
 
 
 def units_of(si: str) -> Mapping[str, float]:
     """Return the factors of all units of one quantity by name, for example those of ``"N"``."""
     return {name: one.factor for name, one in _UNITS.items() if one.si == si}
+
+
+def _plain(name: str) -> str:
+    return _ALIASES.get(name.strip(), name.strip())

@@ -32,3 +32,38 @@ def test_time_is_found_in_its_unit(tmp_path: Path, kind: str) -> None:
     assert (
         not [flag for flag in found.flags if flag.code == "time_unit_assumed"] or per_second == 1.0
     )
+
+
+@pytest.mark.parametrize(
+    "titles",
+    ["Decay;;\n12.3.2025;Smith;\n", "Serial;0815;\n", "Run;7;\n\nBegun;14:03:07;\n"],
+)
+@pytest.mark.parametrize("units", ["", "ms;N;\n"])
+def test_titles_as_wide_as_the_table_are_passed_over(
+    tmp_path: Path, titles: str, units: str
+) -> None:
+    per_second = 1e3 if units else 1.0
+    rows = [f"{per_second * (2.0 + 0.01 * k):.6g};{k * k};" for k in range(50)]
+    path = tmp_path / "log.csv"
+    path.write_text(f"{titles}Time;F;\n{units}" + "\n".join(rows) + "\n")
+    found = read_recording(path)
+    assert found.channel_names == ("F",)
+    assert found.start_s == pytest.approx(2.0)
+
+
+def test_numbers_of_channels_over_their_units_are_their_names(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    rows = "\n".join(f"{0.01 * k:.2f},{k},{k * k}" for k in range(50))
+    path.write_text(f"Time,1,2\ns,N,N\n{rows}\n")
+    assert read_recording(path).channel_names == ("1", "2")
+    path.write_text(f"Time,1,2\n{rows}\n")
+    assert read_recording(path).channel_names == ("1", "2")
+
+
+def test_degrees_with_their_sign_are_degrees(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    rows = "\n".join(f"{10 * k},{k},{k}" for k in range(50))
+    path.write_text(f"Time [ms],roll [°],rate (°/s)\n{rows}\n", encoding="latin-1")
+    found = read_recording(path)
+    assert [one.unit for one in found.channels] == ["rad", "rad/s"]
+    assert found.values("roll")[9] == pytest.approx(0.1570796)
