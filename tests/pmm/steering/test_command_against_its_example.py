@@ -4,6 +4,7 @@ import json
 import math
 import re
 import shutil
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,7 +15,9 @@ from click.testing import CliRunner, Result
 
 from analysis.readers import read_recording, write_recording
 from pmm.cli import cli
+from pmm.coefficients.tasks import Task
 from pmm.report.steering_document import steering_story
+from pmm.steering import workflow
 from pmm.steering.workflow import CampaignSteering, steering_of
 from tests.analysis.manoeuvring.published import kvlcc2 as paper
 
@@ -36,6 +39,27 @@ PUT_IN = {
 
 def pmm(*arguments: object) -> Result:
     return CliRunner().invoke(cli, [str(one) for one in arguments])
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _reads_once() -> Iterator[None]:
+    """Read each recording once for all tests that ask the same of it."""
+
+    def remembering(read: Callable[..., Any]) -> Callable[..., Any]:
+        kept: dict[Any, Any] = {}
+
+        def once(task: Task, *more: Any) -> Any:
+            key = task.source.path.resolve(), task.set_point, task.zero_names, task.tared
+            if key not in kept:
+                kept[key] = read(task, *more)
+            return kept[key]
+
+        return once
+
+    with pytest.MonkeyPatch.context() as patch:
+        for name in ("read_steered", "read_zero", "read_gauge_zeros"):
+            patch.setattr(workflow, name, remembering(getattr(workflow, name)))
+        yield
 
 
 @pytest.fixture(scope="module")
