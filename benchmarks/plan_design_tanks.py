@@ -36,6 +36,7 @@ PERIODS = (3, 6, 10)
 _MIXED_RAD = (0.6, 1.4)
 _PAUSE_S, _RAMPS_S, _SETTLING = 300.0, 10.0, 4  # a pulse to wait for among the settling periods
 _REPEATS_KNOWN = 30.0  # degrees of freedom behind what a repeat is known to differ by
+_ENOUGH, _CERTAIN = 3, 1e6  # repeats that count alone; degrees of freedom of what is only stated
 _SURE = 0.1  # probability that the true uncertainty is above its bound
 _TYPICAL = {
     "Y_vdot": -62.0, "Y_v": -120.0, "Y_rdot": -6.0, "Y_r": 25.0, "Y_vvv": -900.0, "Y_rrr": 60.0,
@@ -125,10 +126,26 @@ class Estimate:
         return np.asarray(self.standard_uncertainty * np.sqrt(freedom / chi2.ppf(_SURE, freedom)))
 
 
-class Tank:
-    """One virtual tank; its random numbers are its own."""
+@dataclass(frozen=True, eq=False)
+class Repeating:
+    """What repeats are taken to differ by: its square over the load's, by load, and its freedom."""
 
-    def __init__(self, number: int) -> None:
+    relative_2: FloatArray
+    freedom: float
+
+
+class Tank:
+    """One virtual tank; its random numbers are its own.
+
+    Parameters
+    ----------
+    measures
+        Whether what repeats differ by is taken from the repeats themselves, as a campaign's goal
+        does; else it is known beforehand, by 30 degrees of freedom.
+    """
+
+    def __init__(self, number: int, *, measures: bool = False) -> None:
+        self.number, self.measures = number, measures
         self.generator = np.random.default_rng(np.random.SeedSequence(1963, spawn_key=(number,)))
         draw = self.generator
         self.base = hull(number % HULLS)
@@ -176,17 +193,46 @@ class Tank:
             shown[row] = scatter * np.repeat(each, 2)
         return Made(candidate, numbers, shown)
 
+    def repeating(self, made: Sequence[Made]) -> Repeating:
+        """Return what repeats are taken to differ by after some runs.
+
+        As of ``pmm run --until``: what three or more repeats beyond the first of their motion show,
+        their own scatter taken off; before that the larger of that and what is believed.
+        """
+        known_2 = np.full(2, self.repeat_known**2)
+        if not self.measures:
+            return Repeating(known_2, _REPEATS_KNOWN)
+        kinds: dict[int, list[Made]] = {}
+        for one in made:
+            kinds.setdefault(int(self.base.motion[one.candidate]), []).append(one)
+        freedom = sum(len(some) - 1 for some in kinds.values())
+        if not freedom:
+            return Repeating(known_2, _CERTAIN)
+        shown_2 = np.zeros(2)
+        for motion, some in kinds.items():
+            for row in (0, 1):
+                size_2 = self.base.told[row].of_repeats[motion][:2].mean()
+                first = np.stack([one.numbers[row][:2] for one in some])
+                within = np.mean([one.scatter[row][:2] for one in some])
+                apart = ((first - first.mean(axis=0)) ** 2).sum() / 2.0
+                shown_2[row] += (apart - (len(some) - 1) * within) / size_2
+        shown_2 = np.maximum(shown_2 / freedom, 0.0)
+        if freedom < _ENOUGH:
+            return Repeating(np.maximum(shown_2, known_2), freedom)
+        return Repeating(shown_2, freedom)
+
     def estimate(self, made: Sequence[Made]) -> Estimate | None:
         """Return what all runs tell; ``None`` where they do not determine all coefficients."""
         chosen = [one.candidate for one in made]
         motion = self.base.motion[chosen]
         own = np.array([self.base.candidates[k].freedom for k in chosen])
+        repeating = self.repeating(made)
         size = len(self.truth)
         values, variance, freedom = np.zeros(size), np.zeros(size), np.zeros(size)
         for row, places in self.columns.items():
             told = self.base.told[row]
             shown = np.stack([one.scatter[row] for one in made])
-            repeats = self.repeat_known**2 * told.of_repeats[motion]
+            repeats = repeating.relative_2[row] * told.of_repeats[motion]
             whole = shown + repeats
             weights = 1.0 / trusted(whole, own[:, None], whole.mean(axis=0))
             columns = told.columns[motion][..., places]
@@ -204,7 +250,7 @@ class Tank:
             by_repeats = np.einsum("npk,nk->np", follows, repeats)
             parts = np.concatenate((by_scatter, by_repeats.sum(axis=0, keepdims=True)))
             variance[places] = parts.sum(axis=0)
-            freedom[places] = effective_freedom(parts, np.append(own, _REPEATS_KNOWN))
+            freedom[places] = effective_freedom(parts, np.append(own, repeating.freedom))
         return Estimate(values, np.sqrt(variance), freedom)
 
     def held(self, found: Estimate) -> BoolArray:

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from shutil import copy
@@ -27,6 +28,7 @@ from pmm.sequential.growing_plan import PLAN
 from pmm.sequential.targets import TargetGoal
 
 _KILLS: Final = 50
+_PACES: Final = {"": (), "_real_time": ("--real-time",)}
 _PMM: Final = (
     "import can; can.interface.BACKENDS.setdefault("
     "'pmm-simulated', ('sim.devices.bus', 'SimulatedBus')); from pmm.cli import main; main()"
@@ -118,15 +120,18 @@ def _whole(design: Path, folder: Path, *more: str) -> float:
     return time.monotonic() - started
 
 
-def _killed(design: Path, folder: Path, after_s: float, whole: Story) -> Kill:
+def _killed(design: Path, folder: Path, after_s: float, whole: Story, pace: Sequence[str]) -> Kill:
     """Kill a campaign after a time, resume it and hold it against the one without a break."""
     with subprocess.Popen(
-        _command(design, folder), cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        _command(design, folder, *pace),
+        cwd=ROOT,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
     ) as process:
         time.sleep(after_s)
         process.send_signal(signal.SIGKILL)
     before = _complete(folder)
-    _whole(design, folder, "--resume")
+    _whole(design, folder, "--resume", *pace)
     after = _complete(folder)
     kept = all(after.get(name) == data for name, data in before.items())
     return Kill(after_s, len(before), Story.of(folder) == whole, kept)
@@ -146,25 +151,30 @@ def _look_s(folder: Path) -> tuple[float, int]:
 
 def run(quick: bool, report: Report) -> Outcome:
     """Kill at seeded moments and resume; then look at a campaign of usual length."""
-    moments = np.random.default_rng(1963)
+    moments, lengths = np.random.default_rng(1963), list[str]()
     with tempfile.TemporaryDirectory() as place:
         for one in (ROOT / "examples" / "vertical").glob("*.toml"):
             copy(one, place)
         design = Path(place) / "design.toml"
         design.write_text(_DESIGN.format(repeat=_QUICK if quick else _CALM), encoding="utf-8")
-        report("without a break")
-        whole_s = _whole(design, Path(place) / "whole")
-        whole = Story.of(Path(place) / "whole")
-        kills = []
-        for k in range(1 if quick else _KILLS):
-            report(f"kill {k + 1}")
-            after_s = moments.uniform(0.0, whole_s)
-            kills.append(_killed(design, Path(place) / f"kill-{k}", after_s, whole))
-        measured = {
-            "same": sum(one.same and one.kept for one in kills) / len(kills),
-            "kills": len(kills),
-        }
-        rows: dict[str, list[Row]] = {"Campaigns, killed and resumed": list(map(_row, kills))}
+        measured: dict[str, float] = {}
+        rows: dict[str, list[Row]] = {}
+        for name, pace in list(_PACES.items())[: 1 if quick else None]:
+            said = "in real time" if pace else "as fast as it goes"
+            own = Path(place) / said.replace(" ", "-")
+            own.mkdir()
+            report(f"without a break, {said}")
+            whole_s = _whole(design, own / "whole", *pace)
+            whole = Story.of(own / "whole")
+            lengths.append(f"{whole_s:.0f} s {said}")
+            kills = []
+            for k in range(1 if quick else _KILLS):
+                report(f"kill {k + 1}, {said}")
+                after_s = moments.uniform(0.0, whole_s)
+                kills.append(_killed(design, own / f"kill-{k}", after_s, whole, pace))
+            same = sum(one.same and one.kept for one in kills) / len(kills)
+            measured |= {f"same{name}": same, f"kills{name}": len(kills)}
+            rows[f"Campaigns, killed and resumed, {said}"] = list(map(_row, kills))
         if not quick:
             report("a campaign of usual length")
             own = Path(place) / "usual"
@@ -176,7 +186,7 @@ def run(quick: bool, report: Report) -> Outcome:
         measured,
         (
             f"A campaign of {len(whole.complete)} runs, zero runs among them, on the simulated "
-            f"vertical rig as fast as it goes, {whole_s:.1f} s with the program's start; moments "
+            f"vertical rig, {' and '.join(lengths)} with the program's start; moments "
             "uniform over that. The same: plan, names of the runs that are complete, what was "
             "planned after each and the ending are those of the campaign without a break; each run "
             "that was complete when it was killed is as it was byte by byte. A look reads all "

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from pmm.sequential.course import CampaignCourse
 
 _AGAIN: Final = "The campaign was stopped. Go on with it? y: yes"
+_BEGIN: Final = "Begin with the runs that are planned? y: yes"
 _ENDED: Final = frozenset({State.STOPPED, State.IDLE})
 T = TypeVar("T")
 
@@ -46,6 +47,8 @@ class ChoosingCampaign:
         self.plan = plan
         self._answers, self._tell, self._executor = answers, tell, executor
         self._stack, self._made = ExitStack(), False
+        self._agreed = False  # somebody answered here: nothing moves by being queued alone
+        self._next: QueuedPlan | None = None
         self._jobs = self._course()
 
     def following(self, state: State) -> QueuedPlan | None:
@@ -59,12 +62,25 @@ class ChoosingCampaign:
             If a file is wrong, or the rig refuses a run.
         """
         if self._made and state in _ENDED:
-            if (self._answers(_AGAIN) or "")[:1].lower() != "y":
+            if not self._yes(_AGAIN):
                 return None
             self._made = False
-        found = next(self._jobs)
-        self._made = self._made or found is not None
+        if self._next is None:
+            self._next = next(self._jobs)
+        if self._next is None or not (self._agreed or self._yes(_BEGIN)):
+            return None
+        self._agreed = True
+        found, self._next = self._next, None
+        self._made = True
         return found
+
+    def _yes(self, question: str) -> bool:
+        return (self._answers(question) or "")[:1].lower() == "y"
+
+    def _answered(self, question: str) -> str | None:
+        answer = self._answers(question)
+        self._agreed = self._agreed or answer is not None
+        return answer
 
     def close(self) -> None:
         """Let go of the folder, once what is under way there is done."""
@@ -90,7 +106,7 @@ class ChoosingCampaign:
             check_folder=lambda _: None,
         )  # fmt: skip
         return self._stack.enter_context(
-            campaign_course(file, goal_of, asked, self._answers, self._show, self._executor)
+            campaign_course(file, goal_of, asked, self._answered, self._show, self._executor)
         )
 
     def _show(self, look: Look) -> None:

@@ -163,14 +163,14 @@ class Plans:
     def _read_design(self, path: Path) -> CheckedPlan:
         """Read a design: its runs are chosen one after the other, and checked then."""
         from pmm.design.design_file import read_design
-        from pmm.gap.rig_pursuit import goal_of
+        from pmm.sequential.growing_plan import check_design
 
         file = read_design(path)
         self._check_unchanged(file.rig)
         folder = file.rig_path.parent / file.rig.recorder.folder / file.name
         if self.output is not None:
             folder = self.output / file.name
-        goal_of(file, folder)  # refuses what has no end
+        check_design(file)  # refuses what has no end
         plan = Plan(file.name, path, file.rig_path, (), file.plan_table.get("operator", ""), "")
         return CheckedPlan(QueuedPlan(0, plan, folder, (), chooses=True), file.rig, (), ())
 

@@ -1,25 +1,37 @@
-"""The cause of a gap that is to be known: what is known of it, and which runs are left to make."""
+"""The cause of a gap that is to be known: what is known of it, and which runs are left to make.
+
+The diagnosis itself is elsewhere: whoever keeps a loop's time does not even import it.
+"""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, Protocol
 
-from analysis.gap.design.proposals import Proposal
-from analysis.gap.inference.answers import effects_in
-from analysis.gap.judge.confounded import separating_measurements
 from hardware.description.errors import DataError
 from hardware.description.setpoint import SetPoint
-from pmm.gap.conclusion import EFFECT
-from pmm.gap.examination import Examined
-from pmm.gap.report import gap_report
-from pmm.gap.words import joined
 from pmm.plan.run_plan import RunPlan
 from pmm.sequential.look import Ending, KnownCause, Look
 
 SURE: Final = 0.95
 LEAST: Final = 1.0  # log odds that a run is worth making for
-_POSSIBLE: Final = 0.02  # probability from which on an answer is still to be told from the others
+
+
+@dataclass(frozen=True)
+class Suggestion:
+    """A run that a rig could make by itself, and what it is worth.
+
+    Attributes
+    ----------
+    gain
+        Log odds that the right one of the leading answers is expected to gain.
+    between
+        Those answers, by name.
+    """
+
+    set_point: SetPoint
+    gain: float
+    between: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -30,20 +42,21 @@ class Found:
     ----------
     said
         Three sentences, as of ``pmm gap``.
+    suggestions
+        The most telling first.
     sure
         Probability of the verdict: of an effect with all that is alike in these runs.
-    alike
-        Measurements that tell apart what these runs cannot.
+    known
+        That in words, and what tells further where something is alike.
     outside
-        Those and others besides the rig's runs that would tell, what is confounded first.
+        Measurements besides these runs that would tell, what is confounded first.
     """
 
     said: tuple[str, ...]
     sure: float
-    verdict: str
+    known: str
     causes: tuple[KnownCause, ...]
-    proposals: tuple[Proposal, ...]
-    alike: tuple[str, ...]
+    suggestions: tuple[Suggestion, ...]
     outside: tuple[str, ...]
 
 
@@ -80,8 +93,8 @@ class Place(Protocol):
     def standing(self) -> Standing:
         """Return what is there."""
 
-    def offered(self, proposals: Sequence[Proposal]) -> Sequence[tuple[Proposal, RunPlan]]:
-        """Return which of some proposals can be made there, each with its run."""
+    def offered(self, worth: Sequence[Suggestion]) -> Sequence[tuple[Suggestion, RunPlan]]:
+        """Return which of some runs can be made there."""
 
     def costs_s(self, runs: Sequence[RunPlan]) -> tuple[float, ...]:
         """Return the tank time of each of some runs that are to follow."""
@@ -130,10 +143,10 @@ class CauseGoal:
         found = self.found()
         look = replace(look, causes=found.causes, notes=(*there.notes, *found.said))
         if found.sure > SURE:
-            return replace(look, ending=Ending.KNOWN, remark=_known(found))
+            return replace(look, ending=Ending.KNOWN, remark=found.known)
         if there.left:
             return self._kept(look, there.left)
-        if not found.proposals:
+        if not found.suggestions and not found.outside:
             raise DataError(
                 "no runs can be proposed; [oscillator] in the campaign file, or [rig] in a "
                 "case.toml beside it, says what the rig can do"
@@ -145,11 +158,13 @@ class CauseGoal:
 
     def _next(self, look: Look, there: Standing, found: Found) -> Look:
         """Return the look with the runs that are proposed, or why there are none."""
-        worth = worth_making(there.set_points, found.proposals, self.least)
-        offered = self.place.offered(worth)
+        worth = (one for one in found.suggestions if one.gain >= self.least)
+        offered = self.place.offered(
+            [one for one in worth if one.set_point not in there.set_points]
+        )
         if not offered:
             return replace(look, ending=Ending.EXHAUSTED, remark=_exhausted(self.least, found))
-        chosen: list[tuple[Proposal, RunPlan]] = []
+        chosen: list[tuple[Suggestion, RunPlan]] = []
         for one in offered:
             more_s = self.place.costs_s([run for _, run in (*chosen, one)])
             if len(chosen) < self.batch and math.fsum(more_s) <= there.time_left_s:
@@ -162,77 +177,14 @@ class CauseGoal:
             look,
             proposed=runs,
             costs_s=costs_s,
-            reasons=tuple(reason(one) for one, _ in chosen),
+            reasons=tuple(_reason(one) for one, _ in chosen),
             left_s=math.fsum(costs_s),
             remark="what is expected to tell the causes apart",
         )
 
 
-def worth_making(
-    there: frozenset[SetPoint], proposals: Sequence[Proposal], least: float
-) -> tuple[Proposal, ...]:
-    """Return the runs that the rig can make by itself, are new, and worth ``least`` log odds.
-
-    Parameters
-    ----------
-    there
-        What was made or is planned.
-    """
-    return tuple(
-        one
-        for one in proposals
-        if one.set_point is not None
-        and not one.force_n
-        and one.gain >= least
-        and one.set_point not in there
-    )
-
-
-def reason(one: Proposal) -> str:
-    """Return what a run is expected to be worth, in words."""
+def _reason(one: Suggestion) -> str:
     return f"{one.gain:.1f} log odds between {', '.join(one.between)}"
-
-
-def found_of(examined: Examined, least: float = LEAST) -> Found:
-    """Return what an examination comes to."""
-    report, concluded = gap_report(examined), examined.conclusion
-    possible = [name for name, share in examined.shares.items() if share > _POSSIBLE]
-    effects = sorted({one for name in possible for one in effects_in(name)})
-    outside = [
-        str(one)
-        for one in examined.diagnosis.proposals
-        if (one.set_point is None or one.force_n) and one.gain >= least
-    ]
-    alike = tuple(dict.fromkeys(how for one in report.ranking for how in one.measure))
-    every = tuple(dict.fromkeys([*alike, *separating_measurements(effects), *outside[:1]]))
-    return Found(
-        report.said,
-        concluded.probability,
-        concluded.verdict,
-        tuple(_causes(examined)),
-        examined.diagnosis.proposals,
-        alike,
-        every,
-    )
-
-
-def _causes(examined: Examined) -> Iterator[KnownCause]:
-    """Yield what is possible, the most probable answer first, with all that is alike there."""
-    concluded, answers = examined.conclusion, list(examined.shares.items())
-    first = answers[0][0]
-    alike = concluded.weighing.alike
-    same = tuple(name for own in effects_in(first) for name in alike.get(own, ()))
-    yield KnownCause(first, concluded.probability, SURE, same)
-    for name, share in answers[1:]:
-        if share > _POSSIBLE and name not in same:
-            yield KnownCause(name, share, SURE)
-
-
-def _known(found: Found) -> str:
-    first = found.causes[0].name
-    what = joined(first) if found.verdict == EFFECT else f"the answer {first!r}"
-    also = f"; within its class tells: {'; or '.join(found.alike)}" if found.alike else ""
-    return f"the class of {what} has probability {found.sure:.3f}{also}"
 
 
 def _exhausted(least: float, found: Found) -> str:

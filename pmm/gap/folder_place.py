@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from analysis.gap.design.proposals import Proposal
+from analysis.gap.design.proposals import OSCILLATION, Proposal
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.setpoint import Medium, SetPoint
-from pmm.gap.causes import Standing
+from pmm.gap.causes import Standing, Suggestion
 from pmm.gap.pursuit import pursued, take_in, write_round
 from pmm.plan.plan_tables import Defaults
 from pmm.plan.run_plan import RunPlan
@@ -20,7 +20,7 @@ class FolderPlace:
     """A campaign's folder whose runs are made by somebody else, or simulated."""
 
     folder: Path
-    _offered: dict[SetPoint, Proposal] = field(default_factory=dict)
+    _offered: dict[SetPoint, Suggestion] = field(default_factory=dict)
 
     def standing(self) -> Standing:
         """Return what is there, recordings that have appeared taken in."""
@@ -36,10 +36,10 @@ class FolderPlace:
             tuple(f"{name} is not there yet ({why})" for name, why in missing.items()),
         )
 
-    def offered(self, proposals: Sequence[Proposal]) -> Sequence[tuple[Proposal, RunPlan]]:
-        """Return all proposals, each with its run."""
-        self._offered = {one.set_point: one for one in proposals if one.set_point is not None}
-        return [(one, _proposed(point)) for point, one in self._offered.items()]
+    def offered(self, worth: Sequence[Suggestion]) -> Sequence[tuple[Suggestion, RunPlan]]:
+        """Return all of them."""
+        self._offered = {one.set_point: one for one in worth}
+        return [(one, _proposed(one.set_point)) for one in worth]
 
     def costs_s(self, runs: Sequence[RunPlan]) -> tuple[float, ...]:
         """Return how long the shaft turns in each."""
@@ -51,7 +51,11 @@ class FolderPlace:
             return ()
         there = pursued(self.folder)
         if look.proposed:
-            write_round(there, [self._offered[one.set_point] for one in look.proposed])
+            chosen = (self._offered[one.set_point] for one in look.proposed)
+            own = (
+                Proposal(OSCILLATION, one.set_point, 0.0, one.gain, one.between) for one in chosen
+            )
+            write_round(there, list(own))
             there = pursued(self.folder)
         return tuple(one.name for one in there.open)
 

@@ -7,43 +7,24 @@ import math
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Final
 
-from analysis.gap.design.proposals import Proposal
-from hardware.description.errors import ConfigurationError
+from hardware.description.setpoint import SetPoint
 from pmm.design.design_file import DesignFile
 from pmm.design.grid import costs_s
-from pmm.gap.causes import CauseGoal, Found, Standing, found_of
-from pmm.gap.examination import Options, examine
-from pmm.gap.own_effects import chosen_effects
+from pmm.gap.causes import CauseGoal, Found, Standing, Suggestion
 from pmm.parallel import LocalProcesses
 from pmm.plan.duration import duration_rows
 from pmm.plan.run_plan import RunPlan
 from pmm.sequential.course import CampaignGoal
-from pmm.sequential.growing_plan import check_order, planned, read_growing
+from pmm.sequential.growing_plan import check_design, planned, read_growing
 from pmm.sequential.look import Look
 from pmm.sequential.targets import TargetGoal
 
-_FEWEST: Final = 3  # runs that a diagnosis begins with
-
 
 class RigPlace:
-    """A design's campaign, recorded by run control.
-
-    Raises
-    ------
-    ConfigurationError
-        If the design asks for an order that cannot be, or begins with too few runs.
-    """
+    """A design's campaign, recorded by run control."""
 
     def __init__(self, file: DesignFile, folder: Path) -> None:
-        check_order(file)
-        first = sum(run.oscillates for run in file.fixed)
-        if first < _FEWEST:
-            raise ConfigurationError(
-                f"{file.path}: begins with {first} oscillations; a cause is looked for from "
-                f"{_FEWEST} on: add [[runs]] that are made first"
-            )
         self._file, self._folder = file, folder
         self._last: RunPlan | None = None
 
@@ -64,14 +45,10 @@ class RigPlace:
             time_left_s=file.time_s - plan.chosen_s(file.rig),
         )
 
-    def offered(self, proposals: Sequence[Proposal]) -> Sequence[tuple[Proposal, RunPlan]]:
-        """Return which of some proposals the grid has, each with its run."""
+    def offered(self, worth: Sequence[Suggestion]) -> Sequence[tuple[Suggestion, RunPlan]]:
+        """Return which of some runs the grid has."""
         runs = {run.set_point: run for run in reversed(self._file.grid.runs)}
-        return [
-            (one, runs[one.set_point])
-            for one in proposals
-            if one.set_point is not None and one.set_point in runs
-        ]
+        return [(one, runs[one.set_point]) for one in worth if one.set_point in runs]
 
     def costs_s(self, runs: Sequence[RunPlan]) -> tuple[float, ...]:
         """Return the tank time of each of some runs that are to follow."""
@@ -97,21 +74,23 @@ def goal_of(file: DesignFile, folder: Path, *, apart: bool = True) -> CampaignGo
     """
     if file.gap is None:
         return TargetGoal(file, folder)
+    check_design(file)
+    if file.gap.effects:
+        from pmm.gap.own_effects import chosen_effects
+
+        chosen_effects(file.gap.effects, ())  # refuses names that nobody knows
     points = tuple(dict.fromkeys(run.set_point for run in file.grid.runs))
-    options = Options(file.gap.effects, runs=points)
-    chosen_effects(options.effects, options.without)  # refuses names that nobody knows
-    return CauseGoal(
-        RigPlace(file, folder),
-        partial(_elsewhere if apart else _diagnosed, folder, options),
-        file.gap.least_log_odds,
-        file.gap.batch,
-    )
+    work = partial(_elsewhere if apart else _here, folder, file.gap.effects, points)
+    return CauseGoal(RigPlace(file, folder), work, file.gap.least_log_odds, file.gap.batch)
 
 
-def _diagnosed(folder: Path, options: Options) -> Found:
-    return found_of(examine(folder, options))
+def _here(folder: Path, effects: tuple[str, ...], points: tuple[SetPoint, ...]) -> Found:
+    from pmm.gap.examination import Options
+    from pmm.gap.found_cause import diagnosed
+
+    return diagnosed(folder, Options(effects, runs=points))
 
 
-def _elsewhere(folder: Path, options: Options) -> Found:
+def _elsewhere(folder: Path, effects: tuple[str, ...], points: tuple[SetPoint, ...]) -> Found:
     with LocalProcesses(1) as executor:
-        return executor.submit(_diagnosed, folder, options).result()
+        return executor.submit(_here, folder, effects, points).result()

@@ -27,6 +27,7 @@ from pmm.toml_text import toml_table
 from pmm.whole_file import write_whole
 
 PLAN: Final = "plan.toml"
+_FEWEST: Final = 3  # oscillations that a first diagnosis takes
 _BETWEEN: Final = (RunKind.ZERO, RunKind.CONTROL)
 
 
@@ -172,14 +173,25 @@ def _apart(design: DesignFile, number: int) -> Mapping[str, Any]:
     return {"kind": "zero", "name": f"apart-{number:02d}", "duration_s": zero.duration_s}
 
 
-def check_order(design: DesignFile) -> None:
-    """Refuse an order that runs cannot have of which each rests on those before it.
+def check_design(design: DesignFile) -> None:
+    """Refuse a design whose campaign has no end, no beginning, or an order that cannot be.
 
     Raises
     ------
     ConfigurationError
-        If the design mixes its entries.
+        If there are no targets where there is no cause to be found, too few runs for a first
+        diagnosis where there is, or entries are mixed: each run rests on those before it.
     """
+    if design.gap is None and not design.targets:
+        raise ConfigurationError(
+            f"{design.path}: has no [targets]; nothing tells when enough is known"
+        )
+    first = sum(run.oscillates for run in design.fixed)
+    if design.gap is not None and first < _FEWEST:
+        raise ConfigurationError(
+            f"{design.path}: begins with {first} oscillations; a cause is looked for from "
+            f"{_FEWEST} on: add [[runs]] that are made first"
+        )
     order = design.tables.order
     if order.scheme is Scheme.RANDOM and order.across_entries:
         raise ConfigurationError(

@@ -12,7 +12,6 @@ from typing import Final
 
 from analysis.design.candidate import CandidateRun
 from analysis.design.expectation import ExpectedCoefficient
-from hardware.description.errors import ConfigurationError
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.design.design_file import DesignFile
 from pmm.design.designing import Design, beyond_runs, design, foreseen
@@ -23,7 +22,7 @@ from pmm.plan.duration import duration_rows
 from pmm.plan.run_plan import RunPlan
 from pmm.sequential.growing_plan import (
     GrowingPlan,
-    check_order,
+    check_design,
     planned,
     read_growing,
 )
@@ -69,11 +68,7 @@ class TargetGoal:
     """
 
     def __init__(self, file: DesignFile, folder: Path) -> None:
-        if not file.targets:
-            raise ConfigurationError(
-                f"{file.path}: has no [targets]; nothing tells when enough is known"
-            )
-        check_order(file)
+        check_design(file)
         self._file, self._folder = file, folder
         self._executor = Remembering()
 

@@ -17,8 +17,9 @@ import numpy as np
 from analysis.gap.design.proposals import Proposal
 from hardware.description.errors import PmmError
 from hardware.description.setpoint import Medium, SetPoint
-from pmm.gap.causes import LEAST, SURE, worth_making
+from pmm.gap.causes import LEAST, SURE
 from pmm.gap.examination import Examined, examine
+from pmm.gap.found_cause import suggestions
 from tests.sealed.generator.case import Case, make
 from tests.sealed.generator.files import write_open
 from tests.sealed.generator.further import added, parsed
@@ -167,9 +168,9 @@ def _stand(told: _Looping, found: Examined) -> Stand:
 
 
 def _ours(told: _Looping, found: Examined) -> SetPoint | None:
-    made = frozenset(run.set_point for run in found.campaign.runs)
-    worth = worth_making(made, found.diagnosis.proposals, LEAST)
-    return worth[0].set_point if worth else None
+    made = {run.set_point for run in found.campaign.runs}
+    worth = (one for one in suggestions(found.diagnosis.proposals) if one.gain >= LEAST)
+    return next((one.set_point for one in worth if one.set_point not in made), None)
 
 
 def _random(told: _Looping, _: Examined) -> SetPoint | None:

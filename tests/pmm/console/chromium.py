@@ -42,8 +42,11 @@ needed = pytest.mark.skipif(
 )
 
 
-def rig_in(folder: Path) -> Path:
-    """Write the example's rig with quick axes and gauges that bear less; return its file."""
+def rig_in(folder: Path, *, whole: bool = False) -> Path:
+    """Write the example's rig with quick axes; return its file.
+
+    Unless it is to be ``whole``, its gauges bear less and nothing is said of its hull.
+    """
     folder.mkdir()
     shutil.copy(EXAMPLES / "simulated.toml", folder)
     text = (EXAMPLES / "rig.toml").read_text(encoding="utf-8")
@@ -51,6 +54,9 @@ def rig_in(folder: Path) -> Path:
     for slow, fast in quick.items():
         assert slow in text
         text = text.replace(slow, fast)
+    if whole:
+        (folder / "rig.toml").write_text(text, encoding="utf-8")
+        return folder / "rig.toml"
     without_hull = re.sub(r"\[hull\].*?(?=\[tank\])", "", text, flags=re.DOTALL)
     (folder / "rig.toml").write_text(without_hull + GAUGES, encoding="utf-8")
     return folder / "rig.toml"

@@ -89,3 +89,39 @@ def _answered(page: Browser) -> bool:
     if page.find("#until-buttons").is_displayed():
         page.click("#approve")
     return page.text("#until-said").startswith("Ended")
+
+
+CAUSE = """
+[[runs]]
+name = "first"
+motion = "heave"
+frequencies_hz = [0.8, 1.0, 1.2]
+amplitudes_mm = 20.0
+[gap]
+effects = ["eccentricity-error", "gain-error"]
+"""
+
+
+def test_causes_are_shown_as_bars_that_close(tmp_path: Path, chromium: Browser) -> None:
+    rig = rig_in(tmp_path / "rig", whole=True)
+    text, simulated = rig.read_text(), (tmp_path / "rig" / "simulated.toml").read_text()
+    (tmp_path / "rig" / "true.toml").write_text(text.replace("unit = 1e6", "unit = 0.97e6"))
+    (tmp_path / "rig" / "simulated.toml").write_text(simulated.replace("rig.toml", "true.toml"))
+    design = DESIGN.format(repeat=0.007).partition("[targets]")[0] + CAUSE
+    (tmp_path / "rig" / "cause.toml").write_text(design, encoding="utf-8")
+    with console(rig, tmp_path / "out", "--speed", "6") as one, chromium.window() as page:
+        page.open(one.address)
+        page.until(lambda: "cause.toml" in page.text("#plan-name"), "the design is offered")
+        page.run("document.getElementById('plan-name').value = 'cause.toml'")
+        page.click("[data-do=queue]")
+        page.until(lambda: "As planned: 3 more" in page.text("#until-said"), "the given runs")
+        page.until(lambda: page.find("#question").is_displayed(), "a question before it begins")
+        page.find("#answer").send_keys("y", Keys.ENTER)
+        page.until(lambda: page.text("#until-said").startswith("Ended"), "the end")
+        assert "the cause is known" in page.text("#until-said")
+        assert page.text("#known li").startswith("✓ eccentricity-error: ")
+        assert page.find("#known li").get_attribute("data-met") == "yes"
+        assert page.run("return document.querySelector('#known progress').value") == 1.0
+        assert not [text for text in page.complaints() if "SEVERE" in text]
+    ended = read_decisions(one.output / "heave-pitch")[-1]
+    assert ended.ending == "the cause is known"

@@ -9,7 +9,8 @@ from analysis.gap.design.proposals import OSCILLATION, Proposal
 from hardware.description.errors import DataError
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.setpoint import SetPoint
-from pmm.gap.causes import CauseGoal, Found, Standing
+from pmm.gap.causes import CauseGoal, Found, Standing, Suggestion
+from pmm.gap.found_cause import suggestions
 from pmm.plan.run_plan import RunPlan
 from pmm.sequential.look import Ending, KnownCause, Look
 
@@ -21,9 +22,12 @@ def proposal(k: int, gain: float, force_n: float = 0.0) -> Proposal:
     return Proposal(OSCILLATION, SET_POINTS[k], force_n, gain, BETWEEN)
 
 
+REST = Proposal("rest", None, 0.0, 11.0, BETWEEN)
+
+
 def found(sure: float, *proposals: Proposal, outside: tuple[str, ...] = ()) -> Found:
     causes = (KnownCause("cable", sure, 0.95, ("friction",)), KnownCause("none", 1 - sure, 0.95))
-    return Found(("said",), sure, "effect", causes, proposals, outside, outside)
+    return Found(("said",), sure, "it is known", causes, suggestions((REST, *proposals)), outside)
 
 
 def run(point: SetPoint) -> RunPlan:
@@ -40,9 +44,8 @@ class Rig:
     def standing(self) -> Standing:
         return self.there
 
-    def offered(self, proposals: Sequence[Proposal]) -> Sequence[tuple[Proposal, RunPlan]]:
-        points = [(one, one.set_point) for one in proposals]
-        return [(one, run(point)) for one, point in points if point and point in SET_POINTS[:4]]
+    def offered(self, worth: Sequence[Suggestion]) -> Sequence[tuple[Suggestion, RunPlan]]:
+        return [(one, run(one.set_point)) for one in worth if one.set_point in SET_POINTS[:4]]
 
     def costs_s(self, runs: Sequence[RunPlan]) -> tuple[float, ...]:
         return (10.0,) * len(runs)
@@ -84,7 +87,7 @@ def test_one_class_over_the_limit_ends_it_whatever_is_approved_of() -> None:
     left = replace(MADE, left=(run(SET_POINTS[3]),))
     known = look(left, found(0.96, proposal(2, 9.0), outside=("the cable disconnected",)))
     assert known.ending is Ending.KNOWN
-    assert known.remark.endswith("within its class tells: the cable disconnected")
+    assert known.remark == "it is known"
     stays = look(left, found(0.95, proposal(2, 9.0)))
     assert (stays.ending, [one.set_point for one in stays.kept]) == (None, SET_POINTS[3:4])
     assert stays.proposed == ()

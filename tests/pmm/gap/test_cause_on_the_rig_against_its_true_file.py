@@ -1,13 +1,18 @@
 """``pmm run --until cause`` through the protocols, on a rig that truly is another than its file."""
 
 import json
+import pickle
 from pathlib import Path
 from shutil import copy
 
 import pytest
 from click.testing import CliRunner, Result
 
+from hardware.description.errors import ConfigurationError
 from pmm.cli import cli
+from pmm.design.design_file import read_design
+from pmm.gap.causes import CauseGoal
+from pmm.gap.rig_pursuit import goal_of
 from pmm.plan.plan import read_plan_and_rig
 
 EXAMPLE = Path("examples/vertical")
@@ -70,6 +75,14 @@ def test_what_truly_is_other_is_known_and_the_story_is_told(tmp_path: Path) -> N
     assert shown.exit_code == 0, f"{shown.output}{shown.exception}"
     assert "Run after run" in page.read_text()
     assert "eccentricity-error" in page.read_text()
+
+
+def test_the_diagnosis_goes_to_a_process_of_its_own(tmp_path: Path) -> None:
+    goal = goal_of(read_design(written(tmp_path)), tmp_path / "c")
+    assert isinstance(goal, CauseGoal)
+    there = pickle.loads(pickle.dumps(goal.found))  # noqa: S301 (our own)
+    with pytest.raises(ConfigurationError, match="no such folder"):
+        there()  # nothing was recorded; that is what it says from there
 
 
 @pytest.mark.parametrize(
