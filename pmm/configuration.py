@@ -63,9 +63,18 @@ def read_toml_and_bytes(path: Path) -> tuple[dict[str, Any], bytes]:
     except FileNotFoundError:
         raise ConfigurationError(f"{path}: no such file") from None
     except (OSError, UnicodeDecodeError) as error:
-        raise ConfigurationError(f"{path}: not a readable TOML file: {error}") from None
+        raise ConfigurationError(
+            f"{path}: not a readable TOML file: {error}{_hint(path)}"
+        ) from None
     except ConfigurationError as error:
-        raise ConfigurationError(f"{path}: {error}") from None
+        raise ConfigurationError(f"{path}: {error}{_hint(path)}") from None
+
+
+def _hint(path: Path) -> str:
+    """Return what to give in place of a recording."""
+    if path.suffix.lower() in ("", ".toml") or path.is_dir():
+        return ""
+    return "; where this is a recording, give a TOML file that names it"
 
 
 def validate(

@@ -13,6 +13,7 @@ from pmm.campaign.calibration import read_calibration
 from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import no_file_name
 from pmm.cli import cli
+from pmm.configuration import read_toml
 from pmm.plan.plan import read_plan
 from pmm.plan.rig_file import read_rig_file
 from sim.devices.bench_file import read_bench
@@ -192,3 +193,11 @@ def test_a_frequency_beyond_half_the_sampling_is_refused(hz: str, tmp_path: Path
     done = CliRunner().invoke(cli, ["analyse", str(path), "--frequency", hz])
     assert done.exit_code == 1
     assert "a period needs at least 2: sample faster" in " ".join(done.stderr.split())
+
+
+def test_a_recording_in_place_of_its_file_is_told_what_to_give(tmp_path: Path) -> None:
+    path = tmp_path / "roll.csv"
+    for content in ("Zeit;Müller\n0;1\n".encode("latin-1"), b"time,roll\n0,1\n"):
+        path.write_bytes(content)
+        with pytest.raises(ConfigurationError, match="give a TOML file that names it"):
+            read_toml(path)
