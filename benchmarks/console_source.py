@@ -1,11 +1,8 @@
 """For the console's benchmark: a loop that shows 16 channels, and a watcher without a browser."""
 
-import json
 import math
 import time
-import urllib.request
 from collections.abc import Callable
-from contextlib import ExitStack
 from multiprocessing import get_context
 from pathlib import Path
 from socket import create_server
@@ -21,6 +18,7 @@ from pmm.console.quick_stop import QuickStop
 from pmm.console.security import Door
 from pmm.console.server import serve
 from pmm.console.station_view import TICK_S
+from pmm.interface.console import ConsoleClient, Message
 from pmm.plan.rig_file import read_rig_file
 from pmm.recorder.lateness import CycleStatistics
 from pmm.run.gate import GateState
@@ -30,7 +28,6 @@ from pmm.run.status import RunStatus
 CHANNELS: Final = 16
 _RATE_HZ: Final = 100.0
 _EACH: Final = round(_RATE_HZ * TICK_S)
-_SESSION: Final = "0123456789abcdef"
 _JOIN_S: Final = 10.0
 
 
@@ -132,69 +129,45 @@ class Source:
         )
 
 
-class Watcher:
+class Watcher(ConsoleClient):
     """A program that watches a console by its stream, and begins a plan."""
 
     def __init__(self, address: str) -> None:
-        self._address = address.rstrip("/")
-        self._held = ExitStack()
-
-    def __enter__(self) -> "Watcher":
-        from websockets.sync.client import connect
-        from websockets.typing import Origin
-
-        url = self._address.replace("http", "ws") + f"/stream?session={_SESSION}"
-        opened = connect(url, origin=Origin(self._address), max_size=None)
-        self._stream = self._held.enter_context(opened)
-        self._stream.recv()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._held.close()
+        super().__init__(address, "", None)
 
     def start(self, plan: str) -> None:
         """Queue a plan and start it."""
-        self.post("plans/queue", {"text": plan})
-        self.post("command", {"command": "start"})
+        self.queue(plan)
+        self.command("start")
 
     def frames_per_s(self, seconds: float) -> float:
         """Return how many frames a second come in a window of so long."""
         end_s, count = time.monotonic() + seconds, 0
-        while time.monotonic() < end_s:
-            count += json.loads(self._stream.recv(timeout=30.0))["type"] == "frame"
+        for message in self.messages():
+            count += message["type"] == "frame"
+            if time.monotonic() > end_s:
+                break
         return count / seconds
 
     def loops(self, seconds: float) -> list[dict[str, Any]]:
         """Watch for a while; return the loop's statistics of each window that ended."""
         found: list[dict[str, Any]] = []
-        end = time.monotonic() + seconds
-        while time.monotonic() < end or not found:
-            message = json.loads(self._stream.recv(timeout=30.0))
+        end_s = time.monotonic() + seconds
+        for message in self.messages():
             if message["type"] == "frame" and message["loop"]["cycles"]:
                 found += [message["loop"]] * (message["loop"] not in found[-1:])
+            if found and time.monotonic() > end_s:
+                break
         return found[1:] or found
 
     def until(self, rig_s: float) -> None:
         """Wait until the rig's time has come."""
         self.see(lambda frame: bool(frame["time_s"] >= rig_s))
 
-    def see(self, condition: Callable[[dict[str, Any]], bool]) -> None:
+    def see(self, condition: Callable[[Message], bool]) -> None:
         """Wait for a frame that shows something."""
-        while True:
-            message = json.loads(self._stream.recv(timeout=30.0))
-            if message["type"] == "frame" and condition(message):
-                return
+        next(one for one in self.messages() if one["type"] == "frame" and condition(one))
 
     def told(self, kind: str) -> None:
         """Wait for a message of a kind."""
-        while json.loads(self._stream.recv(timeout=30.0))["type"] != kind:
-            pass
-
-    def post(self, path: str, body: dict[str, Any]) -> None:
-        """Post as the page does; raises HTTPError where it is refused."""
-        headers = {"origin": self._address, "x-pmm-session": _SESSION}
-        request = urllib.request.Request(  # noqa: S310 - our own address
-            f"{self._address}/api/{path}", json.dumps(body).encode(), headers
-        )
-        with urllib.request.urlopen(request) as answer:  # noqa: S310
-            answer.read()
+        next(one for one in self.messages() if one["type"] == kind)

@@ -1,7 +1,7 @@
 """Planar motion mechanism: run tests and analyse their recordings.
 
-For Python there are :func:`open` and :func:`simulate` (``docs/python.md``), imported when they are
-first asked for.
+For Python there are :func:`open`, :func:`simulate` and :func:`connect` (``docs/python.md``),
+imported when they are first asked for.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -9,19 +9,21 @@ from typing import TYPE_CHECKING, Any
 from planar_motion_mechanism import refuse_intruders
 
 if TYPE_CHECKING:
+    from pmm.interface.console import connect
     from pmm.interface.opening import open, simulate  # noqa: A004
 
 refuse_intruders()
 
-__all__ = ["open", "simulate"]
+__all__ = ["connect", "open", "simulate"]
 
 
 def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from pmm.interface import opening
+    from importlib import import_module
 
-    return getattr(opening, name)
+    room = "console" if name == "connect" else "opening"
+    return getattr(import_module(f"pmm.interface.{room}"), name)
 
 
 def __dir__() -> list[str]:

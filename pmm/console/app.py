@@ -29,6 +29,7 @@ from pmm.console.limits import MOST_STREAMS
 from pmm.console.lockout import Lockout
 from pmm.console.loop_side import LoopSide
 from pmm.console.messages import Notice, Reply
+from pmm.console.openapi import description
 from pmm.console.pages import Pages
 from pmm.console.plans import Plans
 from pmm.console.pump import pump
@@ -198,12 +199,17 @@ def _routes(console: Console) -> list[BaseRoute]:
         Route("/login", _file("login.html")),
         Route("/api/plans", console.offered),
         Route("/api/pages", console.listed),
+        Route("/api/openapi.json", _described),
         Route("/pages/{folder:int}/{name}", console.pages.page),
         *(Route(path, action, methods=["POST"]) for path, action in posts.items()),
         WebSocketRoute("/stream", console.stream),
         Mount("/page", StaticFiles(directory=PAGE)),
         Mount("/charts", StaticFiles(directory=charts_folder())),
     ]
+
+
+async def _described(_request: Request) -> Response:
+    return JSONResponse(description())
 
 
 def _file(name: str) -> Callable[[Request], Awaitable[Response]]:

@@ -1,0 +1,318 @@
+"""The console from Python: what its page shows and does, without a browser."""
+
+import json
+import queue
+import ssl
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any, Final, Self, TypeAlias
+from urllib.error import HTTPError, URLError
+from urllib.request import HTTPCookieProcessor, HTTPSHandler, Request, build_opener
+
+from websockets.exceptions import WebSocketException
+from websockets.sync.client import ClientConnection
+from websockets.sync.client import connect as open_stream
+from websockets.typing import Origin
+
+from hardware.description.errors import ConfigurationError, PmmError
+
+Message: TypeAlias = dict[str, Any]
+_ANSWER_S: Final = 150.0  # the console itself ends a check after 120 s
+_STREAM_S: Final = 60.0  # until the console answers: it may have just been started
+_LISTS: Final = {"finished": ("finished", "entry"), "notice": ("notices", None)}
+_PARTS: Final = ("plans", "figures", "campaign")
+_UNDER_WAY: Final = 3  # frames that may be of before a command's answer
+_BROKEN: Final = ("stopped", "fault")
+
+
+class RefusedError(PmmError):
+    """The console, or the rig behind it, does not do what was asked; the text says why."""
+
+
+def connect(url: str, token: str = "", *, certificate: str | Path | None = None) -> "ConsoleClient":
+    """Open a console from Python: watch, queue, approve, run, stop.
+
+    Parameters
+    ----------
+    url
+        As ``pmm console`` prints it.
+    token
+        Where the console asks for one.
+    certificate
+        The file of a certificate that the console signed itself.
+
+    Raises
+    ------
+    ConfigurationError
+        If no console answers there, or the token is wrong.
+    RefusedError
+        If it takes no more.
+    """
+    return ConsoleClient(url, token, certificate)
+
+
+class ConsoleClient:
+    """A console that is driven from Python; :func:`connect` opens it.
+
+    It is one more browser to the console: the first that comes has control, another may take it.
+    A thread of its own takes what the console tells, whatever the program does meanwhile.
+
+    Raises
+    ------
+    RefusedError
+        By every call that the console refuses: no control, no such plan, a wrong state.
+    """
+
+    def __init__(self, url: str, token: str, certificate: str | Path | None) -> None:
+        self._url = url.rstrip("/")
+        self._secure = self._context(certificate)
+        handlers = [HTTPCookieProcessor()]
+        self._opener = build_opener(*handlers, HTTPSHandler(context=self._secure))
+        self._cookies = handlers[0].cookiejar
+        self._session = ""
+        self._known: dict[str, Any] = {}
+        self._news, self._gone = threading.Condition(), ""
+        self._listeners: list[queue.SimpleQueue[Message | None]] = []
+        if token:
+            self._ask("/login", {"token": token})
+        with ExitStack() as held:
+            stream = self._opened(held)
+            reader = threading.Thread(target=self._read, args=(stream,), name="console stream")
+            held.callback(reader.join)
+            held.callback(stream.close)
+            reader.start()
+            self.wait(lambda known: "session" in known, _STREAM_S)
+            self._held = held.pop_all()
+
+    def __enter__(self) -> Self:
+        """Return the client; it is closed at the end."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Leave the console; the rig goes on with what it does."""
+        self._held.close()
+
+    @property
+    def known(self) -> Mapping[str, Any]:
+        """All that the console has told, by the names of its messages (``docs/console-api.md``).
+
+        They are ``hello``, ``frame``, ``finished``, ``notices``, ``plans``, ``figures``,
+        ``campaign`` and ``desk``. What is returned does not change any more.
+        """
+        return self._known
+
+    @property
+    def frame(self) -> Message:
+        """The latest tick: state, run, gate, periods, set-point, axes, bus, question."""
+        frame: Message = self._known.get("frame") or {}
+        return frame
+
+    def plans(self) -> list[str]:
+        """Return the names of the plans that the console offers."""
+        names: list[str] = self._ask("/api/plans")["names"]
+        return names
+
+    def check(self, plan: str | Path) -> Message:
+        """Return a plan's runs and what the checks find; nothing is changed.
+
+        Parameters
+        ----------
+        plan
+            One of :meth:`plans`; the text of one; or the ``Path`` of a file here.
+        """
+        checked: Message = self._ask("/api/plans/check", _plan(plan))["plan"]
+        return checked
+
+    def queue(self, plan: str | Path) -> Message:
+        """Queue a plan, and return it as :meth:`check` does; nothing moves before a start."""
+        queued: Message = self._ask("/api/plans/queue", _plan(plan))["plan"]
+        return queued
+
+    def drop(self, number: int) -> str:
+        """Take a plan out of the queue by its number, a key of ``known["plans"]``."""
+        return self._said("/api/plans/drop", {"number": number})
+
+    def command(self, name: str) -> str:
+        """Command ``start``, ``next``, ``hold``, ``reset``, ``stop`` or ``quick stop``."""
+        return self._said("/api/command", {"command": name})
+
+    def answer(self, text: str) -> str:
+        """Answer the question that the rig asks its operator."""
+        question = self.frame.get("question", "")
+        if not question:
+            raise RefusedError("nothing is asked")
+        return self._said("/api/answer", {"question": question, "answer": text})
+
+    def take_control(self) -> str:
+        """Take control from whoever has it."""
+        return self._said("/api/take-control", {"confirm": True})
+
+    def messages(self) -> Iterator[Message]:
+        """Yield each message as it comes, until the console goes."""
+        told: queue.SimpleQueue[Message | None] = queue.SimpleQueue()
+        with self._news:
+            self._listeners.append(told)
+        try:
+            while (message := told.get(timeout=_STREAM_S)) is not None:
+                yield message
+        finally:
+            self._listeners.remove(told)
+
+    def wait(self, until: Callable[[Mapping[str, Any]], bool], timeout_s: float) -> None:
+        """Wait until what is :attr:`known` fulfils a condition.
+
+        Raises
+        ------
+        RefusedError
+            If it does not within the time, or the console goes.
+        """
+        with self._news:
+            if not self._news.wait_for(lambda: self._gone or until(self._known), timeout_s):
+                raise RefusedError(f"what was waited for did not come in {timeout_s:g} s")
+        if self._gone:
+            raise RefusedError(f"{self._url}: the console has gone ({self._gone}); connect again")
+
+    def run(
+        self,
+        plan: str | Path,
+        timeout_s: float,
+        answers: Callable[[str], str] | None = None,
+    ) -> list[Message]:
+        """Queue a plan, start it, wait for its end, and return its runs as they ended.
+
+        After a stop a run may be missing that is still being written.
+
+        Parameters
+        ----------
+        timeout_s
+            By the clock, for all of it.
+        answers
+            Answers the rig's questions to its operator.
+
+        Raises
+        ------
+        RefusedError
+            If it is refused or not done in time, if the rig asks and nobody answers, or if it ends
+            in a fault; the rig is left as it is, but for the fault's own stop.
+        """
+        queued = self.queue(plan)
+        before = len(self.known["finished"])
+        told = max((one["id"] for one in self.known["notices"]), default=0)
+        self.command("start")
+        began, said = self.frame["n"] + _UNDER_WAY, f"{queued['name']}: "
+
+        def over(known: Mapping[str, Any]) -> bool:
+            if queued["chooses"]:  # how many runs there will be is not known
+                return any(
+                    one["id"] > told and one["kind"] != "queue" and one["text"].startswith(said)
+                    for one in known["notices"]
+                )
+            return len(known["finished"]) >= before + len(queued["runs"])
+
+        def ended(known: Mapping[str, Any]) -> bool:
+            frame = known["frame"]
+            broken = frame["n"] >= began and frame["state"] in _BROKEN
+            return over(known) or broken or bool(frame["question"])
+
+        end_s = time.monotonic() + timeout_s
+        self.wait(ended, timeout_s)
+        while question := self.frame["question"]:
+            if answers is None:
+                raise RefusedError(f"the rig asks {question!r}; give answers")
+            self.answer(answers(question))
+            self.wait(lambda known, asked=question: known["frame"]["question"] != asked, _STREAM_S)  # type: ignore[misc]
+            self.wait(ended, end_s - time.monotonic())
+        if self.frame["state"] == "fault":
+            raise RefusedError("the rig is in a fault: " + self.known["notices"][-1]["text"])
+        runs: list[Message] = self.known["finished"][before:]
+        return runs
+
+    def _context(self, certificate: str | Path | None) -> ssl.SSLContext | None:
+        if not self._url.startswith("https:"):
+            return None
+        return ssl.create_default_context(cafile=None if certificate is None else str(certificate))
+
+    def _opened(self, held: ExitStack) -> ClientConnection:
+        cookies = "; ".join(f"{one.name}={one.value}" for one in self._cookies)
+        try:
+            return held.enter_context(
+                open_stream(
+                    self._url.replace("http", "ws", 1) + "/stream",
+                    origin=Origin(self._url),
+                    additional_headers={"cookie": cookies} if cookies else None,
+                    ssl=self._secure,
+                    max_size=None,
+                    open_timeout=_STREAM_S,
+                    proxy=None,
+                )
+            )
+        except (OSError, WebSocketException) as error:
+            raise ConfigurationError(
+                f"{self._url}: no console that lets this program in ({error}); is its address "
+                "right, and is a token needed?"
+            ) from None
+
+    def _read(self, stream: ClientConnection) -> None:
+        try:
+            for text in stream:
+                message = json.loads(text)
+                with self._news:
+                    self._known = self._with(message)
+                    self._news.notify_all()
+                    for one in self._listeners:
+                        one.put(message)
+            self._gone = "it has closed the stream"
+        except (WebSocketException, ValueError) as error:
+            self._gone = str(error)
+        with self._news:
+            self._news.notify_all()
+            for one in self._listeners:
+                one.put(None)
+
+    def _with(self, message: Message) -> dict[str, Any]:
+        kind, known = message["type"], self._known
+        if kind == "snapshot":
+            self._session = message["session"]
+            return message
+        if kind in _LISTS:
+            name, part = _LISTS[kind]
+            return {**known, name: [*known[name], message if part is None else message[part]]}
+        return {**known, kind: message[kind] if kind in _PARTS else message}
+
+    def _said(self, path: str, body: Message) -> str:
+        return str(self._ask(path, body)["said"])
+
+    def _ask(self, path: str, body: Message | None = None) -> dict[str, Any]:
+        headers = {"origin": self._url, "x-pmm-session": self._session}
+        data = None if body is None else json.dumps(body).encode()
+        try:
+            request = Request(self._url + path, data, headers)  # noqa: S310 - the user's console
+            with self._opener.open(request, timeout=_ANSWER_S) as answer:
+                found: dict[str, Any] = json.loads(answer.read())
+                return found
+        except HTTPError as error:
+            text = error.read().decode("utf-8", "replace")
+            if error.code == 401:
+                raise ConfigurationError(f"{self._url}: {_error(text)}; give the token") from None
+            raise RefusedError(_error(text)) from None
+        except (URLError, ValueError) as error:
+            raise ConfigurationError(f"{self._url}: no console answers ({error})") from None
+
+
+def _plan(plan: str | Path) -> dict[str, str]:
+    if isinstance(plan, Path):
+        return {"text": plan.read_text(encoding="utf-8")}
+    return {"text": plan} if "\n" in plan else {"name": plan}
+
+
+def _error(text: str) -> str:
+    try:
+        return str(json.loads(text)["error"])
+    except (ValueError, KeyError, TypeError):
+        return text.strip()

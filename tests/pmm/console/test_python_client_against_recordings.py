@@ -1,0 +1,93 @@
+"""``pmm.connect`` drives a console in a process of its own; what was recorded says whether."""
+
+import time
+from pathlib import Path
+
+import pytest
+
+import pmm
+from analysis.readers import read_recording
+from analysis.resolver.analysis import analyse
+from analysis.resolver.settings import ResolverSettings
+from hardware.description.errors import ConfigurationError
+from pmm.interface.console import RefusedError
+from tests.pmm.console.chromium import console, plan, rig_in
+
+PERIODS = 6
+WITHIN_S = 600.0
+TOKEN = "0123456789abcdef-token"  # noqa: S105 - of this test alone
+TWO_RUNS = plan("whole", periods=PERIODS).replace("= 1.0", "= [1.0, 1.1]")
+
+
+def test_a_whole_campaign_is_driven_without_a_browser(tmp_path: Path) -> None:
+    rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
+    rig.with_name("whole.toml").write_text(TWO_RUNS, encoding="utf-8")
+    with console(rig, out, "--speed", "8") as one, pmm.connect(one.address) as client:
+        assert client.plans() == ["whole.toml"]
+        checked = client.check("whole.toml")
+        assert [run["name"] for run in checked["runs"]] == ["run-f1-a20", "run-f1.1-a20"]
+        assert client.frame["state"] == "idle"
+        runs = client.run("whole.toml", WITHIN_S)
+        assert [(run["run"], run["outcome"]) for run in runs] == [
+            ("run-f1-a20", "complete"),
+            ("run-f1.1-a20", "complete"),
+        ]
+        with pytest.raises(RefusedError, match="all its runs are complete"):
+            client.queue(rig.with_name("whole.toml"))
+        for run in runs:  # what was shown last is what the file holds
+            found = analyse(
+                read_recording(out / "whole" / run["run"] / "run.nc"), settings=ResolverSettings()
+            ).readings[0]
+            assert found.periods == PERIODS
+    log = (out / "whole" / "commands.jsonl").read_text(encoding="utf-8")
+    assert log.count('"action": "command"') == 1
+
+
+def test_a_run_is_stopped_and_a_plan_taken_out(tmp_path: Path) -> None:
+    rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
+    with console(rig, out, "--speed", "4") as one, pmm.connect(one.address) as client:
+        client.queue(plan("long", periods=500))
+        client.queue(plan("other"))
+        client.wait(lambda known: len(known["plans"]) == 2, WITHIN_S)
+        (number,) = (int(key) for key, one in client.known["plans"].items()
+                     if one["name"] == "other")  # fmt: skip
+        assert "other" in client.drop(number)
+        client.command("start")
+        client.wait(lambda known: known["frame"]["gate"] == "open", WITHIN_S)
+        client.command("stop")
+        client.wait(lambda known: known["frame"]["state"] == "stopped", WITHIN_S)
+        client.wait(lambda known: bool(known["finished"]), WITHIN_S)  # written behind the state
+        assert client.known["finished"][-1]["outcome"] == "stopped"
+        with pytest.raises(RefusedError, match=r"did not come in 0\.2 s"):
+            client.wait(lambda known: known["frame"]["state"] == "gate open", 0.2)
+
+
+def test_who_watches_acts_only_once_it_has_control(tmp_path: Path) -> None:
+    rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
+    token = tmp_path / "token"
+    token.write_text(TOKEN, encoding="utf-8")
+    with console(rig, out, "--token-file", str(token), "--speed", "4") as one:
+        with pytest.raises(ConfigurationError, match="token"):
+            pmm.connect(one.address)
+        with pytest.raises(ConfigurationError, match="not the token"):
+            pmm.connect(one.address, TOKEN + "x")
+        with pmm.connect(one.address, TOKEN) as first, pmm.connect(one.address, TOKEN) as second:
+            with pytest.raises(RefusedError, match="only watches"):
+                second.queue(plan("taken"))
+            second.take_control()
+            second.queue(plan("taken", periods=500))
+            second.command("start")
+            first.wait(lambda known: known["frame"]["gate"] == "open", WITHIN_S)
+            assert first.known["desk"]["holder"] == "other"
+            first.command("quick stop")  # everybody's right
+            second.wait(lambda known: bool(known["finished"]), WITHIN_S)
+            assert second.frame["state"] in ("stopping", "stopped", "fault")
+            with pytest.raises(RefusedError, match="nothing is asked"):
+                second.answer("yes")
+
+
+def test_where_no_console_is_is_said() -> None:
+    began = time.monotonic()
+    with pytest.raises(ConfigurationError, match="no console that lets this program in"):
+        pmm.connect("http://127.0.0.1:9")
+    assert time.monotonic() > began
