@@ -18,7 +18,8 @@ from pmm.console.quick_stop import QuickStop
 from pmm.console.security import Door
 from pmm.console.server import serve
 from pmm.console.station_view import TICK_S
-from pmm.interface.console import ConsoleClient, Message
+from pmm.interface.console import ConsoleClient
+from pmm.interface.console_requests import Message
 from pmm.plan.rig_file import read_rig_file
 from pmm.recorder.lateness import CycleStatistics
 from pmm.run.gate import GateState

@@ -2,34 +2,26 @@
 
 import json
 import queue
-import ssl
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any, Final, Self, TypeAlias
-from urllib.error import HTTPError, URLError
-from urllib.request import HTTPCookieProcessor, HTTPSHandler, Request, build_opener
+from typing import Any, Final, Self
 
 from websockets.exceptions import WebSocketException
 from websockets.sync.client import ClientConnection
 from websockets.sync.client import connect as open_stream
 from websockets.typing import Origin
 
-from hardware.description.errors import ConfigurationError, PmmError
+from hardware.description.errors import ConfigurationError
+from pmm.interface.console_requests import ConsoleRequests, Message, RefusedError
 
-Message: TypeAlias = dict[str, Any]
-_ANSWER_S: Final = 150.0  # the console itself ends a check after 120 s
 _STREAM_S: Final = 60.0  # until the console answers: it may have just been started
 _LISTS: Final = {"finished": ("finished", "entry"), "notice": ("notices", None)}
 _PARTS: Final = ("plans", "figures", "campaign")
 _UNDER_WAY: Final = 3  # frames that may be of before a command's answer
 _BROKEN: Final = ("stopped", "fault")
-
-
-class RefusedError(PmmError):
-    """The console, or the rig behind it, does not do what was asked; the text says why."""
 
 
 def connect(url: str, token: str = "", *, certificate: str | Path | None = None) -> "ConsoleClient":
@@ -67,17 +59,13 @@ class ConsoleClient:
     """
 
     def __init__(self, url: str, token: str, certificate: str | Path | None) -> None:
-        self._url = url.rstrip("/")
-        self._secure = self._context(certificate)
-        handlers = [HTTPCookieProcessor()]
-        self._opener = build_opener(*handlers, HTTPSHandler(context=self._secure))
-        self._cookies = handlers[0].cookiejar
-        self._session = ""
+        self._requests = ConsoleRequests(url.rstrip("/"), certificate)
+        self._url = self._requests.url
         self._known: dict[str, Any] = {}
         self._news, self._gone = threading.Condition(), ""
         self._listeners: list[queue.SimpleQueue[Message | None]] = []
         if token:
-            self._ask("/login", {"token": token})
+            self._requests.ask("/login", {"token": token})
         with ExitStack() as held:
             stream = self._opened(held)
             reader = threading.Thread(target=self._read, args=(stream,), name="console stream")
@@ -115,7 +103,7 @@ class ConsoleClient:
 
     def plans(self) -> list[str]:
         """Return the names of the plans that the console offers."""
-        names: list[str] = self._ask("/api/plans")["names"]
+        names: list[str] = self._requests.ask("/api/plans")["names"]
         return names
 
     def check(self, plan: str | Path) -> Message:
@@ -126,12 +114,12 @@ class ConsoleClient:
         plan
             One of :meth:`plans`; the text of one; or the ``Path`` of a file here.
         """
-        checked: Message = self._ask("/api/plans/check", _plan(plan))["plan"]
+        checked: Message = self._requests.ask("/api/plans/check", _plan(plan))["plan"]
         return checked
 
     def queue(self, plan: str | Path) -> Message:
         """Queue a plan, and return it as :meth:`check` does; nothing moves before a start."""
-        queued: Message = self._ask("/api/plans/queue", _plan(plan))["plan"]
+        queued: Message = self._requests.ask("/api/plans/queue", _plan(plan))["plan"]
         return queued
 
     def drop(self, number: int) -> str:
@@ -233,20 +221,15 @@ class ConsoleClient:
         runs: list[Message] = self.known["finished"][before:]
         return runs
 
-    def _context(self, certificate: str | Path | None) -> ssl.SSLContext | None:
-        if not self._url.startswith("https:"):
-            return None
-        return ssl.create_default_context(cafile=None if certificate is None else str(certificate))
-
     def _opened(self, held: ExitStack) -> ClientConnection:
-        cookies = "; ".join(f"{one.name}={one.value}" for one in self._cookies)
+        cookies = self._requests.cookies
         try:
             return held.enter_context(
                 open_stream(
                     self._url.replace("http", "ws", 1) + "/stream",
                     origin=Origin(self._url),
                     additional_headers={"cookie": cookies} if cookies else None,
-                    ssl=self._secure,
+                    ssl=self._requests.secure,
                     max_size=None,
                     open_timeout=_STREAM_S,
                     proxy=None,
@@ -278,7 +261,7 @@ class ConsoleClient:
     def _with(self, message: Message) -> dict[str, Any]:
         kind, known = message["type"], self._known
         if kind == "snapshot":
-            self._session = message["session"]
+            self._requests.session = message["session"]
             return message
         if kind in _LISTS:
             name, part = _LISTS[kind]
@@ -286,33 +269,10 @@ class ConsoleClient:
         return {**known, kind: message[kind] if kind in _PARTS else message}
 
     def _said(self, path: str, body: Message) -> str:
-        return str(self._ask(path, body)["said"])
-
-    def _ask(self, path: str, body: Message | None = None) -> dict[str, Any]:
-        headers = {"origin": self._url, "x-pmm-session": self._session}
-        data = None if body is None else json.dumps(body).encode()
-        try:
-            request = Request(self._url + path, data, headers)  # noqa: S310 - the user's console
-            with self._opener.open(request, timeout=_ANSWER_S) as answer:
-                found: dict[str, Any] = json.loads(answer.read())
-                return found
-        except HTTPError as error:
-            text = error.read().decode("utf-8", "replace")
-            if error.code == 401:
-                raise ConfigurationError(f"{self._url}: {_error(text)}; give the token") from None
-            raise RefusedError(_error(text)) from None
-        except (URLError, ValueError) as error:
-            raise ConfigurationError(f"{self._url}: no console answers ({error})") from None
+        return str(self._requests.ask(path, body)["said"])
 
 
 def _plan(plan: str | Path) -> dict[str, str]:
     if isinstance(plan, Path):
         return {"text": plan.read_text(encoding="utf-8")}
     return {"text": plan} if "\n" in plan else {"name": plan}
-
-
-def _error(text: str) -> str:
-    try:
-        return str(json.loads(text)["error"])
-    except (ValueError, KeyError, TypeError):
-        return text.strip()

@@ -10,7 +10,7 @@ from analysis.readers import read_recording
 from analysis.resolver.analysis import analyse
 from analysis.resolver.settings import ResolverSettings
 from hardware.description.errors import ConfigurationError
-from pmm.interface.console import RefusedError
+from pmm.interface.console_requests import RefusedError
 from tests.pmm.console.chromium import console, plan, rig_in
 
 PERIODS = 6

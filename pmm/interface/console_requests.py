@@ -1,0 +1,77 @@
+"""What a program asks of a console over HTTP, as its page does."""
+
+import json
+import ssl
+from pathlib import Path
+from typing import Any, Final, TypeAlias
+from urllib.error import HTTPError, URLError
+from urllib.request import HTTPCookieProcessor, HTTPSHandler, Request, build_opener
+
+from hardware.description.errors import ConfigurationError, PmmError
+
+Message: TypeAlias = dict[str, Any]
+_ANSWER_S: Final = 150.0  # the console itself ends a check after 120 s
+
+
+class RefusedError(PmmError):
+    """The console, or the rig behind it, does not do what was asked; the text says why."""
+
+
+class ConsoleRequests:
+    """Asks one console, with the cookie that a token gives and the session that has control.
+
+    Attributes
+    ----------
+    url
+        Of the console, without a slash at its end.
+    secure
+        What a connection is held against; ``None`` without TLS.
+    session
+        As the stream has told; empty before.
+
+    Raises
+    ------
+    RefusedError
+        By each request that the console refuses.
+    ConfigurationError
+        If no console answers, or a token is needed.
+    """
+
+    def __init__(self, url: str, certificate: str | Path | None) -> None:
+        self.url, self.session = url, ""
+        self.secure: ssl.SSLContext | None = None
+        if url.startswith("https:"):
+            file = None if certificate is None else str(certificate)
+            self.secure = ssl.create_default_context(cafile=file)
+        handler = HTTPCookieProcessor()
+        self._opener = build_opener(handler, HTTPSHandler(context=self.secure))
+        self._jar = handler.cookiejar
+
+    @property
+    def cookies(self) -> str:
+        """What was given for the token, as a header has it; empty without."""
+        return "; ".join(f"{one.name}={one.value}" for one in self._jar)
+
+    def ask(self, path: str, body: Message | None = None) -> dict[str, Any]:
+        """Post a body, or get without one, and return the answer; raises as the class says."""
+        headers = {"origin": self.url, "x-pmm-session": self.session}
+        data = None if body is None else json.dumps(body).encode()
+        try:
+            request = Request(self.url + path, data, headers)  # noqa: S310 - the user's console
+            with self._opener.open(request, timeout=_ANSWER_S) as answer:
+                found: dict[str, Any] = json.loads(answer.read())
+                return found
+        except HTTPError as error:
+            text = error.read().decode("utf-8", "replace")
+            if error.code == 401:
+                raise ConfigurationError(f"{self.url}: {_error(text)}; give the token") from None
+            raise RefusedError(_error(text)) from None
+        except (URLError, ValueError) as error:
+            raise ConfigurationError(f"{self.url}: no console answers ({error})") from None
+
+
+def _error(text: str) -> str:
+    try:
+        return str(json.loads(text)["error"])
+    except (ValueError, KeyError, TypeError):
+        return text.strip()
