@@ -15,7 +15,7 @@ from websockets.sync.client import connect as open_stream
 from websockets.typing import Origin
 
 from hardware.description.errors import ConfigurationError
-from pmm.interface.console_requests import ConsoleRequests, Message, RefusedError
+from pmm.interface.console_requests import ConsoleRefusalError, ConsoleRequests, Message
 
 _STREAM_S: Final = 60.0  # until the console answers: it may have just been started
 _LISTS: Final = {"finished": ("finished", "entry"), "notice": ("notices", None)}
@@ -40,7 +40,7 @@ def connect(url: str, token: str = "", *, certificate: str | Path | None = None)
     ------
     ConfigurationError
         If no console answers there, or the token is wrong.
-    RefusedError
+    ConsoleRefusalError
         If it takes no more.
     """
     return ConsoleClient(url, token, certificate)
@@ -54,7 +54,7 @@ class ConsoleClient:
 
     Raises
     ------
-    RefusedError
+    ConsoleRefusalError
         By every call that the console refuses: no control, no such plan, a wrong state.
     """
 
@@ -134,7 +134,7 @@ class ConsoleClient:
         """Answer the question that the rig asks its operator."""
         question = self.frame.get("question", "")
         if not question:
-            raise RefusedError("nothing is asked")
+            raise ConsoleRefusalError("nothing is asked")
         return self._said("/api/answer", {"question": question, "answer": text})
 
     def take_control(self) -> str:
@@ -157,14 +157,16 @@ class ConsoleClient:
 
         Raises
         ------
-        RefusedError
+        ConsoleRefusalError
             If it does not within the time, or the console goes.
         """
         with self._news:
             if not self._news.wait_for(lambda: self._gone or until(self._known), timeout_s):
-                raise RefusedError(f"what was waited for did not come in {timeout_s:g} s")
+                raise ConsoleRefusalError(f"what was waited for did not come in {timeout_s:g} s")
         if self._gone:
-            raise RefusedError(f"{self._url}: the console has gone ({self._gone}); connect again")
+            raise ConsoleRefusalError(
+                f"{self._url}: the console has gone ({self._gone}); connect again"
+            )
 
     def run(
         self,
@@ -185,7 +187,7 @@ class ConsoleClient:
 
         Raises
         ------
-        RefusedError
+        ConsoleRefusalError
             If it is refused or not done in time, if the rig asks and nobody answers, or if it ends
             in a fault; the rig is left as it is, but for the fault's own stop.
         """
@@ -212,12 +214,12 @@ class ConsoleClient:
         self.wait(ended, timeout_s)
         while question := self.frame["question"]:
             if answers is None:
-                raise RefusedError(f"the rig asks {question!r}; give answers")
+                raise ConsoleRefusalError(f"the rig asks {question!r}; give answers")
             self.answer(answers(question))
             self.wait(lambda known, asked=question: known["frame"]["question"] != asked, _STREAM_S)  # type: ignore[misc]
             self.wait(ended, end_s - time.monotonic())
         if self.frame["state"] == "fault":
-            raise RefusedError("the rig is in a fault: " + self.known["notices"][-1]["text"])
+            raise ConsoleRefusalError("the rig is in a fault: " + self.known["notices"][-1]["text"])
         runs: list[Message] = self.known["finished"][before:]
         return runs
 

@@ -13,7 +13,7 @@ Message: TypeAlias = dict[str, Any]
 _ANSWER_S: Final = 150.0  # the console itself ends a check after 120 s
 
 
-class RefusedError(PmmError):
+class ConsoleRefusalError(PmmError):
     """The console, or the rig behind it, does not do what was asked; the text says why."""
 
 
@@ -31,7 +31,7 @@ class ConsoleRequests:
 
     Raises
     ------
-    RefusedError
+    ConsoleRefusalError
         By each request that the console refuses.
     ConfigurationError
         If no console answers, or a token is needed.
@@ -65,7 +65,7 @@ class ConsoleRequests:
             text = error.read().decode("utf-8", "replace")
             if error.code == 401:
                 raise ConfigurationError(f"{self.url}: {_error(text)}; give the token") from None
-            raise RefusedError(_error(text)) from None
+            raise ConsoleRefusalError(_error(text)) from None
         except (URLError, ValueError) as error:
             raise ConfigurationError(f"{self.url}: no console answers ({error})") from None
 

@@ -20,6 +20,7 @@ RUN_BY = {
     "README.md": "tests/end_to_end/test_readme_against_commands.py",
     "docs/adding-an-effect.md": "tests/pmm/effects/test_effects_documents_against_code.py",
     "docs/coefficients.md": "tests/analysis/coefficients/test_document_against_code.py",
+    "docs/console-api.md": "tests/pmm/console/test_python_client_against_recordings.py",
     "docs/formats.md": "tests/analysis/readers/test_formats_document.py",
     "docs/gap.md": "tests/pmm/gap/test_gap_command_against_its_page.py",
     "docs/gallery.md": "docs/gallery.py",

@@ -10,7 +10,8 @@ from analysis.readers import read_recording
 from analysis.resolver.analysis import analyse
 from analysis.resolver.settings import ResolverSettings
 from hardware.description.errors import ConfigurationError
-from pmm.interface.console_requests import RefusedError
+from pmm.interface.console_requests import ConsoleRefusalError
+from tests.docs.blocks import blocks
 from tests.pmm.console.chromium import console, plan, rig_in
 
 PERIODS = 6
@@ -32,7 +33,7 @@ def test_a_whole_campaign_is_driven_without_a_browser(tmp_path: Path) -> None:
             ("run-f1-a20", "complete"),
             ("run-f1.1-a20", "complete"),
         ]
-        with pytest.raises(RefusedError, match="all its runs are complete"):
+        with pytest.raises(ConsoleRefusalError, match="all its runs are complete"):
             client.queue(rig.with_name("whole.toml"))
         for run in runs:  # what was shown last is what the file holds
             found = analyse(
@@ -41,6 +42,15 @@ def test_a_whole_campaign_is_driven_without_a_browser(tmp_path: Path) -> None:
             assert found.periods == PERIODS
     log = (out / "whole" / "commands.jsonl").read_text(encoding="utf-8")
     assert log.count('"action": "command"') == 1
+
+
+def test_the_program_of_the_page_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (block,) = (one for one in blocks("python") if one.page == "docs/console-api.md")
+    rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
+    rig.with_name("plan.toml").write_text(plan("page"), encoding="utf-8")
+    with console(rig, out, "--speed", "8") as one:
+        exec(block.text.replace("http://127.0.0.1:8063", one.address))  # noqa: S102 - our page
+    assert "[('run-f1-a20', 'complete', 5)]" in capsys.readouterr().out
 
 
 def test_a_run_is_stopped_and_a_plan_taken_out(tmp_path: Path) -> None:
@@ -58,7 +68,7 @@ def test_a_run_is_stopped_and_a_plan_taken_out(tmp_path: Path) -> None:
         client.wait(lambda known: known["frame"]["state"] == "stopped", WITHIN_S)
         client.wait(lambda known: bool(known["finished"]), WITHIN_S)  # written behind the state
         assert client.known["finished"][-1]["outcome"] == "stopped"
-        with pytest.raises(RefusedError, match=r"did not come in 0\.2 s"):
+        with pytest.raises(ConsoleRefusalError, match=r"did not come in 0\.2 s"):
             client.wait(lambda known: known["frame"]["state"] == "gate open", 0.2)
 
 
@@ -72,7 +82,7 @@ def test_who_watches_acts_only_once_it_has_control(tmp_path: Path) -> None:
         with pytest.raises(ConfigurationError, match="not the token"):
             pmm.connect(one.address, TOKEN + "x")
         with pmm.connect(one.address, TOKEN) as first, pmm.connect(one.address, TOKEN) as second:
-            with pytest.raises(RefusedError, match="only watches"):
+            with pytest.raises(ConsoleRefusalError, match="only watches"):
                 second.queue(plan("taken"))
             second.take_control()
             second.queue(plan("taken", periods=500))
@@ -82,7 +92,7 @@ def test_who_watches_acts_only_once_it_has_control(tmp_path: Path) -> None:
             first.command("quick stop")  # everybody's right
             second.wait(lambda known: bool(known["finished"]), WITHIN_S)
             assert second.frame["state"] in ("stopping", "stopped", "fault")
-            with pytest.raises(RefusedError, match="nothing is asked"):
+            with pytest.raises(ConsoleRefusalError, match="nothing is asked"):
                 second.answer("yes")
 
 
