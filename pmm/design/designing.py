@@ -89,20 +89,29 @@ def design(file: DesignFile) -> Design:
 def _chosen(file: DesignFile) -> list[tuple[int, int]]:
     """Return the places of the runs to make, each with its number of repeats.
 
-    Where the runs that were made ought to do by what is believed, and do not, more is asked for.
+    The search takes scatter for known, and runs that were made for what is believed of them. Where
+    its runs do not do by what is expected of the fit, more is asked for.
     """
     candidates = (*file.grid.candidates, *file.made)
     known = prospects(candidates, file.belief, file.noise, file.stated)
     made = tuple(range(len(file.grid.candidates), len(candidates)))
+    runs: tuple[int, ...] = ()
     for harder in _HARDER:
         asked = [
             replace(one, standard_uncertainty=one.standard_uncertainty / harder)
             for one in file.targets
         ]
         found = select(known, asked, file.time_s, made)
-        if found.chosen:
+        if runs and not found.met:
+            break  # asked for more than can be had, it would only cost more
+        runs = found.chosen or runs
+        if runs and (not found.met or _suffice(file, [candidates[k] for k in runs])):
             break
-    return list(Counter(found.chosen).items())
+    return list(Counter(runs).items())
+
+
+def _suffice(file: DesignFile, more: Sequence[CandidateRun]) -> bool:
+    return all(one.met for one in foreseen(file, more))
 
 
 def _known(file: DesignFile) -> tuple[ExpectedCoefficient, ...]:
