@@ -134,7 +134,6 @@ def test_targets_are_held_against_the_first_row(board: Path) -> None:
         "shrinkage": pytest.approx(0.45),
         "shrinkage_covered": pytest.approx(5 / 6),
         "shrinkage_covered_not_too_often": pytest.approx(5 / 6),
-        "next_run": None,
         "ahead_of_others": None,
         "left_out_sure_and_wrong": None,
         "case_s": 2.0,
