@@ -207,7 +207,7 @@ def test_whole_keeps_the_score_of_a_commit_alone(
     monkeypatch.setattr(machine, "commit", lambda: "ccccccc")
     for step in ("generated", "answered", "others", "left_out_answered"):
         monkeypatch.setattr(steps, step, lambda *arguments: None)
-    monkeypatch.setattr(steps, "scored", lambda board, place, workers: told.append(place))
+    monkeypatch.setattr(steps, "scored", lambda board, place: told.append(place))
     held: list[Path] = []
     monkeypatch.setattr(steps_of_worlds, "held", lambda board, place: held.append(place))
     assert _run("whole", *words, "--output", str(docs), "--docs", str(docs)).exit_code == 0
