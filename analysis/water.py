@@ -17,6 +17,7 @@ SEA_WATER_G_KG: Final = 35.16504
 """Absolute salinity of standard sea water."""
 _WARMEST_DEG_C: Final = 40.0
 _SALTIEST_G_KG: Final = 42.0
+_FRESHEST_G_KG: Final = 0.05  # of tap water; below it stands sea water in kg/kg, which has 0.035
 _PRACTICAL: Final = 35.0 / SEA_WATER_G_KG  # practical salinity per absolute salinity
 _IPTS_68: Final = 1.00024  # degrees of 1968, which EOS-80 takes, per degree of today
 _ZERO_K: Final = 273.15
@@ -36,7 +37,7 @@ class Water:
     Raises
     ------
     ConfigurationError
-        If either is outside of what the equations hold for.
+        If either is outside of what the equations hold for, or salinity is given in kg/kg.
     """
 
     temperature_deg_c: float
@@ -52,6 +53,11 @@ class Water:
                     f"water: {key} = {value:g} is outside 0 to {most:g} {what}, for which density "
                     "and viscosity are known; give the water's own"
                 )
+        if 0.0 < self.salinity_g_kg < _FRESHEST_G_KG:
+            raise ConfigurationError(
+                f"water: salinity_g_kg = {self.salinity_g_kg:g} is less than tap water has; give "
+                "it in g/kg: 35 for sea water, 0 for fresh water"
+            )
 
     @property
     def density_kg_m3(self) -> float:

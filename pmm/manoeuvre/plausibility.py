@@ -4,13 +4,15 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Final
 
+import numpy as np
+
 from analysis.bounds import Bound
 from analysis.manoeuvring.depth import SubmergedBody
-from analysis.manoeuvring.ship import Ship
+from analysis.manoeuvring.ship import Ship, U
 from analysis.water import froude_number
 from pmm.manoeuvre.ship_file import ShipFile, SubmergedFile
 
-_ABOVE: Final = 1e-9  # a sign is wanted, no size
+_SMALL_RAD: Final = 1e-3
 _SIZES: Final = "are length_m, draught_m and mass_kg in m and kg, of what the file describes?"
 _INERTIA: Final = "inertia_kg_m2 is in kg m2 about the point of the derivatives, not about a gauge"
 _ADDED: Final = (
@@ -18,8 +20,22 @@ _ADDED: Final = (
     "says, and without the ship's own mass?"
 )
 _DAMPING: Final = (
-    "the water resists sway and yaw: derivatives are those of the load on the hull, y to starboard "
-    "and r to starboard positive"
+    "derivatives are those of the water's load on the hull, y and r to starboard positive, per "
+    "radian and in the system that hull.system says: the water resists sway and yaw and turns the "
+    "bow further into a drift (but for a barge with skegs)"
+)
+_PITCHING: Final = (
+    "derivatives are those of the water's load on the body, z down and q bow up positive, per "
+    "radian and in the prime system"
+)
+_MASS: Final = (
+    "is it of the water alone? Tables that print Y_r - m U and N_r - m x_G U (of a submerged body "
+    "Z_q + m U, M_q - m x_G U) hold the mass: take it out of both"
+)
+_HELM: Final = (
+    "a positive rudder angle turns to starboard, the force on it to port and its moment to "
+    "starboard: turn the signs of a rudder that is positive to port; are angles in radians, areas "
+    "in m2, and is the rudder aft?"
 )
 _ITTC: Final = "ITTC 7.5-02-06-01: typically 0.25"
 
@@ -40,12 +56,21 @@ SHIP: Final = {
         Bound("-X_udot/m", 0.0, 0.35, "slender bodies: 0.02 to 0.15", _ADDED),
         Bound("-Y_vdot/m", 0.15, 4.0, "0.7 to 1 in deep water, up to 4 in shallow", _ADDED),
         Bound("-N_rdot/I_z", 0.1, 4.0, "0.5 to 1 in deep water, up to 4 in shallow", _ADDED),
-        Bound("-Y_v", _ABOVE, math.inf, "damping", _DAMPING),
-        Bound("-N_r", _ABOVE, math.inf, "damping", _DAMPING),
+        Bound("Y_v over Inoue's", 0.25, 8.0, "-(π k/2 + 0.7 m'): ships 0.7 to 1", _DAMPING),
+        Bound("N_v over Inoue's", 0.0, 6.0, "-k: ships 0.6 to 1.2", _DAMPING),
+        Bound("N_r over Inoue's", 0.15, 6.0, "-0.54 k: ships 0.7 to 1", _DAMPING),
+        Bound("Y_r/m", -0.4, 1.0, "ships 0 to 0.4, with their mass in it -1 to -0.6", _MASS),
+        Bound("-Y_d/(rho/2 L d U²)", 0.005, 0.3, "rudders of L d/80 to L d/30: 0.03 to 0.12",
+              _HELM),
+        Bound("rudder's lever N_d/(-Y_d L)", 0.3, 0.7, "at the stern", _HELM),
+        Bound("H_R/d", 0.2, 1.05, "rudders below the surface",
+              "are rudder.height_m and draught_m in m, of one size?"),
     )
 }  # fmt: skip
-"""What is believed of a ship. A limit of half or twice its size lets as large a factor pass, or
-doubts tugs, barges and ships in shallow water; units are off by a thousand."""
+"""What is believed of a ship, with k = 2 d/L and m' = m/(rho/2 L² d): the derivatives' sizes are
+those of Inoue, Hirano and Kijima 1981, of deep water, and several times as large in shallow water.
+A limit of half or twice its size lets as large a factor pass, or doubts tugs, barges and ships in
+shallow water; a wrong system is off by L/d, degrees by 57, units by a thousand."""
 
 BODY: Final = {
     one.name: one
@@ -56,16 +81,25 @@ BODY: Final = {
         Bound("x_G/L", -0.15, 0.15, "near the middle", "cg_x_m is ahead of the derivatives' point"),
         Bound("-Z_wdot/m", 0.15, 4.0, "0.7 to 1 for slender bodies", _ADDED),
         Bound("-M_qdot/I_y", 0.1, 4.0, "0.5 to 1 for slender bodies", _ADDED),
-        Bound("-Z_w", _ABOVE, math.inf, "damping", _DAMPING),
-        Bound("-M_q", _ABOVE, math.inf, "damping", _DAMPING),
+        Bound("-Z_w/m", 0.1, 20.0, "bare bodies 0.3, with sail and planes to 4", _PITCHING),
+        Bound("-M_q/m", 0.02, 5.0, "bodies 0.1 to 1", _PITCHING),
+        Bound("lever M_w/(-Z_w L)", -0.3, 3.0, "bare bodies to 2, with planes 0.5", _PITCHING),
+        Bound("-Z_q/m", -0.4, 2.5, "bodies 0.1 to 2, with their mass in it -0.9 to -0.5", _MASS),
     )
 }  # fmt: skip
+"""The same of a body below the surface; DARPA's SUBOFF, bare and appended, lies within."""
 
 
 def doubts_of_ship(file: ShipFile, ship: Ship) -> tuple[str, ...]:
     """Return a sentence on each number of a ship that is not believed."""
     own, hull = file.ship, ship.hull
     ideal = 0.5 * hull.density_kg_m3 * own.length_m**2 * own.draught_m
+    mass, k = own.mass_kg / ideal, 2.0 * own.draught_m / own.length_m
+    force, moment = _by_rudder(ship)
+
+    def first(name: str) -> float:
+        """Return a derivative over rho/2 L d U²."""
+        return float(hull.values[name][0]) * hull.area_m2 / (own.length_m * own.draught_m)
 
     def added(name: str) -> float:
         return -float(hull.added(name)[0])
@@ -73,7 +107,7 @@ def doubts_of_ship(file: ShipFile, ship: Ship) -> tuple[str, ...]:
     values = {
         "Fn": froude_number(file.speed_m_s, own.length_m),
         "L/d": own.length_m / own.draught_m,
-        "m/(rho/2 L² d)": own.mass_kg / ideal,
+        "m/(rho/2 L² d)": mass,
         "sqrt(I_z/m)/L": math.sqrt(own.inertia_kg_m2 / own.mass_kg) / own.length_m,
         "x_G/L": own.cg_x_m / own.length_m,
         "D_P/d": file.propeller.diameter_m / own.draught_m,
@@ -81,9 +115,15 @@ def doubts_of_ship(file: ShipFile, ship: Ship) -> tuple[str, ...]:
         "-X_udot/m": added("X_udot") / own.mass_kg,
         "-Y_vdot/m": added("Y_vdot") / own.mass_kg,
         "-N_rdot/I_z": added("N_rdot") / own.inertia_kg_m2,
-        "-Y_v": -float(hull.values["Y_v"][0]),
-        "-N_r": -float(hull.values["N_r"][0]),
+        "Y_v over Inoue's": -first("Y_v") / (0.5 * math.pi * k + 0.7 * mass),
+        "N_v over Inoue's": -first("N_v") / k,
+        "N_r over Inoue's": -first("N_r") / (0.54 * k),
+        "Y_r/m": first("Y_r") / mass,
+        "-Y_d/(rho/2 L d U²)": -force / (ideal / own.length_m * file.speed_m_s**2),
+        "rudder's lever N_d/(-Y_d L)": _over(moment, -force) / own.length_m,
     }
+    if file.rudder is not None:
+        values["H_R/d"] = file.rudder.height_m / own.draught_m
     return tuple(_doubts(SHIP, values))
 
 
@@ -91,20 +131,36 @@ def doubts_of_body(file: SubmergedFile, body: SubmergedBody) -> tuple[str, ...]:
     """Return a sentence on each number of a body below the surface that is not believed."""
     own = file.body
     unit = 0.5 * body.density_kg_m3 * own.length_m**3
+    mass = own.mass_kg / unit
     first = {name: float(values[0]) for name, values in body.values.items()}
     values = {
-        "m/(rho/2 L³)": own.mass_kg / unit,
+        "m/(rho/2 L³)": mass,
         "sqrt(I_y/m)/L": math.sqrt(own.inertia_kg_m2 / own.mass_kg) / own.length_m,
         "x_G/L": own.cg_x_m / own.length_m,
-        "-Z_wdot/m": -first["Z_wdot"] * unit / own.mass_kg,
+        "-Z_wdot/m": -first["Z_wdot"] / mass,
         "-M_qdot/I_y": -first["M_qdot"] * unit * own.length_m**2 / own.inertia_kg_m2,
-        "-Z_w": -first["Z_w"],
-        "-M_q": -first["M_q"],
+        "-Z_w/m": -first["Z_w"] / mass,
+        "-M_q/m": -first["M_q"] / mass,
+        "lever M_w/(-Z_w L)": _over(first["M_w"], -first["Z_w"]),
+        "-Z_q/m": -first["Z_q"] / mass,
     }
     return tuple(_doubts(BODY, values))
 
 
+def _over(one: float, other: float) -> float:
+    return one / other if other else math.nan
+
+
+def _by_rudder(ship: Ship) -> tuple[float, float]:
+    """Return side force (N) and moment (N m) per radian of rudder on straight course."""
+    state = np.zeros((6, ship.count))
+    state[U] = ship.approach_m_s
+    ends = [ship.loads(state, np.full(ship.count, sign * _SMALL_RAD)) for sign in (1.0, -1.0)]
+    _, force, moment = ((ends[0] - ends[1])[:, 0] / (2.0 * _SMALL_RAD)).tolist()
+    return force, moment
+
+
 def _doubts(bounds: Mapping[str, Bound], values: Mapping[str, float]) -> Iterator[str]:
-    for name, bound in bounds.items():
-        if (doubt := bound.doubt(values[name])) is not None:
+    for name, value in values.items():
+        if (doubt := bounds[name].doubt(value)) is not None:
             yield doubt

@@ -77,10 +77,11 @@ def figures(found: Prediction) -> Iterator[Figure]:
 
 def _head(found: Prediction) -> Iterator[str]:
     file, draws = found.file, found.ship.count - 1
+    whose = "its" if file.scale == 1.0 else "the model's"
     yield (
         f"approach at {file.speed_m_s:g} m/s, propeller held at "
-        f"{float(found.ship.rate_hz[0]):.4g} 1/s, which keeps that speed with this resistance: the "
-        "model's own point of self-propulsion"
+        f"{float(found.ship.rate_hz[0]):.4g} 1/s, which keeps that speed with this resistance: "
+        f"{whose} own point of self-propulsion"
     )
     if file.scale != 1.0:
         yield (

@@ -71,6 +71,7 @@ def test_viscosity_of_fresh_water() -> None:
         (-0.1, 35.0, "temperature_deg_c = -0.1 is outside"),
         (math.nan, 0.0, "temperature_deg_c = nan is outside"),
         (15.0, 43.0, "salinity_g_kg = 43 is outside 0 to 42 g/kg"),
+        (15.0, 0.03516504, "salinity_g_kg = 0.035165 is less than tap water has; give it in g/kg"),
     ],
 )
 def test_water_outside_the_tables_is_refused(
