@@ -24,7 +24,8 @@ class SelfPropulsion:
     Attributes
     ----------
     resistance_n
-        Of the hull, against the motion: -X_c, rudder amidships and without a propeller.
+        Of the hull, against the motion: -X_c, rudder amidships and without a propeller; below 0
+        where a sign is wrong.
     rate_hz, thrust_n, advance
         Of the propeller there; NaN where no revolutions have that thrust.
     resistance_u, rate_u, thrust_u
@@ -67,7 +68,7 @@ def self_propulsion(
     slopes = np.stack((loads.by_data[0], loads.by_data[hull], flow.by_data[wake]))
     spread = runs.followed(slopes)
     speed = float(runs.motions[0, condition])
-    if towing_force_n >= -own[1]:
+    if towing_force_n >= -own[1] > 0.0:
         raise DataError(
             f"towing_force_n = {towing_force_n:g} is not below the resistance of {-own[1]:.4g} N "
             f"at {speed:.4g} m/s: nothing is left for the propeller; state F_D, the friction's "

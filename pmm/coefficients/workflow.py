@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Final
 
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_plan import Request
@@ -88,6 +89,10 @@ class CampaignOutcome:
         return (*failed, *self.noticed)
 
 
+NO_ROLL_GAUGE: Final = (
+    "a missing roll gauge: the channel roll_moment is not recorded, so that no term of K is told; "
+    "record it where the model heels"
+)
 _NOTHING_STATED = Flag(
     "nothing_stated",
     Severity.WARNING,
@@ -119,8 +124,16 @@ class CampaignCycles:
 
     @property
     def doubts(self) -> tuple[Flag, ...]:
-        """Units and signs that look wrong in all runs."""
-        return implausible(self.campaign, [one.seen for one in self.runs if one.seen is not None])
+        """Units and signs that look wrong in all runs, and a roll gauge that is not there."""
+        seen = [one.seen for one in self.runs if one.seen is not None]
+        return (*implausible(self.campaign, seen), *self._without_roll_gauge)
+
+    @property
+    def _without_roll_gauge(self) -> tuple[Flag, ...]:
+        names = tuple(dict.fromkeys(one.name for one in self.cycles if not one.has_roll))
+        if self.campaign.heel is None or not names:
+            return ()
+        return (Flag("roll_gauge_missing", Severity.WARNING, NO_ROLL_GAUGE, None, names),)
 
 
 def coefficients_of(

@@ -99,7 +99,7 @@ def _contents(found: CampaignSteering, level: float) -> tuple[Content, ...]:
     ]
     return (
         _parameters(rows, level),
-        Notes([Note("doubt", one) for one in doubts(told)], "doubts"),
+        Notes([Note("doubt", one) for one in doubts(told, found.runs, found.known)], "doubts"),
         Notes([Note("missing", f"{_plain(key)}: {how}") for key, how in told.missing.items()]),
         Data("missing", told.missing),
         Data("covariance", told.covariance.tolist()),

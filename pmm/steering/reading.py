@@ -143,8 +143,9 @@ def _rate(task: Task, recording: Recording) -> float:
         rate = rate / (2.0 * math.pi) if turned else rate
     if not rate > 0.0:
         raise DataError(
-            f"{task.name}: its propeller has no revolutions; record the channel "
-            f"{REVOLUTIONS.name}, or give revolutions_hz of the run in the campaign file"
+            f"{task.name}: its propeller has no revolutions ({rate:g} 1/s); where it turned, "
+            f"record the channel {REVOLUTIONS.name} or give revolutions_hz above 0 in the campaign "
+            "file; where it stood still, take the run out of the campaign: it tells nothing here"
         )
     return rate
 

@@ -25,7 +25,6 @@ from pmm.steering.instants import HARMONICS, only_sways
 from pmm.steering.reading import GAUGES, SteeredRun, read_gauge_zeros, read_steered, zeroed_names
 from pmm.steering.settings import SETTINGS_FILE, SteeringSettings, read_steering_settings
 
-_FRESH_KG_M3: Final = 998.8
 _SMALLEST: Final = 1e-9  # of the largest mean: the scatter of a record without any noise
 
 
@@ -65,15 +64,13 @@ def steering_of(folder: Path, given: Path | None = None) -> CampaignSteering:
     Raises
     ------
     ConfigurationError
-        If a file is wrong.
+        If a file is wrong, or none states the water's density.
     DataError
         If there is no such run, or the runs do not tell the parameters.
     """
     campaign = read_campaign(folder / CAMPAIGN_FILE)
     settings = read_steering_settings(folder / SETTINGS_FILE if given is None else given)
-    density = settings.density_kg_m3
-    if density is None:
-        density = _FRESH_KG_M3 if campaign.water is None else campaign.water.density_kg_m3
+    density = _density_kg_m3(campaign, settings)
     work = _work(campaign, folder)
     tows, failed = _tows(work)
     if not tows:
@@ -92,6 +89,17 @@ def steering_of(folder: Path, given: Path | None = None) -> CampaignSteering:
         (*work.left_out, *map(_sways, filter(only_sways, work.runs))),
         campaign.water,
     )
+
+
+def _density_kg_m3(campaign: Campaign, settings: SteeringSettings) -> float:
+    if settings.density_kg_m3 is not None:
+        return settings.density_kg_m3
+    if campaign.water is None:
+        raise ConfigurationError(
+            f"the water's density is not stated: write [water] in {CAMPAIGN_FILE}, or "
+            f"density_kg_m3 in {SETTINGS_FILE}"
+        )
+    return campaign.water.density_kg_m3
 
 
 def _sways(task: Task) -> Flag:

@@ -2,13 +2,16 @@
 
 import json
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from analysis.attitude import AttitudeChannel
+from analysis.readers import read_recording, write_recording
 from pmm.cli import cli
 from pmm.report.heel import HeelRow
 from pmm.report.heel_figure import heel_figure
@@ -111,3 +114,25 @@ def test_what_is_missing_gets_a_sentence(folder: Path, tmp_path: Path) -> None:
     assert "a missing roll gauge: K terms need the channel roll_moment" in said(upright)
     turned = text.replace("half_spacing_m = 0.8", 'half_spacing_m = 0.8\ngauges = "rig"')
     assert 'heel needs gauges = "model" in [oscillator]' in said(turned)
+
+
+def test_a_campaign_that_heels_without_a_roll_gauge_is_told_so(
+    folder: Path, found: dict[str, Any], tmp_path: Path
+) -> None:
+    assert "roll_gauge_missing" not in {one["code"] for one in found["left_out"]}
+    text = (folder / "campaign.toml").read_text(encoding="utf-8")
+    head, *records = text.split("[[at_rest]]")
+    few = ("zero-h0", "tow-h0-b-6", "tow-h0-b0", "tow-h0-b6")
+    wanted = [f'name = "{name}"\n' for name in few]
+    kept = [one.split("[[runs]]")[0] for one in records if any(name in one for name in wanted)]
+    (tmp_path / "campaign.toml").write_text("[[at_rest]]".join((head, *kept)), encoding="utf-8")
+    for name in few:
+        read = read_recording(folder / f"{name}.nc")
+        channels = tuple(one for one in read.channels if one.name != "roll_moment")
+        rows = np.array([read.values(one.name) for one in channels])
+        write_recording(replace(read, channels=channels, samples=rows), tmp_path / f"{name}.nc")
+    ran = CliRunner().invoke(cli, ["coefficients", str(tmp_path), "--json"])
+    assert ran.exit_code == 0, ran.stderr
+    told = {one["code"]: one for one in json.loads(ran.stdout)["left_out"]}
+    assert set(told["roll_gauge_missing"]["runs"]) == set(few[1:])
+    assert "no term of K is told" in told["roll_gauge_missing"]["message"]

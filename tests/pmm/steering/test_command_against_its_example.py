@@ -4,7 +4,7 @@ import json
 import math
 import re
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Hashable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
+from analysis import readers
 from analysis.readers import read_recording, write_recording
 from pmm.cli import cli
 from pmm.coefficients.tasks import Task
@@ -43,22 +44,28 @@ def pmm(*arguments: object) -> Result:
 
 @pytest.fixture(scope="module", autouse=True)
 def _reads_once() -> Iterator[None]:
-    """Read each recording once for all tests that ask the same of it."""
+    """Open each recording once, and read it once for all tests that ask the same of it."""
 
-    def remembering(read: Callable[..., Any]) -> Callable[..., Any]:
-        kept: dict[Any, Any] = {}
+    def remembering(
+        work: Callable[..., Any], key_of: Callable[[Any], Hashable]
+    ) -> Callable[..., Any]:
+        kept: dict[Hashable, Any] = {}
 
-        def once(task: Task, *more: Any) -> Any:
-            key = task.source.path.resolve(), task.set_point, task.zero_names, task.tared
+        def once(first: Any, *more: Any, **named: Any) -> Any:
+            key = key_of(first)
             if key not in kept:
-                kept[key] = read(task, *more)
+                kept[key] = work(first, *more, **named)
             return kept[key]
 
         return once
 
+    def asked(task: Task) -> Hashable:
+        return task.source.path.resolve(), task.set_point, task.zero_names, task.tared
+
     with pytest.MonkeyPatch.context() as patch:
         for name in ("read_steered", "read_zero", "read_gauge_zeros"):
-            patch.setattr(workflow, name, remembering(getattr(workflow, name)))
+            patch.setattr(workflow, name, remembering(getattr(workflow, name), asked))
+        patch.setattr(readers, "read_recording", remembering(read_recording, Path.resolve))
         yield
 
 
@@ -222,7 +229,11 @@ def test_coefficients_have_the_rudders_derivatives(tows: Path) -> None:
     [
         ("rudder_angle", "zero", "the channel rudder_angle has no neutral; make a zero run with"),
         ("propeller_thrust", "zero", "the channel propeller_thrust has no zero; make a zero run"),
-        ("revolutions", "tow", "its propeller has no revolutions; record the channel revolutions"),
+        (
+            "revolutions",
+            "tow",
+            "no revolutions (0 1/s); where it turned, record the channel revolutions",
+        ),
         ("rudder_normal_force", "tow", "no channel rudder_normal_force; thrust, the rudder's"),
     ],
 )
@@ -253,6 +264,10 @@ def test_what_is_wrong_is_said(tows: Path, tmp_path: Path) -> None:
     ran = pmm("steering", tows, "--settings", bad)
     assert ran.exit_code == 2
     assert "propeller" in ran.stderr
+    bad.write_text(re.sub("(?m)^density_kg_m3.*$", "", SETTINGS.read_text(encoding="utf-8")))
+    ran = pmm("steering", changed(tows, tmp_path / "b", (WATER, "")), "--settings", bad)
+    assert ran.exit_code == 2
+    assert "the water's density is not stated: write [water]" in " ".join(ran.stderr.split())
     zeros = ('zero_before = "zero-1"\nzero_after = "zero-2"', "")
     no_zero = changed(_of_few_runs(tows, tmp_path / "few"), tmp_path / "a", zeros)
     ran = pmm("steering", no_zero, "--settings", SETTINGS)
