@@ -11,13 +11,16 @@ from analysis.comparison.result import ChannelComparison
 from analysis.comparison.settings import ComparisonSettings
 from analysis.recording import Recording
 from benchmarks.comparison_bound import least_errors, memory_of
-from benchmarks.comparison_motion import Seen, noise, sines
+from benchmarks.comparison_motion import SPREAD, Seen, noise, sines
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
-from hardware.description.arrays import FloatArray
+from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.channels import Channel
 
 _RECORDS: Final = 500
 _DURATION_S: Final = 60.0
+_NOISY: Final = 300
+_NOISY_SPREAD: Final = {"coloured": 0.1}  # over the signal's; of all others 0.5
+_PLACES: Final = {"in the first": (1, 0), "in the second": (0, 1), "in both": (1, 1)}
 _KINDS: Final = ("one frequency", "harmonics", "irregular", "irregular, derivative 2", "coloured")
 
 
@@ -35,7 +38,7 @@ class _Trial:
     least: FloatArray
 
 
-def _trial(seed: int) -> _Trial:
+def _trial(seed: int, spreads: tuple[float, float] = (SPREAD, SPREAD)) -> _Trial:
     rng = np.random.default_rng(seed)
     kind = _KINDS[seed % len(_KINDS)]
     motion, order = sines(kind, rng), 2 if "derivative" in kind else 0
@@ -47,15 +50,34 @@ def _trial(seed: int) -> _Trial:
     first = motion.at(first_s)
     second = gain * motion.at(seen.times_s(second_s), order)
     found = compare(
-        _record(first + noise(kind, first, rng), 100.0, float(first_s[0])),
+        _record(first + noise(kind, first, rng, spreads[0]), 100.0, float(first_s[0])),
         "x",
-        _record(second + noise(kind, second, rng), 240.0, 0.0),
+        _record(second + noise(kind, second, rng, spreads[1]), 240.0, 0.0),
         "x",
         ComparisonSettings(order=order),
     )
     there = replace(seen, lag_s=lag_s + rate * (found.mid_s - seen.mid_s), mid_s=found.mid_s)
     least = least_errors(motion, there, first_s, second_s, memory_of(kind))
     return _Trial(kind, *_errors(found, there), least)
+
+
+def _noisy(count: int) -> tuple[dict[str, float], list[Row]]:
+    """Return by kind of motion, and by the place of strong noise, how often intervals hold."""
+    held: dict[tuple[str, str], list[BoolArray]] = {}
+    for seed in range(count):
+        kind, place = _KINDS[seed % len(_KINDS)], list(_PLACES)[seed // len(_KINDS) % 3]
+        spread = _NOISY_SPREAD.get(kind, 0.5)
+        one, other = _PLACES[place]
+        trial = _trial(10_000 + seed, (spread * one, spread * other))
+        held.setdefault((kind, place), []).append(np.abs(trial.errors) <= trial.halves)
+    names = ("gain", "lag", "rate")
+    whole = np.concatenate(list(held.values())).mean(axis=0)
+    rows: list[Row] = []
+    for (kind, place), own in held.items():
+        parts = zip(names, np.mean(own, axis=0).tolist(), strict=True)
+        told = {f"{name} held": part for name, part in parts}
+        rows.append({"motion": kind, "noise": place, "records": len(own), **told})
+    return {f"noisy_{name}": float(part) for name, part in zip(names, whole, strict=True)}, rows
 
 
 def _errors(found: ChannelComparison, seen: Seen) -> tuple[FloatArray, FloatArray]:
@@ -106,6 +128,9 @@ def run(quick: bool, report: Report) -> Outcome:
     for name, part in zip(("gain", "lag", "rate"), held, strict=True):
         measured[f"{name}_covered"] = measured[f"{name}_not_too_often"] = float(part)
     rows = [_row(kind, trials) for kind in _KINDS]
+    report("strong noise")
+    noisy, by_place = _noisy(15 if quick else _NOISY)
+    measured |= noisy
     notes = (
         f"{records} records of {_DURATION_S:g} s, the first channel at 100 Hz, the second at "
         "240 Hz, noise of a hundredth of the signal's spread in both; lags to 0.3 s, clock rates "
@@ -115,10 +140,13 @@ def run(quick: bool, report: Report) -> Outcome:
         "Least standard deviations: Cramer and Rao's bound, by the Fisher information of both "
         "channels' samples in their own noise, with gain, lag, clock rate, and parts and frequency "
         "of every sine unknown (benchmarks/comparison_bound.py).",
+        f"In strong noise: {_NOISY} more such records with white noise of half the signal's "
+        "spread, or noise with a memory of a tenth, in the channels that the table names.",
         f"An hour of both at 1 kHz took {processor_s:.2f} s of processor, {clock_s:.2f} s by the "
         "clock of a machine that had other work.",
     )
-    return Outcome({"Two channels of one motion": rows}, measured, notes)
+    tables = {"Two channels of one motion": rows, "In strong noise": by_place}
+    return Outcome(tables, measured, notes)
 
 
 def _over_bound(trials: list[_Trial]) -> FloatArray:

@@ -57,10 +57,12 @@ def sines(kind: str, rng: np.random.Generator) -> Sines:
     return Sines(turn, size, rng.uniform(0.0, 2.0 * np.pi, len(turn)))
 
 
-def noise(kind: str, values: FloatArray, rng: np.random.Generator) -> FloatArray:
+def noise(
+    kind: str, values: FloatArray, rng: np.random.Generator, spread: float = SPREAD
+) -> FloatArray:
     """Draw the noise of a channel, white or with a memory of twenty samples."""
     drawn = rng.standard_normal(len(values))
     if kind == "coloured":
         for k in range(1, len(drawn)):
             drawn[k] = MEMORY * drawn[k - 1] + np.sqrt(1.0 - MEMORY**2) * drawn[k]
-    return np.asarray(SPREAD * values.std() * drawn)
+    return np.asarray(spread * values.std() * drawn)

@@ -1,6 +1,7 @@
 """Comparison of two channels that show the same quantity, its derivative, or that with a lever."""
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 from typing import Final
 
@@ -166,22 +167,33 @@ def _with_dead_band(
 ) -> tuple[ComparisonFit, FloatArray]:
     """Return the fit with a dead band where one is seen, and its half and uncertainty.
 
-    Noise shifts reversals by a part of itself. What is found must explain most of what stands out
-    of the noise at the frequencies that it makes: other things bend a sensor's line too.
+    It is looked for from the width down that would leave what is left.
     """
-    near = fit(problem, replace(straight.model, half=0.0), lines=True)
-    half, u = _half(problem, near)
-    if half < _SEEN * u:  # its noise is the lowest that there can be
-        return straight, np.array([half, u])
-    bent = fit(problem, near.model)
-    half, u = _half(problem, bent)
-    answer = np.array([half, u])
-    made = np.abs(bent.columns[problem.channels + 2] * half) ** 2 > bent.noise
-    if half < _SEEN * u or bent.count != straight.count or not made.any():
-        return straight, answer
-    before = straight.squares_under(bent.noise, made) - 2.0 * made.sum()
-    after = bent.squares_under(bent.noise, made) - 2.0 * made.sum()
-    return (bent if after < _EXPLAINS * before else straight), answer
+    half, u = 0.0, straight.noise_spread / abs(straight.model.gains[0])
+    with suppress(NothingInCommonError):
+        near = fit(problem, replace(straight.model, half=u), lines=True)
+        half, u = _half(problem, near)
+        if half >= _SEEN * u:  # its noise is the lowest that there can be
+            bent = fit(problem, near.model)
+            half, u = _half(problem, bent)
+            if half >= _SEEN * u and _explains(problem, straight, bent):
+                u = math.hypot(u, bent.spread_of(bent.heard) / abs(bent.model.gains[0]))
+                return bent.knowing(problem.channels + 2, u), np.array([half, u])
+    return straight, np.array([half, math.hypot(u, half)])
+
+
+def _explains(problem: ComparisonProblem, straight: ComparisonFit, bent: ComparisonFit) -> bool:
+    """Tell whether a dead band explains most of what stands out where it makes something.
+
+    Other things bend a sensor's line too, and a play that is wide enough swallows the noise of the
+    channel that leads.
+    """
+    if bent.count != straight.count:
+        return False
+    noise = bent.noise + straight.heard
+    made = np.abs(bent.columns[problem.channels + 2] * bent.model.parameters[-1]) ** 2 > noise
+    before, after = (one.squares_under(noise, made) - 2.0 * made.sum() for one in (straight, bent))
+    return bool(before > 0.0 and after < _EXPLAINS * before)
 
 
 def _half(problem: ComparisonProblem, found: ComparisonFit) -> tuple[float, float]:

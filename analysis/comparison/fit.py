@@ -17,6 +17,7 @@ from typing import Final
 
 import numpy as np
 
+from analysis.comparison.first_guess import FASTEST
 from analysis.comparison.linear import (
     ComparisonProblem,
     Linear,
@@ -32,6 +33,7 @@ _FLATTER: Final = 1  # times that a smoothed spectrum is taken off before it is 
 _STEPS: Final = 20
 _FEWEST: Final = 3  # steps
 _UNEXPLAINED: Final = 0.5  # of the power where the first channel stands out
+_LOST: Final = 2.0 * FASTEST  # clock rate: no clock, a fit that has left what was found
 _SETTLED: Final = 0.02  # of an uncertainty, in the last step
 _ROUNDING: Final = 1e-12  # of the mean power: splines and filters are no better
 
@@ -91,7 +93,31 @@ class ComparisonFit:
     @property
     def noise_spread(self) -> float:
         """One standard deviation of the noise, in the second channel's unit."""
-        return float(np.sqrt(2.0 * self.noise.sum() / (self.taper**2).mean()) / self.count)
+        return self.spread_of(self.noise)
+
+    @cached_property
+    def heard(self) -> FloatArray:
+        """Power of what is left that goes as the first channel does where that carries nothing.
+
+        It is the first channel's own noise, shape ``(bins,)``, also between and under the lines.
+        """
+        free, reach = ~self.stands_out, _reach(self.shape)
+        cross = self.residual * self.shape.conj() * free
+        size = np.hypot(_around(cross.real, reach), _around(cross.imag, reach))
+        beside = _around(np.abs(self.shape) ** 2 * free, reach)
+        share = np.maximum(_around(free.astype(np.float64), reach), 0.5 / (2 * reach + 1))
+        heard = size**2 / np.maximum(beside, _ROUNDING * self.power.mean()) / share
+        return np.asarray(np.minimum(heard, _around(np.abs(self.residual) ** 2, reach)))
+
+    def spread_of(self, power: FloatArray) -> float:
+        """Return one standard deviation of a part of that power, in the second channel's unit."""
+        return float(np.sqrt(2.0 * power.sum() / (self.taper**2).mean()) / self.count)
+
+    def knowing(self, row: int, u: float) -> "ComparisonFit":
+        """Return the same with a parameter's uncertainty, and what follows of it for the others."""
+        along = self.covariance[row] / self.covariance[row, row]
+        more = (u**2 - self.covariance[row, row]) * np.outer(along, along)
+        return replace(self, covariance=self.covariance + more)
 
     def squares_under(self, noise: FloatArray, bins: BoolArray) -> float:
         """Return the same under another noise, in other bins."""
@@ -136,7 +162,7 @@ def fit(problem: ComparisonProblem, model: Model, *, lines: bool = False) -> Com
         if step >= _FEWEST and (taken <= _SETTLED * np.sqrt(np.diag(inverse))[: len(taken)]).all():
             break
     left, shown = (np.abs(one[bins]) ** 2 for one in (residual, linear.target))
-    if left.sum() > _UNEXPLAINED * shown.sum():
+    if left.sum() > _UNEXPLAINED * shown.sum() or abs(model.alignment.rate) > _LOST:
         raise NothingInCommonError
     columns = linear.columns(before.gains, bins)
     freedom = max(2.0 * (2 * reach + 1) - len(columns), 1.0)
@@ -182,6 +208,10 @@ def _strongest(channel: ComplexArray) -> BoolArray:
     return np.asarray(power >= 0.01 * power.max())
 
 
+def _reach(spectrum: ComplexArray) -> int:
+    return int(np.clip(len(spectrum) // 10, 1, _WIDEST))
+
+
 def _around(values: FloatArray, reach: int) -> FloatArray:
     from scipy.ndimage import uniform_filter1d
 
@@ -198,7 +228,7 @@ def _smoothed(power: FloatArray, target: ComplexArray, *, lines: bool) -> tuple[
     """
     from scipy.ndimage import median_filter
 
-    reach = int(np.clip(len(power) // 10, 1, _WIDEST))
+    reach = _reach(target)
     floor = _ROUNDING * float((np.abs(target) ** 2).mean())
     power = np.maximum(power, 1e-3 * floor)
     if lines:

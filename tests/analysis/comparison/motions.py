@@ -64,16 +64,17 @@ def pair(
     rng: np.random.Generator,
     *,
     duration_s: float = 60.0,
-    noise: float = 0.01,
+    noise: float | tuple[float, float] = 0.01,
     rates_hz: tuple[float, float] = (100.0, 240.0),
 ) -> tuple[Recording, Recording]:
     """Two recordings of a motion, each with white noise of that part of its own spread."""
+    of_first, of_second = noise if isinstance(noise, tuple) else (noise, noise)
     first_s = -1.0 + np.arange(int(duration_s * rates_hz[0])) / rates_hz[0]
     second_s = -0.5 + np.arange(int(duration_s * rates_hz[1])) / rates_hz[1]
     first = motion.at(first_s)
     second = truth.gain * motion.at(truth.on_first(second_s), truth.order)
-    first = first + noise * first.std() * rng.standard_normal(first.size)
-    second = second + noise * second.std() * rng.standard_normal(second.size)
+    first = first + of_first * first.std() * rng.standard_normal(first.size)
+    second = second + of_second * second.std() * rng.standard_normal(second.size)
     return (
         recorded("camera", first, rates_hz[0], -1.0, "m"),
         recorded("sensor", second, rates_hz[1], -0.5, "m"),

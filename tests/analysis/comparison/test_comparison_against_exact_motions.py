@@ -26,10 +26,11 @@ def compared(
     what: Truth,
     seed: int = 0,
     settings: ComparisonSettings | None = None,
-    **how: float,
+    *,
+    noise: float | tuple[float, float] = 0.01,
 ) -> ChannelComparison:
     rng = np.random.default_rng(seed)
-    first, second = pair(motion, what, rng, **how)
+    first, second = pair(motion, what, rng, noise=noise)
     asked = settings or ComparisonSettings(order=what.order)
     return compare(first, "x", second, "x", asked)
 
@@ -131,6 +132,45 @@ def test_without_a_dead_band_none_is_found() -> None:
     for seed in range(10):
         motion = irregular(np.random.default_rng(200 + seed))
         assert not compared(motion, truth(), seed, noise=0.05).dead_band_found
+
+
+@pytest.mark.parametrize("noise", [(0.5, 0.0), (1.0, 0.0), (0.0, 1.0), (0.7, 0.7)])
+def test_strong_noise_is_no_dead_band_and_leaves_the_intervals_right(
+    noise: tuple[float, float],
+) -> None:
+    missed = []
+    for seed in range(6):
+        rng = np.random.default_rng(300 + seed)
+        motion = irregular(rng) if seed % 2 else harmonic(rng, 0.2, 0.05)
+        found = compared(motion, truth(), seed, noise=noise)
+        assert not found.dead_band_found
+        assert found.dead_band is not None
+        assert found.dead_band.value <= found.dead_band.half_width()
+        missed.append(misses(found, truth()))
+    assert np.median(missed) < 0.7
+    assert np.max(missed) < 2.0
+
+
+def test_a_wide_dead_band_of_a_wide_spectrum_is_found_whatever_leads_to_it() -> None:
+    rng = np.random.default_rng(5)
+    frequencies_hz = rng.uniform(0.1, 3.0, 80)
+    sizes = rng.rayleigh(size=80) / (1.0 + (frequencies_hz / 0.5) ** 2)
+    motion = Motion(frequencies_hz, sizes, rng.uniform(0.0, 2.0 * np.pi, 80))
+    fine_s, time_s = np.arange(-2.0, 62.0, 1e-3), np.arange(0.0, 60.0, 0.01)
+    leader = motion.at(fine_s)
+    width = 0.3 * float(leader.std())
+    follower, at = [], float(leader[0])
+    for value in leader.tolist():
+        at = max(min(at, value + width / 2.0), value - width / 2.0)
+        follower.append(at)
+    first = motion.at(time_s) + 0.02 * leader.std() * rng.standard_normal(time_s.size)
+    second = np.interp(time_s - 0.25, fine_s, follower)
+    records = [recorded("a", one, 100.0, 0.0, "m") for one in (first, second)]
+    found = compare(records[0], "x", records[1], "x")
+    assert found.dead_band_found
+    assert found.dead_band is not None
+    assert abs(found.dead_band.value - width) < found.dead_band.half_width() < 0.5 * width
+    assert abs(found.lag_s.value - 0.25) < 1.5 * found.lag_s.half_width()
 
 
 def test_a_lever_is_found() -> None:
