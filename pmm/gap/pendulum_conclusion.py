@@ -1,13 +1,13 @@
 """What a pendulum's diagnosis comes to: the one value from which every word about it is made."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import Final
 
 from analysis.gap.inference.answers import COEFFICIENTS, NONE, ODD_RUN, UNKNOWN, Answers
 from analysis.gap.pendulum.diagnose import PendulumDiagnosis
 from analysis.gap.pendulum.search import named
-from analysis.gap.pendulum.verdict import CAUSE, UNTOLD, Verdict
+from analysis.gap.pendulum.verdict import CAUSE, UNTOLD, Verdict, open_causes
 from analysis.gap.search.fit import Fit
 
 _SHOWN: Final = 8  # answers
@@ -30,12 +30,15 @@ class PendulumConclusion:
         Probability of something that the catalogue does not have.
     odd
         The record that alone is off, where that is the verdict.
+    apart
+        By cause what these records cannot tell from it, itself first, with their probabilities.
     """
 
     verdict: str
     names: tuple[str, ...]
     unknown: float = 0.0
     odd: str = ""
+    apart: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     @property
     def adds(self) -> bool:
@@ -57,6 +60,7 @@ def conclusion_of(found: PendulumDiagnosis) -> PendulumConclusion:
         named(verdict.best),
         answers.by_answer[UNKNOWN],
         odd if verdict.said == ODD_RUN else "",
+        open_causes(found.weighed, verdict),
     )
 
 

@@ -1,23 +1,25 @@
 """A pendulum's diagnosis in plain sentences: what is wrong, how large it is, what to do next."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Final
 
 import numpy as np
 
 from analysis.gap.inference.answers import NONE, ODD_RUN, UNKNOWN
+from analysis.gap.judge.confounded import separating_measurements
 from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING
 from analysis.gap.pendulum.diagnose import PendulumDiagnosis
 from analysis.gap.pendulum.swings import KINDS
-from analysis.gap.pendulum.verdict import TOLD_APART, DampingLaw, open_laws, remainder
-from analysis.gap.search.fit import nothing
+from analysis.gap.pendulum.verdict import TOLD_APART, DampingLaw, as_stated, open_laws
 from analysis.inertia.spread import cause_statement
+from hardware.description.arrays import FloatArray
 from pmm.gap.pendulum_conclusion import PendulumConclusion, conclusion_of, parameters
 from pmm.gap.words import OUTSIDE
 
 FASTER: Final = "damping that grows faster than linearly"
 _DECAY, _PERIOD = (KINDS.index(one) for one in ("decay", "period"))
+_HALF_TURN: Final = 0.54  # rad about it, within which a sign is reversed: as in a campaign
 
 
 def sentences(found: PendulumDiagnosis) -> tuple[str, str, str]:
@@ -36,7 +38,7 @@ def _wrong(found: PendulumDiagnosis, concluded: PendulumConclusion) -> Iterator[
         yield _no_gap(found)
         return
     if concluded.verdict == ODD_RUN:
-        yield f"Record {concluded.odd} alone is off, by a gain, a period or a zero of its own"
+        yield f"Record {concluded.odd} alone is off, {_own_error(found, concluded.odd)}"
         return
     if concluded.verdict == UNKNOWN:
         yield f"{OUTSIDE[0].upper()}{OUTSIDE[1:]} separates the record from its simulation"
@@ -45,7 +47,7 @@ def _wrong(found: PendulumDiagnosis, concluded: PendulumConclusion) -> Iterator[
         yield f"The cause cannot be told; {_strange(concluded)}"
         return
     rivals = open_laws(found.laws)
-    others = [one for one in concluded.names if one not in DAMPING]
+    others = [" or ".join(_first(concluded, one)) for one in concluded.names if one not in DAMPING]
     damped = len(others) < len(concluded.names)
     damping = [_damping(found.laws, rivals, concluded.names)] if damped else []
     what = " and ".join([*damping, *others])
@@ -53,12 +55,14 @@ def _wrong(found: PendulumDiagnosis, concluded: PendulumConclusion) -> Iterator[
     yield f"{said[0].upper()}{said[1:]}"
     if concluded.strange:
         yield _strange(concluded)
+    for one in concluded.apart.values():
+        yield _alike(one)
     if rivals:
         yield _undecided(found.laws[0], rivals)
 
 
 def _named(found: PendulumDiagnosis, concluded: PendulumConclusion, what: str) -> str:
-    if found.regimes:
+    if math.isfinite(found.foretells):
         return cause_statement(what, found.foretells, told=concluded.adds)
     told = "the cause" if concluded.adds else "the cause cannot be told; likeliest cause"
     return f"{told}: {what}"
@@ -72,7 +76,29 @@ def _no_gap(found: PendulumDiagnosis) -> str:
     left = [one.kind for one in found.where if one.out_of_tolerance]
     if left:
         return f"Nothing that was considered explains the difference in {' and '.join(left)}"
-    return "No gap: the record and its simulation agree within what the record can tell"
+    fitted = any(one.gap for one in found.where)
+    once = " once what is known within tolerances is fitted," if fitted else ""
+    return f"No gap: the record and its simulation agree{once} within what the record can tell"
+
+
+def _own_error(found: PendulumDiagnosis, odd: str) -> str:
+    """Return what is wrong with the one record that is odd."""
+    problem = found.problem
+    own = [(one.run or one.name) == odd for one in problem.trials]
+    phases = _stated(found)[np.array(own)[problem.trial] & (problem.kind == _PERIOD)]
+    if problem.driven and (abs(abs(phases) - math.pi) < _HALF_TURN).all():
+        return "by half a turn: its force or its reading has the other sign"
+    return "by a gain, a period or a zero of its own"
+
+
+def _first(concluded: PendulumConclusion, name: str) -> tuple[str, ...]:
+    """Return a cause with what these records cannot tell from it, where it is named at all."""
+    return tuple(concluded.apart.get(name, (name,))) if concluded.adds else (name,)
+
+
+def _alike(shares: Mapping[str, float]) -> str:
+    said = " or ".join(f"{name} ({share:.2f})" for name, share in shares.items())
+    return f"{said} cannot be told apart by these records"
 
 
 def _damping(laws: Sequence[DampingLaw], rivals: Sequence[DampingLaw], names: Sequence[str]) -> str:
@@ -91,49 +117,63 @@ def _undecided(first: DampingLaw, rivals: Sequence[DampingLaw]) -> str:
 
 
 def how_large_it_is(found: PendulumDiagnosis) -> str:
-    """Return by how much amplitude and phase are off without a cause, and the cause's own size."""
-    problem = found.problem
-    left = np.abs(remainder(problem, nothing(problem))) * problem.uncertainty
-    sizes: list[str] = []
-    for kind, said in ((_DECAY, _amplitude), (_PERIOD, _phase)):
-        rows = np.flatnonzero(problem.kind == kind)
-        if rows.size:
-            at = int(rows[np.argmax(left[rows])])
-            verb = "" if sizes else "is off "
-            sizes.append(said(verb, float(left[at])) + _place(found, at))
+    """Return by how much the simulation as it is stated is off, and the cause's own size."""
+    sizes = [*_largest(found, _DECAY, _amplitude), *_largest(found, _PERIOD, _phase)]
     own = [
         f"{name}: {key} = {one['value']:.4g} ± {2.0 * one['uncertainty']:.2g}"
         for name, values in parameters(found.settled.best).items()
         for key, one in values.items()
     ]
     named = own if conclusion_of(found).adds else []
-    off = " and ".join(sizes)
-    return f"{'; '.join([f'Without a cause {off}', *named])}."
+    off = f"As it is stated, the simulation is off {' and '.join(sizes)}"
+    return f"{'; '.join([off, *named])}."
 
 
-def _amplitude(verb: str, size: float) -> str:
-    return f"the amplitude {verb}by up to {100.0 * math.expm1(size):.2g} %"
+def _largest(found: PendulumDiagnosis, kind: int, said: Callable[[float], str]) -> Iterator[str]:
+    """Yield the largest difference of a kind in its own unit, and where; nothing of no data."""
+    problem, left = found.problem, _stated(found)
+    rows = np.flatnonzero(problem.kind == kind)
+    if rows.size:
+        at = int(rows[np.argmax(np.abs(left[rows]))])
+        trial = problem.trials[problem.trial[at]]
+        yield f"{said(float(left[at]))} ({trial.name}, {problem.centre_s[at]:.3g} s)"
 
 
-def _phase(verb: str, size: float) -> str:
-    return f"the phase {verb}by up to {math.degrees(size):.2g} degrees of a swing"
+def _stated(found: PendulumDiagnosis) -> FloatArray:
+    """Return measured less simulated as it is stated: logarithms of amplitudes, rad of phases."""
+    return as_stated(found.problem) * found.problem.uncertainty
 
 
-def _place(found: PendulumDiagnosis, at: int) -> str:
-    problem = found.problem
-    trial = problem.trials[problem.trial[at]]
-    return f" ({trial.name}, {problem.centre_s[at]:.3g} s)"
+def _amplitude(log_ratio: float) -> str:
+    return f"by up to {100.0 * abs(math.expm1(log_ratio)):.2g} % of its amplitude"
+
+
+def _phase(size_rad: float) -> str:
+    return f"by up to {abs(math.degrees(size_rad)):.2g} degrees of a swing in phase"
 
 
 def what_to_do(found: PendulumDiagnosis, concluded: PendulumConclusion) -> str:
     """Return what to do next."""
-    tell = _would_tell(found)
+    tell = _told_by(concluded) or _would_tell(found)
     if concluded.adds:
         put = 'put it into the simulation with "pmm gap add-pendulum", and look again'
         return f"{tell}; or {put}." if tell else f"{put[0].upper()}{put[1:]}."
+    if concluded.odd:
+        put = f"Correct record {concluded.odd}, or leave it out of the file, and look again"
+        return f"{put}."
     if concluded.verdict == NONE and not any(one.out_of_tolerance for one in found.where):
         return "Nothing has to be done."
     return f"{tell or 'Look at what remains, below, and record longer or from another release'}."
+
+
+def _told_by(concluded: PendulumConclusion) -> str:
+    """Return the measurements that tell apart what these records cannot; empty if none is known."""
+    how = {
+        one: " and ".join(names)
+        for names in concluded.apart.values()
+        for one in separating_measurements([name.partition(" of ")[0] for name in names])
+    }
+    return "; ".join(f"Tell {names} apart by {one}" for one, names in how.items())
 
 
 def _would_tell(found: PendulumDiagnosis) -> str:

@@ -1,7 +1,8 @@
 """Effects that no oscillation tells apart, or hardly one, and the measurement that does.
 
-The classes of a campaign are computed from its own runs (:mod:`analysis.gap.judge.verdict`); this
-table only says what to measure once a class has more than one member.
+The classes of a campaign, and of pendulums and bodies under a known force, are computed from their
+own records (:mod:`analysis.gap.judge.verdict`, :mod:`analysis.gap.pendulum.verdict`); this table
+only says what to measure once a class has more than one member.
 """
 
 from collections.abc import Sequence
@@ -15,6 +16,11 @@ _AIR = "the same runs in air, without the water's part"
 _PRELOAD = "the same run with a dead weight that takes up the play"
 _SPEED = "the same runs at another speed"
 _LOOSE = "the same run with the cable disconnected"
+_PUSH = "a push by hand in the positive direction: force and motion have to read positive"
+_SCALES = "a known weight on the force gauge, and a known distance before the sensor"
+_DEFLECTION = "the deflection at rest under known weights, which the restoring alone makes"
+_OFF_RESONANCE = "a run far from resonance, where damping hardly shows"
+_OTHER_SENSOR = "a second sensor of the same motion, with pmm compare"
 _SLOW = "a record at rest over the same time: a drift goes on, waves die out"
 
 _SEPARATED: Final = {
@@ -50,6 +56,21 @@ _SEPARATED: Final = {
             ("free-play", "speed-ripple"),
         ],
         _SLOW: [("zero-drift", "residual-waves"), ("zero-drift", "temperature")],
+        _PUSH: list(combinations(("force_sign", "sensor_delay", "sensor_sign"), 2)),
+        _SCALES: [("force", "sensor_gain")],
+        _DEFLECTION: [
+            ("inertia", "restoring"),
+            ("force", "restoring"),
+            ("restoring", "sensor_gain"),
+            ("force", "inertia"),
+            ("inertia", "sensor_gain"),
+        ],
+        _OFF_RESONANCE: [
+            (law, scale)
+            for law in ("damping", "viscous_damping", "bearing_friction")
+            for scale in ("force", "sensor_gain")
+        ],
+        _OTHER_SENSOR: [("sensor_delay", "sensor_lag")],
     }.items()
     for pair in pairs
 }

@@ -21,7 +21,7 @@ from sim.pendulum.suspension import Suspension
 
 _RANDOM: Final = ("missed_passages", "gate_jitter", "unsteady_release")
 _GATES: Final = ("flag_width", "gate_offset")
-_UNDER_A_FORCE: Final = ("force", "sensor_delay")
+_UNDER_A_FORCE: Final = ("force", "force_sign", "sensor_sign", "sensor_delay")
 _NOT_UNDER_A_FORCE: Final = ("sensor_offset", "sensor_noise")
 _NEEDS_LINES: Final = ("line_stretch", "line_creep", "off_level", "yaw_pitch_resonance")
 _HUNG: Final = tuple(one.name for one in ON_LINES)

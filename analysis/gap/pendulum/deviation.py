@@ -116,13 +116,24 @@ def _log_size(problem: PendulumProblem) -> FloatArray:
 
 
 def _own(problem: PendulumProblem, scale: FloatArray) -> dict[str, FloatArray]:
-    """Return by record what a gain, a period and a zero of its own change; none of very few."""
-    if len(problem.trials) < _FEWEST:
+    """Return by run what a gain, a period and a zero of its own change; none of very few.
+
+    Each sensor of a run has its own, since a run that went wrong did so for all of them.
+    """
+    runs: dict[str, list[int]] = {}
+    for at, trial in enumerate(problem.trials):
+        runs.setdefault(trial.run or trial.name, []).append(at)
+    if len(runs) < _FEWEST:
         return {}
     parts: list[BoolArray] = [problem.kind == kind for kind in (_DECAY, _PERIOD, _MEAN)]
     return {
-        trial.name: np.column_stack(
-            [np.where(part & (problem.trial == at), scale, 0.0) for part in parts if part.any()]
+        run: np.column_stack(
+            [
+                np.where(part & (problem.trial == at), scale, 0.0)
+                for at in own
+                for part in parts
+                if part.any()
+            ]
         )
-        for at, trial in enumerate(problem.trials)
+        for run, own in runs.items()
     }

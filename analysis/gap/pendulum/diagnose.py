@@ -73,8 +73,9 @@ class PendulumDiagnosis:
 
     @property
     def foretells(self) -> float:
-        """Share of the gap, where it is least, that the best set foretells; NaN if not asked."""
-        shares = [one.shrinkage for regime in self.regimes for one in regime.foretold[:1]]
+        """Share of the gap, where it is least, that the best set foretells; NaN of no gap."""
+        gaps = (regime for regime in self.regimes if regime.gap)
+        shares = [one.shrinkage for regime in gaps for one in regime.foretold[:1]]
         return min(shares, default=math.nan)
 
     @property

@@ -10,6 +10,7 @@ import cmath
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, ClassVar, cast
 
 import numpy as np
@@ -25,6 +26,8 @@ from sim.pendulum.effects.base import PendulumEffect
 _DECAY, _PERIOD, _MEAN = (KINDS.index(one) for one in ("decay", "period", "mean"))
 _ORDERS = 23  # of the motion that a window is shown
 _MOST_SAMPLES = 256  # a period: more do not change what a window makes of it
+_ANOTHER_TURN = 1.5 * math.pi  # rad: halfway from half a turn off to a whole one
+_EVEN = 1e-3  # rad: so that exactly half a turn is a late one in every record
 _OCTAVE = math.log(2.0)  # of frequency, over which a deviation keeps its value
 
 
@@ -70,17 +73,39 @@ class DrivenTrial(Trial):
         ConfigurationError
             If the body does not settle.
         """
+        out, late_rad = self._shown(effects)
+        out[_PERIOD] += _whole_turns(self._turned - float(np.median(out[_PERIOD])) - _EVEN)
+        out[_PERIOD] -= late_rad
+        apart = self._apart(out)
+        if abs(apart) > _ANOTHER_TURN:  # a reversed sign turns either way, a delay by any amount
+            out[_PERIOD] += _whole_turns(apart)
+        return out
+
+    @cached_property
+    def _turned(self) -> float:
+        """Phase without further effects, delays left out, in the turn of what was observed.
+
+        Effects are followed from here: one that chose its turn anew would jump by a whole one
+        where the phase is half a turn off.
+        """
+        out, late_rad = self._shown(())
+        phase = float(np.median(out[_PERIOD]))
+        out[_PERIOD] -= late_rad
+        return phase + _whole_turns(self._apart(out))
+
+    def _apart(self, shown: FloatArray) -> float:
+        """Return the observed phase less a simulated one; 0 where none was observed."""
+        seen = self.observed[_PERIOD, np.isfinite(self.observed[_PERIOD])]
+        return float(np.median(seen) - np.median(shown[_PERIOD])) if seen.size else 0.0
+
+    def _shown(self, effects: Iterable[PendulumEffect]) -> tuple[FloatArray, FloatArray]:
+        """Return what the record would show, its phase in any turn, and by how much it is late."""
         bench = self.bench.with_effects(self.placed((*self.effects, *effects)))
         body, windows = cast("DrivenBody", bench.body), self.windows
-        omega, read = body.force.omega_rad_s, _read(bench, np.arange(1.0, _ORDERS + 1))
+        read = _read(bench, np.arange(1.0, _ORDERS + 1))
         out = self._window(settled(body, _ORDERS) * read).repeat(windows.count, axis=1)
         late_s = bench.delay_s + bench.clock_error * (windows.start_s + windows.centres_s)
-        out[_PERIOD] -= omega * late_s / (1.0 + bench.clock_error)
-        seen = self.observed[_PERIOD, np.isfinite(self.observed[_PERIOD])]
-        if seen.size:  # the phase that was read is one of many that are whole turns apart
-            turns_apart = float(np.median(seen) - np.median(out[_PERIOD])) / (2.0 * math.pi)
-            out[_PERIOD] += 2.0 * math.pi * round(turns_apart)
-        return out
+        return out, body.force.omega_rad_s * late_s / (1.0 + bench.clock_error)
 
     @property
     def third_harmonic(self) -> float:
@@ -113,6 +138,11 @@ class DrivenTrial(Trial):
         return replace(
             self, bench=replace(self.bench, body=replace(body, force=body.force.scaled(factor)))
         )
+
+
+def _whole_turns(phase_rad: float) -> float:
+    """Return the whole turns that are nearest to a phase, rad."""
+    return 2.0 * math.pi * round(phase_rad / (2.0 * math.pi))
 
 
 def _read(bench: PendulumBench, orders: FloatArray) -> ComplexArray:

@@ -100,6 +100,29 @@ def alike(weighed: WeighedCauses, name: str) -> tuple[str, ...]:
     return tuple(sorted({name, *twins, *kin}))
 
 
+def open_causes(weighed: WeighedCauses, verdict: Verdict) -> dict[str, dict[str, float]]:
+    """Return by cause of the best set what these records cannot tell from it, with probabilities.
+
+    The cause itself comes first, the others by their probability. A cause that is probable enough
+    by itself is left out, and so is damping that is said to be a cause: its laws are weighed by
+    themselves.
+    """
+    found, shares = {}, verdict.by_cause
+    for name in verdict.best.names if verdict.said in (CAUSE, UNTOLD) else ():
+        told = verdict.said == CAUSE
+        if shares[name] >= _LIKELY or (told and name in DAMPING):
+            continue
+        others = [
+            one
+            for one in (alike(weighed, name) if told else shares)
+            if one not in verdict.best.names and shares.get(one, 0.0) * TOLD_APART > shares[name]
+        ]
+        if others:
+            ranked = sorted(others, key=lambda one: -shares[one])
+            found[name] = {one: shares[one] for one in (name, *ranked)}
+    return found
+
+
 def _with_any(shares: Mapping[str, float], groups: Sequence[Sequence[str]]) -> float:
     """Return the probability of the answers that have a cause of each group; 0 of no group."""
     return sum(
@@ -166,7 +189,7 @@ def damping_laws(
         if {kind.name for kind in kinds} <= set(possible)
     }
     weights = {name: weighed.weight(one) for name, one in fitted.items()}
-    top = max(weights.values())
+    top = max(weights.values(), default=0.0)
     laws = [DampingLaw(name, one, weights[name] - top) for name, one in fitted.items()]
     return tuple(sorted(laws, key=lambda law: -law.log_ratio))
 

@@ -34,7 +34,7 @@ class Foretold:
     ----------
     gap
         Root mean square of measured less foretold amplitude (logarithm), in u; of whatever counts
-        where amplitudes do not.
+        under a known force, which shows in phases as well, and where amplitudes do not.
     amplitude_gap
         The same of the amplitude, in the record's unit.
     period_gap
@@ -70,6 +70,11 @@ class WithheldSwings:
     amplitude: tuple[float, float]
     before: Foretold
     foretold: tuple[Foretold, ...]
+
+    @property
+    def gap(self) -> bool:
+        """Whether there is anything to foretell, by four standard deviations of its square."""
+        return self.before.gap**2 > 1.0 + 4.0 * math.sqrt(2.0 / self.windows)
 
 
 def foretell(problem: PendulumProblem, sets: Sequence[Fit]) -> tuple[WithheldSwings, ...]:
@@ -190,7 +195,7 @@ def _foretold(
 ) -> Foretold:
     kind = problem.kind[rows]
     decay, period = kind == _DECAY, kind == _PERIOD
-    chosen = decay if decay.any() else np.ones_like(decay)
+    chosen = decay if decay.any() and not problem.driven else np.ones_like(decay)
     absolute = left[0] * problem.uncertainty[rows]
     share, low, high = 0.0, 0.0, 0.0
     if causes:

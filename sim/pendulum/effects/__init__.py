@@ -32,6 +32,7 @@ CATALOGUE: Final[tuple[type[Any], ...]] = (
     instruments.SensorLag,
     instruments.SensorOffset,
     instruments.SensorGain,
+    instruments.SensorSign,
     instruments.SensorNoise,
     instruments.FlagWidth,
     instruments.GateOffset,
@@ -43,6 +44,7 @@ CATALOGUE: Final[tuple[type[Any], ...]] = (
     setup.RestoringError,
     setup.PendulumDampingError,
     setup.ForceError,
+    setup.ForceSign,
     *setup.ON_LINES,
 )
 

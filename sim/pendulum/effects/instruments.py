@@ -141,6 +141,22 @@ class SensorGain:
 
 
 @dataclass(frozen=True)
+class SensorSign:
+    """A sensor, or a column of its record, whose positive direction is the other one."""
+
+    channel: str = ""
+
+    name = "sensor_sign"
+    stage = "sensors"
+    summary = "the reading with the other sign"
+    signature = "phase by half a turn at any frequency; amplitude as is"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        return _sensors(bench, self.channel, lambda sensor: replace(sensor, gain=-sensor.gain))
+
+
+@dataclass(frozen=True)
 class SensorNoise:
     """White noise and a linear drift on a channel.
 

@@ -101,10 +101,29 @@ class ForceError:
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on; a body without a force stays as it is."""
-        body = bench.body
-        if not isinstance(body, DrivenBody):
-            return bench
-        return replace(bench, body=replace(body, force=body.force.scaled(1.0 + self.share)))
+        return _pushed(bench, 1.0 + self.share)
+
+
+@dataclass(frozen=True)
+class ForceSign:
+    """The force on a driven body, or its column, counts positive in the other direction."""
+
+    name = "force_sign"
+    stage = "force"
+    summary = "the known force with the other sign"
+    signature = "phase of every sensor by half a turn at any frequency; amplitude as is"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on; a body without a force stays as it is."""
+        return _pushed(bench, -1.0)
+
+
+def _pushed(bench: PendulumBench, factor: float) -> PendulumBench:
+    """Return a test whose force is a factor of what it was; one without a force as it is."""
+    body = bench.body
+    if not isinstance(body, DrivenBody):
+        return bench
+    return replace(bench, body=replace(body, force=body.force.scaled(factor)))
 
 
 @dataclass(frozen=True)
