@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from scipy.integrate import solve_ivp
 
 from analysis.attitude import AttitudeChannel
 from analysis.readers import read_recording, write_recording
@@ -136,3 +137,45 @@ def test_a_campaign_that_heels_without_a_roll_gauge_is_told_so(
     told = {one["code"]: one for one in json.loads(ran.stdout)["left_out"]}
     assert set(told["roll_gauge_missing"]["runs"]) == set(few[1:])
     assert "no term of K is told" in told["roll_gauge_missing"]["message"]
+
+
+def test_a_recorded_decay_puts_the_roll_damping_into_the_same_table(
+    folder: Path, tmp_path: Path
+) -> None:
+    """Let go at speed, afloat: the roll is that of ``solve_ivp`` with the example's numbers."""
+    made = tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))
+    loads, heel = made["heel_loads"], made["heel"]
+    put_in = {"K_p": loads["K_p"], "K_pdot": loads["K_pdot"]}
+    stiff = made["model"]["mass_kg"] * 9.80665 * heel["gm_m"] - loads["K_uuphi"] * SPEED_M_S**2
+    inertia = heel["inertia_kg_m2"] - put_in["K_pdot"]
+
+    def rates(_: float, state: np.ndarray) -> list[float]:
+        return [state[1], (put_in["K_p"] * state[1] - stiff * state[0]) / inertia]
+
+    time_s, generator = np.arange(0.0, 60.0, 0.05), np.random.default_rng(29)
+    for k in range(3):
+        start = [0.10 + 0.01 * k, 0.0]
+        rolled = solve_ivp(rates, (0.0, 60.0), start, "DOP853", time_s, rtol=1e-9)
+        read = rolled.y[0] + 1e-4 * generator.standard_normal(time_s.size)
+        np.savetxt(tmp_path / f"roll-{k}.csv", np.column_stack((time_s, read)), "%.7f", ",",
+                   header="time [s],heel [rad]", comments="")  # fmt: skip
+    job = tmp_path / "roll.toml"
+    job.write_text(
+        'name = "roll, towed"\naxis = "roll"\n[period]\nchannel = "heel"\n'
+        'records = ["roll-0.csv", "roll-1.csv", "roll-2.csv"]\n'
+    )
+    ran = CliRunner().invoke(cli, ["inertia", "pendulum", str(job), "--json"])
+    assert ran.exit_code == 0, ran.stderr
+    (tmp_path / "roll.json").write_text(ran.stdout, encoding="utf-8")
+    settings = tmp_path / "coefficients.toml"
+    settings.write_text(
+        f'[[roll_decays]]\nspeed_m_s = {SPEED_M_S}\nresult = "roll.json"\n'
+        "u_gm_m = 1e-5\nu_inertia_kg_m2 = 0.01\n"
+    )
+    more = ["--settings", str(settings), "--json"]
+    ran = CliRunner().invoke(cli, ["coefficients", str(folder), *more])
+    assert ran.exit_code == 0, ran.stderr
+    rows = {row["name"]: row for row in json.loads(ran.stdout)["recommended"]}
+    for name, value in put_in.items():
+        assert rows[name]["value"] == pytest.approx(value, abs=1.5 * rows[name]["half_width"]), name
+        assert rows[name]["half_width"] < 0.2 * abs(value), name
