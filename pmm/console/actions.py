@@ -1,8 +1,9 @@
 """What a browser may do: each action is checked, carried out, logged and answered."""
 
+import asyncio
 import json
 from collections.abc import Awaitable, Callable
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
@@ -23,12 +24,16 @@ from pmm.console.requests import (
     AnswerPosted,
     CommandPosted,
     DropPosted,
+    EditPosted,
+    HoldPosted,
+    MovePosted,
     PlanPosted,
     Posted,
+    RunPosted,
     TakePosted,
 )
 from pmm.console.worker_process import Workers
-from pmm.console.worker_tasks import Queued, check_plan_text, ready_plan
+from pmm.console.worker_tasks import Queued, changed_plan, check_plan_text, ready_plan
 from pmm.run.states import Command
 
 COMMANDS: Final = "commands.jsonl"
@@ -120,7 +125,7 @@ class PageActions:
     ) -> None:
         self._hub, self._loop, self._workers, self._plans = hub, loop, workers, plans
         self._folder, self._utc = folder, utc
-        self._queued = Queued()
+        self._queued, self._changing = Queued(), asyncio.Lock()
 
     async def command(self, request: Request) -> Response:
         """Hand a command to run control; a quick stop is everybody's right."""
@@ -137,6 +142,18 @@ class PageActions:
     async def drop(self, request: Request) -> Response:
         """Take a plan out of the queue."""
         return await self._do(request, DropPosted, "drop", self._drop)
+
+    async def edit(self, request: Request) -> Response:
+        """Change a planned run's settings."""
+        return await self._do(request, EditPosted, "edit", self._change)
+
+    async def move(self, request: Request) -> Response:
+        """Move a planned run, or a plan that waits."""
+        return await self._do(request, MovePosted, "move", self._move)
+
+    async def hold(self, request: Request) -> Response:
+        """Hold a planned run, or a plan, or release it."""
+        return await self._do(request, HoldPosted, "hold", self._change)
 
     async def take(self, request: Request) -> Response:
         """Take control."""
@@ -225,8 +242,7 @@ class PageActions:
         found = await worker.run(ready_plan, self._plans, posted.name, posted.text)
         number = self._queued.add(found)
         try:
-            plan = replace(found.packed, number=number)
-            said = await self._loop.order(OrderKind.QUEUE, plan=plan)
+            said = await self._loop.order(OrderKind.QUEUE, plan=self._queued.plan(number))
         except PmmError:
             self._queued.drop(number)
             raise
@@ -239,6 +255,23 @@ class PageActions:
         self._queued.drop(posted.number)
         self._tell_plans()
         return {"said": said}
+
+    async def _move(self, posted: MovePosted, who: Who) -> dict[str, Any]:
+        if posted.run:
+            return await self._change(posted, who)
+        self._hub.desk.require(who.session)
+        return {"said": await self._loop.order(OrderKind.MOVE, f"{posted.number} {posted.by}")}
+
+    async def _change(self, posted: RunPosted, who: Who) -> dict[str, Any]:
+        self._hub.desk.require(who.session)
+        worker = self._workers.for_whom(in_control=True)
+        async with self._changing:  # each change begins with what the one before has made
+            before = self._queued.plan(posted.number)
+            found = await worker.run(changed_plan, self._plans, before, posted)
+            said = await self._loop.order(OrderKind.CHANGE, plan=found.packed)
+            self._queued.change(found)
+        self._tell_plans()
+        return {"said": said, "plan": found.picture}
 
     async def _take(self, posted: TakePosted, who: Who) -> dict[str, Any]:
         self._hub.desk.take_over(who.session)

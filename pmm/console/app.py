@@ -192,6 +192,9 @@ def _routes(console: Console) -> list[BaseRoute]:
         "/api/plans/check": act.check,
         "/api/plans/queue": act.queue,
         "/api/plans/drop": act.drop,
+        "/api/plans/edit": act.edit,
+        "/api/plans/move": act.move,
+        "/api/plans/hold": act.hold,
         "/login": console.log_in,
     }
     return [

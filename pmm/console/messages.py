@@ -26,6 +26,8 @@ class OrderKind(StrEnum):
     ANSWER = "answer"  # to a question of the rig
     QUEUE = "queue"
     DROP = "drop"
+    CHANGE = "change"  # a queued plan, as it is from now on
+    MOVE = "move"  # a queued plan, by so many places
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,8 @@ class QueuedPlan:
         Those that are to be made: what the folder holds complete is left out.
     chooses
         Whether it is a design, whose runs are chosen one after the other.
+    held
+        Names of runs that are passed over until they are released.
     """
 
     number: int
@@ -49,6 +53,12 @@ class QueuedPlan:
     folder: Path
     runs: tuple[RunPlan, ...]
     chooses: bool = False
+    held: frozenset[str] = frozenset()
+
+    @property
+    def ready(self) -> bool:
+        """Whether any of its runs may be made: not all are held."""
+        return self.chooses or any(run.name not in self.held for run in self.runs)
 
 
 @dataclass(frozen=True)
@@ -60,6 +70,7 @@ class PackedPlan:
     folder: Path
     pieces: tuple[bytes, ...]
     chooses: bool = False
+    held: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -69,7 +80,7 @@ class LoopOrder:
     Attributes
     ----------
     text
-        A command's name, an answer, or the number of a queued plan.
+        A command's name, an answer, or the number of a queued plan and by how much it moves.
     question
         What an answer is to.
     quick_stops
@@ -83,6 +94,13 @@ class LoopOrder:
     question: str = ""
     plan: QueuedPlan | PackedPlan | None = None
     quick_stops: int = 0
+
+    @property
+    def queued(self) -> QueuedPlan:
+        """The plan that is queued or changed."""
+        if not isinstance(self.plan, QueuedPlan):
+            raise TypeError(f"{self.kind} without a plan")
+        return self.plan
 
 
 @dataclass(frozen=True)
@@ -261,7 +279,8 @@ def pack(plan: QueuedPlan) -> PackedPlan:
     wanted = {run.name for run in plan.runs}
     runs = [(run, run.name in wanted) for run in plan.plan.runs]
     pieces = tuple(pickle.dumps(runs[k : k + _PIECE]) for k in range(0, len(runs), _PIECE))
-    return PackedPlan(plan.number, replace(plan.plan, runs=()), plan.folder, pieces, plan.chooses)
+    bare = replace(plan.plan, runs=())
+    return PackedPlan(plan.number, bare, plan.folder, pieces, plan.chooses, plan.held)
 
 
 def unpack(packed: PackedPlan) -> QueuedPlan:
@@ -272,4 +291,4 @@ def unpack(packed: PackedPlan) -> QueuedPlan:
         time.sleep(_PAUSE_S)
     plan = replace(packed.plan, runs=tuple(one for one, _ in runs))
     chosen = tuple(one for one, wanted in runs if wanted)
-    return QueuedPlan(packed.number, plan, packed.folder, chosen, packed.chooses)
+    return QueuedPlan(packed.number, plan, packed.folder, chosen, packed.chooses, packed.held)

@@ -9,6 +9,9 @@ from pmm.console.requests import (
     AnswerPosted,
     CommandPosted,
     DropPosted,
+    EditPosted,
+    HoldPosted,
+    MovePosted,
     PlanPosted,
     Posted,
     TakePosted,
@@ -24,6 +27,9 @@ POSTS: Final[dict[str, tuple[type[Posted], str, bool]]] = {
     "/api/plans/check": (PlanPosted, "Read and check a plan; nothing is changed.", False),
     "/api/plans/queue": (PlanPosted, "Queue a plan.", True),
     "/api/plans/drop": (DropPosted, "Take a plan out of the queue.", True),
+    "/api/plans/edit": (EditPosted, "Change the settings of a run that is planned.", True),
+    "/api/plans/move": (MovePosted, "Move a run that is planned, or a plan that waits.", True),
+    "/api/plans/hold": (HoldPosted, "Pass a run or a plan over, or release it.", True),
 }
 GETS: Final = {
     "/api/plans": ("Names of the plans that are offered.", "names"),

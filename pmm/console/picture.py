@@ -1,6 +1,7 @@
 """From a rig and its run control to one frame."""
 
 import math
+from itertools import islice
 from typing import Final
 
 import numpy as np
@@ -8,8 +9,9 @@ import numpy as np
 from analysis.resolver.harmonics import Harmonics
 from hardware.description.arrays import FloatArray
 from hardware.rig import Rig
-from pmm.console.messages import Bus, ChannelInfo, Needles
-from pmm.plan.rig_file import RigFile
+from pmm.console.messages import Bus, ChannelInfo, Hello, Needles
+from pmm.console.traces import points_a_second
+from pmm.plan.rig_file import RigFile, is_simulated
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.live_path import header_channels
 from pmm.run.measurement import Measurement
@@ -32,6 +34,21 @@ def channels_of(rig: Rig, rig_file: RigFile) -> tuple[ChannelInfo, ...]:
             gauges.get(header_channel.name, header_channel.full_scale or math.nan),
         )
         for header_channel in header_channels(rig)
+    )
+
+
+def hello_of(rig: Rig, rig_file: RigFile, channels: tuple[ChannelInfo, ...], speed: float) -> Hello:
+    """Return what does not change; ``speed`` is that of the rig, in times the clock's."""
+    rate_hz = rig.configuration.sample_rate_hz
+    return Hello(
+        rig=rig_file.name,
+        rig_path=rig_file.path,
+        simulated=is_simulated(rig_file.hardware),
+        channels=channels,
+        sample_rate_hz=rate_hz,
+        trace_rate_hz=points_a_second(rate_hz)[1],
+        harmonics=HARMONICS,
+        speed=speed,
     )
 
 
@@ -65,8 +82,9 @@ def present_run(control: RunControl, status: RunStatus) -> RunPlan | None:
 
 def following(control: RunControl, status: RunStatus) -> tuple[str, ...]:
     """Return the names of the runs that come after that one."""
-    after = status.run_number
-    return tuple(run.name for run in control.runs[after : after + _FOLLOWING])
+    planned = control.planned
+    after = islice(planned.runs, status.run_number, None)
+    return tuple(islice((run.name for run in after if run.name not in planned.held), _FOLLOWING))
 
 
 class NeedleReader:

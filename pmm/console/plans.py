@@ -4,7 +4,7 @@ import hashlib
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime
 from pathlib import Path
 from typing import Any
@@ -14,13 +14,15 @@ from pmm.configuration import read_toml
 from pmm.console.encoding import number
 from pmm.console.limits import LARGEST_PLAN
 from pmm.console.messages import QueuedPlan
+from pmm.console.requests import EditPosted, HoldPosted, MovePosted, RunPosted
 from pmm.plan.checks import check_plan, require_possible
 from pmm.plan.duration import duration_rows
 from pmm.plan.findings import PlanFinding, PlanVerdict, largest_stated
 from pmm.plan.plan import Plan, read_plan_and_rig
-from pmm.plan.rig_file import RigFile
+from pmm.plan.rig_file import RigFile, read_rig_file
+from pmm.plan.run_changes import edited, moved
 from pmm.plan.run_plan import RunPlan
-from pmm.run.campaign_folder import chosen_runs, folder_of
+from pmm.run.campaign_folder import check_names, chosen_runs, folder_of
 
 _SHOWN = 60  # characters of a name that is no rig's
 
@@ -105,6 +107,41 @@ class Plans:
             (self.folder / name).write_text(text, encoding="utf-8")
         return self._possible(self._known(name))
 
+    def changed(self, plan: QueuedPlan, posted: RunPosted) -> CheckedPlan:
+        """Return a queued plan with what was posted changed in it.
+
+        Raises
+        ------
+        ConfigurationError, PlanRefusedError
+            If it has no such run, a plan could not say so, or the rig cannot run it.
+        """
+        if plan.chooses:
+            raise ConfigurationError(
+                f"{plan.plan.name}: its runs are chosen one after the other; choose among them "
+                "when they are proposed"
+            )
+        if posted.run:
+            check_names(plan.plan, [posted.run])
+        rig = read_rig_file(self.rig_path)
+        self._check_unchanged(rig)
+        runs, held = plan.plan.runs, plan.held
+        findings: tuple[PlanFinding, ...] = ()
+        if isinstance(posted, EditPosted):
+            settings = posted.model_dump(exclude={"number", "run"}, exclude_none=True)
+            (run,) = (one for one in runs if one.name == posted.run)
+            now = edited(run, settings, plan.plan)
+            findings = require_possible(replace(plan.plan, runs=(now,)), rig, _today())
+            runs = tuple(now if one is run else one for one in runs)
+        elif isinstance(posted, MovePosted):
+            runs = moved(runs, posted.run, posted.by)
+        elif isinstance(posted, HoldPosted):
+            names = {posted.run} if posted.run else {run.name for run in runs}
+            held = held | names if posted.held else held - names
+        made = {one.name for one in plan.runs}
+        left = tuple(one for one in runs if one.name in made)
+        waiting = replace(plan, plan=replace(plan.plan, runs=runs), runs=left, held=held)
+        return CheckedPlan(waiting, rig, findings, duration_rows(left, rig))
+
     def _check_rig(self, path: Path) -> None:
         """Hold the plan's rig against this console's; no file of another name is opened."""
         named = read_toml(path).get("rig", "rig.toml")
@@ -184,6 +221,7 @@ def plan_picture(found: CheckedPlan) -> dict[str, Any]:
         "folder": str(one.folder),
         "runs": [_run(run, s) for run, s in zip(one.runs, found.durations_s, strict=True)],
         "chooses": one.chooses,
+        "held": sorted(one.held),
         "complete": len(one.plan.runs) - len(one.runs),
         "refused": found.refused,
         "findings": [
@@ -201,6 +239,7 @@ def _run(run: RunPlan, duration_s: float) -> dict[str, Any]:
     return {
         "name": run.name,
         "kind": str(run.kind),
+        "motion": str(run.motion),
         "frequency_hz": number(point.frequency_hz),
         "eccentricity_m": number(point.eccentricity_m),
         "phase_rad": number(point.strut_phase_rad),
@@ -208,6 +247,7 @@ def _run(run: RunPlan, duration_s: float) -> dict[str, Any]:
         "medium": str(point.medium),
         "periods": run.max_periods,
         "duration_s": round(duration_s, 1),
+        "changed": run.changed,
     }
 
 

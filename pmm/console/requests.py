@@ -40,6 +40,37 @@ class DropPosted(Posted):
     number: int = Field(ge=1)
 
 
+class RunPosted(Posted):
+    """What is to be changed of a queued plan: of one of its runs, or of the whole plan."""
+
+    number: int = Field(ge=1)
+    run: str = Field(default="", max_length=200)
+
+
+class EditPosted(RunPosted):
+    """Other settings of a planned run; what is not given stays."""
+
+    run: str = Field(min_length=1, max_length=200)
+    frequency_hz: float | None = None
+    eccentricity_m: float | None = None
+    strut_phase_rad: float | None = None
+    carriage_speed_m_s: float | None = None
+    drift_rad: float | None = None
+    periods: int | None = None
+
+
+class MovePosted(RunPosted):
+    """By how many places a run, or a plan that waits, is moved: later, or earlier if negative."""
+
+    by: int = Field(ge=-10_000, le=10_000)
+
+
+class HoldPosted(RunPosted):
+    """Whether a run, or all of a plan, is passed over until it is released."""
+
+    held: bool
+
+
 class TakePosted(Posted):
     """The wish to have control, said in so many words."""
 

@@ -17,12 +17,12 @@ from pmm.console.limits import MOST_WAITING
 from pmm.console.link import Link
 from pmm.console.messages import Hello, LoopOrder, OrderKind, QueuedPlan, Reply
 from pmm.console.pacing import CountingPacer
-from pmm.console.picture import HARMONICS, channels_of
+from pmm.console.picture import channels_of, hello_of
+from pmm.console.plans_in_hand import PlansInHand
 from pmm.console.quick_stop import QuickStop
-from pmm.console.station_view import PlansInHand, StationView
-from pmm.console.traces import points_a_second
+from pmm.console.station_view import StationView
 from pmm.console.writing import Writer
-from pmm.plan.rig_file import RigFile, is_simulated
+from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.run.journal import Taps
 from pmm.run.measurement import Measurement
@@ -83,17 +83,7 @@ class Station:
 
     def hello(self) -> Hello:
         """Return what does not change."""
-        rate_hz = self._rig.configuration.sample_rate_hz
-        return Hello(
-            rig=self._rig_file.name,
-            rig_path=self._rig_file.path,
-            simulated=is_simulated(self._rig_file.hardware),
-            channels=self._channels,
-            sample_rate_hz=rate_hz,
-            trace_rate_hz=points_a_second(rate_hz)[1],
-            harmonics=HARMONICS,
-            speed=self._speed,
-        )
+        return hello_of(self._rig, self._rig_file, self._channels, self._speed)
 
     def step(self) -> None:
         """Take a quick stop, then orders; run a cycle; go on to the next plan if it is its turn."""
@@ -122,9 +112,11 @@ class Station:
             if self._idle and (self.control.finished or self.control.state is State.IDLE):
                 self._follow(self._campaign)
             return
-        if self._plans.present is not None and self.control.finished and not self._left:
+        if not self.control.finished:
+            return
+        if self._plans.present is not None and not self._left and not self.control.planned.held:
             self._writer.let_go(self._plans.present.number)
-        if self.control.finished and self._plans.waiting:
+        if self._plans.ready:
             self._next_plan(goes_on=self.control.state is State.DONE)
 
     def _follow(self, campaign: ChoosingCampaign) -> None:
@@ -142,10 +134,9 @@ class Station:
         self._plans.present = plan
         if self.control.state is State.DONE and self._recording is not None:
             self._recording.plan = plan.plan
-            self.control.add(plan.runs)
+            self.control.replan((*self.control.runs, *plan.runs))
             return
-        before, self.control = self.control, self._controlled(plan.runs)
-        self.control.follow(before)
+        self._anew(plan.runs)
         self.control.request(Command.START)
 
     def _end_campaign(self, how: str, kind: str = "plan") -> None:
@@ -184,17 +175,19 @@ class Station:
             raise RunStateError(
                 "there was a quick stop after this; give it again if you still mean it"
             )
-        if order.kind is OrderKind.COMMAND:
-            return self._command(Command(order.text))
-        if order.kind is OrderKind.ANSWER:
-            if not self._answers.give(order.question, order.text):
-                raise RunStateError("nobody asks this any more")
-            return "answered"
-        if order.kind is OrderKind.QUEUE and isinstance(order.plan, QueuedPlan):
-            return self._queue(order.plan)
-        if order.kind is OrderKind.DROP:
-            return self._drop(int(order.text))
-        raise RunStateError(f"{order.kind}: not known")
+        return {
+            OrderKind.COMMAND: lambda: self._command(Command(order.text)),
+            OrderKind.ANSWER: lambda: self._answer(order),
+            OrderKind.QUEUE: lambda: self._queue(order.queued),
+            OrderKind.DROP: lambda: self._drop(int(order.text)),
+            OrderKind.CHANGE: lambda: self._change(order.queued),
+            OrderKind.MOVE: lambda: self._move(*map(int, order.text.split())),
+        }[order.kind]()
+
+    def _answer(self, order: LoopOrder) -> str:
+        if not self._answers.give(order.question, order.text):
+            raise RunStateError("nobody asks this any more")
+        return "answered"
 
     def _command(self, command: Command) -> str:
         if command is Command.START and not self.control.runs:
@@ -214,9 +207,35 @@ class Station:
         self._plans.waiting.append(plan)
         what = "runs to be chosen" if plan.chooses else f"{len(plan.runs)} runs"
         self._view.notice("queue", f"{plan.plan.name}: {what}, queued")
-        if self._idle and not self._left and self._campaign is None:
-            self._next_plan(goes_on=False)
+        self._take_turns()
         return f"{plan.plan.name} is queued"
+
+    def _take_turns(self) -> None:
+        """Make the next plan the present one where nothing is under way; it waits for Start."""
+        if self._idle and not self._left and self._campaign is None and self._plans.ready:
+            self._next_plan(goes_on=False)
+
+    def _change(self, plan: QueuedPlan) -> str:
+        """Take a plan as it is from now on: other set-points, another order, runs held."""
+        before, over = self._plans.present, self.control.finished
+        now = self._plans.change(plan)
+        if self._plans.present is now:
+            try:
+                self.control.replan(now.runs, now.held)
+            except RunStateError:
+                self._plans.present = before
+                raise
+            if over and self._left and self.control.state is State.DONE:
+                self.control.request(Command.STOP)  # released at rest: Start begins it
+        self._view.notice("queue", f"{plan.plan.name}: changed")
+        self._take_turns()
+        return f"{plan.plan.name} is changed"
+
+    def _move(self, number: int, by: int) -> str:
+        """Let a plan that waits have its turn earlier or later."""
+        plan = self._plans.move(number, by)
+        self._view.notice("queue", f"{plan.plan.name}: moved in the queue")
+        return f"{plan.plan.name} is number {1 + self._plans.waiting.index(plan)} that waits"
 
     def _drop(self, number: int) -> str:
         if self._plans.present is not None and number == self._plans.present.number:
@@ -225,14 +244,11 @@ class Station:
             self._end_campaign("left")
             name, self._plans.present = self._plans.present.plan.name, None
             self._writer.let_go(number)
-            before, self.control = self.control, self._controlled(())
-            self.control.follow(before)
+            self._anew(())
         else:
-            found = [one for one in self._plans.waiting if one.number == number]
-            if not found:
-                raise RunStateError(f"no plan {number} waits")
-            name = found[0].plan.name
-            self._plans.waiting.remove(found[0])
+            plan = self._plans.waits(number)
+            name = plan.plan.name
+            self._plans.waiting.remove(plan)
             self._writer.let_go(number)
         self._view.notice("queue", f"{name}: taken out of the queue")
         return f"{name} is taken out"
@@ -242,37 +258,37 @@ class Station:
         return self.control.state in _READY and self.control.measurement is None
 
     @property
-    def _left(self) -> int:
-        """How many runs of the present plan are still to be made."""
-        return len(self.control.runs) - len(self.control.outcomes)
+    def _left(self) -> bool:
+        """Whether runs of the present plan are still to be made, those that are held apart."""
+        return bool(self.control.planned.left)
 
     def _next_plan(self, *, goes_on: bool) -> None:
         """Take the next plan; queueing at rest moves nothing: that is what Start is for."""
         goes_on = goes_on and self._plans.present is not None
         if self._left and self._plans.present is not None:
             return
-        self._plans.present = self._plans.waiting.popleft()
-        before, self.control = self.control, self._controlled(self._plans.present.runs)
-        self.control.follow(before)
-        if self._plans.present.chooses:
-            self._campaign = ChoosingCampaign(
-                self._plans.present, self._answers, self._link.tell, self._executor
-            )
+        plan = self._plans.take_next({one.run for one in self.control.outcomes})
+        self._anew(plan.runs)
+        if plan.chooses:
+            self._campaign = ChoosingCampaign(plan, self._answers, self._link.tell, self._executor)
             goes_on = False
-        self._view.notice(
-            "plan", f"{self._plans.present.plan.name} is next", plan=self._plans.present.number
-        )
+        self._view.notice("plan", f"{plan.plan.name} is next", plan=plan.number)
         if goes_on:
             self.control.request(Command.START)
 
+    def _anew(self, runs: tuple[RunPlan, ...]) -> None:
+        """Control runs where the control before has left the rig."""
+        before, self.control = self.control, self._controlled(runs)
+        self.control.follow(before)
+
     def _controlled(self, runs: tuple[RunPlan, ...]) -> RunControl:
+        present = self._plans.present
         control = RunControl(
             self._rig, self._rig_file, runs, self._begin, self._clock, self._view, self._executor
         )
+        control.planned.held = frozenset() if present is None else present.held
         self._view.begin()
-        self._recording = (
-            None if self._plans.present is None else self._recorded(self._plans.present)
-        )
+        self._recording = None if present is None else self._recorded(present)
         if self._recording is not None:
             control.free_bytes = self._recording.free_bytes
         return control

@@ -1,14 +1,12 @@
 """What browsers are told of run control: what is new at once, and a frame 25 times a second."""
 
-from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import Final
 
 from hardware.rig import Rig
 from pmm.console.answers import BrowserAnswers
 from pmm.console.link import Link
-from pmm.console.messages import Frame, Needles, Notice, QueuedPlan
+from pmm.console.messages import Frame, Needles, Notice
 from pmm.console.pacing import CountingPacer
 from pmm.console.picture import (
     NeedleReader,
@@ -18,6 +16,7 @@ from pmm.console.picture import (
     following,
     present_run,
 )
+from pmm.console.plans_in_hand import PlansInHand
 from pmm.console.traces import TraceBuffer
 from pmm.console.writing import Writer
 from pmm.recorder.live_path import header_channels
@@ -25,14 +24,6 @@ from pmm.run.run_control import RunControl
 from pmm.run.states import State
 
 TICK_S: Final = 0.04
-
-
-@dataclass
-class PlansInHand:
-    """The plan that is carried out, and those that wait for their turn."""
-
-    present: QueuedPlan | None = None
-    waiting: deque[QueuedPlan] = field(default_factory=deque)
 
 
 class StationView:

@@ -4,10 +4,12 @@ from collections.abc import Collection
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from hardware.description.errors import ConfigurationError
 from pmm.console.encoding import EncodedText, encode
-from pmm.console.messages import PackedPlan, pack
+from pmm.console.messages import PackedPlan, pack, unpack
 from pmm.console.pages import pages_in
 from pmm.console.plans import Plans, plan_picture
+from pmm.console.requests import RunPosted
 
 
 @dataclass(frozen=True)
@@ -35,6 +37,18 @@ def ready_plan(plans: Plans, name: str, text: str) -> ReadyPlan:
     return ReadyPlan(pack(found.waiting), EncodedText(encode(plan_picture(found))))
 
 
+def changed_plan(plans: Plans, packed: PackedPlan, posted: RunPosted) -> ReadyPlan:
+    """Return a queued plan with what was posted changed in it.
+
+    Raises
+    ------
+    ConfigurationError, PlanRefusedError
+        If that cannot be.
+    """
+    found = plans.changed(unpack(packed), posted)
+    return ReadyPlan(pack(found.waiting), EncodedText(encode(plan_picture(found))))
+
+
 def look_around(plans: Plans, folders: tuple[Path, ...]) -> tuple[list[str], dict[Path, list[str]]]:
     """Return the names of the plans, and the pages in each of the campaigns' folders."""
     return plans.names(), pages_in(folders)
@@ -43,8 +57,8 @@ def look_around(plans: Plans, folders: tuple[Path, ...]) -> tuple[list[str], dic
 class Queued:
     """Keeps plans by their numbers, which are never used twice.
 
-    A plan's picture has its runs, up to a megabyte. It is kept while the plan is under way or
-    waits, and until a frame tells of it; its folder is kept, for what was recorded there.
+    A plan has its runs, and its picture too, some megabytes. Both are kept while the plan is under
+    way or waits, and until a frame tells of it; its folder is kept, for what was recorded there.
     """
 
     def __init__(self) -> None:
@@ -55,13 +69,32 @@ class Queued:
     def add(self, plan: ReadyPlan) -> int:
         """Keep a plan that is about to be queued; return its number."""
         self._count += 1
-        self._plans[self._count] = replace(plan, packed=replace(plan.packed, pieces=()))
+        self._plans[self._count] = replace(plan, packed=replace(plan.packed, number=self._count))
         self._folders[plan.packed.folder] = None
         return self._count
 
     def drop(self, number: int) -> None:
         """Forget a plan that was refused or taken out of the queue."""
         self._plans.pop(number, None)
+
+    def plan(self, number: int) -> PackedPlan:
+        """Return a plan that is at hand.
+
+        Raises
+        ------
+        ConfigurationError
+            If there is none of that number.
+        """
+        found = self._plans.get(number)
+        if found is None:
+            known = ", ".join(map(str, self._plans)) or "none"
+            raise ConfigurationError(f"no plan {number} is in the queue; there are: {known}")
+        return found.packed
+
+    def change(self, plan: ReadyPlan) -> None:
+        """Keep a plan as it is from now on, if it is still at hand."""
+        if plan.packed.number in self._plans:
+            self._plans[plan.packed.number] = plan
 
     def at_hand(self, numbers: Collection[int]) -> None:
         """Forget the others, by what the latest frame tells of; it may not know the newest yet."""

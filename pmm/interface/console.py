@@ -15,6 +15,7 @@ from websockets.sync.client import connect as open_stream
 from websockets.typing import Origin
 
 from hardware.description.errors import ConfigurationError
+from pmm.interface.console_queue import QueueCalls
 from pmm.interface.console_requests import ConsoleRefusalError, ConsoleRequests, Message
 
 _STREAM_S: Final = 60.0  # until the console answers: it may have just been started
@@ -46,7 +47,7 @@ def connect(url: str, token: str = "", *, certificate: str | Path | None = None)
     return ConsoleClient(url, token, certificate)
 
 
-class ConsoleClient:
+class ConsoleClient(QueueCalls):
     """A console that is driven from Python; :func:`connect` opens it.
 
     It is one more browser to the console: the first that comes has control, another may take it.
@@ -59,7 +60,7 @@ class ConsoleClient:
     """
 
     def __init__(self, url: str, token: str, certificate: str | Path | None) -> None:
-        self._requests = ConsoleRequests(url.rstrip("/"), certificate)
+        super().__init__(ConsoleRequests(url.rstrip("/"), certificate))
         self._url = self._requests.url
         self._known: dict[str, Any] = {}
         self._news, self._gone = threading.Condition(), ""
@@ -100,31 +101,6 @@ class ConsoleClient:
         """The latest tick: state, run, gate, periods, set-point, axes, bus, question."""
         frame: Message = self._known.get("frame") or {}
         return frame
-
-    def plans(self) -> list[str]:
-        """Return the names of the plans that the console offers."""
-        names: list[str] = self._requests.ask("/api/plans")["names"]
-        return names
-
-    def check(self, plan: str | Path) -> Message:
-        """Return a plan's runs and what the checks find; nothing is changed.
-
-        Parameters
-        ----------
-        plan
-            One of :meth:`plans`; the text of one; or the ``Path`` of a file here.
-        """
-        checked: Message = self._requests.ask("/api/plans/check", _plan(plan))["plan"]
-        return checked
-
-    def queue(self, plan: str | Path) -> Message:
-        """Queue a plan, and return it as :meth:`check` does; nothing moves before a start."""
-        queued: Message = self._requests.ask("/api/plans/queue", _plan(plan))["plan"]
-        return queued
-
-    def drop(self, number: int) -> str:
-        """Take a plan out of the queue by its number, a key of ``known["plans"]``."""
-        return self._said("/api/plans/drop", {"number": number})
 
     def command(self, name: str) -> str:
         """Command ``start``, ``next``, ``hold``, ``reset``, ``stop`` or ``quick stop``."""
@@ -269,12 +245,3 @@ class ConsoleClient:
             name, part = _LISTS[kind]
             return {**known, name: [*known[name], message if part is None else message[part]]}
         return {**known, kind: message[kind] if kind in _PARTS else message}
-
-    def _said(self, path: str, body: Message) -> str:
-        return str(self._requests.ask(path, body)["said"])
-
-
-def _plan(plan: str | Path) -> dict[str, str]:
-    if isinstance(plan, Path):
-        return {"text": plan.read_text(encoding="utf-8")}
-    return {"text": plan} if "\n" in plan else {"name": plan}

@@ -48,6 +48,9 @@ class RunPlan:
         Names of the runs that tell the gauges' zero before and after; empty where there is none.
     entry
         Name of the plan's entry that the run comes from.
+    changed
+        What an operator changed of it in the queue, in words; empty where nothing. Such a run is
+        as it was decided then, whatever the plan's file says.
     """
 
     name: str
@@ -67,6 +70,7 @@ class RunPlan:
     zero_before: str = ""
     zero_after: str = ""
     entry: str = ""
+    changed: tuple[str, ...] = ()
 
     __pydantic_config__ = STRICT_TABLE
 

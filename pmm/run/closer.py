@@ -91,6 +91,7 @@ class Closer:
 
     def __init__(self, executor: Executor | None) -> None:
         self.outcomes: list[RunOutcome] = []
+        self._ended: set[str] = set()
         self.executor = executor
         self._closing: Closing | None = None
 
@@ -108,18 +109,21 @@ class Closer:
             c.measurement = None
         elif outcome is not RunEnd.COMPLETE and not self.ended(c.run):
             run = c.run
-            self.outcomes.append(
-                RunOutcome(run.name, str(run.kind), str(outcome), "", 0, (), (), None, reason)
-            )
+            kind, ended = str(run.kind), str(outcome)
+            self._keep(RunOutcome(run.name, kind, ended, "", 0, (), (), None, reason))
 
     def closed(self) -> RunOutcome | None:
         """Return how a run ended, once, in the cycle in which its recording is complete."""
         if self._closing is None or not self._closing.done():
             return None
         closing, self._closing = self._closing, None
-        self.outcomes.append(closing.result())
-        return self.outcomes[-1]
+        return self._keep(closing.result())
 
     def ended(self, run: RunPlan) -> bool:
         """Return whether a run has ended, however."""
-        return any(outcome.run == run.name for outcome in self.outcomes)
+        return run.name in self._ended
+
+    def _keep(self, outcome: RunOutcome) -> RunOutcome:
+        self.outcomes.append(outcome)
+        self._ended.add(outcome.run)
+        return outcome

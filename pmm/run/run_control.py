@@ -5,7 +5,7 @@ power off, the recording closed with what there is. Only an operator's reset lea
 nothing goes on by itself afterwards. The tables are in :mod:`pmm.run.states`.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from concurrent.futures import Executor
 from functools import partial
 from typing import TYPE_CHECKING, Final
@@ -21,6 +21,7 @@ from pmm.run.errors import RecordingError
 from pmm.run.fault_latch import FaultLatch
 from pmm.run.measurement import Measurement
 from pmm.run.phases import PHASES, enter
+from pmm.run.planned_runs import PlannedRuns
 from pmm.run.states import Command, RunStateError, State
 from pmm.run.status import Alarms, RunOutcome, RunStatus
 from pmm.run.stopper import Stopper
@@ -51,6 +52,8 @@ class RunControl:
 
     Attributes
     ----------
+    planned
+        The runs: begun, to be made, held.
     alarms
         What went wrong so far.
     taken
@@ -69,8 +72,7 @@ class RunControl:
         view: View,
         executor: Executor | None = None,
     ) -> None:
-        self.rig, self.runs = rig, tuple(runs)
-        self._numbers = {run.name: number for number, run in enumerate(self.runs, 1)}
+        self.rig = rig
         self.taken: Taken | None = None
         self.free_bytes: Callable[[], int | None] = lambda: None
         self._clock, self._view = clock, view
@@ -79,6 +81,7 @@ class RunControl:
         self._stopper = Stopper(c, self.alarms)
         self._faults = FaultLatch(c, self._stopper, self.alarms)
         self._closer = Closer(executor)
+        self.planned = PlannedRuns(runs, self._closer.ended)
         self._is_mute = False  # the recorder has failed in a fault, and is not tried again
         self._doing: Mapping[State, Callable[[], State | None]] = {
             **{state: partial(phase, c) for state, phase in PHASES.items()},
@@ -93,11 +96,22 @@ class RunControl:
         self._conduct.surroundings = before._conduct.surroundings
         self._conduct.rested_since = before._conduct.rested_since
 
-    def add(self, runs: Sequence[RunPlan]) -> None:
-        """Take runs that follow those that were made, in the state DONE; each axis is set anew."""
+    def replan(self, runs: Sequence[RunPlan], held: Collection[str] = ()) -> None:
+        """Take other runs than those still to be made, some of them held; axes are set anew.
+
+        Raises
+        ------
+        RunStateError
+            As :meth:`pmm.run.planned_runs.PlannedRuns.replan`.
+        """
+        under_way = self.state not in (*_FINAL, State.IDLE) or self._closer.busy
+        self.planned.replan(runs, held, self._conduct.run if under_way else None)
         self._conduct.placed.clear()
-        self.runs = (*self.runs, *runs)
-        self._numbers |= {run.name: n for n, run in enumerate(self.runs, 1)}
+
+    @property
+    def runs(self) -> tuple[RunPlan, ...]:
+        """All runs, in order."""
+        return self.planned.runs
 
     @property
     def state(self) -> State:
@@ -122,7 +136,7 @@ class RunControl:
     @property
     def finished(self) -> bool:
         """Whether nothing more happens without a command."""
-        more = self.state is State.DONE and bool(self._left)
+        more = self.state is State.DONE and bool(self.planned.left)
         settled = not self._closer.busy and self.measurement is None
         return self.state in _FINAL and not more and settled and not self._stopper.winding_down
 
@@ -183,7 +197,7 @@ class RunControl:
             time_s=number / c.rate_hz,
             run=run.name if run else "",
             kind=str(run.kind) if run else "",
-            run_number=self._numbers[run.name] if run else 0,
+            run_number=self.planned.number(run) if run else 0,
             run_count=len(self.runs),
             frequency_hz=run.set_point.frequency_hz if run else 0.0,
             gate=measurement.gate.state if measurement else RunStatus.gate,
@@ -230,7 +244,7 @@ class RunControl:
         if not self._stopper.at_rest():
             return None
         self._closer.close(c, c.ending)
-        if c.leaves_plan or all(one.name == c.present.name for one in self._left):
+        if c.leaves_plan or all(one.name == c.present.name for one in self.planned.left):
             self._stopper.power_off()
         return State.STOPPED if c.leaves_plan else State.DONE
 
@@ -247,23 +261,19 @@ class RunControl:
 
     def _go_on(self) -> State | None:
         """Take the next run once the last one's recording is closed."""
-        if self._closer.busy or not self._left:
+        if self._closer.busy or not self.planned.left:
             return None
-        self._conduct.take(self._left[0])
+        self._conduct.take(self.planned.left[0])
         return State.SETTING
-
-    @property
-    def _left(self) -> list[RunPlan]:
-        return [run for run in self.runs if not self._closer.ended(run)]
 
     def _start(self) -> None:
         if self._closer.busy:
             raise RunStateError(
                 "the last run's recording is still being completed; start again soon"
             )
-        if not self._left:
-            raise RunStateError("all runs are done; nothing to start")
-        self._conduct.take(self._left[0])
+        if not self.planned.left:
+            raise RunStateError("all runs are done or held; nothing to start")
+        self._conduct.take(self.planned.left[0])
         enter(self._conduct, State.HOMING)
 
     def _skip(self) -> None:

@@ -94,7 +94,7 @@ class Sources:
 
     def _plan_changes(self, run: RunPlan) -> Iterator[str]:
         now, name = self._planned.get(run.name), self._plan.path.name
-        if self._plan.grows:
+        if self._plan.grows or run.changed:
             return
         if now is None:
             yield f"{name} has no run {run.name!r} any more"

@@ -187,7 +187,7 @@ def carry_out(
         while (following := loop.following(course)) is not None:
             jobs.append(following)
             recording.plan = following.plan
-            control.add(following.runs)
+            control.replan((*control.runs, *following.runs))
             loop.make(following)
         fault = "" if control.fault is None else str(control.fault)
         return RunReport(control.outcomes, interrupts.count > 0, fault)

@@ -1,6 +1,7 @@
 // The console: takes the stream, draws once per animation frame, and posts what the operator wants.
 import { Coefficients, Finished } from "./finished.js";
 import { Plans } from "./plans.js";
+import { Queue } from "./queue.js";
 import { Readings } from "./readings.js";
 import { Alarms, Facts, showProgress, showState } from "./status.js";
 import { Stream, post } from "./stream.js";
@@ -28,8 +29,8 @@ function draw() {
   if (figures || !shown) {
     shown = true;
     facts.show({ ...frame, priority });
-    showProgress(frame, plans.known);
-    plans.show(frame);
+    showProgress(frame, queue.plans);
+    queue.show(frame, holder === "you");
   }
   until.show(frame, holder === "you");
   showQuestion(frame);
@@ -105,7 +106,7 @@ function begin(snapshot) {
   finished.begin(snapshot.hello, snapshot.finished);
   coefficients.take(snapshot.figures);
   alarms.begin(snapshot.notices);
-  plans.take(snapshot.plans);
+  queue.take(snapshot.plans);
   until.take(snapshot.campaign);
   showDesk(snapshot.desk);
   if (snapshot.needles) readings.show(snapshot.needles);
@@ -120,7 +121,7 @@ const stream = new Stream({
   missed,
   desk: showDesk,
   notice: (one) => alarms.add(one),
-  plans: (one) => plans.take(one.plans),
+  plans: (one) => queue.take(one.plans),
   campaign: (one) => until.take(one.campaign),
   finished: (one) => {
     finished.add(one.entry);
@@ -135,6 +136,7 @@ const stream = new Stream({
   },
 });
 const plans = new Plans(stream);
+const queue = new Queue(stream, say, finished);
 const until = new Until(stream, say);
 
 commands.forEach((one) => one.addEventListener("click", () => command(one.dataset.command)));

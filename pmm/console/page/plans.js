@@ -5,7 +5,6 @@ import { post } from "./stream.js";
 export class Plans {
   constructor(stream) {
     this.stream = stream;
-    this.known = {};
     byId("plan-form").addEventListener("submit", (event) => {
       event.preventDefault();
       this.send(event.submitter?.dataset.do ?? "check");
@@ -49,22 +48,5 @@ export class Plans {
     const done = plan.complete ? `, ${plan.complete} complete already` : "";
     const first = html("p", {}, `${said ?? (plan.refused ? "the rig cannot run it" : "it can be run")}: ${plan.runs.length} runs${done}, at most ${minutes} min, to ${plan.folder}`);
     return [first, ...plan.findings.map((one) => html("p", { "data-verdict": one.verdict }, one.run ? `${one.run}: ${one.message}` : one.message))];
-  }
-
-  take(plans) { this.known = plans; this.key = ""; }
-
-  show(frame) {
-    const numbers = [frame.plan, ...frame.queue].filter((one) => this.known[one]);
-    const key = numbers.join() + (frame.run_number ? "u" : "");
-    if (key === this.key) return;
-    this.key = key;
-    byId("queue").replaceChildren(...numbers.map((one, k) => {
-      const button = html("button", { class: "small" }, "Take out");
-      button.addEventListener("click", async () => {
-        const answer = await post(this.stream, "/api/plans/drop", { number: one });
-        text(byId("plan-said"), answer.ok ? answer.said : answer.error);
-      });
-      return html("li", {}, `${this.known[one].name}, ${this.known[one].chooses ? "a design" : `${this.known[one].runs.length} runs`} ${k || frame.plan !== one ? "(waits) " : ""}`, button);
-    }));
   }
 }

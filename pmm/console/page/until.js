@@ -1,4 +1,5 @@
 // A campaign that chooses its runs: what is known, what is proposed, and the operator's answer.
+import { movable } from "./order.js";
 import { attribute, byId, html, text } from "./svg.js";
 import { post } from "./stream.js";
 
@@ -38,7 +39,7 @@ export class Until {
 
   draw(focus) {
     byId("proposed").replaceChildren(...this.order.map((number) => this.item(number)));
-    if (focus) byId("proposed").querySelector(`[data-number="${focus}"]`)?.focus();
+    if (focus) byId("proposed").querySelector(`[data-key="${focus}"]`)?.focus();
     this.enable();
   }
 
@@ -47,23 +48,8 @@ export class Until {
     const away = html("button", { class: "small", "aria-label": `Leave out ${one.what}` }, "Leave out");
     away.addEventListener("click", () => this.leaveOut(number));
     const why = one.why ? [html("small", {}, one.why)] : [];
-    const item = html("li", { draggable: "true", tabindex: "0", "data-number": number }, `${one.what}, ${one.time} `, away, ...why);
-    item.addEventListener("keydown", (event) => this.pressed(event, number));
-    item.addEventListener("dragstart", (event) => event.dataTransfer.setData("text/plain", String(number)));
-    item.addEventListener("dragover", (event) => event.preventDefault());
-    item.addEventListener("drop", (event) => {
-      event.preventDefault();
-      this.move(Number(event.dataTransfer.getData("text/plain")), this.order.indexOf(number));
-    });
-    return item;
-  }
-
-  pressed(event, number) {
-    const step = { ArrowUp: -1, ArrowDown: 1 }[event.key];
-    if (event.key === "Delete") this.leaveOut(number);
-    else if (step && event.altKey) this.move(number, this.order.indexOf(number) + step);
-    else return;
-    event.preventDefault();
+    return movable(number, { order: () => this.order, move: (dragged, to) => this.move(dragged, to), remove: (left) => this.leaveOut(left) },
+      `${one.what}, ${one.time} `, away, ...why);
   }
 
   move(number, to) {

@@ -17,6 +17,9 @@ _RIGHT = {
     "/api/plans/check": {"name": "plan.toml"},
     "/api/plans/queue": {"name": "plan.toml"},
     "/api/plans/drop": {"number": 1},
+    "/api/plans/edit": {"number": 1, "run": "heave-f1", "frequency_hz": 1.1},
+    "/api/plans/move": {"number": 1, "run": "heave-f1", "by": -1},
+    "/api/plans/hold": {"number": 1, "held": True},
 }
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import count, pairwise
 from pathlib import Path
 
@@ -276,5 +276,80 @@ def test_what_was_ordered_before_a_quick_stop_does_not_move_the_rig_after_it(
         assert not reply.done
         assert "there was a quick stop after this" in reply.text
         assert one.order(OrderKind.COMMAND, "start").done
+        one.quick_stop.press()
+        one.until(State.STOPPED)
+
+
+def test_runs_that_are_held_are_passed_over_and_released_at_rest_wait_for_start(
+    tmp_path: Path,
+) -> None:
+    with _shown(tmp_path) as one:
+        runs = (_short("a"), _short("b"))
+        one.queue(1, "plan", *runs)
+        plan = one.station._plans.present
+        assert plan is not None
+        assert one.order(OrderKind.CHANGE, plan=replace(plan, held=frozenset("a"))).done
+        one.order(OrderKind.COMMAND, "start")
+        one.until(State.GATE_OPEN)
+        assert one.station.control.status().run == "b"
+        one.until(State.DONE)
+        for _ in range(50):
+            one.station.step()
+        assert one.station.control.finished
+        assert one.order(OrderKind.CHANGE, plan=plan).done
+        for _ in range(300):
+            one.station.step()
+        assert one.station.at_rest
+        assert len(one.station.control.outcomes) == 1
+        one.order(OrderKind.COMMAND, "start")
+        one.until(State.GATE_OPEN)
+        assert one.station.control.status().run == "a"
+        one.quick_stop.press()
+        one.until(State.STOPPED)
+
+
+def test_a_plan_whose_runs_are_held_gives_way_and_makes_none_of_them_twice(tmp_path: Path) -> None:
+    with _shown(tmp_path) as one:
+        one.queue(1, "plan", _short("a"), _short("b"))
+        whole = one.station._plans.present
+        assert whole is not None
+        one.order(OrderKind.CHANGE, plan=replace(whole, held=frozenset("b")))
+        one.queue(2, "other", _short("c"))
+        one.order(OrderKind.COMMAND, "start")
+        for _ in range(20000):
+            one.station.step()
+            if len(one.heard.notices("outcome")) == 2 and one.station.at_rest:
+                break
+        assert one.heard.notices("outcome") == ["a, complete", "c, complete"]
+        for _ in range(50):
+            one.station.step()
+        assert one.order(OrderKind.CHANGE, plan=whole).done  # as the server has it: a with it
+        assert one.station.at_rest
+        one.order(OrderKind.COMMAND, "start")
+        one.until(State.GATE_OPEN)
+        assert one.station.control.status().run == "b"
+        one.quick_stop.press()
+        one.until(State.STOPPED)
+
+
+def test_a_run_that_has_begun_is_no_other_any_more(tmp_path: Path) -> None:
+    with _shown(tmp_path) as one:
+        one.queue(1, "plan", _short("a"), _short("b"))
+        plan = one.station._plans.present
+        assert plan is not None
+        one.order(OrderKind.COMMAND, "start")
+        one.until(State.SETTING)
+        a, b = plan.runs
+        for runs, held, why in (
+            ((replace(a, periods=3), b), "", "a has begun"),
+            ((b, a), "", "nothing changes"),
+            ((a, b), "a", "nothing changes"),
+        ):
+            refused = one.order(
+                OrderKind.CHANGE, plan=replace(plan, runs=runs, held=frozenset(held))
+            )
+            assert not refused.done
+            assert why in refused.text
+        assert one.station._plans.present == plan
         one.quick_stop.press()
         one.until(State.STOPPED)

@@ -1,0 +1,83 @@
+"""The plan that is carried out and those that wait, as the loop has them."""
+
+from collections.abc import Collection
+from dataclasses import dataclass, field, replace
+
+from pmm.console.messages import QueuedPlan
+from pmm.run.planned_runs import UNCHANGED
+from pmm.run.states import RunStateError
+
+
+@dataclass
+class PlansInHand:
+    """The plan that is carried out, and those that wait for their turn."""
+
+    present: QueuedPlan | None = None
+    waiting: list[QueuedPlan] = field(default_factory=list)
+
+    @property
+    def ready(self) -> bool:
+        """Whether a plan that waits has runs that are not held."""
+        return any(one.ready for one in self.waiting)
+
+    def take_next(self, ended: Collection[str]) -> QueuedPlan:
+        """Make the first plan that is ready the present one, and return it.
+
+        The one before waits again, before all others, where it has runs that are held.
+
+        Parameters
+        ----------
+        ended
+            Names of the present plan's runs that have ended.
+        """
+        before = self.present
+        now = self.present = next(one for one in self.waiting if one.ready)
+        self.waiting.remove(now)
+        if before is not None and not before.chooses:
+            held = tuple(run for run in before.runs if run.name not in ended)
+            self.waiting[:0] = [replace(before, runs=held)] if held else []
+        return now
+
+    def waits(self, number: int) -> QueuedPlan:
+        """Return a plan that waits.
+
+        Raises
+        ------
+        RunStateError
+            If none of that number does.
+        """
+        found = [one for one in self.waiting if one.number == number]
+        if not found:
+            raise RunStateError(f"no plan {number} waits")
+        return found[0]
+
+    def move(self, number: int, by: int) -> QueuedPlan:
+        """Let a plan that waits have its turn later by so many places, earlier where negative."""
+        plan = self.waits(number)
+        place = self.waiting.index(plan)
+        self.waiting.remove(plan)
+        self.waiting.insert(max(0, place + by), plan)
+        return plan
+
+    def change(self, plan: QueuedPlan) -> QueuedPlan:
+        """Take a plan as it is from now on, and return it without the runs that were left out.
+
+        Those had ended when the plan had its turn before.
+
+        Raises
+        ------
+        RunStateError
+            If nothing of it changes, or there is no such plan.
+        """
+        present = self.present
+        is_present = present is not None and present.number == plan.number
+        own = present if is_present and present is not None else self.waits(plan.number)
+        known = {run.name for run in own.runs}
+        now = replace(plan, runs=tuple(run for run in plan.runs if run.name in known))
+        if (now.runs, now.held) == (own.runs, own.held):
+            raise RunStateError(UNCHANGED)
+        if is_present:
+            self.present = now
+        else:
+            self.waiting[self.waiting.index(own)] = now
+        return now

@@ -1,0 +1,73 @@
+"""The queue on the page: runs edited, moved and held by mouse and keys, as its console has them."""
+
+from pathlib import Path
+from typing import Any
+
+from selenium.webdriver import ActionChains
+from selenium.webdriver.common.keys import Keys
+
+import pmm
+from tests.pmm.console.chromium import Browser, console, needed, plan, rig_in
+
+pytestmark = needed
+THREE = plan("three", periods=4).replace("= 1.0", "= [1.0, 1.1, 1.2]")
+
+
+def _runs(page: Browser) -> list[str]:
+    """Return the runs as the page lists them, without their buttons."""
+    return list(page.run(
+        "return [...document.querySelectorAll('#queue ol li')].map((one) => one.firstChild.data)"
+    ))  # fmt: skip
+
+
+def _press(page: Browser, label: str) -> None:
+    page.click(f"#queue [aria-label='{label}']")
+
+
+def test_runs_are_edited_moved_and_held_on_the_page(tmp_path: Path, chromium: Browser) -> None:
+    with (
+        console(rig_in(tmp_path / "rig"), tmp_path / "out", "--speed", "8") as one,
+        chromium.window() as page,
+        pmm.connect(one.address) as watcher,
+    ):
+        page.open(one.address)
+        page.click("#take")
+        page.click("#take-dialog button")
+        page.until(lambda: "You have control" in page.text("#desk"), "control")
+        page.queue(THREE)
+        page.queue(plan("later"))
+        page.until(lambda: "later, 1 runs (waits)" in page.text("#queue"), "the queue")
+        page.click("#queue summary")
+        first = ["run-f1-a20: 1 Hz, 20 mm, 4 periods ", "run-f1.1-a20: 1.1 Hz, 20 mm, 4 periods "]
+        assert _runs(page)[:2] == first
+
+        page.run("document.querySelector('#queue ol li').focus()")
+        keys = ActionChains(page.driver).key_down(Keys.ALT).send_keys(Keys.ARROW_DOWN)
+        keys.key_up(Keys.ALT).perform()
+        page.until(lambda: _runs(page)[:2] == first[::-1], "the run one further down")
+        assert page.run("return document.activeElement.dataset.key") == "run-f1-a20"
+        ActionChains(page.driver).send_keys(Keys.DELETE).perform()
+        page.until(lambda: _runs(page)[1].endswith("4 periods, held "), "a run that is held")
+
+        _press(page, "Edit run-f1.2-a20")
+        field = page.find("#queue form [name='frequency_hz']")
+        field.clear()
+        field.send_keys("9", Keys.ENTER)
+        page.until(lambda: "Hz" in page.text("#said") and "9" in page.text("#said"), "a refusal")
+        assert page.find("#said").get_attribute("data-tone") == "refused"
+        field.clear()
+        field.send_keys("1.25", Keys.ENTER)
+        page.until(lambda: "frequency_hz 1.2 -> 1.25" in page.text("#queue"), "another frequency")
+
+        _press(page, "Hold later")
+        page.until(lambda: "(held)" in page.text("#queue"), "a plan that is held")
+        told: dict[str, Any] = dict(watcher.known["plans"])
+        assert told["1"]["held"] == ["run-f1-a20"]
+        assert told["2"]["held"] == ["run-f1-a20"]
+        assert [run["frequency_hz"] for run in told["1"]["runs"]] == [1.1, 1.0, 1.25]
+        page.press("start")
+        page.until(lambda: "2 so far" in page.text("#finished-count"), "the runs not held")
+        assert [run["run"] for run in watcher.known["finished"]] == ["run-f1.1-a20", "run-f1.2-a20"]
+        _press(page, "Take out later")
+        page.until(lambda: "later" not in page.text("#queue"), "a plan that is taken out")
+        assert not [text for text in page.complaints() if "SEVERE" in text and "409" not in text]
