@@ -5,8 +5,7 @@ from pathlib import Path
 import click
 
 from pmm.cli.options import JSON, LEVEL, PLOT
-
-DEFAULT_DRAWS = 500
+from pmm.manoeuvre.defaults import DRAWS
 
 
 @click.command()
@@ -15,7 +14,7 @@ DEFAULT_DRAWS = 500
 @click.option(
     "--trials",
     type=click.IntRange(min=0),
-    default=DEFAULT_DRAWS,
+    default=DRAWS,
     show_default=True,
     metavar="N",
     help="Draws of the derivatives behind the intervals; 0 for none.",

@@ -26,8 +26,8 @@ def report(**options: Any) -> None:
 
     Tables with intervals, figures over frequency and amplitude, the budget of each coefficient,
     checks between runs, what was flagged, and where all of it comes from: versions, hashes and
-    configuration; propeller and rudder where the folder has steering.toml. Options and settings are
-    those of `pmm coefficients`.
+    configuration; propeller and rudder where the folder has steering.toml, manoeuvres where it has
+    ship.toml. Options and settings are those of `pmm coefficients`.
 
     \b
     pmm report campaign/ --system prime --output campaign.html
@@ -39,6 +39,7 @@ def report(**options: Any) -> None:
     from pmm.coefficients.request import campaign_folder
     from pmm.document.page import write_page
     from pmm.report.coefficients_document import report_document
+    from pmm.report.manoeuvre_document import manoeuvre_story
     from pmm.report.sequential_document import story
     from pmm.report.steering_document import steering_story
 
@@ -49,8 +50,10 @@ def report(**options: Any) -> None:
     command = shlex.join([Path(program()).name, *sys.argv[1:]])
     folders = [campaign_folder(one) for one in options["campaigns"]]
     stories = [one for pair in zip(folders, outcome.names, strict=True) for one in story(*pair)]
-    stories += [one for folder in folders for one in steering_story(folder, outcome.result.level)]
+    level = outcome.result.level
     with busy("drawing the page"):
+        for folder in folders:
+            stories += [*steering_story(folder, level), *manoeuvre_story(folder, level)]
         write_page(
             report_document(outcome, stories), path, title=title, command=command, read=files
         )

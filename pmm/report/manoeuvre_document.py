@@ -3,11 +3,14 @@
 import math
 from collections.abc import Callable, Iterator
 from functools import partial
+from pathlib import Path
 from typing import Final
 
+from hardware.description.errors import PmmError
 from pmm.coefficients.settings import ShipTable
 from pmm.document.content import (
     Column,
+    Content,
     Data,
     Document,
     Figure,
@@ -19,10 +22,11 @@ from pmm.document.content import (
     word,
 )
 from pmm.document.notation import NOT_KNOWN, between, counted, written
-from pmm.manoeuvre.prediction import LOOP, Prediction
+from pmm.manoeuvre.defaults import DRAWS, SHIP_FILE
+from pmm.manoeuvre.prediction import LOOP, Prediction, predict
 from pmm.manoeuvre.quantity import ManoeuvreQuantity
-from pmm.manoeuvre.ship_file import SubmergedFile
-from pmm.manoeuvre.submerged import DepthKeeping
+from pmm.manoeuvre.ship_file import SubmergedFile, read_ship
+from pmm.manoeuvre.submerged import DepthKeeping, depth_keeping
 from pmm.report.conditions import conditions_table
 from pmm.report.manoeuvre_figures import spiral_figure, turning_figure, zigzag_figure
 
@@ -47,21 +51,34 @@ def manoeuvre_document(found: Prediction) -> Document:
         found.file.name,
         "manoeuvres",
         (
-            Section(
-                "",
-                (
-                    Text(tuple(_head(found))),
-                    _doubts(found),
-                    _table(found),
-                    _criteria(found),
-                    _at(found),
-                ),
-            ),
+            Section("", _contents(found)),
             Section("Figures", tuple(figures(found))),
             Section("", (Data("rate_hz", float(found.ship.rate_hz[0])),)),
         ),
         SCHEMA,
     )
+
+
+def manoeuvre_story(folder: Path, level: float) -> Iterator[Section]:
+    """Yield a report's section on the ship of a campaign that has ``ship.toml`` in its folder."""
+    path = folder / SHIP_FILE
+    if not path.exists():
+        return
+    try:
+        file = read_ship(path)
+        if isinstance(file, SubmergedFile):
+            yield Section("Depth keeping", _depth(depth_keeping(file, DRAWS, 0, level)))
+            return
+        found = predict(file, DRAWS, 0, level, lambda _: None)
+    except PmmError as error:
+        yield Section("Manoeuvres", (Notes([Note("warning", str(error))]),))
+        return
+    yield Section("Manoeuvres", (*_contents(found), *figures(found)))
+
+
+def _contents(found: Prediction) -> tuple[Content, ...]:
+    head = Text(tuple(_head(found)))
+    return head, _doubts(found), _table(found), _criteria(found), _at(found)
 
 
 def figures(found: Prediction) -> Iterator[Figure]:
@@ -106,13 +123,16 @@ def _full(one: ManoeuvreQuantity) -> str:
 
 def depth_document(found: DepthKeeping) -> Document:
     """Return what was found of a body below the surface."""
+    return Document(found.file.name, "depth keeping", (Section("", _depth(found)),), SCHEMA)
+
+
+def _depth(found: DepthKeeping) -> tuple[Content, ...]:
     file = found.file
     head = (
         f"roots at {file.speed_m_s:g} m/s; weight and buoyancy are taken as equal",
         f"intervals from {counted(found.draws, 'draw')} of the derivatives",
     )
-    contents = (Text(head), _doubts(found), _table(found), Text(tuple(_said(found))), _at(found))
-    return Document(file.name, "depth keeping", (Section("", contents),), SCHEMA)
+    return Text(head), _doubts(found), _table(found), Text(tuple(_said(found))), _at(found)
 
 
 def _doubts(found: Prediction | DepthKeeping) -> Notes:

@@ -5,6 +5,7 @@ import math
 import re
 from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +19,8 @@ from analysis.manoeuvring.manoeuvres import turning_circle, zigzag
 from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.oscillator import Plane
 from pmm.cli import cli
-from pmm.manoeuvre.prediction import ship_of
+from pmm.document.content import Figure, Table
+from pmm.manoeuvre.prediction import Prediction, predict, ship_of
 from pmm.manoeuvre.ship_file import (
     BodyTable,
     PlaneTable,
@@ -29,6 +31,7 @@ from pmm.manoeuvre.ship_file import (
     read_ship,
 )
 from pmm.manoeuvre.submerged import body_of
+from pmm.report.manoeuvre_document import manoeuvre_story
 from tests.analysis.manoeuvring.published import kcs
 
 ROOT = Path(__file__).parents[3]
@@ -54,10 +57,25 @@ Rows = dict[tuple[str, str], dict[str, float]]
 
 
 @pytest.fixture(scope="module")
-def rows() -> Rows:
-    """The example's quantities by manoeuvre and name."""
-    status, output = _run(str(EXAMPLE), "--trials", "40", "--json")
+def predicted() -> tuple[str, Prediction]:
+    """What the command prints of the example, and what it made that of."""
+    kept: list[Prediction] = []
+
+    def keeping(*arguments: Any) -> Prediction:
+        kept.append(predict(*arguments))
+        return kept[0]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("pmm.manoeuvre.prediction.predict", keeping)
+        status, output = _run(str(EXAMPLE), "--trials", "40", "--json")
     assert status == 0, output
+    return output, kept[0]
+
+
+@pytest.fixture(scope="module")
+def rows(predicted: tuple[str, Prediction]) -> Rows:
+    """The example's quantities by manoeuvre and name."""
+    output, _ = predicted
     found = json.loads(output[output.index("{") :])
     assert found["schema"] == "pmm-manoeuvre-1"
     (row,) = found["conditions"]
@@ -258,3 +276,24 @@ def test_doubts_stand_before_the_results_of_the_command(tmp_path: Path) -> None:
     told = json.loads(_run(str(tmp_path / "ship.toml"), "--trials", "0", "--json")[1])["doubts"]
     assert len(told) == 6  # mass, and by it inertia, added mass and three derivatives
     assert json.loads(_run(str(SUBMERGED), "--trials", "0", "--json")[1])["doubts"] == []
+
+
+def test_a_report_has_the_manoeuvres_of_the_ship_beside_its_campaign(
+    predicted: tuple[str, Prediction], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("pmm.report.manoeuvre_document.predict", lambda *_: predicted[1])
+    assert list(manoeuvre_story(tmp_path, 0.95)) == []
+    _written(tmp_path, TEXT)
+    (section,) = manoeuvre_story(tmp_path, 0.95)
+    tables = [one for one in section.contents if isinstance(one, Table)]
+    (advance,) = [
+        row
+        for row in tables[0].rows
+        if (row.manoeuvre, row.name) == ("turning circle 35°, port", "advance")
+    ]
+    assert advance.value == pytest.approx(3.09, abs=0.005)  # as docs/manoeuvre.md has it
+    pictures = [one.name for one in section.contents if isinstance(one, Figure)]
+    assert pictures == ["turning", "zigzag", "spiral"]
+    _written(tmp_path, SUBMERGED.read_text(encoding="utf-8"))
+    (section,) = manoeuvre_story(tmp_path, 0.95)
+    assert section.title == "Depth keeping"

@@ -180,11 +180,13 @@ def test_what_is_left_out_is_named_and_what_would_tell_the_rest(tows: Path, tmp_
 def test_the_report_has_them_where_the_folder_has_the_file(tows: Path, tmp_path: Path) -> None:
     folder = _of_few_runs(tows, tmp_path / "told")
     shutil.copy(SETTINGS, folder)
+    (folder / "ship.toml").write_text("speed_m_s = 1.0\n", encoding="utf-8")
     ran = pmm("report", folder)
     assert ran.exit_code == 0, ran.output
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert "flow straightening, bow to port" in page
     assert "slope is 1 - t_P" in page
+    assert "propeller is missing" in page
     (folder / "steering.toml").write_text("length_m = 0.0\n", encoding="utf-8")
     (section,) = steering_story(folder, 0.95)
     (notes,) = section.contents
