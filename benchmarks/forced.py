@@ -20,8 +20,8 @@ from tests.analysis.gap.pendulum.driven_bodies import DAMPING, STIFFNESS, Made, 
 
 _RUNS: Final = ((0.4, 30.0), (0.6, 30.0), (0.6, 10.0), (0.9, 30.0))  # Hz, N
 _KNOWN: Final = {"restoring": 2e-3, "damping": 0.02, "force": 2e-3}
-_NULLS: Final = 12
-_EACH: Final = 3
+_NULLS: Final = 60
+_EACH: Final = 10
 _SURE: Final = 0.9
 # Field of the body, sizes between which its logarithm is even, and what acts alike.
 _CAUSES: Final = {

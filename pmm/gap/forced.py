@@ -76,7 +76,7 @@ def _run(
     rate_hz = (pushed.time_s.size - 1) / float(np.ptp(pushed.time_s))
     period_s = rough_period(pushed.name, pushed.values - np.nanmean(pushed.values), rate_hz)
     force = KnownForce.of(pushed.name, pushed.time_s, pushed.values, period_s)
-    if float(np.nanmax(force.seen[0]) - np.nanmin(force.seen[0])) > _UNSTEADY:
+    if force.changes > _UNSTEADY:
         raise DataError(
             f"{pushed.name}: its amplitude changes by more than {100 * _UNSTEADY:.0f} % within the "
             f"gate of run {one.name!r}; state from_s and to_s where it is steady"
@@ -121,7 +121,7 @@ def _seen(one: ForcedTable, body: Floating, force: KnownForce, seen: _Gate) -> D
     samples = round(rate_hz * force.windows.length_s / force.windows.swings)
     trial = DrivenTrial(
         name, bench, coordinate.name, force.windows, found, scatter(found), run=one.name,
-        samples=samples,
+        samples=samples, grows_rad_s=force.grows_rad_s,
     )  # fmt: skip
     if not np.isfinite(found[0]).any():
         raise DataError(

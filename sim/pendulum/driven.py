@@ -104,8 +104,11 @@ def _linear(body: DrivenBody) -> ComplexArray:
     return np.asarray(np.array(body.force.harmonics) / impedance(body, orders), np.complex128)
 
 
-def impedance(body: DrivenBody, orders: FloatArray) -> ComplexArray:
-    """Return force over displacement at some orders of the force, but for what is not linear."""
+def impedance(body: DrivenBody, orders: FloatArray | ComplexArray) -> ComplexArray:
+    """Return force over displacement at some orders of the force, but for what is not linear.
+
+    An order may be complex: ``1 - i s/w`` is that of a force that grows with ``exp(s t)``.
+    """
     omega = body.force.omega_rad_s * orders
     mass, stiffness = float(body.mass[0, 0]), body.restoring
     least = 0.0

@@ -2,20 +2,28 @@
 
 The motion is that to which the body settles under the force's harmonics
 (:mod:`sim.pendulum.driven`). What is observed is the response: each window's amplitude and phase
-are taken against those of the force in the same window, so that of a wave that varies slowly only
-what the body remembers does harm. A window of a run is what a window of swings is in a decay.
+are taken against those of the force in the same window. A force that grows evenly or turns is
+followed as exp(s t) is, at a complex s: so the body's memory does no harm, but for what varies
+faster. A window of a run is what a window of swings is in a decay.
 """
 
 import cmath
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar, cast
 
 import numpy as np
+from numpy.polynomial import Polynomial
 
-from analysis.gap.pendulum.swings import KINDS, Windows, cut_into_windows, swings_of_samples
+from analysis.gap.pendulum.swings import (
+    FEWEST_WINDOWS,
+    KINDS,
+    Windows,
+    cut_into_windows,
+    swings_of_samples,
+)
 from analysis.gap.pendulum.trial import Trial
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.errors import DataError
@@ -39,9 +47,13 @@ class DrivenTrial(Trial):
     ----------
     samples
         Of the record in a period of the force.
+    grows_rad_s
+        What the force does besides: growth of its logarithm, and 1j times how fast its phase
+        leads on, in each window; shape ``(windows,)``, none where left out.
     """
 
     samples: int = 100
+    grows_rad_s: ComplexArray = field(default_factory=lambda: np.zeros(1, np.complex128))
 
     driven: ClassVar[bool] = True
 
@@ -104,8 +116,18 @@ class DrivenTrial(Trial):
         body, windows = cast("DrivenBody", bench.body), self.windows
         read = _read(bench, np.arange(1.0, _ORDERS + 1))
         out = self._window(settled(body, _ORDERS) * read).repeat(windows.count, axis=1)
+        follows = self._follows(bench)
+        out[_DECAY] += np.log(np.abs(follows))
+        out[_PERIOD] += np.angle(follows)
         late_s = bench.delay_s + bench.clock_error * (windows.start_s + windows.centres_s)
         return out, body.force.omega_rad_s * late_s / (1.0 + bench.clock_error)
+
+    def _follows(self, bench: PendulumBench) -> ComplexArray:
+        """Return the response to the force as it grows over that to a steady one, by windows."""
+        body = cast("DrivenBody", bench.body)
+        orders = np.append(1.0, 1.0 - 1j * self.grows_rad_s / body.force.omega_rad_s)
+        shown = _read(bench, orders) / impedance(body, orders)
+        return np.asarray(shown[1:] / shown[0], np.complex128)
 
     @property
     def third_harmonic(self) -> float:
@@ -145,8 +167,11 @@ def _whole_turns(phase_rad: float) -> float:
     return 2.0 * math.pi * round(phase_rad / (2.0 * math.pi))
 
 
-def _read(bench: PendulumBench, orders: FloatArray) -> ComplexArray:
-    """Return what a bench's one sensor shows of the displacement at some orders of the force."""
+def _read(bench: PendulumBench, orders: FloatArray | ComplexArray) -> ComplexArray:
+    """Return what a bench's one sensor shows of the displacement at some orders of the force.
+
+    An order may be complex: of a force that grows.
+    """
     body, (sensor,) = cast("DrivenBody", bench.body), bench.sensors
     (coordinate,) = body.coordinates
     signals = [coordinate.displacement, coordinate.rate, coordinate.acceleration]
@@ -167,13 +192,20 @@ class KnownForce:
     first
         First harmonic of what was recorded: of the force, or of the wave that makes it.
     seen
-        Windows of that, as :func:`~analysis.gap.pendulum.swings.swings_of_samples` gives them.
+        Windows of that, as :func:`~analysis.gap.pendulum.swings.swings_of_samples` gives them, its
+        even growth taken off.
+    grew
+        That growth: a polynomial of the logarithm over the time since the first window began.
+    changes
+        Logarithm of the largest amplitude of a window over the smallest.
     """
 
     windows: Windows
     harmonics: PeriodicForce
     first: complex
     seen: FloatArray
+    grew: Polynomial
+    changes: float
 
     @classmethod
     def of(cls, name: str, time_s: FloatArray, values: FloatArray, period_s: float) -> "KnownForce":
@@ -199,12 +231,23 @@ class KnownForce:
             slope = np.polyfit(windows.centres_s, seen[_PERIOD], 1)[0]
             period_s = 2.0 * math.pi / (windows.reference_rad_s + float(slope))
         since, omega = time_s - start_s, windows.reference_rad_s
+        grew, changes = _smooth(windows, seen[_DECAY]), float(np.ptp(_good(seen[_DECAY])))
+        grew -= grew(since).mean()
+        values = _evened(values, grew(since))
+        seen = swings_of_samples(time_s, values, windows, steady=True)
         inside = (since < windows.length_s * windows.count) & np.isfinite(values)
         turns = np.exp(1j * omega * since[inside, None] * np.arange(1, ORDERS + 1))
         columns = np.column_stack([np.ones(len(turns)), turns.real, turns.imag])
         _, *solved = np.linalg.lstsq(columns, values[inside], rcond=None)[0]
         found = [complex(a, -b) for a, b in zip(solved[:ORDERS], solved[ORDERS:], strict=True)]
-        return cls(windows, PeriodicForce(omega, tuple(found)), found[0], seen)
+        return cls(windows, PeriodicForce(omega, tuple(found)), found[0], seen, grew, changes)
+
+    @property
+    def grows_rad_s(self) -> ComplexArray:
+        """As :class:`DrivenTrial` has it."""
+        at_s = self.windows.centres_s
+        turned = _smooth(self.windows, self.seen[_PERIOD]).deriv()(at_s)
+        return np.asarray(self.grew.deriv()(at_s) + 1j * turned, np.complex128)
 
     def by(self, transfer: complex) -> "KnownForce":
         """Return the force of a wave by its transfer function; of the first order alone."""
@@ -217,6 +260,7 @@ class KnownForce:
         A mean is left out, since nothing says where a sensor is zero; so is the third harmonic
         where that of the force is not known.
         """
+        values = _evened(values, self.grew(time_s - self.windows.start_s))
         found = swings_of_samples(time_s, values, self.windows, steady=True)
         found[_DECAY] -= self.seen[_DECAY] - math.log(abs(self.first))
         found[_PERIOD] -= self.seen[_PERIOD] - cmath.phase(self.first)
@@ -224,3 +268,21 @@ class KnownForce:
         if len(self.harmonics.harmonics) < 3:
             found[_MEAN + 1 :] = np.nan
         return found
+
+
+def _smooth(windows: Windows, values: FloatArray) -> Polynomial:
+    """Return a parabola through the values of windows, a line where they are few."""
+    good = np.isfinite(values)
+    degree = 2 if good.sum() >= FEWEST_WINDOWS else 1
+    fit = Polynomial.fit(windows.centres_s[good], values[good], degree)
+    return fit.convert()
+
+
+def _evened(values: FloatArray, grew: FloatArray) -> FloatArray:
+    """Return an oscillation with its growth taken off, its mean as it is."""
+    mean = np.nanmean(values)
+    return np.asarray(mean + (values - mean) * np.exp(-grew), np.float64)
+
+
+def _good(values: FloatArray) -> FloatArray:
+    return values[np.isfinite(values)]

@@ -8,8 +8,10 @@ import math
 from pathlib import Path
 
 import numpy as np
+import pytest
 from click.testing import CliRunner
 
+from analysis.gap.pendulum.swings import KINDS
 from pmm.cli import cli
 from pmm.gap.pendulum import load_problem
 
@@ -48,6 +50,7 @@ def written(
     mass_kg: float = MASS_KG,
     damping: float = DAMPING,
     gain: float = 1.0,
+    growth_per_s: float = 0.0,
     force_reversed: tuple[int, ...] = (),
     heave_reversed: tuple[int, ...] = (),
 ) -> Path:
@@ -56,8 +59,12 @@ def written(
     time_s = np.arange(0.0, 30.0, 0.05)
     for at, (frequency_hz, force_n) in enumerate(RUNS):
         wave = force_n * np.exp(2j * math.pi * frequency_hz * time_s)
-        heave = (gain * moved(frequency_hz, mass_kg, damping) * wave).real
-        force = wave.real * (-1.0 if at in force_reversed else 1.0)
+        # under (1 + g t) exp(s t) it is (H (1 + g t) + g dH/ds) exp(s t)
+        grown, omega = 1.0 + growth_per_s * time_s, 2j * math.pi * frequency_hz
+        still = gain * moved(frequency_hz, mass_kg, damping)
+        slope = -(still**2) * (2.0 * omega * mass_kg + damping) / gain
+        heave = ((still * grown + growth_per_s * slope) * wave).real
+        force = (wave * grown).real * (-1.0 if at in force_reversed else 1.0)
         heave *= -1.0 if at in heave_reversed else 1.0
         force += noise.normal(0.0, 0.01, time_s.size)
         heave += noise.normal(0.0, 1e-5, time_s.size)
@@ -126,3 +133,11 @@ def test_damping_is_named_alone_and_takes_its_share_at_resonance(tmp_path: Path)
     assert "cannot be told apart" not in first
     ratios = [abs(moved(f, MASS_KG, more) / moved(f, MASS_KG, DAMPING)) for f, _ in RUNS]
     assert f"off by up to {100.0 * (1.0 - min(ratios)):.2g} % of its amplitude" in second
+
+
+@pytest.mark.parametrize("growth", [0.05, 0.1, 0.22])
+def test_a_force_that_grows_is_followed(tmp_path: Path, growth: float) -> None:
+    problem = load_problem(written(tmp_path, growth_per_s=growth / 30.0))
+    for kind in ("decay", "period"):
+        rows = problem.kind == KINDS.index(kind)
+        assert np.abs((problem.observed - problem.nominal)[rows]).max() < 1e-3

@@ -112,6 +112,7 @@ def driven(
                 found,
                 scatter(found),
                 samples=round(RATE_HZ / frequency_hz),
+                grows_rad_s=force.grows_rad_s,
             )
         )
     tolerances = tuple(tolerance(name, size) for name, size in known.items())
