@@ -3,12 +3,14 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Final
 
 from analysis.attitude import AttitudeChannel
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import Column, Table, data_only, number, word
 from pmm.document.notation import NOT_KNOWN, rounded, written
+from pmm.report.conditions import condition_columns
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,7 @@ _COLUMNS: Final[tuple[Column[AttitudeRow], ...]] = (
     ) for order in (1, 2)),
     *data_only("drift_rad", "frequency_hz", "sinkage_x_m", "sinkage", "trim"),
 )  # fmt: skip
+_SPEED: Final = attrgetter("speed_m_s")
 _NOTE: Final = (
     "Sinkage positive down, trim positive bow up, from rest; value ± standard uncertainty. "
     "Harmonics are amplitudes at the oscillator's frequency and twice it."
@@ -74,7 +77,12 @@ _NOTE: Final = (
 def attitude_table(outcome: CampaignOutcome) -> Table[AttitudeRow]:
     """Return sinkage and trim of all runs that told them, by speed, drift and frequency."""
     rows = attitude_rows(outcome)
-    return Table("Sinkage and trim", _COLUMNS, rows, "attitude", titled=True, notes=(_NOTE,))
+    ship = outcome.settings.ship
+    at = condition_columns(_SPEED, ship.length_m, outcome.water, ship.gravity_m_s2)
+    columns = (*_COLUMNS, *at)
+    return Table(
+        "Sinkage and trim", columns, rows, "attitude", titled=True, notes=(_NOTE,), filled=True
+    )
 
 
 def attitude_rows(outcome: CampaignOutcome) -> list[AttitudeRow]:

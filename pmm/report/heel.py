@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Final
 
 import numpy as np
@@ -14,6 +15,7 @@ from analysis.kinematics.body_frame import HEEL, ROLL_MOMENT
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import Column, Table, data_only, number, word
 from pmm.document.notation import NOT_KNOWN, rounded, written
+from pmm.report.conditions import condition_columns
 
 _DEGREES: Final = 180.0 / math.pi
 
@@ -65,6 +67,7 @@ _COLUMNS: Final[tuple[Column[HeelRow], ...]] = (
     Column("K, harmonic 1", lambda row: _first(row.moment, 1.0), unit="N m", number=True),
     *data_only("drift_rad", "frequency_hz", "heel", "moment"),
 )
+_SPEED: Final = attrgetter("speed_m_s")
 _NOTE: Final = (
     "Heel and K, the water's moment on the hull in roll, are positive to starboard; value ± "
     "standard uncertainty. K is the mean against the zero runs, weight and inertia taken off; "
@@ -75,7 +78,10 @@ _NOTE: Final = (
 def heel_table(outcome: CampaignOutcome) -> Table[HeelRow]:
     """Return heel and roll moment of all runs of a model that heels."""
     rows = heel_rows(outcome)
-    return Table("Heel", _COLUMNS, rows, "heel", titled=True, notes=(_NOTE,))
+    ship = outcome.settings.ship
+    at = condition_columns(_SPEED, ship.length_m, outcome.water, ship.gravity_m_s2)
+    columns = (*_COLUMNS, *at)
+    return Table("Heel", columns, rows, "heel", titled=True, notes=(_NOTE,), filled=True)
 
 
 def heel_rows(outcome: CampaignOutcome) -> list[HeelRow]:

@@ -170,12 +170,16 @@ def test_a_recorded_decay_puts_the_roll_damping_into_the_same_table(
     settings = tmp_path / "coefficients.toml"
     settings.write_text(
         f'[[roll_decays]]\nspeed_m_s = {SPEED_M_S}\nresult = "roll.json"\n'
-        "u_gm_m = 1e-5\nu_inertia_kg_m2 = 0.01\n"
+        "u_gm_m = 1e-5\nu_inertia_kg_m2 = 0.01\n[ship]\nlength_m = 3.5\n"
     )
     more = ["--settings", str(settings), "--json"]
     ran = CliRunner().invoke(cli, ["coefficients", str(folder), *more])
     assert ran.exit_code == 0, ran.stderr
-    rows = {row["name"]: row for row in json.loads(ran.stdout)["recommended"]}
+    told = json.loads(ran.stdout)
+    rows = {row["name"]: row for row in told["recommended"]}
     for name, value in put_in.items():
         assert rows[name]["value"] == pytest.approx(value, abs=1.5 * rows[name]["half_width"]), name
         assert rows[name]["half_width"] < 0.2 * abs(value), name
+    for row in told["heel"]:
+        assert row["froude_number"] == pytest.approx(SPEED_M_S / np.sqrt(9.80665 * 3.5))
+        assert row["reynolds_number"] is None, "no [water] is stated"
