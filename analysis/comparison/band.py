@@ -65,12 +65,12 @@ def find_band(first: FloatArray, second: FloatArray, rates_hz: tuple[float, floa
     first, second
         Without mean and slope.
     """
-    found = [_edge(values, rate) for values, rate in zip((first, second), rates_hz, strict=True)]
+    found = [edge_of(values, rate) for values, rate in zip((first, second), rates_hz, strict=True)]
     motion_hz, edge_hz = min(found, key=lambda one: one[1])
     return Band(motion_hz, edge_hz, min(_HARMONICS * edge_hz, _BELOW_NYQUIST * min(rates_hz)))
 
 
-def _edge(values: FloatArray, rate_hz: float) -> tuple[float, float]:
+def edge_of(values: FloatArray, rate_hz: float) -> tuple[float, float]:
     """Return where half of the power lies below, and nearly all of it."""
     from scipy.fft import next_fast_len, rfft
     from scipy.signal.windows import tukey

@@ -9,6 +9,7 @@ import numpy as np
 
 from analysis.comparison.ambiguity import least_lag
 from analysis.comparison.band import Band, find_band, track, without_line
+from analysis.comparison.even_grid import on_even_grid
 from analysis.comparison.first_guess import Alignment, first_guess
 from analysis.comparison.fit import ComparisonFit, fit
 from analysis.comparison.linear import ComparisonProblem, Model, NothingInCommonError
@@ -51,6 +52,7 @@ def compare(
     """
     settings.check()
     names = (first_channel, *settings.levers)
+    first, second = on_even_grid(first, names), on_even_grid(second, (second_channel,))
     leading = [_signal(first, name, -math.inf, math.inf) for name in names]
     following = _signal(second, second_channel, settings.from_s, settings.to_s)
     most_lag_s = _most_lag(leading[0], following, settings)
@@ -73,7 +75,6 @@ def compare(
 
 def _signal(recording: Recording, name: str, from_s: float, to_s: float) -> ComparedSignal:
     """Return the longest stretch of a channel without missing samples."""
-    recording.check_even("a comparison of two channels")
     part = recording.between(max(from_s, recording.start_s), min(to_s, recording.end_s))
     values, unit = part.values(name), recording.channels[recording.index(name)].unit
     called = f"{recording.name}: {name}"

@@ -9,7 +9,8 @@ from analysis.readers.clock import DATE
 from hardware.description.errors import ConfigurationError
 from hardware.description.units import is_unit, unit
 
-_LOGGERS = {"millis": "ms", "micros": "us"}  # what the clocks of small loggers count
+# What the clocks of small loggers count.
+_LOGGERS = {"millis": "ms", "milliseconds": "ms", "msec": "ms", "micros": "us"}
 TIME_NAMES = (
     "time", "times", "t", "timestamp", "zeit", "temps", "tid", "tijd", "seconds", "sec", "epoch",
     *_LOGGERS,

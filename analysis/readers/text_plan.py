@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
@@ -14,6 +15,10 @@ from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
 from hardware.description.units import Unit, is_unit, unit
+
+YEAR_S: Final = 3.156e7
+# First stamps of a clock that counts from 1970: in seconds they would lie 3000 years off and more.
+_EPOCHS: Final = {"ns": 1e17, "us": 1e14, "ms": 1e11}
 
 
 @dataclass(frozen=True)
@@ -181,8 +186,13 @@ def _check_unique(channels: Iterable[ChannelPlan], where: str) -> None:
         seen[name] = header
 
 
-def time_factor(header: Header, own_unit: str | None, where: str) -> tuple[float, tuple[Flag, ...]]:
+def time_factor(
+    header: Header, own_unit: str | None, stamps: FloatArray, where: str
+) -> tuple[float, tuple[Flag, ...]]:
     """Return what turns time stamps into seconds.
+
+    Stamps without a unit are seconds, unless they lie where only a clock that counts fractions of
+    them since 1970 does.
 
     Raises
     ------
@@ -193,18 +203,39 @@ def time_factor(header: Header, own_unit: str | None, where: str) -> tuple[float
     if name == CLOCK:
         return 1.0, ()
     if name is None:
+        counted = _since_1970(stamps)
+        told = f"{counted}, as they count from 1970," if counted else "seconds"
+        other = "s" if counted else "ms"
         text = (
-            f"the time column {header.text!r} states no unit; seconds are assumed. If they are "
-            f"others, name the unit in the column map: time={header.text}:ms"
+            f"the time column {header.text!r} states no unit; {told} are assumed. If they are "
+            f"others, name the unit in the column map: time={header.text}:{other}"
         )
-        return 1.0, (Flag("time_unit_assumed", Severity.WARNING, text),)
+        factor = unit(counted).factor if counted else 1.0
+        return factor, (Flag("time_unit_assumed", Severity.WARNING, text),)
     try:
-        factor = unit(name)
+        stated = unit(name)
     except ConfigurationError as error:
         raise DataError(f"{where}: time column {header.text!r}: {error}") from None
-    if factor.si != "s":
+    if stated.si != "s":
         raise DataError(
             f"{where}: time column {header.text!r} is in {name!r}, which is no unit of time; "
             "name the right column or its unit in the column map"
         )
-    return factor.factor, ()
+    _check_seconds(header, name, stamps * stated.factor, where)
+    return stated.factor, ()
+
+
+def _since_1970(stamps: FloatArray) -> str | None:
+    """Return the unit in which stamps count from 1970, where they are too many to be seconds."""
+    first = stamps[0]
+    return next((name for name, least in _EPOCHS.items() if abs(first) >= least), None)
+
+
+def _check_seconds(header: Header, name: str, stamps_s: FloatArray, where: str) -> None:
+    """Refuse stamps in a stated unit that lie thousands of years from 1970."""
+    counted = _since_1970(stamps_s)
+    if counted:
+        raise DataError(
+            f"{where}: the time column {header.text!r} begins {stamps_s[0] / YEAR_S:.3g} years "
+            f"after its zero in {name!r}; name its unit in the column map: time={header.name}:UNIT"
+        )

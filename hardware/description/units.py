@@ -21,6 +21,7 @@ _UNITS: dict[str, Unit] = {
     "s": Unit("s", 1.0),
     "ms": Unit("s", 1e-3),
     "us": Unit("s", 1e-6),
+    "ns": Unit("s", 1e-9),
     "min": Unit("s", 60.0),
     "m": Unit("m", 1.0),
     "cm": Unit("m", 1e-2),

@@ -1,6 +1,6 @@
 """Exact motions: sums of sines, evaluated at exactly warped times, with noise of a known size."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -79,3 +79,26 @@ def pair(
         recorded("camera", first, rates_hz[0], -1.0, "m"),
         recorded("sensor", second, rates_hz[1], -0.5, "m"),
     )
+
+
+def uneven(
+    motion: Motion,
+    truth: Truth,
+    rng: np.random.Generator,
+    *,
+    rates_hz: tuple[float, float] = (100.0, 60.0),
+    noise: float = 0.01,
+) -> tuple[Recording, Recording]:
+    """Two recordings whose stamps jitter by 0.4 intervals and of which a fifth is lost."""
+    made = []
+    for name, rate_hz in zip(("camera", "sensor"), rates_hz, strict=True):
+        count = int(60.0 * rate_hz)
+        stamps_s = (np.arange(count) + rng.uniform(-0.4, 0.4, count)) / rate_hz
+        stamps_s = stamps_s[rng.random(count) > 0.2]
+        values = motion.at(stamps_s)
+        if name == "sensor":
+            values = truth.gain * motion.at(truth.on_first(stamps_s), truth.order)
+        values = values + noise * values.std() * rng.standard_normal(values.size)
+        even = recorded(name, values, (values.size - 1) / np.ptp(stamps_s), stamps_s[0], "m")
+        made.append(replace(even, stamps_s=stamps_s))
+    return made[0], made[1]

@@ -12,7 +12,15 @@ from analysis.comparison.settings import ComparisonSettings
 from analysis.recording import Recording
 from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError, DataError
-from tests.analysis.comparison.motions import Motion, Truth, harmonic, irregular, pair, recorded
+from tests.analysis.comparison.motions import (
+    Motion,
+    Truth,
+    harmonic,
+    irregular,
+    pair,
+    recorded,
+    uneven,
+)
 
 RATE = 3e-4
 
@@ -236,6 +244,40 @@ def test_missing_samples_leave_the_longest_stretch() -> None:
     assert max(misses(found, truth())) < 1.5
     assert "longest_stretch" in {flag.code for flag in found.flags}
     assert found.from_s > 3.6
+
+
+@pytest.mark.parametrize("order", [0, 1])
+def test_uneven_stamps_leave_the_intervals_right(order: int) -> None:
+    what, missed = truth(order), []
+    for seed in range(12):
+        rng = np.random.default_rng(400 + seed)
+        motion = irregular(rng) if seed % 2 else harmonic(rng, 0.2)
+        first, second = uneven(motion, what, rng)
+        found = compare(first, "x", second, "x", ComparisonSettings(order=order))
+        missed.append(misses(found, what))
+    assert np.mean(np.array(missed) < 1.0) > 0.85
+    assert np.max(missed) < 2.5
+
+
+def test_uneven_stamps_without_noise_are_off_by_nothing() -> None:
+    rng = np.random.default_rng(1)
+    first, second = uneven(irregular(rng), truth(), rng, noise=0.0)
+    found = compare(first, "x", second, "x")
+    assert found.gain.value == pytest.approx(1.3, rel=1e-5)
+    assert found.lag_s.value == pytest.approx(0.12 + RATE * (found.mid_s - 29.5), abs=2e-6)
+    assert found.to_s - found.from_s > 50.0
+
+
+def test_where_uneven_stamps_are_missing_for_long_the_longest_stretch_is_left() -> None:
+    rng = np.random.default_rng(2)
+    first, second = uneven(irregular(rng), truth(), rng)
+    assert second.stamps_s is not None
+    kept = np.abs(second.stamps_s - 15.0) > 2.0
+    stamps_s, values = second.stamps_s[kept], second.values("x")[kept]
+    found = compare(first, "x", replace(second, samples=values[None], stamps_s=stamps_s), "x")
+    assert max(misses(found, truth())) < 1.5
+    assert "longest_stretch" in {flag.code for flag in found.flags}
+    assert found.from_s > 16.9
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,8 @@ from pathlib import Path
 import pytest
 
 from analysis.readers import read_recording
+from analysis.readers.columns_options import parse_options
+from hardware.description.errors import DataError
 
 HEADS = {
     "Arduino": ("millis,F\n", ",", 1e3),
@@ -32,6 +34,35 @@ def test_time_is_found_in_its_unit(tmp_path: Path, kind: str) -> None:
     assert (
         not [flag for flag in found.flags if flag.code == "time_unit_assumed"] or per_second == 1.0
     )
+
+
+@pytest.mark.parametrize(
+    ("unit", "per_second"), [("s", 1), ("ms", 1000), ("us", 10**6), ("ns", 10**9)]
+)
+def test_time_since_1970_is_read_in_the_unit_that_its_size_tells(
+    tmp_path: Path, unit: str, per_second: int
+) -> None:
+    count = [(1_732_600_000 * 100 + k) * per_second // 100 for k in range(50)]
+    if per_second == 1:
+        count = [1_732_600_000 + k for k in range(50)]
+    path = tmp_path / "log.csv"
+    path.write_text("timestamp,F [N]\n" + "".join(f"{at},{at % 7}\n" for at in count))
+    found = read_recording(path)
+    assert found.start_s == pytest.approx(1_732_600_000, abs=1e-3)
+    assert found.sample_rate_hz == pytest.approx(1.0 if per_second == 1 else 100.0, rel=1e-6)
+    (flag,) = (one for one in found.flags if one.code == "time_unit_assumed")
+    assert (f"{unit}, as they count from 1970" in flag.message) is (per_second > 1)
+
+
+def test_time_that_cannot_be_in_its_stated_unit_is_refused_with_the_option(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(
+        "time [s],F [N]\n" + "".join(f"{1.7326e12 + 10 * k:.0f},1\n" for k in range(50))
+    )
+    with pytest.raises(DataError, match=r"5\.49e\+04 years .* time=time:UNIT"):
+        read_recording(path)
+    columns = parse_options(["time=time:ms"])
+    assert read_recording(path, columns).sample_rate_hz == pytest.approx(100.0)
 
 
 @pytest.mark.parametrize(
