@@ -215,6 +215,10 @@ def _tows(found: CampaignSteering, factor: float) -> Table[SteeredRun]:
             number=True,
         )
 
+    def unit(one: SteeredRun) -> float:
+        """Return rho n² D⁵, by which a torque becomes K_Q."""
+        return found.known.density_kg_m3 * one.rate_hz**2 * found.known.diameter_m**5
+
     columns: tuple[Column[SteeredRun], ...] = (
         word("run", "run"),
         Column("drift", lambda one: f"{math.degrees(one.drift_rad):.3g}", unit="deg",
@@ -230,9 +234,18 @@ def _tows(found: CampaignSteering, factor: float) -> Table[SteeredRun]:
                number=True),
         Column("F_N", lambda one: rounded(one.normal_n, factor * one.normal_u), unit="N",
                number=True),
+        Column("Q", lambda one: _if_read(one, rounded(one.torque_n_m, factor * one.torque_u)),
+               unit="N m", number=True),
+        Column("10 K_Q", lambda one: _if_read(one, f"{10.0 * one.torque_n_m / unit(one):.4g}"),
+               number=True),
         *data_only("motion", "loads", "loads_u", "rudder_rad", "thrust_n", "thrust_u", "normal_n",
-                   "normal_u"),
+                   "normal_u", "torque_n_m", "torque_u"),
     )  # fmt: skip
     return Table(
-        "Runs with propeller and rudder", columns, found.tows, "tows", titled=True, folded=True
-    )
+        "Runs with propeller and rudder", columns, found.tows, "tows", titled=True, folded=True,
+        filled=True,
+    )  # fmt: skip
+
+
+def _if_read(one: SteeredRun, text: str) -> str:
+    return text if math.isfinite(one.torque_n_m) else ""

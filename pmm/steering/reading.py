@@ -12,6 +12,7 @@ from analysis.recording import Recording
 from hardware.description.channels import (
     FORCE_X,
     PROPELLER_THRUST,
+    PROPELLER_TORQUE,
     REVOLUTIONS,
     RUDDER_ANGLE,
     RUDDER_NORMAL_FORCE,
@@ -23,7 +24,8 @@ from pmm.coefficients.tasks import Failed, Task
 from pmm.steering.instants import Instant, instants
 
 GAUGES: Final = (PROPELLER_THRUST.name, RUDDER_NORMAL_FORCE.name)
-_TARED: Final = (*GAUGES, RUDDER_ANGLE.name)
+_TORQUE: Final = PROPELLER_TORQUE.name
+_TARED: Final = (*GAUGES, RUDDER_ANGLE.name, _TORQUE)
 
 
 @dataclass(frozen=True)
@@ -44,7 +46,9 @@ class SteeredRun:
     thrust_n, normal_n
         Less what the gauges read in the zero runs, with standard uncertainties of their own.
     zero_u
-        By zero run and gauge, the standard uncertainty that the zero's reading adds.
+        By zero run and gauge, the standard uncertainty that the zero's reading adds to these two.
+    torque_n_m, torque_u
+        Of the propeller, with that of its zero; NaN where it was not recorded.
     """
 
     run: str
@@ -59,6 +63,8 @@ class SteeredRun:
     normal_n: float
     normal_u: float
     zero_u: Mapping[tuple[str, str], float]
+    torque_n_m: float = math.nan
+    torque_u: float = math.nan
 
     @property
     def drift_rad(self) -> float:
@@ -100,26 +106,32 @@ def _steered(
             f"and the force along the model have to be recorded (channels: {', '.join(there)})"
         )
     own = {name: zeros[name] for name in task.zero_names if name is not None and name in zeros}
-    rest = {name: _rest(recording, name, own, tared=task.tared) for name in GAUGES}
+    gauges = (*GAUGES, _TORQUE) if _TORQUE in there else GAUGES
+    rest = {name: _rest(recording, name, own, tared=task.tared) for name in gauges}
     angle, rate = _angle(task, recording, own), _rate(task, recording)
-    by_zero = {(zero, name): u for name, (_, each) in rest.items() for zero, u in each.items()}
-    offsets = [offset for offset, _ in rest.values()]
-    for one in _instants(task, recording, cycle):
+    by_zero = {(zero, name): u for name in GAUGES for zero, u in rest[name][1].items()}
+    for one in _instants(task, recording, cycle, gauges):
         course = f"{replace(task.set_point, rudder_angle_rad=0.0, revolutions_hz=0.0)} {one.side}"
-        thrust, normal = (value - offset for value, offset in zip(one.gauges, offsets, strict=True))
+        told = [
+            value - offset for value, (offset, _) in zip(one.gauges, rest.values(), strict=True)
+        ]
+        spread = list(one.gauges_u)
+        torque = [told[2], math.hypot(spread[2], *rest[_TORQUE][1].values())] if told[2:] else []
         name = f"{task.name} {one.side}".strip()
         yield SteeredRun(
             name, course, one.motion, one.loads, one.loads_u, angle, rate,
-            thrust, one.gauges_u[0], normal, one.gauges_u[1], by_zero,
+            told[0], spread[0], told[1], spread[1], by_zero, *torque,
         )  # fmt: skip
 
 
-def _instants(task: Task, recording: Recording, cycle: BodyCycle) -> list[Instant]:
+def _instants(
+    task: Task, recording: Recording, cycle: BodyCycle, gauges: tuple[str, ...]
+) -> list[Instant]:
     """Return what a run tells: a tow its means, an oscillation two instants."""
     if task.kind.oscillates:
-        return instants(task, recording, cycle, GAUGES)
+        return instants(task, recording, cycle, gauges)
     tow = tow_of(task.kind, cycle)
-    read = zero_reading(recording, 0.0, GAUGES).offsets.real
+    read = zero_reading(recording, 0.0, gauges).offsets.real
     speed, drift = tow.speed_m_s, tow.drift_rad
     motion = (speed * math.cos(drift), -speed * math.sin(drift), 0.0)
     loads = (-tow.resistance_n, tow.force_n, tow.moment_n_m)

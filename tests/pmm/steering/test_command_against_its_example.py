@@ -4,7 +4,7 @@ import json
 import math
 import re
 import shutil
-from collections.abc import Callable, Hashable, Iterator
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,17 +13,15 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
-from analysis import readers
 from analysis.readers import read_recording, write_recording
 from pmm.cli import cli
-from pmm.coefficients.tasks import Task
 from pmm.report.steering_document import steering_story
-from pmm.steering import workflow
 from pmm.steering.workflow import CampaignSteering, steering_of
 from tests.analysis.manoeuvring.published import kvlcc2 as paper
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "steering"
 SETTINGS = EXAMPLE / "steering.toml"
+pytestmark = pytest.mark.usefixtures("reads_once")
 DEPTH_M = 4.0
 WATER = f"""\
 [water]
@@ -40,33 +38,6 @@ PUT_IN = {
 
 def pmm(*arguments: object) -> Result:
     return CliRunner().invoke(cli, [str(one) for one in arguments])
-
-
-@pytest.fixture(scope="module", autouse=True)
-def _reads_once() -> Iterator[None]:
-    """Open each recording once, and read it once for all tests that ask the same of it."""
-
-    def remembering(
-        work: Callable[..., Any], key_of: Callable[[Any], Hashable]
-    ) -> Callable[..., Any]:
-        kept: dict[Hashable, Any] = {}
-
-        def once(first: Any, *more: Any, **named: Any) -> Any:
-            key = key_of(first)
-            if key not in kept:
-                kept[key] = work(first, *more, **named)
-            return kept[key]
-
-        return once
-
-    def asked(task: Task) -> Hashable:
-        return task.source.path.resolve(), task.set_point, task.zero_names, task.tared
-
-    with pytest.MonkeyPatch.context() as patch:
-        for name in ("read_steered", "read_zero", "read_gauge_zeros"):
-            patch.setattr(workflow, name, remembering(getattr(workflow, name), asked))
-        patch.setattr(readers, "read_recording", remembering(read_recording, Path.resolve))
-        yield
 
 
 @pytest.fixture(scope="module")
@@ -134,6 +105,20 @@ def test_the_parameters_are_those_put_in(told: Told) -> None:
     assert point["rate_hz"] == pytest.approx(paper.N, rel=1e-3)
     assert point["resistance_n"] == pytest.approx(resistance, rel=2e-3)
     assert {one.suffix for one in told.figures.iterdir()} == {".svg", ".png"}
+
+
+def test_the_torque_is_that_of_the_open_water_table(told: Told) -> None:
+    """By hand: J of the paper's wake, K_Q between the example's own numbers."""
+    made = tomllib.loads((EXAMPLE / "campaign.toml").read_text(encoding="utf-8"))["steering"]
+    table = made["propeller"]["open_water"]
+    rows = {one["run"]: one for one in told.document["tows"]}
+    for rate in (8.0, 10.0, 12.0):
+        pace = rate * paper.D_P
+        k_q = np.interp(paper.U0 * (1.0 - paper.W_P0) / pace, table["advance"], table["torque"])
+        row = rows[f"straight-tow-b0-n{rate:g}-d0"]
+        expected = 1000.0 * rate**2 * paper.D_P**5 * k_q
+        assert row["torque_n_m"] == pytest.approx(expected, abs=4.0 * row["torque_u"])
+        assert row["torque_u"] < 0.01 * expected
 
 
 def test_what_has_a_speed_has_its_froude_and_reynolds_number(told: Told) -> None:
