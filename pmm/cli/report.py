@@ -38,6 +38,7 @@ def report(**options: Any) -> None:
     from pmm.cli.screen import busy, program, say
     from pmm.coefficients.request import campaign_folder
     from pmm.document.page import write_page
+    from pmm.report.archive_document import notes_story
     from pmm.report.coefficients_document import report_document
     from pmm.report.manoeuvre_document import manoeuvre_story
     from pmm.report.sequential_document import story
@@ -54,6 +55,7 @@ def report(**options: Any) -> None:
     with busy("drawing the page"):
         for folder in folders:
             stories += [*steering_story(folder, level), *manoeuvre_story(folder, level)]
+            stories += notes_story(folder)
         write_page(
             report_document(outcome, stories), path, title=title, command=command, read=files
         )

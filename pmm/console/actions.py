@@ -27,13 +27,14 @@ from pmm.console.requests import (
     EditPosted,
     HoldPosted,
     MovePosted,
+    NotePosted,
     PlanPosted,
     Posted,
     RunPosted,
     TakePosted,
 )
 from pmm.console.worker_process import Workers
-from pmm.console.worker_tasks import Queued, changed_plan, check_plan_text, ready_plan
+from pmm.console.worker_tasks import Queued, changed_plan, check_plan_text, keep_note, ready_plan
 from pmm.run.states import Command
 
 COMMANDS: Final = "commands.jsonl"
@@ -155,6 +156,10 @@ class PageActions:
         """Hold a planned run, or a plan, or release it."""
         return await self._do(request, HoldPosted, "hold", self._change)
 
+    async def note(self, request: Request) -> Response:
+        """Keep a line on a run or a campaign; nothing moves, so whoever watches may do it."""
+        return await self._do(request, NotePosted, "note", self._note)
+
     async def take(self, request: Request) -> Response:
         """Take control."""
         return await self._do(request, TakePosted, "take control", self._take)
@@ -217,8 +222,11 @@ class PageActions:
 
     def alarm(self, text: str) -> None:
         """Show something that the server has found as an alarm."""
+        self._tell("alarm", text)
+
+    def _tell(self, kind: str, text: str) -> None:
         time_s = self._hub.last.status.time_s if self._hub.last is not None else 0.0
-        self._hub.add_notice(Notice("alarm", time_s, text))
+        self._hub.add_notice(Notice(kind, time_s, text))
 
     async def _command(self, posted: CommandPosted, who: Who) -> dict[str, Any]:
         if posted.command is Command.QUICK_STOP:
@@ -272,6 +280,14 @@ class PageActions:
             self._queued.change(found)
         self._tell_plans()
         return {"said": said, "plan": found.picture}
+
+    async def _note(self, posted: NotePosted, who: Who) -> dict[str, Any]:
+        worker = self._workers.for_whom(in_control=self._hub.desk.holder == who.session)
+        plan = self._queued.plan(posted.number)
+        await worker.run(keep_note, plan, posted, self._utc())
+        about = posted.run or plan.plan.name
+        self._tell("note", f"{about}: {posted.text} ({posted.author})")
+        return {"said": f"noted on {about}"}
 
     async def _take(self, posted: TakePosted, who: Who) -> dict[str, Any]:
         self._hub.desk.take_over(who.session)

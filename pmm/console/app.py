@@ -195,6 +195,7 @@ def _routes(console: Console) -> list[BaseRoute]:
         "/api/plans/edit": act.edit,
         "/api/plans/move": act.move,
         "/api/plans/hold": act.hold,
+        "/api/plans/note": act.note,
         "/login": console.log_in,
     }
     return [

@@ -12,6 +12,7 @@ from pmm.console.requests import (
     EditPosted,
     HoldPosted,
     MovePosted,
+    NotePosted,
     PlanPosted,
     Posted,
     TakePosted,
@@ -30,6 +31,7 @@ POSTS: Final[dict[str, tuple[type[Posted], str, bool]]] = {
     "/api/plans/edit": (EditPosted, "Change the settings of a run that is planned.", True),
     "/api/plans/move": (MovePosted, "Move a run that is planned, or a plan that waits.", True),
     "/api/plans/hold": (HoldPosted, "Pass a run or a plan over, or release it.", True),
+    "/api/plans/note": (NotePosted, "Keep a line on a run or a campaign.", False),
 }
 GETS: Final = {
     "/api/plans": ("Names of the plans that are offered.", "names"),

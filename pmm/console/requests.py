@@ -71,6 +71,13 @@ class HoldPosted(RunPosted):
     held: bool
 
 
+class NotePosted(RunPosted):
+    """A line on a run, or on the campaign, kept beside its recordings."""
+
+    text: str = Field(min_length=1, max_length=2000)
+    author: str = Field(min_length=1, max_length=100)
+
+
 class TakePosted(Posted):
     """The wish to have control, said in so many words."""
 

@@ -5,11 +5,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hardware.description.errors import ConfigurationError
+from pmm.archive.notebook import NoteLine, write_note
 from pmm.console.encoding import EncodedText, encode
 from pmm.console.messages import PackedPlan, pack, unpack
 from pmm.console.pages import pages_in
 from pmm.console.plans import Plans, plan_picture
-from pmm.console.requests import RunPosted
+from pmm.console.requests import NotePosted, RunPosted
+from pmm.recorder.files import is_run
+from pmm.run.campaign_folder import check_names
 
 
 @dataclass(frozen=True)
@@ -47,6 +50,19 @@ def changed_plan(plans: Plans, packed: PackedPlan, posted: RunPosted) -> ReadyPl
     """
     found = plans.changed(unpack(packed), posted)
     return ReadyPlan(pack(found.waiting), EncodedText(encode(plan_picture(found))))
+
+
+def keep_note(packed: PackedPlan, posted: NotePosted, utc: str) -> None:
+    """Write a line on a run, or on the campaign, into the campaign's folder.
+
+    Raises
+    ------
+    ConfigurationError
+        If there is no such run, or the text is none of one line.
+    """
+    if posted.run and not is_run(packed.folder / posted.run):
+        check_names(unpack(packed).plan, [posted.run])
+    write_note(packed.folder, NoteLine(utc, posted.run, posted.author, posted.text))
 
 
 def look_around(plans: Plans, folders: tuple[Path, ...]) -> tuple[list[str], dict[Path, list[str]]]:

@@ -1,5 +1,6 @@
 """The console's queue from Python: plans and their runs, before they are made."""
 
+from getpass import getuser
 from pathlib import Path
 
 from pmm.interface.console_requests import ConsoleRequests, Message
@@ -64,6 +65,19 @@ class QueueCalls:
     def hold(self, number: int, run: str = "") -> str:
         """Pass a planned run, or all of a plan, over until it is released."""
         return self._said("/api/plans/hold", {"number": number, "run": run, "held": True})
+
+    def note(self, number: int, text: str, run: str = "", author: str = "") -> str:
+        """Keep a line on a run, or on the campaign, in its folder: the archive and reports show it.
+
+        Parameters
+        ----------
+        number
+            Of the plan, a key of ``known["plans"]``.
+        author
+            Whose it is; by default the name under which the program runs.
+        """
+        body = {"number": number, "run": run, "text": text, "author": author or getuser()}
+        return self._said("/api/plans/note", body)
 
     def release(self, number: int, run: str = "") -> str:
         """Release what is held; at rest nothing moves before a start."""

@@ -1,11 +1,13 @@
 """What ``pmm archive`` shows: campaigns, what was found, one run."""
 
 from collections.abc import Iterator
+from dataclasses import asdict
 from operator import itemgetter
 from pathlib import Path
 from typing import Any, Final
 
 from pmm.archive.indexing import AddedFolder
+from pmm.archive.notebook import read_notes
 from pmm.archive.queries import (
     COEFFICIENT_COLUMNS,
     HARMONIC_COLUMNS,
@@ -50,6 +52,14 @@ def _cell(
 
 def _data(*keys: str) -> tuple[Column[Row], ...]:
     return tuple(Column(None, itemgetter(key), key) for key in keys)
+
+
+_NOTES: Final = (
+    _cell("time", "time_utc"),
+    _cell("run", "run"),
+    _cell("author", "author"),
+    _cell("note", "text"),
+)
 
 
 def added_document(added: tuple[AddedFolder, ...], archive: str) -> Document:
@@ -203,12 +213,6 @@ def show_document(found: ShownRun) -> Document:
         *_harmonic_cells(),
         *_data("in_phase", "quadrature", "in_phase_half_width", "quadrature_half_width"),
     )
-    notes = (
-        _cell("time", "time_utc"),
-        _cell("run", "run"),
-        _cell("author", "author"),
-        _cell("note", "text"),
-    )
     return _document(
         str(found.run["run"]),
         "run",
@@ -217,5 +221,18 @@ def show_document(found: ShownRun) -> Document:
         Table("Harmonics", harmonics, found.harmonics, "harmonics", titled=True,
               notes=(f"half-widths of {100 * LEVEL:g} % intervals",)),
         Text([] if found.harmonics else ["not analysed: pmm archive add FOLDER --analyse"]),
-        Table("Notes", notes, found.notes, "notes", titled=True),
+        Table("Notes", _NOTES, found.notes, "notes", titled=True),
     )  # fmt: skip
+
+
+def notes_story(folder: Path) -> Iterator[Section]:
+    """Yield what people noted on a campaign and its runs, where they did.
+
+    Raises
+    ------
+    ConfigurationError
+        If a line of its file is no note.
+    """
+    notes = [asdict(one) for one in read_notes(folder)]
+    if notes:
+        yield Section("Notes", (Table("", _NOTES, notes, "notes"),))

@@ -5,6 +5,7 @@ import { post } from "./stream.js";
 
 const MOST = 60; // runs of a plan that are listed; those behind them follow as these are made
 const RAD = Math.PI / 180;
+const AUTHOR = "pmm-author";
 const FIELDS = [ // what is edited: its name when posted, its name in a plan's picture, label, size of the unit
   ["frequency_hz", "frequency_hz", "Hz", 1],
   ["eccentricity_m", "eccentricity_m", "mm", 1e-3],
@@ -21,6 +22,11 @@ export class Queue {
     this.finished = finished;
     this.plans = {};
     this.open = new Set(); // plans whose runs are listed
+    byId("note-author").value = localStorage.getItem(AUTHOR) ?? "";
+    byId("note-form").addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.note();
+    });
   }
 
   take(plans) { this.plans = plans; this.key = ""; }
@@ -33,6 +39,7 @@ export class Queue {
     const focus = document.activeElement?.dataset.key;
     byId("queue").replaceChildren(...numbers.map((one) => this.plan(one, frame)));
     for (const one of byId("queue").querySelectorAll("button")) one.disabled = !mine;
+    this.offer(numbers, frame);
     if (focus) byId("queue").querySelector(`[data-key="${CSS.escape(focus)}"]`)?.focus();
   }
 
@@ -92,6 +99,25 @@ export class Queue {
       if (await this.send("edit", body)) close();
     });
     return form;
+  }
+
+  // What a note may be on: each campaign, the run under way, those that ended and those to come.
+  offer(numbers, frame) {
+    const box = byId("note-run"), chosen = box.value;
+    const options = numbers.flatMap((number) => {
+      const plan = this.plans[number], ended = this.finished.entries.filter((one) => one.folder === plan.folder).map((one) => one.run);
+      const names = new Set([...(number === frame.plan && frame.run ? [frame.run] : []), ...ended.toReversed(), ...plan.runs.map((one) => one.name)]);
+      return [["", plan.name], ...[...names].slice(0, MOST).map((one) => [one, `${plan.name}, ${one}`])].map(([run, words]) => [`${number} ${run}`, words]);
+    });
+    box.replaceChildren(...options.map(([value, words]) => html("option", { value, ...(value === chosen ? { selected: "" } : {}) }, words)));
+    byId("note-form").hidden = !options.length;
+  }
+
+  async note() {
+    const [, number, run] = /^(\d+) (.*)$/.exec(byId("note-run").value);
+    const author = byId("note-author").value.trim();
+    localStorage.setItem(AUTHOR, author);
+    if (await this.send("note", { number: Number(number), run, text: byId("note-text").value.trim(), author })) byId("note-text").value = "";
   }
 
   button(words, label, act) {

@@ -87,7 +87,7 @@ export function showProgress(frame, plans) {
   }
 }
 
-const WORDS = { state: "state: ", outcome: "ended: ", plan: "plan: " };
+const WORDS = { state: "state: ", outcome: "ended: ", plan: "plan: ", note: "note on " };
 
 export class Alarms {
   constructor() { this.box = byId("alarms"); this.count = 0; }

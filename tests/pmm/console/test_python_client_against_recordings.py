@@ -1,15 +1,18 @@
 """``pmm.connect`` drives a console in a process of its own; what was recorded says whether."""
 
+import json
 import time
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 import pmm
 from analysis.readers import read_recording
 from analysis.resolver.analysis import analyse
 from analysis.resolver.settings import ResolverSettings
 from hardware.description.errors import ConfigurationError
+from pmm.cli import cli
 from pmm.interface.console_requests import ConsoleRefusalError
 from tests.docs.blocks import blocks
 from tests.pmm.console.chromium import console, plan, rig_in
@@ -33,6 +36,10 @@ def test_a_whole_campaign_is_driven_without_a_browser(tmp_path: Path) -> None:
             ("run-f1-a20", "complete"),
             ("run-f1.1-a20", "complete"),
         ]
+        client.note(1, "ballast moved", author="N. N.")
+        client.note(1, "a wave at the end", "run-f1.1-a20")
+        with pytest.raises(ConsoleRefusalError, match="no run 'run-9'"):
+            client.note(1, "nowhere", "run-9")
         with pytest.raises(ConsoleRefusalError, match="all its runs are complete"):
             client.queue(rig.with_name("whole.toml"))
         for run in runs:  # what was shown last is what the file holds
@@ -40,6 +47,16 @@ def test_a_whole_campaign_is_driven_without_a_browser(tmp_path: Path) -> None:
                 read_recording(out / "whole" / run["run"] / "run.nc"), settings=ResolverSettings()
             ).readings[0]
             assert found.periods == PERIODS
+    archive = ["--archive", str(tmp_path / "archive.sqlite")]
+    for words in (["add", str(out / "whole")], ["show", "run-f1.1-a20", "--json"]):
+        done = CliRunner().invoke(cli, ["archive", *words, *archive], catch_exceptions=False)
+        assert done.exit_code == 0, done.output
+    notes = json.loads(done.stdout)["notes"]
+    assert [(one["run"], one["text"]) for one in notes] == [
+        ("", "ballast moved"),
+        ("run-f1.1-a20", "a wave at the end"),
+    ]
+    assert notes[0]["author"] == "N. N."
     log = (out / "whole" / "commands.jsonl").read_text(encoding="utf-8")
     assert log.count('"action": "command"') == 1
 

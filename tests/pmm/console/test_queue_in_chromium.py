@@ -7,6 +7,7 @@ from selenium.webdriver import ActionChains
 from selenium.webdriver.common.keys import Keys
 
 import pmm
+from pmm.archive.notebook import read_notes
 from tests.pmm.console.chromium import Browser, console, needed, plan, rig_in
 
 pytestmark = needed
@@ -65,6 +66,13 @@ def test_runs_are_edited_moved_and_held_on_the_page(tmp_path: Path, chromium: Br
         assert told["1"]["held"] == ["run-f1-a20"]
         assert told["2"]["held"] == ["run-f1-a20"]
         assert [run["frequency_hz"] for run in told["1"]["runs"]] == [1.1, 1.0, 1.25]
+        page.run("document.getElementById('note-run').value = '1 run-f1.2-a20'")
+        page.find("#note-text").send_keys("gauge fore replaced before it")
+        page.find("#note-author").send_keys("N. N.", Keys.ENTER)
+        page.until(lambda: "note on run-f1.2-a20: gauge fore" in page.text("#alarms"), "a note")
+        (note,) = read_notes(tmp_path / "out" / "three")
+        assert (note.run, note.author) == ("run-f1.2-a20", "N. N.")
+        assert note.text == "gauge fore replaced before it"
         page.press("start")
         page.until(lambda: "2 so far" in page.text("#finished-count"), "the runs not held")
         assert [run["run"] for run in watcher.known["finished"]] == ["run-f1.1-a20", "run-f1.2-a20"]

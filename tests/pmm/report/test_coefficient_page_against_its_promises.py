@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from pmm.archive.notebook import NoteLine, write_note
 from pmm.cli import cli
 from tests.pmm.coefficients.campaigns import vertical_campaign
 
@@ -23,6 +24,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     reference = 'file = "a <b> & c.csv"\nallowance_relative = 0.01\n'
     settings = f"[uncertainty]\nlag_s = 1e-4\n[[references]]\n{reference}"
     (folder / "coefficients.toml").write_text(settings)
+    write_note(folder, NoteLine("2026-01-01T00:00:00+00:00", "", "N. N.", "ballast > 5 kg moved"))
     result = CliRunner().invoke(
         cli, ["report", str(folder), "--uncertainty", "monte-carlo", "--trials", "2000"]
     )
@@ -70,6 +72,12 @@ def test_the_page_needs_nothing_else(page: tuple[Path, str]) -> None:
 def test_names_of_users_are_text(page: tuple[Path, str]) -> None:
     assert "<b>" not in page[1].replace("<body>", "")
     assert "a &lt;b&gt; &amp; c" in page[1]
+
+
+def test_what_was_noted_is_there(page: tuple[Path, str]) -> None:
+    notes = page[1].partition("Notes</h2>")[2].partition("<h2")[0]
+    for said in ("2026-01-01", "N. N.", "ballast &gt; 5 kg moved"):
+        assert said in notes
 
 
 def test_every_value_and_its_system_is_there(page: tuple[Path, str]) -> None:
