@@ -1,5 +1,6 @@
 """``pmm --help`` has to answer at once, so it imports nothing heavy; the time is a benchmark's."""
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -48,6 +49,41 @@ def test_help_of_a_group_imports_nothing_heavy(words: list[str]) -> None:
     loaded = _loaded(words)
     assert f"pmm.cli.{words[0]}" in loaded
     assert not HEAVY & loaded
+
+
+MOTOR = """
+[campaign.drive.motor]
+constant_n_m_a = 0.8
+current_loop_hz = 200.0
+inertia_kg_m2 = 0.002
+gear_ratio = 20.0
+gear_inertia_kg_m2 = 0.2
+loop = { proportional = 2.0, integral = 10.0 }
+"""
+
+
+def test_only_tuning_a_drive_loads_the_library_of_controllers(tmp_path: Path) -> None:
+    """It takes a second: checking a plan with a motor on its rig goes without."""
+    for name in ("plan.toml", "rig.toml", "simulated.toml"):
+        shutil.copy(HOUSE / "examples" / "vertical" / name, tmp_path)
+    with (tmp_path / "rig.toml").open("a", encoding="utf-8") as file:
+        file.write(MOTOR)
+    code = HELP.replace(", '--help'", "").format(words=["plan", "check", f"{tmp_path}/plan.toml"])
+    modules = "atexit.register(lambda: print(*sys.modules, file=sys.stderr))"
+    done = _run(f"import atexit, sys; {modules}; {code}")
+    assert "speed ripple" in done.stdout
+    assert "control" not in done.stderr.split()
+    at_the_top = [
+        path
+        for package in ("pmm", "analysis", "sim", "hardware")
+        for path in (HOUSE / package).rglob("*.py")
+        if any(line.startswith(("import control", "from control ")) for line in _lines(path))
+    ]
+    assert at_the_top == []
+
+
+def _lines(path: Path) -> list[str]:
+    return path.read_text(encoding="utf-8").splitlines()
 
 
 @pytest.mark.parametrize("job", ["diagnose", "add", "answer"])
