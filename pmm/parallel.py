@@ -9,36 +9,26 @@ every engine and with any number of workers. See ``docs/parallel.md``.
 import os
 import threading
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import (
-    FIRST_COMPLETED,
-    CancelledError,
-    Executor,
-    Future,
-    ProcessPoolExecutor,
-    wait,
-)
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from functools import partial
-from importlib import import_module
-from importlib.machinery import ModuleSpec
-from importlib.util import find_spec
 from multiprocessing import get_context
 from pathlib import Path
 from platform import node
+from queue import SimpleQueue
 from typing import Any, Final, TypeVar
 
 from analysis.threads import SETTING, cores
 from hardware.description.errors import ConfigurationError, DataError
-from hardware.description.version import installing
+from pmm.cluster import cluster
 
 T = TypeVar("T")
 S = TypeVar("S")
 
 MOST_RESTARTS: Final = 10  # of a pool whose workers die: beyond it something is wrong with the work
 _THREADS: Final = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", SETTING)
-IN_HAND: Final = 500  # tasks at a time: more than the workers of a cluster, few enough to hold
-_TIMEOUT: Final = "10s"  # for a scheduler to answer, and for its first worker
+IN_HAND_EACH: Final = 3  # tasks of a worker at a time: the one it does, and some that wait there
 
 
 @contextmanager
@@ -71,7 +61,7 @@ def open_executor(
     if jobs is not None and jobs < 1:
         raise ConfigurationError(f"--jobs {jobs}: at least one process is needed")
     if scheduler is not None:
-        with _cluster(scheduler, module) as executor:
+        with cluster(scheduler, module) as executor:
             yield executor
         return
     count = cores() if jobs is None else jobs
@@ -83,7 +73,7 @@ def open_executor(
 
 
 def as_done(
-    executor: Executor, work: Callable[[S], T], tasks: Iterable[S], most: int = IN_HAND
+    executor: Executor, work: Callable[[S], T], tasks: Iterable[S], most: int | None = None
 ) -> Iterator[T]:
     """Yield the results of tasks as they come, in no order; a slow task holds up no other.
 
@@ -92,23 +82,26 @@ def as_done(
     work
         A function of a module, called with one task at a time.
     most
-        Tasks in hand at a time; no more results than that are held.
+        Tasks in hand at a time; no more results than that are held. By default
+        :data:`IN_HAND_EACH` for each worker, as many as there are then: clusters grow.
     """
-    running: set[Future[T]] = set()
+    done: SimpleQueue[Future[T]] = SimpleQueue()
+    running = 0
     for task in tasks:
-        running.add(executor.submit(work, task))
+        executor.submit(work, task).add_done_callback(done.put)
+        running += 1
         # What is done at once, as in this process, is yielded before the next task is begun.
-        patience = 0.0 if len(running) < most else None
-        done, running = wait(running, patience, return_when=FIRST_COMPLETED)
-        yield from _results(done)
-    while running:
-        done, running = wait(running, return_when=FIRST_COMPLETED)
-        yield from _results(done)
+        while not done.empty() or running >= (most or in_hand(executor)):
+            yield done.get().result()
+            running -= 1
+    for _ in range(running):
+        yield done.get().result()
 
 
-def _results(done: set[Future[T]]) -> Iterator[T]:
-    while done:
-        yield done.pop().result()
+def in_hand(executor: Executor) -> int:
+    """Return how many tasks an executor's workers are to have at a time."""
+    workers: int = getattr(executor, "workers", 1)
+    return IN_HAND_EACH * workers
 
 
 def check_seen(folder: Path) -> None:
@@ -153,10 +146,15 @@ class LocalProcesses(Executor):
 
     A :class:`ProcessPoolExecutor` fails every task in hand when a worker dies. Here these tasks
     start again in new processes. Tasks have no effect but their result, so doing one twice is safe.
+
+    Attributes
+    ----------
+    workers
+        How many processes there are.
     """
 
     def __init__(self, jobs: int, most_restarts: int = MOST_RESTARTS) -> None:
-        self._jobs = jobs
+        self._jobs = self.workers = jobs
         self._left = most_restarts
         self._lock = threading.Lock()
         self._pools = [self._new_pool()]  # the last one works, those before it are broken
@@ -230,56 +228,3 @@ def one_thread() -> None:
     """
     for name in _THREADS:
         os.environ.setdefault(name, "1")
-
-
-@contextmanager
-def _cluster(address: str, module: str) -> Iterator[Executor]:
-    try:
-        distributed: Any = import_module("distributed")
-    except ImportError:
-        raise ConfigurationError(
-            f"--scheduler needs the extra 'cluster': {installing('cluster')}"
-        ) from None
-    try:
-        client = distributed.Client(address, timeout=_TIMEOUT, set_as_default=False, name="pmm")
-    except (OSError, ValueError) as error:
-        raise DataError(
-            f"--scheduler {address}: no Dask scheduler answers there within {_TIMEOUT} ({error}); "
-            "start one with 'dask scheduler', or leave the option out"
-        ) from None
-    try:
-        _wait_for_a_worker(client, address)
-        _check_workers(client, address, module)
-        yield client.get_executor(pure=False)
-    except CancelledError:
-        raise DataError(
-            f"--scheduler {address}: the scheduler ended, or was told to give the work up"
-        ) from None
-    except distributed.KilledWorker as error:
-        raise DataError(
-            f"--scheduler {address}: a task's workers died again and again: {error}"
-        ) from error
-    finally:
-        client.close()
-
-
-def _wait_for_a_worker(client: Any, address: str) -> None:
-    """Refuse a scheduler without workers: it keeps tasks for as long as none comes."""
-    try:
-        client.wait_for_workers(1, timeout=_TIMEOUT)
-    except TimeoutError:
-        raise DataError(
-            f"--scheduler {address}: no workers there within {_TIMEOUT}; start one with "
-            f"'dask worker {address}'"
-        ) from None
-
-
-def _check_workers(client: Any, address: str, module: str) -> None:
-    """Refuse workers that lack a module: one that is sent such a task ends without a word."""
-    found = client.run(find_spec, module, on_error="return")
-    lacking = sorted(worker for worker, has in found.items() if not isinstance(has, ModuleSpec))
-    if lacking:
-        raise DataError(
-            f"--scheduler {address}: {', '.join(lacking)} cannot import {module}; a cluster's "
-            "workers need it in the same version"
-        )

@@ -1,15 +1,17 @@
 """Folders into the archive: what changed is taken in anew, what is known is not computed again."""
 
 import sqlite3
-from collections.abc import Iterable, Mapping
-from dataclasses import astuple, dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from concurrent.futures import Executor
+from dataclasses import astuple, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from hardware.description.errors import DataError
+from hardware.description.errors import DataError, PmmError
 from pmm.archive.contents import Contents, Stamp, changes, read_contents, recorded_utc, stamp
 from pmm.archive.notebook import NOTES_FILE, NoteLine, read_notes, write_note
-from pmm.archive.results import LEVEL, Analysed, Analyses, HarmonicValue
+from pmm.archive.results import LEVEL, Analysed, Analyses, GapVerdict, HarmonicValue
+from pmm.parallel import as_done, check_seen
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,71 @@ class AddedFolder:
     refused: tuple[str, ...]
 
 
+@dataclass(frozen=True)
+class FolderTask:
+    """A folder that was taken in, with what is to be computed of it.
+
+    Attributes
+    ----------
+    key
+        Of its row in the archive.
+    due
+        What is asked for and not known of these very files.
+    """
+
+    added: AddedFolder
+    key: int
+    stamps: Mapping[str, Stamp]
+    due: Analyses
+
+
+@dataclass(frozen=True)
+class Computed:
+    """What was computed of a folder, up to what it refused with."""
+
+    task: FolderTask
+    analysed: Analysed | None = None
+    verdict: GapVerdict | None = None
+    error: PmmError | None = None
+
+
+def add_folders(
+    connection: sqlite3.Connection,
+    folders: Iterable[Path],
+    analyses: Analyses,
+    now_utc: str,
+    executor: Executor,
+) -> Iterator[AddedFolder | PmmError]:
+    """Take folders in, and compute what is asked for in an executor's workers.
+
+    Each result is kept as it comes, by the hash of the files that it rests on: whoever is
+    interrupted adds the same folders again, and nothing is computed twice. A folder that is refused
+    gives its error, and the others go on.
+    """
+    told: list[AddedFolder | PmmError] = []
+
+    def tasks() -> Iterator[FolderTask]:
+        for folder in folders:
+            try:
+                task = _taken_in(connection, folder, analyses, now_utc)
+            except PmmError as error:
+                told.append(error)
+                continue
+            if task.due == Analyses():
+                told.append(task.added)
+            else:
+                yield task
+
+    for found in as_done(executor, compute, tasks()):
+        try:
+            told.append(_kept(connection, found))
+        except PmmError as error:
+            told.append(error)
+        while told:
+            yield told.pop(0)
+    yield from told
+
+
 def add_folder(
     connection: sqlite3.Connection, folder: Path, analyses: Analyses, now_utc: str
 ) -> AddedFolder:
@@ -46,6 +113,27 @@ def add_folder(
     DataError
         If the folder changes while it is analysed.
     """
+    task = _taken_in(connection, folder, analyses, now_utc)
+    return _kept(connection, compute(task))
+
+
+def compute(task: FolderTask) -> Computed:
+    """Compute what is due of a folder, wherever its task was sent."""
+    folder, analysed, verdict = task.added.folder, None, None
+    try:
+        check_seen(folder)
+        if task.due.analyse is not None:
+            analysed = task.due.analyse(folder)
+        if task.due.diagnose is not None:
+            verdict = task.due.diagnose(folder)
+    except PmmError as error:
+        return Computed(task, analysed, verdict, error)
+    return Computed(task, analysed, verdict)
+
+
+def _taken_in(
+    connection: sqlite3.Connection, folder: Path, analyses: Analyses, now_utc: str
+) -> FolderTask:
     folder = folder.resolve()
     before = _row(connection, folder)
     contents = read_contents(folder, {} if before is None else stamps(connection, before["id"]))
@@ -62,10 +150,13 @@ def add_folder(
         connection.execute("UPDATE campaigns SET seen_utc = ? WHERE id = ?", (now_utc, key))
         _set_files(connection, key, contents)
         _set_notes(connection, key, contents.notes)
-    computed, refused = _computed(connection, row, contents, analyses)
+    due = Analyses(
+        None if row["analysed"] else analyses.analyse,
+        None if row["diagnosed"] else analyses.diagnose,
+    )
     state = "as before" if same else "new" if before is None else "changed"
-    count = len(contents.records)
-    return AddedFolder(folder, contents.campaign.name, state, count, computed, refused)
+    added = AddedFolder(folder, contents.campaign.name, state, len(contents.records), (), ())
+    return FolderTask(added, key, contents.stamps, due)
 
 
 def _row(connection: sqlite3.Connection, folder: Path) -> sqlite3.Row | None:
@@ -152,34 +243,26 @@ def _set_notes(connection: sqlite3.Connection, key: int, notes: Iterable[NoteLin
     connection.executemany("INSERT INTO notes VALUES (?, ?, ?, ?, ?)", rows)
 
 
-def _computed(
-    connection: sqlite3.Connection, row: sqlite3.Row, contents: Contents, analyses: Analyses
-) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    computed: list[str] = []
-    refused: tuple[str, ...] = ()
-    key: int = row["id"]
-    if analyses.analyse is not None and not row["analysed"]:
-        found = analyses.analyse(contents.folder)
-        _check_unchanged(contents)
-        with connection:
-            _write(connection, key, found)
-        computed.append("analysis")
-        refused = found.refused
-    if analyses.diagnose is not None and not row["diagnosed"]:
-        verdict = analyses.diagnose(contents.folder)
-        _check_unchanged(contents)
-        with connection:
-            connection.execute("INSERT INTO verdicts VALUES (?, ?, ?, ?)", (key, *astuple(verdict)))
-            connection.execute("UPDATE campaigns SET diagnosed = 1 WHERE id = ?", (key,))
-        computed.append("diagnosis")
-    return tuple(computed), refused
-
-
-def _check_unchanged(contents: Contents) -> None:
-    if found := changes(contents.folder, contents.stamps):
+def _kept(connection: sqlite3.Connection, found: Computed) -> AddedFolder:
+    """Keep what was computed of a folder that is still as it was."""
+    task, computed = found.task, []
+    if changed := changes(task.added.folder, task.stamps):
         raise DataError(
-            f"{contents.folder}: {'; '.join(found)} while it was analysed; add it again"
+            f"{task.added.folder}: {'; '.join(changed)} while it was analysed; add it again"
         )
+    with connection:
+        if found.analysed is not None:
+            _write(connection, task.key, found.analysed)
+            computed.append("analysis")
+        if found.verdict is not None:
+            row = (task.key, *astuple(found.verdict))
+            connection.execute("INSERT INTO verdicts VALUES (?, ?, ?, ?)", row)
+            connection.execute("UPDATE campaigns SET diagnosed = 1 WHERE id = ?", (task.key,))
+            computed.append("diagnosis")
+    if found.error is not None:
+        raise found.error
+    refused = () if found.analysed is None else found.analysed.refused
+    return replace(task.added, computed=tuple(computed), refused=refused)
 
 
 def _write(connection: sqlite3.Connection, key: int, found: Analysed) -> None:

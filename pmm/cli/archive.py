@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from pmm.cli.group import CommandGroup
-from pmm.cli.options import JSON, PLOT, probability
+from pmm.cli.options import JSON, PLOT, SCHEDULER, jobs_option, probability
 
 if TYPE_CHECKING:
     from pmm.archive.indexing import AddedFolder
@@ -40,24 +40,29 @@ def archive() -> None:
 @click.argument("folders", nargs=-1, required=True, metavar="FOLDER...")
 @click.option("--analyse", "analysed", is_flag=True, help="Find harmonics and coefficients.")
 @click.option("--gap", is_flag=True, help="Diagnose the gap to the simulation; takes long.")
+@jobs_option("1")
+@SCHEDULER
 @FILE
 @JSON
-def add(folders: tuple[str, ...], analysed: bool, gap: bool, file: str, as_json: bool) -> None:
+def add(folders: tuple[str, ...], analysed: bool, gap: bool, jobs: int | None,
+        scheduler: str | None, file: str, as_json: bool) -> None:  # fmt: skip
     """Take campaign folders in, or again those that changed.
 
-    Nothing is computed twice of the same recordings, campaign file and settings. Without --analyse
-    a campaign is listed as not analysed.
+    Nothing is computed twice of the same recordings, campaign file and settings: who was
+    interrupted gives the same command again. Without --analyse a campaign is listed as not
+    analysed.
 
     \b
     pmm archive add 2025-03-kvlcc2 2025-09-kvlcc2 --analyse
     """  # noqa: D301
     from hardware.description.errors import PmmError
     from pmm.archive.database import open_archive
-    from pmm.archive.indexing import add_folder
+    from pmm.archive.indexing import add_folders
     from pmm.archive.results import Analyses
     from pmm.cli.archive_analyses import analysed_folder, diagnosed_folder
     from pmm.cli.files import check_file
     from pmm.cli.screen import error_line, show, show_progress
+    from pmm.parallel import open_executor
     from pmm.report.archive_document import added_document
 
     check_file(Path(file), "--archive")
@@ -65,13 +70,17 @@ def add(folders: tuple[str, ...], analysed: bool, gap: bool, file: str, as_json:
     analyses = Analyses(analysed_folder if analysed else None, diagnosed_folder if gap else None)
     done: list[AddedFolder] = []
     statuses = []
-    with open_archive(Path(file), create=True) as connection:
-        for one in show_progress(folders, "folders"):
-            try:
-                done.append(add_folder(connection, Path(one), analyses, _now()))
-            except PmmError as error:
-                error_line(str(error))
-                statuses.append(error.exit_status)
+    with (
+        open_archive(Path(file), create=True) as connection,
+        open_executor(1 if scheduler is None and jobs is None else jobs, scheduler) as executor,
+    ):
+        found = add_folders(connection, map(Path, folders), analyses, _now(), executor)
+        for one in show_progress(found, "folders", len(folders)):
+            if isinstance(one, PmmError):
+                error_line(str(one))
+                statuses.append(one.exit_status)
+            else:
+                done.append(one)
     show(added_document(tuple(done), file), as_json=as_json)
     statuses += [1 for one in done if one.refused]
     if statuses:

@@ -78,7 +78,7 @@ def test_a_scheduler_that_is_not_there_answers_nothing(
     board: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("distributed")
-    monkeypatch.setattr("pmm.parallel._TIMEOUT", "1s")
+    monkeypatch.setattr("pmm.cluster._TIMEOUT", "1s")
     done = _run("answer", board, "--scheduler", "tcp://127.0.0.1:9")
     assert done.exit_code == 1
     assert "--scheduler tcp://127.0.0.1:9: no Dask scheduler answers there" in done.stderr

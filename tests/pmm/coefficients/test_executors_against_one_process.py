@@ -1,7 +1,9 @@
 """Every engine gives what one process gives, also when a worker is killed on the way."""
 
 import multiprocessing
+from collections import deque
 from collections.abc import Iterator
+from concurrent.futures import Executor, Future
 
 import pytest
 
@@ -105,6 +107,31 @@ def test_no_more_tasks_than_allowed_are_in_hand() -> None:
     assert sorted(found) == SQUARES
 
 
+class _Growing(Executor):
+    """A cluster that answers its oldest task once each worker has three, and doubles halfway."""
+
+    def __init__(self, workers: int) -> None:
+        self.workers, self.begun, self.most = workers, 0, 0
+        self._open: deque[Future[int]] = deque()
+
+    def submit(self, fn, /, *args, **kwargs):  # type: ignore[no-untyped-def]
+        future: Future[int] = Future()
+        self.begun += 1
+        self.workers *= 2 if self.begun == 3000 else 1
+        self._open.append(future)
+        self.most = max(self.most, len(self._open))
+        if len(self._open) >= 3 * self.workers or self.begun == 7000:
+            while self._open:
+                self._open.popleft().set_result(0)
+        return future
+
+
+def test_tasks_in_hand_follow_the_size_of_the_cluster() -> None:
+    cluster = _Growing(700)
+    assert sum(1 for _ in as_done(cluster, squared, range(7000))) == 7000
+    assert cluster.most == 3 * 1400
+
+
 def test_an_error_ends_what_comes_as_it_is_done() -> None:
     with open_executor(jobs=2) as executor, pytest.raises(ValueError, match="number 3"):
         list(as_done(executor, refuses, [3]))
@@ -148,7 +175,7 @@ def test_what_a_cluster_cannot_do_is_said() -> None:
 
 @pytest.mark.slow
 def test_a_scheduler_without_workers_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pmm.parallel._TIMEOUT", "1s")
+    monkeypatch.setattr("pmm.cluster._TIMEOUT", "1s")
     with (
         cluster(0) as address,
         pytest.raises(DataError, match=rf"no workers there within 1s.*'dask worker {address}'"),
@@ -160,7 +187,7 @@ def test_a_scheduler_without_workers_is_refused(monkeypatch: pytest.MonkeyPatch)
 @pytest.mark.slow
 def test_a_scheduler_that_is_not_there_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")
-    monkeypatch.setattr("pmm.parallel._TIMEOUT", "1s")
+    monkeypatch.setattr("pmm.cluster._TIMEOUT", "1s")
     with (
         pytest.raises(DataError, match=r"127\.0\.0\.1:9: no Dask scheduler"),
         open_executor(scheduler="tcp://127.0.0.1:9"),

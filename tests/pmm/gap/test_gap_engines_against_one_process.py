@@ -108,7 +108,7 @@ def test_a_scheduler_that_is_not_there_is_named(
     board: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("distributed")
-    monkeypatch.setattr("pmm.parallel._TIMEOUT", "1s")
+    monkeypatch.setattr("pmm.cluster._TIMEOUT", "1s")
     done = run("gap", "answer", board, "--output", tmp_path, "--scheduler", "tcp://127.0.0.1:9")
     assert done.exit_code == 1
     assert "--scheduler tcp://127.0.0.1:9: no Dask scheduler answers there" in done.stderr
