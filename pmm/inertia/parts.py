@@ -9,6 +9,7 @@ from analysis.inertia.ballast import BallastTarget, Weight, place_ballast
 from analysis.inertia.parts import PRODUCTS, BodyPart, combine, part
 from analysis.inertia.plane_inertia import inertias_at
 from analysis.inertia.result import InertiaResult
+from analysis.inertia.second_moments import impossible
 from analysis.uncertainty.estimate import Estimate, exactly
 from analysis.uncertainty.monte_carlo import Assessment
 from hardware.description.arrays import FloatArray
@@ -118,7 +119,11 @@ def run_combine(path: str) -> Outcome:
     bare = sorted(without_uncertainty(table))
     centres = (one.centre for one in (*table.parts, *table.without))
     found = tuple(one.redundancy for one in centres if one is not None)
-    flags = (*_exact(bare), *(flag for one in found for flag in one.flags()))
+    flags = (
+        *_exact(bare),
+        *(flag for one in found for flag in one.flags()),
+        *_impossible([*parts, *without], whole),
+    )
     body = _body(table.name, whole, flags)
     checks = compare(findings, table.targets)
     return Outcome(
@@ -133,6 +138,18 @@ def run_combine(path: str) -> Outcome:
         redundancy=found,
         tensor=whole,
     )
+
+
+def _impossible(parts: Sequence[BodyPart], whole: BodyPart) -> tuple[Flag, ...]:
+    """Flag parts, or else the whole, with moments that no body has.
+
+    Where some moments of a part were not given the whole lacks them too.
+    """
+    given = [one.parameters[4:7] > 0.0 for one in parts]
+    flags = tuple(flag for one in parts for flag in impossible(one))
+    if flags or any(some.any() and not some.all() for some in given):
+        return flags
+    return impossible(whole)
 
 
 def _budgeted(

@@ -10,6 +10,7 @@ from analysis.inertia.elementary_functions import Value, sqrt
 from analysis.inertia.hanging import HangingCentre
 from analysis.inertia.parts import MADE_OF, BodyPart, combine, part
 from analysis.inertia.result import InertiaResult
+from analysis.inertia.second_moments import impossible
 from analysis.uncertainty.budget import Budget, derived
 from analysis.uncertainty.estimate import Estimate, exactly
 from hardware.description.flags import Flag
@@ -157,6 +158,10 @@ def properties(
         return None, missing or ("a gyradius",)
     if take_off:
         (mass, x, z), gyradii = _without(name, (mass, x, z), gyradii, take_off)
+    if set(gyradii) == set(AXES):
+        roll, pitch, yaw = (gyradii[axis] for axis in AXES)
+        nothing = exactly(0.0, "m")
+        flags = (*flags, *impossible(part(name, mass, (x, nothing, z), (roll, pitch, yaw))))
     return InertiaResult(name, mass, x, z, dict(gyradii), tuple(budgets), tuple(flags)), ()
 
 

@@ -6,13 +6,15 @@ from typing import Final
 
 import numpy as np
 
-from hardware.description.channels import DISPLACEMENTS, FORCES, POSITIONS
+from hardware.description.channels import COMMANDS, DISPLACEMENTS, FORCES, POSITIONS
 from pmm.start import words
 from pmm.start.behaviour import RecordingBehaviour
 from pmm.start.found_campaign import CHANNELS, FoundColumn
-from pmm.start.roles import ANGLE, DISPLACEMENT, FORCE, POSITION, PULSES, ColumnRole
+from pmm.start.roles import ANGLE, COMMAND, DISPLACEMENT, FORCE, POSITION, PULSES, ColumnRole
 
-_PAIRS: Final = ((DISPLACEMENT, DISPLACEMENTS), (FORCE, FORCES), (POSITION, POSITIONS))
+_PAIRS: Final = (
+    (DISPLACEMENT, DISPLACEMENTS), (FORCE, FORCES), (COMMAND, COMMANDS), (POSITION, POSITIONS),
+)  # fmt: skip
 _LARGEST_M: Final = 1.0  # of an eccentricity in metres; and the smallest of one in millimetres
 
 
@@ -63,7 +65,7 @@ def _with_unit(one: FoundColumn, running: Sequence[RecordingBehaviour]) -> Found
     if one.name == ANGLE.name:
         turn = next(each.turn for each in seen if each.turn)
         return replace(one, unit=turn.unit, remark="no unit in the header: it turns so")
-    if one.name in DISPLACEMENTS:
+    if one.name in (*DISPLACEMENTS, *COMMANDS):
         amplitude = float(np.median([abs(each.part.first) for each in seen]))
         unit = "m" if amplitude < _LARGEST_M else "mm"
         said = f"no unit in the header: {unit} by its amplitude of {amplitude:.3g}"

@@ -6,6 +6,7 @@ from typing import Final
 
 from hardware.description.channels import (
     CARRIAGE_SPEED,
+    COMMANDS,
     DISPLACEMENTS,
     FORCE_X,
     FORCES,
@@ -21,8 +22,8 @@ PHOTOCELL: Final = "photocell"
 ON_MODEL: Final = (*(one.name for one in (*STEERING, *HEELING)), *POSITIONS)
 """What the model has of its own: the simulation needs to be told of it."""
 CHANNELS: Final = (
-    *FORCES, FORCE_X.name, *DISPLACEMENTS, SHAFT_ANGLE.name, CARRIAGE_SPEED.name, *ON_MODEL,
-    PHOTOCELL,
+    *FORCES, FORCE_X.name, *DISPLACEMENTS, SHAFT_ANGLE.name, CARRIAGE_SPEED.name, *COMMANDS,
+    *ON_MODEL, PHOTOCELL,
 )  # fmt: skip
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import (
     CARRIAGE_SPEED,
+    COMMAND_AFT,
     DISPLACEMENT_AFT,
     FORCE_AFT,
     FORCE_X,
@@ -68,8 +69,11 @@ SPEED: Final = ChannelKind(CARRIAGE_SPEED.name, (CARRIAGE_SPEED.unit,), words.SP
 ALONG: Final = ChannelKind(FORCE_X.name, (FORCE_X.unit,), words.ALONG)
 PULSES: Final = ChannelKind("photocell", ("V", "1"), words.PULSES)
 POSITION: Final = ChannelKind("position", (POSITION_AFT.unit,), words.SINKAGE, 2)
-# What the model has of its own does nothing that tells it: it is known by its name and unit alone.
+COMMAND: Final = ChannelKind("command", (COMMAND_AFT.unit,), words.COMMAND, 2)
+# What the model has of its own does nothing that tells it, and a command does what the strut does:
+# they are known by name and unit alone.
 BY_NAME: Final = (
+    COMMAND,
     ChannelKind(RUDDER_ANGLE.name, (RUDDER_ANGLE.unit,), words.RUDDER),
     ChannelKind(RUDDER_NORMAL_FORCE.name, (RUDDER_NORMAL_FORCE.unit,), words.RUDDER),
     ChannelKind(PROPELLER_THRUST.name, (PROPELLER_THRUST.unit,), words.THRUST),
@@ -80,7 +84,7 @@ BY_NAME: Final = (
     POSITION,
 )
 KINDS: Final = (DISPLACEMENT, FORCE, ANGLE, SPEED, ALONG, PULSES, *BY_NAME)
-_ON_MODEL: Final = tuple(word for kind in BY_NAME for word in kind.words)
+_NAMED: Final = tuple(word for kind in BY_NAME for word in kind.words)
 
 
 @dataclass(frozen=True)
@@ -186,8 +190,8 @@ def _of_name(
         says = words.says(column, kind.words)
         yield RoleEvidence(_NAME if says else -np.inf, "its name")
         return
-    if words.says(column, _ON_MODEL):
-        yield RoleEvidence(_AGAINST, "it is called as what the model has of its own")
+    if words.says(column, _NAMED):
+        yield RoleEvidence(_AGAINST, "it is called as a command, or as the model's own")
     if words.says(column, words.OTHERS):
         yield RoleEvidence(_AGAINST, "it is called as what is no part of the oscillator")
     if words.says(column, kind.words):

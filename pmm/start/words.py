@@ -29,6 +29,11 @@ PULSES: Final = (
 ALONG: Final = (
     "fx", "surge", "drag", "resist", "widerst", "längskraft", "laengskraft", "weerstand", "trainée",
 )  # fmt: skip
+# What a drive was told to do, beside what was measured of it.
+COMMAND: Final = (
+    "command", "demand", "setpoint", "sollwert", "sollweg", "soll", "consigne", "kommando",
+    "gewenst", "consigna",
+)  # fmt: skip
 RUDDER: Final = ("rudder", "ruder", "roer", "gouvernail", "safran", "timon", "timone")
 THRUST: Final = ("thrust", "schub", "stuwkracht", "poussée", "poussee", "empuje", "spinta")
 TORQUE: Final = ("torque", "drehmoment", "koppel", "couple")

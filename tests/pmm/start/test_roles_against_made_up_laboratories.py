@@ -116,6 +116,31 @@ def test_what_the_model_has_of_its_own_is_told_by_name_and_unit(tmp_path: Path) 
     assert not {"rudder_angle", "position_aft", "roll_moment"} & set(found.sensors)
 
 
+@pytest.mark.parametrize(
+    ("aft", "fore"),
+    [("command_aft [m]", "command_fore [m]"), ("Weg Soll hinten [mm]", "Weg Soll vorn [mm]"),
+     ("Demand aft (mm)", "Demand fore (mm)")],
+)  # fmt: skip
+def test_commands_stand_beside_what_was_measured_of_them(
+    tmp_path: Path, aft: str, fore: str
+) -> None:
+    rng = np.random.default_rng(9)
+    factor = 1e-3 if "[m]" in aft else 1.0
+    time_s = np.arange(4000) / 100.0
+    told = [200.0 * np.sin(2.0 * np.pi * 0.25 * time_s + ahead) for ahead in (0.0, 0.4)]
+    held = [np.interp(time_s - 0.05, time_s, one) for one in told]
+    forces = [30.0 * one / 200.0 + rng.standard_normal(4000) for one in held]
+    held = [one + 0.02 * rng.standard_normal(4000) for one in held]
+    rows = np.stack((time_s, *(factor * one for one in told), *held, *forces), axis=1)
+    names = f"Time [s],{aft},{fore},Strut aft [mm],Strut fore [mm],F aft [N],F fore [N]"
+    path = tmp_path / "run.csv"
+    np.savetxt(path, rows, "%.6f", ",", header=names, comments="")
+    found = taken(find_campaign([path], tmp_path))
+    named = [one.rpartition(" ")[0] for one in (aft, fore)]
+    assert [found["command_aft"], found["command_fore"]] == named
+    assert [found["displacement_aft"], found["displacement_fore"]] == ["Strut aft", "Strut fore"]
+
+
 @pytest.mark.parametrize("header", ["pos mm", "pos_mm", "pos / mm", "pos [mm]", "pos"])
 def test_a_stroke_in_millimetres_is_one_of_millimetres(tmp_path: Path, header: str) -> None:
     time_s = np.arange(2000) / 100.0

@@ -1,0 +1,54 @@
+"""Whether a body can have some moments of inertia: none is above the sum of the other two.
+
+``sum m n^2`` along any direction is not below zero. It is the least eigenvalue of the matrix with
+``(Iyy + Izz - Ixx)/2 = sum m x^2`` ... on its diagonal and the products ``sum m x y`` beside it.
+"""
+
+import math
+from typing import Final
+
+import numpy as np
+
+from analysis.inertia.parts import BodyPart
+from hardware.description.flags import Flag, Severity
+
+CODE: Final = "inertia_impossible"
+_SURE: Final = 2.0  # standard uncertainties by which the sum is below zero
+_ROUNDING: Final = 1e-6  # of all moments: what has no uncertainty is rounded
+_STRAIGHT: Final = 0.99  # along an axis, where products of inertia do not matter
+_AXES: Final = ("ixx", "iyy", "izz")
+
+
+def impossible(body: BodyPart) -> tuple[Flag, ...]:
+    """Flag moments and products of inertia that no body has, by more than their uncertainty.
+
+    Moments that are zero were not given, and nothing is said of them.
+    """
+    moments, products = body.parameters[4:7], body.parameters[7:10]
+    if not (moments > 0.0).all():
+        return ()
+    second = np.diag(0.5 * moments.sum() - moments)
+    for value, (row, column) in zip(products, ((0, 1), (0, 2), (1, 2)), strict=True):
+        second[row, column] = second[column, row] = value
+    values, vectors = np.linalg.eigh(second)
+    least, along = float(values[0]), vectors[:, 0]
+    slope = np.zeros(len(body.parameters))
+    slope[4:7], slope[7:10] = 0.5 - along**2, 2.0 * along[[0, 0, 1]] * along[[1, 2, 2]]
+    u = math.sqrt(max(float(slope @ body.uncertain.covariance() @ slope), 0.0))
+    if least >= -max(_SURE * u, _ROUNDING * moments.sum()):
+        return ()
+    large = int(np.argmin(slope[4:7]))
+    one, two = (axis for k, axis in enumerate(_AXES) if k != large)
+    mended = -least / slope[4:7]
+    sigmas = np.array([one.uncertainty for one in body.inertia])
+    relative = np.abs(mended) / (sigmas if (sigmas > 0.0).all() else moments)
+    wrong = int(np.argmin(relative))
+    message = (
+        f"{body.name}: no body has {_AXES[large]} above {one} + {two}: sum m n2 would be "
+        f"{least:.3g} kg m2 along ({', '.join(f'{part:.2g}' for part in along)})"
+        + (f", {-least / u:.2g} standard uncertainties below zero" if u > 0.0 else "")
+        + f"; measure {_AXES[wrong]} again first, which {mended[wrong]:+.3g} kg m2 "
+        f"({100.0 * mended[wrong] / moments[wrong]:+.2g} %) would mend, then the other two"
+        + ("" if abs(along[large]) > _STRAIGHT else "; the products of inertia take part in it")
+    )
+    return (Flag(CODE, Severity.WARNING, message),)
