@@ -162,7 +162,10 @@ def test_what_is_left_out_is_named_and_what_would_tell_the_rest(tows: Path, tmp_
     assert "straight-tow-b0-n8-d-20: left out: it states neither rudder_angle_deg nor" in told
 
 
-def test_the_report_has_them_where_the_folder_has_the_file(tows: Path, tmp_path: Path) -> None:
+def test_the_report_has_them_where_the_folder_has_the_file(
+    tows: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("pmm.document.page.drawn", lambda figure: figure.caption)
     folder = _of_few_runs(tows, tmp_path / "told")
     shutil.copy(SETTINGS, folder)
     (folder / "ship.toml").write_text("speed_m_s = 1.0\n", encoding="utf-8")
