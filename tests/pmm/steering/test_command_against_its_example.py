@@ -95,7 +95,7 @@ def test_the_parameters_are_those_put_in(told: Told) -> None:
         off = abs(rows[name]["value"] - value) / rows[name]["standard_uncertainty"]
         assert off < 3.5, name  # of eleven: beyond it once in 200 seeds
         assert rows[name]["standard_uncertainty"] < 0.01 * max(abs(value), 0.1)
-    assert found["missing"] == {}
+    assert (found["missing"], found["doubts"]) == ({}, [])
     turns = {one["run"]: one["motion"] for one in found["tows"] if one["run"].startswith("yaw")}
     rate = 2.0 * math.pi * 0.1 * 2.0 * 0.06  # opposite struts, a metre apart
     for side, sign in (("starboard", 1.0), ("port", -1.0)):
