@@ -67,7 +67,7 @@ def write_deliverables(outcome: CampaignOutcome, folder: Path, *, overwrite: boo
             inertia_kg_m2=None if body is None else body.inertia_kg_m2,
             cg_x_m=None if body is None else body.cg_x_m,
             water_temperature_deg_c=None if water is None else water.temperature_deg_c,
-            density_kg_m3=ship.density,
+            density_kg_m3=ship.density_kg_m3,
             logging_rate_hz=rates[cycle.name],
             periods=periods[cycle.name],
         )
