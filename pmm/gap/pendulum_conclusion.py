@@ -7,7 +7,7 @@ from typing import Final
 from analysis.gap.inference.answers import COEFFICIENTS, NONE, ODD_RUN, UNKNOWN, Answers
 from analysis.gap.pendulum.diagnose import PendulumDiagnosis
 from analysis.gap.pendulum.search import named
-from analysis.gap.pendulum.verdict import CAUSE, UNTOLD, Verdict, open_causes
+from analysis.gap.pendulum.verdict import CAUSE, UNTOLD, Verdict, open_causes, turned_runs
 from analysis.gap.search.fit import Fit
 
 _SHOWN: Final = 8  # answers
@@ -32,6 +32,8 @@ class PendulumConclusion:
         The record that alone is off, where that is the verdict.
     apart
         By cause what these records cannot tell from it, itself first, with their probabilities.
+    turned
+        Runs under a known force that are half a turn off, which no cause explains.
     """
 
     verdict: str
@@ -39,11 +41,12 @@ class PendulumConclusion:
     unknown: float = 0.0
     odd: str = ""
     apart: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    turned: tuple[str, ...] = ()
 
     @property
     def adds(self) -> bool:
         """Whether the causes are to be put into the simulation."""
-        return self.verdict == CAUSE
+        return self.verdict == CAUSE and not self.turned
 
     @property
     def strange(self) -> bool:
@@ -61,6 +64,7 @@ def conclusion_of(found: PendulumDiagnosis) -> PendulumConclusion:
         answers.by_answer[UNKNOWN],
         odd if verdict.said == ODD_RUN else "",
         open_causes(found.weighed, verdict),
+        turned_runs(found.problem, found.settled),
     )
 
 

@@ -19,7 +19,6 @@ from pmm.gap.words import OUTSIDE
 
 FASTER: Final = "damping that grows faster than linearly"
 _DECAY, _PERIOD = (KINDS.index(one) for one in ("decay", "period"))
-_HALF_TURN: Final = 0.54  # rad about it, within which a sign is reversed: as in a campaign
 
 
 def sentences(found: PendulumDiagnosis) -> tuple[str, str, str]:
@@ -30,6 +29,8 @@ def sentences(found: PendulumDiagnosis) -> tuple[str, str, str]:
 
 def what_is_wrong(found: PendulumDiagnosis, concluded: PendulumConclusion) -> str:
     """Return what separates the record from its simulation, and what of it is open."""
+    if concluded.turned:
+        return f"{_turned(concluded.turned)}."
     return f"{'; '.join(_wrong(found, concluded))}."
 
 
@@ -38,7 +39,7 @@ def _wrong(found: PendulumDiagnosis, concluded: PendulumConclusion) -> Iterator[
         yield _no_gap(found)
         return
     if concluded.verdict == ODD_RUN:
-        yield f"Record {concluded.odd} alone is off, {_own_error(found, concluded.odd)}"
+        yield f"Record {concluded.odd} alone is off, by a gain, a period or a zero of its own"
         return
     if concluded.verdict == UNKNOWN:
         yield f"{OUTSIDE[0].upper()}{OUTSIDE[1:]} separates the record from its simulation"
@@ -81,14 +82,10 @@ def _no_gap(found: PendulumDiagnosis) -> str:
     return f"No gap: the record and its simulation agree{once} within what the record can tell"
 
 
-def _own_error(found: PendulumDiagnosis, odd: str) -> str:
-    """Return what is wrong with the one record that is odd."""
-    problem = found.problem
-    own = [(one.run or one.name) == odd for one in problem.trials]
-    phases = _stated(found)[np.array(own)[problem.trial] & (problem.kind == _PERIOD)]
-    if problem.driven and (abs(abs(phases) - math.pi) < _HALF_TURN).all():
-        return "by half a turn: its force or its reading has the other sign"
-    return "by a gain, a period or a zero of its own"
+def _turned(runs: Sequence[str]) -> str:
+    what, are = ("Records", "are") if len(runs) > 1 else ("Record", "is")
+    sign = "half a turn off: the force or the reading has the other sign there"
+    return f"{what} {' and '.join(runs)} {are} {sign}"
 
 
 def _first(concluded: PendulumConclusion, name: str) -> tuple[str, ...]:
@@ -158,9 +155,9 @@ def what_to_do(found: PendulumDiagnosis, concluded: PendulumConclusion) -> str:
     if concluded.adds:
         put = 'put it into the simulation with "pmm gap add-pendulum", and look again'
         return f"{tell}; or {put}." if tell else f"{put[0].upper()}{put[1:]}."
-    if concluded.odd:
-        put = f"Correct record {concluded.odd}, or leave it out of the file, and look again"
-        return f"{put}."
+    odd = " and ".join(concluded.turned) or concluded.odd
+    if odd:
+        return f"Correct {odd}, or leave it out of the file, and look again."
     if concluded.verdict == NONE and not any(one.out_of_tolerance for one in found.where):
         return "Nothing has to be done."
     return f"{tell or 'Look at what remains, below, and record longer or from another release'}."

@@ -6,11 +6,15 @@ only light gates have drops out where their passages are averaged.
 
 from collections.abc import Iterable, Mapping, Sequence
 from difflib import get_close_matches
+from itertools import product
 from typing import Any, Final
+
+import numpy as np
 
 from analysis.gap.forward.candidate import Axis, Candidate, axis_of
 from analysis.gap.pendulum.problem import Tolerance
 from analysis.gap.pendulum.trial import Trial
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim.effects.effect import Parameter
 from sim.pendulum.effects import CATALOGUE, by_name
@@ -59,11 +63,17 @@ def cause(kind: type[Any], channel: str = "") -> Candidate:
     """
     held = _HELD.get(kind.name, {})
     known = [
-        Parameter(name, one.unit, one.typical, one.low, one.high, "")
+        Parameter(name, one.unit, one.typical, one.low, one.high, "", starts=one.starts)
         for name, one in plausible(kind).items()
     ]
     axes = [_axis(one, tuple(known)) for one in known if one.name not in held]
     return Candidate(kind, tuple(axes), held, _stage(kind), channel=channel)
+
+
+def starts_of(one: Candidate) -> list[tuple[Candidate, FloatArray]]:
+    """Return a cause with each of the starts from which it is sought, in prior units."""
+    each = [[*map(axis.unit, axis.parameter.starts)] or [axis.start] for axis in one.axes]
+    return [(one, np.array(start)) for start in product(*each)]
 
 
 def _axis(one: Parameter, siblings: tuple[Parameter, ...]) -> Axis:

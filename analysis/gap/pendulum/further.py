@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -14,7 +15,7 @@ from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.trial import Trial
 from analysis.gap.search.fit import Fit, at
 from hardware.description.arrays import FloatArray
-from hardware.description.errors import ConfigurationError
+from hardware.description.errors import ConfigurationError, PmmError
 from sim.pendulum.effects.base import small_swing, suspension_of
 
 _DECAY, _MEAN = 0, 2
@@ -81,7 +82,10 @@ def propose(
     )
     found = []
     for what, trial in made:
-        one, other = (_foretold(problem, trial, answer) for answer in (first, second))
+        try:
+            one, other = (_foretold(problem, trial, answer) for answer in (first, second))
+        except PmmError:  # an answer's friction holds the body at rest
+            continue
         found.append(FurtherRecord(what, (_divergence(one, other), _divergence(other, one))))
     return tuple(sorted(found, key=lambda one: -one.gain))
 
@@ -108,7 +112,8 @@ def _runs(trials: Sequence[Trial], first: Fit) -> Iterator[tuple[str, Trial]]:
     for trial in (one for one in trials if isinstance(one, DrivenTrial)):
         for factor in _FACTORS:
             what = f"{trial.name} again under {factor:g} times the force"
-            yield what, _planned(trial.pushed(factor), trial, first)
+            with suppress(PmmError):
+                yield what, _planned(trial.pushed(factor), trial, first)
 
 
 def _suspensions(problem: PendulumProblem, first: Fit, reach: Reach) -> Iterator[tuple[str, Trial]]:

@@ -20,6 +20,7 @@ from analysis.gap.inference.answers import (
 from analysis.gap.inference.constants import ODDS
 from analysis.gap.inference.evidence import Background
 from analysis.gap.inference.gaussian import null_evidence
+from analysis.gap.pendulum.causes import starts_of
 from analysis.gap.pendulum.deviation import background
 from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.search.engine import Engine, fitted, paired, widened
@@ -89,7 +90,7 @@ def weigh(
     """
     engine = Engine(None, progress)
     progress("looking at causes")
-    looked = tuple(best_look(problem, one.name, [(one, one.start)]) for one in causes)
+    looked = tuple(best_look(problem, one.name, starts_of(one)) for one in causes)
     none = null_evidence(problem.residual, problem.nuisances)
     seen = [one for one in looked if one.fit and one.visible >= HIDDEN]
     singles = fitted(problem, seen, none, engine)

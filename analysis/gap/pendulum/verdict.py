@@ -3,7 +3,8 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from functools import partial
+from typing import Final
 
 import numpy as np
 
@@ -14,28 +15,37 @@ from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING, STIFFNESS
 from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.search import WeighedCauses, fit, named
 from analysis.gap.pendulum.settle import Settled
+from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.search.fit import Fit, expected_evidence, joined, nothing
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
-from sim.pendulum.effects import body
 
 CAUSE: Final = "cause"
 UNTOLD: Final = "untold"
 TOLD_APART: Final = 20.0  # ratio of weights from which one answer is preferred to another
 _LIKELY: Final = 0.8  # probability from which an answer is said
 _BEYOND: Final = 4.0
+_SIGN_RAD: Final = 0.54  # from half a turn, within which a sign is reversed: as in a campaign
 _HOPELESS = 60.0  # log evidence to first order that a full fit does not make up for
-LAWS: Final[Mapping[str, tuple[type[Any], ...]]] = {
-    "dry friction": (body.BearingFriction,),
-    "linear": (body.ViscousDamping,),
-    "quadratic": (body.QuadraticDrag,),
-    "cubic": (body.CubicRateDamping,),
-    "linear and quadratic": (body.ViscousDamping, body.QuadraticDrag),
-    "linear and cubic": (body.ViscousDamping, body.CubicRateDamping),
-    "quadratic and cubic": (body.QuadraticDrag, body.CubicRateDamping),
-    "dry friction and quadratic": (body.BearingFriction, body.QuadraticDrag),
-    "any power": (body.PowerDrag,),
+_GROWS: Final[Mapping[str, str]] = {
+    "bearing_friction": "dry friction",
+    "viscous_damping": "linear",
+    "damping": "linear",
+    "quadratic_drag": "quadratic",
+    "cubic_damping": "cubic",
+    "power_drag": "any power",
 }
+LAWS: Final = (
+    ("bearing_friction",),
+    ("viscous_damping",),
+    ("quadratic_drag",),
+    ("cubic_damping",),
+    ("viscous_damping", "quadratic_drag"),
+    ("viscous_damping", "cubic_damping"),
+    ("quadratic_drag", "cubic_damping"),
+    ("bearing_friction", "quadratic_drag"),
+    ("power_drag",),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,18 +190,34 @@ def open_laws(laws: Sequence[DampingLaw]) -> tuple[DampingLaw, ...]:
 def damping_laws(
     weighed: WeighedCauses, best: Fit, causes: Sequence[Candidate]
 ) -> tuple[DampingLaw, ...]:
-    """Fit every law of damping that the causes make beside the best set's others; best first."""
+    """Fit every law of damping that the causes make beside the best set's others; best first.
+
+    The best set's own law is among them. Linear damping that is stated is more or less of that.
+    """
     others = [one for one in best.candidates if one.name not in DAMPING]
     possible = {one.name: one for one in causes}
+    own = tuple(one.name for one in best.candidates if one.name in DAMPING)
+    tried = {_law(names): names for names in (*map(partial(_linear_as, possible), LAWS), own)}
     fitted = {
-        name: fit(weighed.problem, [*others, *(possible[kind.name] for kind in kinds)])
-        for name, kinds in LAWS.items()
-        if {kind.name for kind in kinds} <= set(possible)
+        name: fit(weighed.problem, [*others, *(possible[one] for one in names)])
+        for name, names in tried.items()
+        if set(names) <= set(possible)
     }
     weights = {name: weighed.weight(one) for name, one in fitted.items()}
     top = max(weights.values(), default=0.0)
     laws = [DampingLaw(name, one, weights[name] - top) for name, one in fitted.items()]
     return tuple(sorted(laws, key=lambda law: -law.log_ratio))
+
+
+def _linear_as(possible: Mapping[str, Candidate], names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return a law with the linear damping that these records can have."""
+    linear = "damping" if "damping" in possible else "viscous_damping"
+    return tuple(linear if one == "viscous_damping" else one for one in names)
+
+
+def _law(names: Sequence[str]) -> str:
+    """Return what a law is called."""
+    return " and ".join(dict.fromkeys(one for name, one in _GROWS.items() if name in names))
 
 
 @dataclass(frozen=True)
@@ -285,6 +311,27 @@ def remainder(problem: PendulumProblem, one: Fit) -> FloatArray:
     """Return what a hypothesis leaves of the gap with its nuisances at their best, in sigma."""
     left = problem.residual - one.signature
     return left - problem.nuisances.columns @ problem.nuisances.fitted(left)
+
+
+def turned_runs(problem: PendulumProblem, after: Settled) -> tuple[str, ...]:
+    """Return the runs under a known force that are half a turn off, which no cause explains.
+
+    Parameters
+    ----------
+    after
+        The best set of causes; no tolerance is fitted, for it would be torn towards such runs.
+    """
+    if not problem.driven:
+        return ()
+    stated = np.abs(problem.residual * problem.uncertainty)
+    left = np.abs((after.problem.residual - after.best.signature) * problem.uncertainty)
+    off = (np.abs(stated - math.pi) < _SIGN_RAD) & (left > _SIGN_RAD)
+    phase, names = (
+        problem.kind == KINDS.index("period"),
+        [one.run or one.name for one in problem.trials],
+    )
+    wrong = {one for at, one in enumerate(names) if off[phase & (problem.trial == at)].all()}
+    return tuple(one for one in dict.fromkeys(names) if one in wrong)
 
 
 def as_stated(problem: PendulumProblem) -> FloatArray:

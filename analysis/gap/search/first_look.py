@@ -63,7 +63,8 @@ def best_look(
     best, most, reason = None, -math.inf, ""
     for one, start in starts:
         try:
-            fit = at(problem, (one,), start, roughly=True)
+            # elsewhere than where an effect is small it need not be proportional to its size
+            fit = at(problem, (one,), start, roughly=bool(np.array_equal(start, one.start)))
             fit = _near(problem, fit) if one.repeats else fit
         except PmmError as error:
             reason = str(error)

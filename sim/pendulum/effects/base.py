@@ -19,12 +19,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Plausible:
-    """What is known beforehand of an effect's parameter."""
+    """What is known beforehand of an effect's parameter.
+
+    Attributes
+    ----------
+    starts
+        Values from which it is sought; the typical one where left out.
+    """
 
     unit: str
     low: float
     high: float
     typical: float
+    starts: tuple[float, ...] = ()
 
     @property
     def text(self) -> str:
@@ -32,9 +39,11 @@ class Plausible:
         return f"{self.low:g} to {self.high:g}" + (f" {self.unit}" if self.unit != "1" else "")
 
 
-def parameter(unit: str, low: float, high: float, typical: float) -> Any:
+def parameter(
+    unit: str, low: float, high: float, typical: float, starts: tuple[float, ...] = ()
+) -> Any:
     """Return a dataclass field with that knowledge; its default is the typical value."""
-    known = Plausible(unit, low, high, typical)
+    known = Plausible(unit, low, high, typical, starts)
     return field(default=typical, metadata={"plausible": known})
 
 

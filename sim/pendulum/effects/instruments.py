@@ -14,6 +14,9 @@ from sim.pendulum.effects.base import parameter
 from sim.pendulum.photogate import Photogate
 from sim.pendulum.sensors import Sensor
 
+# From each a delay is found that turns the phase by less than half a turn more, up to 5 Hz.
+_DELAYS_S = (0.01, *(sign * 0.1 * step for step in range(1, 5) for sign in (1.0, -1.0)))
+
 
 @dataclass(frozen=True)
 class WrongClock:
@@ -50,7 +53,7 @@ class SensorDelay:
         Stamp less true time, the same at any frequency.
     """
 
-    delay_s: float = parameter("s", -0.5, 0.5, 0.01)
+    delay_s: float = parameter("s", -0.5, 0.5, 0.01, _DELAYS_S)
     channel: str = ""
 
     name = "sensor_delay"

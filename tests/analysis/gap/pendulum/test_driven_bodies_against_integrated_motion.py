@@ -8,7 +8,7 @@ import pytest
 from analysis.gap.pendulum.causes import causes_for
 from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.search import WeighedCauses, weigh
-from analysis.gap.pendulum.verdict import CAUSE, judge
+from analysis.gap.pendulum.verdict import CAUSE, damping_laws, judge
 from tests.analysis.gap.pendulum.driven_bodies import MASS_KG, STIFFNESS, Made, driven
 
 RUNS = ((0.4, 30.0), (0.6, 30.0), (0.6, 10.0), (0.9, 30.0))
@@ -68,6 +68,22 @@ def test_what_the_catalogue_does_not_have_is_called_nothing_else(name: str) -> N
     shares = weighed.answers.by_answer
     assert shares["unknown"] > max(share for one, share in shares.items() if one != "unknown")
     assert judge(weighed).said in ("unknown", "untold")
+
+
+def test_a_law_beside_less_linear_damping_than_stated_is_the_best() -> None:
+    problem = driven(Made(damping=45.0, quadratic=60.0), RUNS, 3, KNOWN)
+    tried = ("damping", "viscous_damping", "quadratic_drag", "cubic_damping")
+    causes = [one for one in causes_for(problem.trials) if one.name in tried]
+    weighed = weigh(problem, causes, most=2)
+    first, *others = damping_laws(weighed, judge(weighed).best, causes)
+    assert first.name == "linear and quadratic"
+    share, loss = (
+        axis.value(float(unit))
+        for axis, unit in zip(first.hypothesis.axes, first.hypothesis.units, strict=True)
+    )
+    assert share == pytest.approx(-0.25, abs=0.02)
+    assert loss == pytest.approx(60.0 / (0.375 * MASS_KG), rel=0.02)
+    assert all(one.told_apart for one in others)
 
 
 def test_nothing_put_in_is_none() -> None:
