@@ -5,14 +5,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-from hardware.description.arrangement import DriftBy, Joint
-from hardware.description.attitude import AttitudeSensors, HeaveAndPitch
+from hardware.description.attitude import AttitudeSensors
 from hardware.description.body import Body
-from hardware.description.channels import COMMANDS, HEELING, POSITIONS, STEERING
-from hardware.description.errors import ConfigurationError
+from hardware.description.channels import COMMANDS, POSITIONS
 from hardware.description.heel import Heel
 from hardware.description.motor import UNKNOWN_KEYS_REFUSED
-from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator, Plane
+from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator
 from hardware.description.setpoint import Medium, SetPoint, check_within
 from sim.acquisition.channels import Acquisition, Digitiser
 from sim.acquisition.photocell import PhotocellStage
@@ -33,6 +31,7 @@ from sim.model.mounting import Mounting
 from sim.model.steering import Steering
 from sim.model.water.force_laws import CrossFlow, SurgeForces
 from sim.model.water.radiation import Radiation
+from sim.rig_checks import check_run, recorded
 
 if TYPE_CHECKING:
     from sim.stage import Stage
@@ -108,11 +107,7 @@ class SimulatedRig:
             If the oscillator cannot run the set-point, or has a turntable, or the struts would move
             further apart than the model's attachments can reach.
         """
-        self._check_joint(set_point)
-        self._check_steering(set_point)
-        self._check_lines(set_point)
-        self._check_attitude()
-        self._check_heel(set_point)
+        check_run(self, set_point)
         check_within(self.oscillator, set_point)
         carriage = Carriage(set_point.carriage_speed_m_s, self.carriage)
         mechanism = Mechanism(
@@ -141,107 +136,20 @@ class SimulatedRig:
         seen = () if self.photocell is None else (self.photocell,)
         return Chain((*stages, *behind, *seen))
 
-    def _check_joint(self, set_point: SetPoint) -> None:
-        if self.oscillator.joint is Joint.YAW_TABLE:
-            raise ConfigurationError(
-                'joint = "yaw_table": a turntable is analysed but not simulated; simulate '
-                '"slides_on_model" or "slides_on_rig", which have two struts'
-            )
-        apart = set_point.eccentricity_m * max(
-            abs(math.sin(line.strut_phase_rad / 2.0)) for line in set_point.every_line
-        )
-        sine = apart / self.oscillator.half_spacing_m
-        if self.oscillator.drift_by is DriftBy.STRUTS_OFFSET:
-            sine += abs(math.sin(set_point.drift_rad))
-        if self.oscillator.joint is Joint.SLIDES_ON_RIG and sine >= 1.0:
-            raise ConfigurationError(
-                f'joint = "slides_on_rig": the displacements would differ by {sine:.3g} of their '
-                "spacing (limit 1, where the model stands across); lower eccentricity_m"
-            )
-
-    def _check_steering(self, set_point: SetPoint) -> None:
-        steering = self.steering
-        rudder = steering is not None and steering.rudder is not None
-        propeller = steering is not None and steering.propeller is not None
-        faults = []
-        if set_point.rudder_angle_rad and not rudder:
-            faults.append("a rudder angle, but [steering.rudder] is missing")
-        if set_point.revolutions_hz and not propeller:
-            faults.append("revolutions, but [steering.propeller] is missing")
-        if steering is not None and self.oscillator.plane is Plane.VERTICAL:
-            faults.append("[steering] is for the horizontal oscillator")
-        if steering is not None and (self.drive.motor is not None or self.drive.gear is not None):
-            faults.append("[steering] needs a drive without motor and gear")
-        written = {signal.name for signal in (steering.writes if steering is not None else ())}
-        faults += [
-            f"acquisition.{line.channel.name}, but nothing in [steering] has it"
-            for line in self.acquisition.lines
-            if line.channel in STEERING and line.channel.name not in written
-        ]
-        if faults:
-            raise ConfigurationError("; ".join(faults))
-
-    def _check_lines(self, set_point: SetPoint) -> None:
-        if set_point.lines and (self.drive.motor is not None or self.drive.gear is not None):
-            raise ConfigurationError(
-                "lines are followed by struts with drives of their own: leave motor and gear of "
-                "the shaft out of [drive]"
-            )
-
-    def _check_attitude(self) -> None:
-        faults = []
-        if self.attitude is None and self._positions:
-            names = " and ".join(f"acquisition.{name}" for name in self._positions)
-            faults.append(f"{names}, but no [attitude] says where the sensors stand")
-        free = self.attitude is not None and self.attitude.heave_and_pitch is HeaveAndPitch.FREE
-        if self.squat is not None and not free:
-            faults.append('[squat], but no [attitude] with heave_and_pitch = "free"')
-        if faults:
-            raise ConfigurationError("; ".join(faults))
-
-    @property
-    def _positions(self) -> list[str]:
-        names = (line.channel.name for line in self.acquisition.lines)
-        return [name for name in names if name in POSITIONS]
-
     def _told(self, mechanism: Mechanism, frequency_hz: float) -> tuple["Stage[Any]", ...]:
         """Return the stage of the commands, where they are recorded."""
-        recorded = any(line.channel.name in COMMANDS for line in self.acquisition.lines)
-        return (Command(mechanism, self.drive, frequency_hz),) if recorded else ()
+        told = recorded(self.acquisition, COMMANDS)
+        return (Command(mechanism, self.drive, frequency_hz),) if told else ()
 
     def _sensed(self, hull: Hull) -> tuple["Stage[Any]", ...]:
         """Return the stage of sinkage and trim, where they are recorded."""
-        if self.attitude is None or not self._positions:
+        if self.attitude is None or not recorded(self.acquisition, POSITIONS):
             return ()
         squat = self.squat if hull.afloat else None
         return (PositionSensors(self.attitude, squat or Squat(), hull),)
 
-    def _check_heel(self, set_point: SetPoint) -> None:
-        faults = []
-        if self.heel is None:
-            recorded = [
-                one.channel.name for one in self.acquisition.lines if one.channel in HEELING
-            ]
-            faults += [f"acquisition.{name}, but [heel] is missing" for name in recorded]
-            if set_point.heel_rad:
-                faults.append("a heel angle, but [heel] is missing")
-            if self.heel_loads:
-                faults.append("[heel_loads], but [heel] is missing")
-        else:
-            if self.oscillator.plane is Plane.VERTICAL:
-                faults.append("[heel] is for the horizontal oscillator")
-            if self.drive.motor is not None or self.drive.gear is not None:
-                faults.append("[heel] needs a drive without motor and gear")
-            heeling = self._heeling(set_point)
-            if heeling is not None and heeling.free and not heeling.righting[0] > 0.0:
-                below = "gm_m above 0" if heeling.in_water else "a centre of gravity below its axis"
-                faults.append(
-                    f"a model that is free to roll, and nothing rights it: it takes {below}"
-                )
-        if faults:
-            raise ConfigurationError("; ".join(faults))
-
-    def _heeling(self, set_point: SetPoint) -> Heeling | None:
+    def heeling(self, set_point: SetPoint) -> Heeling | None:
+        """Return how the model heels in a run; ``None`` where it cannot."""
         if self.heel is None:
             return None
         in_water, terms = set_point.medium is Medium.WATER, HeelTerms.of(self.heel_loads)
@@ -265,7 +173,7 @@ class SimulatedRig:
             self.surge if in_water else None,
             in_water,
             None if self.steering is None else self.steering.set_for(set_point),
-            self._heeling(set_point),
+            self.heeling(set_point),
         )
 
     def ideal(self) -> "SimulatedRig":

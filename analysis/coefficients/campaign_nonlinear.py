@@ -112,7 +112,7 @@ def _single_runs(
 ) -> list[tuple[str, CycleFit]]:
     """Return each run's own fit; what its other motion does, by the fit of all, is left open."""
     fits: list[tuple[str, CycleFit]] = []
-    for cycle in several.problem.cycles:
+    for cycle in several.problem.numbers.cycles:
         own, both = _motions([cycle])
         forms = forms_of(cycle.plane, row, own, cross=both)
         alone: list[tuple[str, CycleFit]] = []

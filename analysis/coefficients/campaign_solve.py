@@ -137,7 +137,7 @@ def _fits_trials(fits: Sequence[tuple[str, CycleFit]], request: Request) -> Tria
 
 
 def _fit_entry(method: str, fit: CycleFit, k: int) -> CoefficientEntry:
-    cycles = fit.problem.cycles
+    cycles = fit.problem.numbers.cycles
     moving = [cycle.motion for cycle in cycles if cycle.frequency_hz > 0.0]
     size = np.abs(np.stack(moving)).max(axis=0) if moving else np.zeros(2)
     return CoefficientEntry(

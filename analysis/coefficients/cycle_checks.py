@@ -7,7 +7,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from analysis.coefficients.body_cycle import BodyCycle
-from analysis.coefficients.cycle_model import MOVES, CycleProblem
+from analysis.coefficients.cycle_model import CycleProblem
+from analysis.coefficients.term_waves import MOVES
 from analysis.coefficients.terms import (
     ANGLES,
     HEEL_LETTER,
@@ -72,17 +73,17 @@ def check_determined(problem: CycleProblem) -> None:
         Naming the terms of each load that go together and what run would tell them apart.
     """
     of_heel = [term for term in problem.terms if term.of_roll and term.row != ROLL]
-    if of_heel and HEEL not in problem.channels:
-        names = ", ".join(name_of_term(term, problem.cycles[0].plane) for term in of_heel)
+    if of_heel and HEEL not in problem.numbers.channels:
+        names = ", ".join(name_of_term(term, problem.numbers.cycles[0].plane) for term in of_heel)
         raise DataError(f"{names}: these runs have no heel; state [heel] in the campaign file")
     for row, columns in problem.rows:
-        if row == SURGE and not all(cycle.has_surge for cycle in problem.cycles):
-            lacking = [cycle.name for cycle in problem.cycles if not cycle.has_surge]
+        if row == SURGE and not all(cycle.has_surge for cycle in problem.numbers.cycles):
+            lacking = [cycle.name for cycle in problem.numbers.cycles if not cycle.has_surge]
             raise DataError(
                 f"X terms need the channel force_x, which {', '.join(lacking)} did not record"
             )
-        if row == ROLL and not all(cycle.has_roll for cycle in problem.cycles):
-            lacking = [cycle.name for cycle in problem.cycles if not cycle.has_roll]
+        if row == ROLL and not all(cycle.has_roll for cycle in problem.numbers.cycles):
+            lacking = [cycle.name for cycle in problem.numbers.cycles if not cycle.has_roll]
             raise DataError(missing_roll_gauge(lacking))
         matrix = problem.weighted(problem.nominal[0][..., columns], row)
         _check_apart(problem, matrix, [problem.terms[k] for k in columns])
@@ -97,7 +98,10 @@ def missing_roll_gauge(runs: Sequence[str]) -> str:
 
 
 def _check_apart(problem: CycleProblem, matrix: np.ndarray, terms: list[Term]) -> None:
-    plane, runs = problem.cycles[0].plane, ", ".join(cycle.name for cycle in problem.cycles)
+    plane, runs = (
+        problem.numbers.cycles[0].plane,
+        ", ".join(cycle.name for cycle in problem.numbers.cycles),
+    )
     size = np.sqrt((matrix**2).sum(axis=0))
     still = [t for t, s in zip(terms, size, strict=True) if not s > _STILL * _typical(t, problem)]
     if still:
@@ -120,13 +124,13 @@ def _check_apart(problem: CycleProblem, matrix: np.ndarray, terms: list[Term]) -
 
 def _typical(term: Term, problem: CycleProblem) -> float:
     """Size of a term if both motions moved the struts as much as the greatest one does."""
-    half = problem.cycles[0].half_spacing_m
-    across, turn = np.abs(problem.moved[:, 1:3]).max(axis=(0, 2))
+    half = problem.numbers.cycles[0].half_spacing_m
+    across, turn = np.abs(problem.numbers.moved[:, 1:3]).max(axis=(0, 2))
     pace = float(max(across, half * turn))
-    omega = 2.0 * np.pi * max(cycle.frequency_hz for cycle in problem.cycles)
+    omega = 2.0 * np.pi * max(cycle.frequency_hz for cycle in problem.numbers.cycles)
     letters = [letter_of(factor) for factor in term.factors]
     turning, rolling = letters.count("r"), letters.count("p")
-    sizes = np.abs(problem.moved).max(axis=(0, 2))
+    sizes = np.abs(problem.numbers.moved).max(axis=(0, 2))
     laid = math.prod(float(sizes[MOVES.index(one)]) for one in letters if one in ANGLES)
     if rolling:
         laid *= float(sizes[MOVES.index("p")]) ** rolling
@@ -140,11 +144,11 @@ def _remedy(terms: Sequence[Term], problem: CycleProblem) -> str:
         return "runs at other " + ("heel angles" if heeled else "angles of the rudder")
     if any("p" in letter_of(one) for term in terms for one in term.factors):
         return "a roll decay"
-    if not any(cycle.frequency_hz > 0.0 for cycle in problem.cycles):
+    if not any(cycle.frequency_hz > 0.0 for cycle in problem.numbers.cycles):
         return "static runs at another drift angle"
     letters = {f.replace("dot", "").strip("|") for term in terms for f in term.factors}
     mixed = [t for t in terms if {"v", "r"} <= {f.replace("dot", "").strip("|") for f in t.factors}]
-    vertical = problem.cycles[0].plane.value == "vertical"
+    vertical = problem.numbers.cycles[0].plane.value == "vertical"
     sway, yaw = ("heave", "pitch") if vertical else ("sway", "yaw")
     if mixed:
         return f"runs in {yaw} with drift, or with strut phases between pure {sway} and pure {yaw}"

@@ -22,6 +22,7 @@ import numpy as np
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_checks import check_cycles, check_determined
 from analysis.coefficients.cycle_model import CycleProblem
+from analysis.coefficients.cycle_numbers import CycleNumbers
 from analysis.coefficients.names import Form
 from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainties
 from analysis.coefficients.terms import LOAD_WORDS, Term, name_of_term, term_of
@@ -175,7 +176,7 @@ def fit_terms(
     highest = highest or min(cycle.orders for cycle in cycles)
     chosen = np.array([[float(n in own) for n in every] for own in fitted])
     even = np.repeat(chosen[..., None], len(LOAD_WORDS), axis=2)
-    first = CycleProblem(tuple(cycles), terms, every, even, highest, form)
+    first = CycleProblem(CycleNumbers(tuple(cycles), highest, form), terms, every, even)
     check_determined(first)
     problem = first.weighed(_weights(first, first.solve_nominal()))
     nominal = problem.solve_nominal()
@@ -212,15 +213,15 @@ def _weights(problem: CycleProblem, first: FloatArray) -> FloatArray:
     whole = np.ones_like(problem.weights)
     for row, _ in problem.rows:
         slope = problem.residual_slopes(first, row)
-        for k, cycle in enumerate(problem.cycles):
+        for k, cycle in enumerate(problem.numbers.cycles):
             whole[k, :, row] = residual_variance(problem, cycle, slope[k])
     if not np.isfinite(whole).all():
         return problem.weights
-    own = np.array([_fewest(cycle) for cycle in problem.cycles])[:, None, None]
+    own = np.array([_fewest(cycle) for cycle in problem.numbers.cycles])[:, None, None]
     there = problem.weights
     mean = (there * whole).sum(axis=0) / np.maximum(there.sum(axis=0), 1.0)
     shrunk = trusted(whole, own, mean)
-    floor = 1e-9 * np.abs(problem.parts).max() + 1e-300
+    floor = 1e-9 * np.abs(problem.numbers.parts).max() + 1e-300
     return np.asarray(there / np.maximum(np.sqrt(shrunk), floor))
 
 
@@ -238,7 +239,7 @@ def residual_variance(
     """
     variance = np.zeros(len(slope))
     for source in sources or cycle.hull.phasors.real.contributions:
-        variance += ((slope @ problem.scatter(cycle, source)) ** 2).sum(axis=1)
+        variance += ((slope @ problem.numbers.scatter(cycle, source)) ** 2).sum(axis=1)
     numbers = problem.real.reshape(-1, 2)
     return np.asarray((variance.reshape(-1, 2) * numbers).sum(axis=1) / numbers.sum(axis=1))
 
@@ -264,7 +265,7 @@ def _luck(problem: CycleProblem, degrees_of_freedom: float) -> float:
     what it adds to the coefficients by -t e (1 - F), F its share of what tells them. The mean of
     e^2 is 2 over the degrees of freedom, halved where both parts of a harmonic make one weight.
     """
-    freedom, count = max(degrees_of_freedom, 1.0), len(problem.cycles)
+    freedom, count = max(degrees_of_freedom, 1.0), len(problem.numbers.cycles)
     trust = (1.0 + _POOLED_FREEDOM / count / freedom) / (freedom + _POOLED_FREEDOM)
     return float(2.0 * trust * len(problem.orders) / problem.real.sum())
 
@@ -275,17 +276,21 @@ def _contributions(fit: CycleFit) -> tuple[Contribution, ...]:
     slopes = problem.followed(fit.values)
     everywhere, contributions = np.arange(len(problem.terms)), []
     by_stated = np.zeros((len(everywhere), len(STATED)))
-    known = [one.label for cycle in problem.cycles for one in cycle.hull.phasors.real.contributions]
+    known = [
+        one.label
+        for cycle in problem.numbers.cycles
+        for one in cycle.hull.phasors.real.contributions
+    ]
     serves = Counter(known)
-    for slope, share, cycle in zip(slopes, problem.shares, problem.cycles, strict=True):
+    for slope, share, cycle in zip(slopes, problem.shares, problem.numbers.cycles, strict=True):
         for source in cycle.hull.phasors.real.contributions:
-            parts = slope @ problem.scatter(cycle, source)
+            parts = slope @ problem.numbers.scatter(cycle, source)
             if serves[source.label] == 1:
                 parts += _luck(problem, source.degrees_of_freedom) * (parts - share @ parts)
             contributions.append(
                 Contribution(source.label, source.degrees_of_freedom, everywhere, parts)
             )
-        by_stated += slope @ problem.sensitivity(cycle)
+        by_stated += slope @ problem.numbers.sensitivity(cycle)
     for k, (name, spread) in enumerate(zip(STATED, stated.vector, strict=True)):
         if spread > 0.0:
             column = by_stated[:, k, None] * spread

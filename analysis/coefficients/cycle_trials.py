@@ -5,11 +5,11 @@ from numpy.random import Generator
 
 from analysis.coefficients.campaign_result import TrialColumns
 from analysis.coefficients.cycle_fit import CycleFit
-from analysis.coefficients.cycle_model import DESIGNS_AT_ONCE
 from analysis.uncertainty.values import Contribution
 from hardware.description.arrays import FloatArray
 
 TRIALS_AT_ONCE = 5_000
+_DESIGNS_AT_ONCE = 4_000  # of one cycle: some 100 MB
 
 
 def cycle_trials(fit: CycleFit, trials: int, seed: int, level: float = 0.95) -> TrialColumns:
@@ -43,22 +43,22 @@ def draw_cycles(fit: CycleFit, count: int, seed: tuple[int, int]) -> FloatArray:
         Of the whole, and the number of the block.
     """
     generator = np.random.default_rng(np.random.SeedSequence(seed[0], spawn_key=(seed[1],)))
-    problem = fit.problem
+    problem, numbers = fit.problem, fit.problem.numbers
     scatter = DeviateDraws(count, generator)
     deviations = fit.stated.drawn(count, generator)
     ways = []
-    for cycle in problem.cycles:
+    for cycle in numbers.cycles:
         own = [
-            (scatter.of(source), problem.scatter(cycle, source).T)
+            (scatter.of(source), numbers.scatter(cycle, source).T)
             for source in cycle.hull.phasors.real.contributions
         ]
-        ways.append([*own, (deviations, problem.sensitivity(cycle).T)])
-    pieces = np.array_split(np.arange(count), -(-count * len(problem.cycles) // DESIGNS_AT_ONCE))
+        ways.append([*own, (deviations, numbers.sensitivity(cycle).T)])
+    pieces = -(-count * len(numbers.cycles) // _DESIGNS_AT_ONCE)
     cycles = []
-    for some in pieces:
+    for some in np.array_split(np.arange(count), pieces):
         parts = [
             nominal + sum(deviates[some] @ way for deviates, way in own)
-            for nominal, own in zip(problem.parts, ways, strict=True)
+            for nominal, own in zip(numbers.parts, ways, strict=True)
         ]
         cycles.append(problem.solve(np.stack(parts, axis=1)))
     return np.concatenate(cycles)

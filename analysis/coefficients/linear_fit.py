@@ -121,7 +121,7 @@ def _flags(
     fit: CycleFit, places: Sequence[Place], retained: FloatArray, misfit: float
 ) -> list[Flag]:
     flags = []
-    own = tuple(cycle.name for cycle in fit.problem.cycles)
+    own = tuple(cycle.name for cycle in fit.problem.numbers.cycles)
     for name, place, part in zip(fit.names, places, retained, strict=True):
         if part < _DIGIT:
             what = "gain, mass or restoring" if place.inertial else "phase (in radians)"

@@ -132,7 +132,9 @@ def _gross(cycles: Sequence[BodyCycle], way: Arrangement) -> tuple[FloatArray, T
 
 def _refitted(fit: CycleFit, table: Mapping[str, FloatArray]) -> tuple[FloatArray, FloatArray]:
     problem = fit.problem
-    parts = np.stack([problem.filled(cycle, table[cycle.name]) for cycle in problem.cycles])
+    parts = np.stack(
+        [problem.numbers.filled(cycle, table[cycle.name]) for cycle in problem.numbers.cycles]
+    )
     return fit.refitted(np.moveaxis(parts, -1, 0))
 
 

@@ -36,7 +36,7 @@ def run_agreement(fit: CycleFit, row: int) -> Redundancy:
     design, loads = problem.nominal
     matrix = problem.weighted(design[..., columns], row)
     target = problem.weighted(loads[..., row, None], row)[..., 0]
-    runs, each = len(problem.cycles), int(problem.real.sum())
+    runs, each = len(problem.numbers.cycles), int(problem.real.sum())
     owner = np.repeat(np.arange(runs), len(target) // runs)
     freedom = int(fit.data[row]) - len(columns)
     whole = float(fit.chi_square[row])
@@ -54,7 +54,7 @@ def run_agreement(fit: CycleFit, row: int) -> Redundancy:
         chance[k] = max(float(by_others), float(chi2.sf(fall, each)))
         departure[k] = min(float(norm.isf(chance[k] / 2.0)), math.sqrt(fall))
     names = tuple(fit.names[k] for k in columns)
-    data = tuple(cycle.name for cycle in problem.cycles)
+    data = tuple(cycle.name for cycle in problem.numbers.cycles)
     what = f"{LOAD_WORDS[row]} of {len(data)} runs"
     values = fit.values[columns]
     return Redundancy(

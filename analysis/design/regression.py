@@ -21,6 +21,7 @@ import numpy as np
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_fit import FIRST, HIGHER, residual_variance, trusted
 from analysis.coefficients.cycle_model import CycleProblem
+from analysis.coefficients.cycle_numbers import CycleNumbers
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import ORDERS, Belief, believed_cycles
 from analysis.design.candidate import CandidateRun
@@ -261,9 +262,10 @@ def _of_cycles(
     cycles: Sequence[BodyCycle], belief: Belief, stated: StatedUncertainties
 ) -> Iterator[tuple[int, Told]]:
     even = np.ones((len(cycles), len(HIGHER), 3))
-    problem = CycleProblem(tuple(cycles), belief.terms, HIGHER, even, ORDERS, belief.form)
+    numbers = CycleNumbers(tuple(cycles), ORDERS, belief.form)
+    problem = CycleProblem(numbers, belief.terms, HIGHER, even)
     acting = np.flatnonzero(stated.vector)
-    spread = [problem.sensitivity(cycle)[:, acting] * stated.vector[acting] for cycle in cycles]
+    spread = [numbers.sensitivity(cycle)[:, acting] * stated.vector[acting] for cycle in cycles]
     for row, _ in problem.rows:
         slopes = problem.residual_slopes(belief.vector, row)
         variances = np.zeros((2, len(cycles), len(HIGHER)))

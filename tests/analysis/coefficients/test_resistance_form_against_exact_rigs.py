@@ -50,8 +50,8 @@ def test_its_terms_follow_each_number_of_the_cycles_as_other_fits_do() -> None:
     told = problem.followed(found.values)
     generator = np.random.default_rng(9)
     for _ in range(4):
-        way = generator.standard_normal(problem.parts.shape)
-        both = np.stack((problem.parts + step * way, problem.parts - step * way))
+        way = generator.standard_normal(problem.numbers.parts.shape)
+        both = np.stack((problem.numbers.parts + step * way, problem.numbers.parts - step * way))
         up, down = problem.solve(both)
         expected = np.einsum("ktn,kn->t", told, way)
         np.testing.assert_allclose((up - down) / (2.0 * step), expected, rtol=1e-4)

@@ -59,9 +59,9 @@ def test_repeats_are_as_sure_as_with_the_scatter_known(sway: BodyCycle) -> None:
 
 def test_a_run_that_tells_its_terms_alone_has_its_own_scatter(sway: BodyCycle) -> None:
     fit = repeated(sway, np.random.default_rng(29), 1)
-    problem, (cycle,) = fit.problem, fit.problem.cycles
+    problem, (cycle,) = fit.problem, fit.problem.numbers.cycles
     (source,) = cycle.hull.phasors.real.contributions
-    parts = problem.followed(fit.values)[0] @ problem.scatter(cycle, source)
+    parts = problem.followed(fit.values)[0] @ problem.numbers.scatter(cycle, source)
     expected = np.sqrt((parts**2).sum(axis=1))
     np.testing.assert_allclose(fit.uncertain.standard_uncertainty, expected, rtol=1e-9)
     np.testing.assert_allclose(problem.shares[0], np.eye(2), atol=1e-12)

@@ -1,0 +1,113 @@
+"""Whether a simulated rig has what a run asks of it."""
+
+import math
+from collections.abc import Collection, Iterator
+from typing import TYPE_CHECKING
+
+from hardware.description.arrangement import DriftBy, Joint
+from hardware.description.attitude import HeaveAndPitch
+from hardware.description.channels import HEELING, POSITIONS, STEERING
+from hardware.description.errors import ConfigurationError
+from hardware.description.oscillator import Plane
+from hardware.description.setpoint import SetPoint
+from sim.acquisition.channels import Acquisition
+
+if TYPE_CHECKING:
+    from sim.rig import SimulatedRig
+
+
+def check_run(rig: "SimulatedRig", set_point: SetPoint) -> None:
+    """Refuse a run that the rig has not the parts for.
+
+    Raises
+    ------
+    ConfigurationError
+        Naming all that is missing, or that does not go together.
+    """
+    checks = (_of_joint, _of_steering, _of_lines, _of_attitude, _of_heel)
+    faults = [fault for check in checks for fault in check(rig, set_point)]
+    if faults:
+        raise ConfigurationError("; ".join(faults))
+
+
+def recorded(acquisition: Acquisition, channels: Collection[str]) -> list[str]:
+    """Return the names of the recorded channels that are among some."""
+    names = (line.channel.name for line in acquisition.lines)
+    return [name for name in names if name in channels]
+
+
+def _of_joint(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
+    if rig.oscillator.joint is Joint.YAW_TABLE:
+        yield (
+            'joint = "yaw_table": a turntable is analysed but not simulated; simulate '
+            '"slides_on_model" or "slides_on_rig", which have two struts'
+        )
+    apart = set_point.eccentricity_m * max(
+        abs(math.sin(line.strut_phase_rad / 2.0)) for line in set_point.every_line
+    )
+    sine = apart / rig.oscillator.half_spacing_m
+    if rig.oscillator.drift_by is DriftBy.STRUTS_OFFSET:
+        sine += abs(math.sin(set_point.drift_rad))
+    if rig.oscillator.joint is Joint.SLIDES_ON_RIG and sine >= 1.0:
+        yield (
+            f'joint = "slides_on_rig": the displacements would differ by {sine:.3g} of their '
+            "spacing (limit 1, where the model stands across); lower eccentricity_m"
+        )
+
+
+def _of_steering(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
+    steering = rig.steering
+    if set_point.rudder_angle_rad and (steering is None or steering.rudder is None):
+        yield "a rudder angle, but [steering.rudder] is missing"
+    if set_point.revolutions_hz and (steering is None or steering.propeller is None):
+        yield "revolutions, but [steering.propeller] is missing"
+    if steering is not None:
+        yield from _of_shaft_and_plane(rig, "steering")
+    written = {signal.name for signal in (steering.writes if steering is not None else ())}
+    for name in recorded(rig.acquisition, {one.name for one in STEERING} - written):
+        yield f"acquisition.{name}, but nothing in [steering] has it"
+
+
+def _of_shaft_and_plane(rig: "SimulatedRig", table: str) -> Iterator[str]:
+    if rig.oscillator.plane is Plane.VERTICAL:
+        yield f"[{table}] is for the horizontal oscillator"
+    if _is_driven(rig):
+        yield f"[{table}] needs a drive without motor and gear"
+
+
+def _is_driven(rig: "SimulatedRig") -> bool:
+    return rig.drive.motor is not None or rig.drive.gear is not None
+
+
+def _of_lines(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
+    if set_point.lines and _is_driven(rig):
+        yield (
+            "lines are followed by struts with drives of their own: leave motor and gear of "
+            "the shaft out of [drive]"
+        )
+
+
+def _of_attitude(rig: "SimulatedRig", _: SetPoint) -> Iterator[str]:
+    positions = recorded(rig.acquisition, POSITIONS)
+    if rig.attitude is None and positions:
+        names = " and ".join(f"acquisition.{name}" for name in positions)
+        yield f"{names}, but no [attitude] says where the sensors stand"
+    free = rig.attitude is not None and rig.attitude.heave_and_pitch is HeaveAndPitch.FREE
+    if rig.squat is not None and not free:
+        yield '[squat], but no [attitude] with heave_and_pitch = "free"'
+
+
+def _of_heel(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
+    if rig.heel is None:
+        for name in recorded(rig.acquisition, {one.name for one in HEELING}):
+            yield f"acquisition.{name}, but [heel] is missing"
+        if set_point.heel_rad:
+            yield "a heel angle, but [heel] is missing"
+        if rig.heel_loads:
+            yield "[heel_loads], but [heel] is missing"
+        return
+    yield from _of_shaft_and_plane(rig, "heel")
+    heeling = rig.heeling(set_point)
+    if heeling is not None and heeling.free and not heeling.righting[0] > 0.0:
+        below = "gm_m above 0" if heeling.in_water else "a centre of gravity below its axis"
+        yield f"a model that is free to roll, and nothing rights it: it takes {below}"
