@@ -37,18 +37,31 @@ def impossible(body: BodyPart) -> tuple[Flag, ...]:
     u = math.sqrt(max(float(slope @ body.uncertain.covariance() @ slope), 0.0))
     if least >= -max(_SURE * u, _ROUNDING * moments.sum()):
         return ()
-    large = int(np.argmin(slope[4:7]))
+    large = int(np.argmax(np.abs(along)))
     one, two = (axis for k, axis in enumerate(_AXES) if k != large)
-    mended = -least / slope[4:7]
-    sigmas = np.array([one.uncertainty for one in body.inertia])
-    relative = np.abs(mended) / (sigmas if (sigmas > 0.0).all() else moments)
-    wrong = int(np.argmin(relative))
+    what, first = (
+        f"{_AXES[large]} above {one} + {two}",
+        _first_to_measure(body, large, -2.0 * least),
+    )
+    if abs(along[large]) < _STRAIGHT:
+        what, first = "products of inertia so large for its moments", "measure the products first"
+    below = f", {-least / u:.2g} standard uncertainties below zero" if u > 0.0 else ""
     message = (
-        f"{body.name}: no body has {_AXES[large]} above {one} + {two}: sum m n2 would be "
-        f"{least:.3g} kg m2 along ({', '.join(f'{part:.2g}' for part in along)})"
-        + (f", {-least / u:.2g} standard uncertainties below zero" if u > 0.0 else "")
-        + f"; measure {_AXES[wrong]} again first, which {mended[wrong]:+.3g} kg m2 "
-        f"({100.0 * mended[wrong] / moments[wrong]:+.2g} %) would mend, then the other two"
-        + ("" if abs(along[large]) > _STRAIGHT else "; the products of inertia take part in it")
+        f"{body.name}: no body has {what}: sum m n2 would be {least:.3g} kg m2 along "
+        f"({', '.join(f'{part:.2g}' for part in along)}){below}; {first}, then the others"
     )
     return (Flag(CODE, Severity.WARNING, message),)
+
+
+def _first_to_measure(body: BodyPart, large: int, lacks: float) -> str:
+    """Say which moment mends it with the fewest of its uncertainties, or the smallest share."""
+    moments = body.parameters[4:7]
+    sigmas = np.array([one.uncertainty for one in body.inertia])
+    share = lacks / moments
+    changes = np.round(lacks / sigmas, 1) if (sigmas > 0.0).all() else share
+    wrong = int(np.lexsort((share, changes))[0])
+    change = -lacks if wrong == large else lacks
+    return (
+        f"measure {_AXES[wrong]} again first, which {change:+.3g} kg m2 "
+        f"({100.0 * change / moments[wrong]:+.2g} %) would mend"
+    )

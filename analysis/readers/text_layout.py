@@ -130,15 +130,16 @@ def layout_of(head: str, layout: TextLayout, where: str) -> FoundLayout:
 
 
 def _without_titles(bare: FoundLayout, body: list[tuple[int, str]]) -> list[tuple[int, str]]:
-    """Pass over lines above the header that have too few cells to be one."""
+    """Pass over lines above the header: too few cells, or words where a later line names time."""
     rows = [bare.cells(line) for _, line in body[:_LARGEST_TITLE]]
     data = next((k for k, cells in enumerate(rows) if len(cells) > 1 and _is_data(bare, cells)), 0)
     if not data:
         return body
     needed = len(rows[data]) - (not rows[data][-1])
     wide = [k for k in range(data) if _length(rows[k]) >= needed] or [0]
-    first = next((k for k in wide if not _is_title(bare, rows, k)), wide[0])
-    return body[first:]
+    named = [k for k in wide if not _is_title(bare, rows, k)] or wide[:1]
+    timed = (k for k in named if any(parse_header(0, cell).is_time for cell in rows[k]))
+    return body[next(timed, named[0]) :]
 
 
 def _is_title(bare: FoundLayout, rows: list[list[str]], k: int) -> bool:

@@ -67,8 +67,9 @@ def test_time_that_cannot_be_in_its_stated_unit_is_refused_with_the_option(tmp_p
 
 @pytest.mark.parametrize(
     "titles",
-    ["Decay;;\n12.3.2025;Smith;\n", "Serial;0815;\n", "Run;7;\n\nBegun;14:03:07;\n"],
-)
+    ["Decay;;\n12.3.2025;Smith;\n", "Serial;0815;\n", "Run;7;\n\nBegun;14:03:07;\n",
+     "Run 12;calm water;\nModel: barge;;\n"],
+)  # fmt: skip
 @pytest.mark.parametrize("units", ["", "ms;N;\n"])
 def test_titles_as_wide_as_the_table_are_passed_over(
     tmp_path: Path, titles: str, units: str

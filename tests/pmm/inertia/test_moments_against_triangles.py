@@ -32,6 +32,11 @@ def test_more_about_one_axis_than_about_the_other_two_is_flagged_with_the_likely
     assert "no body has ixx above iyy + izz" in flag.message
 
 
+def test_of_two_that_would_mend_it_as_well_the_smaller_change_is_named(tmp_path: Path) -> None:
+    (flag,) = flags(tmp_path, 0.2, 0.5, 1.0, u=0.02)
+    assert "measure izz again first" in flag.message
+
+
 @pytest.mark.parametrize(("u", "seen"), [(0.01, True), (0.1, True), (0.2, False)])
 def test_uncertainties_may_allow_it(tmp_path: Path, u: float, seen: bool) -> None:
     # ixx + iyy - izz = -0.4, of which one standard uncertainty is sqrt(3) u.
@@ -49,8 +54,9 @@ def test_bodies_of_points_have_what_they_have(tmp_path: Path) -> None:
 
 
 def test_products_too_large_for_the_moments_are_flagged(tmp_path: Path) -> None:
-    (flag,) = flags(tmp_path, 1.0, 1.2, 1.1, 0.0, 0.9)
-    assert "the products of inertia take part in it" in flag.message
+    for larger in (1.0, 1.1):  # along a diagonal exactly, and nearly
+        (flag,) = flags(tmp_path, 1.0, 1.2, larger, 0.0, 0.9)
+        assert "measure the products first" in flag.message
 
 
 def test_moments_that_were_not_given_are_not_judged(tmp_path: Path) -> None:
