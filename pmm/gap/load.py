@@ -12,7 +12,7 @@ from analysis.gap.observe.observation import Observed, observe
 from analysis.gap.observe.sensors import as_recorded, resolved
 from analysis.recording import Recording
 from hardware.description.channels import COMMANDS
-from hardware.description.errors import ConfigurationError, PmmError
+from hardware.description.errors import ConfigurationError, DataError, PmmError
 from hardware.description.flags import Flag
 from hardware.description.oscillator import Range
 from pmm.campaign.campaign import Campaign
@@ -94,6 +94,7 @@ def load_campaign(
         progress(run.name)
         try:
             check_recorded_alike(run)
+            _check_single(run)
             recording = open_recording(RecordingSource.of(campaign, run, path.parent))
             damaged |= damage_of(run.name, recording)
             observed = observe(_only(recording, sensors), campaign.reference, campaign.analysis)
@@ -121,6 +122,14 @@ def load_campaign(
     return Loaded(
         campaign, rig, usable, left_out | unused, reference, usable_at_rest, notes, damaged | harmed
     )
+
+
+def _check_single(run: Run) -> None:
+    if run.lines:
+        raise DataError(
+            f"{run.name}: moved at {len(run.lines)} frequencies at once, a diagnosis compares runs "
+            "of one; pmm coefficients takes it"
+        )
 
 
 def campaign_of(path: Path) -> Campaign:

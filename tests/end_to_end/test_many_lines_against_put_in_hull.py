@@ -23,11 +23,15 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "lines" / "campaign.toml"
 
 
 @pytest.fixture(scope="module")
-def told(tmp_path_factory: pytest.TempPathFactory) -> dict:  # type: ignore[type-arg]
-    folder = tmp_path_factory.mktemp("lines")
-    made = folder / "made"
-    simulated = CliRunner().invoke(cli, ["simulate", str(EXAMPLE), "--output", str(made)])
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("lines") / "made"
+    simulated = CliRunner().invoke(cli, ["simulate", str(EXAMPLE), "--output", str(folder)])
     assert simulated.exit_code == 0, simulated.output
+    return folder
+
+
+@pytest.fixture(scope="module")
+def told(made: Path) -> dict:  # type: ignore[type-arg]
     shown = CliRunner().invoke(cli, ["coefficients", str(made), "--json"])
     assert shown.exit_code == 0, shown.output
     found: dict = json.loads(shown.stdout)  # type: ignore[type-arg]
@@ -57,3 +61,10 @@ def test_settled_runs_show_no_transient(told: dict) -> None:  # type: ignore[typ
 
 def test_recordings_fit_their_set_points(told: dict) -> None:  # type: ignore[type-arg]
     assert "set_point_differs" not in json.dumps(told)
+
+
+def test_a_diagnosis_says_that_it_takes_runs_of_one_frequency(made: Path) -> None:
+    done = CliRunner().invoke(cli, ["gap", str(made)])
+    assert done.exit_code == 1
+    assert "sway: moved at 8 frequencies at once" in done.stderr
+    assert "pmm coefficients takes it" in done.stderr
