@@ -16,6 +16,9 @@ import click
 @click.option("--host", default="127.0.0.1", show_default=True, help="Listen on this address.")
 @click.option("--port", default=8063, show_default=True, type=click.IntRange(0, 65535))
 @click.option("--token-file", metavar="FILE", help="Ask for the token in this file.")
+@click.option(
+    "--watch-token-file", metavar="FILE", help="Whoever gives the token in this file only watches."
+)
 @click.option("--certificate", metavar="FILE", help="Speak HTTPS with this certificate (PEM).")
 @click.option("--key", metavar="FILE", help="The certificate's key (PEM).")
 @click.option(

@@ -1,7 +1,6 @@
 """What a browser may do: each action is checked, carried out, logged and answered."""
 
 import asyncio
-import json
 from collections.abc import Awaitable, Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -13,6 +12,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hardware.description.errors import PmmError
+from pmm.console.audit import CommandRecord, keep, latest
 from pmm.console.desk import NotInControlError
 from pmm.console.encoding import encode_answer
 from pmm.console.hub import Hub
@@ -33,52 +33,10 @@ from pmm.console.requests import (
     RunPosted,
     TakePosted,
 )
+from pmm.console.security import VISITOR, Visitor
 from pmm.console.worker_process import Workers
 from pmm.console.worker_tasks import Queued, changed_plan, check_plan_text, keep_note, ready_plan
 from pmm.run.states import Command
-
-COMMANDS: Final = "commands.jsonl"
-
-
-@dataclass(frozen=True)
-class CommandRecord:
-    """A command.
-
-    Attributes
-    ----------
-    utc
-        When it came, in ISO 8601.
-    address
-        Of the browser.
-    session
-        Its first characters: enough to tell browsers apart, too few to speak for one.
-    taken
-        Whether it was carried out.
-    said
-        The answer: what happened, or why not.
-    """
-
-    utc: str
-    address: str
-    session: str
-    action: str
-    given: str
-    taken: bool
-    said: str
-
-
-def keep(folder: Path, record: CommandRecord) -> None:
-    """Add a line to the folder's log.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written.
-    """
-    folder.mkdir(parents=True, exist_ok=True)
-    with (folder / COMMANDS).open("a", encoding="utf-8") as file:
-        file.write(json.dumps(asdict(record), ensure_ascii=False) + "\n")
-
 
 SESSION: Final = "x-pmm-session"
 _LOGGED: Final = 400  # bytes of what was posted; plans are kept as files
@@ -94,12 +52,13 @@ class Who:
 
     session: str
     address: str
+    visitor: Visitor
 
 
 def who_asks(request: Request) -> Who:
     """Return who sends a request."""
     address = request.client.host if request.client is not None else "?"
-    return Who(request.headers.get(SESSION, ""), address)
+    return Who(request.headers.get(SESSION, ""), address, request.scope[VISITOR])
 
 
 class TooLargeError(PmmError):
@@ -157,7 +116,7 @@ class PageActions:
         return await self._do(request, HoldPosted, "hold", self._change)
 
     async def note(self, request: Request) -> Response:
-        """Keep a line on a run or a campaign; nothing moves, so whoever watches may do it."""
+        """Keep a line on a run or a campaign; nothing moves, so it needs no control."""
         return await self._do(request, NotePosted, "note", self._note)
 
     async def take(self, request: Request) -> Response:
@@ -214,7 +173,11 @@ class PageActions:
         """Keep what was asked and what was answered, in the present campaign's folder or that."""
         said = str(found.get("said", found.get("error", "")))
         session = who.session[:_SHOWN]
-        record = CommandRecord(self._utc(), who.address, session, action, given, taken, said)
+        name, role = who.visitor.name, str(who.visitor.role)
+        record = CommandRecord(
+            self._utc(), name, role, who.address, session, action, given, taken, said
+        )
+        self._hub.tell_done(asdict(record))
         try:
             await run_sync(keep, folder or self.folder(), record)
         except OSError as error:
@@ -231,11 +194,11 @@ class PageActions:
     async def _command(self, posted: CommandPosted, who: Who) -> dict[str, Any]:
         if posted.command is Command.QUICK_STOP:
             return {"said": await self._loop.stop_quickly()}
-        self._hub.desk.require(who.session)
+        self._require_control(who)
         return {"said": await self._loop.order(OrderKind.COMMAND, str(posted.command))}
 
     async def _answer(self, posted: AnswerPosted, who: Who) -> dict[str, Any]:
-        self._hub.desk.require(who.session)
+        self._require_control(who)
         said = await self._loop.order(OrderKind.ANSWER, posted.answer, posted.question)
         return {"said": said}
 
@@ -245,7 +208,7 @@ class PageActions:
         return {"plan": found}
 
     async def _queue(self, posted: PlanPosted, who: Who) -> dict[str, Any]:
-        self._hub.desk.require(who.session)
+        self._require_control(who)
         worker = self._workers.for_whom(in_control=True)
         found = await worker.run(ready_plan, self._plans, posted.name, posted.text)
         number = self._queued.add(found)
@@ -258,7 +221,7 @@ class PageActions:
         return {"said": said, "plan": found.picture}
 
     async def _drop(self, posted: DropPosted, who: Who) -> dict[str, Any]:
-        self._hub.desk.require(who.session)
+        self._require_control(who)
         said = await self._loop.order(OrderKind.DROP, str(posted.number))
         self._queued.drop(posted.number)
         self._tell_plans()
@@ -267,11 +230,11 @@ class PageActions:
     async def _move(self, posted: MovePosted, who: Who) -> dict[str, Any]:
         if posted.run:
             return await self._change(posted, who)
-        self._hub.desk.require(who.session)
+        self._require_control(who)
         return {"said": await self._loop.order(OrderKind.MOVE, f"{posted.number} {posted.by}")}
 
     async def _change(self, posted: RunPosted, who: Who) -> dict[str, Any]:
-        self._hub.desk.require(who.session)
+        self._require_control(who)
         worker = self._workers.for_whom(in_control=True)
         async with self._changing:  # each change begins with what the one before has made
             before = self._queued.plan(posted.number)
@@ -282,6 +245,7 @@ class PageActions:
         return {"said": said, "plan": found.picture}
 
     async def _note(self, posted: NotePosted, who: Who) -> dict[str, Any]:
+        who.visitor.require_operator()
         worker = self._workers.for_whom(in_control=self._hub.desk.holder == who.session)
         plan = self._queued.plan(posted.number)
         await worker.run(keep_note, plan, posted, self._utc())
@@ -289,7 +253,17 @@ class PageActions:
         self._tell("note", f"{about}: {posted.text} ({posted.author})")
         return {"said": f"noted on {about}"}
 
+    async def audit(self, _request: Request) -> Response:
+        """Return who did what with the present campaign, from its folder."""
+        found = await run_sync(latest, self.folder())
+        return Response(encode_answer({"audit": found}), media_type="application/json")
+
+    def _require_control(self, who: Who) -> None:
+        who.visitor.require_operator()
+        self._hub.desk.require(who.session)
+
     async def _take(self, posted: TakePosted, who: Who) -> dict[str, Any]:
+        who.visitor.require_operator()
         self._hub.desk.take_over(who.session)
         self._hub.news.set()
         return {"said": "this browser has control"}

@@ -4,6 +4,7 @@ import asyncio
 import time
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.util import find_spec
 from math import ceil
@@ -35,7 +36,7 @@ from pmm.console.plans import Plans
 from pmm.console.pump import pump
 from pmm.console.quick_stop import QuickStop
 from pmm.console.requests import TokenPosted
-from pmm.console.security import COOKIE, Guard
+from pmm.console.security import COOKIE, VISITOR, Guard
 from pmm.console.worker_process import Shared, Workers
 from pmm.console.worker_tasks import look_around
 
@@ -98,7 +99,7 @@ class Console:
         if len(self.hub.clients) >= MOST_STREAMS and not self.hub.is_expected(session):
             await socket.close(_TOO_MANY, _FULL)
             return
-        client = Client(session, socket.send_text, socket.close)
+        client = Client(session, socket.send_text, socket.close, socket.scope[VISITOR].role)
         self.hub.join(client)
         try:
             if (await socket.receive())["type"] == "websocket.receive":
@@ -118,13 +119,15 @@ class Console:
         left_s = ceil(self._lockout.wait_s(who.address))  # nothing is awaited until it is counted
         if left_s:
             return JSONResponse({"error": _WAIT.format(left_s)}, 429, {"retry-after": str(left_s)})
-        cookie = self.door.log_in(posted.token)
-        if cookie is None:
+        found = self.door.log_in(posted.token, posted.name.strip())
+        if found is None:
             said, shut_out = self._lockout.wrong(who.address)
             if shut_out:
                 self.actions.alarm(said)
             await self.actions.log(who, "log in", "", {"error": said}, taken=False)
             return JSONResponse({"error": "this is not the token"}, 401)
+        cookie, visitor = found
+        who = replace(who, visitor=visitor)
         self._lockout.right(who.address)
         await self.actions.log(who, "log in", "", {"said": "welcome"}, taken=True)
         answer = JSONResponse({"said": "welcome"})
@@ -203,6 +206,7 @@ def _routes(console: Console) -> list[BaseRoute]:
         Route("/login", _file("login.html")),
         Route("/api/plans", console.offered),
         Route("/api/pages", console.listed),
+        Route("/api/audit", act.audit),
         Route("/api/openapi.json", _described),
         Route("/pages/{folder:int}/{name}", console.pages.page),
         *(Route(path, action, methods=["POST"]) for path, action in posts.items()),

@@ -8,6 +8,8 @@ from typing import Final
 
 from starlette.websockets import WebSocketDisconnect
 
+from pmm.console.security import Role
+
 REPLACED: Final = 4001  # of RFC 6455's private codes; the page knows it
 WAITING: Final = 64  # messages that are no pictures: alarms, states, plans, runs that ended
 
@@ -24,6 +26,8 @@ class Client:
         Sends a text; it waits for as long as the browser does not take any.
     close
         Ends the stream, with a code and a reason.
+    role
+        What its token lets it do.
 
     Attributes
     ----------
@@ -42,7 +46,9 @@ class Client:
         session: str,
         send: Callable[[str], Awaitable[None]],
         close: Callable[[int, str], Awaitable[None]],
+        role: Role = Role.OPERATE,
     ) -> None:
+        self.role = role
         self.session, self._send, self._close = session, send, close
         self.behind, self.dropped = True, 0
         self.frame = self.piece = 0

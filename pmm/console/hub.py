@@ -2,9 +2,10 @@
 
 import asyncio
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, Final
 
+from pmm.console.audit import MOST
 from pmm.console.client import Client
 from pmm.console.desk import Desk, Holder
 from pmm.console.encoding import (
@@ -17,6 +18,7 @@ from pmm.console.encoding import (
 )
 from pmm.console.messages import WRITTEN, CampaignLook, Frame, Hello, Needles, Notice, Reply, Told
 from pmm.console.pictures import Pictures
+from pmm.console.security import Role
 
 _NOTICES: Final = 200
 
@@ -59,6 +61,7 @@ class Hub:
         self._campaign = "null"
         self._finished: list[str] = []
         self._notices: deque[str] = deque(maxlen=_NOTICES)
+        self._done: deque[str] = deque(maxlen=MOST)
         self._count, self._began = 0, utc()
         self._needles: Needles | None = None
         self._pictures = Pictures()
@@ -96,13 +99,20 @@ class Hub:
         self._figures = encode(figures)
         self._tell(f'{{"type":"figures","figures":{self._figures}}}')
 
+    def tell_done(self, record: Mapping[str, Any]) -> None:
+        """Keep and hand on who did what."""
+        entry = encode(record)
+        self._done.append(entry)
+        self._tell(f'{{"type":"audit","entry":{entry}}}')
+
     def join(self, client: Client) -> None:
         """Let a browser come; an older page of the same session ends."""
         before = self.clients.get(client.session)
         if before is not None:
             before.replace()
         self.clients[client.session] = client
-        self.desk.arrive(client.session)
+        if client.role is Role.OPERATE:
+            self.desk.arrive(client.session)
         self.news.set()
 
     def part(self, client: Client) -> None:
@@ -123,7 +133,7 @@ class Hub:
 
     def due(self, client: Client) -> list[str]:
         """Return what a browser lacks, and take it for sent."""
-        pictures, desk = self._pictures, self._desk(client.session)
+        pictures, desk = self._pictures, self._desk(client)
         texts: list[str] = []
         if client.behind:
             client.behind = False
@@ -153,7 +163,7 @@ class Hub:
                 f'"hello":{self._hello},"frame":{self._pictures.frame(self._pictures.next_piece)},'
                 f'"needles":{encode(needles_picture(self._needles))},'
                 f'"traces":{self._pictures.traces(0)},"notices":[{",".join(self._notices)}],'
-                f'"plans":{self._plans},"finished":[{",".join(self._finished)}],'
+                f'"audit":[{",".join(self._done)}],"plans":{self._plans},"finished":[{",".join(self._finished)}],'
                 f'"figures":{self._figures},"campaign":{self._campaign}'
             )
         return f'{own[:-1]},{self._common},"desk":{desk}}}'
@@ -173,9 +183,9 @@ class Hub:
             client.offer(text)
         self._changed()
 
-    def _desk(self, session: str) -> str:
-        holder = str(self.desk.seen_from(session))
-        return f'{{"type":"desk","holder":"{holder}","browsers":{len(self.clients)}}}'
+    def _desk(self, client: Client) -> str:
+        holder, count = str(self.desk.seen_from(client.session)), len(self.clients)
+        return encode({"type": "desk", "holder": holder, "browsers": count, "role": client.role})
 
     def _notice(self, notice: Notice) -> None:
         if notice.kind == WRITTEN:

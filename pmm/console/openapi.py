@@ -21,7 +21,7 @@ from pmm.console.requests import (
 
 # What is posted where, what it does, and whether it takes control.
 POSTS: Final[dict[str, tuple[type[Posted], str, bool]]] = {
-    "/login": (TokenPosted, "Give the token and get a cookie.", False),
+    "/login": (TokenPosted, "Give the token, and a name for the log, and get a cookie.", False),
     "/api/command": (CommandPosted, "Command run control; a quick stop needs no control.", True),
     "/api/answer": (AnswerPosted, "Answer the rig's question.", True),
     "/api/take-control": (TakePosted, "Take control.", False),
@@ -36,6 +36,7 @@ POSTS: Final[dict[str, tuple[type[Posted], str, bool]]] = {
 GETS: Final = {
     "/api/plans": ("Names of the plans that are offered.", "names"),
     "/api/pages": ("Pages and figures in the campaigns' folders.", "pages"),
+    "/api/audit": ("Who did what with the present campaign, the latest last.", "audit"),
     "/api/openapi.json": ("This description.", "openapi"),
 }
 _REFUSALS: Final = {

@@ -35,6 +35,7 @@ class ConsoleRequest:
     host: str
     port: int
     token_file: str | None
+    watch_token_file: str | None
     certificate: str | None
     key: str | None
     earlier: tuple[str, ...]
@@ -78,6 +79,10 @@ class ConsoleRequest:
                 f"--token-file with a secret of at least {_LEAST_TOKEN} characters, or listen on "
                 f"{LOCAL[0]}"
             )
+        if self.watch_token_file is not None and self.token_file is None:
+            raise ConfigurationError(
+                "--watch-token-file: whoever has no token operates; give --token-file, too"
+            )
         for option, name in (("--certificate", self.certificate), ("--key", self.key)):
             if name is not None and not Path(name).is_file():
                 raise ConfigurationError(f"{option} {name}: no such file")
@@ -106,13 +111,21 @@ class ConsoleRequest:
     def settings(self, rig_file: RigFile, port: int) -> ConsoleSettings:
         """Return how the console is set up; it listens on ``port``."""
         output = None if self.output is None else Path(self.output)
+        tokens = (
+            _token("--token-file", self.token_file),
+            _token("--watch-token-file", self.watch_token_file),
+        )
+        if tokens[0] and tokens[0] == tokens[1]:
+            raise ConfigurationError(
+                f"--watch-token-file {self.watch_token_file}: is the operators' token; make another"
+            )
         return ConsoleSettings(
             rig_path=rig_file.path,
             rig_hashes=rig_file.hashes,
             plans=rig_file.path.parent if self.plans is None else Path(self.plans),
             output=output,
             log_folder=output or rig_file.path.parent / rig_file.recorder.folder,
-            door=Door(self.host, port, _token(self.token_file), self.certificate is not None),
+            door=Door(self.host, port, tokens[0], self.certificate is not None, tokens[1]),
             earlier=tuple(Path(one) for one in self.earlier),
             reference=None if self.reference is None else Path(self.reference),
         )
@@ -136,18 +149,18 @@ def _check_tls(certificate: str, key: str) -> None:
         ) from error
 
 
-def _token(file: str | None) -> str:
+def _token(option: str, file: str | None) -> str:
     if file is None:
         return ""
     if not Path(file).is_file():
-        raise ConfigurationError(f"--token-file {file}: no such file")
+        raise ConfigurationError(f"{option} {file}: no such file")
     try:
         token = Path(file).read_text(encoding="utf-8").strip()
     except (OSError, UnicodeDecodeError) as error:
-        raise ConfigurationError(f"--token-file {file}: {error}") from error
+        raise ConfigurationError(f"{option} {file}: {error}") from error
     if len(token) < _LEAST_TOKEN:
         raise ConfigurationError(
-            f"--token-file {file}: {len(token)} characters (limit {_LEAST_TOKEN}); make one with "
+            f"{option} {file}: {len(token)} characters (limit {_LEAST_TOKEN}); make one with "
             "python -c 'import secrets; print(secrets.token_urlsafe())'"
         )
     return token

@@ -85,6 +85,7 @@ class TakePosted(Posted):
 
 
 class TokenPosted(Posted):
-    """The token."""
+    """The token, and the name that the log has for whoever gives it."""
 
     token: str = Field(max_length=500)
+    name: str = Field(default="", max_length=100)

@@ -5,10 +5,13 @@ import secrets
 from collections.abc import Awaitable, Callable, MutableMapping
 from contextlib import suppress
 from dataclasses import dataclass, field
+from enum import StrEnum
 from http.cookies import CookieError, SimpleCookie
 from typing import Any, Final
 
 from starlette.requests import ClientDisconnect
+
+from pmm.console.desk import NotInControlError
 
 Scope = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
@@ -31,6 +34,45 @@ _HEADERS: Final = (
 )
 
 
+class Role(StrEnum):
+    """What a token lets its holder do."""
+
+    WATCH = "watch"  # and stop quickly, as everybody may
+    OPERATE = "operate"  # and take control
+
+
+@dataclass(frozen=True)
+class Visitor:
+    """Who was let in.
+
+    Attributes
+    ----------
+    name
+        As given at the login; empty without.
+    """
+
+    role: Role = Role.OPERATE
+    name: str = ""
+
+    def require_operator(self) -> None:
+        """Refuse who may only watch.
+
+        Raises
+        ------
+        NotInControlError
+            If the token is the one for watching.
+        """
+        if self.role is not Role.OPERATE:
+            raise NotInControlError(
+                "this token is for watching; log in with the operators' (quick stop is always "
+                "possible)"
+            )
+
+
+VISITOR: Final = "pmm.visitor"  # key of the scope
+_STRANGER: Final = Visitor(Role.WATCH)
+
+
 @dataclass
 class Door:
     """What is asked of whoever comes.
@@ -40,7 +82,9 @@ class Door:
     host, port
         Where the console listens.
     token
-        Needed where it listens beyond this machine; empty for none.
+        Of the operators; needed where it listens beyond this machine; empty for none.
+    watch_token
+        Of those who only watch; empty for none.
     tls
         Whether it speaks HTTPS.
     """
@@ -49,19 +93,22 @@ class Door:
     port: int
     token: str = field(default="", repr=False)
     tls: bool = False
-    _sessions: set[str] = field(default_factory=set, repr=False)
+    watch_token: str = field(default="", repr=False)
+    _visitors: dict[str, Visitor] = field(default_factory=dict, repr=False)
 
-    def log_in(self, token: str) -> str | None:
-        """Return a cookie's value for the right token."""
-        if not (self.token and hmac.compare_digest(token.encode(), self.token.encode())):
+    def log_in(self, token: str, name: str = "") -> tuple[str, Visitor] | None:
+        """Return a cookie's value and who has it, for a right token."""
+        known = ((self.token, Role.OPERATE), (self.watch_token, Role.WATCH))
+        fit = [role for one, role in known if one and _same(token, one)]
+        if not fit:
             return None
-        value = secrets.token_urlsafe(32)
-        self._sessions.add(value)
-        return value
+        value, visitor = secrets.token_urlsafe(32), Visitor(fit[0], name)
+        self._visitors[value] = visitor
+        return value, visitor
 
-    def knows(self, cookie: str) -> bool:
-        """Whether a cookie is one of ours, or none is needed."""
-        return not self.token or cookie in self._sessions
+    def visitor(self, cookie: str) -> Visitor | None:
+        """Return who has a cookie of ours, or anybody where none is needed."""
+        return self._visitors.get(cookie) if self.token else Visitor()
 
     def is_host(self, host: str) -> bool:
         """Whether a request means this machine: a foreign name that points here is refused.
@@ -110,11 +157,17 @@ class Guard:
         origin = headers.get("origin")
         if (acts or origin is not None) and not self._door.is_origin(origin or "", host):
             return 403, f"origin {origin!r} is refused; only this console's own page may ask"
-        if not self._door.knows(_cookie(headers)) and not _is_open(scope["path"]):
+        visitor = self._door.visitor(_cookie(headers))
+        scope[VISITOR] = visitor or _STRANGER
+        if visitor is None and not _is_open(scope["path"]):
             if scope["type"] == "http" and scope["path"] == "/":
                 return 303, "/login"
             return 401, "token needed: log in at /login"
         return None
+
+
+def _same(one: str, other: str) -> bool:
+    return hmac.compare_digest(one.encode(), other.encode())
 
 
 def _is_open(path: str) -> bool:

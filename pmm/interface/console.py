@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
+from getpass import getuser
 from pathlib import Path
 from typing import Any, Final, Self
 
@@ -19,13 +20,19 @@ from pmm.interface.console_queue import QueueCalls
 from pmm.interface.console_requests import ConsoleRefusalError, ConsoleRequests, Message
 
 _STREAM_S: Final = 60.0  # until the console answers: it may have just been started
-_LISTS: Final = {"finished": ("finished", "entry"), "notice": ("notices", None)}
+_LISTS: Final = {
+    "finished": ("finished", "entry"),
+    "notice": ("notices", None),
+    "audit": ("audit", "entry"),
+}
 _PARTS: Final = ("plans", "figures", "campaign")
 _UNDER_WAY: Final = 3  # frames that may be of before a command's answer
 _BROKEN: Final = ("stopped", "fault")
 
 
-def connect(url: str, token: str = "", *, certificate: str | Path | None = None) -> "ConsoleClient":
+def connect(
+    url: str, token: str = "", *, name: str = "", certificate: str | Path | None = None
+) -> "ConsoleClient":
     """Open a console from Python: watch, queue, approve, run, stop.
 
     Parameters
@@ -34,6 +41,8 @@ def connect(url: str, token: str = "", *, certificate: str | Path | None = None)
         As ``pmm console`` prints it.
     token
         Where the console asks for one.
+    name
+        For the log of who did what, where there is a token; by default that of the user.
     certificate
         The file of a certificate that the console signed itself.
 
@@ -44,7 +53,7 @@ def connect(url: str, token: str = "", *, certificate: str | Path | None = None)
     ConsoleRefusalError
         If it takes no more.
     """
-    return ConsoleClient(url, token, certificate)
+    return ConsoleClient(url, token, certificate, name)
 
 
 class ConsoleClient(QueueCalls):
@@ -59,14 +68,16 @@ class ConsoleClient(QueueCalls):
         By every call that the console refuses: no control, no such plan, a wrong state.
     """
 
-    def __init__(self, url: str, token: str, certificate: str | Path | None) -> None:
+    def __init__(
+        self, url: str, token: str, certificate: str | Path | None, name: str = ""
+    ) -> None:
         super().__init__(ConsoleRequests(url.rstrip("/"), certificate))
         self._url = self._requests.url
         self._known: dict[str, Any] = {}
         self._news, self._gone = threading.Condition(), ""
         self._listeners: list[queue.SimpleQueue[Message | None]] = []
         if token:
-            self._requests.ask("/login", {"token": token})
+            self._requests.ask("/login", {"token": token, "name": name or getuser()})
         with ExitStack() as held:
             stream = self._opened(held)
             reader = threading.Thread(target=self._read, args=(stream,), name="console stream")
@@ -92,7 +103,7 @@ class ConsoleClient(QueueCalls):
         """All that the console has told, by the names of its messages (``docs/console-api.md``).
 
         They are ``hello``, ``frame``, ``finished``, ``notices``, ``plans``, ``figures``,
-        ``campaign`` and ``desk``. What is returned does not change any more.
+        ``campaign``, ``audit`` and ``desk``. What is returned does not change any more.
         """
         return self._known
 
@@ -112,6 +123,11 @@ class ConsoleClient(QueueCalls):
         if not question:
             raise ConsoleRefusalError("nothing is asked")
         return self._said("/api/answer", {"question": question, "answer": text})
+
+    def audit(self) -> list[Message]:
+        """Return who did what with the present campaign, from its folder, the latest last."""
+        found: list[Message] = self._requests.ask("/api/audit")["audit"]
+        return found
 
     def take_control(self) -> str:
         """Take control from whoever has it."""

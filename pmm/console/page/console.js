@@ -3,7 +3,7 @@ import { Coefficients, Finished } from "./finished.js";
 import { Plans } from "./plans.js";
 import { Queue } from "./queue.js";
 import { Readings } from "./readings.js";
-import { Alarms, Facts, showProgress, showState } from "./status.js";
+import { Alarms, Facts, showDone, showProgress, showState } from "./status.js";
 import { Stream, post } from "./stream.js";
 import { byId, text } from "./svg.js";
 import { Traces } from "./traces.js";
@@ -67,7 +67,7 @@ function showDesk(desk) {
   holder = desk.holder;
   const others = desk.browsers > 1 ? `, ${desk.browsers - 1} watching` : "";
   text(byId("desk"), { you: `You have control${others}`, other: "You watch: another browser has control", nobody: "Nobody has control" }[holder]);
-  byId("take").hidden = holder === "you";
+  byId("take").hidden = holder === "you" || desk.role === "watch";
   document.body.dataset.holder = holder;
   if (latest) showButtons(latest);
 }
@@ -106,6 +106,8 @@ function begin(snapshot) {
   finished.begin(snapshot.hello, snapshot.finished);
   coefficients.take(snapshot.figures);
   alarms.begin(snapshot.notices);
+  byId("audit").replaceChildren();
+  snapshot.audit.forEach(showDone);
   queue.take(snapshot.plans);
   until.take(snapshot.campaign);
   showDesk(snapshot.desk);
@@ -121,6 +123,7 @@ const stream = new Stream({
   missed,
   desk: showDesk,
   notice: (one) => alarms.add(one),
+  audit: (one) => showDone(one.entry),
   plans: (one) => queue.take(one.plans),
   campaign: (one) => until.take(one.campaign),
   finished: (one) => {

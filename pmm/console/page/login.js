@@ -6,7 +6,7 @@ document.getElementById("login").addEventListener("submit", async (event) => {
   const answer = await fetch("/login", {
     method: "POST",
     headers: { "content-type": "application/json" },
-    body: JSON.stringify({ token }),
+    body: JSON.stringify({ token, name: document.getElementById("name").value }),
   });
   if (answer.ok) location.assign("/");
   else said.textContent = (await answer.json()).error;

@@ -87,6 +87,15 @@ export function showProgress(frame, plans) {
   }
 }
 
+const DONE = 200; // lines of who did what
+
+export function showDone(entry) {
+  const who = [entry.name || entry.address, entry.session].filter(Boolean).join(", ");
+  byId("audit").prepend(html("li", { "data-taken": entry.taken ? "yes" : "no" }, html("time", { datetime: entry.utc }, entry.utc.slice(11, 19)),
+    ` ${who}: ${entry.action} ${entry.given} ${entry.taken ? "✓" : "refused"} ${entry.said}`));
+  while (byId("audit").children.length > DONE) byId("audit").lastChild.remove();
+}
+
 const WORDS = { state: "state: ", outcome: "ended: ", plan: "plan: ", note: "note on " };
 
 export class Alarms {

@@ -62,7 +62,12 @@ def _loop(
 
 @contextmanager
 def served(
-    folder: Path, *, token: str = "", host: str = "127.0.0.1", origin: str = OWN
+    folder: Path,
+    *,
+    token: str = "",
+    watch_token: str = "",
+    host: str = "127.0.0.1",
+    origin: str = OWN,
 ) -> Iterator[Served]:
     """Serve the example's rig."""
     rig = folder / "rig"
@@ -74,7 +79,7 @@ def served(
         plans=rig,
         output=folder,
         log_folder=folder,
-        door=Door(host, PORT, token),
+        door=Door(host, PORT, token, watch_token=watch_token),
     )
     quick_stop = QuickStop()
     orders: list[LoopOrder] = []

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pmm.console import lockout
-from pmm.console.actions import COMMANDS
+from pmm.console.audit import COMMANDS
 from pmm.console.limits import LONGEST_LOCKOUT_S, MOST_ADDRESSES, WRONG_TOKENS
 from pmm.console.lockout import Lockout
 from tests.pmm.console.chromium import console, rig_in

@@ -3,11 +3,13 @@
 from pathlib import Path
 from typing import Any
 
+import pytest
 from selenium.webdriver import ActionChains
 from selenium.webdriver.common.keys import Keys
 
 import pmm
 from pmm.archive.notebook import read_notes
+from pmm.interface.console_requests import ConsoleRefusalError
 from tests.pmm.console.chromium import Browser, console, needed, plan, rig_in
 
 pytestmark = needed
@@ -79,3 +81,29 @@ def test_runs_are_edited_moved_and_held_on_the_page(tmp_path: Path, chromium: Br
         _press(page, "Take out later")
         page.until(lambda: "later" not in page.text("#queue"), "a plan that is taken out")
         assert not [text for text in page.complaints() if "SEVERE" in text and "409" not in text]
+
+
+def test_the_page_shows_who_did_what(tmp_path: Path, chromium: Browser) -> None:
+    with (
+        console(rig_in(tmp_path / "rig"), tmp_path / "out") as one,
+        chromium.window() as page,
+        pmm.connect(one.address) as client,
+    ):
+        page.open(one.address)
+        page.click("#audit-panel summary")
+        page.find("body").send_keys(Keys.ESCAPE)
+        page.until(lambda: "quick stop taken" in page.text("#audit"), "what the page did")
+        with pytest.raises(ConsoleRefusalError, match="refused in state idle"):
+            client.command("hold")
+        page.until(lambda: "hold" in page.text("#audit"), "what another did")
+        last, first = page.driver.find_elements("css selector", "#audit li")
+        assert last.is_displayed()
+        assert [one.get_attribute("data-taken") for one in (last, first)] == ["no", "yes"]
+        assert "refused in state idle" in last.text
+        told = client.audit()
+        assert [(one["action"], one["taken"]) for one in told] == [
+            ("command", True),
+            ("command", False),
+        ]
+        assert told == client.known["audit"]
+        assert told[0]["session"] != told[1]["session"]

@@ -6,10 +6,11 @@ from pathlib import Path
 import pytest
 from starlette.websockets import WebSocketDisconnect
 
-from pmm.console.actions import COMMANDS
+from pmm.console.audit import COMMANDS
 from tests.pmm.console.serving import EXAMPLES, OWN, SESSION, served
 
 TOKEN = "a token of more than sixteen"  # noqa: S105 - the test's own
+WATCH = "a token for watching alone"
 START = {"command": "start"}
 
 
@@ -136,6 +137,54 @@ def test_a_token_is_asked_for_where_one_is_set(tmp_path: Path) -> None:
         assert TOKEN not in str(cookie.value)
         assert one.browser.get("/api/plans").status_code == 200
         assert one.post("/api/command", {"command": "quick stop"})[0] == 200
+
+
+def test_who_has_the_token_for_watching_stops_quickly_and_does_nothing_else(
+    tmp_path: Path,
+) -> None:
+    remote = "http://rig.tank.example:8063"
+    doors = {"token": TOKEN, "watch_token": WATCH, "host": "0.0.0.0", "origin": remote}  # noqa: S104
+    with served(tmp_path, **doors) as one:
+        assert one.post("/login", {"token": WATCH, "name": "N. N."})[0] == 200
+        stream = f"{one.stream}?session={SESSION}"
+        with one.browser.websocket_connect(stream, headers={"origin": remote}) as watching:
+            desk = watching.receive_json()["desk"]
+            assert (desk["role"], desk["holder"]) == ("watch", "nobody")
+            for path, body in (
+                ("/api/take-control", {"confirm": True}),
+                ("/api/command", {"command": "start"}),
+                ("/api/answer", {"question": "?", "answer": "y"}),
+                ("/api/plans/queue", {"name": "plan.toml"}),
+                ("/api/plans/hold", {"number": 1, "held": True}),
+                ("/api/plans/note", {"number": 1, "text": "x", "author": "x"}),
+            ):
+                status, said = one.post(path, body)
+                assert (status, "for watching" in str(said["error"])) == (403, True)
+            assert [order.text for order in one.orders] == []
+            assert one.post("/api/command", {"command": "quick stop"})[0] == 200
+            told = watching.receive_json()
+            while told["type"] != "audit" or told["entry"]["action"] != "take control":
+                told = watching.receive_json()
+            assert told["entry"]["name"] == "N. N."
+        one.browser.cookies.clear()
+        assert one.post("/login", {"token": TOKEN, "name": "O. O."})[0] == 200
+        with one.browser.websocket_connect(stream, headers={"origin": remote}) as operating:
+            desk = operating.receive_json()["desk"]
+            assert (desk["role"], desk["holder"]) == ("operate", "you")
+        lines = (tmp_path / COMMANDS).read_text(encoding="utf-8").splitlines()
+        assert one.browser.get("/api/audit").json()["audit"] == [json.loads(one) for one in lines]
+    done = [json.loads(line) for line in lines]
+    assert [(one["name"], one["role"], one["action"], one["taken"]) for one in done] == [
+        ("N. N.", "watch", "log in", True),
+        ("N. N.", "watch", "take control", False),
+        ("N. N.", "watch", "command", False),
+        ("N. N.", "watch", "answer", False),
+        ("N. N.", "watch", "queue", False),
+        ("N. N.", "watch", "hold", False),
+        ("N. N.", "watch", "note", False),
+        ("N. N.", "watch", "command", True),
+        ("O. O.", "operate", "log in", True),
+    ]
 
 
 def test_pages_are_kept_apart_and_load_nothing_from_elsewhere(tmp_path: Path) -> None:
