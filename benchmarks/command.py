@@ -45,6 +45,7 @@ NAMES = (
     "multisine",
     "sequential",
     "campaign",
+    "cluster",
     "sealed",
     "gap_cost",
     "evidence",
