@@ -83,9 +83,10 @@ def _noisy(count: int) -> tuple[dict[str, float], list[Row]]:
     names = ("gain", "lag", "rate")
     whole = np.concatenate(list(held.values())).mean(axis=0)
     rows: list[Row] = []
-    for (kind, place), own in held.items():
-        parts = zip(names, np.mean(own, axis=0).tolist(), strict=True)
-        told = {f"{name} held": part for name, part in parts}
+    for kind, place in sorted({*held, *refused}, key=lambda one: (one[1], one[0])):
+        own = held.get((kind, place), [])
+        parts = np.mean(own, axis=0).tolist() if own else [""] * len(names)
+        told = {f"{name} held": part for name, part in zip(names, parts, strict=True)}
         many = {"records": len(own), "refused": refused[kind, place]}
         rows.append({"motion": kind, "noise": place, **many, **told})
     return {f"noisy_{name}": float(part) for name, part in zip(names, whole, strict=True)}, rows

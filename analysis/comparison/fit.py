@@ -144,7 +144,7 @@ def fit(problem: ComparisonProblem, model: Model, *, lines: bool = False) -> Com
     for step in range(_STEPS):
         linear = linearised(problem, model)
         if noise.size != linear.target.size:
-            noise, bins = np.ones(linear.target.size), _strongest(linear.channels[0])
+            noise, bins = np.ones(linear.target.size), _strongest(linear)
         if not step:
             model = replace(model, gains=_gains(linear, bins, noise))
         columns = linear.columns(model.gains, bins)
@@ -157,7 +157,7 @@ def fit(problem: ComparisonProblem, model: Model, *, lines: bool = False) -> Com
         power = _around(np.abs(model.gains @ linear.channels) ** 2, 1)
         bins = power > _STANDS_OUT * noise
         if not bins.any():
-            bins = _strongest(linear.channels[0])
+            bins = _strongest(linear)
         taken = np.abs(model.parameters - before.parameters)  # a dead band stays at none
         if step >= _FEWEST and (taken <= _SETTLED * np.sqrt(np.diag(inverse))[: len(taken)]).all():
             break
@@ -202,9 +202,9 @@ def _moved(model: Model, theta: FloatArray) -> Model:
     return Model(alignment, model.gains + theta[:at], half)
 
 
-def _strongest(channel: ComplexArray) -> BoolArray:
-    """Return the bins that carry the most, for a start."""
-    power = _around(np.abs(channel) ** 2, 1)
+def _strongest(linear: Linear) -> BoolArray:
+    """Return the bins in which both carry the most, for a start: a derivative lifts noise."""
+    power = _around(np.abs(linear.channels[0] * linear.target), 1)
     return np.asarray(power >= 0.01 * power.max())
 
 
