@@ -203,6 +203,8 @@ def damping_laws(
         for name, names in tried.items()
         if set(names) <= set(possible)
     }
+    mine = _law(own)  # from its typical size a fit may go astray, where the search did not
+    fitted[mine] = max((best, fitted.get(mine, best)), key=weighed.weight)
     weights = {name: weighed.weight(one) for name, one in fitted.items()}
     top = max(weights.values(), default=0.0)
     laws = [DampingLaw(name, one, weights[name] - top) for name, one in fitted.items()]

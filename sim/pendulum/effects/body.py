@@ -126,7 +126,7 @@ class PowerDrag:
     """
 
     beta: float = parameter("1", 0.0, 1.0, 0.3)
-    damping_ratio: float = parameter("1", 0.0, 0.3, 0.002)
+    damping_ratio: float = parameter("1", 0.0, 0.3, 0.002, (0.002, 0.03, 0.15))
     amplitude: float = parameter("rad or m", 1e-4, 1.0, 0.1)
     coordinate: str = ""
 

@@ -35,6 +35,7 @@ class Made:
 
     friction_n: float = 0.0
     quadratic: float = 0.0
+    power: float = 0.0  # of |v|^1.4
     hardening: float = 0.0  # N/m3
     gain: float = 1.0
     delay_s: float = 0.0
@@ -50,6 +51,7 @@ class Made:
             q, v = x
             pushed = force_n * math.cos(omega * t) - self.hardening * q**3
             resisted = self.damping * v + self.quadratic * abs(v) * v
+            resisted += math.copysign(self.power * abs(v) ** 1.4, v)
             return float(pushed - resisted - self.stiffness * q)
 
         def rate(t: float, x: FloatArray) -> list[float]:

@@ -86,6 +86,17 @@ def test_a_law_beside_less_linear_damping_than_stated_is_the_best() -> None:
     assert all(one.told_apart for one in others)
 
 
+def test_a_drag_far_above_its_typical_size_is_found_as_any_power() -> None:
+    problem = driven(Made(power=150.0), RUNS[:3], 3, KNOWN)
+    tried = ("damping", "quadratic_drag", "power_drag")
+    causes = [one for one in causes_for(problem.trials) if one.name in tried]
+    weighed = weigh(problem, causes, most=1)
+    best = judge(weighed).best
+    assert best.names == ("power_drag",)
+    assert best.axes[0].value(float(best.units[0])) == pytest.approx(0.4, abs=0.03)
+    assert damping_laws(weighed, best, causes)[0].name == "any power"
+
+
 def test_nothing_put_in_is_none() -> None:
     assert weighed_without(driven(Made(), RUNS, 5, KNOWN)).answers.by_answer["none"] > 0.5
 
