@@ -132,7 +132,8 @@ class Station:
         if plan is None:
             return
         self._plans.present = plan
-        if self.control.state is State.DONE and self._recording is not None:
+        again = {run.name for run in plan.runs} & {one.run for one in self.control.outcomes}
+        if self.control.state is State.DONE and self._recording is not None and not again:
             self._recording.plan = plan.plan
             self.control.replan((*self.control.runs, *plan.runs))
             return

@@ -126,3 +126,16 @@ def test_a_fault_of_the_rig_is_said_and_the_campaign_stands_where_it_was(shown: 
     for _ in range(500):
         shown.station.step()
     assert _settings(shown) == before
+
+
+def test_a_run_that_is_left_for_the_next_is_made_again_where_it_is_still_due(shown: Shown) -> None:
+    _answer(shown, "y")
+    made = []
+    for _ in range(3):  # a zero run, the run that it is for, and again
+        shown.until(State.SETTLING)
+        made.append(shown.station.control.status().run)
+        if len(made) < 3:
+            assert shown.order(OrderKind.COMMAND, "next").done
+            shown.until(State.DONE)
+    assert made[2] == made[0] != made[1]
+    assert shown.heard.notices("alarm") == []
