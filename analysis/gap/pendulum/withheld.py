@@ -18,6 +18,7 @@ from analysis.gap.pendulum.search import fit, named
 from analysis.gap.pendulum.trial import Trial
 from analysis.gap.search.fit import Fit, at, nothing
 from hardware.description.arrays import BoolArray, FloatArray
+from hardware.description.errors import PmmError
 
 _DRAWS = 400
 _SEED = 20261
@@ -154,7 +155,10 @@ def _left_out(name: str, problem: PendulumProblem, sets: Sequence[Fit]) -> Withh
         seen, rows = _without(problem, hidden), problem.runs[problem.trial] == out
         lefts[0].append(_left(problem, nothing(seen), rows))
         for kept, one in zip(lefts[1:], sets, strict=True):
-            kept.append(_left(problem, fit(seen, one.candidates, one.units), rows))
+            try:
+                kept.append(_left(problem, fit(seen, one.candidates, one.units), rows))
+            except PmmError:  # friction that holds the body there foretells nothing
+                kept.append(lefts[0][-1])
     plain, *after = [
         (np.concatenate([one for one, _ in part]), np.hstack([drawn for _, drawn in part]))
         for part in lefts
