@@ -20,9 +20,9 @@ from analysis.design.expectation import SCATTER, ExpectedCoefficient, expected, 
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
+from pmm.coefficients.campaign_cycles import campaign_cycles
 from pmm.coefficients.settings import settings_of
 from pmm.coefficients.stated_inputs import largest
-from pmm.coefficients.workflow import campaign_cycles
 from pmm.design.design_file import DesignFile
 
 _ENOUGH = 3  # runs, or repeats beyond the first of their kind: fewer say too little of the noise

@@ -6,8 +6,9 @@ from typing import Final
 
 from analysis.gap.inference.answers import COEFFICIENTS, NONE, ODD_RUN, UNKNOWN, Answers
 from analysis.gap.pendulum.diagnose import PendulumDiagnosis
+from analysis.gap.pendulum.remainder import turned_runs
 from analysis.gap.pendulum.search import named
-from analysis.gap.pendulum.verdict import CAUSE, UNTOLD, Verdict, open_causes, turned_runs
+from analysis.gap.pendulum.verdict import CAUSE, UNTOLD, Verdict, open_causes
 from analysis.gap.search.fit import Fit
 
 _SHOWN: Final = 8  # answers

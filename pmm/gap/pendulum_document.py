@@ -7,8 +7,8 @@ from typing import Any, Final
 
 from analysis.gap.inference.answers import COEFFICIENTS, NONE, effects_in
 from analysis.gap.pendulum.diagnose import PendulumDiagnosis
+from analysis.gap.pendulum.laws import DampingLaw
 from analysis.gap.pendulum.search import named
-from analysis.gap.pendulum.verdict import DampingLaw
 from analysis.gap.pendulum.withheld import Foretold
 from analysis.gap.search.fit import Fit
 from pmm.document.content import (

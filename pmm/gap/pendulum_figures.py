@@ -7,9 +7,9 @@ import numpy as np
 
 from analysis.gap.pendulum.diagnose import PendulumDiagnosis
 from analysis.gap.pendulum.problem import PendulumProblem
+from analysis.gap.pendulum.remainder import as_stated, remainder
 from analysis.gap.pendulum.search import named
 from analysis.gap.pendulum.swings import KINDS
-from analysis.gap.pendulum.verdict import as_stated, remainder
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import plain
 from pmm.document.style import PALETTE, TRACE, drawing

@@ -10,8 +10,10 @@ from analysis.gap.inference.answers import NONE, ODD_RUN, UNKNOWN
 from analysis.gap.judge.confounded import separating_measurements
 from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING
 from analysis.gap.pendulum.diagnose import PendulumDiagnosis
+from analysis.gap.pendulum.laws import DampingLaw, open_laws
+from analysis.gap.pendulum.remainder import as_stated
 from analysis.gap.pendulum.swings import KINDS
-from analysis.gap.pendulum.verdict import TOLD_APART, DampingLaw, as_stated, open_laws
+from analysis.gap.pendulum.verdict import TOLD_APART
 from analysis.inertia.spread import cause_statement
 from hardware.description.arrays import FloatArray
 from pmm.gap.pendulum_conclusion import PendulumConclusion, conclusion_of, parameters

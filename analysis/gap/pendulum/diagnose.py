@@ -9,22 +9,18 @@ from analysis.gap.forward.candidate import Candidate
 from analysis.gap.inference.answers import effects_in
 from analysis.gap.pendulum.causes import DAMPING, causes_for
 from analysis.gap.pendulum.further import FurtherRecord, Reach, propose
-from analysis.gap.pendulum.problem import PendulumProblem
-from analysis.gap.pendulum.search import MOST_CAUSES, WeighedCauses, named, weigh
-from analysis.gap.pendulum.settle import Settled, settle
-from analysis.gap.pendulum.verdict import (
-    CAUSE,
-    TOLD_APART,
+from analysis.gap.pendulum.laws import (
     Alternative,
     DampingLaw,
-    KindOfGap,
-    Verdict,
     alternatives,
     damping_laws,
-    judge,
     open_laws,
-    where,
 )
+from analysis.gap.pendulum.problem import PendulumProblem
+from analysis.gap.pendulum.remainder import KindOfGap, where
+from analysis.gap.pendulum.search import MOST_CAUSES, WeighedCauses, named, weigh
+from analysis.gap.pendulum.settle import Settled, settle
+from analysis.gap.pendulum.verdict import CAUSE, TOLD_APART, Verdict, judge
 from analysis.gap.pendulum.withheld import WithheldSwings, foretell
 from analysis.gap.search.fit import Fit
 

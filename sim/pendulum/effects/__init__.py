@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from hardware.description.errors import ConfigurationError
 from sim.effects.own_file import import_file, refuse_taken
-from sim.pendulum.effects import body, instruments, lines, setup
+from sim.pendulum.effects import body, instruments, light_gates, lines, setup
 from sim.pendulum.effects.base import PendulumEffect, check_plausible, plausible
 
 CATALOGUE: Final[tuple[type[Any], ...]] = (
@@ -34,10 +34,10 @@ CATALOGUE: Final[tuple[type[Any], ...]] = (
     instruments.SensorGain,
     instruments.SensorSign,
     instruments.SensorNoise,
-    instruments.FlagWidth,
-    instruments.GateOffset,
-    instruments.MissedPassages,
-    instruments.GateJitter,
+    light_gates.FlagWidth,
+    light_gates.GateOffset,
+    light_gates.MissedPassages,
+    light_gates.GateJitter,
     instruments.WrongClock,
     instruments.SensorDelay,
     setup.StatedInertiaError,

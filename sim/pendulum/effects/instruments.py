@@ -1,4 +1,4 @@
-"""Effects on what watches the body: sensors, gates, recorder and clock.
+"""Effects on what watches the body: sensors, recorder and clock.
 
 An empty ``channel`` means every sensor of the test.
 """
@@ -11,7 +11,6 @@ from hardware.description.errors import ConfigurationError
 from sim.acquisition.channels import Digitiser
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.effects.base import parameter
-from sim.pendulum.photogate import Photogate
 from sim.pendulum.sensors import Sensor
 
 # From each a delay is found that turns the phase by less than half a turn more, up to 5 Hz.
@@ -195,96 +194,6 @@ class SensorNoise:
         return replace(bench, digitisers=changed)
 
 
-@dataclass(frozen=True)
-class FlagWidth:
-    """A flag of another width in the photogates.
-
-    Attributes
-    ----------
-    flag_width_m
-        Its width.
-    """
-
-    flag_width_m: float = parameter("m", 1e-4, 0.1, 0.01)
-
-    name = "flag_width"
-    stage = "photogate"
-    summary = "blocked while the flag is in the beam"
-    signature = "edges lie width/speed apart; single edges are early or late"
-
-    def __call__(self, bench: PendulumBench) -> PendulumBench:
-        """Return the test with the effect on."""
-        return _gates(bench, self.name, lambda gate: replace(gate, flag_width_m=self.flag_width_m))
-
-
-@dataclass(frozen=True)
-class GateOffset:
-    """A beam beside the rest position.
-
-    Attributes
-    ----------
-    beam_offset_m
-        How far.
-    """
-
-    beam_offset_m: float = parameter("m", -0.05, 0.05, 0.002)
-
-    name = "gate_offset"
-    stage = "photogate"
-    summary = "the beam is not where the flag hangs"
-    signature = "half-swings alternate by T/pi asin(offset/A), more as A falls"
-
-    def __call__(self, bench: PendulumBench) -> PendulumBench:
-        """Return the test with the effect on."""
-        return _gates(
-            bench, self.name, lambda gate: replace(gate, beam_offset_m=self.beam_offset_m)
-        )
-
-
-@dataclass(frozen=True)
-class MissedPassages:
-    """Passages that a photogate does not notice.
-
-    Attributes
-    ----------
-    missed_share
-        Probability of each.
-    """
-
-    missed_share: float = parameter("1", 0.0, 0.3, 0.02)
-
-    name = "missed_passages"
-    stage = "photogate"
-    summary = "both edges of a passage are lost, at random"
-    signature = "gaps of two or more half-swings"
-
-    def __call__(self, bench: PendulumBench) -> PendulumBench:
-        """Return the test with the effect on."""
-        return _gates(bench, self.name, lambda gate: replace(gate, missed_share=self.missed_share))
-
-
-@dataclass(frozen=True)
-class GateJitter:
-    """Edges that come a little early or late.
-
-    Attributes
-    ----------
-    jitter_rms_s
-        Standard deviation.
-    """
-
-    jitter_rms_s: float = parameter("s", 0.0, 0.01, 1e-4)
-
-    name = "gate_jitter"
-    stage = "photogate"
-    summary = "random delay of each edge"
-    signature = "white scatter of passage times"
-
-    def __call__(self, bench: PendulumBench) -> PendulumBench:
-        """Return the test with the effect on."""
-        return _gates(bench, self.name, lambda gate: replace(gate, jitter_rms_s=self.jitter_rms_s))
-
-
 def _check_stamped(bench: PendulumBench, effect: str, channel: str) -> None:
     """Refuse another clock for one of several sensors: a test has one recorder."""
     if len(_chosen(bench, channel)) < len(bench.sensors):
@@ -307,11 +216,3 @@ def _sensors(
 ) -> PendulumBench:
     chosen = _chosen(bench, channel)
     return bench.change_sensors(lambda sensor: change(sensor) if sensor in chosen else sensor)
-
-
-def _gates(
-    bench: PendulumBench, effect: str, change: Callable[[Photogate], Photogate]
-) -> PendulumBench:
-    if not bench.photogates:
-        raise ConfigurationError(f"{effect}: this test has no photogate; add one, or leave it out")
-    return replace(bench, photogates=tuple(change(photogate) for photogate in bench.photogates))

@@ -9,9 +9,10 @@ import pytest
 
 from analysis.gap.pendulum.causes import BEYOND_LINEAR, cause, causes_for
 from analysis.gap.pendulum.further import Reach, propose
+from analysis.gap.pendulum.laws import damping_laws, open_laws
 from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.search import fit, weigh
-from analysis.gap.pendulum.verdict import CAUSE, TOLD_APART, UNTOLD, damping_laws, judge, open_laws
+from analysis.gap.pendulum.verdict import CAUSE, TOLD_APART, UNTOLD, judge
 from analysis.gap.pendulum.withheld import foretell
 from analysis.inertia.spread import SURE
 from hardware.description.arrays import FloatArray

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from analysis.gap.pendulum.causes import causes_for
+from analysis.gap.pendulum.laws import damping_laws
 from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.search import WeighedCauses, weigh
-from analysis.gap.pendulum.verdict import CAUSE, damping_laws, judge
+from analysis.gap.pendulum.verdict import CAUSE, judge
 from tests.analysis.gap.pendulum.driven_bodies import MASS_KG, STIFFNESS, Made, driven
 
 RUNS = ((0.4, 30.0), (0.6, 30.0), (0.6, 10.0), (0.9, 30.0))

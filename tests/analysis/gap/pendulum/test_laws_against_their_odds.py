@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, cast
 
 import pytest
 
-from analysis.gap.pendulum.verdict import TOLD_APART, DampingLaw, open_laws
+from analysis.gap.pendulum.laws import DampingLaw, open_laws
+from analysis.gap.pendulum.verdict import TOLD_APART
 from analysis.inertia.spread import cause_statement
 
 if TYPE_CHECKING:

@@ -1,0 +1,98 @@
+"""What hypotheses leave of the gap, by kind of observable and by run."""
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from analysis.gap.inference.gaussian import Nuisances
+from analysis.gap.pendulum.problem import PendulumProblem
+from analysis.gap.pendulum.settle import Settled
+from analysis.gap.pendulum.swings import KINDS
+from analysis.gap.search.fit import Fit, nothing
+from hardware.description.arrays import FloatArray
+
+_BEYOND: Final = 4.0
+_SIGN_RAD: Final = 0.54  # from half a turn, within which a sign is reversed: as in a campaign
+
+
+@dataclass(frozen=True)
+class KindOfGap:
+    """One kind of observable, over all records.
+
+    Attributes
+    ----------
+    stated
+        Root mean square of measured less simulated in u, releases fitted.
+    before, after
+        The same with what is known within tolerances fitted too: without a cause, and with the
+        best set.
+    """
+
+    kind: str
+    count: int
+    stated: float
+    before: float
+    after: float
+
+    @property
+    def beyond(self) -> bool:
+        """Whether what is left is more than noise, by four standard deviations of its square."""
+        return self._shows(self.after)
+
+    @property
+    def gap(self) -> bool:
+        """The same of the simulation as it is stated."""
+        return self._shows(self.stated)
+
+    @property
+    def out_of_tolerance(self) -> bool:
+        """The same without a cause, what is known within tolerances fitted."""
+        return self._shows(self.before)
+
+    def _shows(self, rms: float) -> bool:
+        return rms**2 > 1.0 + _BEYOND * math.sqrt(2.0 / self.count)
+
+
+def where(problem: PendulumProblem, after: Settled) -> tuple[KindOfGap, ...]:
+    """Return the gap by kind of observable, before and after."""
+    left = remainder(after.problem, after.best)
+    lefts = (as_stated(problem), remainder(problem, nothing(problem)), left)
+    found = []
+    for kind in np.unique(problem.kind):
+        rows = problem.kind == kind
+        sizes = [float(np.sqrt(np.mean(left[rows] ** 2))) for left in lefts]
+        found.append(KindOfGap(problem.names[kind], int(rows.sum()), *sizes))
+    return tuple(found)
+
+
+def remainder(problem: PendulumProblem, one: Fit) -> FloatArray:
+    """Return what a hypothesis leaves of the gap with its nuisances at their best, in sigma."""
+    left = problem.residual - one.signature
+    return left - problem.nuisances.columns @ problem.nuisances.fitted(left)
+
+
+def turned_runs(problem: PendulumProblem, after: Settled) -> tuple[str, ...]:
+    """Return the runs under a known force that are half a turn off, which no cause explains.
+
+    Parameters
+    ----------
+    after
+        The best set of causes; no tolerance is fitted, for it would be torn towards such runs.
+    """
+    if not problem.driven:
+        return ()
+    stated = np.abs(problem.residual * problem.uncertainty)
+    left = np.abs((after.problem.residual - after.best.signature) * problem.uncertainty)
+    off = (np.abs(stated - math.pi) < _SIGN_RAD) & (left > _SIGN_RAD)
+    phase = problem.kind == KINDS.index("period")
+    names = [one.run or one.name for one in problem.trials]
+    wrong = {one for at, one in enumerate(names) if off[phase & (problem.trial == at)].all()}
+    return tuple(one for one in dict.fromkeys(names) if one in wrong)
+
+
+def as_stated(problem: PendulumProblem) -> FloatArray:
+    """Return the gap to the simulation as it is stated, releases at their best, in sigma."""
+    release = Nuisances(problem.releases)
+    return problem.residual - release.columns @ release.fitted(problem.residual)

@@ -1,0 +1,154 @@
+"""One campaign's recordings, read into the cycles that are fitted."""
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from analysis.coefficients.body_cycle import BodyCycle
+from analysis.coefficients.line_cycles import by_lines
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
+from analysis.coefficients.strut_phasors import MOTION_ASKED
+from hardware.description.body import Body
+from hardware.description.flags import Flag, Severity
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.plausibility import implausible
+from pmm.coefficients.reading import read_cycle, read_zero
+from pmm.coefficients.settings import CoefficientSettings
+from pmm.coefficients.solving import Progress
+from pmm.coefficients.stated_inputs import (
+    body_of,
+    chain_of,
+    oscillator_of,
+    stated_of,
+    with_own_body,
+    without_dry,
+)
+from pmm.coefficients.tasks import Done, Failed, Task, Work, work_of
+
+NO_ROLL_GAUGE: Final = (
+    "a missing roll gauge: the channel roll_moment is not recorded, so that no term of K is told; "
+    "record it where the model heels"
+)
+
+
+@dataclass(frozen=True, eq=False)
+class CampaignCycles:
+    """One campaign's recordings, read.
+
+    Attributes
+    ----------
+    cycles
+        Of the runs that can be used.
+    stated
+        Standard uncertainties that its runs share.
+    """
+
+    campaign: Campaign
+    cycles: tuple[BodyCycle, ...]
+    runs: tuple[Done, ...]
+    failed: tuple[Failed, ...]
+    work: Work
+    stated: StatedUncertainties
+    body: Body | None
+
+    @property
+    def doubts(self) -> tuple[Flag, ...]:
+        """Units and signs that look wrong in all runs, and a roll gauge that is not there."""
+        seen = [one.seen for one in self.runs if one.seen is not None]
+        return (*implausible(self.campaign, seen), *self._without_roll_gauge)
+
+    @property
+    def _without_roll_gauge(self) -> tuple[Flag, ...]:
+        names = tuple(dict.fromkeys(one.name for one in self.cycles if not one.has_roll))
+        if self.campaign.heel is None or not names:
+            return ()
+        return (Flag("roll_gauge_missing", Severity.WARNING, NO_ROLL_GAUGE, None, names),)
+
+
+def campaign_cycles(
+    folder: Path,
+    campaign: Campaign,
+    settings: CoefficientSettings,
+    executor: Executor,
+    progress: Progress,
+    *,
+    hashed: bool = False,
+) -> CampaignCycles:
+    """Read all runs of one campaign, and fit nothing yet.
+
+    Raises
+    ------
+    ConfigurationError
+        If inertia is missing, or a geometry differs.
+    """
+    oscillator = oscillator_of(campaign, folder)
+    work = work_of(
+        campaign,
+        folder,
+        oscillator,
+        chain_of(settings),
+        harmonics=settings.harmonics,
+        leave_out=settings.leave_out,
+        hashed=hashed,
+    )
+    body, models = body_of(campaign, settings.inertia, has_dry=bool(work.dry))
+    found = _recordings(work, executor, progress, with_dry=body is None)
+    wet, dry = _sorted(found, {task.name for task in work.dry})
+    wet = [with_own_body(one, campaign, settings, body) for one in wet]
+    cycles = [one.about(settings.point_ahead_m) for cycle in wet for one in by_lines(cycle)]
+    if body is None:
+        dry = [one for cycle in dry for one in by_lines(cycle)]
+        cycles = [without_dry(one, dry, campaign) if one.frequency_hz else one for one in cycles]
+    done = [one for one in found if isinstance(one, Done)]
+    gauges = [one.calibration for one in done if one.calibration is not None]
+    return CampaignCycles(
+        campaign,
+        tuple(cycles),
+        tuple(done),
+        tuple(one for one in found if isinstance(one, Failed)),
+        work,
+        stated_of(campaign, settings, models, gauges, motion_asked=_asked(cycles)),
+        body,
+    )
+
+
+def _recordings(
+    work: Work, executor: Executor, progress: Progress, *, with_dry: bool
+) -> list[Done | Failed]:
+    """Read the zero runs, and then all that they are taken off."""
+    zeros = _all(read_zero, work.zeros, "reading zero runs", executor, progress)
+    by_name = {one.name: one.zero for one in zeros if isinstance(one, Done) and one.zero}
+    tasks = (*work.runs, *(work.dry if with_dry else ()))
+    found = _all(
+        read_cycle, [task.with_zeros(by_name) for task in tasks], "reading runs", executor, progress
+    )
+    return [*zeros, *found]
+
+
+def _asked(cycles: Sequence[BodyCycle]) -> bool:
+    """Whether a set-point's motion stands in for one that was not measured."""
+    return any(flag.code == MOTION_ASKED.code for one in cycles for flag in one.flags)
+
+
+def _all(
+    read: Callable[[Task], Done | Failed],
+    tasks: Sequence[Task],
+    what: str,
+    executor: Executor,
+    progress: Progress,
+) -> list[Done | Failed]:
+    found = []
+    for one in executor.map(read, tasks):
+        found.append(one)
+        progress(len(found), len(tasks), what)
+    return found
+
+
+def _sorted(
+    found: Sequence[Done | Failed], dry: set[str]
+) -> tuple[list[BodyCycle], list[BodyCycle]]:
+    cycles = [one.cycle for one in found if isinstance(one, Done) and one.cycle is not None]
+    wet = [one for one in cycles if one.name not in dry]
+    return wet, [one for one in cycles if one.name in dry]
