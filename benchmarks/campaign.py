@@ -5,7 +5,6 @@ import signal
 import tempfile
 import threading
 import time
-import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
@@ -19,6 +18,7 @@ from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.readers import read_recording
 from benchmarks.campaign_folder import make_campaign
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
+from benchmarks.workers import dask_workers
 from pmm.coefficients.settings import CoefficientSettings
 from pmm.coefficients.solving import TrialBlock, draw_block
 from pmm.coefficients.workflow import CampaignOutcome, coefficients_of
@@ -187,28 +187,21 @@ def _same(folder: Path, quick: bool, report: Report) -> tuple[list[Row], float]:
 
 
 def _on_cluster(folder: Path, settings: CoefficientSettings) -> CampaignCoefficients:
-    import distributed
+    with (
+        dask_workers(2) as cluster,
+        open_executor(scheduler=cluster.scheduler_address) as executor,
+    ):
+        victims = [worker.pid for worker in cluster.workers.values()][:1]
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # distributed's own, of ports and of the killed worker
-        with (
-            distributed.LocalCluster(
-                n_workers=2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None,
-                silence_logs=50,
-            ) as cluster,
-            open_executor(scheduler=cluster.scheduler_address) as executor,
-        ):  # fmt: skip
-            victims = [worker.pid for worker in cluster.workers.values()][:1]
+        def progress(done: int, total: int, what: str) -> None:
+            if what == "reading runs" and done == total // 4 and victims:
+                os.kill(victims.pop(), signal.SIGKILL)
 
-            def progress(done: int, total: int, what: str) -> None:
-                if what == "reading runs" and done == total // 4 and victims:
-                    os.kill(victims.pop(), signal.SIGKILL)
-
-            found = coefficients_of([folder], settings, executor, progress).result
-            if victims:
-                message = "no worker was killed on the way"
-                raise RuntimeError(message)
-            return found
+        found = coefficients_of([folder], settings, executor, progress).result
+        if victims:
+            message = "no worker was killed on the way"
+            raise RuntimeError(message)
+        return found
 
 
 def _apart(one: CampaignCoefficients, other: CampaignCoefficients) -> float:

@@ -3,7 +3,6 @@
 import heapq
 import tempfile
 import time
-import warnings
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
@@ -14,6 +13,7 @@ import numpy as np
 
 from benchmarks.campaign_folder import make_campaign
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
+from benchmarks.workers import dask_workers
 from pmm.archive.database import open_archive
 from pmm.archive.indexing import add_folders
 from pmm.archive.results import Analyses
@@ -144,18 +144,11 @@ def _two(quick: bool) -> Iterator[Executor]:
         finally:
             local.shutdown()
         return
-    import distributed
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # distributed's own, of ports
-        with (
-            distributed.LocalCluster(
-                n_workers=2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None,
-                silence_logs=50,
-            ) as cluster,
-            open_executor(scheduler=cluster.scheduler_address) as executor,
-        ):  # fmt: skip
-            yield executor
+    with (
+        dask_workers(2) as cluster,
+        open_executor(scheduler=cluster.scheduler_address) as executor,
+    ):
+        yield executor
 
 
 BENCHMARK = Benchmark("cluster", "Many campaigns on a cluster", run)

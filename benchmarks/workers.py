@@ -1,0 +1,21 @@
+"""Dask workers on this computer, for as long as they are needed."""
+
+import logging
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+
+@contextmanager
+def dask_workers(count: int) -> Iterator[Any]:
+    """Start some workers of one thread each, and yield their cluster; it needs ``distributed``."""
+    import distributed
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # distributed's own, of ports and of killed workers
+        with distributed.LocalCluster(
+            n_workers=count, threads_per_worker=1, host="127.0.0.1", dashboard_address=None,
+            silence_logs=logging.CRITICAL,
+        ) as started:  # fmt: skip
+            yield started
