@@ -22,6 +22,7 @@ from typing import Any, Final, TypeVar
 from analysis.threads import SETTING, cores
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.cluster import cluster
+from pmm.remote import here
 
 T = TypeVar("T")
 S = TypeVar("S")
@@ -43,7 +44,7 @@ def open_executor(
         Local processes; 1 works in this process, ``None`` takes one for each core.
     scheduler
         Address of a Dask scheduler, such as ``tcp://127.0.0.1:8786``; its workers need this
-        package, and the recordings under the same paths.
+        package, and the recordings under the same paths or by URL.
     module
         Where the tasks' function is, if it is no part of this package; a cluster's workers are
         asked whether they have it.
@@ -104,18 +105,22 @@ def in_hand(executor: Executor) -> int:
     return IN_HAND_EACH * workers
 
 
-def check_seen(folder: Path) -> None:
-    """Refuse a task whose folder is not there for the process that has it.
+def seen(folder: Path) -> Path:
+    """Return a task's folder as the process sees it that has the task.
 
     Raises
     ------
     DataError
         With the folder and the computer that does not see it.
+    ConfigurationError, DataError
+        As :func:`pmm.remote.here`, for what lies elsewhere.
     """
+    folder = here(folder)
     if not folder.is_dir():
         raise DataError(
             f"{folder}: not there on {node()}; the workers of a cluster need it under the same path"
         )
+    return folder
 
 
 class InThisProcess(Executor):

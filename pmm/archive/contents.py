@@ -7,13 +7,14 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final
 
-from hardware.description.errors import ConfigurationError
+from hardware.description.errors import ConfigurationError, DataError
 from pmm.archive.notebook import NOTES_FILE, NoteLine, read_notes
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.campaign.runs import AtRest, Run
 from pmm.recorder.files import sha256
+from pmm.remote import here
 
 _SETTINGS: Final = ("coefficients.toml",)  # beside the campaign's file, read by its analysis
 
@@ -121,6 +122,12 @@ def changes(folder: Path, known: Mapping[str, Stamp]) -> tuple[str, ...]:
     Recordings that are new are not looked for: a run that gets its first is not yet among ``known``
     and is found when the folder is added again.
     """
+    try:
+        here(folder)
+    except ConfigurationError:
+        return ("the folder vanished",)
+    except DataError as error:
+        return (str(error),)
     if not folder.is_dir():
         return ("the folder vanished",)
     return tuple(_changes(folder, known))

@@ -7,11 +7,12 @@ from dataclasses import astuple, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from hardware.description.errors import DataError, PmmError
+from hardware.description.errors import ConfigurationError, DataError, PmmError
 from pmm.archive.contents import Contents, Stamp, changes, read_contents, recorded_utc, stamp
 from pmm.archive.notebook import NOTES_FILE, NoteLine, read_notes, write_note
 from pmm.archive.results import LEVEL, Analysed, Analyses, GapVerdict, HarmonicValue
-from pmm.parallel import as_done, check_seen
+from pmm.parallel import as_done, seen
+from pmm.remote import here, url_of
 
 
 @dataclass(frozen=True)
@@ -119,9 +120,9 @@ def add_folder(
 
 def compute(task: FolderTask) -> Computed:
     """Compute what is due of a folder, wherever its task was sent."""
-    folder, analysed, verdict = task.added.folder, None, None
+    analysed, verdict = None, None
     try:
-        check_seen(folder)
+        folder = seen(task.added.folder)
         if task.due.analyse is not None:
             analysed = task.due.analyse(folder)
         if task.due.diagnose is not None:
@@ -134,7 +135,7 @@ def compute(task: FolderTask) -> Computed:
 def _taken_in(
     connection: sqlite3.Connection, folder: Path, analyses: Analyses, now_utc: str
 ) -> FolderTask:
-    folder = folder.resolve()
+    folder = here(folder).resolve()
     before = _row(connection, folder)
     contents = read_contents(folder, {} if before is None else stamps(connection, before["id"]))
     same = before is not None and before["sha256"] == contents.sha256
@@ -219,11 +220,13 @@ def note_run(connection: sqlite3.Connection, run: Mapping[str, Any], note: NoteL
     Raises
     ------
     ConfigurationError
-        As :func:`pmm.archive.notebook.write_note`.
+        As :func:`pmm.archive.notebook.write_note`; or if the folder lies elsewhere.
     DataError
         If the folder vanished.
     """
     folder, key = Path(run["folder"]), run["campaign_id"]
+    if url := url_of(folder):
+        raise ConfigurationError(f"{url}: what lies elsewhere is only read; write the note there")
     if not folder.is_dir():
         raise DataError(f"{folder}: the folder vanished; add it from where it is now")
     write_note(folder, note)

@@ -11,6 +11,7 @@ from hardware.description.errors import ConfigurationError
 from pmm.archive.contents import changes
 from pmm.archive.expression import NUMBER, TEXT, KnownColumn, read_condition
 from pmm.archive.indexing import stamps
+from pmm.remote import here
 
 _OF_CAMPAIGN: Final = ("folder", "campaign", "hull")
 _OF_RUN: Final = {
@@ -183,7 +184,7 @@ def the_run(connection: sqlite3.Connection, name: str, campaign: str | None) -> 
         (name,),
     )
     if campaign is not None:
-        folder = str(Path(campaign).resolve())
+        folder = str(here(campaign).resolve())
         found = [one for one in found if campaign == one["campaign"] or folder == one["folder"]]
     if not found:
         names = [one["run"] for one in rows_of(connection, "SELECT DISTINCT run FROM runs")]

@@ -14,6 +14,7 @@ from pmm.campaign.campaign import Campaign
 from pmm.campaign.runs import AtRest, Run
 from pmm.recorder.files import EVENTS, RECORDING
 from pmm.recorder.line_shapes import read_lines
+from pmm.remote import here
 
 if TYPE_CHECKING:
     from analysis.readers import ColumnMap
@@ -34,6 +35,8 @@ class RecordingSource:
 
     Attributes
     ----------
+    path
+        Of the recording, or of the copy of one that lies elsewhere (:func:`pmm.remote.here`).
     name
         Of the run; ``None`` leaves the file's own.
     set_point
@@ -102,7 +105,7 @@ def open_recording(
         If the run is not complete, or as :func:`analysis.readers.read_recording` and
         :func:`pmm.campaign.calibrated_recording.calibrated` do.
     ConfigurationError
-        If there is no such file, or a column map or sample rate that cannot be.
+        If there is no such file, here or elsewhere, or a column map or sample rate that cannot be.
     """
     from analysis.readers import read_recording
     from analysis.readers.photocell import read_edges
@@ -110,6 +113,7 @@ def open_recording(
 
     if source.outcome != COMPLETE and not partial:
         raise DataError(f"{source.name}: its outcome is {source.outcome!r}")
+    source = replace(source, path=here(source.path))
     _check_there(source.path)
     recording = read_recording(
         source.path,
@@ -122,8 +126,9 @@ def open_recording(
         recording = replace(recording, flags=(*recording.flags, *found))
     recording = _in_newtons(recording, source.calibration)
     if source.edges_file is not None:
-        _check_there(source.edges_file)
-        recording = replace(recording, photocell_edges_s=read_edges(source.edges_file))
+        edges_file = here(source.edges_file)
+        _check_there(edges_file)
+        recording = replace(recording, photocell_edges_s=read_edges(edges_file))
     if source.at_rest:
         recording = replace(_gated(recording, source.path), photocell_edges_s=None)
     return _named(recording, source)

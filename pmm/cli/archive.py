@@ -46,7 +46,7 @@ def archive() -> None:
 @JSON
 def add(folders: tuple[str, ...], analysed: bool, gap: bool, jobs: int | None,
         scheduler: str | None, file: str, as_json: bool) -> None:  # fmt: skip
-    """Take campaign folders in, or again those that changed.
+    """Take campaign folders in, or URLs of such (s3://...), or again those that changed.
 
     Nothing is computed twice of the same recordings, campaign file and settings: who was
     interrupted gives the same command again. Without --analyse a campaign is listed as not

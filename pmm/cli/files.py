@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.cli.screen import error_line, messages
+from pmm.remote import url_of
 
 if TYPE_CHECKING:
     from hardware.description.flags import Flag
@@ -23,8 +24,10 @@ def check_folder(folder: Path, option: str) -> None:
     Raises
     ------
     ConfigurationError
-        If a file is in the way or the permission is missing.
+        If a file is in the way, the permission is missing, or the folder lies elsewhere.
     """
+    if url_of(folder):
+        raise ConfigurationError(f"{option} {folder}: only a folder of this computer is written to")
     place = folder
     while not place.exists() and place != place.parent:
         place = place.parent

@@ -23,6 +23,7 @@ from pmm.coefficients.settings import (
 )
 from pmm.coefficients.systems import check_dimensions, in_system, system_of
 from pmm.coefficients.workflow import CampaignOutcome
+from pmm.remote import here
 
 _PLAIN: Final = ("with_mass", "form", "level", "seed", "system", "inertia", "wanted", "leave_out")
 
@@ -87,9 +88,11 @@ def campaign_folder(text: str) -> Path:
     Raises
     ------
     ConfigurationError
-        If there is none, or no campaign file in it.
+        If there is none, or no campaign file in it; or as :func:`pmm.remote.here`.
+    DataError
+        As :func:`pmm.remote.here`.
     """
-    path = Path(text)
+    path = here(text)
     if path.name == CAMPAIGN_FILE and path.is_file():
         return path.parent
     if not path.is_dir():

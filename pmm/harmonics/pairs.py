@@ -29,7 +29,7 @@ class NamedChannel:
         if Path(text).exists():
             return cls(Path(text), None)
         file, colon, channel = text.rpartition(":")
-        if not colon:
+        if not colon or channel.startswith("//"):  # the colon of a URL
             return cls(Path(text), None)
         return cls(Path(file) if file else None, channel or None)
 

@@ -11,6 +11,7 @@ from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.campaign.recording_source import RAW, RecordingSource, open_recording
 from pmm.recorder.files import RECORDING
+from pmm.remote import here
 
 if TYPE_CHECKING:
     from analysis.readers import ColumnMap
@@ -76,9 +77,9 @@ def find_sources(paths: Sequence[str]) -> Found:
     DataError
         For a campaign without any recording.
     ConfigurationError
-        If a campaign file is wrong, or a folder has none.
+        If a campaign file is wrong, or a folder has none; or as :func:`pmm.remote.here`.
     """
-    return sum((_find(Path(path)) for path in paths), Found())
+    return sum((_find(here(path)) for path in paths), Found())
 
 
 def _find(path: Path) -> Found:

@@ -8,6 +8,7 @@ from pathlib import Path
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.interface.records import RecordKind, Records
+from pmm.remote import here
 
 
 def open(path: str | Path) -> Records:  # noqa: A001
@@ -17,14 +18,16 @@ def open(path: str | Path) -> Records:  # noqa: A001
     ----------
     path
         A recording (CSV, NetCDF, MATLAB or TDMS); a campaign's folder or file; or the TOML file of
-        a pendulum test.
+        a pendulum test. Or the URL of one of the first two, such as ``s3://bucket/campaign``.
 
     Raises
     ------
     ConfigurationError
         If nothing is there, or a folder has no campaign file.
+    DataError
+        If what lies elsewhere cannot be read.
     """
-    path = Path(path)
+    path = here(path)
     if not path.exists():
         raise ConfigurationError(f"{path}: no such file or folder")
     if path.is_dir():

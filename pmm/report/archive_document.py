@@ -31,6 +31,7 @@ from pmm.document.content import (
     word,
 )
 from pmm.document.notation import NOT_KNOWN, counted, rounded
+from pmm.remote import url_of
 
 SCHEMA: Final = "pmm-archive-1"
 _MOST: Final = 100  # rows for people; JSON holds all
@@ -120,6 +121,8 @@ def day(time_utc: str | None) -> str:
 
 def _short(folder: str) -> str:
     path, here = Path(folder), Path.cwd()
+    if url := url_of(path):
+        return url
     return str(path.relative_to(here)) if path.is_relative_to(here) else folder
 
 

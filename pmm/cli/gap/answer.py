@@ -139,11 +139,11 @@ def answer_one(task: CaseTask) -> Answered:
         If its folder is not there for this process.
     """
     from hardware.description.errors import PmmError
-    from pmm.parallel import check_seen
+    from pmm.parallel import seen
 
-    check_seen(task.case)
+    folder = seen(task.case)
     try:
-        found = diagnosed(task.case, task.left_out)
+        found = diagnosed(folder, task.left_out)
     except (PmmError, OSError) as error:
         return Answered(task.case.name, failed=f"{task.case.name}: {error}")
     return Answered(task.case.name, json.dumps(found, indent=1, allow_nan=False) + "\n")

@@ -63,8 +63,9 @@ def diagnose(
     from pmm.gap.preparation import campaign_file
     from pmm.gap.report import gap_report
     from pmm.gap.tolerance_document import tolerance_document
+    from pmm.remote import here
 
-    looks, path = Looks(**chosen), Path(campaign)
+    looks, path = Looks(**chosen), here(campaign)
     file = campaign_file(path)
     read = [("CAMPAIGN", file), ("CAMPAIGN", file.parent / CASE_FILE), *looks.read]
     check_files({"--page": page, "--plan": plan}, read)

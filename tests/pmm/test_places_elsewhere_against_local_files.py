@@ -1,0 +1,180 @@
+"""What lies elsewhere gives what the same files give here: in memory, and in S3 where it is."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import fsspec
+import pytest
+from click.testing import CliRunner
+
+import pmm
+from benchmarks.campaign_folder import make_campaign
+from hardware.description.errors import ConfigurationError, DataError
+from pmm.cli import cli
+from pmm.parallel import seen
+from pmm.remote import here, url_of
+
+RUNS = 2
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return make_campaign(tmp_path_factory.mktemp("campaign"), RUNS, 12.0)
+
+
+@pytest.fixture(autouse=True)
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    return tmp_path / "cache"
+
+
+def _memory() -> Iterator[tuple[Any, str]]:
+    yield fsspec.filesystem("memory"), "memory://bucket"
+
+
+def _s3(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[Any, str]]:
+    pytest.importorskip("s3fs", reason="optional dependency s3")
+    server = pytest.importorskip("moto.server", reason="no moto[server]").ThreadedMotoServer(
+        "127.0.0.1", 0, verbose=False
+    )
+    server.start()
+    host, port = server.get_host_and_port()
+    for name, value in {
+        "AWS_ENDPOINT_URL": f"http://{host}:{port}", "AWS_ACCESS_KEY_ID": "any",
+        "AWS_SECRET_ACCESS_KEY": "any", "AWS_DEFAULT_REGION": "us-east-1",
+    }.items():  # fmt: skip
+        monkeypatch.setenv(name, value)
+    system = fsspec.filesystem("s3", skip_instance_cache=True)
+    system.mkdir("bucket")
+    yield system, "s3://bucket"
+    server.stop()
+
+
+@pytest.fixture(params=["memory", "s3"])
+def system(
+    request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[tuple[Any, str]]:
+    """A system of files elsewhere, and the URL of an empty folder or bucket there."""
+    yield from _memory() if request.param == "memory" else _s3(monkeypatch)
+
+
+@pytest.fixture
+def there(system: tuple[Any, str], folder: Path) -> Iterator[str]:
+    files, url = system
+    files.put(f"{folder}/", f"{url}/campaign/", recursive=True)
+    yield f"{url}/campaign"
+    files.rm(f"{url}/campaign", recursive=True)
+
+
+def _json(*words: str, status: int = 0) -> dict[str, Any]:
+    result = CliRunner().invoke(cli, [*words, "--json"], catch_exceptions=False)
+    assert result.exit_code == status, result.output
+    found: dict[str, Any] = json.loads(result.stdout)
+    return found
+
+
+def test_commands_and_python_tell_of_it_what_they_tell_of_its_files(
+    there: str, folder: Path
+) -> None:
+    mine, theirs = (
+        _json("analyse", f"{place}/run-0001.nc")["runs"] for place in (str(folder), there)
+    )
+    assert [one["gates"] for one in theirs] == [one["gates"] for one in mine]
+    own, other = (pmm.open(place).harmonics().to_dataframe() for place in (str(folder), there))
+    assert other.equals(own)
+    own, other = (
+        _json("compare", f"{place}/run-0001.nc:displacement_aft", ":displacement_fore")["gain"]
+        for place in (str(folder), there)
+    )
+    assert other == own
+
+
+def test_an_archive_holds_what_it_holds_of_the_folder_and_sees_changes_there(
+    there: str, system: tuple[Any, str], folder: Path, tmp_path: Path
+) -> None:
+    hashes = {}
+    for name, place in {"mine": str(folder), "theirs": there}.items():
+        file = str(tmp_path / f"{name}.sqlite")
+        _json("archive", "add", place, "--analyse", "--archive", file)
+        [row] = _json("archive", "list", "--archive", file)["campaigns"]
+        hashes[name] = row["sha256"]
+        assert row["analysed"]
+        assert not row["changes"]
+    assert hashes["theirs"] == hashes["mine"]
+    system[0].pipe(f"{there}/run-0000.nc", b"other")
+    [row] = _json("archive", "list", "--archive", file)["campaigns"]
+    assert row["changes"] == ["run-0000.nc changed"]
+    system[0].rm(f"{there}/run-0000.nc")
+    [row] = _json("archive", "list", "--archive", file)["campaigns"]
+    assert row["changes"] == ["run-0000.nc vanished"]
+
+
+def test_only_what_changed_is_copied_again(
+    there: str, system: tuple[Any, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    copied: list[str] = []
+    get = type(system[0]).get_file
+
+    def noted(self: Any, one: str, *args: Any, **options: Any) -> Any:
+        copied.append(Path(one).name)
+        return get(self, one, *args, **options)
+
+    monkeypatch.setattr(type(system[0]), "get_file", noted)
+    target = here(there)
+    assert sorted(copied) == ["campaign.toml", "run-0000.nc", "run-0001.nc"]
+    copied.clear()
+    assert here(there) == target
+    assert not copied
+    system[0].pipe(f"{there}/campaign.toml", b"name = 'a longer one'")
+    assert here(there) == target
+    assert copied == ["campaign.toml"]
+    assert (target / "campaign.toml").read_bytes() == b"name = 'a longer one'"
+
+
+def test_a_worker_of_another_computer_makes_its_own_copy_of_the_path_that_it_is_sent(
+    there: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sent = here(there)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "another"))
+    mine = seen(sent)
+    assert mine.is_relative_to(tmp_path / "another")
+    assert {one.name: one.read_bytes() for one in mine.iterdir()} == {
+        one.name: one.read_bytes() for one in sent.iterdir()
+    }
+    assert url_of(sent) == url_of(mine) == there
+
+
+@pytest.mark.parametrize(
+    ("url", "error", "message"),
+    [
+        ("memory://nothing/there.nc", ConfigurationError, "^memory://nothing/there.nc: no such"),
+        ("memory://bucket/../secret", DataError, r"^memory://bucket/\.\./secret: .*'\.\.' in it"),
+        ("sevenz3://bucket/run.nc", ConfigurationError, "^sevenz3://bucket/run.nc: .*sevenz3"),
+        ("http://127.0.0.1:9/run.nc", (ConfigurationError, DataError), "^http://127.0.0.1:9/run"),
+    ],
+)
+def test_what_cannot_be_had_is_said_with_its_url(
+    url: str, error: type[Exception], message: str
+) -> None:
+    with pytest.raises(error, match=message):
+        here(url)
+
+
+def test_plain_paths_and_files_by_url_are_themselves(folder: Path) -> None:
+    assert here(folder) == folder
+    assert here(str(folder)) == folder
+    assert here("run.nc:channel") == Path("run.nc:channel")
+    assert here(f"file://{folder}") == folder
+
+
+def test_nothing_is_written_elsewhere(there: str, tmp_path: Path) -> None:
+    told = CliRunner().invoke(cli, ["archive", "add", there, "--archive", f"{there}/a.sqlite"])
+    assert told.exit_code == 2
+    assert "only a folder of this computer is written to" in told.stderr
+    file = str(tmp_path / "a.sqlite")
+    _json("archive", "add", there, "--archive", file)
+    told = CliRunner().invoke(cli, ["archive", "note", "run-0000", "seen", "--archive", file])
+    assert told.exit_code == 2
+    assert f"{there}: what lies elsewhere is only read" in told.stderr
