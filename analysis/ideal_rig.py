@@ -79,10 +79,7 @@ def strut_displacements(
     if set_point.lines:
         for line in set_point.lines:
             if line.order <= orders:
-                ahead = line.phase_rad + np.array([0.0, line.strut_phase_rad])
-                displacements[line.order] += (
-                    set_point.eccentricity_m * line.share * np.exp(1j * ahead)
-                )
+                displacements[line.order] += set_point.eccentricity_m * line.phasors
         return displacements
     angles = np.array([0.0, set_point.strut_phase_rad])
     displacements[1] = set_point.eccentricity_m * np.exp(1j * angles)

@@ -2,18 +2,23 @@
 
 import math
 from collections.abc import Collection, Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
 
 from hardware.description.arrangement import DriftBy, Joint
 from hardware.description.attitude import HeaveAndPitch
 from hardware.description.channels import HEELING, POSITIONS, STEERING
 from hardware.description.errors import ConfigurationError
+from hardware.description.lines import struts_over_turn
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
 from sim.acquisition.channels import Acquisition
 
 if TYPE_CHECKING:
     from sim.rig import SimulatedRig
+
+_INSTANTS: Final = 720  # of a turn
 
 
 def check_run(rig: "SimulatedRig", set_point: SetPoint) -> None:
@@ -42,10 +47,8 @@ def _of_joint(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
             'joint = "yaw_table": a turntable is analysed but not simulated; simulate '
             '"slides_on_model" or "slides_on_rig", which have two struts'
         )
-    apart = set_point.eccentricity_m * max(
-        abs(math.sin(line.strut_phase_rad / 2.0)) for line in set_point.every_line
-    )
-    sine = apart / rig.oscillator.half_spacing_m
+    aft, fore = set_point.eccentricity_m * struts_over_turn(set_point.every_line, least=_INSTANTS)
+    sine = float(np.abs(fore - aft).max()) / (2.0 * rig.oscillator.half_spacing_m)
     if rig.oscillator.drift_by is DriftBy.STRUTS_OFFSET:
         sine += abs(math.sin(set_point.drift_rad))
     if rig.oscillator.joint is Joint.SLIDES_ON_RIG and sine >= 1.0:

@@ -151,7 +151,7 @@ class StrutCycle:
             readings=ordered.values.reshape(self.orders + 1, -1),
             heel=self.heel,
             heel_rad=point.heel_rad,
-            lines=tuple(line.order for line in point.lines),
+            lines=point.own_orders,
         )
 
 

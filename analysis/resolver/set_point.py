@@ -4,12 +4,14 @@ import cmath
 import math
 from collections.abc import Iterator, Mapping
 
+import numpy as np
+
 from analysis.recording import Recording
 from analysis.resolver.estimate import resolve
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.reference import PhaseReference
 from analysis.resolver.sums import PeriodSums, period_sums
-from hardware.description.channels import DISPLACEMENT_AFT, DISPLACEMENT_FORE
+from hardware.description.channels import DISPLACEMENT_AFT, DISPLACEMENT_FORE, DISPLACEMENTS
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 
@@ -41,10 +43,12 @@ def set_point_flags(
     if abs(reading.frequency_hz - told) > _FREQUENCY * told:
         flags.append(_flag("frequency", told, reading.frequency_hz, "Hz", _FREQUENCY, None))
     line = max(recording.set_point.every_line, key=lambda line: line.share)
-    eccentricity_m = recording.set_point.eccentricity_m * line.share
+    alike = [one.phasors for one in recording.set_point.every_line if one.order == line.order]
+    told_m = recording.set_point.eccentricity_m * np.abs(np.sum(alike, axis=0))
+    asked_m = dict(zip(DISPLACEMENTS, told_m.tolist(), strict=True))
     moved = dict(_phasors(recording, reference, gate, reading, line.order))
     for name, phasor_m in moved.items():
-        found_m = abs(phasor_m)
+        eccentricity_m, found_m = asked_m[name], abs(phasor_m)
         if abs(found_m - eccentricity_m) > _ECCENTRICITY * eccentricity_m:
             told_mm, found_mm = 1e3 * eccentricity_m, 1e3 * found_m
             flags.append(_flag("eccentricity", told_mm, found_mm, "mm", _ECCENTRICITY, name))

@@ -6,7 +6,8 @@ or a position-controlled axis does:
     d_aft = e sum over lines of a_k sin(n_k theta + phase_k)
     d_fore = e sum over lines of a_k sin(n_k theta + phase_k + strut_phase_k)
 
-A chirp that repeats, or a motion that was recorded, are such sums too.
+A chirp that repeats, or a motion that was recorded, are such sums too. Struts that move unequally
+far at one harmonic have two lines there: together, and against each other.
 """
 
 from collections.abc import Sequence
@@ -14,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hardware.description.arrays import FloatArray
+from hardware.description.arrays import ComplexArray, FloatArray
 
 _POINTS_PER_LINE = 32  # of a turn, per harmonic of the highest line: a peak to 0.5 %
 
@@ -33,12 +34,21 @@ class Line:
         Of the aft strut.
     strut_phase_rad
         Of the fore strut ahead of the aft one at this line.
+    correction
+        Whether it only makes another line's motion pure, and is no frequency of its own.
     """
 
     order: int
     share: float = 1.0
     phase_rad: float = 0.0
     strut_phase_rad: float = 0.0
+    correction: bool = False
+
+    @property
+    def phasors(self) -> ComplexArray:
+        """Of both struts, aft and fore, per eccentricity: ``d = e Im(H exp(i n theta))``."""
+        ahead = self.phase_rad + np.array([0.0, self.strut_phase_rad])
+        return np.asarray(self.share * np.exp(1j * ahead))
 
 
 def struts_over_turn(lines: Sequence[Line], times: int = 0, least: int = 0) -> FloatArray:
@@ -56,10 +66,8 @@ def struts_over_turn(lines: Sequence[Line], times: int = 0, least: int = 0) -> F
     order = np.array([line.order for line in lines], dtype=np.float64)
     points = max(least, _POINTS_PER_LINE * int(order.max()))
     theta = np.linspace(0.0, 2.0 * np.pi, points, endpoint=False)
-    size = np.array([line.share for line in lines]) * order**times
-    phase = np.array([[line.phase_rad, line.phase_rad + line.strut_phase_rad] for line in lines])
-    turned = order[:, None, None] * theta + (phase + times * np.pi / 2.0)[..., None]
-    return np.asarray(np.einsum("k,kst->st", size, np.sin(turned)))
+    size = np.array([line.phasors for line in lines]) * (1j * order[:, None]) ** times
+    return np.asarray((size.T @ np.exp(1j * order[:, None] * theta)).imag)
 
 
 def peak_of(lines: Sequence[Line], times: int = 0) -> float:

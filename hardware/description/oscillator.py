@@ -39,6 +39,8 @@ class Oscillator(Arrangement):
         ``x = -l`` (aft).
     rod_length_m
         Length of the connecting rod of a crank and slider; ``None`` for a scotch yoke.
+    paths
+        Whether each strut can follow a path of its own; ``None`` where nobody has said.
     force_per_strut_n
         Largest force that one strut may carry, in newtons.
     """
@@ -49,6 +51,7 @@ class Oscillator(Arrangement):
     eccentricity_m: Range
     force_per_strut_n: float
     rod_length_m: float | None = None
+    paths: bool | None = None
 
     @property
     def arrangement(self) -> Arrangement:

@@ -44,7 +44,8 @@ class SetPoint:
     heel_rad
         Heel at which the model is fixed, or rests where it is free to roll; positive to starboard.
     lines
-        Of a motion of many frequencies, each with its own strut phase; empty for a single sine.
+        Of a motion of many frequencies, each with its own strut phase, and what makes a motion
+        exact; empty for a single sine.
     """
 
     frequency_hz: float
@@ -62,6 +63,12 @@ class SetPoint:
     def every_line(self) -> tuple[Line, ...]:
         """The lines of the motion: one of a single sine."""
         return self.lines or (Line(1, strut_phase_rad=self.strut_phase_rad),)
+
+    @property
+    def own_orders(self) -> tuple[int, ...]:
+        """Harmonics that each are a frequency of their own; empty for a single one, the shaft's."""
+        own = tuple(line.order for line in self.lines if not line.correction)
+        return () if own == (1,) else own
 
     @classmethod
     def read(cls, fields: Mapping[str, Any]) -> "SetPoint":
@@ -81,7 +88,7 @@ def check_within(oscillator: Oscillator, set_point: SetPoint) -> None:
         each value and its limits.
     """
     faults = []
-    orders = [line.order for line in set_point.every_line]
+    orders = set_point.own_orders or (1,)
     for name, value, allowed in (
         *(
             (
@@ -113,6 +120,14 @@ def _line_faults(oscillator: Oscillator, set_point: SetPoint) -> list[str]:
             f"the lines together reach {peak:.4g} times eccentricity_m, which is their peak; "
             "lower their shares"
         )
-    if oscillator.rod_length_m is not None:
-        faults.append("lines are followed by position-controlled struts, not by a crank with a rod")
+    faults += path_faults(oscillator)
     return faults
+
+
+def path_faults(oscillator: Oscillator) -> list[str]:
+    """Return why struts cannot follow lines, or an exact path; empty where they can."""
+    if oscillator.rod_length_m is not None:
+        return ["lines are followed by position-controlled struts, not by a crank with a rod"]
+    if oscillator.paths is False:
+        return ["lines are followed by struts with drives of their own: oscillator.paths is false"]
+    return []

@@ -74,6 +74,7 @@ def _not_checked(plan: Plan, rig: RigFile) -> Iterator[PlanFinding]:
         message = f"{plan.path.name} has no [water]: the Reynolds number is not checked"
         yield PlanFinding(PlanVerdict.NOTE, "not checked", math.nan, math.nan, "", message)
     turning = any(run.oscillates for run in plan.runs)
+    paths = any(run.set_point.lines for run in plan.runs)
     for absent, table, what in (
         (turning and model is None, "[model]", "forces are"),
         (model is not None and rig.hull is None, "[hull]", "the water's part of the force is"),
@@ -95,6 +96,11 @@ def _not_checked(plan: Plan, rig: RigFile) -> Iterator[PlanFinding]:
         ),
         (turning and not rig.modes, "[[modes]] (pluck test)", "structural modes are"),
         (not rig.gauges, "[[gauges]]", "the gauges' range is"),
+        (
+            paths and rig.oscillator.paths is None,
+            "oscillator.paths",
+            "whether struts can follow lines or exact paths is",
+        ),
         (rig.limits.velocity_m_s is None, "limits.velocity_m_s", "strut velocity is"),
         (rig.limits.acceleration_m_s2 is None, "limits.acceleration_m_s2", "acceleration is"),
     ):

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from analysis.response.multisine import multisine
+from analysis.response.pure_rotation import pure_rotation
+from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.known_loads import LoadDirection, LoadStep
 from hardware.description.lines import Line
@@ -133,8 +135,8 @@ def _run(
         revolutions,
         heel,
     )
-    if entry.lines:
-        lines = _lines(entry, oscillator, set_point, speed)
+    lines = _lines(entry, oscillator, set_point, speed)
+    if lines:
         set_point = replace(set_point, strut_phase_rad=0.0, lines=lines)
     return RunPlan(
         name=_name(entry, one),
@@ -153,8 +155,18 @@ def _run(
 def _lines(
     entry: PlanEntry, oscillator: Oscillator, point: SetPoint, speed_m_s: float
 ) -> tuple[Line, ...]:
-    """Return the lines of a run: of the same strut velocity each, with the motion's strut phase."""
+    """Return the lines of a run: of the same strut velocity each, with the motion's strut phase.
+
+    An exact run has those that make its rotation pure; heave and sway are pure as they are.
+    """
     motion, half = entry.motion or Motion.NONE, oscillator.half_spacing_m
+    if entry.exact and motion in _PHASED:
+        try:
+            return pure_rotation(oscillator, point.frequency_hz, speed_m_s, point.eccentricity_m)
+        except ConfigurationError as error:
+            raise ConfigurationError(f"{entry.name or _prefix(entry)}: exact: {error}") from error
+    if not entry.lines:
+        return ()
     phases = [
         point.strut_phase_rad
         if motion is Motion.PHASE

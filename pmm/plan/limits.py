@@ -11,7 +11,7 @@ from pmm.plan.check import Check
 from pmm.plan.duration import tank_length_m
 from pmm.plan.findings import PlanFinding, PlanVerdict
 from pmm.plan.force_estimate import force_peak_n
-from pmm.plan.motion_peaks import acceleration_peak_m_s2, velocity_peak_m_s
+from pmm.plan.motion_peaks import acceleration_peak_m_s2, peak_place, velocity_peak_m_s
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 
@@ -47,18 +47,27 @@ def _turning(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
         return
     frequency, oscillator, limits = run.set_point.frequency_hz, rig.oscillator, rig.limits
     allowed = oscillator.frequency_hz
-    orders = [line.order for line in run.set_point.every_line]
+    orders = run.set_point.own_orders or (1,)
     for order in dict.fromkeys((min(orders), max(orders))):
         yield _Bound(table.FREQUENCY, order * frequency, allowed.low, allowed.high, "oscillator")
     low, high = _ends(rig.hardware.shaft, "lowest_frequency_hz", "highest_frequency_hz")
     yield _Bound(table.FREQUENCY, frequency, low, high, "the shaft's drive")
-    for check, value, limit in (
-        (table.VELOCITY, velocity_peak_m_s(run, oscillator), limits.velocity_m_s),
-        (table.ACCELERATION, acceleration_peak_m_s2(run, oscillator), limits.acceleration_m_s2),
-        (table.STRUT_FORCE, force_peak_n(run, rig), oscillator.force_per_strut_n),
+    velocity, acceleration = (
+        velocity_peak_m_s(run, oscillator),
+        acceleration_peak_m_s2(run, oscillator),
+    )
+    for check, value, limit, where in (
+        (table.VELOCITY, velocity, limits.velocity_m_s, peak_place(run, 1, "of a strut")),
+        (
+            table.ACCELERATION,
+            acceleration,
+            limits.acceleration_m_s2,
+            peak_place(run, 2, "of a strut"),
+        ),
+        (table.STRUT_FORCE, force_peak_n(run, rig), oscillator.force_per_strut_n, "of a strut"),
     ):
         if value is not None and limit is not None:
-            yield _Bound(check, value, 0.0, limit, "of a strut")
+            yield _Bound(check, value, 0.0, limit, where)
 
 
 def _setting(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
@@ -70,8 +79,8 @@ def _setting(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
     low, high = _ends(rig.hardware.eccentricity, "low", "high")
     yield _Bound(table.AMPLITUDE, amplitude, low, high, "the eccentricity's axis")
     if rig.limits.stroke_m is not None:
-        stroke = 2.0 * amplitude
-        yield _Bound(table.STROKE, stroke, 0.0, rig.limits.stroke_m, "limits.stroke_m")
+        stroke, where = 2.0 * amplitude, peak_place(run, 0, "limits.stroke_m")
+        yield _Bound(table.STROKE, stroke, 0.0, rig.limits.stroke_m, where)
     low, high = _ends(rig.hardware.phase, "low", "high")
     yield _Bound(table.STRUT_PHASE, phase, low, high, "the phase's axis")
 

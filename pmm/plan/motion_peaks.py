@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from hardware.description.lines import peak_of
+from hardware.description.lines import peak_of, struts_over_turn
 from hardware.description.oscillator import Oscillator
 from pmm.plan.run_plan import RunPlan
 
@@ -28,6 +28,17 @@ def acceleration_peak_m_s2(run: RunPlan, oscillator: Oscillator) -> float:
     """Return the largest acceleration of a strut: ``omega^2 e``, times ``1 + e / L`` of a crank."""
     pace = omega_of(run) ** 2 * run.set_point.eccentricity_m
     return pace * rod_factor(run, oscillator) * _of_lines(run, 2)
+
+
+def peak_place(run: RunPlan, times: int, limit: str) -> str:
+    """Return whose limit it is; of a path also which strut's peak, and when in its period."""
+    if not run.set_point.lines:
+        return limit
+    struts = np.abs(struts_over_turn(run.set_point.lines, times))
+    strut, at = np.unravel_index(int(struts.argmax()), struts.shape)
+    after_s = float(at) / struts.shape[1] / run.set_point.frequency_hz
+    strut_name = ("aft", "fore")[int(strut)]
+    return f"{limit}: {strut_name}, {after_s:.3g} s into the period"
 
 
 def _of_lines(run: RunPlan, times: int) -> float:

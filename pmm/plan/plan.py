@@ -20,6 +20,7 @@ from pmm.plan.plan_rules import (
     end_faults,
     entry_faults,
     gate_faults,
+    path_faults,
     rig_faults,
 )
 from pmm.plan.plan_tables import ControlTable, Defaults, PlanEntry, PlanTables
@@ -178,6 +179,7 @@ def _entry_faults(
     yield from entry_faults(table, entry, place)
     yield from end_faults(entry, defaults, place)
     yield from rig_faults(entry.motion, found.oscillator, place)
+    yield from path_faults(entry, found.oscillator, place)
     yield from channel_faults(entry, found.channels, place)
     if any(entry.heels_rad) and found.rig is not None and "heel" not in found.rig.campaign:
         text = "needs [campaign.heel] in the rig's file: how the model is held in roll"

@@ -5,6 +5,7 @@ from typing import Any, Final
 
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.oscillator import Oscillator, Plane
+from hardware.description.setpoint import path_faults as struts_faults
 from pmm.configuration import Fault, Place, unknown
 from pmm.plan.plan_tables import ControlTable, Defaults, PlanEntry, first_of
 
@@ -22,8 +23,8 @@ _MATRIX: Final = _GATE | {
 }
 _REST: Final = {"duration_s", "medium"}
 _TAKES: Final[dict[RunKind, set[str]]] = {
-    RunKind.OSCILLATION: _MATRIX | _SET | {"lines"},
-    RunKind.DRY: (_MATRIX - {"drifts_rad"}) | {"lines"},
+    RunKind.OSCILLATION: _MATRIX | _SET | {"lines", "exact"},
+    RunKind.DRY: (_MATRIX - {"drifts_rad"}) | {"lines", "exact"},
     RunKind.KNOWN_MASS: (_MATRIX - {"drifts_rad"}) | {"known_mass"},
     RunKind.RESTORING: _MATRIX - {"speeds_m_s", "drifts_rad"},
     RunKind.CHECK_WEIGHT: _REST | {"channels", "loads_n"},
@@ -162,6 +163,18 @@ def rig_faults(
             f'= "{motion}" is a motion of the {plane} oscillator; the rig\'s is '
             f"{oscillator.plane}: {own}, phase",
         )
+
+
+def path_faults(entry: PlanEntry, oscillator: Oscillator | None, place: Place) -> Iterator[Fault]:
+    """Yield paths that go with nothing else there, or that the rig's struts do not follow."""
+    if entry.exact:
+        if entry.lines:
+            yield Fault((*place, "exact"), "is for one frequency at a time; leave lines out")
+        if entry.motion in (Motion.PHASE, Motion.YAW_DRIFT) or any(entry.drifts_rad):
+            yield Fault((*place, "exact"), "is for heave, pitch, sway and yaw without a drift")
+    key = "exact" if entry.exact else "lines" if entry.lines else ""
+    if key and oscillator is not None:
+        yield from (Fault((*place, key), f": {text}") for text in struts_faults(oscillator))
 
 
 def channel_faults(

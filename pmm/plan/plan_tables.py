@@ -86,6 +86,8 @@ class PlanEntry:
     lines
         Harmonics of each frequency, which is the base of a motion of many lines; one run has them
         all, with amplitudes as one over their order.
+    exact
+        Whether the struts follow the paths that make the motion pure at any angle.
     channels, loads_n
         Gauges and their loads, of check weights and pushes.
     medium
@@ -113,6 +115,7 @@ class PlanEntry:
     target_relative: float | None = None
     max_periods: int | None = None
     lines: tuple[int, ...] = ()
+    exact: bool = False
     channels: tuple[str, ...] = ()
     loads_n: tuple[float, ...] = ()
     known_mass: KnownMass | None = None

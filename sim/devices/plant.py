@@ -204,10 +204,10 @@ class Plant:
         eccentricity, phase = self._linkage
         rig = replace(self._rig, drive=following(self._rig.drive, self.profile))
         around = self._around
-        highest = max((line.order for line in around.lines), default=1)
-        any_hz = self._rig.oscillator.frequency_hz.high / highest
-        own = fields(around)
-        conditions = {one.name: getattr(around, one.name) for one in own if one.name != "seed"}
+        own = SetPoint(0.0, 0.0, lines=around.lines).own_orders
+        any_hz = self._rig.oscillator.frequency_hz.high / max(own, default=1)
+        names = (one.name for one in fields(around) if one.name != "seed")
+        conditions = {name: getattr(around, name) for name in names}
         return rig.chain(SetPoint(any_hz, eccentricity, phase, **conditions))
 
     def _run(self, chain: Chain, state: ChainState, count: int) -> _Stretch:

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from hardware.description.kinds import RunKind
 from hardware.description.known_loads import LoadStep
+from hardware.description.lines import Line
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963
 from hardware.description.setpoint import Medium
 from hardware.rig_configuration import RigConfiguration, read_rig
@@ -225,6 +226,20 @@ def test_a_plan_beyond_the_rig_is_refused_with_every_run_value_and_limit() -> No
     assert "wide: stroke [m] = 0.2 is above 0.12 (limits.stroke_m)" in message
     assert "good:" not in message
     assert caught.value.exit_status == 1
+
+
+def test_a_path_beyond_the_rig_is_refused_at_its_place() -> None:
+    """Two lines whose fastest instant is known: both at once, a quarter into the period, aft."""
+    lines = (Line(1, 0.5, math.pi), Line(3, 0.5, math.pi, strut_phase_rad=0.1))
+    fast = run(0.5, 0.05, name="fast")
+    path = replace(fast, set_point=replace(fast.set_point, lines=lines))
+    limits = replace(rig_file().limits, velocity_m_s=0.3, acceleration_m_s2=None)
+    with pytest.raises(PlanRefusedError) as caught:
+        require_possible(_plan(path), replace(rig_file(), limits=limits))
+    largest = math.pi * 0.05 * (0.5 + 1.5)
+    assert f"= {largest:.4g} is above 0.3 (of a strut: aft, 0 s into the period)" in str(
+        caught.value
+    )
 
 
 def test_what_cannot_be_checked_is_said() -> None:

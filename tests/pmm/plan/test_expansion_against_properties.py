@@ -10,10 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.known_loads import KnownMass
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator
-from hardware.description.setpoint import Medium
+from hardware.description.setpoint import Medium, check_within
 from pmm.plan.expansion import all_of, expand, snake, strut_phase_of
 from pmm.plan.ordering import in_order, runs_of, with_control, with_zeros
 from pmm.plan.plan_tables import (
@@ -224,3 +225,22 @@ def test_a_whole_plan_has_all_that_belongs_to_it() -> None:
     assert {one.prompts for one in runs[2:]} == {()}
     steps = [one.set_point.frequency_hz for one in runs if one.kind is RunKind.OSCILLATION]
     assert steps == [0.5, 1.0, 1.0, 0.5]
+
+
+@pytest.mark.parametrize("motion", [Motion.YAW, Motion.SWAY])
+def test_an_exact_run_has_one_frequency_and_the_stated_peak(motion: Motion) -> None:
+    entry = PlanEntry(
+        motion=motion, exact=True, frequencies_hz=(0.5,), amplitudes_m=(0.2,), speeds_m_s=(1.2,)
+    )
+    (one,) = _made(entry, HORIZONTAL_1963)
+    assert one.set_point.own_orders == ()
+    assert one.set_point.eccentricity_m == 0.2
+    check_within(HORIZONTAL_1963, one.set_point)  # corrections beyond 2 Hz are no frequencies
+    assert bool(one.set_point.lines) is (motion is Motion.YAW)
+    assert RunPlan.from_json(one.to_json(), "here") == one
+
+
+def test_an_exact_run_that_cannot_be_is_refused_by_its_name() -> None:
+    entry = PlanEntry(motion=Motion.YAW, exact=True, frequencies_hz=(0.5,), amplitudes_m=(2.0,))
+    with pytest.raises(ConfigurationError, match="yaw: exact: an amplitude of 2000 mm"):
+        _made(entry, HORIZONTAL_1963)
