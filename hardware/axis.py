@@ -1,6 +1,7 @@
 """Eccentricity and strut phase on a CiA 402 drive: profile position and homing."""
 
 from enum import Enum
+from typing import ClassVar
 
 from hardware.axis_settings import PositionAxisSettings
 from hardware.cia402 import ControlWord, Mode, StatusWord
@@ -23,6 +24,7 @@ from hardware.errors import HomingError, NotReadyError
 from hardware.limits import AXIS_REST_SHARE, RAMP_MARGIN
 from hardware.motion import EncoderMotion
 from hardware.roles import Cycle, Reading, Role
+from hardware.sdo import Number
 
 _STALE_CYCLES = 10  # a homing that was over before is believed after so many
 
@@ -38,7 +40,17 @@ class _Step(Enum):
 
 
 class DriveAxis:
-    """A :class:`hardware.roles.PositionAxis`."""
+    """A :class:`hardware.roles.PositionAxis`.
+
+    Attributes
+    ----------
+    modes
+        Modes of operation that the drive has to support.
+    positions
+        What came in the present cycle: number of the SYNC, counts.
+    """
+
+    modes: ClassVar[tuple[Mode, ...]] = (Mode.PROFILE_POSITION, Mode.HOMING)
 
     def __init__(self, name: str, settings: PositionAxisSettings, services: Services) -> None:
         self.name = name
@@ -48,7 +60,7 @@ class DriveAxis:
         self.settled = False
         self.drive = Drive(
             join(nodes(name, settings)[0], services),
-            (Mode.PROFILE_POSITION, Mode.HOMING),
+            self.modes,
             EncoderMotion(
                 settings.counts_per_unit,
                 f"{settings.unit}/s",
@@ -62,6 +74,7 @@ class DriveAxis:
         self._step = _Step.IDLE
         self._stale_cycles = 0
         self._target = 0
+        self.positions: list[tuple[int, int]] = []
 
     @property
     def enabled(self) -> bool:
@@ -72,6 +85,11 @@ class DriveAxis:
     def moving(self) -> bool:
         """Whether the axis moves by its encoder, or a move or homing is under way."""
         return self._pursuing or not self.drive.motion.at_rest
+
+    @property
+    def homing(self) -> bool:
+        """Whether it is looking for its reference position."""
+        return self._pursuing and self.drive.mode is Mode.HOMING
 
     @property
     def _pursuing(self) -> bool:
@@ -147,28 +165,30 @@ class DriveAxis:
 
     def prepare(self) -> None:
         """Write limits, ramps and the homing's settings to the drive."""
+        self.drive.prepare(self.objects())
+
+    def objects(self) -> tuple[tuple[Entry, Number], ...]:
+        """Return what is written to the drive."""
         one, per_count = self._settings, abs(self._settings.counts_per_unit)
         per_unit = per_count * one.velocity_per_count
         ends = sorted(round(end * one.counts_per_unit) for end in (one.low, one.high))
-        self.drive.prepare(
-            (
-                (Entry(0x607D, 1), ends[0]),
-                (Entry(0x607D, 2), ends[1]),
-                (Entry(0x607F), round(per_unit * max(one.speed, one.homing_speed))),
-                *motor_speed(one.max_motor_speed_rpm),
-                (Entry(0x6081), round(per_unit * one.speed)),
-                (Entry(0x6083), round(per_unit * one.acceleration)),
-                (Entry(0x6084), round(per_unit * one.acceleration)),
-                (Entry(0x6085), round(per_unit * one.quick_stop)),
-                (Entry(0x6065), round(per_count * one.following_error)),
-                (Entry(0x6066), one.following_error_ms),
-                (Entry(0x6067), round(per_count * one.tolerance)),
-                (Entry(0x607C), round(one.counts_per_unit * one.home_position)),
-                (Entry(0x6098), one.homing_method),
-                (Entry(0x6099, 1), round(per_unit * one.homing_speed)),
-                (Entry(0x6099, 2), round(per_unit * one.homing_speed)),
-                (Entry(0x609A), round(per_unit * one.acceleration)),
-            )
+        return (
+            (Entry(0x607D, 1), ends[0]),
+            (Entry(0x607D, 2), ends[1]),
+            (Entry(0x607F), round(per_unit * max(one.speed, one.homing_speed))),
+            *motor_speed(one.max_motor_speed_rpm),
+            (Entry(0x6081), round(per_unit * one.speed)),
+            (Entry(0x6083), round(per_unit * one.acceleration)),
+            (Entry(0x6084), round(per_unit * one.acceleration)),
+            (Entry(0x6085), round(per_unit * one.quick_stop)),
+            (Entry(0x6065), round(per_count * one.following_error)),
+            (Entry(0x6066), one.following_error_ms),
+            (Entry(0x6067), round(per_count * one.tolerance)),
+            (Entry(0x607C), round(one.counts_per_unit * one.home_position)),
+            (Entry(0x6098), one.homing_method),
+            (Entry(0x6099, 1), round(per_unit * one.homing_speed)),
+            (Entry(0x6099, 2), round(per_unit * one.homing_speed)),
+            (Entry(0x609A), round(per_unit * one.acceleration)),
         )
 
     @property
@@ -184,7 +204,7 @@ class DriveAxis:
         HomingError
             If the drive reports one; other faults as in :meth:`hardware.drive.Drive.tick`.
         """
-        self.drive.listen(cycle.number)
+        self.positions = self.drive.listen(cycle.number)
         if self._pursuing and not self.enabled:
             self._abandon()
         try:

@@ -1,6 +1,8 @@
 """The words of CiA 402: states, commands, modes, and the bits of status and control word."""
 
+from collections.abc import Mapping
 from enum import Enum, IntEnum, IntFlag
+from types import MappingProxyType
 from typing import Final
 
 
@@ -50,6 +52,7 @@ class StatusWord(IntFlag):
     SET_POINT_ACKNOWLEDGED = 0x1000  # profile position
     STANDSTILL = 0x1000  # profile velocity
     HOMING_ATTAINED = 0x1000  # homing
+    FOLLOWS_COMMAND = 0x1000  # cyclic synchronous position
     FOLLOWING_ERROR = 0x2000  # profile position; maximal slippage in profile velocity
     HOMING_ERROR = 0x2000  # homing
 
@@ -61,11 +64,18 @@ class Mode(IntEnum):
     PROFILE_POSITION = 1
     PROFILE_VELOCITY = 3
     HOMING = 6
+    CYCLIC_SYNCHRONOUS_POSITION = 8
 
     @property
     def supported_bit(self) -> int:
         """The mode's bit in the supported drive modes (6502)."""
         return 1 << (self.value - 1)
+
+
+# Error codes (603F, emergencies) of set-points that do not come as they should, in words.
+ERROR_WORDS: Final[Mapping[int, str]] = MappingProxyType(
+    {0x8250: "a set-point came too late for its SYNC", 0x8700: "SYNC stayed away or came unevenly"}
+)
 
 
 # The transitions of CiA 402 by number: 0, 1, 13 and 14 are the drive's own.

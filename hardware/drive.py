@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import Final
 
-from hardware.cia402 import ControlWord, DriveState, Mode, StatusWord
+from hardware.cia402 import ERROR_WORDS, ControlWord, DriveState, Mode, StatusWord
 from hardware.description.errors import ConfigurationError
 from hardware.dictionary import Entry
 from hardware.drive_state_machine import DriveStateMachine, Goal
@@ -57,6 +57,7 @@ _OPTIONAL: Final = {
     0x6080: "max motor speed: the controller alone keeps it",
     0x6084: "profile deceleration: it stops at its acceleration",
     0x6085: "quick stop deceleration: it stops as its maker chose",
+    0x60C2: "interpolation time: it takes the time between set-points as its maker chose",
     0x609A: "homing acceleration: it homes as its maker chose",
 }
 _ABSENT: Final = (0x06020000, 0x06090011)  # CiA 301: no such object, no such sub-index
@@ -206,8 +207,10 @@ class Drive:
         code = int(self.node.values[ERROR_CODE])
         if code == _FOLLOWING_ERROR_CODE:
             return FollowingError(self.node.name, f"outside its window (error 0x{code:04X})")
+        words = f": {ERROR_WORDS[code]}" if code in ERROR_WORDS else ""
         return DriveFaultError(
-            self.node.name, f"{self._machine.state.name}, error code 0x{code:04X} (603F); reset it"
+            self.node.name,
+            f"{self._machine.state.name}, error code 0x{code:04X} (603F){words}; reset it",
         )
 
     def _watch(self, status: int) -> None:

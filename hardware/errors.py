@@ -10,6 +10,7 @@ from enum import IntEnum
 from pathlib import Path
 from typing import ClassVar
 
+from hardware.cia402 import ERROR_WORDS
 from hardware.description.errors import PmmError
 
 
@@ -84,11 +85,16 @@ class EmergencyError(HardwareError):
     def __init__(self, device: str, code: int, register: int, vendor: bytes = b"") -> None:
         super().__init__(
             device,
-            f"emergency 0x{code:04X} (register 0x{register:02X}, vendor {vendor.hex() or '-'}); "
+            f"emergency 0x{code:04X}{f' ({words})' if (words := ERROR_WORDS.get(code)) else ''} "
+            f"(register 0x{register:02X}, vendor {vendor.hex() or '-'}); "
             "clear its cause, then reset the fault",
         )
         self.code = code
         self.register = register
+
+
+class CycleJumpError(HardwareError):
+    """A cycle of the loop came so late that the set-points of a path lost their time."""
 
 
 class FollowingError(HardwareError):

@@ -50,6 +50,12 @@ is armed or open; three times the largest ripple of the catalogue of effects."""
 FREQUENCY_S: Final = 0.3
 """Seconds for which it has to be so far off: a drive that is blocked says so itself before."""
 
+LATE_PERIODS: Final = 1.0
+"""Periods that a cycle may come late while struts follow a path: then a set-point was left out. The
+drive goes on at its last speed for one period, so that a strut at 0.8 m/s and 100 Hz is 8 mm ahead.
+Half as much stops a run for what the drive's window of following error would bear; twice as much
+lets two set-points go, and the drives fault by themselves."""
+
 READ_BACK_SHARE: Final = 0.01
 """Of a value written to a drive: so far off it may read back, rounded to the drive's own units."""
 

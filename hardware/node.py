@@ -74,6 +74,8 @@ class Node:
         Its TPDOs, one per mapping, in order.
     last_beat
         Number of the cycle in which its heartbeat last came.
+    cyclic
+        Whether it takes its RPDOs at each SYNC, and misses one that is not sent.
     """
 
     def __init__(
@@ -92,6 +94,7 @@ class Node:
         self.values: dict[Entry, Number] = {at: 0 for one in (*tpdos, *rpdos) for at in one.entries}
         self.streams = tuple(PdoStream(tpdo, self) for tpdo in tpdos)
         self.last_beat = 0
+        self.cyclic = False
         self._rpdos = rpdos
         self._wanted: dict[Entry, Number] = {at: 0 for rpdo in rpdos for at in rpdo.entries}
         self._sent: dict[int, bytes] = {}
@@ -110,7 +113,7 @@ class Node:
         due = []
         for rpdo in self._rpdos:
             data = rpdo.code.pack(*[self._wanted[at] for at in rpdo.entries])
-            if repeat or self._sent.get(rpdo.cob_id) != data:
+            if repeat or self.cyclic or self._sent.get(rpdo.cob_id) != data:
                 self._sent[rpdo.cob_id] = data
                 due.append((rpdo.cob_id, data))
         return due
@@ -136,7 +139,8 @@ class Node:
                 self.sdo.write(at, value)
         tpdos = tuple(stream.layout for stream in self.streams)
         self._map(0x1800, 0x1A00, 0x180, tpdos, _EVERY_SYNC)
-        self._map(0x1400, 0x1600, 0x200, self._rpdos, _AT_ONCE)
+        taken = _EVERY_SYNC if self.cyclic else _AT_ONCE
+        self._map(0x1400, 0x1600, 0x200, self._rpdos, taken)
 
     def _map(
         self, record: int, mapping: int, cob_id: int, layouts: tuple[PdoLayout, ...], kind: int

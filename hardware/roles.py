@@ -15,6 +15,7 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
+from hardware.description.lines import Line
 from hardware.description.oscillator import Range
 
 
@@ -192,6 +193,15 @@ class Shaft(Powered, Sampled, Protocol):
 
     def turn(self, frequency_hz: float) -> None:
         """Run up or down to a speed; 0 is refused: that is :meth:`stop`."""
+        ...
+
+
+@runtime_checkable
+class PathFollower(Protocol):
+    """A shaft that is a program: its struts follow a path that it can be told."""
+
+    def follow(self, lines: Sequence[Line]) -> None:
+        """Let the struts follow these lines from now on; a single sine without any."""
         ...
 
 

@@ -95,11 +95,23 @@ class AxisDrive(SimulatedDrive):
                 self._moved(self.position)
             if self._goal == self._demand and self.state is DriveState.OPERATION_ENABLED:
                 self._arrive()
-        values = self.values
-        values[POSITION] = wrapped(self.position * self._per_unit + self._shift)
-        values[VELOCITY] = round(self._speed * self._per_speed * math.copysign(1, self._per_unit))
+        self.show_motion(self._speed)
         if self.blocked:
             self.stray((self._demand - self.position) * self._per_unit)
+
+    def show_motion(self, speed: float) -> None:
+        """Bring position and velocity up to date."""
+        values, sense = self.values, math.copysign(1.0, self._per_unit)
+        values[POSITION] = wrapped(self.position * self._per_unit + self._shift)
+        values[VELOCITY] = round(speed * self._per_speed * sense)
+
+    def taken(self, counts: Number) -> float:
+        """Return where a set-point leads, the position limits kept."""
+        low, high = self.number(_LOWEST), self.number(_HIGHEST)
+        limited = min(max(counts, low), high) if low < high else counts
+        if limited != counts:
+            self.bits |= StatusWord.INTERNAL_LIMIT
+        return (limited - self._shift) / self._per_unit
 
     def unblock(self) -> None:
         """Let the axis go: the demand begins where it stands."""
@@ -111,13 +123,8 @@ class AxisDrive(SimulatedDrive):
         self._shift = -self.position * self._per_unit  # at power-on the drive counts from 0
 
     def _take_set_point(self) -> None:
-        wanted = int(self.values[TARGET_POSITION])
-        low, high = self.number(_LOWEST), self.number(_HIGHEST)
-        limited = min(max(wanted, low), high) if low < high else wanted
         self.bits = int(StatusWord.SET_POINT_ACKNOWLEDGED)
-        if limited != wanted:
-            self.bits |= StatusWord.INTERNAL_LIMIT
-        self._go((limited - self._shift) / self._per_unit, _SPEED, ACCELERATION)
+        self._go(self.taken(self.values[TARGET_POSITION]), _SPEED, ACCELERATION)
 
     def _home(self) -> None:
         self.bits = 0

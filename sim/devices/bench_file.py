@@ -1,6 +1,6 @@
 """A simulated rig from a file: ``simulated.toml``."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Any, Final
@@ -14,6 +14,7 @@ from hardware.rig_configuration import RigConfiguration, read_rig
 from hardware.simulation_identity import SimulatedTables
 from sim.devices.plant import PlantConditions
 from sim.devices.stated_rig import TABLES, stated_rig
+from sim.devices.strut_drive import PositionLoop
 from sim.devices.world import Scene, World
 
 # The drivers that have a simulated device, under the names that the package gives them.
@@ -22,6 +23,8 @@ DRIVERS: Final = tuple(
     for name, value in {
         "cia402-shaft": "hardware.shaft:DRIVER",
         "cia402-axis": "hardware.axis:DRIVER",
+        "path-struts": "hardware.path_shaft:DRIVER",
+        "path-setting": "hardware.path_setting:DRIVER",
         "manual-axis": "hardware.manual_axis:DRIVER",
         "manual-shaft": "hardware.manual_shaft:DRIVER",
         "cia404-amplifier": "hardware.amplifier:DRIVER",
@@ -40,6 +43,8 @@ class BenchSettings:
     ----------
     eccentricity_m, strut_phase_rad
         Where the linkage stands when the power comes on.
+    strut_loop
+        Gains and moved mass of the drives of struts that follow paths.
     """
 
     carriage_speed_m_s: float = 0.0
@@ -47,6 +52,7 @@ class BenchSettings:
     seed: int = 1
     eccentricity_m: float = 0.0
     strut_phase_rad: float = 0.0
+    strut_loop: PositionLoop = field(default_factory=PositionLoop)
 
 
 @dataclass(frozen=True)
@@ -96,6 +102,7 @@ def read_bench(path: Path) -> Bench:
         PlantConditions(settings.carriage_speed_m_s, settings.medium, settings.seed),
         settings.eccentricity_m,
         settings.strut_phase_rad,
+        strut_loop=settings.strut_loop,
     )
     return Bench(configuration, scene, SimulatedTables(str(path), simulated.tables, own))
 

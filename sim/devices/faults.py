@@ -13,6 +13,7 @@ from sim.devices.drive import SimulatedDrive
 from sim.devices.node import SimulatedNode
 from sim.devices.serial_devices import SimulatedInclinometer, Talker, held
 from sim.devices.shaft_drive import ShaftDrive
+from sim.devices.strut_drive import StrutDrive
 from sim.devices.world import World
 
 _UNDERVOLTAGE: Final = 0x3220
@@ -169,6 +170,19 @@ def _missed(world: World, count: str) -> None:
     world.missed = int(count)
 
 
+def _lost_sync(world: World, count: str = "1") -> None:
+    """So many of the next SYNCs reach no device."""
+    world.lost_syncs = int(count)
+
+
+def _late_set_point(world: World, part: str, count: str = "1") -> None:
+    """So many of the next set-points of a strut come after their SYNC."""
+    drive = _drive(world, part)
+    if not isinstance(drive, StrutDrive):
+        raise ConfigurationError(f"{part} takes no set-points by SYNC")
+    drive.late = int(count)
+
+
 def _extra(world: World, count: str = "1") -> None:
     """So many photocell pulses more than there are turns, now."""
     world.extra = int(count)
@@ -220,6 +234,8 @@ FAULTS: Final[dict[str, Callable[..., None]]] = {
     "tilt": _tilt,
     "missed": _missed,
     "extra": _extra,
+    "lost-sync": _lost_sync,
+    "late-set-point": _late_set_point,
     "unplug": _unplug,
     "plug": _plug,
     "bus-off": _bus_off,

@@ -28,6 +28,8 @@ class Wire(canopen.Network):
         Simulated time, the time stamp of the frames.
     number
         Ticks so far.
+    synchronous
+        Whether the present tick came with a SYNC.
     hearing
         Called with the node id of each heartbeat that a controller sends.
     """
@@ -41,6 +43,7 @@ class Wire(canopen.Network):
         self.hearing: list[Callable[[int], None]] = []
         self.time_s = 0.0
         self.number = 0
+        self.synchronous = False
 
     def take(self, frame: can.Message) -> None:
         """Take a frame from a controller; what the nodes answer lies in the outlets then."""

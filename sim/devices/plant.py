@@ -7,7 +7,9 @@ a sample.
 """
 
 from dataclasses import dataclass, fields, replace
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
 
 from hardware.description.lines import Line
 from hardware.description.setpoint import Medium, SetPoint
@@ -16,6 +18,9 @@ from sim.chain import Chain, ChainState
 from sim.devices.profile import Friction, SpeedProfile, following
 from sim.rig import SimulatedRig
 from sim.signals import Signals
+
+if TYPE_CHECKING:
+    from hardware.description.arrays import FloatArray
 
 _LARGEST_BLOCK: Final = 256
 # A shaft at 1 Hz coasts for 2.8 s and 1.1 turns, as one with a flywheel's inertia in its bearings.
@@ -94,6 +99,7 @@ class Plant:
         self._size, self._changed = 1, False
         chain = self._chain()
         self._due: tuple[float, ...] = ()
+        self._led: dict[str, FloatArray] = {}
         self._angle_and_speed_before = (0.0, 0.0)
         self._stretch = self._run(chain, chain.start(sample_rate_hz, around.seed), 1)
 
@@ -152,6 +158,15 @@ class Plant:
         """Eccentricity in metres and strut phase in radians, as they are set."""
         return self._linkage
 
+    def lead(self, strut: int, motion: tuple[float, float, float]) -> None:
+        """Have a drive of its own move a strut (0 aft, 1 fore): the next sample's motion.
+
+        It is displacement, velocity and acceleration. From the first call on the shaft and its
+        linkage move nothing.
+        """
+        names = (signal.name for signal in signals.STRUT_MOTIONS[strut])
+        self._led |= {name: np.array([one]) for name, one in zip(names, motion, strict=True)}
+
     def surround(self, **given: Any) -> None:
         """Change what is given of the :class:`PlantConditions`, from the next sample on."""
         before = self._around
@@ -180,7 +195,7 @@ class Plant:
             self._changed, self._size = False, 1
             self._stretch = self._run(self._chain(), state, 1)
         elif self.number + 1 == self._stretch.end:
-            self._size = min(2 * self._size, _LARGEST_BLOCK)
+            self._size = 1 if self._led else min(2 * self._size, _LARGEST_BLOCK)
             self._stretch = self._run(self._stretch.chain, self._stretch.after, self._size)
         self.number += 1
 
@@ -212,7 +227,7 @@ class Plant:
 
     def _run(self, chain: Chain, state: ChainState, count: int) -> _Stretch:
         carried = self._due
-        after, run = chain.run(state, count)
+        after, run = chain.run(state, count, self._led)
         self.blocks += 1
         self._due = carried + _edges(run)
         columns = {

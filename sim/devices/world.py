@@ -11,16 +11,20 @@ from hardware.description.errors import ConfigurationError
 from hardware.inclinometer import InclinometerSettings
 from hardware.manual_axis import ManualAxisSettings
 from hardware.manual_shaft import ManualShaftSettings
+from hardware.path_setting import PathSettingSettings
+from hardware.path_shaft import STRUTS, PathShaftSettings
 from hardware.photocell_probe import ProbeSettings
 from hardware.photocell_serial import TimestamperSettings
 from hardware.rig_configuration import RigConfiguration, RigPart, check
 from hardware.shaft import ShaftSettings
+from sim import signals
 from sim.devices.amplifier import SimulatedAmplifier, Source
 from sim.devices.axis_drive import AxisDrive
 from sim.devices.network import Wire
 from sim.devices.plant import Passage, Plant, PlantConditions
 from sim.devices.serial_devices import Angles, SimulatedInclinometer, Talker, Timestamper, held
 from sim.devices.shaft_drive import ShaftDrive
+from sim.devices.strut_drive import PositionLoop, StrutDrive
 from sim.rig import SimulatedRig
 
 if TYPE_CHECKING:
@@ -28,7 +32,10 @@ if TYPE_CHECKING:
 
     from sim.devices.node import SimulatedNode
 
-_OPERATED: Final = (ManualAxisSettings, ManualShaftSettings)  # a person does it, nothing answers
+# A person, or another part's device, does it: nothing answers.
+_OPERATED: Final = (ManualAxisSettings, ManualShaftSettings, PathSettingSettings)
+_DRIVEN: Final = (ShaftSettings, PathShaftSettings, PositionAxisSettings)
+_LOADS: Final = (signals.FORCE_AFT.name, signals.FORCE_FORE.name)
 
 
 @dataclass(frozen=True)
@@ -41,6 +48,8 @@ class Scene:
         Where the linkage stands when the power comes on.
     angles
         What the inclinometer sees.
+    strut_loop
+        Of the drives of struts that follow paths.
     """
 
     rig: SimulatedRig
@@ -48,6 +57,7 @@ class Scene:
     eccentricity_m: float = 0.0
     strut_phase_rad: float = 0.0
     angles: Angles = field(default_factory=held)
+    strut_loop: PositionLoop = field(default_factory=PositionLoop)
 
 
 class World:
@@ -61,6 +71,8 @@ class World:
         The devices on the bus and on serial lines, by their part's name in the configuration.
     missed, extra
         Faults: so many of the next pulses stay away; so many pulses come at once.
+    lost_syncs
+        Fault: so many of the next SYNCs reach no device.
     bus_off, deaf
         Faults: the bus's adapter cannot send, or fails in receiving.
     lookers
@@ -78,7 +90,7 @@ class World:
         self.wire.on_sync = self.sync
         self.nodes: dict[str, SimulatedNode] = {}
         self.talkers: dict[str, Talker] = {}
-        self.missed = self.extra = 0
+        self.missed = self.extra = self.lost_syncs = 0
         self.bus_off = self.deaf = False
         self.lookers: list[object] = []
         self.plant = Plant(
@@ -114,12 +126,18 @@ class World:
 
     def live(self) -> None:
         """Let one sample pass without SYNC: devices live on, heartbeats too, but no data come."""
+        self.wire.synchronous = False
         self.tick()
         for node in self.nodes.values():
             node.beat()
 
     def sync(self) -> None:
-        """Let one sample pass, and the nodes answer."""
+        """Let one sample pass, and the nodes answer; unless the SYNC is lost on its way."""
+        if self.lost_syncs:
+            self.lost_syncs -= 1
+            self.live()
+            return
+        self.wire.synchronous = True
         self.tick()
         for node in self.nodes.values():
             node.answer()
@@ -142,11 +160,8 @@ class World:
 
     def _add(self, part: RigPart, scene: Scene) -> None:
         settings, rate = part.settings, self.plant.sample_rate_hz
-        if isinstance(settings, ShaftSettings):
-            self._shaft = ShaftDrive(self.wire, part.name, settings, self.plant)
-            self.nodes[part.name] = self._shaft
-        elif isinstance(settings, PositionAxisSettings):
-            self.nodes[part.name] = self._axis(part.name, settings, scene)
+        if isinstance(settings, _DRIVEN):
+            self._add_drives(part.name, settings, scene)
         elif isinstance(settings, AmplifierSettings):
             self.nodes[part.name] = SimulatedAmplifier(
                 self.wire, part.name, settings, rate, self._source
@@ -166,12 +181,43 @@ class World:
                 "leave the part out of the simulated rig"
             )
 
+    def _add_drives(
+        self,
+        name: str,
+        settings: ShaftSettings | PathShaftSettings | PositionAxisSettings,
+        scene: Scene,
+    ) -> None:
+        if isinstance(settings, ShaftSettings):
+            self._shaft = ShaftDrive(self.wire, name, settings, self.plant)
+            self.nodes[name] = self._shaft
+        elif isinstance(settings, PathShaftSettings):
+            for number, strut in enumerate(STRUTS):
+                own = getattr(settings, strut)
+                self.nodes[f"{name}.{strut}"] = self._strut(f"{name}.{strut}", own, scene, number)
+        else:
+            self.nodes[name] = self._axis(name, settings, scene)
+
     def _axis(self, name: str, settings: PositionAxisSettings, scene: Scene) -> AxisDrive:
         eccentricity = name == "eccentricity"
         start = scene.eccentricity_m if eccentricity else scene.strut_phase_rad
         moved: Callable[[float], None] = self._set_eccentricity if eccentricity else self._set_phase
         rate = self.plant.sample_rate_hz
         return AxisDrive(self.wire, name, settings, rate, start, moved)
+
+    def _strut(
+        self, name: str, settings: PositionAxisSettings, scene: Scene, number: int
+    ) -> StrutDrive:
+        plant = self.plant
+        return StrutDrive(
+            self.wire,
+            name,
+            settings,
+            plant.sample_rate_hz,
+            plant.value(signals.STRUT_MOTIONS[number][0].name),
+            lambda motion: plant.lead(number, motion),
+            lambda: plant.value(_LOADS[number]),
+            scene.strut_loop,
+        )
 
     def _set_eccentricity(self, metres: float) -> None:
         self.plant.set_linkage(eccentricity_m=metres)

@@ -16,6 +16,7 @@ STATED = [
     f"| quick stop to rest within | {limits.REST_DEADLINE_S:g} s |",
     f"| coasting is recorded and waited for | {limits.COASTING_S:g} s |",
     f"| speed measured over | {limits.SPEED_WINDOW_S:g} s |",
+    f"| a cycle late while struts follow a path | {limits.LATE_PERIODS:g} periods |",
     f"| overspeed lasts | {limits.OVERSPEED_S:g} s |",
     f"| overspeed | {limits.OVERSPEED:g} times the highest frequency |",
     f"| frequency, gate armed or open | within {100 * limits.FREQUENCY_SHARE:g} % of the run's",

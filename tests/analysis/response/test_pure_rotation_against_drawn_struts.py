@@ -1,7 +1,6 @@
 """Pure yaw and pitch: the model is drawn between its struts, and its velocity is the points' own.
 
-The oracle places attachments and reference point by points and distances alone and differentiates
-them over a turn; nothing of the product's kinematics is in it.
+The oracle is ``tests/exact/drawn_struts.py``: points and distances alone.
 """
 
 import math
@@ -15,6 +14,7 @@ from hardware.description.arrangement import Joint, Pivot
 from hardware.description.errors import ConfigurationError
 from hardware.description.lines import Line, struts_over_turn
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Oscillator
+from tests.exact.drawn_struts import drawn
 
 # Of the speed of the bow, the largest velocity across the model that is left: what the product's
 # LEAST_SHARE of each harmonic leaves out. Ten times less would fail for want of harmonics.
@@ -22,30 +22,6 @@ IMPURE = 1e-6
 # As simple sines with tan(phi / 2) = omega l / U they would leave at 20 degrees: far more.
 SINES = 1e-3
 FREQUENCY_HZ, POINTS = 0.2, 2048
-
-
-def drawn(oscillator: Oscillator, speed: float, struts: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return heading, its rate, and the velocity of the reference point across the model."""
-    length = 2.0 * oscillator.half_spacing_m
-    aft = np.array([np.zeros(POINTS), struts[0]])
-    fore = np.array([np.full(POINTS, length), struts[1]])
-    if oscillator.joint is Joint.SLIDES_ON_RIG:  # one strut is drawn in: the model's own length
-        gap = np.sqrt(length**2 - (struts[1] - struts[0]) ** 2)
-        if oscillator.pivot is Pivot.AFT:
-            fore[0] = gap
-        else:
-            aft[0] = length - gap
-    ahead = (fore - aft) / np.hypot(*(fore - aft))
-    reach = oscillator.half_spacing_m
-    point = aft + reach * ahead if oscillator.pivot is Pivot.AFT else fore - reach * ahead
-    velocity = np.array([speed + rate(point[0]), rate(point[1])])
-    heading = np.arctan2(ahead[1], ahead[0])
-    return heading, rate(heading), ahead[0] * velocity[1] - ahead[1] * velocity[0]
-
-
-def rate(values: np.ndarray) -> np.ndarray:
-    order = np.arange(POINTS // 2 + 1) * 2j * math.pi * FREQUENCY_HZ
-    return np.fft.irfft(order * np.fft.rfft(values), POINTS)
 
 
 def struts(lines: tuple[Line, ...], amplitude: float) -> np.ndarray:
@@ -62,7 +38,7 @@ def test_no_drift_and_a_sine_of_the_heading(
     oscillator = replace(plane, joint=joint, pivot=pivot)
     moved = struts(pure_rotation(oscillator, FREQUENCY_HZ, speed, amplitude), amplitude)
     assert np.abs(moved).max() == pytest.approx(amplitude, rel=1e-4)
-    heading, turning, across = drawn(oscillator, speed, moved)
+    heading, turning, across = drawn(oscillator, speed, moved, FREQUENCY_HZ)
     bow = oscillator.half_spacing_m * np.abs(turning).max()
     assert np.abs(across).max() < IMPURE * max(bow, speed)
     spectrum = np.abs(np.fft.rfft(turning))
@@ -74,7 +50,7 @@ def test_two_sines_do_drift() -> None:
     amplitude, speed = 0.28, 0.5
     phase = 2.0 * math.atan2(2.0 * math.pi * FREQUENCY_HZ * HORIZONTAL_1963.half_spacing_m, speed)
     moved = struts((Line(1, strut_phase_rad=phase),), amplitude)
-    _, turning, across = drawn(HORIZONTAL_1963, speed, moved)
+    _, turning, across = drawn(HORIZONTAL_1963, speed, moved, FREQUENCY_HZ)
     assert np.abs(across).max() > SINES * HORIZONTAL_1963.half_spacing_m * np.abs(turning).max()
 
 

@@ -1,0 +1,428 @@
+"""A shaft that is a program: two struts with drives of their own follow a path over its angle.
+
+The master angle turns as a shaft would. In every cycle each strut is sent the set-point of two
+SYNCs later, ``e`` times its lines at the master angle of then, so that run-up, running and stop are
+one path. Time is the count of SYNCs; the set-point's place in it is its time stamp.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hardware.axis import nodes as axis_nodes
+from hardware.axis_settings import PositionAxisSettings
+from hardware.command_limits import check_speed
+from hardware.description.channels import (
+    COMMAND_AFT,
+    COMMAND_FORE,
+    DISPLACEMENT_AFT,
+    DISPLACEMENT_FORE,
+    SHAFT_ANGLE,
+)
+from hardware.description.errors import ConfigurationError
+from hardware.description.lines import Line, struts_over_turn
+from hardware.description.oscillator import Range
+from hardware.drive import STEP_CYCLES
+from hardware.driver import Driver, NodePlan, Services
+from hardware.errors import (
+    CycleJumpError,
+    HardwareError,
+    LimitError,
+    NotReadyError,
+    as_fault,
+    worst,
+)
+from hardware.limits import LATE_PERIODS, RAMP_MARGIN
+from hardware.path_strut import PathStrut
+from hardware.ramp import Ramp
+from hardware.roles import Cycle, Role, Sample, SampleBlock, blocks
+
+_TURN = 2.0 * math.pi
+LEAD_CYCLES = 2  # from sending a set-point to its SYNC (hardware/path_strut.py)
+_KEPT_CYCLES = 20  # for samples of a strut that come late
+STRUTS = ("aft", "fore")
+
+
+@dataclass(frozen=True)
+class PathShaftSettings:
+    """Settings of two struts that follow paths.
+
+    Attributes
+    ----------
+    aft, fore
+        Each strut's drive, as an axis in metres whose ``speed`` and ``acceleration`` are the
+        strut's largest.
+    approach_speed
+        At which a strut goes to where its path begins, in m/s.
+    encoders
+        Whether the drives' positions are recorded as the struts' displacements; ``False`` where
+        sensors of their own are.
+    """
+
+    aft: PositionAxisSettings
+    fore: PositionAxisSettings
+    highest_frequency_hz: float
+    acceleration_hz_per_s: float
+    lowest_frequency_hz: float = 0.0
+    approach_speed: float = 0.02
+    encoders: bool = True
+
+    def __post_init__(self) -> None:
+        for key in ("highest_frequency_hz", "acceleration_hz_per_s", "approach_speed"):
+            if not getattr(self, key) > 0.0:
+                raise ConfigurationError(f"{key} = {getattr(self, key):g} has to be above 0")
+        for name in STRUTS:
+            if getattr(self, name).unit != "m":
+                raise ConfigurationError(f'{name}.unit has to be "m"')
+
+
+class PathShaft:
+    """A :class:`hardware.roles.Shaft` and a :class:`hardware.roles.PathFollower`.
+
+    Attributes
+    ----------
+    struts
+        Aft and fore.
+    eccentricity_m, strut_phase_rad
+        Of the path that is to be followed.
+    """
+
+    def __init__(self, name: str, settings: PathShaftSettings, services: Services) -> None:
+        self.name = name
+        self.settings = settings
+        self.sample_rate_hz = services.sample_rate_hz
+        self.frequency_hz = Range(settings.lowest_frequency_hz, settings.highest_frequency_hz)
+        own = (DISPLACEMENT_AFT, DISPLACEMENT_FORE) if settings.encoders else ()
+        self.channels = (SHAFT_ANGLE, *own, COMMAND_AFT, COMMAND_FORE)
+        self.struts = tuple(
+            PathStrut(f"{name}.{one}", getattr(settings, one), services) for one in STRUTS
+        )
+        self.eccentricity_m = self.strut_phase_rad = 0.0
+        self._lines: tuple[Line, ...] = ()
+        self._path = _path_of((), 0.0)
+        self._angle = self._speed_hz = self._target_hz = 0.0
+        self._points = np.zeros(2)
+        self._from = self._goal = self._points
+        self._ramp: Ramp | None = None
+        self._due = False  # the path is another: the struts have to go to it
+        self._told: dict[int, tuple[float, ...]] = {}
+        self._seen: tuple[dict[int, float], ...] = ({}, {})
+        self._samples: list[Sample] = []
+
+    @property
+    def enabled(self) -> bool:
+        """Whether both struts hold or move under power."""
+        return all(strut.enabled for strut in self.struts)
+
+    @property
+    def homed(self) -> bool:
+        """Whether both struts know where they are."""
+        return all(strut.homed for strut in self.struts)
+
+    @property
+    def setting(self) -> bool:
+        """Whether the struts are being homed, or go to another path at rest."""
+        homing = any(strut.homing for strut in self.struts)
+        return homing or ((self._due or self._ramp is not None) and self._target_hz == 0.0)
+
+    @property
+    def placed(self) -> bool:
+        """Whether the struts stand where the path is now, by their encoders, or follow it."""
+        if self._due or self._ramp is not None or not self.homed:
+            return False
+        return bool((np.abs(self._points - self._wanted()) <= 1e-9).all())
+
+    @property
+    def measured_frequency_hz(self) -> float:
+        """Turns of the master angle per second."""
+        return self._speed_hz
+
+    @property
+    def moving(self) -> bool:
+        """Whether the master angle turns, or a strut moves by its encoder without being set."""
+        rest = self.setting or all(strut.drive.motion.at_rest for strut in self.struts)
+        return not rest or self._speed_hz != 0.0 or self._target_hz != 0.0
+
+    @property
+    def at_speed(self) -> bool:
+        """Whether the master angle turns at the commanded speed, and the drives are led by it."""
+        led = all(strut.drive.in_mode for strut in self.struts)
+        return self.enabled and led and 0.0 < self._speed_hz == self._target_hz
+
+    def enable(self) -> None:
+        """Put both struts under power where they stand."""
+        self._halt()
+        for strut in self.struts:
+            strut.enable()
+
+    def disable(self) -> None:
+        """Take the power off as soon as the struts are at rest: by quick stop if they move."""
+        self._halt()
+        for strut in self.struts:
+            strut.disable()
+
+    def home(self) -> None:
+        """Find both struts' reference positions; raises as an axis's ``home`` does."""
+        self._halt()
+        for strut in self.struts:
+            strut.home()
+
+    def follow(self, lines: Sequence[Line]) -> None:
+        """Let the struts follow these lines from now on; a single sine without any.
+
+        Raises
+        ------
+        NotReadyError
+            While the master angle turns.
+        """
+        self.aim(lines=tuple(lines))
+
+    def aim(
+        self,
+        *,
+        eccentricity_m: float | None = None,
+        strut_phase_rad: float | None = None,
+        lines: tuple[Line, ...] | None = None,
+    ) -> None:
+        """Change the path at rest; the struts go to where it is now, once they may.
+
+        Raises
+        ------
+        NotReadyError
+            While the master angle turns.
+        """
+        if self._speed_hz or self._target_hz:
+            raise NotReadyError(self.name, "turns; stop it before its path is changed")
+        if eccentricity_m is not None:
+            self.eccentricity_m = eccentricity_m
+        if strut_phase_rad is not None:
+            self.strut_phase_rad = strut_phase_rad
+        if lines is not None:
+            self._lines = lines
+        self._path = _path_of(self._lines, self.strut_phase_rad)
+        if self.enabled and self.homed:
+            self._approach()
+
+    def turn(self, frequency_hz: float) -> None:
+        """Go to the path if the struts are not on it, then run up or down to a speed.
+
+        Raises
+        ------
+        LimitError
+            If the speed, or the path at it, lies outside the limits.
+        NotReadyError
+            If the struts are not enabled or not homed.
+        """
+        check_speed(self, frequency_hz)
+        if not self.enabled:
+            raise NotReadyError(self.name, "is not enabled; enable it before it turns")
+        if not self.homed:
+            raise NotReadyError(self.name, "is not homed; home its struts before it turns")
+        self._check_path(frequency_hz)
+        if not self.placed:
+            self._approach()
+        self._target_hz = frequency_hz
+
+    def stop(self) -> None:
+        """Decelerate along the path, then stand under power."""
+        self._target_hz = 0.0
+        self._due = False
+        if self._ramp is not None:
+            self._ramp.stop()
+        for strut in self.struts:
+            if strut.homing:
+                strut.stop()
+
+    def quick_stop(self) -> None:
+        """Decelerate on the drives' quick-stop ramps, off the path."""
+        self._halt()
+        for strut in self.struts:
+            strut.quick_stop()
+
+    def reset_fault(self) -> None:
+        """Reset the drives' faults; they stay disabled."""
+        self._halt()
+        for strut in self.struts:
+            strut.reset_fault()
+
+    def prepare(self) -> None:
+        """Write limits, ramps and the set-points' period to the drives."""
+        for strut in self.struts:
+            strut.prepare()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the drives lack, a sentence each."""
+        return tuple(note for strut in self.struts for note in strut.notes)
+
+    def tick(self, cycle: Cycle) -> None:
+        """Take the struts' positions, and send the set-points of two SYNCs later.
+
+        Raises
+        ------
+        CycleJumpError
+            If the cycle came so late while the struts move that set-points were left out.
+        HardwareError
+            What the drives raise, the most severe first.
+        """
+        faults: list[HardwareError] = []
+        for strut in self.struts:
+            try:
+                strut.tick(cycle)
+            except HardwareError as error:
+                faults.append(error)
+        self._record(cycle.number)
+        try:
+            self._check_clock(cycle)
+            self._lead(cycle.number + LEAD_CYCLES)
+        except Exception as error:  # beside what the drives have raised
+            faults.append(as_fault(self.name, error))
+        if faults:
+            raise worst(faults)
+
+    def take(self) -> tuple[SampleBlock, ...]:
+        """Return angle, displacements and commands since the last call."""
+        taken, self._samples = self._samples, []
+        return blocks(taken)
+
+    def close(self) -> None:
+        """Nothing to let go of: the bus is the master's."""
+
+    def _halt(self) -> None:
+        """End what is under way, off the path: the drives decelerate."""
+        self._target_hz = self._speed_hz = 0.0
+        self._due, self._ramp = False, None
+        for strut in self.struts:
+            strut.drive.done()
+
+    def _approach(self) -> None:
+        if self._ramp is not None:
+            self._ramp.stop()
+        self._due = True
+
+    def _wanted(self) -> np.ndarray:
+        """Return where the path has the struts now."""
+        return np.asarray(self.eccentricity_m * self._path.at(self._angle))
+
+    def _lead(self, number: int) -> None:
+        """Go on by a cycle to SYNC ``number``, and send the struts there."""
+        period_s = 1.0 / self.sample_rate_hz
+        free = [not strut.enabled or strut.homing for strut in self.struts]
+        if any(free):
+            self._points = np.array([strut.position for strut in self.struts])
+        elif self._due or self._ramp is not None:
+            self._go(period_s)
+        elif self._target_hz or self._speed_hz:
+            before = self._speed_hz
+            most = self.settings.acceleration_hz_per_s * period_s
+            self._speed_hz += min(max(self._target_hz - before, -most), most)
+            self._angle += _TURN * (before + self._speed_hz) / 2.0 * period_s
+            self._points = self._wanted()
+        for strut, point, is_free in zip(self.struts, self._points, free, strict=True):
+            if not strut.homing:
+                strut.lead(strut.position if is_free else float(point))
+        self._told[number] = (self._angle, *map(float, self._points))
+
+    def _go(self, period_s: float) -> None:
+        """Go on towards the path, each strut straight and both in the same time."""
+        if self._ramp is None or (self._due and self._ramp.at_rest):
+            if not all(strut.drive.in_mode for strut in self.struts):
+                return
+            self._due = False
+            self._from, self._goal = self._points, self._wanted()
+            way = float(np.abs(self._goal - self._from).max())
+            slope = min(strut.settings.acceleration for strut in self.struts)
+            speed = self.settings.approach_speed
+            self._ramp = Ramp(way, speed, slope)
+            self._share = 1.0 / way if way else 0.0
+            time_s = way / speed + 2.0 * speed / slope
+            for strut in self.struts:
+                limit = 4 * STEP_CYCLES + RAMP_MARGIN * time_s * self.sample_rate_hz
+                strut.drive.within(limit, "way to the path")
+        self._ramp.step(period_s)
+        share = 1.0 if self._ramp.arrived else self._ramp.position * self._share
+        self._points = self._from + share * (self._goal - self._from)
+        if self._ramp.at_rest and not self._due and (not self._ramp.arrived or self._there()):
+            self._ramp = None
+            for strut in self.struts:
+                strut.drive.done()
+
+    def _there(self) -> bool:
+        """Whether the struts stand at the goal by their encoders."""
+        return all(
+            abs(strut.position - goal) <= strut.near and strut.drive.motion.at_rest
+            for strut, goal in zip(self.struts, self._goal, strict=True)
+        )
+
+    def _check_clock(self, cycle: Cycle) -> None:
+        moves = self._speed_hz or (self._ramp is not None and not self._ramp.at_rest)
+        periods = cycle.lateness_s * self.sample_rate_hz
+        if moves and periods >= LATE_PERIODS:
+            raise CycleJumpError(
+                self.name,
+                f"SYNC {cycle.number} came {1e3 * cycle.lateness_s:.3g} ms late (limit "
+                f"{1e3 * LATE_PERIODS / self.sample_rate_hz:.3g} ms): set-points have lost their "
+                "time; look at the load and the clock of this computer (pmm doctor), then reset",
+            )
+
+    def _check_path(self, frequency_hz: float) -> None:
+        """Refuse a path beyond a strut's own limits, with the place in it."""
+        for times, key in ((0, "stroke"), (1, "speed"), (2, "acceleration")):
+            size = self.eccentricity_m * (_TURN * frequency_hz) ** times
+            over = size * np.abs(struts_over_turn(self._path.lines, times, _INSTANTS))
+            for strut, name, one in zip(self.struts, STRUTS, over, strict=True):
+                own = strut.settings
+                most = min(-own.low, own.high) if key == "stroke" else getattr(own, key)
+                if one.max() > most * _ROUNDING:
+                    at_s = float(one.argmax()) / len(one) / frequency_hz
+                    raise LimitError(
+                        self.name,
+                        f"the path's {key} of {one.max():.4g} at {at_s:.3g} s of its period is "
+                        f"beyond {name}.{key} = {most:.4g}; lower amplitude or frequency",
+                    )
+
+    def _record(self, now: int) -> None:
+        """Make samples of what both struts have told of a SYNC."""
+        for strut, seen in zip(self.struts, self._seen, strict=True):
+            seen |= {n: counts / strut.settings.counts_per_unit for n, counts in strut.positions}
+        aft, fore = self._seen
+        for number in sorted(aft.keys() & fore.keys()):
+            places = (aft.pop(number), fore.pop(number))
+            angle, *points = self._told.get(number, (self._angle, *places))
+            own = places if self.settings.encoders else ()
+            self._samples.append((number, (angle, *own, *points)))
+        for kept in (aft, fore, self._told):
+            for number in [one for one in kept if one < now - _KEPT_CYCLES]:
+                del kept[number]
+
+
+_INSTANTS = 720  # of a turn
+_ROUNDING = 1.0 + 1e-6
+
+
+class _Path:
+    """Where the struts are over the master angle, per eccentricity."""
+
+    def __init__(self, lines: tuple[Line, ...]) -> None:
+        self.lines = lines
+        self._orders = 1j * np.array([line.order for line in lines])
+        self._phasors = np.array([line.phasors for line in lines])
+
+    def at(self, angle: float) -> np.ndarray:
+        return np.asarray((np.exp(self._orders * angle) @ self._phasors).imag)
+
+
+def _path_of(lines: tuple[Line, ...], strut_phase_rad: float) -> _Path:
+    return _Path(lines or (Line(1, strut_phase_rad=strut_phase_rad),))
+
+
+def nodes(name: str, settings: PathShaftSettings) -> tuple[NodePlan, ...]:
+    """Return what both struts' drives want of the bus."""
+    return tuple(
+        plan for one in STRUTS for plan in axis_nodes(f"{name}.{one}", getattr(settings, one))
+    )
+
+
+DRIVER = Driver(Role.SHAFT, PathShaftSettings, PathShaft, nodes)

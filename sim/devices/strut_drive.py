@@ -1,0 +1,213 @@
+"""The drive of a strut that follows a path: cyclic synchronous position, a loop, a load.
+
+The set-point that came before a SYNC is the end of the straight way that the reference goes until
+the next one. What moves follows it by a position loop around a speed loop, against the force that
+the strut exerts on the model:
+
+    x'' = kv e + ki integral of e dt - F / M,    e = r' + kp (r - x) - x'
+
+with the reference r. Within a period r is linear and F constant, and the step is exact.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from hardware.axis_settings import PositionAxisSettings
+from hardware.cia402 import DriveState, Mode, StatusWord
+from hardware.description.arrays import FloatArray
+from hardware.drive import MODE_DISPLAY, TARGET_POSITION
+from sim.devices.axis_drive import AxisDrive
+from sim.devices.network import Wire
+from sim.devices.node import Number
+
+Motion = tuple[float, float, float]  # displacement, velocity, acceleration of a strut
+LATE_CODE: Final = 0x8250
+SYNC_CODE: Final = 0x8700
+_ALLOWED: Final = 1  # set-points or SYNCs in a row that the drive bridges at its last speed
+
+
+@dataclass(frozen=True)
+class PositionLoop:
+    """A strut's drive: loop gains, and what it moves.
+
+    Attributes
+    ----------
+    position_per_s, speed_per_s, integral_per_s2
+        Gains kp, kv and ki.
+    moved_kg
+        M: strut, slide and the motor's rotor at the strut, without the model.
+    """
+
+    position_per_s: float = 15.0
+    speed_per_s: float = 100.0
+    integral_per_s2: float = 1250.0
+    moved_kg: float = 300.0
+
+    def step(self, period_s: float) -> tuple[FloatArray, FloatArray]:
+        """Return what takes (x, x', integral of e) over a period, and (r, r', F) in it."""
+        from scipy.linalg import expm
+
+        kp, kv, ki = self.position_per_s, self.speed_per_s, self.integral_per_s2
+        error = np.array([-kp, -1.0, 0.0, kp, 1.0, 0.0])
+        rates = np.zeros((6, 6))
+        rates[0, 1] = rates[3, 4] = 1.0
+        rates[1] = kv * error
+        rates[1, 2] += ki
+        rates[1, 5] -= 1.0 / self.moved_kg
+        rates[2] = error
+        whole = expm(rates * period_s)
+        return whole[:3, :3], whole[:3, 3:]
+
+    def acceleration(self, state: FloatArray, given: FloatArray) -> float:
+        """Return x'' at a state (x, x', integral of e) with (r, r', F)."""
+        error = given[1] + self.position_per_s * (given[0] - state[0]) - state[1]
+        pushed = self.speed_per_s * error + self.integral_per_s2 * state[2]
+        return float(pushed - given[2] / self.moved_kg)
+
+
+class StrutDrive(AxisDrive):
+    """Moves one strut.
+
+    Parameters
+    ----------
+    led
+        Told the strut's true motion for the next sample, in every sample.
+    load
+        The force of the strut on the model now, in newtons.
+
+    Attributes
+    ----------
+    late
+        Fault: so many of the next set-points come after their SYNC.
+    """
+
+    modes = (Mode.CYCLIC_SYNCHRONOUS_POSITION, Mode.HOMING)
+
+    def __init__(
+        self,
+        wire: Wire,
+        name: str,
+        settings: PositionAxisSettings,
+        sample_rate_hz: float,
+        position: float,
+        led: Callable[[Motion], None],
+        load: Callable[[], float],
+        loop: PositionLoop,
+    ) -> None:
+        self.late = 0
+        self._loop, self._load, self._led = loop, load, led
+        self._own, self._given = loop.step(1.0 / sample_rate_hz)
+        self._moved_to = np.array([position, 0.0, 0.0])
+        self._reference = self._next = position
+        self._way = 0.0
+        self._following = False
+        self._new = False
+        self._missed = 0
+        super().__init__(wire, name, settings, sample_rate_hz, position, _unheard)
+
+    @property
+    def standing(self) -> bool:
+        """Whether the strut neither moves nor is told to."""
+        still = abs(self._moved_to[1]) < _STILL_M_S
+        return (still if self._following else True) and super().standing
+
+    def commanded(self) -> None:
+        """Take an RPDO: its set-point holds from the next SYNC on."""
+        super().commanded()
+        if self.values.get(MODE_DISPLAY) == Mode.CYCLIC_SYNCHRONOUS_POSITION:
+            self._new = True
+
+    def obey(self, control: int, risen: int) -> None:
+        """Take homing's start; set-points count at SYNC."""
+        if self.values[MODE_DISPLAY] == Mode.HOMING:
+            self._leave()
+            super().obey(control, risen)
+
+    def ramp_down(self, deceleration: Number) -> None:
+        """Decelerate to rest off the path."""
+        self._leave()
+        super().ramp_down(deceleration)
+
+    def coast(self) -> None:
+        """Leave the strut to its inertia and friction."""
+        self._leave()
+        super().coast()
+
+    def move(self) -> None:
+        """Go on by one sample."""
+        led = self.values[MODE_DISPLAY] == Mode.CYCLIC_SYNCHRONOUS_POSITION
+        if led and self.state is DriveState.OPERATION_ENABLED:
+            self._follow()
+        else:
+            self._new = False
+            before = self._speed
+            super().move()
+            gained = (self._speed - before) / self._dt
+            self._led((self.position, self.speed, gained))
+
+    def unblock(self) -> None:
+        """Let the strut go from where it stands."""
+        self._leave()
+        super().unblock()
+
+    def _leave(self) -> None:
+        """Go on, for the ramps, from where the loop has brought the strut."""
+        if self._following:
+            self._following = False
+            self._demand, self._speed = self.position, float(self._moved_to[1])
+
+    def _follow(self) -> None:
+        """Go the straight way to the newest set-point for a period."""
+        if not self._following:
+            self._following = True
+            self._goal, self._speed, self._missed = None, 0.0, 0
+            self._moved_to = np.array([self.position, 0.0, 0.0])
+            self._reference = self._next = self.position
+            self._way = 0.0
+        if not self._bridged():
+            return
+        self.show_motion(float(self._moved_to[1]))
+        self.bits = int(StatusWord.FOLLOWS_COMMAND)
+        self.stray((self._reference - self.position) * self._per_unit)
+        if self.state is DriveState.OPERATION_ENABLED:
+            self._go_on()
+
+    def _go_on(self) -> None:
+        """Have the loop bring the strut to where it is at the next sample."""
+        self._way = self._next - self._reference
+        given = np.array([self._reference, self._way / self._dt, self._load()])
+        self._moved_to = self._own @ self._moved_to + self._given @ given
+        self._reference = given[0] = self._next
+        if self.blocked:
+            self._moved_to = np.array([self.position, 0.0, 0.0])
+        gained = 0.0 if self.blocked else self._loop.acceleration(self._moved_to, given)
+        self.position = float(self._moved_to[0])
+        self._led((self.position, float(self._moved_to[1]), gained))
+
+    def _bridged(self) -> bool:
+        """Take the newest set-point, or one at the last speed; tell whether the drive goes on."""
+        new, self._new = self._new and not self.late, False
+        self.late = max(self.late - 1, 0)
+        heard = self.wire.synchronous
+        if new and heard:
+            self._missed = 0
+            self._next = self.taken(self.values[TARGET_POSITION])
+            return True
+        self._missed += 1
+        if self._missed > _ALLOWED:
+            self.fault(LATE_CODE if heard else SYNC_CODE)
+            super().move()
+            self._led((self.position, self._speed, 0.0))
+            return False
+        self._next = self._reference + self._way
+        return True
+
+
+_STILL_M_S = 1e-4
+
+
+def _unheard(_position: float) -> None:
+    """Stand where an axis tells its position alone: a strut tells its whole motion."""

@@ -1,0 +1,283 @@
+"""Struts that follow paths on the simulated rig: purity by drawn geometry, following by solve_ivp.
+
+The drawing knows points and distances; the following error is that of the drives' stated loop under
+the force of the model, integrated by another integrator from the set-points that were sent.
+"""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from analysis.response.multisine import multisine
+from analysis.response.pure_rotation import pure_rotation
+from hardware.description.errors import ConfigurationError
+from hardware.description.lines import struts_over_turn
+from hardware.description.oscillator import HORIZONTAL_1963
+from hardware.errors import CycleJumpError, HardwareError, LimitError
+from hardware.pacing import RealTime
+from hardware.rig import Rig
+from hardware.rig_configuration import read_rig
+from sim.devices.bench_file import DRIVERS
+from sim.devices.faults import inject
+from sim.devices.plant import PlantConditions
+from sim.devices.strut_drive import PositionLoop
+from sim.devices.world import World
+from sim.rig import horizontal_rig
+from tests.exact.drawn_struts import drawn
+from tests.hardware.contract import Bench, PositionAxisContract, ShaftContract
+from tests.sim.devices.benches import amplifier, in_process, ready
+
+STRUT = {
+    "counts_per_unit": 1e6,
+    "low": -0.35,
+    "high": 0.35,
+    "speed": 1.0,
+    "acceleration": 10.0,
+    "quick_stop": 5.0,
+    "tolerance": 1e-4,
+    "standard_uncertainty": 1e-5,
+    "following_error": 2e-3,
+    "homing_speed": 0.05,
+}
+PATHS = {
+    "shaft": {
+        "driver": "path-struts",
+        "aft": {**STRUT, "node": 1},
+        "fore": {**STRUT, "node": 2},
+        "highest_frequency_hz": 2.0,
+        "acceleration_hz_per_s": 1.0,
+        "approach_speed": 0.1,
+    },
+    "eccentricity": {
+        "driver": "path-setting",
+        "low": 0.0,
+        "high": 0.3,
+        "standard_uncertainty": 1e-5,
+    },
+    "phase": {
+        "driver": "path-setting",
+        "unit": "rad",
+        "low": -3.2,
+        "high": 3.2,
+        "standard_uncertainty": 1e-5,
+    },
+    "forces": [amplifier(4, "force_aft"), amplifier(5, "force_fore")],
+}
+FREQUENCY_HZ, SPEED, AMPLITUDE = 0.5, 0.8, 0.2
+PURE = pure_rotation(HORIZONTAL_1963, FREQUENCY_HZ, SPEED, AMPLITUDE)
+# Of the bow's speed: what set-points of a micrometre at 100 Hz leave, and what drives that lag by a
+# hundredth of a period in the worst of their loops would make of the path.
+TOLD_IMPURE, MOVED_IMPURE = 2e-5, 2e-3
+COUNT_M = 1e-6
+REST_CYCLES = 200  # two seconds: a quick stop from 1 m/s at 5 m/s2 takes 0.2 s
+
+
+@pytest.fixture
+def bench() -> Iterator[Bench]:
+    with in_process(PATHS, horizontal_rig(), PlantConditions(SPEED)) as (rig, _):
+        yield Bench(rig)
+
+
+class TestPathShaft(ShaftContract):
+    @pytest.fixture
+    def bench(self, bench: Bench) -> Bench:
+        ready(bench.rig)
+        bench.rig.shaft.disable()
+        bench.until(lambda: not bench.rig.shaft.enabled, "power off")
+        return bench
+
+
+class TestPathSetting(PositionAxisContract):
+    @pytest.fixture
+    def bench(self, bench: Bench) -> Bench:
+        bench.cycles(60)  # until the encoders have shown that the struts stand
+        return bench
+
+
+@pytest.fixture
+def turning() -> Iterator[tuple[Rig, World]]:
+    with in_process(PATHS, horizontal_rig(), PlantConditions(SPEED)) as (rig, world):
+        ready(rig)
+        rig.shaft.follow(PURE)
+        rig.eccentricity.move_to(AMPLITUDE)
+        rig.run_until(lambda: rig.eccentricity.settled, 1000, "the path's beginning")
+        rig.shaft.turn(FREQUENCY_HZ)
+        rig.run_until(lambda: rig.shaft.at_speed, 300, "speed")
+        yield rig, world
+
+
+def taken(rig: Rig) -> dict[str, np.ndarray]:
+    values = np.concatenate([block.values for block in rig.shaft.take()], axis=1)
+    return dict(zip([one.name for one in rig.shaft.channels], values, strict=True))
+
+
+def test_yaw_without_sway_as_told_and_as_moved(turning: tuple[Rig, World]) -> None:
+    rig, _ = turning
+    for _ in range(400):
+        rig.cycle()
+    got = taken(rig)
+    turn = slice(-200, None)
+    angle = got["shaft_angle"][turn]
+    assert np.diff(angle) == pytest.approx(2.0 * math.pi * FREQUENCY_HZ / 100.0, rel=1e-9)
+    for kind, allowed in (("command", TOLD_IMPURE), ("displacement", MOVED_IMPURE)):
+        struts = np.array([got[f"{kind}_aft"][turn], got[f"{kind}_fore"][turn]])
+        _, rate, across = drawn(HORIZONTAL_1963, SPEED, struts, FREQUENCY_HZ)
+        bow = HORIZONTAL_1963.half_spacing_m * np.abs(rate).max()
+        assert np.abs(across).max() < allowed * bow
+        spectrum = np.abs(np.fft.rfft(rate))
+        assert np.delete(spectrum, 1).max() < allowed * spectrum[1]
+
+
+def test_following_under_load_is_that_of_the_loop_integrated() -> None:
+    """From power on: standing, going to the path, running up, running."""
+    with in_process(PATHS, horizontal_rig(), PlantConditions(SPEED)) as (rig, world):
+        ready(rig)
+        rig.shaft.take()
+        first = rig.number + 1
+        forces, begun = [], rig.shaft.struts[0].position
+        rig.shaft.follow(PURE)
+        rig.eccentricity.move_to(AMPLITUDE)
+        for count in range(700):
+            if count == 350:
+                rig.shaft.turn(FREQUENCY_HZ)
+            rig.cycle()
+            forces.append(world.plant.value("force_aft"))
+        got = taken(rig)
+        assert len(got["displacement_aft"]) == rig.number - first + 1
+    command, moved = got["command_aft"], got["displacement_aft"]
+    assert np.abs(command).max() > 0.9 * AMPLITUDE
+    assert np.abs(forces).max() > 50.0
+    found = integrated(PositionLoop(), begun, command, np.array(forces))
+    assert moved == pytest.approx(found, abs=1.5 * COUNT_M)
+    assert np.abs(moved - command).max() > 20.0 * COUNT_M
+
+
+def integrated(loop: PositionLoop, start: float, told: np.ndarray, force: np.ndarray) -> np.ndarray:
+    period, state, places = 0.01, np.array([start, 0.0, 0.0]), [start]
+    for n in range(len(told) - 1):
+        slope = (told[n + 1] - told[n]) / period
+
+        def rates(t: float, y: np.ndarray, n: int = n, slope: float = slope) -> list[float]:
+            error = slope + loop.position_per_s * (told[n] + slope * t - y[0]) - y[1]
+            pushed = loop.speed_per_s * error + loop.integral_per_s2 * y[2]
+            return [y[1], pushed - force[n] / loop.moved_kg, error]
+
+        state = solve_ivp(rates, (0.0, period), state, rtol=1e-8, atol=1e-11).y[:, -1]
+        places.append(state[0])
+    return np.array(places)
+
+
+def fail(rig: Rig, cycles: int) -> list[str]:
+    """Cycle on; return what was raised."""
+    told = []
+    for _ in range(cycles):
+        try:
+            rig.cycle()
+        except HardwareError as error:
+            told += [str(error), *getattr(error, "__notes__", [])]
+    return told
+
+
+def at_rest(rig: Rig, world: World) -> bool:
+    drives = [world.nodes["shaft.aft"], world.nodes["shaft.fore"]]
+    still = all(drive.speed == 0.0 and drive.standing for drive in drives)
+    return still and not rig.shaft.moving and not rig.shaft.enabled
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ("lost-sync 3", "SYNC stayed away or came unevenly"),
+        ("late-set-point shaft.aft 3", "a set-point came too late for its SYNC"),
+    ],
+)
+def test_it_ends_at_rest(turning: tuple[Rig, World], words: str, sentence: str) -> None:
+    rig, world = turning
+    inject(world, words)
+    told = fail(rig, REST_CYCLES)
+    assert any(sentence in one for one in told)
+    assert at_rest(rig, world)
+    assert rig.faults
+
+
+def test_a_clock_that_jumps_ends_at_rest(turning: tuple[Rig, World]) -> None:
+    rig, world = turning
+    now = [0.0]
+    rig._pacer = RealTime(0.01, lambda: now[0], lambda s: now.__setitem__(0, now[0] + s))
+    assert fail(rig, 50) == []
+    now[0] += 0.009
+    assert fail(rig, 50) == []  # late, and within a period
+    now[0] += 5.0
+    told = fail(rig, REST_CYCLES)
+    assert any("set-points have lost their time" in one for one in told)
+    assert any(isinstance(one, CycleJumpError) for one in rig.faults)
+    assert at_rest(rig, world)
+
+
+@pytest.mark.parametrize("words", ["lost-sync 1", "late-set-point shaft.fore 1"])
+def test_one_is_bridged(turning: tuple[Rig, World], words: str) -> None:
+    rig, world = turning
+    inject(world, words)
+    assert fail(rig, 100) == []
+    got = taken(rig)
+    assert np.abs(got["displacement_fore"] - got["command_fore"])[-50:].max() < 1e-3
+
+
+def test_a_blocked_strut_ends_at_rest_and_a_reset_lets_it_go_on(
+    turning: tuple[Rig, World],
+) -> None:
+    rig, world = turning
+    inject(world, "block shaft.aft")
+    assert any("outside its window" in one for one in fail(rig, REST_CYCLES))
+    assert at_rest(rig, world)
+    inject(world, "free shaft.aft")
+    rig.reset()
+    rig.shaft.enable()
+    rig.run_until(lambda: rig.shaft.enabled, 100, "enable")
+    rig.shaft.turn(FREQUENCY_HZ)
+    assert not rig.shaft.at_speed  # first to the path, at its own speed
+    rig.run_until(lambda: rig.shaft.at_speed, 1000, "speed")
+    assert fail(rig, 100) == []
+
+
+def test_many_lines_are_followed_by_the_program_itself() -> None:
+    lines = multisine((1, 3, 5), np.array([1.0, 1 / 3, 1 / 5]), (0.0,))
+    with in_process(PATHS, horizontal_rig()) as (rig, _):
+        ready(rig)
+        rig.shaft.follow(lines)
+        rig.eccentricity.move_to(0.05)
+        rig.run_until(lambda: rig.eccentricity.settled, 1000, "the path's beginning")
+        rig.shaft.turn(0.2)
+        rig.run_until(lambda: rig.shaft.at_speed, 300, "speed")
+        rig.shaft.take()
+        for _ in range(200):
+            rig.cycle()
+        got = taken(rig)
+    angle = got["shaft_angle"] % (2.0 * math.pi)
+    places = 0.05 * struts_over_turn(lines, least=100_000)[0]
+    near = places[np.round(angle / (2.0 * math.pi) * len(places)).astype(int) % len(places)]
+    assert got["command_aft"] == pytest.approx(near, abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("frequency_hz", "words"),
+    [(0.9, "speed of 1.093 at 0.549 s"), (2.0, "of its period is beyond"), (3.0, "outside")],
+)
+def test_a_path_beyond_the_struts_is_refused_with_its_place(
+    turning: tuple[Rig, World], frequency_hz: float, words: str
+) -> None:
+    rig, _ = turning
+    rig.shaft.stop()
+    rig.run_until(lambda: not rig.shaft.moving, 500, "stop")
+    with pytest.raises(LimitError, match=words):
+        rig.shaft.turn(frequency_hz)
+
+
+def test_settings_need_struts_that_follow_paths() -> None:
+    tables = {"eccentricity": PATHS["eccentricity"]}
+    configuration = read_rig(tables, DRIVERS)
+    with pytest.raises(ConfigurationError, match="path-struts"):
+        Rig(configuration, lambda: 0.0, RealTime(0.01, lambda: 0.0, lambda _: None), lambda _: None)
