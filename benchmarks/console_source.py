@@ -13,7 +13,7 @@ import numpy as np
 from hardware.description.setpoint import SetPoint
 from pmm.console.app_settings import ConsoleSettings
 from pmm.console.link import Link
-from pmm.console.messages import Bus, ChannelInfo, Frame, Hello, Needles, SignalTrace
+from pmm.console.messages import Bus, ChannelInfo, Frame, Hello, LoopOrder, Needles, SignalTrace
 from pmm.console.quick_stop import QuickStop
 from pmm.console.security import Door
 from pmm.console.server import serve
@@ -65,7 +65,7 @@ class Source:
         )
         self._process.start()
         theirs.close()
-        self._link = Link(ours)
+        self._link: Link[LoopOrder] = Link(ours)
         self._link.tell(self._hello())
         self.wait(3.0)
         self._number, self._spent_s = 0, 0.0

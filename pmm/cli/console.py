@@ -35,6 +35,20 @@ import click
     show_default=True,
     help="Run a simulated rig so many times as fast as the clock.",
 )
+@click.option(
+    "--mqtt",
+    metavar="URL",
+    help="Publish live values to this broker: mqtt://HOST, or mqtts://USER@HOST:PORT/TOPIC.",
+)
+@click.option("--mqtt-password-file", metavar="FILE", help="The broker's password for USER.")
+@click.option(
+    "--mqtt-authority",
+    metavar="FILE",
+    help="Trust the broker's certificate by this one (PEM).  [default: the system's]",
+)
+@click.option(
+    "--epics", metavar="PREFIX", help="Serve live values as EPICS process variables, PREFIX:NAME."
+)
 def console(**options: Any) -> None:
     """Show a rig in the browser and command it from there.
 

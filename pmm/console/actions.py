@@ -18,7 +18,7 @@ from pmm.console.encoding import encode_answer
 from pmm.console.hub import Hub
 from pmm.console.limits import LARGEST_PLAN, LARGEST_REQUEST
 from pmm.console.loop_side import LoopSide
-from pmm.console.messages import Notice, OrderKind
+from pmm.console.messages import OrderKind
 from pmm.console.plans import Plans
 from pmm.console.requests import (
     AnswerPosted,
@@ -185,11 +185,7 @@ class PageActions:
 
     def alarm(self, text: str) -> None:
         """Show something that the server has found as an alarm."""
-        self._tell("alarm", text)
-
-    def _tell(self, kind: str, text: str) -> None:
-        time_s = self._hub.last.status.time_s if self._hub.last is not None else 0.0
-        self._hub.add_notice(Notice(kind, time_s, text))
+        self._hub.say("alarm", text)
 
     async def _command(self, posted: CommandPosted, who: Who) -> dict[str, Any]:
         if posted.command is Command.QUICK_STOP:
@@ -250,7 +246,7 @@ class PageActions:
         plan = self._queued.plan(posted.number)
         await worker.run(keep_note, plan, posted, self._utc())
         about = posted.run or plan.plan.name
-        self._tell("note", f"{about}: {posted.text} ({posted.author})")
+        self._hub.say("note", f"{about}: {posted.text} ({posted.author})")
         return {"said": f"noted on {about}"}
 
     async def audit(self, _request: Request) -> Response:

@@ -13,6 +13,7 @@ from pathlib import Path
 from secrets import token_urlsafe
 from typing import Any, Final
 
+from anyio.to_thread import run_sync
 from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import FileResponse, JSONResponse, Response
@@ -27,9 +28,10 @@ from pmm.console.client import Client
 from pmm.console.coefficient_updates import Finished
 from pmm.console.hub import Hub
 from pmm.console.limits import MOST_STREAMS
+from pmm.console.live.process import Publishing
 from pmm.console.lockout import Lockout
 from pmm.console.loop_side import LoopSide
-from pmm.console.messages import Notice, Reply
+from pmm.console.messages import Notice, Reply, Told
 from pmm.console.openapi import description
 from pmm.console.pages import Pages
 from pmm.console.plans import Plans
@@ -62,7 +64,8 @@ class Console:
     ) -> None:
         self.door = settings.door
         self.hub = Hub(self._replied, self._written, _utc)
-        self.loop = LoopSide(connection, quick_stop, self.hub.take, self._lost)
+        self.loop = LoopSide(connection, quick_stop, self._take, self._lost)
+        self._publishing = Publishing(settings.live) if settings.live.any else None
         self._end = end
         self._lockout = Lockout(time.monotonic)
         plans = Plans(settings.rig_path, settings.rig_hashes, settings.plans, settings.output)
@@ -77,6 +80,13 @@ class Console:
             lambda: self.workers.around.run(look_around, plans, self.pages.folders())
         )
         self._pump = asyncio.ensure_future(pump(self.hub))
+
+    def _take(self, message: Told) -> None:
+        """Take what the loop tells, for the browsers and for those who read along."""
+        self.hub.take(message)
+        if self._publishing is not None:
+            self._publishing.take(message)
+            self.hub.tell_live(self._publishing.statuses())
 
     def _replied(self, reply: Reply) -> None:
         self.loop.replied(reply)
@@ -157,6 +167,8 @@ class Console:
         self._pump.cancel()
         self.finished.close()
         self.workers.close()
+        if self._publishing is not None:
+            await run_sync(self._publishing.close)
         await asyncio.sleep(0)
 
 

@@ -1,9 +1,10 @@
 """How a console is set up."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
+from pmm.console.live.live_settings import LiveSettings
 from pmm.console.security import Door
 
 
@@ -24,6 +25,8 @@ class ConsoleSettings:
         Folders of campaigns that finished runs are compared with.
     reference
         A table of coefficients over the frequency, as CSV.
+    live
+        Where live values go besides.
     """
 
     rig_path: Path
@@ -34,3 +37,4 @@ class ConsoleSettings:
     door: Door
     earlier: tuple[Path, ...] = ()
     reference: Path | None = None
+    live: LiveSettings = field(default_factory=LiveSettings)

@@ -2,7 +2,8 @@
 
 import asyncio
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
 from typing import Any, Final
 
 from pmm.console.audit import MOST
@@ -16,6 +17,7 @@ from pmm.console.encoding import (
     notice_picture,
     outcome_picture,
 )
+from pmm.console.live.outlet import OutletStatus
 from pmm.console.messages import WRITTEN, CampaignLook, Frame, Hello, Needles, Notice, Reply, Told
 from pmm.console.pictures import Pictures
 from pmm.console.security import Role
@@ -59,6 +61,7 @@ class Hub:
         self._hello, self._connected = "null", False
         self._plans = self._figures = "{}"
         self._campaign = "null"
+        self._live: dict[str, OutletStatus] = {}
         self._finished: list[str] = []
         self._notices: deque[str] = deque(maxlen=_NOTICES)
         self._done: deque[str] = deque(maxlen=MOST)
@@ -105,6 +108,18 @@ class Hub:
         self._done.append(entry)
         self._tell(f'{{"type":"audit","entry":{entry}}}')
 
+    def tell_live(self, outlets: Sequence[OutletStatus]) -> None:
+        """Keep and hand on how the outlets of live values are; trouble is an alarm once."""
+        for one in outlets:
+            before = self._live.get(one.name)
+            if one.trouble and (before is None or not before.trouble):
+                self.say("alarm", f"{one.name}: {one.trouble}")
+            elif before is not None and before.trouble and one.connected:
+                self.say("live", f"{one.name}: connected")
+        if outlets:
+            self._live = {one.name: one for one in outlets}
+            self._tell(f'{{"type":"live","live":{self._live_picture()}}}')
+
     def join(self, client: Client) -> None:
         """Let a browser come; an older page of the same session ends."""
         before = self.clients.get(client.session)
@@ -147,6 +162,11 @@ class Hub:
         client.frame, client.piece, client.desk = pictures.number, pictures.next_piece, desk
         return texts
 
+    def say(self, kind: str, text: str) -> None:
+        """Keep and hand on something that the server has found, at the rig's time."""
+        time_s = self.last.status.time_s if self.last is not None else 0.0
+        self.add_notice(Notice(kind, time_s, text))
+
     def add_notice(self, notice: Notice) -> None:
         """Keep and hand on what happened."""
         self._count += 1
@@ -163,10 +183,13 @@ class Hub:
                 f'"hello":{self._hello},"frame":{self._pictures.frame(self._pictures.next_piece)},'
                 f'"needles":{encode(needles_picture(self._needles))},'
                 f'"traces":{self._pictures.traces(0)},"notices":[{",".join(self._notices)}],'
-                f'"audit":[{",".join(self._done)}],"plans":{self._plans},"finished":[{",".join(self._finished)}],'
+                f'"audit":[{",".join(self._done)}],"plans":{self._plans},"live":{self._live_picture()},"finished":[{",".join(self._finished)}],'
                 f'"figures":{self._figures},"campaign":{self._campaign}'
             )
         return f'{own[:-1]},{self._common},"desk":{desk}}}'
+
+    def _live_picture(self) -> str:
+        return encode([asdict(one) for one in self._live.values()])
 
     def _begin(self, hello: Hello) -> None:
         self._hello, self._connected = encode(hello_picture(hello)), True

@@ -1,35 +1,42 @@
-"""Between the loop and the web server: the loop's side never waits, whatever the server does."""
+"""From the loop to the web server, and from there on: who tells never waits for who listens."""
 
 import queue
 import threading
 from collections import deque
 from dataclasses import replace
 from multiprocessing.connection import Connection
-from typing import Final
+from typing import Any, Final, Generic, TypeVar
 
 from pmm.console.messages import Frame, LoopOrder, PackedPlan, Told, unpack
 
 _POLL_S: Final = 0.2
 _FRAMES: Final = 25  # one second's; older ones are dropped
+T = TypeVar("T")
 
 
-class Link:
-    """The loop's end of the pipe to the server.
+class Link(Generic[T]):
+    """The teller's end of a pipe: the loop's to the server, the server's to live values.
 
-    Two threads move the messages; the loop itself only touches queues.
+    Two threads move the messages; who tells only touches queues. What comes back is of type ``T``.
+
+    Parameters
+    ----------
+    most_frames
+        That wait to be fetched.
 
     Attributes
     ----------
     dropped
-        Frames that the server did not fetch in time.
+        Frames that were not fetched in time.
     """
 
-    def __init__(self, connection: Connection) -> None:
+    def __init__(self, connection: Connection, most_frames: int = _FRAMES) -> None:
         self.dropped = 0
+        self._most_frames = most_frames
         self._connection = connection
-        self._frames: deque[Frame] = deque(maxlen=_FRAMES)
+        self._frames: deque[Frame] = deque(maxlen=most_frames)
         self._others: deque[Told] = deque()
-        self._orders: queue.SimpleQueue[LoopOrder] = queue.SimpleQueue()
+        self._orders: queue.SimpleQueue[T] = queue.SimpleQueue()
         self._wake = threading.Event()
         self._closed = threading.Event()
         self._threads = [
@@ -41,23 +48,23 @@ class Link:
 
     @property
     def lost(self) -> bool:
-        """Whether the server is gone."""
+        """Whether the other side is gone."""
         return self._closed.is_set()
 
     def frame(self, frame: Frame) -> None:
-        """Hand a frame on; the oldest one is dropped where the server is too slow."""
-        self.dropped += len(self._frames) == _FRAMES
+        """Hand a frame on; the oldest one is dropped where the other side is too slow."""
+        self.dropped += len(self._frames) == self._most_frames
         self._frames.append(frame)
         self._wake.set()
 
     def tell(self, message: Told) -> None:
-        """Hand on what must not be dropped; without a server there is nobody to hand it to."""
+        """Hand on what must not be dropped; without another side there is nobody to hand it to."""
         if self.lost:
             return
         self._others.append(message)
         self._wake.set()
 
-    def orders(self) -> list[LoopOrder]:
+    def orders(self) -> list[T]:
         """Return what has come since the last call."""
         found = []
         while True:
@@ -93,10 +100,14 @@ class Link:
         try:
             while not self._closed.is_set():
                 if self._connection.poll(_POLL_S):
-                    order = self._connection.recv()
-                    if isinstance(order.plan, PackedPlan):
-                        order = replace(order, plan=unpack(order.plan))
-                    self._orders.put(order)
+                    self._orders.put(_whole(self._connection.recv()))
         except (OSError, EOFError):
             self._closed.set()
             self._wake.set()
+
+
+def _whole(message: Any) -> Any:
+    """Return an order with its plan unpacked; in the thread, for the loop does not wait for it."""
+    if isinstance(message, LoopOrder) and isinstance(message.plan, PackedPlan):
+        return replace(message, plan=unpack(message.plan))
+    return message

@@ -12,6 +12,7 @@ from typing import Final
 
 from hardware.description.errors import ConfigurationError
 from pmm.console.app_settings import ConsoleSettings
+from pmm.console.live.live_settings import LiveSettings, live_settings
 from pmm.console.plans import is_plan
 from pmm.console.security import LOCAL, Door
 from pmm.plan.rig_file import RigFile, is_simulated, read_rig_file
@@ -41,6 +42,10 @@ class ConsoleRequest:
     earlier: tuple[str, ...]
     reference: str | None
     speed: float
+    mqtt: str | None
+    mqtt_password_file: str | None
+    mqtt_authority: str | None
+    epics: str | None
 
     def rig_file(self) -> RigFile:
         """Read the rig's file, and refuse what cannot go together.
@@ -66,7 +71,13 @@ class ConsoleRequest:
             if name is not None and not Path(name).is_dir():
                 raise ConfigurationError(f"{option} {name}: no such folder")
         self._check_door()
+        self._live(rig_file)
         return rig_file
+
+    def _live(self, rig_file: RigFile) -> LiveSettings:
+        return live_settings(
+            rig_file.name, self.mqtt, self.mqtt_password_file, self.mqtt_authority, self.epics
+        )
 
     def _check_door(self) -> None:
         if (self.certificate is None) != (self.key is None):
@@ -128,6 +139,7 @@ class ConsoleRequest:
             door=Door(self.host, port, tokens[0], self.certificate is not None, tokens[1]),
             earlier=tuple(Path(one) for one in self.earlier),
             reference=None if self.reference is None else Path(self.reference),
+            live=self._live(rig_file),
         )
 
     def greeting(self, name: str, door: Door) -> Iterator[str]:

@@ -9,7 +9,7 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from pathlib import Path
 from socket import socket
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from hardware.description.version import program
 from hardware.pacing import RealTime
@@ -26,6 +26,9 @@ from pmm.run.journal import Taps
 from pmm.run.operator import Interrupts
 from pmm.run.recorder_factory import utc_now
 from pmm.run.session import keep_time, tapped_rig
+
+if TYPE_CHECKING:
+    from pmm.console.messages import LoopOrder
 
 _WINDOW_S: Final = 10.0  # of the statistics of the loop's cycles
 _JOIN_S: Final = 10.0
@@ -111,7 +114,7 @@ def _station(
     taps, answers = Taps(), BrowserAnswers()
     with ExitStack() as stack:
         priority = _priority(stack, request.speed, tell)
-        link = Link(connection)
+        link: Link[LoopOrder] = Link(connection)
         stack.callback(link.close)
         closing = ThreadPoolExecutor(1, thread_name_prefix="closing", initializer=step_back)
         executor = stack.enter_context(closing)

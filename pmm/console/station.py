@@ -57,7 +57,7 @@ class Station:
         self,
         rig: Rig,
         rig_file: RigFile,
-        link: Link,
+        link: Link[LoopOrder],
         quick_stop: QuickStop,
         answers: BrowserAnswers,
         pacer: CountingPacer,

@@ -6,7 +6,7 @@ from typing import Final
 from hardware.rig import Rig
 from pmm.console.answers import BrowserAnswers
 from pmm.console.link import Link
-from pmm.console.messages import Frame, Needles, Notice
+from pmm.console.messages import Frame, LoopOrder, Needles, Notice
 from pmm.console.pacing import CountingPacer
 from pmm.console.picture import (
     NeedleReader,
@@ -40,7 +40,7 @@ class StationView:
     def __init__(
         self,
         rig: Rig,
-        link: Link,
+        link: Link[LoopOrder],
         answers: BrowserAnswers,
         pacer: CountingPacer,
         clock: Callable[[], float],

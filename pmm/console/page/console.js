@@ -13,7 +13,7 @@ const readings = new Readings(), traces = new Traces(), facts = new Facts(), ala
 const finished = new Finished(), coefficients = new Coefficients();
 const FIGURES = 4; // figures change in every fourth picture: nobody reads 25 numbers a second
 let drawn = 0;
-let holder = "nobody", priority = "", latest = null, due = false, shown = false, ended = false;
+let holder = "nobody", priority = "", live = [], latest = null, due = false, shown = false, ended = false;
 
 function draw() {
   due = false;
@@ -28,7 +28,7 @@ function draw() {
   showButtons(frame);
   if (figures || !shown) {
     shown = true;
-    facts.show({ ...frame, priority });
+    facts.show({ ...frame, priority, live });
     showProgress(frame, queue.plans);
     queue.show(frame, holder === "you");
   }
@@ -109,6 +109,7 @@ function begin(snapshot) {
   byId("audit").replaceChildren();
   snapshot.audit.forEach(showDone);
   queue.take(snapshot.plans);
+  live = snapshot.live;
   until.take(snapshot.campaign);
   showDesk(snapshot.desk);
   if (snapshot.needles) readings.show(snapshot.needles);
@@ -125,6 +126,7 @@ const stream = new Stream({
   notice: (one) => alarms.add(one),
   audit: (one) => showDone(one.entry),
   plans: (one) => queue.take(one.plans),
+  live: (one) => { live = one.live; },
   campaign: (one) => until.take(one.campaign),
   finished: (one) => {
     finished.add(one.entry);

@@ -44,6 +44,10 @@ function facts(frame) {
   found.push(["loop late, 99 %", late]);
   found.push(["late cycles", loop.cycles ? `${loop.late} of the last ${loop.cycles}` : "–"]);
   if (frame.priority) found.push(["loop priority", frame.priority]);
+  for (const one of frame.live ?? []) {
+    const how = one.connected ? "in order" : one.trouble ? "not connected" : "not yet connected";
+    found.push([`live values, ${one.name}`, `${how}${one.dropped ? `, ${one.dropped} dropped` : ""}`, one.dropped || one.trouble ? "bad" : ""]);
+  }
   found.push(["rig time", `${frame.time_s.toFixed(1)} s`]);
   return found;
 }

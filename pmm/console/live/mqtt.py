@@ -1,0 +1,137 @@
+"""Live values over MQTT: a message a tick, of quality of service 1."""
+
+import asyncio
+import json
+import math
+import ssl
+from contextlib import suppress
+from dataclasses import asdict
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Any, Final
+
+from pmm.console.encoding import number
+from pmm.console.live.live_settings import BrokerSettings
+from pmm.console.live.outlet import NotCarriedError, Outlet
+from pmm.console.live.values import Severity, Tick
+
+if TYPE_CHECKING:
+    from aiomqtt import Client
+
+# Half a minute would not outlast a broker that is updated; two would take 7 MB.
+MOST_WAITING: Final = 1500
+# Ticks on their way at a time: 50 a second pass at 1 s there and back; half would lose ticks there.
+_TOGETHER: Final = 50
+_AT_LEAST_ONCE: Final = 1
+_PATIENCE_S: Final = 5.0  # for an answer of the broker
+_STATUS_S: Final = 1.0
+
+
+class MqttOutlet(Outlet):
+    """Publishes ticks, units and its own status under a prefix; it subscribes to nothing."""
+
+    name = "MQTT"
+
+    def __init__(self, broker: BrokerSettings, most: int = MOST_WAITING) -> None:
+        super().__init__(most)
+        self._broker = broker
+        self._units: dict[str, str] = {}
+        self._secure = _secure(broker) if broker.tls else None
+
+    async def _carry(self) -> None:
+        from aiomqtt import Client, MqttError, Will
+
+        broker = self._broker
+        gone = json.dumps({"connected": False})
+        will = Will(self._topic("status"), gone, _AT_LEAST_ONCE, retain=True)
+        client = Client(
+            broker.host,
+            broker.port,
+            username=broker.user or None,
+            password=broker.password or None,
+            tls_context=self._secure,
+            will=will,
+            timeout=_PATIENCE_S,
+            keepalive=round(2 * _PATIENCE_S),
+        )
+        client.pending_calls_threshold = 2 * _TOGETHER  # below it nothing is unusual
+        try:
+            async with client:
+                self._open()
+                self._units = {}
+                work = [self._publish(client), self._say(client), self._watch(client)]
+                tasks = [asyncio.ensure_future(one) for one in work]
+                try:
+                    await asyncio.gather(*tasks)
+                finally:
+                    for task in tasks:
+                        task.cancel()
+                    await asyncio.gather(*tasks, return_exceptions=True)
+                    with suppress(MqttError):
+                        await self._send(client, "status", gone, retain=True)
+        except (MqttError, OSError, ValueError) as error:
+            raise NotCarriedError(
+                f"{broker.url}: no connection to the broker ({error}); is it running, and are "
+                "address, user, password and certificate right? It is tried again by itself"
+            ) from error
+
+    async def _publish(self, client: "Client") -> None:
+        while True:
+            ticks = await self._next(_TOGETHER)
+            try:
+                await self._tell_units(client, ticks[-1])
+                sent = (self._send(client, "live", message(one)) for one in ticks)
+                await asyncio.gather(*sent)
+            except BaseException:
+                self._put_back(ticks)
+                raise
+            self._done(len(ticks))
+
+    async def _tell_units(self, client: "Client", tick: Tick) -> None:
+        units = {name: value.unit for name, value in tick.values.items()}
+        if units != self._units:
+            await self._send(client, "units", json.dumps(units, ensure_ascii=False), retain=True)
+            self._units = units
+
+    async def _say(self, client: "Client") -> None:
+        """Publish the status once a second, where it has changed."""
+        said = None
+        while True:
+            status = {key: one for key, one in asdict(self.status()).items() if key != "name"}
+            if status != said:
+                await self._send(client, "status", json.dumps(status), retain=True)
+                said = status
+            await asyncio.sleep(_STATUS_S)
+
+    async def _watch(self, client: "Client") -> None:
+        """Take nothing for ever: it raises when the broker has gone."""
+        async for _ in client.messages:
+            pass
+
+    async def _send(self, client: "Client", name: str, text: str, *, retain: bool = False) -> None:
+        await client.publish(self._topic(name), text, _AT_LEAST_ONCE, retain)
+
+    def _topic(self, name: str) -> str:
+        return f"{self._broker.prefix}/{name}"
+
+
+def message(tick: Tick) -> str:
+    """Return a tick as JSON; what is not known is ``null``."""
+    values = {name: _plain(one.value) for name, one in tick.values.items()}
+    alarms = {
+        name: one.severity.name.lower()
+        for name, one in tick.values.items()
+        if one.severity is not Severity.FINE
+    }
+    utc = datetime.fromtimestamp(tick.utc_s, UTC).isoformat(timespec="milliseconds")
+    content = {"n": tick.number, "utc": utc, "values": values, "alarms": alarms}
+    return json.dumps(content, allow_nan=False, ensure_ascii=False, separators=(",", ":"))
+
+
+def _plain(value: float | int | str) -> Any:
+    if not isinstance(value, float):
+        return value
+    return number(value) if math.isfinite(value) else None
+
+
+def _secure(broker: BrokerSettings) -> ssl.SSLContext:
+    return ssl.create_default_context(cafile=broker.certificate)

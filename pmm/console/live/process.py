@@ -1,0 +1,132 @@
+"""The process that carries live values out, and the web server's end of it."""
+
+import asyncio
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from threading import Thread
+from typing import Any, Final
+
+from pmm.console.link import Link
+from pmm.console.live.live_settings import LiveSettings
+from pmm.console.live.outlet import Outlet, OutletStatus
+from pmm.console.live.values import LiveTable, Tick
+from pmm.console.messages import Frame, Hello, Told
+from pmm.console.worker_process import yield_to_the_loop
+
+SILENT_S: Final = 2.0  # without a tick: then nobody vouches for the values any more
+_MOST_FRAMES: Final = 750  # 30 s: starting takes 1 to 10 s, and nothing is to be lost meanwhile
+_TELL_S: Final = 1.0
+_JOIN_S: Final = 3.0  # for a last word to the broker
+
+
+class Publishing:
+    """The server's end: hands ticks on and never waits; the oldest are dropped and counted."""
+
+    def __init__(self, settings: LiveSettings) -> None:
+        context = get_context("spawn")
+        ours, theirs = context.Pipe()
+        self._process = context.Process(
+            target=carry_out, args=(theirs, settings), name="console live values", daemon=True
+        )
+        self._process.start()
+        theirs.close()
+        self._link: Link[tuple[OutletStatus, ...]] = Link(ours, _MOST_FRAMES)
+
+    def take(self, message: Told) -> None:
+        """Hand on what the loop tells of itself."""
+        if isinstance(message, Frame):
+            self._link.frame(message)
+        elif isinstance(message, Hello):
+            self._link.tell(message)
+
+    @property
+    def lost(self) -> bool:
+        """Whether the process is gone."""
+        return self._link.lost
+
+    def statuses(self) -> tuple[OutletStatus, ...]:
+        """Return how the outlets are, if they have said so since the last call."""
+        told = self._link.orders()
+        return told[-1] if told else ()
+
+    def close(self) -> None:
+        """End the process, with a last word to the broker where that is quick."""
+        self._link.close()
+        self._process.join(_JOIN_S)
+        if self._process.is_alive():
+            self._process.kill()
+            self._process.join()
+
+
+def carry_out(connection: Connection, settings: LiveSettings) -> None:
+    """Carry out what comes through the pipe until that is closed."""
+    yield_to_the_loop()
+    # Sockets are waited for by their numbers, which not every system's own event loop does.
+    with asyncio.Runner(loop_factory=asyncio.SelectorEventLoop) as runner:
+        runner.run(_carry_out(connection, settings))
+
+
+def outlets_of(settings: LiveSettings) -> list[Outlet]:
+    """Return an outlet for each protocol that is wished for."""
+    from pmm.console.live.epics import EpicsOutlet
+    from pmm.console.live.mqtt import MqttOutlet
+
+    found: list[Outlet] = []
+    if settings.broker is not None:
+        found.append(MqttOutlet(settings.broker))
+    if settings.epics_prefix:
+        found.append(EpicsOutlet(settings.epics_prefix))
+    return found
+
+
+class _Source(Thread):
+    """Offers what comes through the pipe to all outlets."""
+
+    def __init__(self, connection: Connection, outlets: Sequence[Outlet]) -> None:
+        super().__init__(name="live values", daemon=True)
+        self._connection, self._outlets = connection, outlets
+        self._table: LiveTable | None = None
+        self._tick: Tick | None = None
+
+    def run(self) -> None:
+        with suppress(OSError, EOFError):
+            while True:
+                if self._connection.poll(SILENT_S):
+                    self._take(self._connection.recv())
+                elif self._tick is not None:
+                    self._offer(self._tick.unknown())
+                    self._tick = None
+
+    def _take(self, message: Any) -> None:
+        if isinstance(message, Hello):
+            self._table = LiveTable(message)
+        elif isinstance(message, Frame) and self._table is not None:
+            self._tick = self._table.tick(message, time.time())
+            self._offer(self._tick)
+
+    def _offer(self, tick: Tick) -> None:
+        for outlet in self._outlets:
+            outlet.offer(tick)
+
+
+async def _carry_out(connection: Connection, settings: LiveSettings) -> None:
+    outlets = outlets_of(settings)
+    source = _Source(connection, outlets)
+    source.start()
+    tasks = [asyncio.ensure_future(one.run()) for one in outlets]
+    try:
+        while source.is_alive() and not any(one.done() for one in tasks):
+            connection.send(tuple(one.status() for one in outlets))
+            await asyncio.sleep(_TELL_S)
+    except OSError:  # the server has gone
+        pass
+    finally:
+        for task in tasks:
+            task.cancel()
+        found = await asyncio.gather(*tasks, return_exceptions=True)
+    for error in found:
+        if isinstance(error, Exception):
+            raise error
