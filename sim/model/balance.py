@@ -16,6 +16,7 @@ from sim.model.law_response import respond
 from sim.model.law_table import LawTable
 from sim.model.numbers import corners_only, geometry_only, without_corners
 from sim.solve.anderson_mixing import mix
+from sim.solve.array_loops import copy, largest
 from sim.solve.compilation import compile_loop
 from sim.solve.corners import gauss
 from sim.solve.period import Period
@@ -78,9 +79,10 @@ class LawBalance:
         return np.concatenate([moving, linear], axis=1)
 
     @cached_property
-    def _laws(self) -> tuple[FloatArray, ...]:
+    def _laws(self) -> tuple[Any, ...]:
         table = self.table
-        return table.laws, table.arguments, table.corners, *self._smooth()
+        moving = bool(table.arguments[:, :, 8:].any())
+        return table.laws, table.arguments, table.corners, *self._smooth(), moving
 
     @cached_property
     def _whatever_moves(self) -> tuple[Any, ...]:
@@ -116,6 +118,15 @@ def _waves(orders: int, points: int) -> tuple[FloatArray, FloatArray]:
 
 
 @compile_loop
+def _largest_linear(free: ComplexArray) -> float:
+    """Return the largest harmonic of the linear force, which columns 6 and 7 hold."""
+    found = 0.0
+    for n in range(free.shape[0]):
+        found = max(found, abs(free[n, 6]), abs(free[n, 7]))
+    return found
+
+
+@compile_loop
 def _balance(
     laws: FloatArray,
     arguments: FloatArray,
@@ -123,6 +134,7 @@ def _balance(
     smooth: FloatArray,
     smooth_hull: FloatArray,
     parts: FloatArray,
+    moving: bool,
     free: ComplexArray,
     by_laws: ComplexArray,
     cosine: FloatArray,
@@ -134,33 +146,36 @@ def _balance(
     laws_found: FloatArray,
 ) -> bool:
     """Fill in the harmonics that come back unchanged; tell whether there are any."""
-    answer, flat = np.zeros_like(laws_found), laws_found.reshape(-1)
-    laws_given = (laws, arguments, corners, smooth, smooth_hull, parts)
+    answer, flat = np.zeros(laws_found.shape), laws_found.reshape(-1)
+    answered = answer.reshape(-1)
+    laws_given = (laws, arguments, corners, smooth, smooth_hull, parts, moving)
     given = (*laws_given, free, by_laws, cosine, sine, nodes, step_s, speed_m_s)
     respond(*given, laws_found, answer)
-    laws_found[:] = answer
+    copy(answered, flat)
     if not acts_back:
         return True
     answers, changes = np.zeros((_DEPTH + 1, flat.size)), np.zeros((_DEPTH + 1, flat.size))
     # Relative to the linear force too, by whose rounding all of what is beyond it is off.
-    allowed = TOLERANCE * max(np.abs(laws_found).max(), np.abs(free[:, 6:]).max(), 1e-300)
+    allowed = TOLERANCE * max(largest(flat), _largest_linear(free), 1e-300)
     best, stalled, count = np.inf, 0, 0
     for _ in range(MOST_SWEEPS):
         respond(*given, laws_found, answer)
         if count > _DEPTH:
             count = _DEPTH
             for i in range(_DEPTH):
-                answers[i], changes[i] = answers[i + 1], changes[i + 1]
-        answers[count] = answer.reshape(-1)
-        changes[count] = answers[count] - flat
-        largest = np.abs(changes[count]).max() / allowed
-        stalled = stalled + 1 if largest >= best else 0
-        best = min(best, largest)
-        if largest <= 1.0 or (largest <= ROUNDING / TOLERANCE and stalled >= STALLED):
+                copy(answers[i + 1], answers[i])
+                copy(changes[i + 1], changes[i])
+        copy(answered, answers[count])
+        for j in range(flat.size):
+            changes[count, j] = answered[j] - flat[j]
+        change = largest(changes[count]) / allowed
+        stalled = stalled + 1 if change >= best else 0
+        best = min(best, change)
+        if change <= 1.0 or (change <= ROUNDING / TOLERANCE and stalled >= STALLED):
             return True
         count += 1
         if count > 1:
             mix(answers, changes, count, flat)
         else:
-            flat[:] = answers[0]
+            copy(answers[0], flat)
     return False

@@ -12,6 +12,7 @@ import numpy as np
 from hardware.description.arrays import ComplexArray, FloatArray
 from sim.model.compiled_laws import law_force, law_value, motion_at
 from sim.model.force_law import LawInput
+from sim.solve.array_loops import clear, product
 from sim.solve.compilation import compile_loop
 from sim.solve.corners import find_corners, multiples, pieces_between, value_at
 
@@ -26,6 +27,7 @@ def respond(
     smooth: FloatArray,
     smooth_hull: FloatArray,
     parts: FloatArray,
+    moving: bool,
     free: ComplexArray,
     by_laws: ComplexArray,
     cosine: FloatArray,
@@ -38,14 +40,13 @@ def respond(
 ) -> None:
     """Fill in the harmonics of the forces of the laws for the motion under harmonics ``at``."""
     orders = free.shape[0]
-    real, imaginary = np.empty((orders, _SIGNALS)), np.empty((orders, _SIGNALS))
+    real, imaginary = np.empty((_SIGNALS, orders)), np.empty((_SIGNALS, orders))
     for n in range(orders):
         first, second = complex(at[n, 0, 0], at[n, 1, 0]), complex(at[n, 0, 1], at[n, 1, 1])
         for j in range(8):
             wave = free[n, j] + by_laws[n, j, 0] * first + by_laws[n, j, 1] * second
-            real[n, j], imaginary[n, j] = wave.real, wave.imag
-    answer[:] = 0.0
-    moving = bool(arguments[:, :, 8:].any())
+            real[j, n], imaginary[j, n] = wave.real, wave.imag
+    clear(answer)
     instants = (cosine, sine, step_s, speed_m_s)
     _at_points(smooth, smooth_hull, real, imaginary, instants, moving, answer)
     row = 0
@@ -54,8 +55,7 @@ def respond(
         while row < corners.shape[0] and int(corners[row, 0]) == item:
             row += 1
         force = (laws, parts, item, step_s * cosine.shape[0], speed_m_s)
-        waves = (real.T.copy(), imaginary.T.copy())
-        levels = corners[own:row, 1:]
+        levels, waves = corners[own:row, 1:], (real, imaginary)
         _between_corners(force, arguments[item], levels, waves, cosine, sine, nodes, answer)
     _scale(answer)
 
@@ -63,9 +63,11 @@ def respond(
 @compile_loop
 def _scale(harmonics: FloatArray) -> None:
     """Turn means of a signal times each harmonic into harmonics; the mean has no imaginary part."""
-    harmonics *= 2.0
-    harmonics[0] /= 2.0
-    harmonics[0, 1] = 0.0
+    for j in range(harmonics.shape[2]):
+        harmonics[0, 1, j] = 0.0
+        for n in range(1, harmonics.shape[0]):
+            harmonics[n, 0, j] *= 2.0
+            harmonics[n, 1, j] *= 2.0
 
 
 @compile_loop
@@ -83,14 +85,14 @@ def _at_points(
     Where corners depend on the motion through the water, fill in its harmonics too.
     """
     cosine, sine, step_s, speed_m_s = instants
-    orders, points = real.shape[0], cosine.shape[0]
+    orders, points = real.shape[1], cosine.shape[0]
     value, force, through = np.empty((1, 8)), np.zeros((1, 3)), np.zeros((orders, 2, 3))
     for k in range(points):
-        value[:] = 0.0
-        for n in range(orders):
-            for j in range(8):
-                value[0, j] += real[n, j] * cosine[k, n] - imaginary[n, j] * sine[k, n]
-        force[:] = 0.0
+        for j in range(8):
+            value[0, j] = 0.0
+            for n in range(orders):
+                value[0, j] += real[j, n] * cosine[k, n] - imaginary[j, n] * sine[k, n]
+        force[0, 0] = force[0, 1] = 0.0
         force[0, 2] = law_force(
             smooth, smooth_hull, value, 0, k * step_s, step_s, speed_m_s, force, 0
         )
@@ -100,7 +102,9 @@ def _at_points(
             force[0, 0], force[0, 1], force[0, 2] = moves.v, moves.r, moves.v_rate
             _add_wave(force, cosine[k], sine[k], 1.0 / points, through)
     _scale(through)
-    real[:, 8:], imaginary[:, 8:] = through[:, 0], through[:, 1]
+    for n in range(orders):
+        for j in range(3):
+            real[8 + j, n], imaginary[8 + j, n] = through[n, 0, j], through[n, 1, j]
 
 
 @compile_loop
@@ -142,7 +146,7 @@ def _between_corners(
         Real and imaginary parts of the harmonics of all signals, ``(11, orders + 1)``.
     """
     real, imaginary = waves
-    own_real, own_imaginary = arguments @ real, arguments @ imaginary
+    own_real, own_imaginary = product(arguments, real), product(arguments, imaginary)
     room = np.empty(cosine.shape[0] * corners.shape[0])
     count = find_corners(own_real, own_imaginary, corners, cosine, sine, room)
     pieces = np.empty((count + 2, 2))
@@ -168,12 +172,13 @@ def _ask(
     """Fill in what one item asks for of each strut and along the model, at one phase."""
     laws, parts, item, period_s, speed_m_s = force
     time_s = phase / (2.0 * math.pi) * period_s
-    asked[:] = 0.0
+    asked[0, 0] = asked[0, 1] = 0.0
     if item < laws.shape[0] and laws[item, 9] <= 0.0:
         x, v = value_at(own[0], own[1], 0, way), value_at(own[0], own[1], 1, way)
         a, load = value_at(own[0], own[1], 2, way), value_at(own[0], own[1], 3, way)
         asked_force = law_value(laws, item, LawInput(x, v, a, load, time_s, 0.0, speed_m_s))
         asked[0, 0], asked[0, 1] = asked_force * laws[item, 5], asked_force * laws[item, 6]
+        asked[0, 2] = 0.0
         return
     value = np.empty((1, 8))
     for j in range(8):

@@ -90,6 +90,17 @@ def _root(
 
 
 @compile_loop
+def _sort(phases: FloatArray, count: int) -> None:
+    """Put the first few in order; those of one signal are so already."""
+    for k in range(1, count):
+        phase, place = phases[k], k
+        while place and phases[place - 1] > phase:
+            phases[place] = phases[place - 1]
+            place -= 1
+        phases[place] = phase
+
+
+@compile_loop
 def find_corners(
     real: FloatArray,
     imaginary: FloatArray,
@@ -127,7 +138,7 @@ def find_corners(
                 low, high = (k * step, values[k]), ((k + 1) * step, after)
                 phases[count] = _root(real, imaginary, row, level, low, high)
                 count += 1
-    phases[:count].sort()
+    _sort(phases, count)
     return count
 
 
