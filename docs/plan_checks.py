@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from pmm.plan.check import Check
-from pmm.plan.check_table import CHECKS
+from pmm.plan.check_table import CHECKS, STATIC_ANGLE
 
 HERE = Path(__file__).parent
 _HEAD = """\
@@ -17,6 +17,7 @@ The pages of ITTC 7.5-02-06-02 (Captive Model Test) were not at hand: that it as
 |---|---|---|---|---|
 """  # noqa: E501
 _WORDS = {"rotation": "yaw or pitch", "rate": "r", "channel": "a gauge"}
+_OF_ANGLES = {"channel": "drift, heel or rudder angle"}
 
 
 def page() -> str:
@@ -26,7 +27,8 @@ def page() -> str:
 
 def _row(one: Check) -> str:
     limit = one.limit.format(*one.numbers)
-    cells = (one.quantity.format(**_WORDS), limit, one.source, one.reason, one.moved)
+    words = _WORDS | (_OF_ANGLES if one is STATIC_ANGLE else {})
+    cells = (one.quantity.format(**words), limit, one.source, one.reason, one.moved)
     return f"| {' | '.join(cells)} |\n"
 
 

@@ -173,6 +173,18 @@ class PortOpenError(HardwareError):
     reaction = Reaction.REFUSE
 
 
+class ModbusError(HardwareError):
+    """A Modbus device refuses what it is asked: an exception of the protocol, with its code."""
+
+    reaction = Reaction.PROFILE_STOP
+
+
+class TrackEndError(HardwareError):
+    """The carriage comes so near the end of its track that it has to stop now."""
+
+    reaction = Reaction.PROFILE_STOP
+
+
 class UnpluggedError(HardwareError):
     """A serial port failed while open: unplugged, the device server closed, write timed out."""
 

@@ -1,14 +1,15 @@
-"""The interlock: eccentricity and phase stay while the shaft turns, and the other way round.
+"""The interlock: what is set stays while shaft or carriage move, and the other way round.
 
 Wrapped around whatever driver a rig has, so that no driver can forget it.
 """
 
 from collections.abc import Callable, Sequence
-from typing import Any, cast
+from typing import Any, Final, cast
 
 from hardware.errors import HardwareError, InterlockError, NotReadyError
-from hardware.roles import PositionAxis, Powered, Shaft
+from hardware.roles import Carriage, PositionAxis, Powered, Shaft
 
+_RUNS: Final = "moves; stop it first"
 Faults = Callable[[], Sequence[HardwareError]]
 
 
@@ -53,17 +54,31 @@ class _GuardedShaft(_Guarded):
         self._inner.turn(frequency_hz)
 
 
+class _GuardedCarriage(_Guarded):
+    """A carriage that does not start while an axis moves."""
+
+    def run_at(self, speed_m_s: float) -> None:
+        """Run, if the axes stand still."""
+        self._refuse(f"run at {speed_m_s:g} m/s", "moves; let it arrive first")
+        self._inner.run_at(speed_m_s)
+
+    def go_back(self) -> None:
+        """Go back, if nothing is latched."""
+        self._refuse("go back", "moves; let it arrive first")
+        self._inner.go_back()
+
+
 class _GuardedAxis(_Guarded):
-    """An eccentricity or phase axis that stays while the shaft turns."""
+    """An axis that stays while the shaft turns or the carriage runs."""
 
     def home(self) -> None:
-        """Home, if the shaft stands."""
-        self._refuse("home", "turns; stop it first")
+        """Home, if both stand."""
+        self._refuse("home", _RUNS)
         self._inner.home()
 
     def move_to(self, position: float) -> None:
-        """Move, if the shaft stands."""
-        self._refuse(f"move to {position:g} {self._inner.unit}", "turns; stop it first")
+        """Move, if both stand."""
+        self._refuse(f"move to {position:g} {self._inner.unit}", _RUNS)
         self._inner.move_to(position)
 
 
@@ -72,7 +87,11 @@ def guard_shaft(shaft: Shaft, axes: Sequence[PositionAxis], faults: Faults) -> S
     return cast("Shaft", _GuardedShaft(shaft, axes, faults))
 
 
-def guard_axis(axis: PositionAxis, shaft: Shaft | None, faults: Faults) -> PositionAxis:
-    """Return an axis behind the interlock."""
-    others = () if shaft is None else (shaft,)
-    return cast("PositionAxis", _GuardedAxis(axis, others, faults))
+def guard_carriage(carriage: Carriage, axes: Sequence[PositionAxis], faults: Faults) -> Carriage:
+    """Return the carriage behind the interlock."""
+    return cast("Carriage", _GuardedCarriage(carriage, axes, faults))
+
+
+def guard_axis(axis: PositionAxis, drives: Sequence[Powered], faults: Faults) -> PositionAxis:
+    """Return an axis behind the interlock; ``drives`` are shaft and carriage, if there."""
+    return cast("PositionAxis", _GuardedAxis(axis, drives, faults))

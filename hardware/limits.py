@@ -67,6 +67,27 @@ RAMP_MARGIN: Final = 1.5
 """Over the time that a ramp takes by its settings: load, jerk limits and the drive's own cycle."""
 
 
+CARRIAGE_REST_SHARE: Final = 0.005
+"""Of the carriage's highest speed: below it the carriage is at rest, by its own measurement. At
+3 m/s that is 15 mm/s; half is within the ripple of a servo that holds, twice would end a run while
+the carriage still rolls."""
+
+CARRIAGE_PLAUSIBLE: Final = 1.5
+"""Over the carriage's highest speed: what reads more is no speed of it but a wrong register, type,
+word order or scale. A half word in the wrong place makes a factor of 65536."""
+
+CARRIAGE_SHARE: Final = 0.05
+"""Of the set speed: so far from it, and by the tolerance, the carriage may be while the gate is
+armed or open; five times the ripple of a carriage that the catalogue of effects calls large."""
+
+CARRIAGE_S: Final = 0.5
+"""Seconds for which it has to be so far off: a rail joint is over by then."""
+
+TRACK_MARGIN: Final = 1.2
+"""Over the way in which the carriage brakes: that far from the end of its track, and the way of two
+answers that were lost, it is stopped."""
+
+
 def check_quick_stop(speed: float, ramp: float, unit: str, key: str) -> None:
     """Refuse a quick stop that could not be over by its deadline.
 

@@ -23,7 +23,7 @@ from hardware.pacing import Pacer
 from hardware.rest import come_to_rest
 from hardware.rig_configuration import RigConfiguration, check
 from hardware.rig_devices import RigDevices
-from hardware.roles import Cycle, Device, Powered
+from hardware.roles import Cycle, Device, PositionAxis, Powered
 from hardware.serial_port import Port, Ports, PortSettings, SerialPort
 from hardware.watch import WatchLimits
 
@@ -48,7 +48,7 @@ class Rig:
 
     Attributes
     ----------
-    shaft, eccentricity, phase, photocell, inclinometer, forces
+    shaft, eccentricity, phase, photocell, inclinometer, forces, carriage, angles
         The devices by role, behind the interlock; absent ones are ``None``.
     faults
         What is latched: nothing moves before :meth:`reset`.
@@ -100,6 +100,7 @@ class Rig:
         opened = self._devices
         self.shaft, self.eccentricity, self.phase = opened.shaft, opened.eccentricity, opened.phase
         self.photocell, self.inclinometer = opened.photocell, opened.inclinometer
+        self.carriage, self.angles = opened.carriage, opened.angles
         self._watch, self.forces = opened.watch, opened.watch.forces
 
     def __enter__(self) -> "Rig":
@@ -231,9 +232,14 @@ class Rig:
         self._react([error])
 
     def powered(self) -> tuple[Powered, ...]:
-        """Return the axes that the rig has."""
-        axes = (self.shaft, self.eccentricity, self.phase)
-        return tuple(axis for axis in axes if axis is not None)
+        """Return what moves, as far as the rig has it."""
+        drives = tuple(one for one in (self.shaft, self.carriage) if one is not None)
+        return (*drives, *self.axes())
+
+    def axes(self) -> tuple[PositionAxis, ...]:
+        """Return the axes that are set before a run and stay in it."""
+        own = (self.eccentricity, self.phase, *self.angles.values())
+        return tuple(axis for axis in own if axis is not None)
 
     def _each(self, command: Callable[[Powered], None]) -> None:
         failed = []

@@ -8,6 +8,7 @@ from typing import Final
 
 from hardware.bus import FASTEST_HZ, BusConfiguration, bus_load, check_load
 from hardware.description.errors import ConfigurationError
+from hardware.description.setpoint import ANGLE_KEYS
 from hardware.driver import Driver, NodePlan, find_driver, read_settings
 from hardware.roles import Role
 
@@ -17,6 +18,8 @@ ROLES: Final = {
     "phase": Role.POSITION_AXIS,
     "photocell": Role.PHOTOCELL,
     "inclinometer": Role.INCLINOMETER,
+    "carriage": Role.CARRIAGE,
+    **dict.fromkeys(ANGLE_KEYS, Role.POSITION_AXIS),
     "forces": Role.FORCES,
 }
 TABLES: Final = (*ROLES, "bus", "cycle_rate_hz")  # of rig.toml; others are not the devices'
@@ -52,6 +55,10 @@ class RigConfiguration:
     phase: RigPart | None = None
     photocell: RigPart | None = None
     inclinometer: RigPart | None = None
+    carriage: RigPart | None = None
+    drift: RigPart | None = None
+    heel: RigPart | None = None
+    rudder: RigPart | None = None
     forces: tuple[RigPart, ...] = ()
     cycle_rate_hz: float = 100.0
 
@@ -60,12 +67,17 @@ class RigConfiguration:
         """Cycles per second."""
         return self.bus.sync_rate_hz if self.bus else self.cycle_rate_hz
 
+    @property
+    def angles(self) -> dict[str, RigPart]:
+        """The axes of static angles that the rig has, by name."""
+        return {key: one for key in ANGLE_KEYS if (one := getattr(self, key)) is not None}
+
     def parts(self) -> Iterator[RigPart]:
         """Yield the parts, the shaft first."""
         for one in (self.shaft, self.eccentricity, self.phase, *self.forces):
             if one is not None:
                 yield one
-        for one in (self.photocell, self.inclinometer):
+        for one in (self.photocell, self.inclinometer, self.carriage, *self.angles.values()):
             if one is not None:
                 yield one
 

@@ -7,10 +7,11 @@ from typing import cast
 from hardware.description.errors import ConfigurationError
 from hardware.driver import Services
 from hardware.errors import HardwareError
-from hardware.interlock import guard_axis, guard_shaft
+from hardware.interlock import guard_axis, guard_carriage, guard_shaft
 from hardware.rig_configuration import RigConfiguration, RigPart
 from hardware.roles import (
     PROTOCOLS,
+    Carriage,
     Device,
     ForceChannels,
     Inclinometer,
@@ -33,6 +34,8 @@ class RigDevices:
     ----------
     opened
         All devices that are open, in the order in which they tick.
+    angles
+        Axes of angles that stay during a run: drift, heel, rudder, as far as they are there.
     watch
         Compares the shaft's speed and the loads with their limits.
     """
@@ -45,6 +48,8 @@ class RigDevices:
         self.phase: PositionAxis | None = None
         self.photocell: Photocell | None = None
         self.inclinometer: Inclinometer | None = None
+        self.carriage: Carriage | None = None
+        self.angles: dict[str, PositionAxis] = {}
         self.watch = Watch(None, ())
 
     def open(self, one: RigConfiguration, services: Services) -> None:
@@ -67,11 +72,21 @@ class RigDevices:
         self.watch = Watch(shaft, forces)
         self.photocell = cast("Photocell | None", self._device(one.photocell, services))
         self.inclinometer = cast("Inclinometer | None", self._device(one.inclinometer, services))
-        present = [axis for axis in axes if axis is not None]
+        carriage = cast("Carriage | None", self._device(one.carriage, services))
+        angles = {
+            name: cast("PositionAxis", self._device(part, services))
+            for name, part in one.angles.items()
+        }
+        present = [axis for axis in (*axes, *angles.values()) if axis is not None]
+        drives = [drive for drive in (shaft, carriage) if drive is not None]
         self.shaft = guard_shaft(shaft, present, self._faults) if shaft else None
+        self.carriage = guard_carriage(carriage, present, self._faults) if carriage else None
         self.eccentricity, self.phase = (
-            guard_axis(axis, shaft, self._faults) if axis else None for axis in axes
+            guard_axis(axis, drives, self._faults) if axis else None for axis in axes
         )
+        self.angles = {
+            name: guard_axis(axis, drives, self._faults) for name, axis in angles.items()
+        }
 
     def _device(self, part: RigPart | None, services: Services) -> Device | None:
         if part is None:

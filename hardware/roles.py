@@ -27,6 +27,7 @@ class Role(StrEnum):
     FORCES = "forces"
     PHOTOCELL = "photocell"
     INCLINOMETER = "inclinometer"
+    CARRIAGE = "carriage"
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,6 +238,43 @@ class PositionAxis(Powered, Protocol):
 
 
 @runtime_checkable
+class Carriage(Powered, Sampled, Protocol):
+    """The carriage along the tank. Its channel is the speed that it measures.
+
+    Attributes
+    ----------
+    tolerance_m_s
+        So near the speed asked for it is said to be at speed.
+    """
+
+    speed_m_s: Range
+    tolerance_m_s: float
+
+    @property
+    def at_speed(self) -> bool:
+        """Whether the commanded speed has been kept for as long as it takes to settle."""
+        ...
+
+    @property
+    def measured_speed_m_s(self) -> float:
+        """Speed now; NaN if it is not known."""
+        ...
+
+    @property
+    def returns(self) -> bool:
+        """Whether it can go back to the start of its track by itself."""
+        ...
+
+    def run_at(self, speed_m_s: float) -> None:
+        """Run up to a speed along the track; 0 is refused: that is :meth:`stop`."""
+        ...
+
+    def go_back(self) -> None:
+        """Go back to the start of the track and stand there; nothing where it stands there."""
+        ...
+
+
+@runtime_checkable
 class ForceChannels(Sampled, Protocol):
     """Amplifiers of the dynamometers: any number of channels, in newtons or whatever they say."""
 
@@ -269,4 +307,5 @@ PROTOCOLS: dict[Role, type] = {
     Role.FORCES: ForceChannels,
     Role.PHOTOCELL: Photocell,
     Role.INCLINOMETER: Inclinometer,
+    Role.CARRIAGE: Carriage,
 }

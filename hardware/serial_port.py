@@ -5,7 +5,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import entry_points
-from typing import TYPE_CHECKING, Final, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Final, Literal, Protocol, TypeAlias
 
 import serial
 from serial.tools import list_ports
@@ -24,6 +24,43 @@ _LONGEST_LINE: Final = 256
 _FIRST_BACK_OFF_S, _LAST_BACK_OFF_S = 0.5, 8.0
 
 
+class Splitter(Protocol):
+    """Makes whole lines of the bytes that arrive."""
+
+    def sent(self, data: bytes) -> None:
+        """Take what was written."""
+        ...
+
+    def split(self, data: bytes) -> list[bytes]:
+        """Take what has arrived, if anything; return the lines that it completes."""
+        ...
+
+
+class LineSplitter:
+    """Lines that end with a line feed, which is taken off."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._rest = b""
+
+    def sent(self, data: bytes) -> None:
+        """What was written does not matter."""
+
+    def split(self, data: bytes) -> list[bytes]:
+        """Return the lines; empty ones are left out.
+
+        Raises
+        ------
+        LineError
+            If so much arrived without a line feed that it cannot be a line.
+        """
+        *whole, self._rest = (self._rest + data).split(b"\n")
+        if len(self._rest) > _LONGEST_LINE:
+            seen, self._rest = self._rest[:32], b""
+            raise LineError(self._name, f"no line feed after {_LONGEST_LINE} bytes ({seen!r} ...)")
+        return [line for line in whole if line.strip()]
+
+
 @dataclass(frozen=True)
 class PortSettings:
     """How to open a port.
@@ -38,6 +75,11 @@ class PortSettings:
     url: str
     baud_rate: int = 115200
     write_timeout_s: float = 0.2
+    parity: Literal["none", "even", "odd"] = "none"
+
+    def splitter(self, name: str) -> Splitter:
+        """Return what makes lines of bytes, for the device of a name."""
+        return LineSplitter(name)
 
 
 class Port(Protocol):
@@ -145,7 +187,7 @@ class SerialPort:
     def __init__(self, name: str, settings: PortSettings) -> None:
         self._name = name
         self._settings = settings
-        self._rest = b""
+        self._splitter = settings.splitter(name)
         self._back_off_s = _FIRST_BACK_OFF_S
         self._again_s = 0.0
         self._port: serial.Serial | None = None
@@ -168,6 +210,7 @@ class SerialPort:
             self._port = serial.serial_for_url(
                 url,
                 baudrate=self._settings.baud_rate,
+                parity=self._settings.parity[0].upper(),
                 timeout=0,
                 write_timeout=self._settings.write_timeout_s,
                 exclusive=True,
@@ -177,7 +220,7 @@ class SerialPort:
             raise PortOpenError(
                 self._name, f"{self._settings.url} cannot be opened: {error}"
             ) from error
-        self._rest = b""
+        self._splitter = self._settings.splitter(self._name)
 
     def lines(self) -> list[bytes]:
         """Return the whole lines that have arrived, without their line feed; none if closed.
@@ -187,23 +230,17 @@ class SerialPort:
         UnpluggedError
             If the port fails; it is closed then.
         LineError
-            If so much arrived without a line feed that it cannot be a line.
+            If what arrived cannot be a line.
         """
         if self._port is None:
             return []
         try:
             # The count of waiting bytes first: on an unplugged adapter it fails where a read of
             # nothing would not.
-            if not self._port.in_waiting:
-                return []
-            self._rest += self._port.read(_CHUNK)
+            arrived = self._port.read(_CHUNK) if self._port.in_waiting else b""
         except OSError as error:  # SerialException is one
             raise self._lost("reading", error) from error
-        *whole, self._rest = self._rest.split(b"\n")
-        if len(self._rest) > _LONGEST_LINE:
-            seen, self._rest = self._rest[:32], b""
-            raise LineError(self._name, f"no line feed after {_LONGEST_LINE} bytes ({seen!r} ...)")
-        return [line for line in whole if line.strip()]
+        return self._splitter.split(arrived)
 
     def write(self, data: bytes) -> None:
         """Write.
@@ -217,6 +254,7 @@ class SerialPort:
             raise UnpluggedError(self._name, f"{self._settings.url} is closed; plug in and reset")
         try:
             self._port.write(data)
+            self._splitter.sent(data)
         except OSError as error:
             raise self._lost("writing", error) from error
 

@@ -3,13 +3,20 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
+from types import MappingProxyType
+from typing import Any, Final
 
 from hardware.description.errors import ConfigurationError
 from hardware.description.lines import Line, peak_of
 from hardware.description.oscillator import Oscillator
 
 _WHOLE = 1.01  # of the eccentricity: a peak that is found on a finer grid is still it
+
+
+ANGLE_KEYS: Final[Mapping[str, str]] = MappingProxyType(
+    {"drift": "drift_rad", "heel": "heel_rad", "rudder": "rudder_angle_rad"}
+)
+"""Angles that stay during a run, by what sets them: the axis's table, and the set-point's key."""
 
 
 class Medium(StrEnum):

@@ -63,4 +63,4 @@ def _devices(path: Path, listen_s: float) -> Iterator[MachineFinding]:
     answering = {one.node_id for one in found.nodes}
     names = [name for node, name in found.names.items() if node in answering]
     ports = [name for name, one in found.heard.items() if one.what != "silent"]
-    yield from check_rig(path, [*names, *ports], found.wrong)
+    yield from check_rig(path, [*names, *ports, *found.asked], found.wrong)

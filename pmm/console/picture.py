@@ -65,7 +65,11 @@ def axes_of(rig: Rig) -> tuple[tuple[str, str, float], ...]:
     """Return name, unit and reading of the axes."""
     return tuple(
         (name, axis.unit, math.nan if axis.reading is None else axis.reading.value)
-        for name, axis in (("eccentricity", rig.eccentricity), ("phase", rig.phase))
+        for name, axis in (
+            ("eccentricity", rig.eccentricity),
+            ("phase", rig.phase),
+            *rig.angles.items(),
+        )
         if axis is not None
     )
 

@@ -24,7 +24,7 @@ def axis_of(rig: Rig, name: str) -> PositionAxis:
     """
     found: dict[str, PositionAxis] = {
         one: axis for one in _AXES if (axis := getattr(rig, one)) is not None
-    }
+    } | rig.angles
     if name not in found:
         known = ", ".join(found) or "none"
         raise ConfigurationError(f"no axis {name!r} that moves to a position; the rig has {known}")

@@ -62,7 +62,7 @@ class Live:
     def _take(self) -> None:
         """Keep the mean of what each channel has read since the last time."""
         rig = self.rig
-        for device in (rig.shaft, rig.inclinometer, *rig.forces):
+        for device in (rig.shaft, rig.inclinometer, *rig.forces, rig.carriage):
             taken = device.take() if device is not None else ()
             if device is None or not taken:
                 continue
@@ -79,9 +79,11 @@ class Live:
         if rig.shaft is not None:
             yield from _shaft(rig.shaft)
             yield from self._channels(rig.shaft)
-        for axis in (rig.eccentricity, rig.phase):
-            if axis is not None:
-                yield from _axis(axis)
+        for axis in rig.axes():
+            yield from _axis(axis)
+        if rig.carriage is not None:
+            yield _state(rig.carriage)
+            yield from self._channels(rig.carriage)
         for device in (*rig.forces, *((rig.inclinometer,) if rig.inclinometer else ())):
             yield from self._channels(device)
         if rig.photocell is not None:

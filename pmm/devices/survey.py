@@ -2,12 +2,15 @@
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 from hardware.bus import BusConfiguration
 from hardware.errors import HardwareError
 from hardware.listening import Heard, listen
 from hardware.master import Master
+from hardware.modbus_device import spans
+from hardware.modbus_link import ModbusSettings, read_once
 from hardware.scan import Ear, FoundNode, scan
 from hardware.serial_port import PortSettings, SerialPort
 from pmm.devices.device_source import DeviceTables
@@ -28,6 +31,8 @@ class Survey:
 
     Attributes
     ----------
+    asked
+        Modbus devices that answer, by their part's name: how many registers they showed.
     names
         Of the nodes that the rig's file names, by node id.
     wrong
@@ -38,6 +43,7 @@ class Survey:
     names: dict[int, str]
     heard: dict[str, Heard]
     wrong: list[str]
+    asked: dict[str, str] = field(default_factory=dict)
 
 
 def survey_rig(tables: DeviceTables, listen_s: float) -> Survey:
@@ -53,10 +59,15 @@ def survey_rig(tables: DeviceTables, listen_s: float) -> Survey:
     heard: dict[str, Heard] = {}
     wrong: list[str] = []
     nodes = _scan(rig.bus, listen_s) if rig.bus is not None else ()
+    modbus = {part.name: part for part in rig.parts() if isinstance(part.settings, ModbusSettings)}
     for name, port in tables.ports().items():
-        _hear(name, PortSettings(**port), listen_s, heard, wrong)
+        if name not in modbus:
+            _hear(name, PortSettings(**port), listen_s, heard, wrong)
+    asked: dict[str, str] = {}
+    for name, part in modbus.items():
+        _ask(name, part.settings, asked, wrong)
     wrong += _missing(nodes, expected)
-    return Survey(nodes, {one.node_id: one.name for one in expected}, heard, wrong)
+    return Survey(nodes, {one.node_id: one.name for one in expected}, heard, wrong, asked)
 
 
 def survey_bus(bus: BusConfiguration, listen_s: float) -> Survey:
@@ -100,6 +111,17 @@ def _hear(
         wrong.append(str(error))
     finally:
         port.close()
+
+
+def _ask(name: str, settings: Any, asked: dict[str, str], wrong: list[str]) -> None:
+    """Read what a Modbus device shows, once; nothing is written."""
+    try:
+        registers = settings.registers
+        found = read_once(name, settings, spans(registers.read().values(), registers.status))
+    except HardwareError as error:
+        wrong.append(str(error))
+    else:
+        asked[name] = f"{found} registers"
 
 
 def _expected(tables: DeviceTables) -> tuple[_Expected, ...]:

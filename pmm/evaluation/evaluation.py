@@ -16,8 +16,10 @@ from pmm.evaluation.rig_tests import (
     GaugeResponse,
     GaugeZeros,
     RungMode,
+    TowedSpeed,
     known_mass_responses,
     rung_modes,
+    towed_speeds,
     zero_drifts,
 )
 from pmm.evaluation.run_results import RunResult, of_kind, read_results
@@ -49,6 +51,7 @@ class Evaluation:
     responses: tuple[GaugeResponse, ...]
     charts: tuple[Chart, ...]
     water: InWater = field(default_factory=InWater)
+    speeds: tuple[TowedSpeed, ...] = ()
     notes: tuple[str, ...] = ()
     failed: tuple[str, ...] = ()
     files: tuple[Path, ...] = ()
@@ -104,6 +107,7 @@ def evaluate(folder: Path, valid_days: int) -> Evaluation:
         _responses(folder, of_kind(results, "known-mass"), of_kind(results, "dry")),
         control_charts(controls) if len(controls) >= LEAST else (),
         water,
+        tried(lambda: towed_speeds(results), ()),
         tuple(notes),
         tuple(failed),
     )

@@ -10,6 +10,7 @@ import numpy as np
 
 from analysis.inertia.damped_fit import fit_damped
 from analysis.inertia.spectrum import spectrum
+from hardware.description.channels import CARRIAGE_SPEED
 from hardware.description.errors import DataError
 from pmm.evaluation.run_results import RunResult
 
@@ -63,6 +64,40 @@ class GaugeResponse:
     frequency_hz: float
     gain: float
     lag_s: float
+
+
+@dataclass(frozen=True)
+class TowedSpeed:
+    """How the carriage ran while a run was measured, by its own measurement.
+
+    Attributes
+    ----------
+    speed_m_s, mean_m_s, deviation_m_s
+        Speed asked for, its mean over the gate, and its standard deviation about that.
+    """
+
+    run: str
+    speed_m_s: float
+    mean_m_s: float
+    deviation_m_s: float
+
+    @property
+    def off_percent(self) -> float:
+        """The mean's difference from what was asked, in percent of that."""
+        return 100.0 * (self.mean_m_s / self.speed_m_s - 1.0)
+
+
+def towed_speeds(runs: Sequence[RunResult]) -> tuple[TowedSpeed, ...]:
+    """Return how the carriage ran, of each tow that measured it."""
+    found = []
+    for run in runs:
+        asked = float(run.plan["set_point"].get("carriage_speed_m_s", 0.0))
+        if not asked or CARRIAGE_SPEED.name not in (one.name for one in run.header.channels):
+            continue
+        recording, gate = run.gate_samples()
+        speed = recording.values(CARRIAGE_SPEED.name)[gate]
+        found.append(TowedSpeed(run.name, asked, float(np.nanmean(speed)), float(np.nanstd(speed))))
+    return tuple(found)
 
 
 def zero_drifts(runs: Sequence[RunResult]) -> tuple[GaugeZeros, ...]:

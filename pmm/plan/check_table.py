@@ -81,11 +81,22 @@ LOAD: Final = Check(
     "load on {channel} [N]", "refuse above the gauge's full scale", _RIG, "load it less", _OWN
 )
 SPEED: Final = Check(
-    "speed [m/s]", "refuse above `tank.highest_speed_m_s`", _RIG, "tow slower", _OWN
+    "speed [m/s]",
+    "refuse above `tank.highest_speed_m_s`, or the carriage's own `highest_speed_m_s`",
+    _RIG,
+    "tow slower",
+    _OWN,
+)
+STATIC_ANGLE: Final = Check(
+    "{channel} [rad]",
+    "refuse outside the range of the axis that sets it",
+    _RIG,
+    "choose another angle, or have it set by hand: leave the axis's table out",
+    _OWN,
 )
 WAY: Final = Check(
     "tank length [m]",
-    "refuse above `tank.length_m`, from rest to rest",
+    "refuse above `tank.length_m` or the carriage's `track_m`, from rest to rest",
     _RIG,
     "tow slower, or ask for fewer periods or less settling",
     _OWN,
@@ -280,7 +291,8 @@ CALIBRATION: Final = Check(
 
 CHECKS: Final = (
     FREQUENCY, AMPLITUDE, STROKE, STRUT_PHASE, VELOCITY, ACCELERATION, STRUT_FORCE, GAUGE_FORCE,
-    LOAD, SPEED, WAY, BUS, ROTATION, ANGLE_TO_FLOW, FROUDE, REYNOLDS, TURNING, REDUCED_SWAY,
+    LOAD, SPEED, STATIC_ANGLE, WAY, BUS, ROTATION, ANGLE_TO_FLOW, FROUDE, REYNOLDS, TURNING,
+    REDUCED_SWAY,
     REDUCED_YAW, REDUCED, WAVE_FREQUENCY, TAU_SWAY, TAU_HEAVE, ECHO, REACH, KEEL, BLOCKAGE,
     DEPTH, DEPTH_FROUDE, TANK_MODE, STRUCTURE, CYCLES, SETTLING, RIPPLE, SAMPLING,
     CALIBRATION,

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 
+from hardware.description.setpoint import ANGLE_KEYS
 from hardware.rig_configuration import RigPart
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
@@ -16,18 +17,27 @@ def shaft_ramp_s(run: RunPlan, rig: RigFile) -> float:
 
 def carriage_ramp_s(run: RunPlan, rig: RigFile) -> float:
     """Return how long the carriage takes to come to speed, or to stop."""
-    if rig.tank is None:
-        return 0.0
-    return run.set_point.carriage_speed_m_s / rig.tank.carriage_acceleration_m_s2
+    own = _setting(rig.hardware.carriage, "acceleration_m_s2")
+    stated = None if rig.tank is None else rig.tank.carriage_acceleration_m_s2
+    accelerations = [one for one in (own, stated) if one]
+    return run.set_point.carriage_speed_m_s / min(accelerations) if accelerations else 0.0
+
+
+def carriage_track_m(rig: RigFile) -> float | None:
+    """Return the length of the carriage's own track; ``None`` where its driver has none."""
+    settings = None if rig.hardware.carriage is None else rig.hardware.carriage.settings
+    track: tuple[float, float] | None = getattr(settings, "track_m", None)
+    return None if track is None else track[1] - track[0]
 
 
 def tank_length_m(run: RunPlan, rig: RigFile) -> float:
     """Return the way of the carriage from rest to rest: ``U (t + U / a)``.
 
-    In ``t`` the shaft comes to speed, settles, waits at most a period for its pulse, and turns for
-    all periods asked.
+    In ``t`` the carriage's speed settles, then the shaft comes to speed, settles, waits at most a
+    period for its pulse, and turns for all periods asked.
     """
-    at_speed_s = run.moving_s + shaft_ramp_s(run, rig)
+    settle_s = _setting(rig.hardware.carriage, "settle_s") or 0.0
+    at_speed_s = settle_s + run.moving_s + shaft_ramp_s(run, rig)
     return run.set_point.carriage_speed_m_s * (at_speed_s + carriage_ramp_s(run, rig))
 
 
@@ -51,12 +61,15 @@ def duration_rows(runs: Sequence[RunPlan], rig: RigFile) -> tuple[float, ...]:
 
 
 def setting_s(run: RunPlan, before: RunPlan | None, rig: RigFile) -> float:
-    """Return the longer of the two axes' moves from the settings of the run before, or from 0."""
+    """Return the longest of the axes' moves from the settings of the run before, or from 0."""
     was = None if before is None else before.set_point
-    ways = (
+    ways = [
         (rig.hardware.eccentricity, run.set_point.eccentricity_m, was and was.eccentricity_m),
         (rig.hardware.phase, run.set_point.strut_phase_rad, was and was.strut_phase_rad),
-    )
+    ]
+    for name, part in rig.hardware.angles.items():
+        key = ANGLE_KEYS[name]
+        ways.append((part, getattr(run.set_point, key), was and getattr(was, key)))
     return max(_move_s(part, abs(to - (start or 0.0))) for part, to, start in ways)
 
 

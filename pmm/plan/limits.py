@@ -5,10 +5,11 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from hardware.description.setpoint import ANGLE_KEYS
 from hardware.rig_configuration import RigPart, load_of
 from pmm.plan import check_table as table
 from pmm.plan.check import Check
-from pmm.plan.duration import tank_length_m
+from pmm.plan.duration import carriage_track_m, tank_length_m
 from pmm.plan.findings import PlanFinding, PlanVerdict
 from pmm.plan.force_estimate import force_peak_n
 from pmm.plan.motion_peaks import acceleration_peak_m_s2, peak_place, velocity_peak_m_s
@@ -72,6 +73,10 @@ def _turning(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
 
 def _setting(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
     amplitude, phase = run.set_point.eccentricity_m, run.set_point.strut_phase_rad
+    for name, part in rig.hardware.angles.items():
+        low, high = _ends(part, "low", "high")
+        angle = float(getattr(run.set_point, ANGLE_KEYS[name]))
+        yield _Bound(table.STATIC_ANGLE, angle, low, high, f"the axis [{name}]", name)
     if not run.oscillates:
         return
     allowed = rig.oscillator.eccentricity_m
@@ -86,11 +91,18 @@ def _setting(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
 
 
 def _towing(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
-    tank, speed = rig.tank, run.set_point.carriage_speed_m_s
-    if tank is None or speed == 0.0:
+    speed, carriage = run.set_point.carriage_speed_m_s, rig.hardware.carriage
+    if speed == 0.0:
         return
-    yield _Bound(table.SPEED, speed, 0.0, tank.highest_speed_m_s, "the carriage")
-    yield _Bound(table.WAY, tank_length_m(run, rig), 0.0, tank.length_m, "from rest to rest")
+    _, high = _ends(carriage, "", "highest_speed_m_s")
+    yield _Bound(table.SPEED, speed, 0.0, high, "the carriage's drive")
+    if rig.tank is not None:
+        yield _Bound(table.SPEED, speed, 0.0, rig.tank.highest_speed_m_s, "the carriage")
+        way = tank_length_m(run, rig)
+        yield _Bound(table.WAY, way, 0.0, rig.tank.length_m, "from rest to rest")
+    if (track := carriage_track_m(rig)) is not None:
+        way = tank_length_m(run, rig)
+        yield _Bound(table.WAY, way, 0.0, track, "the carriage's own track")
 
 
 def _loading(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final
 
+from hardware.description.arrangement import DriftBy
 from hardware.rig_configuration import TABLES, RigConfiguration
 from pmm.campaign.model_uncertainty import take_uncertainty
 from pmm.configuration import Fault, unknown, validate
@@ -93,6 +94,27 @@ def gauges_of(hardware: RigConfiguration) -> tuple[Gauge, ...]:
         for one in getattr(part.settings, "channels", ())
         if getattr(one, "unit", None) == "N" and hasattr(one, "full_scale")
     )
+
+
+def carriage_faults(own: RigTables, hardware: RigConfiguration) -> Iterator[Fault]:
+    """Yield what the tank's table asks of the carriage beyond its driver's own limits."""
+    settings = None if hardware.carriage is None else hardware.carriage.settings
+    for key, limit in (
+        ("carriage_acceleration_m_s2", "acceleration_m_s2"),
+        ("highest_speed_m_s", "highest_speed_m_s"),
+    ):
+        asked, most = getattr(own.tank, key, None), getattr(settings, limit, None)
+        if asked is not None and most is not None and asked > most:
+            yield Fault(
+                ("tank", key),
+                f"= {asked:g} is above carriage.{limit} = {most:g}, which its drive does; lower it",
+            )
+    if "drift" in hardware.angles and own.oscillator.drift_by is DriftBy.STRUTS_OFFSET:
+        yield Fault(
+            ("drift",),
+            "sets an angle, and oscillator.drift_by = 'struts_offset' sets the struts apart; leave "
+            "the table out, or say 'rig_turned' or 'model_turned'",
+        )
 
 
 def gauge_faults(own: RigTables, hardware: RigConfiguration) -> Iterator[Fault]:

@@ -26,6 +26,7 @@ from pmm.configuration import (
 )
 from pmm.plan.rig_checks import (
     SIMULATED,
+    carriage_faults,
     channels_of,
     gauge_faults,
     gauges_of,
@@ -140,7 +141,7 @@ def examine_rig(path: Path) -> RigFileReading:
     point_at_simulation(devices, path)
     hardware = _read_devices(devices, faults)
     if own is not None and hardware is not None:
-        faults += gauge_faults(own, hardware)
+        faults += [*gauge_faults(own, hardware), *carriage_faults(own, hardware)]
     modes = _more_modes(own, path, faults)
     calibration = _calibration(own, hardware, path, faults)
     oscillator = validate(Oscillator, table.get("oscillator", {}), [])

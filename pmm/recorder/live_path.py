@@ -80,7 +80,7 @@ class _Source:
 
 
 class LivePath:
-    """Samples and pulses of a rig, cycle by cycle: the shaft's angle, then the forces.
+    """Samples and pulses of a rig, cycle by cycle: shaft's angle, forces, carriage's speed.
 
     A sample is complete when all devices have delivered it, or have not for
     :data:`PATIENCE_CYCLES`. So it depends on nothing but the cycles in which its parts came, and a
@@ -166,9 +166,10 @@ class GateResolver:
 
 
 def sampled_devices(rig: Rig) -> tuple[Sampled, ...]:
-    """Return the devices whose samples are recorded: shaft and force channels."""
+    """Return the devices whose samples are recorded: shaft, force channels and carriage."""
     shaft = (rig.shaft,) if rig.shaft is not None and rig.shaft.channels else ()
-    return (*shaft, *rig.forces)
+    carriage = (rig.carriage,) if rig.carriage is not None and rig.carriage.channels else ()
+    return (*shaft, *rig.forces, *carriage)
 
 
 def header_channels(rig: Rig) -> tuple[Channel, ...]:

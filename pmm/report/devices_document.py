@@ -112,6 +112,12 @@ _HEARD: Final[tuple[Column[tuple[str, Heard]], ...]] = (
 )  # fmt: skip
 
 
+_ASKED: Final[tuple[Column[tuple[str, str]], ...]] = (
+    Column("device", lambda row: row[0], "device"),
+    Column("shows", lambda row: row[1], "shows"),
+)
+
+
 def _last(heard: Heard) -> str:
     lines = [f"{kind} {line.value:g}" for kind, line in heard.last.items()]
     return ", ".join(lines) or heard.first_refused
@@ -121,7 +127,9 @@ def scan_document(found: Survey, wrong: Sequence[str]) -> Document:
     """Return who answers; ``wrong`` is what is missing or does not fit."""
     nodes = [_Node(node, found.names.get(node.node_id, "")) for node in found.nodes]
     heard = Table("Ports", _HEARD, tuple(found.heard.items()), "ports", by=lambda row: row[0])
-    return _document("scan", Table("Nodes", _NODES, nodes, "nodes"), heard, Data("wrong", wrong))
+    asked = Table("Modbus", _ASKED, tuple(found.asked.items()), "modbus")
+    nodes_table = Table("Nodes", _NODES, nodes, "nodes")
+    return _document("scan", nodes_table, heard, asked, Data("wrong", wrong))
 
 
 _PORTS: Final = (word("device", "device"), word("url", "url"), word("description", "description"))

@@ -24,7 +24,7 @@ from pmm.document.content import (
 from pmm.document.notation import rounded, written
 from pmm.evaluation.control_chart import Chart
 from pmm.evaluation.evaluation import Evaluation
-from pmm.evaluation.rig_tests import GaugeResponse, GaugeZeros, RungMode
+from pmm.evaluation.rig_tests import GaugeResponse, GaugeZeros, RungMode, TowedSpeed
 from pmm.report.coefficients_document import conclusion
 from pmm.report.conditions import conditions_table
 from pmm.report.slow_tests import chart_figure, drift_figure, resistance_figure, restoring_figure
@@ -50,6 +50,14 @@ _KNOWN_MASS: Final[tuple[Column[GaugeResponse], ...]] = (
     number("f", "frequency_hz", written("g"), "Hz"),
     number("gain", "gain", written(".5f")),
     number("lag", "lag_s", lambda lag_s: f"{1e3 * lag_s:.3f}", "ms"),
+)
+
+_SPEEDS: Final[tuple[Column[TowedSpeed], ...]] = (
+    word("run", "run"),
+    number("U asked", "speed_m_s", written("g"), "m/s"),
+    number("mean", "mean_m_s", written(".5g"), "m/s"),
+    number("off", "off_percent", written("+.2f"), "%"),
+    number("standard deviation", "deviation_m_s", written(".2g"), "m/s"),
 )
 
 
@@ -81,6 +89,13 @@ def evaluation_document(found: Evaluation) -> Document:
         *_calibration(found.calibration),
         Table("Modes", _MODES, found.modes, "modes", titled=True),
         Table("Known mass", _KNOWN_MASS, found.responses, "known_mass", titled=True),
+        Table(
+            "Carriage, by its own measurement over the gate",
+            _SPEEDS,
+            found.speeds,
+            "carriage",
+            titled=True,
+        ),
         _restoring(water.restoring),
         Data("restoring", water.restoring),
         _tows(water.tows),

@@ -7,15 +7,25 @@ from typing import Final
 
 from hardware.demand import Demand
 from hardware.description.kinds import RunKind
+from hardware.description.setpoint import ANGLE_KEYS
 from hardware.errors import NotAtRestError
-from hardware.limits import FREQUENCY_S, FREQUENCY_SHARE, RAMP_MARGIN, RESTLESS_S, SHAFT_REST_SHARE
+from hardware.limits import (
+    CARRIAGE_S,
+    CARRIAGE_SHARE,
+    FREQUENCY_S,
+    FREQUENCY_SHARE,
+    RAMP_MARGIN,
+    RESTLESS_S,
+    SHAFT_REST_SHARE,
+)
 from hardware.rig import Rig
+from hardware.rig_configuration import RigPart
 from hardware.roles import PositionAxis
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.live_path import LivePath
 from pmm.recorder.run_recorder import RunEnd
-from pmm.run.errors import FrequencyError
+from pmm.run.errors import CarriageSpeedError, FrequencyError
 from pmm.run.measurement import Measurement
 from pmm.run.states import RunStateMachine, State
 from pmm.run.surroundings import Questions, Surroundings
@@ -43,9 +53,11 @@ class Conduct:
         Whether the present state has given its command.
     placed
         Where each axis was last sent.
-    restless, astray
+    towed
+        Whether the carriage has been told the run's speed.
+    restless, astray, off_speed
         For how many cycles the shaft has moved where it has to stand, or turned at a frequency that
-        is not the run's.
+        is not the run's, or the carriage has run at another speed.
     path
         What brings samples and pulses; a recording begins with a new one, as its replay does.
     pushed
@@ -69,6 +81,8 @@ class Conduct:
     pushed: int = 0
     restless: int = 0
     astray: int = 0
+    off_speed: int = 0
+    towed: bool = False
     ending: RunEnd = RunEnd.COMPLETE
     leaves_plan: bool = False
     placed: dict[str, float] = field(default_factory=dict)
@@ -82,7 +96,7 @@ class Conduct:
 
     def take(self, run: RunPlan) -> None:
         """Make a run the present one."""
-        self.run, self.pushed = run, 0
+        self.run, self.pushed, self.towed = run, 0, False
         self.ending, self.leaves_plan = RunEnd.COMPLETE, False
 
     def go(self, state: State) -> None:
@@ -126,11 +140,15 @@ class Conduct:
 
     @property
     def ramp_s(self) -> float:
-        """Longest time that a profile stop may take, from the shaft's own settings."""
-        part = self.rig.configuration.shaft
-        acceleration = getattr(part.settings, "acceleration_hz_per_s", None) if part else None
+        """Longest time that a profile stop may take, from shaft's and carriage's own settings."""
+        devices = self.rig.configuration
         highest_hz = self.rig_file.oscillator.frequency_hz.high
-        return RAMP_MARGIN * highest_hz / acceleration if acceleration else _UNKNOWN_RAMP_S
+        shaft_s = _ramp_s(devices.shaft, highest_hz, "acceleration_hz_per_s")
+        carriage = devices.carriage
+        if carriage is None:
+            return shaft_s
+        highest = getattr(carriage.settings, "highest_speed_m_s", math.inf)
+        return max(shaft_s, _ramp_s(carriage, highest, "acceleration_m_s2"))
 
     def axes(self) -> tuple[tuple[PositionAxis, float], ...]:
         """Return the axes with where the run wants them.
@@ -139,15 +157,19 @@ class Conduct:
         runs at rest it does not matter where the struts are.
         """
         point = self.present.set_point
+        angles = tuple(
+            (axis, float(getattr(point, ANGLE_KEYS[name])))
+            for name, axis in self.rig.angles.items()
+        )
         if not self.present.oscillates:
             axis = self.rig.eccentricity
             wanted = self.present.kind in _UNDISPLACED and axis is not None and 0.0 in axis.limits
-            return ((axis, 0.0),) if wanted and axis is not None else ()
+            return (*angles, *(((axis, 0.0),) if wanted and axis is not None else ()))
         pairs = (
             (self.rig.eccentricity, point.eccentricity_m),
             (self.rig.phase, point.strut_phase_rad),
         )
-        return tuple((axis, wanted) for axis, wanted in pairs if axis is not None)
+        return (*angles, *((axis, wanted) for axis, wanted in pairs if axis is not None))
 
     def _answered(self, demand: Demand, answer: str) -> None:
         if self.measurement is not None:
@@ -183,6 +205,28 @@ def check_frequency(c: Conduct) -> None:
         )
 
 
+def check_speed(c: Conduct) -> None:
+    """Compare the carriage's speed with the run's.
+
+    Raises
+    ------
+    CarriageSpeedError
+        If it is further off than allowed for longer than its time.
+    """
+    carriage, wanted = c.rig.carriage, c.present.set_point.carriage_speed_m_s
+    if carriage is None:
+        return
+    measured = carriage.measured_speed_m_s
+    allowed = CARRIAGE_SHARE * wanted + carriage.tolerance_m_s
+    c.off_speed = c.off_speed + 1 if abs(measured - wanted) > allowed else 0
+    if c.off_speed > CARRIAGE_S * c.rate_hz:
+        raise CarriageSpeedError(
+            carriage.name,
+            f"runs at {measured:.4g} m/s where the run wants {wanted:g} m/s (limit {allowed:.2g} "
+            "m/s off); look at its drive and rails, then tow again",
+        )
+
+
 def check_standing(c: Conduct, ramp_s: float = 0.0) -> None:
     """Look whether the shaft stands, as it has to while axes are homed and set and water calms.
 
@@ -207,3 +251,9 @@ def check_standing(c: Conduct, ramp_s: float = 0.0) -> None:
             f"moves for {allowed_s:g} s ({shaft.measured_frequency_hz:.3g} Hz) though nothing "
             "told it to; look at it, and use the emergency stop if it turns",
         )
+
+
+def _ramp_s(part: RigPart | None, highest: float, key: str) -> float:
+    """Return the longest time of a ramp by a device's settings."""
+    acceleration = getattr(part.settings, key, None) if part else None
+    return RAMP_MARGIN * highest / acceleration if acceleration else _UNKNOWN_RAMP_S

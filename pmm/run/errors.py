@@ -9,6 +9,12 @@ class FrequencyError(HardwareError):
     reaction = Reaction.PROFILE_STOP
 
 
+class CarriageSpeedError(HardwareError):
+    """The carriage runs at another speed than the run's while it is measured."""
+
+    reaction = Reaction.PROFILE_STOP
+
+
 class PulseOverdueError(HardwareError):
     """No pulse came to open or to close the gate, and no device has said why."""
 

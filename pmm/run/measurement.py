@@ -3,9 +3,13 @@
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.live_resolver import LiveResolver
+from hardware.description.channels import CARRIAGE_SPEED
 from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag, Severity
 from hardware.description.known_loads import LoadStep
@@ -22,6 +26,9 @@ from pmm.run.journal import RunJournal
 from pmm.run.push_record import PushRecord
 from pmm.run.readings import Means, beside, far_text, needles, rows_of, worst_relative
 from pmm.run.status import ChannelReading
+
+if TYPE_CHECKING:
+    from hardware.description.arrays import FloatArray
 
 _TRIES = 3  # gates of a run; the third void one ends it
 
@@ -79,6 +86,9 @@ class Measurement:
         self._forces = [i for i, c in enumerate(self.channels) if c.unit in ("N", "N m")]
         self._resolving: GateResolver | None = None
         self._judged = 0
+        names = [one.name for one in self.channels]
+        self._towed = names.index(CARRIAGE_SPEED.name) if CARRIAGE_SPEED.name in names else None
+        self._speeds: list[FloatArray] = []
         self._means = Means(self.channels)
         self._push = PushRecord(self.channels)
 
@@ -97,12 +107,14 @@ class Measurement:
         """Begin to wait for the pulse that opens the gate; forget what was measured before."""
         self._resolving = GateResolver(self.channels, self._rate_hz, self._live, self._next)
         self.reading, self._judged = None, 0
+        self._speeds.clear()
         self.gate.arm()
         self.event("armed", str(self._next))
 
     def open_by_time(self) -> None:
         """Open the gate now: of a run at rest, or of a rig without a photocell."""
         self._means = Means(self.channels)
+        self._speeds.clear()
         self.gate.arm()
         self.gate.pulse(self._rig.number / self._rate_hz)
 
@@ -128,6 +140,8 @@ class Measurement:
         if self._resolving is not None:
             self._heard(self._resolving.push(taken))
             self._judge(self._resolving.resolver)
+        if self._towed is not None and self.gate.state is GateState.OPEN:
+            self._speeds.append(taken.values[self._towed])
         if not self.run.oscillates and self.gate.state is GateState.OPEN:
             self._means.take(taken.values)
             self._push.take(taken.values)
@@ -170,6 +184,7 @@ class Measurement:
 
     def finish(self) -> None:
         """Make the last reading."""
+        self._tell_speed()
         if self._resolving is None:
             return
         self._heard(self._resolving.resolver.finish())
@@ -226,6 +241,17 @@ class Measurement:
         for reading in readings:
             self.reading = reading
             self._keep(reading)
+
+    def _tell_speed(self) -> None:
+        """Write down how the carriage ran while the gate was open."""
+        speed = np.concatenate([*self._speeds, np.empty(0)])
+        speed = speed[np.isfinite(speed)]
+        if speed.size:
+            self.event(
+                "carriage",
+                f"{speed.mean():.6g} m/s mean, {speed.std():.3g} m/s standard deviation over the "
+                f"gate; {self.run.set_point.carriage_speed_m_s:g} m/s asked",
+            )
 
     def _tell_spikes(self, resolving: GateResolver) -> None:
         for spike in resolving.resolver.spikes():

@@ -11,7 +11,7 @@ from analysis.resolver.weights import REACH
 from hardware.description.kinds import RunKind
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.live_path import PATIENCE_CYCLES, LivePath
-from pmm.run.conduct import Conduct, check_frequency, check_standing
+from pmm.run.conduct import Conduct, check_frequency, check_speed, check_standing
 from pmm.run.errors import PulseOverdueError
 from pmm.run.gate import GateState
 from pmm.run.states import State
@@ -31,7 +31,7 @@ def _homing(c: Conduct) -> State | None:
     turns = c.rig.shaft is not None and c.rig.shaft.moving
     if turns or not all(one.enabled for one in c.rig.powered()):
         return None
-    axes = [one for one in (c.rig.eccentricity, c.rig.phase) if one is not None]
+    axes = c.rig.axes()
     if not c.told:
         c.told = True
         for axis in axes:
@@ -42,14 +42,15 @@ def _homing(c: Conduct) -> State | None:
 
 
 def _enter_setting(c: Conduct) -> None:
-    c.questions.ask(c.surroundings.before(c.present, c.rig_file.oscillator))
+    oscillator = c.rig_file.oscillator
+    c.questions.ask(c.surroundings.before(c.present, oscillator, c.rig.angles))
     for one in c.rig.powered():
         if not one.enabled:
             one.enable()
 
 
 def _setting(c: Conduct) -> State | None:
-    """Set eccentricity and phase, after the operator has done what is asked."""
+    """Set the axes, after the operator has done what is asked."""
     check_standing(c)
     if not c.questions.done() or not all(one.enabled for one in c.rig.powered()):
         return None
@@ -74,12 +75,24 @@ def _pausing(c: Conduct) -> State | None:
 
 def _enter_starting(c: Conduct) -> None:
     c.measurement, c.path = c.begin(c.present), LivePath(c.rig)
-    c.questions.ask(c.surroundings.tow(c.present.set_point.carriage_speed_m_s))
+    if c.rig.carriage is None:
+        c.questions.ask(c.surroundings.tow(c.present.set_point.carriage_speed_m_s))
+
+
+def _at_speed(c: Conduct) -> bool:
+    """Bring a carriage with a driver to the run's speed; tell whether it keeps it."""
+    carriage, speed = c.rig.carriage, c.present.set_point.carriage_speed_m_s
+    if carriage is None or not speed:
+        return True
+    if not c.towed:
+        c.towed = True
+        carriage.run_at(speed)
+    return carriage.at_speed
 
 
 def _starting(c: Conduct) -> State | None:
     """Bring carriage and shaft to speed, once the recorder is open: nothing moves unrecorded."""
-    if not c.recording.opened(wait=c.waits) or not c.questions.done():
+    if not c.recording.opened(wait=c.waits) or not c.questions.done() or not _at_speed(c):
         return None
     shaft = c.rig.shaft
     if not c.present.oscillates or shaft is None:
@@ -112,6 +125,7 @@ def _enter_armed(c: Conduct) -> None:
 def _armed(c: Conduct) -> State | None:
     """Wait for the pulse that opens the gate."""
     check_frequency(c)
+    check_speed(c)
     _check_overdue(c, "open")
     return State.GATE_OPEN if c.recording.gate.state is not GateState.ARMED else None
 
@@ -119,6 +133,7 @@ def _armed(c: Conduct) -> State | None:
 def _gate_open(c: Conduct) -> State | None:
     """Measure until the gate closes by itself, is closed, or is void."""
     check_frequency(c)
+    check_speed(c)
     gate = c.recording.gate
     if not _by_pulses(c):
         _push(c)
@@ -152,7 +167,8 @@ def _enter_stopping(c: Conduct) -> None:
     c.questions.withdraw()
     if c.rig.photocell is not None:
         c.rig.photocell.expect(None)
-    c.questions.ask(c.surroundings.tow(0.0))
+    if c.rig.carriage is None:
+        c.questions.ask(c.surroundings.tow(0.0))
 
 
 def _push(c: Conduct) -> None:

@@ -40,6 +40,8 @@ class Stopper:
             If an axis still moves after its time, and nobody is asked for anything.
         """
         c = self._conduct
+        if c.told and c.towed:  # on its way back the carriage has a deadline of its own
+            return c.questions.done() and not c.moving
         if c.moving:
             late = c.elapsed_s > _REST_S + c.ramp_s
             if late and not c.questions.present:
@@ -50,7 +52,18 @@ class Stopper:
             c.rested_since = c.rig.number if c.rested_since is None else c.rested_since
             if c.rig.shaft is not None:
                 c.rig.shaft.disable()
-        return c.questions.done()
+            self._send_back()
+        return c.questions.done() and not c.moving
+
+    def _send_back(self) -> None:
+        """Send the carriage back where the run has towed, or have it brought back."""
+        c = self._conduct
+        if c.rig.carriage is None or not c.towed:
+            return
+        if not c.rig.carriage.returns:
+            c.questions.ask(c.surroundings.fetch())
+        elif not c.leaves_plan:
+            c.rig.carriage.go_back()
 
     def begin(self, cause: HardwareError) -> None:
         """Begin to wind down in a fault; the rig has told the axes to stop already."""

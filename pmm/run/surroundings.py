@@ -3,7 +3,7 @@
 import json
 import math
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import asdict, dataclass
 from typing import Final
 
@@ -46,12 +46,21 @@ class Surroundings:
     mass_kg: float = 0.0
     load: tuple[str, float] = ("", 0.0)
 
-    def before(self, run: RunPlan, oscillator: Oscillator) -> Iterator[Demand]:
-        """Yield what has to be done before a run, at rest."""
+    def before(
+        self, run: RunPlan, oscillator: Oscillator, by_axis: Collection[str] = ()
+    ) -> Iterator[Demand]:
+        """Yield what has to be done before a run, at rest.
+
+        Parameters
+        ----------
+        by_axis
+            Angles that an axis of the rig sets: nobody is asked for them.
+        """
         yield from self._change_medium(str(run.set_point.medium))
         yield from self._change_mass(run)
-        yield from self._change_drift(run, oscillator)
-        yield from self._change_settings(run.set_point)
+        if "drift" not in by_axis:
+            yield from self._change_drift(run, oscillator)
+        yield from self._change_settings(run.set_point, by_axis)
         if run.oscillates:
             yield from self._change_lines(run.set_point)
         wanted = run.load if run.kind is RunKind.CHECK_WEIGHT else None
@@ -72,6 +81,11 @@ class Surroundings:
             else "carriage: stop and go back; press Enter when it stands"
         )
         yield Demand(text, "carriage", speed_m_s)
+
+    def fetch(self) -> Iterator[Demand]:
+        """Yield what brings a carriage back that cannot go back by itself."""
+        text = "carriage: bring it back to its start; press Enter when it stands there"
+        yield Demand(text, "carriage", 0.0)
 
     def push(self, channel: str, force_n: float) -> Iterator[Demand]:
         """Yield what has somebody push a gauge by hand, or let go."""
@@ -110,10 +124,10 @@ class Surroundings:
             text = f"drift: {drift_prompt(Geometry.of(oscillator, run.set_point))}; press Enter"
             yield Demand(text, "drift", drift_rad)
 
-    def _change_settings(self, point: SetPoint) -> Iterator[Demand]:
+    def _change_settings(self, point: SetPoint, by_axis: Collection[str]) -> Iterator[Demand]:
         for part, key, words in _SETTINGS:
             value = getattr(point, key)
-            if value != getattr(self, key):
+            if part not in by_axis and value != getattr(self, key):
                 setattr(self, key, value)
                 yield Demand(f"{part}: {words(value)}", part, value)
 

@@ -31,6 +31,8 @@ DRIVERS: Final = tuple(
         "touch-probe": "hardware.photocell_probe:DRIVER",
         "timestamper": "hardware.photocell_serial:DRIVER",
         "serial-inclinometer": "hardware.inclinometer:DRIVER",
+        "modbus-carriage": "hardware.modbus_carriage:DRIVER",
+        "modbus-axis": "hardware.modbus_axis:DRIVER",
     }.items()
 )
 

@@ -10,6 +10,7 @@ from hardware.description.errors import ConfigurationError
 from sim.devices.amplifier import SimulatedAmplifier
 from sim.devices.axis_drive import AxisDrive
 from sim.devices.drive import SimulatedDrive
+from sim.devices.modbus_devices import Controller
 from sim.devices.node import SimulatedNode
 from sim.devices.serial_devices import SimulatedInclinometer, Talker, held
 from sim.devices.shaft_drive import ShaftDrive
@@ -199,6 +200,48 @@ def _plug(world: World, part: str) -> None:
     talker.cable.plugged, talker.mute = True, False
 
 
+def _controller(world: World, part: str) -> Controller:
+    talker = _talker(world, part)
+    if not isinstance(talker, Controller):
+        raise ConfigurationError(f"{part} is no Modbus controller")
+    return talker
+
+
+def _local(world: World, part: str) -> None:
+    """Somebody takes a carriage or an angle in hand at its panel."""
+    _controller(world, part).local = True
+
+
+def _remote(world: World, part: str) -> None:
+    """The program has it in hand again."""
+    _controller(world, part).local = False
+
+
+def _alarm(world: World, part: str) -> None:
+    """A carriage's or an angle's own drive trips: it stops until it is reset."""
+    _controller(world, part).alarm = True
+
+
+def _stale(world: World, part: str) -> None:
+    """A controller's program stands: it answers, and always the same."""
+    _controller(world, part).stale = True
+
+
+def _refuse(world: World, part: str, code: str) -> None:
+    """A controller answers everything with an exception of Modbus; 0 ends it."""
+    _controller(world, part).refuses = int(code)
+
+
+def _tear(world: World, part: str) -> None:
+    """A controller's answers lack their last bytes."""
+    _controller(world, part).torn = True
+
+
+def _unit(world: World, part: str, unit_id: str) -> None:
+    """A controller answers as another unit."""
+    _controller(world, part).unit_id = int(unit_id)
+
+
 def _bus_off(world: World) -> None:
     """The controller's adapter goes bus-off."""
     world.bus_off = True
@@ -238,6 +281,13 @@ FAULTS: Final[dict[str, Callable[..., None]]] = {
     "late-set-point": _late_set_point,
     "unplug": _unplug,
     "plug": _plug,
+    "local": _local,
+    "remote": _remote,
+    "alarm": _alarm,
+    "stale": _stale,
+    "refuse": _refuse,
+    "tear": _tear,
+    "unit": _unit,
     "bus-off": _bus_off,
     "error-frame": _error_frame,
     "deaf": _deaf,

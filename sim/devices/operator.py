@@ -6,7 +6,7 @@ from typing import Final
 
 from hardware.demand import Demand
 from hardware.description.lines import Line
-from hardware.description.setpoint import Medium
+from hardware.description.setpoint import ANGLE_KEYS, Medium
 from hardware.driver import Prompt
 from sim.devices.faults import inject
 from sim.devices.world import World
@@ -37,7 +37,7 @@ class SimulatedOperator:
         """Return the answer, once there is one."""
         if not isinstance(question, Demand):
             return self._person(question)
-        if question.part in _DIALS:
+        if question.part in _DIALS or question.part in self._world.dials:
             return self._dial(question)
         doing = _DOING.get(question.part)
         if doing is None or question.value is None:
@@ -62,7 +62,10 @@ class SimulatedOperator:
         """Return what is asked for; where something is only to be read, where it stands."""
         if question.value is not None:
             return float(question.value)
-        eccentricity_m, phase_rad = self._world.plant.linkage
+        plant = self._world.plant
+        if question.part in ANGLE_KEYS:
+            return float(getattr(plant.around, ANGLE_KEYS[question.part]))
+        eccentricity_m, phase_rad = plant.linkage
         return {"eccentricity": eccentricity_m, "phase": phase_rad}.get(question.part, 0.0)
 
     def _set(self, question: Demand, answer: str) -> None:
@@ -76,6 +79,8 @@ class SimulatedOperator:
             plant.set_linkage(eccentricity_m=value)
         elif question.part == "phase":
             plant.set_linkage(strut_phase_rad=value)
+        elif question.part in ANGLE_KEYS:
+            plant.surround(**{ANGLE_KEYS[question.part]: value})
         else:
             plant.turn(_TURN * value, _BY_HAND_RAD_S2)
 

@@ -167,6 +167,11 @@ class Plant:
         names = (signal.name for signal in signals.STRUT_MOTIONS[strut])
         self._led |= {name: np.array([one]) for name, one in zip(names, motion, strict=True)}
 
+    @property
+    def around(self) -> PlantConditions:
+        """The conditions as they are set."""
+        return self._around
+
     def surround(self, **given: Any) -> None:
         """Change what is given of the :class:`PlantConditions`, from the next sample on."""
         before = self._around

@@ -7,10 +7,13 @@ import can
 
 from hardware.amplifier import AmplifierSettings
 from hardware.axis_settings import PositionAxisSettings
+from hardware.carriage_settings import ModbusCarriageSettings
 from hardware.description.errors import ConfigurationError
+from hardware.description.setpoint import ANGLE_KEYS
 from hardware.inclinometer import InclinometerSettings
 from hardware.manual_axis import ManualAxisSettings
 from hardware.manual_shaft import ManualShaftSettings
+from hardware.modbus_axis import ModbusAxisSettings
 from hardware.path_setting import PathSettingSettings
 from hardware.path_shaft import STRUTS, PathShaftSettings
 from hardware.photocell_probe import ProbeSettings
@@ -20,6 +23,7 @@ from hardware.shaft import ShaftSettings
 from sim import signals
 from sim.devices.amplifier import SimulatedAmplifier, Source
 from sim.devices.axis_drive import AxisDrive
+from sim.devices.modbus_devices import SimulatedAngle, SimulatedCarriage
 from sim.devices.network import Wire
 from sim.devices.plant import Passage, Plant, PlantConditions
 from sim.devices.serial_devices import Angles, SimulatedInclinometer, Talker, Timestamper, held
@@ -75,6 +79,8 @@ class World:
         Fault: so many of the next SYNCs reach no device.
     bus_off, deaf
         Faults: the bus's adapter cannot send, or fails in receiving.
+    dials
+        Angles that a person sets and reads.
     lookers
         The serial ports that are open, in the order of their opening.
 
@@ -93,6 +99,11 @@ class World:
         self.missed = self.extra = self.lost_syncs = 0
         self.bus_off = self.deaf = False
         self.lookers: list[object] = []
+        self.dials = frozenset(
+            name
+            for name, part in configuration.angles.items()
+            if isinstance(part.settings, ManualAxisSettings)
+        )
         self.plant = Plant(
             scene.rig,
             scene.around,
@@ -166,13 +177,8 @@ class World:
             self.nodes[part.name] = SimulatedAmplifier(
                 self.wire, part.name, settings, rate, self._source
             )
-        elif isinstance(settings, TimestamperSettings):
-            self._check_photocell(part.name)
-            self.talkers[part.name] = Timestamper()
-        elif isinstance(settings, InclinometerSettings):
-            self.talkers[part.name] = SimulatedInclinometer(
-                settings.sample_rate_hz, settings.rad_per_unit, scene.angles
-            )
+        elif (talker := self._talker(part, scene)) is not None:
+            self.talkers[part.name] = talker
         elif isinstance(settings, ProbeSettings):
             self._check_photocell(part.name)
         elif not isinstance(settings, _OPERATED):
@@ -197,12 +203,30 @@ class World:
         else:
             self.nodes[name] = self._axis(name, settings, scene)
 
+    def _talker(self, part: RigPart, scene: Scene) -> Talker | None:
+        """Return what is at the far end of a part's line; ``None`` without one."""
+        settings = part.settings
+        match settings:
+            case TimestamperSettings():
+                self._check_photocell(part.name)
+                return Timestamper()
+            case InclinometerSettings():
+                return SimulatedInclinometer(
+                    settings.sample_rate_hz, settings.rad_per_unit, scene.angles
+                )
+            case ModbusCarriageSettings():
+                plant = self.plant
+                return SimulatedCarriage(
+                    part.name, settings, lambda: plant.value(signals.CARRIAGE_SPEED.name), self._tow
+                )
+            case ModbusAxisSettings():
+                return SimulatedAngle(part.name, settings, self._moved(part.name))
+        return None
+
     def _axis(self, name: str, settings: PositionAxisSettings, scene: Scene) -> AxisDrive:
-        eccentricity = name == "eccentricity"
-        start = scene.eccentricity_m if eccentricity else scene.strut_phase_rad
-        moved: Callable[[float], None] = self._set_eccentricity if eccentricity else self._set_phase
-        rate = self.plant.sample_rate_hz
-        return AxisDrive(self.wire, name, settings, rate, start, moved)
+        starts = {"eccentricity": scene.eccentricity_m, "phase": scene.strut_phase_rad}
+        rate, start = self.plant.sample_rate_hz, starts.get(name, 0.0)
+        return AxisDrive(self.wire, name, settings, rate, start, self._moved(name))
 
     def _strut(
         self, name: str, settings: PositionAxisSettings, scene: Scene, number: int
@@ -219,11 +243,15 @@ class World:
             scene.strut_loop,
         )
 
-    def _set_eccentricity(self, metres: float) -> None:
-        self.plant.set_linkage(eccentricity_m=metres)
+    def _moved(self, name: str) -> "Callable[[float], None]":
+        """Return what an axis tells where it stands."""
+        if name in ANGLE_KEYS:
+            return lambda angle: self.plant.surround(**{ANGLE_KEYS[name]: angle})
+        key = "eccentricity_m" if name == "eccentricity" else "strut_phase_rad"
+        return lambda place: self.plant.set_linkage(**{key: place})
 
-    def _set_phase(self, radians: float) -> None:
-        self.plant.set_linkage(strut_phase_rad=radians)
+    def _tow(self, speed_m_s: float) -> None:
+        self.plant.surround(carriage_speed_m_s=speed_m_s)
 
     def _source(self, channel: str) -> Source:
         signal = f"recorded_{channel}"

@@ -21,7 +21,16 @@ import pytest
 
 from hardware.errors import LimitError, NotReadyError, PhotocellMissedError
 from hardware.rig import Rig
-from hardware.roles import PROTOCOLS, PositionAxis, Pulse, Role, SampleBlock, Sampled, Shaft
+from hardware.roles import (
+    PROTOCOLS,
+    Carriage,
+    PositionAxis,
+    Pulse,
+    Role,
+    SampleBlock,
+    Sampled,
+    Shaft,
+)
 
 _TRIES = 4  # of what a busy machine has spoilt
 
@@ -185,6 +194,67 @@ class ShaftContract(_SampledContract, _PoweredContract):
         angle = np.concatenate([one.values[0] for one in shaft.take()])
         step = 2.0 * math.pi * shaft.frequency_hz.high / shaft.sample_rate_hz
         assert np.diff(angle) == pytest.approx(step, rel=0.05)
+
+
+class CarriageContract(_SampledContract, _PoweredContract):
+    """For drivers of the carriage; ``apply`` does nothing: the device is the world here."""
+
+    role = Role.CARRIAGE
+
+    def device(self, bench: Bench) -> Carriage:
+        assert bench.rig.carriage is not None
+        return bench.rig.carriage
+
+    def ready(self, bench: Bench) -> Carriage:
+        carriage = self.device(bench)
+        carriage.enable()
+        bench.until(lambda: carriage.enabled and not carriage.moving, "enable")
+        return carriage
+
+    def test_it_refuses_to_run_without_power(self, bench: Bench) -> None:
+        carriage = self.device(bench)
+        bench.cycles(20)
+        with pytest.raises(NotReadyError):
+            carriage.run_at(0.5 * carriage.speed_m_s.high)
+
+    @pytest.mark.parametrize("share", [-1.0, 0.0, 1.001, math.nan, math.inf])
+    def test_it_refuses_speeds_beyond_its_limits(self, bench: Bench, share: float) -> None:
+        carriage = self.ready(bench)
+        with pytest.raises(LimitError):
+            carriage.run_at(share * carriage.speed_m_s.high)
+        bench.cycles(20)
+        assert not carriage.moving
+
+    def test_it_keeps_a_speed_and_stops(self, bench: Bench) -> None:
+        carriage = self.ready(bench)
+        wanted = 0.5 * carriage.speed_m_s.high
+        carriage.run_at(wanted)
+        assert carriage.moving
+        assert not carriage.at_speed
+        bench.until(lambda: carriage.at_speed, "speed")
+        assert carriage.measured_speed_m_s == pytest.approx(wanted, rel=0.02)
+        carriage.take()
+        bench.cycles(50)
+        recorded = np.concatenate([one.values[0] for one in carriage.take()])
+        assert recorded == pytest.approx(wanted, rel=0.02)
+        carriage.stop()
+        assert not carriage.at_speed
+        bench.until(lambda: not carriage.moving, "stop")
+        assert carriage.enabled
+
+    def test_it_goes_back_to_its_start(self, bench: Bench) -> None:
+        carriage = self.ready(bench)
+        if not carriage.returns:
+            pytest.skip("nothing reads its place")
+        carriage.run_at(0.5 * carriage.speed_m_s.high)
+        bench.until(lambda: carriage.at_speed, "speed")
+        carriage.stop()
+        bench.until(lambda: not carriage.moving, "stop")
+        carriage.go_back()
+        assert carriage.moving
+        bench.until(lambda: not carriage.moving, "return")
+        carriage.go_back()
+        assert not carriage.moving
 
 
 class PositionAxisContract(_PoweredContract):

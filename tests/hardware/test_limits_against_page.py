@@ -22,6 +22,11 @@ STATED = [
     f"| frequency, gate armed or open | within {100 * limits.FREQUENCY_SHARE:g} % of the run's",
     f"but for {limits.FREQUENCY_S:g} s |",
     f"by more than {100 * limits.READ_BACK_SHARE:g} %",
+    f"| carriage at rest below | {100 * limits.CARRIAGE_REST_SHARE:g} % of `highest_speed_m_s`",
+    f"| carriage speed, gate armed or open | within {100 * limits.CARRIAGE_SHARE:g} % of the run's",
+    f"its tolerance, but for {limits.CARRIAGE_S:g} s |",
+    f"| a reading is no speed of the carriage beyond | {limits.CARRIAGE_PLAUSIBLE:g} times",
+    f"end of its track by | {limits.TRACK_MARGIN:g} times its braking way",
     f"| a shaft that has to stand may move for | {limits.RESTLESS_S:g} s |",
 ]
 

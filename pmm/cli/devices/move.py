@@ -23,7 +23,7 @@ _POSITION = re.compile(r"^\s*([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*([a-z]*)\s*$")
 @RIG
 @YES
 def move(axis: str, position: str, rig: str, free_running: bool, as_json: bool, yes: bool) -> None:
-    """Move an axis by hand: eccentricity or phase.
+    """Move an axis by hand: eccentricity, phase, drift, heel or rudder.
 
     POSITION is in the axis's unit, or as 20mm, 30deg. It is homed first if it is not. Beyond its
     limits, or while the shaft turns, it is refused.

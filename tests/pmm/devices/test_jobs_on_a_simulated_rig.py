@@ -161,7 +161,7 @@ def test_an_axis_homes_and_moves_within_its_limits_only() -> None:
 def test_no_axis_moves_while_the_shaft_turns() -> None:
     with in_process(WHOLE) as (rig, world):
         turn(rig, rig.shaft, 0.5)
-        with pytest.raises(InterlockError, match="eccentricity: cannot home while shaft turns"):
+        with pytest.raises(InterlockError, match="eccentricity: cannot home while shaft moves"):
             move(rig, axis_of(rig, "eccentricity"), 0.02)
         assert world.plant.linkage[0] == 0.0
 

@@ -69,7 +69,8 @@ def in_process(
     name = f"rig-{next(_NAMES)}"
     whole: dict[str, Any] = dict(tables)
     for part in serial:
-        whole[part] = {**whole[part], "port": {"url": f"sim://{name}/{part}"}}
+        port = {**whole[part].get("port", {}), "url": f"sim://{name}/{part}"}
+        whole[part] = {**whole[part], "port": port}
     if on_bus:
         bus = {"interface": "pmm-simulated", "channel": name, "receive_thread": False}
         whole["bus"] = bus | whole.get("bus", {})

@@ -6,6 +6,7 @@ import pytest
 
 from tests.hardware.contract import (
     Bench,
+    CarriageContract,
     ForceContract,
     InclinometerContract,
     PhotocellContract,
@@ -23,6 +24,7 @@ from tests.sim.devices.benches import (
     push,
     slotted,
 )
+from tests.sim.devices.modbus_tables import CARRIAGE, DRIFT
 
 PARTS = {
     "shaft": WHOLE["shaft"],
@@ -125,3 +127,24 @@ class TestInclinometer(InclinometerContract):
         tables = {"inclinometer": {"driver": "serial-inclinometer"}}
         with in_process(tables, on_bus=False, serial=("inclinometer",)) as (rig, world):
             yield bench(rig, lambda angle: by_word(world)(f"tilt inclinometer {angle!r}"))
+
+
+def modbus(part: str, table: dict, framing: str):
+    """A device behind either framing, with the port that its simulated counterpart is at."""
+    tables = {part: {**table, "port": {"framing": framing}}}
+    return in_process(tables, on_bus=False, serial=(part,))
+
+
+class TestCarriage(CarriageContract):
+    @pytest.fixture
+    def bench(self) -> Iterator[Bench]:
+        with modbus("carriage", CARRIAGE, "tcp") as (rig, _):
+            yield bench(rig)
+
+
+class TestModbusAxis(PositionAxisContract):
+    @pytest.fixture
+    def bench(self) -> Iterator[Bench]:
+        table = {**DRIFT, "low": 0.0, "high": 0.06, "tolerance": 2e-4}
+        with modbus("eccentricity", table, "rtu") as (rig, _):
+            yield bench(rig)

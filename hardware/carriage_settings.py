@@ -1,0 +1,83 @@
+"""The keys of a carriage behind a programmable controller."""
+
+from dataclasses import dataclass
+
+from hardware.description.errors import ConfigurationError
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
+from hardware.modbus_link import ModbusSettings
+from hardware.modbus_registers import CommandRegister, Register, StatusRegister
+
+
+@dataclass(frozen=True)
+class CarriageRegisters:
+    """Which registers are the carriage's; those it lacks are left out.
+
+    Attributes
+    ----------
+    set_speed, speed, position
+        Speed asked for, speed measured, place along the track. Positive along the track.
+    life
+        A number that the controller's program changes all the time; what stands is old.
+    """
+
+    set_speed: Register
+    speed: Register
+    position: Register | None = None
+    status: StatusRegister | None = None
+    command: CommandRegister | None = None
+    life: Register | None = None
+
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
+
+    def read(self) -> dict[str, Register]:
+        """Return those that are read, by name."""
+        found = {"speed": self.speed, "position": self.position, "life": self.life}
+        return {name: one for name, one in found.items() if one is not None}
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModbusCarriageSettings(ModbusSettings):
+    """Settings of a carriage.
+
+    Attributes
+    ----------
+    acceleration_m_s2
+        Of its own ramps up and down.
+    tolerance_m_s
+        So near the speed asked for it has to be.
+    settle_s
+        For so long, before a run goes on.
+    track_m
+        Start and end of the way that may be used, as the position reads there.
+    return_speed_m_s
+        At which it goes back.
+    """
+
+    registers: CarriageRegisters
+    highest_speed_m_s: float
+    acceleration_m_s2: float
+    tolerance_m_s: float
+    settle_s: float = 2.0
+    track_m: tuple[float, float] | None = None
+    return_speed_m_s: float = 0.5
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for key in (
+            "highest_speed_m_s", "acceleration_m_s2", "tolerance_m_s", "settle_s",
+            "return_speed_m_s",
+        ):  # fmt: skip
+            if not getattr(self, key) > 0.0:
+                raise ConfigurationError(f"{key} = {getattr(self, key):g} has to be above 0")
+        if self.return_speed_m_s > self.highest_speed_m_s:
+            raise ConfigurationError("return_speed_m_s is above highest_speed_m_s; lower it")
+        if (self.track_m is None) != (self.registers.position is None):
+            raise ConfigurationError("track_m and registers.position belong together; give both")
+        if self.track_m is not None and not self.track_m[0] < self.track_m[1]:
+            raise ConfigurationError(
+                f"track_m = {list(self.track_m)}: the start has to be below the end; a negative "
+                "scale of registers.position turns it round"
+            )
+        slowest = -self.return_speed_m_s if self.track_m is not None else 0.0
+        for speed in (self.highest_speed_m_s, slowest):
+            self.registers.set_speed.written(speed)

@@ -1,0 +1,190 @@
+"""An angle behind a programmable controller, over Modbus: a drift table for example."""
+
+import math
+from dataclasses import dataclass
+
+from hardware.command_limits import check_position
+from hardware.description.errors import ConfigurationError
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
+from hardware.description.oscillator import Range
+from hardware.driver import Driver, Services
+from hardware.errors import NotReadyError
+from hardware.limits import RAMP_MARGIN, REST_DEADLINE_S
+from hardware.modbus_device import ModbusDevice, raise_worst
+from hardware.modbus_link import ModbusSettings
+from hardware.modbus_registers import CommandRegister, Register, StatusRegister
+from hardware.roles import Cycle, Reading, Role
+
+
+@dataclass(frozen=True)
+class AxisRegisters:
+    """Which registers are the axis's; those it lacks are left out. It reads absolutely."""
+
+    set_position: Register
+    position: Register
+    status: StatusRegister | None = None
+    command: CommandRegister | None = None
+    life: Register | None = None
+
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
+
+    def read(self) -> dict[str, Register]:
+        """Return those that are read, by name."""
+        found = {"position": self.position, "life": self.life}
+        return {name: one for name, one in found.items() if one is not None}
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModbusAxisSettings(ModbusSettings):
+    """Settings of an axis in radians.
+
+    Attributes
+    ----------
+    speed
+        In rad/s, at which it moves: only for how long a move may take.
+    tolerance
+        So near what was asked for it has to be, in rad.
+    settle_s
+        For so long, and standing, before it has arrived.
+    """
+
+    registers: AxisRegisters
+    low: float
+    high: float
+    speed: float
+    tolerance: float
+    standard_uncertainty: float
+    settle_s: float = 1.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.low < self.high:
+            raise ConfigurationError(f"low = {self.low:g} has to be below high = {self.high:g}")
+        for key in ("speed", "tolerance", "standard_uncertainty", "settle_s"):
+            if not getattr(self, key) > 0.0:
+                raise ConfigurationError(f"{key} = {getattr(self, key):g} has to be above 0")
+        for position in (self.low, self.high):
+            self.registers.set_position.written(position)
+
+
+class ModbusAxis(ModbusDevice):
+    """A :class:`hardware.roles.PositionAxis` that reads absolutely: to home it is to read it."""
+
+    unit = "rad"
+
+    def __init__(self, name: str, settings: ModbusAxisSettings, services: Services) -> None:
+        registers = settings.registers
+        super().__init__(
+            name, settings, services, registers.read(), registers.status, registers.command
+        )
+        self.limits = Range(settings.low, settings.high)
+        self._settings = settings
+        self._goal: float | None = None
+        self._read = False
+        self._stood: tuple[float, float] | None = None  # where it stands, and since when
+
+    @property
+    def position(self) -> float:
+        """The angle that it reads, in rad; NaN before, and in silence."""
+        return self.values["position"] if self._link.heard else math.nan
+
+    @property
+    def homed(self) -> bool:
+        """Whether it has been told to read, and does."""
+        return self._read and not math.isnan(self.position)
+
+    @property
+    def reading(self) -> Reading | None:
+        """Where it is; ``None`` before it is known."""
+        if not self.homed:
+            return None
+        return Reading(self.position, self._settings.standard_uncertainty, "encoder")
+
+    @property
+    def moving(self) -> bool:
+        """Whether it has moved lately, is on its way, or is not heard."""
+        stood_s = -1.0 if self._stood is None else self._now_s - self._stood[1]
+        on_its_way = self._goal is not None and not self._near(self._goal)
+        return math.isnan(self.position) or on_its_way or stood_s < self._settings.settle_s
+
+    @property
+    def settled(self) -> bool:
+        """Whether it stands where it was sent."""
+        return self._goal is not None and self._near(self._goal) and not self.moving
+
+    def home(self) -> None:
+        """Read where it is. Raises as :meth:`move_to` does."""
+        self._require_power()
+        self._read = True
+
+    def move_to(self, position: float) -> None:
+        """Go to an angle.
+
+        Raises
+        ------
+        LimitError
+            If it is outside the limits, or no number.
+        NotReadyError
+            If the axis is not enabled, or was never read.
+        """
+        check_position(self, position)
+        self._require_power()
+        if not self.homed:
+            raise NotReadyError(self.name, "was never read; home it before it moves")
+        self._goal = position
+        self.tell(self._settings.registers.set_position, position)
+        takes_s = abs(position - self.position) / self._settings.speed
+        self.within(
+            RAMP_MARGIN * takes_s + REST_DEADLINE_S + self._settings.settle_s,
+            f"{position:g} rad within {self._settings.tolerance:g} rad",
+        )
+
+    def stop(self) -> None:
+        """Stay where it is."""
+        self.done()
+        if self._goal is not None and self.homed and not self._near(self._goal):
+            self.tell(self._settings.registers.set_position, self.position)
+        self._goal = None
+
+    def quick_stop(self) -> None:
+        """Stay where it is, without power."""
+        self.stop()
+        self._wants_power = False
+
+    def disable(self) -> None:
+        """Take the power off, where it is."""
+        self.quick_stop()
+
+    def reset_fault(self) -> None:
+        """Begin anew, without power; raises as :meth:`ModbusDevice.reset_fault`."""
+        self.stop()
+        super().reset_fault()
+
+    def tick(self, cycle: Cycle) -> None:
+        """Take what came; raises as :meth:`ModbusDevice.exchange` says."""
+        fresh, faults = self.exchange(cycle)
+        if fresh:
+            if self._stood is None or not abs(self.position - self._stood[0]) <= self._still:
+                self._stood = (self.position, self._now_s)
+            if self.settled:
+                self.done()
+        if faults and not self._wants_power:
+            self.stop()
+        raise_worst(faults)
+
+    @property
+    def _still(self) -> float:
+        """How far it may wander and is said to stand."""
+        return 0.5 * self._settings.tolerance
+
+    def _near(self, goal: float) -> bool:
+        return abs(self.position - goal) <= self._settings.tolerance
+
+    def _require_power(self) -> None:
+        if not self.enabled:
+            raise NotReadyError(
+                self.name, "is not enabled; enable it, and look whether it is in remote and ready"
+            )
+
+
+DRIVER = Driver(Role.POSITION_AXIS, ModbusAxisSettings, ModbusAxis)

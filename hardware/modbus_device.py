@@ -1,0 +1,223 @@
+"""What Modbus devices that move share: their power, whose hand they are in, what they are asked."""
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Final
+
+from hardware.driver import Services
+from hardware.errors import (
+    DriveFaultError,
+    DriveStateError,
+    HardwareError,
+    SilentPortError,
+    TransitionTimeoutError,
+    worst,
+)
+from hardware.modbus_link import READ, WRITE, Answer, ModbusLink, ModbusSettings, Request
+from hardware.modbus_registers import CommandRegister, Register, StatusRegister
+from hardware.roles import Cycle
+
+_HOLDING: Final = READ["holding"]
+Place = tuple[int, int]  # function that reads it, address
+
+
+class ModbusDevice:
+    """Reads registers in turn and writes what has changed.
+
+    Parameters
+    ----------
+    numbers
+        The registers that are read, by a name each.
+
+    Attributes
+    ----------
+    values
+        What they read last, in SI units; NaN before.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        settings: ModbusSettings,
+        services: Services,
+        numbers: Mapping[str, Register],
+        status: StatusRegister | None,
+        command: CommandRegister | None,
+    ) -> None:
+        self.name = name
+        self.values = dict.fromkeys(numbers, math.nan)
+        self._link = ModbusLink(name, settings, services)
+        self._numbers, self._status, self._command = dict(numbers), status, command
+        self._refresh_s, self._silent_s = settings.refresh_s, settings.silent_s
+        self._spans = spans(numbers.values(), status)
+        self._turn = 0
+        self._word: int | None = None  # of the status
+        self._told: dict[int, tuple[int, ...]] = {}  # what is to stand at an address
+        self._kept: dict[int, tuple[tuple[int, ...], float]] = {}  # what does, and since when
+        self._wants_power = self._resets = self._toggle = False
+        self._read_next = False
+        self._life: tuple[float, float] | None = None  # the device's own counter, and since when
+        self._deadline_s = math.inf
+        self._waiting_for = ""
+        self._now_s = 0.0
+        self._known: set[type] = set()
+
+    @property
+    def enabled(self) -> bool:
+        """Whether it is under power, as far as it says, and in the program's hand."""
+        refused = False in (self._says("remote"), self._says("ready"))
+        return self._wants_power and self._link.heard and not refused
+
+    def prepare(self) -> None:
+        """Nothing to write: the first answers come with the first cycles."""
+
+    def enable(self) -> None:
+        """Ask for power, at rest; a fault follows where a person has it in hand."""
+        self._wants_power = True
+
+    def reset_fault(self) -> None:
+        """Open a lost port again, clear an alarm; it stays without power.
+
+        Raises
+        ------
+        PortOpenError
+            If the port is still not there.
+        """
+        self._wants_power, self._resets = False, True
+        self._kept.clear()
+        self._known.clear()
+        self._life = None
+        self.done()
+        self._link.reset()
+
+    def close(self) -> None:
+        """Close the port."""
+        self._link.close()
+
+    def within(self, seconds: float, what: str) -> None:
+        """Set the deadline for what is waited for; :meth:`done` takes it back."""
+        self._deadline_s, self._waiting_for = self._now_s + seconds, what
+
+    def done(self) -> None:
+        """Take the deadline back."""
+        self._deadline_s = math.inf
+
+    def tell(self, register: Register, value: float) -> None:
+        """Have a number, in SI units, stand in a register from now on."""
+        self._told[register.address] = register.written(value)
+
+    def exchange(self, cycle: Cycle) -> tuple[bool, list[HardwareError]]:
+        """Take what came; return whether the values are new, and what is wrong, once each."""
+        self._now_s = cycle.time_s
+        answers, faults = self._link.exchange(cycle, self._following)
+        fresh = [self._take(answer) for answer in answers]
+        wrong = [one for one in self._wrong() if type(one) not in self._known]
+        self._known |= {type(one) for one in wrong}
+        return any(fresh), faults + wrong
+
+    def _says(self, name: str) -> bool | None:
+        return None if self._status is None else self._status.says(name, self._word)
+
+    def _wrong(self) -> Iterator[HardwareError]:
+        if self._says("alarm"):
+            yield DriveFaultError(
+                self.name, "reports an alarm; clear its cause at its panel, then reset"
+            )
+        if self._wants_power and self._says("remote") is False:
+            self._wants_power = False  # it does not start again when the switch is turned back
+            yield DriveStateError(
+                self.name,
+                "is in a person's hand (local); turn its switch to remote, reset and start again",
+            )
+        stood_s = 0.0 if self._life is None else self._now_s - self._life[1]
+        if self._link.heard and stood_s > self._silent_s:
+            yield SilentPortError(
+                self.name,
+                f"answers, but its counter stands for {stood_s:.2f} s (limit "
+                f"{self._silent_s:g} s): what it says is old; look whether its program runs",
+            )
+        if self._now_s > self._deadline_s:
+            self.done()
+            values = ", ".join(f"{name} {value:.6g}" for name, value in self.values.items())
+            yield TransitionTimeoutError(
+                self.name,
+                f"{self._waiting_for}: not in time (it reads {values}); look at the device, then "
+                "at scale, words and type of the register map",
+            )
+
+    def _take(self, answer: Answer) -> bool:
+        request, words = answer
+        if request.function == WRITE:
+            self._kept[request.address] = (self._untoggled(request.address, words), self._now_s)
+            return False
+        at = {(request.function, request.address + i): word for i, word in enumerate(words)}
+        for name, one in self._numbers.items():
+            if (READ[one.table], one.address) in at:
+                first = one.address - request.address
+                self.values[name] = one.value(words[first : first + one.count])
+        if self._status is not None:
+            self._word = at.get((READ[self._status.table], self._status.address), self._word)
+        if not math.isnan(life := self.values.get("life", math.nan)) and (
+            self._life is None or life != self._life[0]
+        ):
+            self._life = (life, self._now_s)
+        return True
+
+    def _following(self) -> Request | None:
+        """Return what is written where it is due, and what is read in turn with it."""
+        self._read_next = not self._read_next
+        if not self._read_next and (write := self._due()) is not None:
+            return write
+        if not self._spans:
+            return None
+        (function, address), count = self._spans[self._turn % len(self._spans)]
+        self._turn += 1
+        return Request(function, address, count)
+
+    def _due(self) -> Request | None:
+        command = self._command
+        if command is not None:
+            word = command.word(enable=self._wants_power, reset=self._resets, toggle=self._toggle)
+            if not self._stands(command.address, (word,)):
+                self._resets, self._toggle = False, not self._toggle
+                return Request(WRITE, command.address, 1, (word,))
+        for address, words in self._told.items():
+            if not self._stands(address, words):
+                return Request(WRITE, address, len(words), words)
+        return None
+
+    def _stands(self, address: int, words: tuple[int, ...]) -> bool:
+        kept, since_s = self._kept.get(address, ((), -math.inf))
+        fresh = self._now_s - since_s < self._refresh_s
+        return fresh and kept == self._untoggled(address, words)
+
+    def _untoggled(self, address: int, words: tuple[int, ...]) -> tuple[int, ...]:
+        """Return words without the bit that changes with every write."""
+        command = self._command
+        if command is None or command.toggle is None or address != command.address:
+            return words
+        return (words[0] & ~(1 << command.toggle),)
+
+
+def spans(
+    numbers: Iterable[Register], status: StatusRegister | None
+) -> tuple[tuple[Place, int], ...]:
+    """Return what is read at once: registers that follow each other in their table."""
+    wanted = {(READ[one.table], one.address + i) for one in numbers for i in range(one.count)}
+    if status is not None:
+        wanted.add((READ[status.table], status.address))
+    found: list[tuple[Place, int]] = []
+    for function, address in sorted(wanted):
+        if found:
+            (last, first), count = found[-1]
+            if function == last and address == first + count and count < 120:
+                found[-1] = ((last, first), count + 1)
+                continue
+        found.append(((function, address), 1))
+    return tuple(found)
+
+
+def raise_worst(faults: list[HardwareError]) -> None:
+    """Raise the worst of some faults, if there is one."""
+    if faults:
+        raise worst(faults)

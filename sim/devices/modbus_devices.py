@@ -1,0 +1,238 @@
+"""Simulated controllers of carriage and angles: registers behind Modbus, as rig.toml maps them."""
+
+import math
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Final
+
+from hardware.carriage_settings import ModbusCarriageSettings
+from hardware.modbus_axis import ModbusAxisSettings
+from hardware.modbus_device import Place, spans
+from hardware.modbus_frames import framer_of
+from hardware.modbus_link import READ, WRITE
+from hardware.modbus_registers import Register, StatusRegister
+from sim.devices.plant import Passage
+from sim.devices.serial_devices import SerialCable
+
+if TYPE_CHECKING:
+    from pymodbus.pdu import ModbusPDU
+
+_HOLDING: Final = READ["holding"]
+_ILLEGAL_FUNCTION, _ILLEGAL_ADDRESS = 1, 2
+_STEP_S: Final = 0.1  # a ramp is steps of so long: each has the chain made anew
+_ALONE_S: Final = 1.0  # without a request for so long it stops by itself
+
+
+class Controller:
+    """A programmable controller with registers and a motor.
+
+    Attributes
+    ----------
+    local, alarm
+        Faults: a person has it in hand; it has stopped by itself.
+    stale
+        Fault: it answers, but its program stands.
+    refuses
+        Fault: the exception that it answers everything with; 0 for none.
+    torn
+        Fault: its answers lack their last bytes.
+    unit_id
+        Which unit it answers as; another one than it is asked for is a fault.
+    """
+
+    def __init__(self, name: str, settings: ModbusCarriageSettings | ModbusAxisSettings) -> None:
+        from pymodbus.pdu import DecodePDU
+
+        self.cable = SerialCable()
+        self.mute = self.local = self.alarm = self.stale = self.torn = False
+        self.refuses = 0
+        self.unit_id = settings.unit_id
+        self._framer = framer_of(name, settings.port.framing)
+        self._framer.decoder = DecodePDU(True)
+        registers = settings.registers
+        self._status, self._command, self._life = (
+            registers.status, registers.command, registers.life,
+        )  # fmt: skip
+        self._words: dict[Place, int] = {}
+        self._heard_s = -math.inf
+        self._asked = b""
+        self._count = 0
+        self._time_s = 0.0
+        self._map(registers.read().values(), registers.status)
+
+    def tick(self, time_s: float, _passages: tuple[Passage, ...]) -> None:
+        """Go on up to a time, and answer what has been asked."""
+        step_s, self._time_s = time_s - self._time_s, time_s
+        self.move(step_s)
+        if not self.stale:
+            self._show()
+        self._asked += bytes(self.cable.heard)
+        self.cable.heard.clear()
+        while self._asked:
+            used, unit, number, request = self._framer.decode(self._asked)
+            if not used:
+                break
+            self._asked = self._asked[used:]
+            if request:
+                self._answer(unit, number, request)
+
+    def move(self, step_s: float) -> None:
+        """Let the motor go on."""
+        raise AssertionError("a controller has something to move")
+
+    @property
+    def driven(self) -> bool:
+        """Whether it is under power and does what it is told."""
+        alone = self._time_s - self._heard_s > _ALONE_S
+        return not (self.local or self.alarm or alone) and self._commanded("enable")
+
+    def number(self, register: Register) -> float:
+        """Return the number that stands in a register."""
+        places = range(register.address, register.address + register.count)
+        return register.value([self._words.get((_HOLDING, at), 0) for at in places])
+
+    def show(self, register: Register | None, value: float) -> None:
+        """Let a number stand in a register."""
+        if register is None:
+            return
+        for i, word in enumerate(register.written(value)):
+            self._words[READ[register.table], register.address + i] = word
+
+    def _map(self, numbers: Iterable[Register], status: StatusRegister | None) -> None:
+        for (function, first), count in spans(numbers, status):
+            self._words |= {(function, first + i): 0 for i in range(count)}
+
+    def _commanded(self, name: str) -> bool:
+        command = self._command
+        bit = None if command is None else getattr(command, name)
+        if command is None or bit is None:
+            return True
+        return bool(self._words.get((_HOLDING, command.address), 0) >> bit & 1)
+
+    def _show(self) -> None:
+        self._count = (self._count + 1) % 1000
+        self.show(self._life, self._count)
+        status = self._status
+        if status is not None:
+            says = {
+                "remote": not self.local,
+                "ready": self.driven,
+                "alarm": self.alarm,
+                "at_end": False,
+            }
+            bits = ((getattr(status, name), on != (name in status.inverted))
+                    for name, on in says.items())  # fmt: skip
+            word = sum(1 << bit for bit, on in bits if bit is not None and on)
+            self._words[READ[status.table], status.address] = word
+
+    def _answer(self, unit: int, number: int, request: bytes) -> None:
+        pdu = self._framer.decoder.decode(request)
+        if pdu is None or self.mute or not self.cable.plugged:
+            return
+        self._heard_s = self._time_s
+        answer = self._served(pdu)
+        answer.dev_id, answer.transaction_id = unit and self.unit_id, number
+        frame = self._framer.buildFrame(answer)
+        self.cable.waiting += frame[:-3] if self.torn else frame
+
+    def _served(self, request: "ModbusPDU") -> "ModbusPDU":
+        from pymodbus.pdu import ExceptionResponse
+        from pymodbus.pdu.register_message import (
+            ReadHoldingRegistersResponse,
+            ReadInputRegistersResponse,
+            WriteMultipleRegistersResponse,
+        )
+
+        function, first, count = request.function_code, request.address, request.count
+        if self.refuses:
+            return ExceptionResponse(function, self.refuses)
+        if function == WRITE:
+            for i, word in enumerate(request.registers):
+                self._words[_HOLDING, first + i] = word
+            self.alarm = self.alarm and not self._resets()
+            return WriteMultipleRegistersResponse(address=first, count=count)
+        if function not in READ.values():
+            return ExceptionResponse(function, _ILLEGAL_FUNCTION)
+        places = [(function, first + i) for i in range(count)]
+        if not all(place in self._words for place in places):
+            return ExceptionResponse(function, _ILLEGAL_ADDRESS)
+        kind = ReadHoldingRegistersResponse if function == _HOLDING else ReadInputRegistersResponse
+        return kind(registers=[self._words[place] for place in places])
+
+    def _resets(self) -> bool:
+        return (
+            self._command is not None
+            and self._command.reset is not None
+            and (self._commanded("reset"))
+        )
+
+
+class SimulatedCarriage(Controller):
+    """Runs on its ramps at the speed that stands in its register.
+
+    Parameters
+    ----------
+    speed_m_s
+        Returns the speed that the carriage really has, with what ripples on it.
+    runs
+        Told the speed along the ramp, in steps.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        settings: ModbusCarriageSettings,
+        speed_m_s: Callable[[], float],
+        runs: Callable[[float], None],
+    ) -> None:
+        super().__init__(name, settings)
+        self._settings, self._speed_m_s, self._runs = settings, speed_m_s, runs
+        self._ramp_m_s = self._told_m_s = 0.0
+        self.position_m = settings.track_m[0] if settings.track_m is not None else 0.0
+        self.show(settings.registers.position, self.position_m)
+
+    def move(self, step_s: float) -> None:
+        """Go on along the ramp and the track."""
+        one = self._settings
+        wanted = self.number(one.registers.set_speed) if self.driven else 0.0
+        most = one.acceleration_m_s2 * step_s
+        self._ramp_m_s += min(max(wanted - self._ramp_m_s, -most), most)
+        late = abs(self._ramp_m_s - self._told_m_s) >= one.acceleration_m_s2 * _STEP_S
+        if self._ramp_m_s != self._told_m_s and (late or self._ramp_m_s == wanted):
+            self._told_m_s = self._ramp_m_s
+            self._runs(self._ramp_m_s)
+        speed = self._speed_m_s()
+        self.position_m += speed * step_s
+        if not self.stale:
+            self.show(one.registers.speed, speed)
+            self.show(one.registers.position, self.position_m)
+
+
+class SimulatedAngle(Controller):
+    """Turns to the angle that stands in its register.
+
+    Parameters
+    ----------
+    moved
+        Told the angle when it has arrived.
+    """
+
+    def __init__(
+        self, name: str, settings: ModbusAxisSettings, moved: Callable[[float], None]
+    ) -> None:
+        super().__init__(name, settings)
+        self._settings, self._moved = settings, moved
+        self.angle_rad = 0.0
+        self._arrived = True
+
+    def move(self, step_s: float) -> None:
+        """Go on towards the angle; the model has it once the table stands."""
+        one = self._settings
+        wanted = self.number(one.registers.set_position) if self.driven else self.angle_rad
+        most = one.speed * step_s
+        way = min(max(wanted - self.angle_rad, -most), most)
+        self.angle_rad += way
+        if way == 0.0 and not self._arrived:
+            self._moved(self.angle_rad)
+        self._arrived = way == 0.0
+        if not self.stale:
+            self.show(one.registers.position, self.angle_rad)
