@@ -4,7 +4,7 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test coverage lint pages docs bench sealed release clean
+.PHONY: help demo test coverage lint pages docs bench sealed release lock clean
 
 help:
 	@echo "make demo   install, run a small simulated campaign, analyse it, write a report to demo/"
@@ -16,19 +16,21 @@ help:
 	@echo "make bench  draw many inputs for the tests, measure speed and coverage, write benchmarks/results/"
 	@echo "make sealed answer and score campaigns whose truth is withheld (an hour and more)"
 	@echo "make release  build wheel and source distribution, use each from a fresh environment"
+	@echo "make lock   write the locks anew, once dependencies or their versions have changed"
 	@echo "make clean  remove the virtual environment and what the demo wrote"
 
-# One run of pip each; it marks the smaller installations that it includes as done.
-$(VENV)/.user: EXTRAS := fast
-$(VENV)/.dev: EXTRAS := fast,dev
-$(VENV)/.docs: EXTRAS := fast,dev,docs
-$(VENV)/.bench: EXTRAS := fast,dev,bench
-$(VENV)/.sealed: EXTRAS := fast,dev,peers
-$(VENV)/.user $(VENV)/.dev $(VENV)/.docs $(VENV)/.bench $(VENV)/.sealed: pyproject.toml constraints.txt
+# What each lock adds to comes with it; an installation marks the smaller ones in it as done.
+$(VENV)/.user $(VENV)/.dev $(VENV)/.docs $(VENV)/.bench $(VENV)/.sealed: pyproject.toml $(wildcard lock/*.txt)
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip uninstall -qqq --yes pmm  # its name before, whose entry points would stay
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[$(EXTRAS)]"
-	@touch $(VENV)/.user $(if $(findstring dev,$(EXTRAS)),$(VENV)/.dev) $@
+	$(BIN)/python -m pip install --quiet --no-deps --require-hashes --requirement lock/$(@:$(VENV)/.%=%).txt
+	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	@touch $(VENV)/.user $(if $(filter %.user,$@),,$(VENV)/.dev) $@
+
+# The locks anew, once pyproject.toml or constraints.txt have changed.
+lock: $(VENV)/.dev
+	$(BIN)/python -m pip install --quiet uv
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python lock/make.py
 
 demo: $(VENV)/.user
 	$(BIN)/pmm demo --output demo

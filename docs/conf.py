@@ -15,18 +15,21 @@ sys.path.insert(0, str(HOUSE))
 project = "PMM"
 author = "the PMM authors"
 extensions = [
-    "myst_parser",
+    "myst_nb",
     "sphinx.ext.apidoc",
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
 ]
-source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
+source_suffix = {".md": "myst-nb", ".rst": "restructuredtext"}
 root_doc = "index"
 exclude_patterns = ["api/*/modules.rst"]
 
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
 myst_links_external_new_tab = False
+
+nb_execution_timeout = 300  # seconds a cell: they take a few, on a machine that does nothing else
+nb_execution_raise_on_error = True
 
 apidoc_modules = [
     {

@@ -169,6 +169,14 @@ def test_one_name_is_everywhere() -> None:
     assert f"'{DISTRIBUTION}[tdms]'" in installing("tdms")
 
 
+def test_every_extra_of_a_user_is_told_of() -> None:
+    page = (HOUSE / "docs" / "platforms.md").read_text(encoding="utf-8")
+    table = page.partition("| extra | for |")[2].partition("\n\n")[0]
+    told = {one for row in re.findall(r"^\| (`.*?) \|", table, re.M) for one in row.split(", ")}
+    developers = {"bench", "dev", "docs", "peers"}
+    assert told == {f"`{one}`" for one in {*PROJECT["optional-dependencies"]} - developers}
+
+
 @pytest.mark.parametrize("name", PACKAGES)
 def test_each_package_says_that_it_is_typed(name: str) -> None:
     assert (HOUSE / name / "py.typed").read_bytes() == b""

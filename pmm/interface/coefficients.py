@@ -11,13 +11,12 @@ from analysis.coefficients.recommendation import table
 from pmm.coefficients.request import finished, requested
 from pmm.coefficients.workflow import CampaignOutcome, coefficients_of
 from pmm.document.content import Document
-from pmm.interface.result import Result
+from pmm.interface.result import Drawn, Result
 from pmm.parallel import open_executor
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
-    from matplotlib.axes import Axes
 
 _MEANINGS: Final = {
     "value": "value, in the unit of its entry",
@@ -77,15 +76,15 @@ class CoefficientsResult(Result):
             dataset[name].attrs["units"] = unit
         return dataset.assign_attrs(conventions="axes and signs: docs/conventions.md")
 
-    def plot_frequency(self) -> "dict[str, tuple[Axes, ...]]":
+    def plot_frequency(self) -> dict[str, Drawn]:
         """Draw coefficients over frequency, a figure for each speed; axes by the figure's name."""
         return self._plot_kind("frequency")
 
-    def plot_amplitude(self) -> "dict[str, tuple[Axes, ...]]":
+    def plot_amplitude(self) -> dict[str, Drawn]:
         """Draw coefficients over amplitude, where the campaign has several."""
         return self._plot_kind("amplitude")
 
-    def plot_budget(self) -> "dict[str, tuple[Axes, ...]]":
+    def plot_budget(self) -> dict[str, Drawn]:
         """Draw where the uncertainty of each coefficient comes from."""
         return self._plot_kind("budget")
 

@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Any, Final
 from pmm.document.content import Document
 from pmm.gap.examination import Options
 from pmm.gap.report import GapReport, gap_report
-from pmm.interface.result import Result, Variable, dataset_of
+from pmm.interface.result import Drawn, Result, Variable, dataset_of
 from pmm.parallel import open_executor
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
-    from matplotlib.axes import Axes
 
 _VARIABLES: Final = {
     "probability": Variable("1", "probability of the answer"),
@@ -78,11 +77,11 @@ class GapResult(Result):
         }
         return dataset_of(self.to_dataframe(), ["answer"], _VARIABLES, attributes)
 
-    def plot_ranking(self) -> "tuple[Axes, ...]":
+    def plot_ranking(self) -> Drawn:
         """Draw the answers with their probabilities."""
         return self.plot("ranking")
 
-    def plot_walk(self) -> "tuple[Axes, ...]":
+    def plot_walk(self) -> Drawn:
         """Draw the gap step by step along the chain."""
         return self.plot("walk")
 

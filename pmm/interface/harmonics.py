@@ -13,12 +13,11 @@ from pmm.harmonics.request import HarmonicsRequest
 from pmm.harmonics.resolving import Failure, Resolved, doubts, resolve
 from pmm.harmonics.rows import ChannelRows, GateRows, RunRows
 from pmm.harmonics.sources import Found, Source
-from pmm.interface.result import CONVENTIONS, Result, Variable, dataset_of
+from pmm.interface.result import CONVENTIONS, Drawn, Result, Variable, dataset_of
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from analysis.resolver.analysis import Analysis
@@ -125,7 +124,7 @@ class HarmonicsResult(Result):
 
         return tuple(FIGURES)
 
-    def plot(self, name: str, run: str | None = None) -> "tuple[Axes, ...]":
+    def plot(self, name: str, run: str | None = None) -> Drawn:
         """Draw a figure of one run's first gate and return its axes.
 
         Parameters
@@ -144,15 +143,15 @@ class HarmonicsResult(Result):
             raise ConfigurationError(f"no figure {name!r}; there are: {', '.join(FIGURES)}")
         return self._drawn(FIGURES[name], self._source(run))
 
-    def plot_gate(self, run: str | None = None) -> "tuple[Axes, ...]":
+    def plot_gate(self, run: str | None = None) -> Drawn:
         """Draw the record, its window and gate, and the fit; see :meth:`plot`."""
         return self.plot("gate", run)
 
-    def plot_phasors(self, run: str | None = None) -> "tuple[Axes, ...]":
+    def plot_phasors(self, run: str | None = None) -> Drawn:
         """Draw the harmonics as phasors with their regions; see :meth:`plot`."""
         return self.plot("phasors", run)
 
-    def plot_spectrum(self, run: str | None = None) -> "tuple[Axes, ...]":
+    def plot_spectrum(self, run: str | None = None) -> Drawn:
         """Draw the spectrum over the gate; see :meth:`plot`."""
         return self.plot("spectrum", run)
 
@@ -165,7 +164,7 @@ class HarmonicsResult(Result):
             raise ConfigurationError(f"{asked}; there are: {', '.join(names)}")
         return self.resolved[names.index(run)].source
 
-    def _drawn(self, draw: "Callable[[Analysis], Figure]", source: Source) -> "tuple[Axes, ...]":
+    def _drawn(self, draw: "Callable[[Analysis], Figure]", source: Source) -> Drawn:
         drawn: list[Figure] = []
         resolved_again = resolve(
             source,
@@ -175,7 +174,7 @@ class HarmonicsResult(Result):
         )
         if isinstance(resolved_again, Failure):
             raise DataError(resolved_again.said)
-        return tuple(drawn[0].axes)
+        return Drawn(drawn[0].axes)
 
 
 def harmonics_of(found: Found, request: HarmonicsRequest) -> HarmonicsResult:

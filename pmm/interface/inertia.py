@@ -6,12 +6,11 @@ from typing import TYPE_CHECKING, Final
 
 from pmm.document.content import Document
 from pmm.inertia.outcome import Outcome
-from pmm.interface.result import Result, Variable, dataset_of
+from pmm.interface.result import Drawn, Result, Variable, dataset_of
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
-    from matplotlib.axes import Axes
 
 _VARIABLES: Final = {
     "value": Variable("", "value, in the unit of its finding"),
@@ -69,10 +68,10 @@ class InertiaResult(Result):
         }
         return dataset_of(self.to_dataframe(), ["name"], _VARIABLES, attributes)
 
-    def plot_budget(self) -> "tuple[Axes, ...]":
+    def plot_budget(self) -> Drawn:
         """Draw where the uncertainty of each finding comes from."""
         return self.plot("budget")
 
-    def plot_records(self) -> "dict[str, tuple[Axes, ...]]":
+    def plot_records(self) -> dict[str, Drawn]:
         """Draw the fit over each source's records; axes by the figure's name."""
         return self._plot_kind("record")

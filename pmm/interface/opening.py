@@ -1,24 +1,35 @@
-"""What a path is: a recording, a campaign, or the file of a pendulum test."""
+"""What a path is: a recording, a campaign, a plan's design, or the file of a pendulum test."""
 
 import builtins
 import tomllib
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Final
 
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.interface.records import RecordKind, Records
 from pmm.remote import here
 
+# The first table or key that a file has tells what it is; a pendulum test has none of them.
+_TELLING: Final = {
+    "grid": RecordKind.DESIGN,
+    "bus": RecordKind.RIG,
+    "rig": RecordKind.PLAN,
+    "runs": RecordKind.CAMPAIGN,
+    "oscillator": RecordKind.CAMPAIGN,
+}
+
 
 def open(path: str | Path) -> Records:  # noqa: A001
-    """Open a recording, a campaign or the file of a pendulum test; nothing is read but its kind.
+    """Open what is measured, or is to be; nothing is read but its kind.
 
     Parameters
     ----------
     path
         A recording (CSV, NetCDF, MATLAB or TDMS); a campaign's folder or file; or the TOML file of
-        a pendulum test. Or the URL of one of the first two, such as ``s3://bucket/campaign``.
+        a pendulum test or of a plan's design. Or the URL of one of the first two, such as
+        ``s3://bucket/campaign``.
 
     Raises
     ------
@@ -38,17 +49,18 @@ def open(path: str | Path) -> Records:  # noqa: A001
         return Records(path, RecordKind.CAMPAIGN)
     if path.suffix != ".toml":
         return Records(path, RecordKind.RECORDING)
-    return Records(path, RecordKind.CAMPAIGN if _is_campaign(path) else RecordKind.PENDULUM)
+    return Records(path, _kind(path))
 
 
-def _is_campaign(path: Path) -> bool:
-    """Tell a campaign's file by its table of runs or of the oscillator."""
+def _kind(path: Path) -> RecordKind:
+    """Return what a TOML file is of."""
     with builtins.open(path, "rb") as file:  # noqa: PTH123
         try:
             table = tomllib.load(file)
-        except tomllib.TOMLDecodeError as error:
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
             raise ConfigurationError(f"{path}: {error}") from None
-    return bool({"runs", "oscillator"} & table.keys())
+    told = (kind for key, kind in _TELLING.items() if key in table)
+    return next(told, RecordKind.PENDULUM)
 
 
 def simulate(

@@ -1,4 +1,4 @@
-"""What is opened: a recording, a campaign or a pendulum test, and what can be asked of it."""
+"""What is opened: a recording, a campaign, a design or a pendulum test, and what it answers."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,6 +12,7 @@ from pmm.harmonics.sources import find_sources
 
 if TYPE_CHECKING:
     from pmm.interface.coefficients import CoefficientsResult
+    from pmm.interface.design import DesignResult
     from pmm.interface.gap import GapResult
     from pmm.interface.harmonics import HarmonicsResult
     from pmm.interface.inertia import InertiaResult
@@ -25,11 +26,14 @@ class RecordKind(StrEnum):
     RECORDING = "a recording"
     CAMPAIGN = "a campaign"
     PENDULUM = "the file of a pendulum test"
+    DESIGN = "the design of a plan"
+    PLAN = "a plan, or the file of a simulated rig"
+    RIG = "the file of a rig"
 
 
 @dataclass(frozen=True)
 class Records:
-    """A recording, the recordings of a campaign, or those of a pendulum test."""
+    """A recording, the recordings of a campaign or of a pendulum test, or a plan's design."""
 
     path: Path
     kind: RecordKind
@@ -242,3 +246,22 @@ class Records:
 
         self._require(RecordKind.PENDULUM)
         return InertiaResult(do_job(job, str(self.path)))
+
+    def design(self, *, after: Sequence[str | Path] = ()) -> "DesignResult":
+        """Choose the runs that make coefficients as well known as is asked.
+
+        Parameters
+        ----------
+        after
+            Campaigns' folders whose runs count as made.
+
+        Raises
+        ------
+        ConfigurationError, DataError
+            As :func:`pmm.design.design_file.read_design` and
+            :func:`pmm.design.designing.design` do.
+        """
+        from pmm.interface.design import designed
+
+        self._require(RecordKind.DESIGN)
+        return designed(self.path, after)

@@ -4,17 +4,19 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 from hardware.description.errors import ConfigurationError
 from pmm.document.content import Document
 from pmm.document.data import as_data
 from pmm.document.page import tables_as_html
+from pmm.document.style import render
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 CONVENTIONS: Final = (
     "mean + sum over order n of in_phase sin(n theta) + quadrature cos(n theta); theta is the "
@@ -28,6 +30,20 @@ class Variable:
 
     unit: str
     meaning: str
+
+
+class Drawn(tuple["Axes", ...]):
+    """The axes of a figure, which a notebook shows."""
+
+    __slots__ = ()
+
+    @property
+    def figure(self) -> "Figure":
+        """The figure: ``savefig`` writes it."""
+        return cast("Figure", self[0].get_figure(root=True))
+
+    def _repr_png_(self) -> bytes:
+        return render(self.figure, "png", "")
 
 
 class Result(ABC):
@@ -58,8 +74,8 @@ class Result(ABC):
         """Names of the figures that :meth:`plot` draws."""
         return tuple(one.name for one in self.document.figures)
 
-    def plot(self, name: str) -> "tuple[Axes, ...]":
-        """Draw a figure and return its axes; ``axes[0].get_figure(root=True)`` is the figure.
+    def plot(self, name: str) -> Drawn:
+        """Draw a figure and return its axes, which a notebook shows; ``.figure`` is the figure.
 
         Raises
         ------
@@ -68,11 +84,11 @@ class Result(ABC):
         """
         for one in self.document.figures:
             if one.name == name:
-                return tuple(one.draw().axes)
+                return Drawn(one.draw().axes)
         there = ", ".join(self.figures) or "none"
         raise ConfigurationError(f"no figure {name!r}; there are: {there}")
 
-    def _plot_kind(self, kind: str) -> "dict[str, tuple[Axes, ...]]":
+    def _plot_kind(self, kind: str) -> dict[str, Drawn]:
         """Draw all figures whose names are of a kind, by name."""
         return {name: self.plot(name) for name in self.figures if kind in name.split("-")}
 

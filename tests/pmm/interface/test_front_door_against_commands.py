@@ -22,6 +22,7 @@ from hardware.description.errors import ConfigurationError, DataError
 from pmm.cli import cli
 from pmm.inertia.jobs import JOBS
 from pmm.interface.coefficients import CoefficientsResult
+from pmm.interface.design import DesignResult
 from pmm.interface.gap import GapResult
 from pmm.interface.harmonics import HarmonicsResult
 from pmm.interface.inertia import InertiaResult
@@ -32,6 +33,7 @@ EXAMPLES = HOUSE / "examples"
 HEAVE = EXAMPLES / "recordings" / "heave.csv.gz"
 MAP = str(HEAVE.with_name("heave.toml"))
 PAGE = "docs/python.md"
+KINDS = (Records, HarmonicsResult, CoefficientsResult, DesignResult, GapResult, InertiaResult)
 
 
 def _json(*words: str) -> dict[str, object]:
@@ -76,6 +78,19 @@ def test_inertia_is_that_of_the_command() -> None:
     frame = found.to_dataframe().set_index("name")
     assert dict(frame["value"]) == {name: one["value"] for name, one in results.items()}
     assert set(found.to_dataset()["name"].values) == set(results)
+
+
+def test_a_design_is_that_of_the_command() -> None:
+    file = EXAMPLES / "horizontal" / "design.toml"
+    found, told = pmm.open(file).design(), _json("plan", "design", str(file))
+    assert found.to_dict() == told
+    rows = told["coefficients"]
+    assert isinstance(rows, list)
+    frame = found.to_dataframe()
+    assert list(frame["name"]) == [one["name"] for one in rows]
+    assert list(frame["wanted"]) == [one["wanted"] for one in rows]
+    assert found.met == told["possible"]
+    assert set(found.to_dataset().data_vars) == set(frame.columns)
 
 
 def test_a_simulated_campaign_is_that_of_the_command(campaign: Records, tmp_path: Path) -> None:
@@ -137,6 +152,9 @@ def test_figures_are_axes(heave: HarmonicsResult, coefficients: CoefficientsResu
                                       for one in axes)]  # fmt: skip
     assert len(drawn) >= 2
     assert all(isinstance(one, Axes) for one in drawn)
+    phasors = heave.plot_phasors()
+    assert phasors.figure is phasors[0].get_figure(root=True)
+    assert phasors._repr_png_().startswith(b"\x89PNG")
     with pytest.raises(ConfigurationError, match="no figure 'gate-9'; there are: gate, phasors"):
         heave.plot("gate-9")
 
@@ -190,7 +208,7 @@ def test_the_import_is_quick_and_loads_no_library() -> None:
 
 def test_the_page_lists_what_there_is() -> None:
     text = (HOUSE / PAGE).read_text(encoding="utf-8")
-    for kind in (Records, HarmonicsResult, CoefficientsResult, GapResult, InertiaResult):
+    for kind in KINDS:
         assert kind.__name__ in text
         for name, _ in inspect.getmembers(kind, inspect.isfunction):
             if not name.startswith("_"):
