@@ -4,6 +4,7 @@ For Python there are :func:`open`, :func:`simulate` and :func:`connect` (``docs/
 imported when they are first asked for.
 """
 
+import sys
 from typing import TYPE_CHECKING, Any
 
 from planar_motion_mechanism import refuse_intruders
@@ -19,7 +20,12 @@ __all__ = ["connect", "open", "simulate"]
 
 def __getattr__(name: str) -> Any:
     if name not in __all__:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        there = f"there are {', '.join(__all__)} (docs/python.md)"
+        raise AttributeError(
+            f"module {__name__!r} has no attribute {name!r}; {there}",
+            name=name,
+            obj=sys.modules[__name__],
+        )
     from importlib import import_module
 
     room = "console" if name == "connect" else "opening"

@@ -16,6 +16,7 @@ from websockets.sync.client import connect as open_stream
 from websockets.typing import Origin
 
 from hardware.description.errors import ConfigurationError
+from pmm.interface.arguments import checked
 from pmm.interface.console_queue import QueueCalls
 from pmm.interface.console_requests import ConsoleRefusalError, ConsoleRequests, Message
 
@@ -30,6 +31,7 @@ _UNDER_WAY: Final = 3  # frames that may be of before a command's answer
 _BROKEN: Final = ("stopped", "fault")
 
 
+@checked
 def connect(
     url: str, token: str = "", *, name: str = "", certificate: str | Path | None = None
 ) -> "ConsoleClient":

@@ -42,7 +42,10 @@ class ConsoleRequests:
         self.secure: ssl.SSLContext | None = None
         if url.startswith("https:"):
             file = None if certificate is None else str(certificate)
-            self.secure = ssl.create_default_context(cafile=file)
+            try:
+                self.secure = ssl.create_default_context(cafile=file)
+            except OSError as error:
+                raise ConfigurationError(f"{file}: no certificate: {error}") from None
         handler = HTTPCookieProcessor()
         self._opener = build_opener(handler, HTTPSHandler(context=self.secure))
         self._jar = handler.cookiejar

@@ -8,6 +8,7 @@ from typing import Final
 
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.file_names import CAMPAIGN_FILE
+from pmm.interface.arguments import Count, FilePath, checked, text_of
 from pmm.interface.records import RecordKind, Records
 from pmm.remote import here
 
@@ -21,7 +22,8 @@ _TELLING: Final = {
 }
 
 
-def open(path: str | Path) -> Records:  # noqa: A001
+@checked
+def open(path: FilePath) -> Records:  # noqa: A001
     """Open what is measured, or is to be; nothing is read but its kind.
 
     Parameters
@@ -63,14 +65,15 @@ def _kind(path: Path) -> RecordKind:
     return next(told, RecordKind.PENDULUM)
 
 
+@checked
 def simulate(
-    campaign: str | Path,
-    output: str | Path | None = None,
+    campaign: FilePath,
+    output: FilePath | None = None,
     *,
     runs: Sequence[str] = (),
     effects: Sequence[str] = (),
-    effects_file: str | None = None,
-    seed: int | None = None,
+    effects_file: FilePath | None = None,
+    seed: Count | None = None,
     overwrite: bool = False,
 ) -> Records:
     """Simulate the runs of a campaign, as ``pmm simulate`` does, and open what was written.
@@ -104,9 +107,12 @@ def simulate(
         None if output is None else Path(output),
         runs=runs,
         effects=effects,
-        effects_file=effects_file,
+        effects_file=text_of(effects_file),
         seed=seed,
         overwrite=overwrite,
     )
-    planned.carry_out()
+    try:
+        planned.carry_out()
+    except OSError as error:
+        raise ConfigurationError(f"{planned.folder}: cannot be written to: {error}") from None
     return Records(planned.folder, RecordKind.CAMPAIGN)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 from hardware.description.errors import ConfigurationError
 from pmm.harmonics.request import HarmonicsRequest
 from pmm.harmonics.sources import find_sources
+from pmm.interface.arguments import Count, FilePath, Level, checked, text_of
 
 if TYPE_CHECKING:
     from pmm.interface.coefficients import CoefficientsResult
@@ -45,12 +46,13 @@ class Records:
                 + " or ".join(kinds)
             )
 
+    @checked
     def harmonics(
         self,
         *,
         reference: str | None = None,
         frequency_hz: float | None = None,
-        edges_file: str | None = None,
+        edges_file: FilePath | None = None,
         channels: Sequence[str] = (),
         harmonics: int | None = None,
         gate_periods: int | None = None,
@@ -60,9 +62,9 @@ class Records:
         local_polynomials: bool = False,
         response_to: str | None = None,
         lines: Sequence[int] = (),
-        column_map: str | None = None,
-        calibration: str | None = None,
-        level: float = 0.95,
+        column_map: FilePath | None = None,
+        calibration: FilePath | None = None,
+        level: Level = 0.95,
     ) -> "HarmonicsResult":
         """Resolve into mean and harmonics, as ``pmm analyse`` does.
 
@@ -110,7 +112,7 @@ class Records:
         request = HarmonicsRequest(
             reference=reference,
             frequency=frequency_hz,
-            edges=edges_file,
+            edges=text_of(edges_file),
             channels=tuple(channels),
             harmonics=harmonics,
             gate=gate_periods,
@@ -120,27 +122,28 @@ class Records:
             local_polynomials=local_polynomials,
             response_to=response_to,
             lines=tuple(lines),
-            column_map=column_map,
-            calibration=calibration,
+            column_map=text_of(column_map),
+            calibration=text_of(calibration),
             level=level,
         )
         return harmonics_of(find_sources([str(self.path)]), request)
 
+    @checked
     def coefficients(
         self,
         *,
-        settings: str | None = None,
+        settings: FilePath | None = None,
         form: Literal["manoeuvring", "seakeeping"] | None = None,
         system: Literal["dimensional", "prime", "bis", "mmg", "seakeeping"] | None = None,
         names: Literal["plain", "abkowitz", "gertler-hagen"] | None = None,
         with_mass: bool = False,
-        inertia: str | None = None,
+        inertia: FilePath | None = None,
         wanted: Sequence[str] = (),
         leave_out: Sequence[str] = (),
-        references: Sequence[str] = (),
-        trials: int = 0,
-        seed: int | None = None,
-        level: float | None = None,
+        references: Sequence[FilePath] = (),
+        trials: Count = 0,
+        seed: Count | None = None,
+        level: Level | None = None,
         jobs: int | None = 1,
     ) -> "CoefficientsResult":
         """Find added mass, damping and derivatives, as ``pmm coefficients`` does.
@@ -178,15 +181,15 @@ class Records:
 
         self._require(RecordKind.CAMPAIGN)
         options: dict[str, Any] = {
-            "settings": settings,
+            "settings": text_of(settings),
             "form": form,
             "system": system,
             "names": names,
             "with_mass": with_mass,
-            "inertia": inertia,
+            "inertia": text_of(inertia),
             "wanted": tuple(wanted),
             "leave_out": tuple(leave_out),
-            "references": tuple(references),
+            "references": tuple(map(str, references)),
             "uncertainty": "monte-carlo" if trials else None,
             "trials": trials or None,
             "seed": seed,
@@ -194,6 +197,7 @@ class Records:
         }
         return campaign_coefficients(campaign_folder(str(self.path)), options, jobs)
 
+    @checked
     def gap(
         self,
         *,
@@ -228,6 +232,7 @@ class Records:
         options = Options(tuple(effects), tuple(without), tuple(sensors), tuple(hold_out))
         return campaign_gap(self.path, options, jobs)
 
+    @checked
     def inertia(self, job: Job) -> "InertiaResult":
         """Find mass, centre of gravity, inertia and gyradii, as ``pmm inertia JOB`` does.
 
@@ -247,7 +252,8 @@ class Records:
         self._require(RecordKind.PENDULUM)
         return InertiaResult(do_job(job, str(self.path)))
 
-    def design(self, *, after: Sequence[str | Path] = ()) -> "DesignResult":
+    @checked
+    def design(self, *, after: Sequence[FilePath] = ()) -> "DesignResult":
         """Choose the runs that make coefficients as well known as is asked.
 
         Parameters

@@ -7,6 +7,7 @@ import re
 import statistics
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import get_args
 
@@ -183,6 +184,55 @@ def test_what_a_path_is_not_is_said(tmp_path: Path) -> None:
     (tmp_path / "flat.csv").write_text("time [s],force [N]\n0,1\n0.1,1\n")
     with pytest.raises(DataError, match=r"flat\.csv"):
         pmm.open(tmp_path / "flat.csv").harmonics(frequency_hz=1.0)
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        (lambda: pmm.open(None), "open: path = None should be"),
+        (lambda: pmm.open(HEAVE).harmonics(level=95), "level = 95 should be less than 1"),
+        (
+            lambda: pmm.open(HEAVE).harmonics(harmonics=2.5),
+            r"2\.5 should be a valid int",
+        ),
+        (lambda: pmm.open(HEAVE).harmonics(channels="force_aft"), "is one text; give a list"),
+        (
+            lambda: pmm.open(EXAMPLES / "inertia" / "swing.toml").inertia("swim"),
+            "should be 'swing'",
+        ),
+        (
+            lambda: pmm.open(EXAMPLES / "foreign").coefficients(form="best"),
+            "be 'manoeuvring'",
+        ),
+        (lambda: pmm.open(EXAMPLES / "foreign").coefficients(trials=-5), "trials = -5 should be"),
+        (lambda: pmm.simulate("campaign.toml", seed=-1), "seed = -1 should be"),
+        (
+            lambda: pmm.connect("https://127.0.0.1:1", certificate="no.pem"),
+            "no certificate",
+        ),
+        (lambda: pmm.open(EXAMPLES / "vertical" / "plan.toml").harmonics(), "this is a plan"),
+        (lambda: pmm.open(EXAMPLES / "vertical" / "rig.toml").gap(), "this is the file of a rig"),
+    ],
+)
+def test_a_wrong_argument_is_named(asked: Callable[[], object], said: str) -> None:
+    with pytest.raises(ConfigurationError, match=said):
+        asked()
+
+
+def test_a_wrong_name_tells_those_that_there_are() -> None:
+    with pytest.raises(AttributeError, match="no attribute 'load'; there are connect, open, simul"):
+        pmm.load  # noqa: B018
+    with pytest.raises(TypeError, match=r"inertia: missing .*'job'; it takes job"):
+        pmm.open(EXAMPLES / "inertia" / "swing.toml").inertia()
+    with pytest.raises(TypeError, match=r"harmonics: .*'map'; it takes .* column_map"):
+        pmm.open(HEAVE).harmonics(map=MAP)
+
+
+def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:
+    file = tmp_path / "file"
+    file.touch()
+    with pytest.raises(ConfigurationError, match="cannot be written to"):
+        pmm.simulate(EXAMPLES / "vertical" / "campaign.toml", file, runs=["heave-0.50"])
 
 
 def test_the_jobs_are_those_of_the_command() -> None:
