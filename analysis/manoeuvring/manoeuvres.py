@@ -23,9 +23,9 @@ from hardware.description.arrays import FloatArray
 STEP_LENGTHS = 0.04  # of a step, in L/U of the approach: overshoots to 1e-6 of themselves
 _LONGEST_LENGTHS = 120.0  # of a phase: a ship that takes longer does not come there
 _TURNED = 4.0 * math.pi  # after which a turn is steady
-_SPIRAL_STEP = 0.25  # where the turn ends does not depend on it
-_SPIRAL_HOLDS = 10.0  # L/U of one hold; a rudder angle is held until the turn is steady
-_SPIRAL_MOST = 60  # holds of one angle
+_SPIRAL_STEP = 0.5  # where the turn ends does not depend on it; modes up to 5 U/L do not grow
+_SPIRAL_HOLDS = 5.0  # L/U of one hold; a rudder angle is held until the turn is steady
+_SPIRAL_MOST = 120  # holds of one angle
 _SPIRAL_STEADY = 1e-6  # r' changes by less in L/U: KCS at rudder 0, dying in 60 L/U, has 6e-5 left
 
 

@@ -184,7 +184,7 @@ def test_a_spiral_has_no_lag() -> None:
 def test_a_turn_that_is_not_steady_has_no_number(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("analysis.manoeuvring.manoeuvres._SPIRAL_MOST", 1)
     found = spiral(kvlcc2.ship(), math.radians(5.0), math.radians(5.0))
-    assert np.isnan(found.height).all(), "20 L/U leave a lag in the loop of KVLCC2"
+    assert np.isnan(found.height).all(), "10 L/U leave a lag in the loop of KVLCC2"
 
 
 @given(st.floats(2.0, 100.0))
