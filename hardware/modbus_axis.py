@@ -140,9 +140,11 @@ class ModbusAxis(ModbusDevice):
         )
 
     def stop(self) -> None:
-        """Stay where it is."""
+        """Stay where it is; one that has arrived stays arrived."""
         self.done()
-        if self._goal is not None and self.homed and not self._near(self._goal):
+        if self._goal is None or self._near(self._goal):
+            return
+        if self.homed:
             self.tell(self._settings.registers.set_position, self.position)
         self._goal = None
 

@@ -306,6 +306,15 @@ class PositionAxisContract(_PoweredContract):
             axis.move_to(axis.limits.low + beyond * (axis.limits.high - axis.limits.low))
         assert not axis.moving
 
+    def test_a_stop_where_it_has_arrived_leaves_it_settled(self, bench: Bench) -> None:
+        axis = self.ready(bench)
+        axis.move_to(axis.limits.low + 0.25 * (axis.limits.high - axis.limits.low))
+        bench.until(lambda: axis.settled, "move")
+        axis.stop()
+        bench.cycles(60)
+        assert axis.settled
+        assert not axis.moving
+
     def test_it_stops_on_the_way(self, bench: Bench) -> None:
         axis = self.ready(bench)
         axis.move_to(axis.limits.high)

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from hardware.description.kinds import RunKind
+from pmm.evaluation.rig_tests import towed_speeds
+from pmm.evaluation.run_results import read_results
 from pmm.recorder.replay import replay
 from pmm.run.states import Command, State
 from sim.devices.bench_file import DRIVERS
@@ -105,10 +107,21 @@ def test_a_track_that_ends_stops_the_carriage_before_its_end(tmp_path) -> None:
 
 
 def test_a_drift_table_is_set_and_nobody_is_asked(tmp_path) -> None:
-    runs = [at_rest("drift", RunKind.STATIC_DRIFT, drift_rad=0.1)]
+    zero = at_rest("zero", RunKind.ZERO, drift_rad=0.1)
+    runs = [zero, at_rest("drift", RunKind.STATIC_DRIFT, drift_rad=0.1)]
     with towed(tmp_path, runs, tables={"drift": DRIFT}, serial=("drift",)) as one:
         one.finish()
-        assert one.control.outcomes[0].outcome == "complete", one.control.status().alarms
+        assert [each.outcome for each in one.control.outcomes] == ["complete", "complete"]
         assert one.world.plant.around.drift_rad == pytest.approx(0.1, abs=2e-4)
         assert one.rig.angles["drift"].reading.value == pytest.approx(0.1, abs=2e-4)
         assert not told(tmp_path / "drift", "operator")
+
+
+def test_the_report_tells_how_the_carriage_ran(tmp_path) -> None:
+    with towed(tmp_path, [TOW], ripple=(RIPPLE,)) as one:
+        one.finish()
+    (row,) = towed_speeds(read_results(tmp_path))
+    assert (row.run, row.speed_m_s) == ("tow", SPEED_M_S)
+    assert row.mean_m_s == pytest.approx(SPEED_M_S, rel=3e-3)
+    assert row.deviation_m_s == pytest.approx(0.01 * SPEED_M_S / np.sqrt(2.0), rel=0.15)
+    assert abs(row.off_percent) < 0.3
