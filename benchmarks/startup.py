@@ -1,4 +1,4 @@
-"""How long ``pmm --help`` takes to answer."""
+"""How long ``pmm --help`` takes to answer, and ``import pmm``."""
 
 import importlib.util
 import statistics
@@ -14,7 +14,11 @@ _HELP = "import sys; sys.argv = ['pmm', '--help']; from pmm.cli import main; mai
 
 def run(quick: bool, report: Report) -> Outcome:
     """Start interpreters, ten times each."""
-    contenders = [_started("python -c pass", "pass"), _started("import numpy", "import numpy")]
+    contenders = [
+        _started("python -c pass", "pass"),
+        _started("import numpy", "import numpy"),
+        _started("import pmm", "import pmm"),
+    ]
     notes = ["Each in a new interpreter; what the installed `pmm --help` does, without its script."]
     measured = {}
     if importlib.util.find_spec("pmm.cli") is None:
@@ -22,9 +26,10 @@ def run(quick: bool, report: Report) -> Outcome:
     else:
         contenders.append(_started("pmm --help", _HELP))
     interleave(contenders, 3 if quick else 10, report)
-    for contender in contenders:
-        if contender.name == "pmm --help":
-            measured["help_s"] = statistics.median(contender.times_s)
+    medians = {one.name: statistics.median(one.times_s) for one in contenders}
+    measured["import_s"] = medians["import pmm"] - medians["python -c pass"]
+    if "pmm --help" in medians:
+        measured["help_s"] = medians["pmm --help"]
     return Outcome(
         {"Time to answer": [_row(c, contenders[0]) for c in contenders]}, measured, (*notes,)
     )

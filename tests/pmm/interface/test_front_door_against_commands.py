@@ -4,7 +4,6 @@ import inspect
 import json
 import os
 import re
-import statistics
 import subprocess
 import sys
 from collections.abc import Callable
@@ -241,19 +240,12 @@ def test_the_jobs_are_those_of_the_command() -> None:
     assert set(get_args(Job)) == set(JOBS) == set(group.commands)
 
 
-def test_the_import_is_quick_and_loads_no_library() -> None:
-    code = (
-        "import sys, time; began = time.process_time(); import pmm; "
-        "print(time.process_time() - began, len({'numpy', 'pandas', 'xarray'} & {*sys.modules}))"
+def test_the_import_loads_no_library() -> None:
+    code = "import pmm, sys; print({'numpy', 'pandas', 'pydantic', 'xarray'} & {*sys.modules})"
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=HOUSE, capture_output=True, text=True, check=True
     )
-    told = [
-        subprocess.run(
-            [sys.executable, "-c", code], cwd=HOUSE, capture_output=True, text=True, check=True
-        ).stdout.split()
-        for _ in range(3)
-    ]
-    assert {count for _, count in told} == {"0"}
-    assert statistics.median(float(one) for one, _ in told) < 0.1
+    assert done.stdout.strip() == "set()"
 
 
 def test_the_page_lists_what_there_is() -> None:
