@@ -8,7 +8,6 @@ from typing import Any
 
 import click
 
-from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.cli.coefficients import SHARED, analysed, finish
 
 REPORT_FILE = "report.html"
@@ -64,6 +63,8 @@ def report(**options: Any) -> None:
 
 
 def _path(options: Mapping[str, Any]) -> Path:
+    from pmm.campaign.file_names import CAMPAIGN_FILE
+
     if options["output"] is not None:
         return Path(options["output"])
     first = Path(options["campaigns"][0])

@@ -14,7 +14,7 @@ HOUSE = Path(__file__).parents[2]
 HELP = "import sys; sys.argv = ['pmm', *{words}, '--help']; from pmm.cli import main; main()"
 HEAVY = {
     "numpy", "scipy", "pandas", "xarray", "pydantic", "matplotlib", "rich", "h5py", "h5netcdf",
-    "can", "canopen", "control", "starlette", "uvicorn",
+    "can", "canopen", "control", "starlette", "uvicorn", "pmm.configuration",
 }  # fmt: skip
 
 
