@@ -8,13 +8,21 @@ from typing import Any
 
 
 @contextmanager
-def dask_workers(count: int) -> Iterator[Any]:
-    """Start some workers of one thread each, and yield their cluster; it needs ``distributed``."""
-    import distributed
+def dask_workers(count: int, *, apart: bool = False) -> Iterator[Any]:
+    """Start some workers of one thread each, and yield their cluster; it needs ``distributed``.
 
+    Parameters
+    ----------
+    apart
+        Whether the scheduler too has a process of its own.
+    """
+    import distributed
+    from distributed.deploy.subprocess import SubprocessCluster
+
+    kind: Any = SubprocessCluster if apart else distributed.LocalCluster
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # distributed's own, of ports and of killed workers
-        with distributed.LocalCluster(
+        with kind(
             n_workers=count, threads_per_worker=1, host="127.0.0.1", dashboard_address=None,
             silence_logs=logging.CRITICAL,
         ) as started:  # fmt: skip

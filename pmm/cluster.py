@@ -12,10 +12,12 @@ from typing import Any, Final, TypeVar
 
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.version import installing
+from pmm.job_queue import is_queue, queued_jobs
 
 T = TypeVar("T")
 
 _TIMEOUT: Final = "10s"  # for a scheduler to answer, and for its first worker
+SENDING_S: Final = 4e-3  # of sender or scheduler for a message and its answer, see docs/parallel.md
 _LOOK_S: Final = 5.0  # from one look at how many workers there are to the next
 
 
@@ -26,19 +28,29 @@ class ClusterWorkers(Executor):
     ----------
     client
         A ``distributed.Client``.
+
+    Attributes
+    ----------
+    client
+        The same.
     """
 
     def __init__(self, client: Any) -> None:
-        self._client, self._executor = client, client.get_executor(pure=False)
+        self.client, self._executor = client, client.get_executor(pure=False)
         self._workers, self._looked_s = 0, -math.inf
 
     @property
     def workers(self) -> int:
         """How many threads the cluster's workers have together, as of the last seconds."""
         if time.monotonic() > self._looked_s + _LOOK_S:
-            self._workers = sum(self._client.ncores().values())
+            self._workers = sum(self.client.ncores().values())
             self._looked_s = time.monotonic()
         return max(1, self._workers)
+
+    @property
+    def round_s(self) -> float:
+        """How long sender and scheduler need for a message to each worker, with its answer."""
+        return self.workers * SENDING_S
 
     def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
         """Send a task; its result comes through the future that is returned."""
@@ -58,6 +70,17 @@ class ClusterWorkers(Executor):
 @contextmanager
 def cluster(address: str, module: str) -> Iterator[Executor]:
     """Open the workers of a cluster; raises as :func:`pmm.parallel.open_executor` says."""
+    if is_queue(address):
+        with queued_jobs(address) as started, _workers_of(started, module, None) as executor:
+            yield executor
+        return
+    with _workers_of(address, module, _TIMEOUT) as executor:
+        yield executor
+
+
+@contextmanager
+def _workers_of(address: str, module: str, patience: str | None) -> Iterator[Executor]:
+    """Open a scheduler's workers; the first may take so long to come, ``None`` without end."""
     try:
         distributed: Any = import_module("distributed")
     except ImportError:
@@ -72,7 +95,7 @@ def cluster(address: str, module: str) -> Iterator[Executor]:
             "start one with 'dask scheduler', or leave the option out"
         ) from None
     try:
-        _wait_for_a_worker(client, address)
+        _wait_for_a_worker(client, address, patience)
         _check_workers(client, address, module)
         yield ClusterWorkers(client)
     except CancelledError:
@@ -87,13 +110,13 @@ def cluster(address: str, module: str) -> Iterator[Executor]:
         client.close()
 
 
-def _wait_for_a_worker(client: Any, address: str) -> None:
+def _wait_for_a_worker(client: Any, address: str, patience: str | None) -> None:
     """Refuse a scheduler without workers: it keeps tasks for as long as none comes."""
     try:
-        client.wait_for_workers(1, timeout=_TIMEOUT)
+        client.wait_for_workers(1, timeout=patience)
     except TimeoutError:
         raise DataError(
-            f"--scheduler {address}: no workers there within {_TIMEOUT}; start one with "
+            f"--scheduler {address}: no workers there within {patience}; start one with "
             f"'dask worker {address}'"
         ) from None
 

@@ -6,18 +6,22 @@ the task's own number (``SeedSequence(seed, spawn_key=(i,))``), so that the resu
 every engine and with any number of workers. See ``docs/parallel.md``.
 """
 
+import math
 import os
 import threading
-from collections.abc import Callable, Iterable, Iterator
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import partial
+from itertools import islice
 from multiprocessing import get_context
 from pathlib import Path
 from platform import node
 from queue import SimpleQueue
-from typing import Any, Final, TypeVar
+from typing import Any, Final, Generic, TypeVar
 
 from analysis.threads import SETTING, cores
 from hardware.description.errors import ConfigurationError, DataError
@@ -29,7 +33,8 @@ S = TypeVar("S")
 
 MOST_RESTARTS: Final = 10  # of a pool whose workers die: beyond it something is wrong with the work
 _THREADS: Final = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", SETTING)
-IN_HAND_EACH: Final = 3  # tasks of a worker at a time: the one it does, and some that wait there
+IN_HAND_EACH: Final = 3  # messages of a worker at a time: the one it does, and some that wait
+MOST_TOGETHER: Final = 100  # tasks of a message: an interruption begins them again
 
 
 @contextmanager
@@ -43,8 +48,9 @@ def open_executor(
     jobs
         Local processes; 1 works in this process, ``None`` takes one for each core.
     scheduler
-        Address of a Dask scheduler, such as ``tcp://127.0.0.1:8786``; its workers need this
-        package, and the recordings under the same paths or by URL.
+        Address of a Dask scheduler, such as ``tcp://127.0.0.1:8786``, or a queue and the number of
+        jobs to submit there, such as ``slurm:20``. Workers need this package, and the recordings
+        under the same paths or by URL.
     module
         Where the tasks' function is, if it is no part of this package; a cluster's workers are
         asked whether they have it.
@@ -52,7 +58,8 @@ def open_executor(
     Raises
     ------
     ConfigurationError
-        If both are given, the number is below 1, or the extra ``cluster`` is not installed.
+        If both are given, the number is below 1, or the extra ``cluster`` is not installed; or as
+        :func:`pmm.job_queue.queued_jobs`.
     DataError
         If no scheduler answers there or it has no workers, a worker lacks the module, the workers
         died again and again, or the scheduler ended.
@@ -83,24 +90,68 @@ def as_done(
     work
         A function of a module, called with one task at a time.
     most
-        Tasks in hand at a time; no more results than that are held. By default
-        :data:`IN_HAND_EACH` for each worker, as many as there are then: clusters grow.
+        Messages in hand at a time. By default :data:`IN_HAND_EACH` for each worker, as many as
+        there are then: clusters grow. A message has one task, and of short tasks to many workers
+        :func:`tasks_each`.
     """
-    done: SimpleQueue[Future[T]] = SimpleQueue()
-    running = 0
-    for task in tasks:
-        executor.submit(work, task).add_done_callback(done.put)
+    done: SimpleQueue[Future[_Done[T]]] = SimpleQueue()
+    waiting, running = iter(tasks), 0
+    count, work_s = 0, 0.0
+
+    def results() -> Iterator[T]:
+        nonlocal running, count, work_s
+        found = done.get().result()
+        running -= 1
+        count, work_s = count + len(found.results), work_s + found.work_s
+        yield from found.results
+        if found.error is not None:
+            raise found.error
+
+    while some := list(islice(waiting, tasks_each(executor, work_s / count if count else None))):
+        executor.submit(_each, work, some).add_done_callback(done.put)
         running += 1
         # What is done at once, as in this process, is yielded before the next task is begun.
         while not done.empty() or running >= (most or in_hand(executor)):
-            yield done.get().result()
-            running -= 1
-    for _ in range(running):
-        yield done.get().result()
+            yield from results()
+    while running:
+        yield from results()
+
+
+@dataclass(frozen=True)
+class _Done(Generic[T]):
+    """What came of a message's tasks, up to the first that fails."""
+
+    results: list[T]
+    work_s: float
+    error: Exception | None = None
+
+
+def _each(work: Callable[[S], T], tasks: Sequence[S]) -> _Done[T]:
+    started = time.perf_counter()
+    results: list[T] = []
+    try:
+        results.extend(map(work, tasks))
+    except Exception as error:  # it belongs to whoever asks for the results
+        return _Done(results, time.perf_counter() - started, error)
+    return _Done(results, time.perf_counter() - started)
+
+
+def tasks_each(executor: Executor, task_s: float | None) -> int:
+    """Return how many tasks go in a message, so that who sends keeps pace with all workers.
+
+    Parameters
+    ----------
+    task_s
+        What a task takes on the mean; ``None`` before the first result.
+    """
+    round_s: float = getattr(executor, "round_s", 0.0)
+    if task_s is None:
+        return 1
+    return max(1, math.ceil(min(MOST_TOGETHER, round_s / max(task_s, 1e-9))))
 
 
 def in_hand(executor: Executor) -> int:
-    """Return how many tasks an executor's workers are to have at a time."""
+    """Return how many messages an executor's workers are to have at a time."""
     workers: int = getattr(executor, "workers", 1)
     return IN_HAND_EACH * workers
 

@@ -48,7 +48,9 @@ def jobs_option(default: str) -> Callable[[F], F]:
 
 
 SCHEDULER: Final = click.option(
-    "--scheduler", metavar="ADDRESS", help="A Dask scheduler in place of processes."
+    "--scheduler",
+    metavar="ADDRESS",
+    help="A Dask scheduler in place of processes, or slurm:N for N jobs of a queue.",
 )
 
 LEVEL: Final = click.option(

@@ -1,14 +1,17 @@
 """Every engine gives what one process gives, also when a worker is killed on the way."""
 
+import math
 import multiprocessing
 from collections import deque
 from collections.abc import Iterator
 from concurrent.futures import Executor, Future
+from typing import Any
 
 import pytest
 
 from hardware.description.errors import ConfigurationError, DataError
-from pmm.parallel import LocalProcesses, as_done, open_executor
+from pmm.cluster import ClusterWorkers
+from pmm.parallel import InThisProcess, LocalProcesses, as_done, open_executor, tasks_each
 from tests.clusters import cluster
 from tests.pmm.coefficients.work import (
     always_dies,
@@ -16,6 +19,7 @@ from tests.pmm.coefficients.work import (
     given_up,
     killed_once,
     refuses,
+    refuses_four,
     squared,
     threads,
 )
@@ -112,17 +116,18 @@ class _Growing(Executor):
 
     def __init__(self, workers: int) -> None:
         self.workers, self.begun, self.most = workers, 0, 0
-        self._open: deque[Future[int]] = deque()
+        self._open: deque[tuple[Future[Any], Any]] = deque()
 
     def submit(self, fn, /, *args, **kwargs):  # type: ignore[no-untyped-def]
         future: Future[int] = Future()
         self.begun += 1
         self.workers *= 2 if self.begun == 3000 else 1
-        self._open.append(future)
+        self._open.append((future, fn(*args)))
         self.most = max(self.most, len(self._open))
         if len(self._open) >= 3 * self.workers or self.begun == 7000:
             while self._open:
-                self._open.popleft().set_result(0)
+                oldest, result = self._open.popleft()
+                oldest.set_result(result)
         return future
 
 
@@ -130,6 +135,55 @@ def test_tasks_in_hand_follow_the_size_of_the_cluster() -> None:
     cluster = _Growing(700)
     assert sum(1 for _ in as_done(cluster, squared, range(7000))) == 7000
     assert cluster.most == 3 * 1400
+
+
+@pytest.mark.parametrize(
+    ("workers", "task_s", "count"),
+    [(2, 1.0, 1), (100, 2.0, 1), (1000, 1.5, 3), (1000, 0.01, 100), (1000, None, 1)],
+)
+def test_short_tasks_for_many_workers_go_together(
+    workers: int, task_s: float | None, count: int
+) -> None:
+    """By hand: 4 ms a message, one to each of 1000 workers in 4 s, two tasks and two thirds."""
+    many = ClusterWorkers(_Sized(workers))
+    assert tasks_each(many, task_s) == count
+    assert tasks_each(LocalProcesses(1), task_s) == 1
+
+
+class _Sized:
+    """A client of so many workers."""
+
+    def __init__(self, workers: int) -> None:
+        self._workers = workers
+
+    def get_executor(self, *, pure: bool) -> None:
+        pass
+
+    def ncores(self) -> dict[str, int]:
+        return {str(k): 1 for k in range(self._workers)}
+
+
+class _Together(InThisProcess):
+    """A cluster whose messages take so long that as many tasks as may go in one."""
+
+    workers, round_s = 2, math.inf
+
+    def __init__(self) -> None:
+        self.sent: list[int] = []
+
+    def submit(self, fn, /, *args, **kwargs):  # type: ignore[no-untyped-def]
+        self.sent.append(len(args[1]))
+        return super().submit(fn, *args, **kwargs)
+
+
+def test_tasks_that_go_together_come_back_one_by_one_up_to_the_first_that_fails() -> None:
+    executor = _Together()
+    assert list(as_done(executor, squared, range(250))) == [k * k for k in range(250)]
+    assert executor.sent == [1, 100, 100, 49]
+    found = as_done(executor, refuses_four, range(6))
+    assert [next(found) for _ in range(4)] == [0, 1, 2, 3]
+    with pytest.raises(ValueError, match="number 4"):
+        next(found)
 
 
 def test_an_error_ends_what_comes_as_it_is_done() -> None:
@@ -149,7 +203,6 @@ def test_impossible_engines_are_refused(options, message) -> None:  # type: igno
         pass
 
 
-@pytest.mark.slow
 def test_dask_gives_the_same_with_one_worker_killed(tmp_path) -> None:  # type: ignore[no-untyped-def]
     tasks = [(str(tmp_path), k) for k in range(COUNT)]
     with cluster(2) as address, open_executor(scheduler=address) as executor:
@@ -158,7 +211,6 @@ def test_dask_gives_the_same_with_one_worker_killed(tmp_path) -> None:  # type: 
     assert (tmp_path / "killed").exists()
 
 
-@pytest.mark.slow
 def test_what_a_cluster_cannot_do_is_said() -> None:
     with cluster() as address:
         with (
@@ -173,7 +225,6 @@ def test_what_a_cluster_cannot_do_is_said() -> None:
             next(as_done(executor, given_up, [address]))
 
 
-@pytest.mark.slow
 def test_a_scheduler_without_workers_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("pmm.cluster._TIMEOUT", "1s")
     with (
@@ -184,7 +235,6 @@ def test_a_scheduler_without_workers_is_refused(monkeypatch: pytest.MonkeyPatch)
         pass
 
 
-@pytest.mark.slow
 def test_a_scheduler_that_is_not_there_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")
     monkeypatch.setattr("pmm.cluster._TIMEOUT", "1s")

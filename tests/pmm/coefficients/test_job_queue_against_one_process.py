@@ -1,0 +1,102 @@
+"""Jobs of a queue give what one process gives, and none is left; its commands are played here."""
+
+import os
+import shutil
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from hardware.description.errors import ConfigurationError, DataError
+from pmm.parallel import as_done, open_executor
+from tests.pmm.coefficients.work import drawn
+
+COUNT = 6
+# As the real one: it keeps the script, answers with a number, and the job runs on by itself.
+_SBATCH = """#!/bin/sh
+script={folder}/script-$$
+cp "$1" $script
+setsid sh $script > $script.log 2>&1 < /dev/null &
+echo $! >> {folder}/jobs
+echo "Submitted batch job $!"
+"""
+_SCANCEL = """#!/bin/sh
+kill -KILL -- -$1
+"""
+
+
+@pytest.fixture
+def queue(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    dask = pytest.importorskip("dask", reason="optional dependency queue")
+    pytest.importorskip("dask_jobqueue", reason="optional dependency queue")
+    for name, text in {"sbatch": _SBATCH, "scancel": _SCANCEL}.items():
+        (tmp_path / name).write_text(text.format(folder=tmp_path), encoding="utf-8")
+        (tmp_path / name).chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
+    with dask.config.set(
+        {
+            "jobqueue.slurm.cores": 1,
+            "jobqueue.slurm.memory": "1GB",
+            "jobqueue.slurm.scheduler-options": {"host": "127.0.0.1"},
+        }
+    ):
+        yield tmp_path
+
+
+def _runs(process: int) -> bool:
+    try:
+        os.killpg(process, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("setsid") is None, reason="no setsid on this system")
+def test_jobs_give_the_same_and_end_with_the_command(queue: Path) -> None:
+    with open_executor(scheduler="slurm:1") as executor:
+        assert sorted(as_done(executor, drawn, range(COUNT))) == sorted(map(drawn, range(COUNT)))
+    jobs = [int(line) for line in (queue / "jobs").read_text(encoding="utf-8").split()]
+    assert len(jobs) == 1
+    scripts = [one.read_text(encoding="utf-8") for one in queue.glob("script-*[0-9]")]
+    assert len(scripts) == 1
+    assert all("--nthreads 1" in one for one in scripts)
+    ends_s = time.monotonic() + 10.0
+    while any(map(_runs, jobs)) and time.monotonic() < ends_s:
+        time.sleep(0.05)
+    assert not any(map(_runs, jobs))
+
+
+def test_a_queue_that_refuses_is_quoted(queue: Path) -> None:
+    (queue / "sbatch").write_text(
+        "#!/bin/sh\necho no such partition >&2; exit 1\n", encoding="utf-8"
+    )
+    with pytest.raises(DataError, match="no such partition"), open_executor(scheduler="slurm:1"):
+        pass
+
+
+@pytest.mark.usefixtures("queue")
+@pytest.mark.parametrize(
+    ("address", "setting", "message"),
+    [
+        ("slurm:0", {}, "at least one job"),
+        ("pbs:1", {}, "no command qsub here"),
+        (
+            "slurm:1",
+            {"jobqueue.slurm.memory": None},
+            "state memory below jobqueue: slurm:",
+        ),
+    ],
+)
+def test_what_cannot_be_submitted_is_said(
+    address: str, setting: dict[str, None], message: str
+) -> None:
+    import dask
+
+    with (
+        dask.config.set(setting),
+        pytest.raises(ConfigurationError, match=message),
+        open_executor(scheduler=address),
+    ):
+        pass
