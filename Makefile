@@ -8,14 +8,14 @@ BIN    := $(VENV)/bin
 
 help:
 	@echo "make demo   install, run a small simulated campaign, analyse it, write a report to demo/"
-	@echo "make test   install and run the tests"
+	@echo "make test   install and run the tests, but for those that take long"
 	@echo "make coverage  run the tests, say which lines they run; .coverage says by which test"
 	@echo "make lint   formatting, types, imports"
 	@echo "make pages  write the pages that are made from the code, once it has changed"
 	@echo "make docs   build the pages as a site in site/, every warning an error"
 	@echo "make bench  draw many inputs for the tests, measure speed and coverage, write benchmarks/results/"
 	@echo "make sealed answer and score campaigns whose truth is withheld (an hour and more)"
-	@echo "make release  build wheel and source distribution, use each from a fresh environment"
+	@echo "make release  run the tests that take long, build wheel and source distribution, use each from a fresh environment"
 	@echo "make lock   write the locks anew, once dependencies or their versions have changed"
 	@echo "make clean  remove the virtual environment and what the demo wrote"
 
@@ -45,7 +45,7 @@ test: $(VENV)/.dev
 # A context for each test: `python -m benchmarks.mutants` asks which tests run a line.
 coverage: $(VENV)/.dev
 	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest $(WORKERS) \
-		--cov --cov-context=test --cov-report=term:skip-covered
+		-m "" --cov --cov-context=test --cov-report=term:skip-covered
 
 lint: $(VENV)/.dev
 	$(BIN)/ruff check
@@ -72,8 +72,9 @@ bench: $(VENV)/.bench
 sealed: $(VENV)/.sealed
 	$(BIN)/python -m tests.sealed whole --commit $$(git rev-parse HEAD) --output board --left-out 100
 
-# Of a commit a step is done once: goes on where it was broken off.
+# First the tests that take long. Of a commit a step is done once: goes on where it was broken off.
 release: $(VENV)/.dev
+	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest $(WORKERS) -m slow
 	$(BIN)/python -m benchmarks.release
 
 clean:

@@ -94,7 +94,7 @@ class House:
         """Return the first tests that fail; ``None`` where patience ended before."""
         listed = self.folder / "asked.txt"
         listed.write_text("\n".join(tests), encoding="utf-8")
-        options = ["-x", "-q", "-p", "no:cacheprovider", "--timeout", "0"]
+        options = ["-x", "-q", "-m", "", "-p", "no:cacheprovider", "--timeout", "0"]
         options += [f"--deselect={one}" for one in left_out]
         if self.workers > 1:
             options += ["-n", str(self.workers)]

@@ -45,6 +45,7 @@ def _answers(board: Path, rows: tuple[str, ...]) -> dict[str, Any]:
     return {row: {**one, "seconds": None} for row, one in said.items()}
 
 
+@pytest.mark.slow
 def test_a_board_without_keys_is_answered(board: Path, apart: Path) -> None:
     said = _answers(apart, (DIAGNOSIS, *OTHERS))
     truth = read_truth(board / "keys" / "case-0001" / "truth.json")

@@ -73,7 +73,6 @@ def test_a_package_that_a_worker_lacks_has_not_failed(
         answered_there(still_asked(board, ("no-gap",))[0])
 
 
-@pytest.mark.slow
 def test_a_scheduler_that_is_not_there_answers_nothing(
     board: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

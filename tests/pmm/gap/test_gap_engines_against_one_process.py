@@ -103,7 +103,6 @@ def test_a_cluster(
         assert answered(board, tmp_path / "cluster", "--scheduler", address) == answers
 
 
-@pytest.mark.slow
 def test_a_scheduler_that_is_not_there_is_named(
     board: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
