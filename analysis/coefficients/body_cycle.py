@@ -88,6 +88,8 @@ class BodyCycle:
         follow.
     heel, heel_rad
         How the model heels, and the heel of the run's set-point, to starboard.
+    turn_rate_rad_s
+        Steady rate of turn of a run on a circle, bow to starboard; 0 for a straight way.
     lines
         Harmonics at which a motion of many frequencies has its lines; empty for a single sine.
     """
@@ -114,6 +116,7 @@ class BodyCycle:
     heel: Heel | None = None
     heel_rad: float = 0.0
     lines: tuple[int, ...] = ()
+    turn_rate_rad_s: float = 0.0
 
     @property
     def has_roll(self) -> bool:
@@ -182,6 +185,7 @@ class BodyCycle:
             point_ahead_m=self.point_ahead_m,
             heel=self.heel,
             heel_rad=self.heel_rad,
+            turn_rate_rad_s=self.turn_rate_rad_s,
         )
 
     def _insensitive(self) -> FloatArray:

@@ -248,18 +248,24 @@ def _try_surge(
 def static_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
     """Return the loads over drift (or trim) angles, straight tows among them.
 
-    Force and moment take the form that the data support, and what they misfit it by widens their
-    intervals; X is the resistance and, where the model was turned, quadratic. A rudder that was
-    laid and a heel that was set add terms, as mirrored runs mirror the loads: odd ones, in X even.
+    Runs on a circle beside them tell the terms of the rate of turn. Force and moment take the form
+    that the data support, and what they misfit it by widens their intervals; X is the resistance
+    and, where the model was turned, quadratic. A rudder that was laid and a heel that was set add
+    terms, as mirrored runs mirror the loads: odd ones, in X even.
     """
     plane, speed = cycles[0].plane, cycles[0].speed_m_s
     odd, even = _set_angles(cycles)
+    turning = any(cycle.turn_rate_rad_s for cycle in cycles)
+    motions = "vr" if turning else "v"
+    cross = any(cycle.turn_rate_rad_s and cycle.drift_rad for cycle in cycles)
     group = GroupFits()
     fits, missing = group.fits, group.missing
     for row in _rows(cycles):
-        forms = forms_of(plane, row, "v", steady=True, angles=odd)
+        forms = forms_of(plane, row, motions, cross=cross, steady=True, angles=odd)
         try:
-            choice, richest = choose_form(cycles, row, "v", STATIC, steady=True, angles=odd)
+            choice, richest = choose_form(
+                cycles, row, motions, STATIC, cross=cross, steady=True, angles=odd
+            )
         except DataError as error:
             missing += [Missing(name, f"{STATIC_DRIFT}: {error}") for name in forms[LINEAR_FORM]]
             continue
@@ -269,9 +275,10 @@ def static_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
         label = f"misfit of the {choice.load}, {STATIC_DRIFT} at {speed:g} m/s"
         fits[-1] = (STATIC_DRIFT, fits[-1][1].with_misfit(label, row))
     if all(cycle.has_surge for cycle in cycles):
-        letter = VELOCITY_LETTERS[plane][0]
+        v, r = tuple(VELOCITY_LETTERS[plane])
         turned = any(round(cycle.drift_rad, 6) for cycle in cycles)
-        names = ["X_0", *([f"X_{letter * 2}"] if turned else []), *(f"X_{one}" for one in even)]
+        names = ["X_0", *([f"X_{v}{v}"] if turned else []), *(f"X_{one}" for one in even)]
+        names += [*([f"X_{r}{r}"] if turning else []), *([f"X_{v}{r}"] if cross else [])]
         _try_surge(group, cycles, names, STATIC, request)
     return group
 

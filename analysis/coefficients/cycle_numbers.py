@@ -113,6 +113,7 @@ class CycleNumbers:
         for name, (channel, times) in self._made_of.items():
             own = shaped[..., channel, :].reshape(*parts.shape[:-1], -1)
             moves[name] = (pace**times)[..., None] * (own @ basis(self.highest + 1, times))
+        moves["r"] = moves["r"] + np.array([c.turn_rate_rad_s for c in self.cycles])[:, None]
         rudder = np.array([cycle.rudder_rad for cycle in self.cycles])[:, None]
         moves[RUDDER_LETTER] = np.broadcast_to(rudder, moves["u"].shape)
         moving = len(MOVES) if HEEL in self.channels else UPRIGHT

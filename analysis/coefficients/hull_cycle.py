@@ -26,6 +26,7 @@ from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium
 
 INPUTS = ((0, 0), (1, 0), (2, 0), (2, 1), (3, 0), (3, 1), (1, 1), (1, 2))
+_TURNS = (1, 1)  # the rate of the rotation
 _OF_BODY = ("mass_kg", "cg_x_m", "cg_z_m", "inertia_kg_m2")
 _TAKEN = (*_OF_BODY, "restoring_relative", "alignment_rad", "heel_rad")
 
@@ -62,6 +63,7 @@ def on_hull(
     point_ahead_m: float,
     heel: Heel | None = None,
     heel_rad: float = 0.0,
+    turn_rate_rad_s: float = 0.0,
 ) -> HullCycle:
     """Return motion through the water and the water's loads.
 
@@ -75,6 +77,7 @@ def on_hull(
     maps = per_part(count, len(channels), inputs, omega)
     parts = gross.real.values
     moved = parts @ maps
+    moved[inputs.index(_TURNS)] += turn_rate_rad_s
     stated = stated_at_instants(body, drift_rad, plane, medium, heel, heel_rad)
     rows = [LOADS.index(name) for name in channels if name in LOADS]
     values, slope = pointwise(
@@ -100,6 +103,9 @@ def on_hull(
     sensitivity[:, STATED.index("frequency_relative")] += by_pace @ changes
     sensitivity[:, STATED.index("speed_m_s")] += by_speed @ changes
     changes = shift @ changes
+    # A steady turn is no harmonic of the rotation: what it adds to the point's velocity.
+    side = -1.0 if plane is Plane.VERTICAL else 1.0
+    changes[2 * channels.index("across")] += side * point_ahead_m * turn_rate_rad_s
     return HullCycle(
         Phasors(
             labels(channels, orders),

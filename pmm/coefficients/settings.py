@@ -142,6 +142,8 @@ class CoefficientSettings:
         The same by hand: force for a reading, aft and fore.
     roll_decays
         What K_p and K_pdot come from.
+    steady_turns
+        File of runs on a circle, as :class:`analysis.coefficients.steady_turns.SteadyTurn`.
     uncertainty
         Standard uncertainties; what is 0 here is taken from the campaign where it says more.
     """
@@ -168,6 +170,7 @@ class CoefficientSettings:
     amplifiers: dict[str, AmplifierTable] = field(default_factory=dict)
     references: tuple[ReferenceFile, ...] = ()
     roll_decays: tuple[RollDecay, ...] = ()
+    steady_turns: str | None = None
 
     __pydantic_config__ = STRICT_TABLE
 
@@ -232,7 +235,7 @@ def _is_pair(value: Any) -> bool:
 def _with_folder(table: dict[str, Any], folder: Path) -> dict[str, Any]:
     """Return the table with the files that it names seen from here."""
     found = deepcopy(table)
-    for key in ("inertia", "calibration"):
+    for key in ("inertia", "calibration", "steady_turns"):
         if isinstance(found.get(key), str) and found[key] not in (MODEL, DRY):
             found[key] = str(folder / found[key])
     references = found.get("references")

@@ -11,6 +11,7 @@ from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.roll_decay import NAMES as OF_DECAYS
 from analysis.coefficients.roll_decay import with_decays
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
+from analysis.coefficients.steady_turns import SteadyTurn
 from hardware.description.body import Body
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
@@ -26,6 +27,7 @@ from pmm.coefficients.stated_inputs import (
     largest,
 )
 from pmm.coefficients.tasks import Done, Failed
+from pmm.coefficients.turn_file import read_turns, turn_cycles
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +65,7 @@ class CampaignOutcome:
     settings: CoefficientSettings
     water: TankWater | None
     with_memory: tuple[Campaign, ...] = ()
+    turns: tuple[SteadyTurn, ...] = ()
 
     @property
     def noticed(self) -> tuple[Flag, ...]:
@@ -121,7 +124,12 @@ def coefficients_of(
         campaign_cycles(folder, campaign, settings, executor, progress, hashed=hashed)
         for folder, campaign in campaigns
     ]
-    cycles = tuple(cycle for part in parts for cycle in part.cycles)
+    turns = () if settings.steady_turns is None else read_turns(Path(settings.steady_turns))
+    circles = turn_cycles(turns, campaigns[0][1].oscillator, parts[0].body)
+    cycles = (
+        *(cycle for part in parts for cycle in part.cycles),
+        *(cycle.about(settings.point_ahead_m) for cycle in circles),
+    )
     failed = tuple(one for part in parts for one in part.failed)
     missing = tuple(name for part in parts for name in part.work.not_recorded)
     if not cycles:
@@ -147,6 +155,7 @@ def coefficients_of(
         settings,
         water,
         tuple(one for _, one in campaigns if one.radiation is not None),
+        turns,
     )
 
 

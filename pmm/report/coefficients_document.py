@@ -1,5 +1,6 @@
 """What a campaign's coefficients say: each table once, for the terminal, the page and programs."""
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Any, Final
@@ -18,6 +19,7 @@ from analysis.coefficients.exchange import to_dict
 from analysis.coefficients.form_choice import BEYOND_DOUBT
 from analysis.coefficients.recommendation import recommended, table
 from analysis.coefficients.stated_uncertainties import STATED
+from analysis.coefficients.steady_turns import SteadyTurn
 from pmm.coefficients.tasks import Done
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import (
@@ -97,7 +99,7 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
             Section("What was found", tuple(_findings(found))),
             Section("What was flagged", (Text(("Nothing.",)) if flags.empty else flags,)),
             Section("Uncertainty", (_given(outcome), budget_table(found))),
-            Section("Runs", (_runs(outcome),)),
+            Section("Runs", (_runs(outcome), _circles(outcome))),
         ),
         SCHEMA,
     )
@@ -107,6 +109,24 @@ def _conditions(outcome: CampaignOutcome) -> tuple[Content, ...]:
     speeds = (one.speed_m_s for one in outcome.result.entries)
     conditions = conditions_table(speeds, outcome.settings.ship, outcome.water)
     return conditions, attitude_table(outcome), heel_table(outcome)
+
+
+_CIRCLES: Final[tuple[Column[SteadyTurn], ...]] = (
+    word("run", "run"),
+    number("radius", "radius_m", written(".4g"), "m"),
+    number("r", "turn_rate_rad_s", written(".4g"), "rad/s"),
+    number("U", "speed_m_s", written(".4g"), "m/s"),
+    Column("drift", lambda one: f"{math.degrees(one.drift_rad):.3g}", unit="deg", number=True),
+    Column("force", lambda one: rounded(one.force_n, one.u_force_n), unit="N", number=True),
+    Column("moment", lambda one: rounded(one.moment_n_m, one.u_moment_n_m), unit="N m",
+           number=True),
+)  # fmt: skip
+
+
+def _circles(outcome: CampaignOutcome) -> Table[SteadyTurn]:
+    """Return the runs on a circle."""
+    title = "Runs on a circle, loads of what holds the model, one standard uncertainty"
+    return Table(title, _CIRCLES, outcome.turns, "steady_turns", titled=True)
 
 
 def conclusion(found: CampaignCoefficients) -> tuple[Content, ...]:

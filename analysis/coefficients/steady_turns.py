@@ -1,0 +1,122 @@
+"""Runs on a circle (rotating arm, circular motion): steady velocities ahead, across and turning.
+
+With the arm's rate ``r`` and radius ``R`` about which the midpoint goes round, at a drift angle b:
+
+    U = |r| R      u = U cos b      v = -U sin b
+
+They stand among the static runs of their speed, so that straight tows and oblique ones at the same
+speed are fitted with them.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from analysis.coefficients.body_cycle import BodyCycle, labels
+from analysis.coefficients.phasors import Phasors
+from analysis.kinematics.body_frame import CHANNELS, UNIT_OF
+from analysis.uncertainty.values import Contribution
+from hardware.description.body import Body
+from hardware.description.errors import ConfigurationError
+from hardware.description.oscillator import Plane
+
+
+@dataclass(frozen=True)
+class SteadyTurn:
+    """One run on a circle, its zero reading taken off.
+
+    Attributes
+    ----------
+    radius_m
+        Of the midpoint between the struts about the centre.
+    turn_rate_rad_s
+        Of the arm, positive to starboard.
+    drift_rad
+        Of the model against its way at the midpoint, bow to starboard (outwards where it turns to
+        port).
+    force_n, moment_n_m, surge_force_n
+        Of what holds the model **on the model**, in its own axes: to starboard, bow to starboard,
+        ahead (``None`` where there is no gauge for it). Inertia is in them, as the gauges read.
+    u_force_n, u_moment_n_m, u_surge_force_n
+        Standard uncertainties.
+
+    Raises
+    ------
+    ConfigurationError
+        If the radius or an uncertainty is not above 0, or nothing turns.
+    """
+
+    run: str
+    radius_m: float
+    turn_rate_rad_s: float
+    force_n: float
+    moment_n_m: float
+    u_force_n: float
+    u_moment_n_m: float
+    drift_rad: float = 0.0
+    surge_force_n: float | None = None
+    u_surge_force_n: float = 0.0
+
+    def __post_init__(self) -> None:
+        for key in ("radius_m", "u_force_n", "u_moment_n_m"):
+            if not getattr(self, key) > 0.0:
+                raise ConfigurationError(f"{self.run}: {key} = {getattr(self, key):g} is not > 0")
+        if self.turn_rate_rad_s == 0.0:
+            raise ConfigurationError(f"{self.run}: turn_rate_rad_s = 0 is no circle")
+
+    @property
+    def speed_m_s(self) -> float:
+        """Of the midpoint."""
+        return abs(self.turn_rate_rad_s) * self.radius_m
+
+
+def turn_cycle(turn: SteadyTurn, half_spacing_m: float, body: Body) -> BodyCycle:
+    """Return a run on a circle as a static cycle.
+
+    Parameters
+    ----------
+    half_spacing_m
+        Of the rig of the other runs.
+    body
+        The model with all that the gauges carry: its inertia is taken off.
+    """
+    surge = turn.surge_force_n is not None
+    channels = CHANNELS if surge else CHANNELS[:-1]
+    values = {
+        "ahead": turn.speed_m_s * math.cos(turn.drift_rad),
+        "across": -turn.speed_m_s * math.sin(turn.drift_rad),
+        "force": turn.force_n,
+        "moment": turn.moment_n_m,
+        "surge_force": turn.surge_force_n or 0.0,
+    }
+    spread = {"force": turn.u_force_n, "moment": turn.u_moment_n_m}
+    spread |= {"surge_force": turn.u_surge_force_n} if surge else {}
+    sources = tuple(
+        Contribution(
+            f"scatter of {name} in {turn.run}",
+            math.inf,
+            np.array([2 * channels.index(name)]),
+            np.array([[own]]),
+        )
+        for name, own in spread.items()
+    )
+    phasors = Phasors.of(
+        labels(channels, 0),
+        tuple(UNIT_OF[name] for name in channels),
+        np.array([values.get(name, 0.0) for name in channels], dtype=np.complex128),
+        sources,
+    )
+    return BodyCycle(
+        turn.run,
+        Plane.HORIZONTAL,
+        half_spacing_m,
+        0.0,
+        turn.speed_m_s,
+        phasors,
+        0,
+        body=body,
+        drift_rad=turn.drift_rad,
+        mean_known=True,
+        turn_rate_rad_s=turn.turn_rate_rad_s,
+    )

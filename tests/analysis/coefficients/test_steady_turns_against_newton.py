@@ -1,0 +1,115 @@
+"""Runs on a circle, whose loads are those of point masses by Newton's law in axes that stand.
+
+The body is a cloud of points on a rigid frame. Their accelerations are the second differences of
+where they are in the tank as the frame goes round: no term of the product's equations of motion is
+used. The water's loads are put in by their coefficients.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from analysis.coefficients.campaign import campaign_coefficients
+from analysis.coefficients.campaign_plan import Request
+from analysis.coefficients.steady_turns import SteadyTurn, turn_cycle
+from hardware.description.body import Body
+from hardware.description.errors import ConfigurationError
+
+# Masses in kg, ahead and to starboard of the midpoint in m; symmetric about the middle line.
+MASSES = np.array([[20.0, 0.7, 0.0], [15.0, -0.5, 0.1], [15.0, -0.5, -0.1], [10.0, 0.1, 0.0]])
+PUT_IN = {"Y_v": -120.0, "Y_r": 30.0, "N_v": -40.0, "N_r": -25.0}
+CUBIC = {"Y_vvv": -300.0, "Y_rrr": 8.0, "Y_vvr": 60.0, "Y_vrr": -45.0}
+U_M_S = 1.0
+
+
+def body() -> Body:
+    mass, ahead, aside = MASSES.T
+    total, about = mass.sum(), (mass * (ahead**2 + aside**2)).sum()
+    cg = float((mass * ahead).sum() / total)
+    return Body(mass_kg=float(total), inertia_kg_m2=float(about), cg_x_m=cg)
+
+
+def held(radius_m: float, rate: float, drift: float) -> tuple[float, float, float]:
+    """Force to starboard, moment and force ahead that the cloud takes on its circle, by Newton."""
+    step = 1e-4
+
+    def places(time_s: float) -> np.ndarray:
+        turned = rate * time_s  # of the way's direction; x north, y east, turning to starboard
+        way = np.array([math.cos(turned), math.sin(turned)])
+        right = np.array([-math.sin(turned), math.cos(turned)])
+        middle = -math.copysign(radius_m, rate) * right
+        heading = turned + drift
+        bow = np.array([math.cos(heading), math.sin(heading)])
+        star = np.array([-math.sin(heading), math.cos(heading)])
+        assert np.dot(way, right) == pytest.approx(0.0, abs=1e-12)
+        return middle + MASSES[:, 1:2] * bow + MASSES[:, 2:3] * star
+
+    acceleration = (places(step) - 2.0 * places(0.0) + places(-step)) / step**2
+    forces = MASSES[:, :1] * acceleration
+    bow = np.array([math.cos(drift), math.sin(drift)])
+    star = np.array([-math.sin(drift), math.cos(drift)])
+    ahead, across = forces @ bow, forces @ star
+    moment = (MASSES[:, 1] * across - MASSES[:, 2] * ahead).sum()
+    return float(across.sum()), float(moment), float(ahead.sum())
+
+
+def turn(radius_m: float, drift: float, coefficients: dict[str, float], sign: float) -> SteadyTurn:
+    rate = sign * U_M_S / radius_m
+    v = -U_M_S * math.sin(drift)
+    water = {"Y": 0.0, "N": 0.0}
+    for name, value in coefficients.items():
+        load, factors = name.split("_")
+        water[load] += value * v ** factors.count("v") * rate ** factors.count("r")
+    force, moment, ahead = held(radius_m, rate, drift)
+    return SteadyTurn(
+        f"turn-{radius_m}-{drift}-{sign}", radius_m, rate, force - water["Y"], moment - water["N"],
+        1e-3, 1e-3, drift, ahead + 5.0, 1e-3,
+    )  # fmt: skip
+
+
+def solved(coefficients: dict[str, float], point_ahead_m: float = 0.0) -> dict[str, float]:
+    turns = [
+        turn(radius, drift, coefficients, sign)
+        for radius in (3.0, 5.0, 9.0)
+        for drift in (-0.1, -0.04, 0.0, 0.07, 0.12)
+        for sign in (1.0, -1.0)
+    ]
+    cycles = [turn_cycle(one, 0.5, body()).about(point_ahead_m) for one in turns]
+    found = campaign_coefficients(cycles, Request())
+    return {entry.name: float(found.uncertain.values[k]) for k, entry in enumerate(found.entries)}
+
+
+def test_linear_coefficients_come_back() -> None:
+    found = solved(PUT_IN)
+    assert {name: found[name] for name in PUT_IN} == pytest.approx(PUT_IN, rel=1e-5)
+    assert found["X_0"] == pytest.approx(-5.0, abs=1e-4)
+
+
+def test_cubic_terms_and_their_cross_terms_come_back() -> None:
+    put_in = PUT_IN | CUBIC
+    found = solved(put_in)
+    assert {name: found[name] for name in put_in} == pytest.approx(put_in, rel=1e-3)
+
+
+def test_about_a_point_ahead_they_are_those_of_the_shifted_hull() -> None:
+    """Y(v, r) with v at the midpoint is v at the point less its lever times r; N by the lever."""
+    ahead = 0.3
+    found = solved(PUT_IN, ahead)
+    y_v, y_r, n_v, n_r = PUT_IN.values()
+    shifted = {
+        "Y_v": y_v,
+        "Y_r": y_r - ahead * y_v,
+        "N_v": n_v - ahead * y_v,
+        "N_r": n_r - ahead * n_v - ahead * (y_r - ahead * y_v),
+    }
+    assert {name: found[name] for name in shifted} == pytest.approx(shifted, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("key", "value"), [("radius_m", 0.0), ("turn_rate_rad_s", 0.0), ("u_force_n", 0.0)]
+)
+def test_what_is_no_circle_is_refused(key, value) -> None:
+    given = {"radius_m": 3.0, "turn_rate_rad_s": 0.3, "u_force_n": 1.0} | {key: value}
+    with pytest.raises(ConfigurationError, match=key):
+        SteadyTurn(run="t", force_n=1.0, moment_n_m=1.0, u_moment_n_m=1.0, **given)
