@@ -95,8 +95,9 @@ def answers(given: Considered, beside: Background) -> Answers:
     particular form: small ones only where nothing is there, or coefficients or one run are what
     differs, visible ones where something unknown is, any beside a named effect.
     """
-    named = {answer_of(one.names): beside.named(one) for one in given.sets}
-    logs = {name: weight(found) + given.log_prior(name) for name, found in named.items()}
+    found = zip(given.sets, beside.named(given.sets), strict=True)
+    named = {answer_of(one.names): own for one, own in found}
+    logs = {name: weight(own) + given.log_prior(name) for name, own in named.items()}
     odd = _odd_runs(beside)
     both = _beside_odd_runs(given, beside, logs, odd)
     stages = _of_unknown(beside.unknown(), SHAPED * ODDS.unknown)
@@ -116,7 +117,7 @@ def answers(given: Considered, beside: Background) -> Answers:
         {name: math.exp(log - total) for name, log in logs.items()},
         _located(stages, kinds, beside),
         {run: math.exp(_sum(every) - total) for run, every in runs.items()},
-        {name: _above(found) for name, found in named.items()},
+        {name: _above(own) for name, own in named.items()},
         {name: max(ones, key=lambda one: one.log_evidence) for name, ones in named.items()},
     )
 

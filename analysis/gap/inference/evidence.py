@@ -70,9 +70,10 @@ class Background:
         """Return that of coefficients that are off by more than anybody thought: one, or all."""
         if not self.sought.any():
             return np.full(len(TAUS), -np.inf)
-        ones = [np.arange(len(self.sought)) == at for at in np.flatnonzero(self.sought)]
-        wide = [np.where(own, WIDE, 1.0) for own in (*ones, self.sought)]
-        return _mean(self._smooth(self._scale(tolerances=one)) for one in wide)
+        ones = np.eye(int(self.sought.sum()))
+        more = math.sqrt(WIDE**2 - 1.0)  # beside the tolerance itself
+        wide = [more * own for own in (*ones, np.ones(len(ones)))]
+        return _mean(self._smooth(self._scale(sought=one)) for one in wide)
 
     def unknown(self) -> dict[str, FloatArray]:
         """Return that of something unknown, by the stage whose effects it looks like."""
@@ -99,12 +100,13 @@ class Background:
         columns
             The tolerances, and shapes behind them.
         """
-        turned, count = self.kernel.turned(columns), self.tolerances.shape[1]
-        shape = np.arange(columns.shape[1]) >= count
-        values = share * self.kernel.values * rows
+        turned, shared = self.kernel.turned(columns), self.tolerances.shape[1]
+        shapes, values = columns.shape[1] - shared, share * self.kernel.values * rows
         return self._seen(
             [
-                Weighted(turned, 1.0 + tau**2 * values).reduced(np.where(shape, tau, 1.0), self._of)
+                Weighted(turned, 1.0 + tau**2 * values, shared).reduced(
+                    np.full(shapes, tau), self._of
+                )
                 for tau in TAUS
             ]
         )
@@ -118,13 +120,16 @@ class Background:
             for run, rows in at.items()
         }
 
-    def named(self, one: Hypothesis) -> list[Evidence]:
-        """Return what named effects are worth beside a deviation of each size."""
-        beside, turned = self.shapes.beside(one.names), self._turned(one)
-        return [
-            _in_any_form(one, self._plain[at].reduced(self._beside(tau, beside), turned))
-            for at, tau in enumerate(TAUS)
-        ]
+    def named(self, sets: Sequence[Hypothesis]) -> list[list[Evidence]]:
+        """Return what each set of named effects is worth beside a deviation of each size."""
+        shapes = [self.shapes.beside(one.names) for one in sets]
+        turned = [self._turned(one) for one in sets]
+        found: list[list[Evidence]] = [[] for _ in sets]
+        for tau, plain in zip(TAUS, self._plain, strict=True):
+            beside = [self._beside(tau, one) for one in shapes]
+            for own, one, reduced in zip(found, sets, plain.each(beside, turned), strict=True):
+                own.append(_in_any_form(one, reduced))
+        return found
 
     def named_beside(self, one: Hypothesis, run: str) -> FloatArray:
         """Return the log evidence of named effects beside one odd run."""
@@ -151,7 +156,9 @@ class Background:
 
     @cached_property
     def _columns(self) -> FloatArray:
-        return self.kernel.turned(np.hstack((self.tolerances, self.shapes.columns, *self._owned)))
+        sought = self.tolerances[:, self.sought]
+        every = (self.tolerances, self.shapes.columns, *self._owned, sought)
+        return self.kernel.turned(np.hstack(every))
 
     @cached_property
     def _of(self) -> FloatArray:
@@ -174,7 +181,8 @@ class Background:
 
     def _under(self, share: float) -> Sequence[Weighted]:
         values = share * self.kernel.values
-        return [Weighted(self._columns, 1.0 + tau**2 * values) for tau in TAUS]
+        shared = self.tolerances.shape[1]
+        return [Weighted(self._columns, 1.0 + tau**2 * values, shared) for tau in TAUS]
 
     @property
     def _owned(self) -> Sequence[FloatArray]:
@@ -182,16 +190,16 @@ class Background:
 
     def _scale(
         self,
-        tolerances: FloatArray | float = 1.0,
         shapes: FloatArray | float = 0.0,
         own: float = 0.0,
+        sought: FloatArray | float = 0.0,
     ) -> FloatArray:
-        """Return what each of the columns counts."""
+        """Return what each of the columns behind the tolerances counts."""
         return np.concatenate(
             (
-                np.broadcast_to(tolerances, self.tolerances.shape[1]),
                 np.broadcast_to(shapes, self.shapes.columns.shape[1]),
                 np.full(sum(one.shape[1] for one in self._owned), own),
+                np.broadcast_to(sought, int(self.sought.sum())),
             )
         )
 
@@ -209,7 +217,8 @@ class Background:
     @cached_property
     def _least(self) -> float:
         """Log determinant of tolerances and of a deviation that these runs hardly show."""
-        bare = Weighted(self._columns, np.ones(len(self.residual)))
+        ones = np.ones(len(self.residual))
+        bare = Weighted(self._columns, ones, self.tolerances.shape[1])
         return bare.reduced(self._scale(), self._of).log_determinant + 2.0 * VISIBLE
 
     def _seen(self, found: Sequence[Reduced]) -> FloatArray:

@@ -72,7 +72,7 @@ class WeighedCauses:
     def weight(self, one: Fit) -> float:
         """Return the log weight of a set beside any deviation, prior odds included."""
         odds = math.log(prior(len(one.names), len(self.looked)))
-        return weight(self.beside.named(hypothesis(self.problem, one))) + odds
+        return weight(self.beside.named([hypothesis(self.problem, one)])[0]) + odds
 
 
 def weigh(

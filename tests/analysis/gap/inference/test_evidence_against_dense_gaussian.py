@@ -55,13 +55,15 @@ def test_products_under_the_reduced_covariance_are_those_under_the_dense_one(
     kernel, whole = _kernel(rng, cells, runs)
     size = len(whole)
     columns, beside = rng.standard_normal((size, count)), rng.standard_normal((size, more))
+    shared = int(rng.integers(0, count + 1))
     scale = rng.integers(0, 2, count) * rng.uniform(0.1, 3.0, count)
+    scale[:shared] = 1.0
     of = rng.standard_normal((size, 2))
     sizes = rng.uniform(0.1, 3.0, more)
     chosen = np.hstack((columns * scale, beside * sizes))
     dense = np.eye(size) + tau**2 * whole + chosen @ chosen.T
-    weighted = Weighted(kernel.turned(columns), 1.0 + tau**2 * kernel.values)
-    reduced = weighted.reduced(scale, kernel.turned(np.hstack((of, beside))))
+    weighted = Weighted(kernel.turned(columns), 1.0 + tau**2 * kernel.values, shared)
+    reduced = weighted.reduced(scale[shared:], kernel.turned(np.hstack((of, beside))))
     found = reduced.widened(2, range(2, 2 + more), sizes)
     np.testing.assert_allclose(found.gram, of.T @ np.linalg.solve(dense, of), rtol=1e-8, atol=1e-9)
     assert found.log_determinant == pytest.approx(np.linalg.slogdet(dense)[1], abs=1e-8)
@@ -155,7 +157,7 @@ def test_a_named_effect_of_no_free_size_has_its_normal_density(
         whole += PLAIN * tau**2 * (_dense(beside.kernel) + own) + _square(tau * shapes)
         each = [_log(one.target, whole + _square(share * forms)) for share in FORMS]
         wanted = np.logaddexp.reduce(each) - np.log(len(each))
-        assert beside.named(free)[at_].log_evidence == pytest.approx(wanted, rel=1e-6)
+        assert beside.named([free])[0][at_].log_evidence == pytest.approx(wanted, rel=1e-6)
 
 
 def test_what_stands_beside_an_effect_has_not_its_shape(beside: Background) -> None:
