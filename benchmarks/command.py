@@ -28,6 +28,7 @@ NAMES = (
     "console",
     "latency",
     "crowd",
+    "live_values",
     "inertia",
     "contradictions",
     "comparison",

@@ -5,6 +5,7 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Awaitable, Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -19,6 +20,11 @@ from pmm.console.limits import CHECK_MEMORY, CHECK_S, MOST_CHECKS
 P = ParamSpec("P")
 T = TypeVar("T")
 _NICE: Final = 10  # the control loop and the server go first
+# So many times its processor time work may take by the clock: others leave it a tenth to a half.
+BY_THE_CLOCK: Final = 5.0
+_GONE_S: Final = 1.0  # for a process whose end of the pipe is closed
+_LOOK_S: Final = 0.1  # between two looks at the processor time
+_TOO_LONG: Final = 124  # exit status of a process that took too much of it, as of timeout(1)
 _MIB: Final = 1 << 20
 
 
@@ -36,6 +42,9 @@ class WorkLimits:
 
     Attributes
     ----------
+    seconds
+        Of the processor: a machine that is busy otherwise does not count. By the clock
+        :data:`BY_THE_CLOCK` times that.
     memory_bytes
         0 for any.
     waiting
@@ -105,22 +114,25 @@ class WorkerProcess:
 
     def _ask(self, work: Callable[..., T], given: Any, named: Any) -> T:
         """Ask the process; in the thread, which waits for it."""
-        process, connection = self._child = self._child or _started(self._bounds.memory_bytes)
+        process, connection = self._child = self._child or _started(self._bounds)
         try:
             if self._closed:  # while it was being started
                 process.kill()
             connection.send((work, given, named))
-            if not connection.poll(self._bounds.seconds):
+            if not connection.poll(BY_THE_CLOCK * self._bounds.seconds):
                 self._end()
                 raise NotWorkedOutError(
-                    f"{self._what} took longer than {self._bounds.seconds:g} s and was ended"
+                    f"{self._what} took longer than {BY_THE_CLOCK * self._bounds.seconds:g} s and "
+                    "was ended"
                 )
             found, error = connection.recv()
         except (EOFError, OSError) as lost:
+            process.join(_GONE_S)
             self._end()
-            raise NotWorkedOutError(
-                f"{self._what} ended its process (status {process.exitcode})"
-            ) from lost
+            how = f"ended its process (status {process.exitcode})"
+            if process.exitcode == _TOO_LONG:
+                how = f"took more than {self._bounds.seconds:g} s of the processor and was ended"
+            raise NotWorkedOutError(f"{self._what} {how}") from lost
         if isinstance(error, MemoryError):
             self._end()
             raise NotWorkedOutError(
@@ -140,30 +152,50 @@ class WorkerProcess:
             connection.close()
 
 
-def _started(memory_bytes: int) -> tuple[SpawnProcess, Connection]:
+def _started(bounds: WorkLimits) -> tuple[SpawnProcess, Connection]:
     context = get_context("spawn")
     ours, theirs = context.Pipe()
-    process = context.Process(target=_work, args=(theirs, memory_bytes), daemon=True)
+    process = context.Process(target=_work, args=(theirs, bounds), daemon=True)
     process.start()
     theirs.close()
     return process, ours
 
 
-def _work(connection: Connection, memory_bytes: int) -> None:
+class _ProcessorTime(threading.Thread):
+    """Ends the process when a piece of work takes too much of the processor."""
+
+    def __init__(self, most_s: float) -> None:
+        super().__init__(name="processor time", daemon=True)
+        self._most_s = most_s
+        self.began_s: float | None = None
+
+    def run(self) -> None:
+        while True:
+            time.sleep(_LOOK_S)
+            began_s = self.began_s
+            if began_s is not None and time.process_time() - began_s > self._most_s:
+                os._exit(_TOO_LONG)
+
+
+def _work(connection: Connection, bounds: WorkLimits) -> None:
     """Do what is asked until nobody asks any more."""
     yield_to_the_loop()
     os.environ |= dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"), "1")
-    _limit_memory(memory_bytes)
+    _limit_memory(bounds.memory_bytes)
+    clock = _ProcessorTime(bounds.seconds)
+    clock.start()
     while True:
         try:
             work, given, named = connection.recv()
         except EOFError:
             return
         found, error = None, None
+        clock.began_s = time.process_time()
         try:
             found = work(*given, **named)
         except Exception as raised:
             error = raised.with_traceback(None)
+        clock.began_s = None
         try:
             connection.send((found, error))
         except (TypeError, AttributeError, ValueError) as raised:  # it cannot be pickled

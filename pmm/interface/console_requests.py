@@ -10,7 +10,7 @@ from urllib.request import HTTPCookieProcessor, HTTPSHandler, Request, build_ope
 from hardware.description.errors import ConfigurationError, PmmError
 
 Message: TypeAlias = dict[str, Any]
-_ANSWER_S: Final = 150.0  # the console itself ends a check after 120 s
+_ANSWER_S: Final = 630.0  # the console itself ends a check after 600 s
 
 
 class ConsoleRefusalError(PmmError):

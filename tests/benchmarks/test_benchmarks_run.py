@@ -12,7 +12,9 @@ from benchmarks.page import figure, keep, write_page
 
 # Left out: compiling and timing rivals takes longer than all others together, and so does watching
 # browsers or the loop in real time, which tests/pmm/console and tests/pmm/run do besides.
-_QUICK = [name for name in NAMES if name not in ("speed", "console", "crowd", "latency")]
+_QUICK = [
+    name for name in NAMES if name not in ("speed", "console", "crowd", "latency", "live_values")
+]
 
 
 # These start processes, or solve what no small size makes cheap.

@@ -43,6 +43,11 @@ class Publishing:
             self._link.tell(message)
 
     @property
+    def pid(self) -> int:
+        """The process that carries out."""
+        return self._process.pid or 0
+
+    @property
     def lost(self) -> bool:
         """Whether the process is gone."""
         return self._link.lost

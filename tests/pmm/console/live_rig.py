@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import paho.mqtt.client as paho
@@ -70,7 +71,7 @@ def _listens(port: int) -> bool:
 class Reader:
     """Another MQTT client, which keeps all that comes; its session outlives the connection."""
 
-    def __init__(self, port: int) -> None:
+    def __init__(self, port: int, take: Callable[[Any, Any, Any], None] | None = None) -> None:
         self.came: list[tuple[str, bytes]] = []
         self._known, self._port = threading.Event(), port
         self._client = paho.Client(
@@ -78,7 +79,9 @@ class Reader:
         )
         self._client.on_connect = lambda client, *_: client.subscribe("#", 1)
         self._client.on_subscribe = lambda *_: self._known.set()
-        self._client.on_message = lambda *got: self.came.append((got[2].topic, got[2].payload))
+        self._client.on_message = take or (
+            lambda *got: self.came.append((got[2].topic, got[2].payload))
+        )
         self._client.reconnect_delay_set(0.1, 0.1)
 
     def __enter__(self) -> "Reader":

@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from pmm.console import worker_process
 from pmm.console.messages import QueuedPlan, pack, unpack
 from pmm.console.plans import Plans
 from pmm.console.worker_process import (
@@ -52,10 +53,24 @@ def test_it_returns_what_the_work_returns_and_raises_what_it_raises() -> None:
 
 def test_what_takes_too_long_is_ended_and_the_next_work_is_done() -> None:
     async def act(one: WorkerProcess) -> None:
-        with pytest.raises(NotWorkedOutError, match=r"work took longer than 0\.2 s and was ended"):
+        with pytest.raises(NotWorkedOutError, match="work took longer than 1 s and was ended"):
             await one.run(time.sleep, 600.0)
 
     _with(replace(BOUNDS, seconds=0.2), act)
+
+
+def test_what_takes_too_much_of_the_processor_is_ended_and_the_next_work_is_done(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(worker_process, "BY_THE_CLOCK", 1000.0)  # however busy the machine is
+
+    async def act(one: WorkerProcess) -> None:
+        said = r"work took more than 0\.5 s of the processor and was ended"
+        with pytest.raises(NotWorkedOutError, match=said):
+            await one.run(eval, "any(x for x in iter(int, 1))")
+        assert await one.run(math.sqrt, 4.0) == 2.0
+
+    _with(replace(BOUNDS, seconds=0.5), act)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="others cannot limit memory")
