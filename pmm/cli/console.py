@@ -19,6 +19,11 @@ import click
 @click.option(
     "--watch-token-file", metavar="FILE", help="Whoever gives the token in this file only watches."
 )
+@click.option(
+    "--propose-token-file",
+    metavar="FILE",
+    help="Whoever gives the token in this file watches, and proposes changes of the queue.",
+)
 @click.option("--certificate", metavar="FILE", help="Speak HTTPS with this certificate (PEM).")
 @click.option("--key", metavar="FILE", help="The certificate's key (PEM).")
 @click.option(

@@ -1,8 +1,7 @@
 """What a browser may do: each action is checked, carried out, logged and answered."""
 
-import asyncio
 from collections.abc import Awaitable, Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
@@ -17,25 +16,24 @@ from pmm.console.desk import NotInControlError
 from pmm.console.encoding import encode_answer
 from pmm.console.hub import Hub
 from pmm.console.limits import LARGEST_PLAN, LARGEST_REQUEST
-from pmm.console.loop_side import LoopSide
+from pmm.console.loop_side import LoopSide, RefusedError
 from pmm.console.messages import OrderKind
 from pmm.console.plans import Plans
+from pmm.console.proposals import PROPOSED, Proposals
+from pmm.console.queue_changes import Done, QueueChanges, of_reply
+from pmm.console.queue_journal import QueueJournal
 from pmm.console.requests import (
     AnswerPosted,
     CommandPosted,
-    DropPosted,
-    EditPosted,
-    HoldPosted,
-    MovePosted,
+    DecisionPosted,
     NotePosted,
     PlanPosted,
     Posted,
-    RunPosted,
     TakePosted,
 )
-from pmm.console.security import VISITOR, Visitor
+from pmm.console.security import VISITOR, Role, Visitor
 from pmm.console.worker_process import Workers
-from pmm.console.worker_tasks import Queued, changed_plan, check_plan_text, keep_note, ready_plan
+from pmm.console.worker_tasks import check_plan_text, keep_note
 from pmm.run.states import Command
 
 SESSION: Final = "x-pmm-session"
@@ -43,6 +41,7 @@ _LOGGED: Final = 400  # bytes of what was posted; plans are kept as files
 _SHOWN: Final = 8  # characters of a session
 # As JSON, in which a line's end takes two.
 _LARGEST: Final[dict[type[Posted], int]] = {PlanPosted: 2 * LARGEST_PLAN}
+_ENDED: Final = {True: "withdrawn", False: "refused"}
 P = TypeVar("P", bound=Posted)
 
 
@@ -72,6 +71,11 @@ class PageActions:
     ----------
     folder
         Where commands are logged while there is no campaign.
+
+    Attributes
+    ----------
+    changes
+        What is done to the queue.
     """
 
     def __init__(
@@ -85,7 +89,10 @@ class PageActions:
     ) -> None:
         self._hub, self._loop, self._workers, self._plans = hub, loop, workers, plans
         self._folder, self._utc = folder, utc
-        self._queued, self._changing = Queued(), asyncio.Lock()
+        self._proposals = Proposals()
+        self.changes = QueueChanges(
+            hub, loop, workers, plans, self._proposals, QueueJournal(folder, plans.rig_path)
+        )
 
     async def command(self, request: Request) -> Response:
         """Hand a command to run control; a quick stop is everybody's right."""
@@ -97,23 +104,31 @@ class PageActions:
 
     async def queue(self, request: Request) -> Response:
         """Queue a plan."""
-        return await self._do(request, PlanPosted, "queue", self._queue)
+        return await self._alter(request, "queue")
 
     async def drop(self, request: Request) -> Response:
         """Take a plan out of the queue."""
-        return await self._do(request, DropPosted, "drop", self._drop)
+        return await self._alter(request, "drop")
 
     async def edit(self, request: Request) -> Response:
         """Change a planned run's settings."""
-        return await self._do(request, EditPosted, "edit", self._change)
+        return await self._alter(request, "edit")
 
     async def move(self, request: Request) -> Response:
         """Move a planned run, or a plan that waits."""
-        return await self._do(request, MovePosted, "move", self._move)
+        return await self._alter(request, "move")
 
     async def hold(self, request: Request) -> Response:
         """Hold a planned run, or a plan, or release it."""
-        return await self._do(request, HoldPosted, "hold", self._change)
+        return await self._alter(request, "hold")
+
+    async def approve(self, request: Request) -> Response:
+        """Carry out a proposal, as if whoever has control had asked for it."""
+        return await self._do(request, DecisionPosted, "approve", self._approve)
+
+    async def refuse(self, request: Request) -> Response:
+        """Forget a proposal: refused by whoever has control, or withdrawn by who made it."""
+        return await self._do(request, DecisionPosted, "refuse", self._refuse)
 
     async def note(self, request: Request) -> Response:
         """Keep a line on a run or a campaign; nothing moves, so it needs no control."""
@@ -127,37 +142,36 @@ class PageActions:
         """Read and check a plan; nothing is changed, so whoever watches may do it."""
         return await self._do(request, PlanPosted, "check", self._check)
 
-    def folder(self) -> Path:
-        """Return the folder of the present campaign, or the one for all."""
-        present = self._hub.last.plan if self._hub.last is not None else 0
-        return self._queued.folder(present) or self._folder
-
-    def folders(self) -> list[Path]:
-        """Return the folders of all campaigns that were queued."""
-        return self._queued.folders()
+    def folder(self, present: int | None = None) -> Path:
+        """Return a plan's folder, by default that of the present one, or the one for all."""
+        if present is None:
+            present = self._hub.last.plan if self._hub.last is not None else 0
+        return self.changes.queued.folder(present) or self._folder
 
     async def _do(
         self,
         request: Request,
         kind: type[P],
         action: str,
-        act: Callable[[P, Who], Awaitable[dict[str, Any]]],
+        act: Callable[[P, Who], Awaitable[Done]],
     ) -> Response:
         who = who_asks(request)
-        given, folder = "", self.folder()
+        given, present = "", None
         try:
             body = await body_of(request, _LARGEST.get(kind, LARGEST_REQUEST))
             given = body[:_LOGGED].decode("utf-8", "replace")
-            found = await act(kind.model_validate_json(body), who)
-            status = 200
+            done = await act(kind.model_validate_json(body), who)
+            status, found, present = 200, done.answer(), done.present
         except ValidationError as error:
             status, found = 422, {"error": _said(error)}
         except NotInControlError as error:
             status, found = 403, {"error": str(error)}
+        except RefusedError as error:
+            status, found, present = 409, {"error": str(error)}, error.present
         except PmmError as error:
             status, found = 409, {"error": str(error)}
         if action != "check":
-            await self.log(who, action, given, found, folder, taken=status == 200)
+            await self.log(who, action, given, found, self.folder(present), taken=status == 200)
         return Response(encode_answer(found), status, media_type="application/json")
 
     async def log(
@@ -187,67 +201,68 @@ class PageActions:
         """Show something that the server has found as an alarm."""
         self._hub.say("alarm", text)
 
-    async def _command(self, posted: CommandPosted, who: Who) -> dict[str, Any]:
+    async def _alter(self, request: Request, action: str) -> Response:
+        """Change the queue, or keep the wish where the token is for proposing."""
+
+        async def act(posted: Posted, who: Who) -> Done:
+            if who.visitor.role is Role.PROPOSE:
+                return await self._propose(action, posted, who)
+            self._require_control(who)
+            return await self.changes.carry_out(action, posted)
+
+        return await self._do(request, PROPOSED[action], action, act)
+
+    async def _propose(self, action: str, posted: Posted, who: Who) -> Done:
+        """Keep what would be done, once it is checked that it could be."""
+        self._proposals.require_room()
+        name, picture = await self.changes.try_out(posted)
+        one = self._proposals.add(action, posted, name, who.visitor, self._utc())
+        self.changes.tell_proposals()
+        return Done(f"proposal {one.number}, {one.text}: whoever has control decides", picture)
+
+    async def _approve(self, posted: DecisionPosted, who: Who) -> Done:
+        self._require_control(who)
+        one = self._proposals.take(posted.number)
+        try:
+            done = await self.changes.carry_out(one.action, one.posted)
+        except BaseException:  # it waits on, whatever has happened
+            self._proposals.waiting[one.number] = one
+            raise
+        self.changes.tell_proposals()
+        return replace(done, said=f"{one.text}, proposed by {one.visitor.name!r}: {done.said}")
+
+    async def _refuse(self, posted: DecisionPosted, who: Who) -> Done:
+        one = self._proposals.waiting.get(posted.number)
+        own = one is not None and one.visitor is who.visitor
+        if not own:
+            self._require_control(who)
+        one = self._proposals.take(posted.number)
+        self.changes.tell_proposals()
+        return Done(f"{one.text}, proposed by {one.visitor.name!r}: {_ENDED[own]}")
+
+    async def _command(self, posted: CommandPosted, who: Who) -> Done:
         if posted.command is Command.QUICK_STOP:
-            return {"said": await self._loop.stop_quickly()}
+            return Done(await self._loop.stop_quickly())
         self._require_control(who)
-        return {"said": await self._loop.order(OrderKind.COMMAND, str(posted.command))}
+        return of_reply(await self._loop.order(OrderKind.COMMAND, str(posted.command)))
 
-    async def _answer(self, posted: AnswerPosted, who: Who) -> dict[str, Any]:
+    async def _answer(self, posted: AnswerPosted, who: Who) -> Done:
         self._require_control(who)
-        said = await self._loop.order(OrderKind.ANSWER, posted.answer, posted.question)
-        return {"said": said}
+        return of_reply(await self._loop.order(OrderKind.ANSWER, posted.answer, posted.question))
 
-    async def _check(self, posted: PlanPosted, who: Who) -> dict[str, Any]:
+    async def _check(self, posted: PlanPosted, who: Who) -> Done:
         worker = self._workers.for_whom(in_control=self._hub.desk.holder == who.session)
         found = await worker.run(check_plan_text, self._plans, posted.name, posted.text)
-        return {"plan": found}
+        return Done("", found)
 
-    async def _queue(self, posted: PlanPosted, who: Who) -> dict[str, Any]:
-        self._require_control(who)
-        worker = self._workers.for_whom(in_control=True)
-        found = await worker.run(ready_plan, self._plans, posted.name, posted.text)
-        number = self._queued.add(found)
-        try:
-            said = await self._loop.order(OrderKind.QUEUE, plan=self._queued.plan(number))
-        except PmmError:
-            self._queued.drop(number)
-            raise
-        self._tell_plans()
-        return {"said": said, "plan": found.picture}
-
-    async def _drop(self, posted: DropPosted, who: Who) -> dict[str, Any]:
-        self._require_control(who)
-        said = await self._loop.order(OrderKind.DROP, str(posted.number))
-        self._queued.drop(posted.number)
-        self._tell_plans()
-        return {"said": said}
-
-    async def _move(self, posted: MovePosted, who: Who) -> dict[str, Any]:
-        if posted.run:
-            return await self._change(posted, who)
-        self._require_control(who)
-        return {"said": await self._loop.order(OrderKind.MOVE, f"{posted.number} {posted.by}")}
-
-    async def _change(self, posted: RunPosted, who: Who) -> dict[str, Any]:
-        self._require_control(who)
-        worker = self._workers.for_whom(in_control=True)
-        async with self._changing:  # each change begins with what the one before has made
-            before = self._queued.plan(posted.number)
-            found = await worker.run(changed_plan, self._plans, before, posted)
-            said = await self._loop.order(OrderKind.CHANGE, plan=found.packed)
-            self._queued.change(found)
-        self._tell_plans()
-        return {"said": said, "plan": found.picture}
-
-    async def _note(self, posted: NotePosted, who: Who) -> dict[str, Any]:
-        who.visitor.require_operator()
+    async def _note(self, posted: NotePosted, who: Who) -> Done:
+        who.visitor.require(Role.PROPOSE)
         worker = self._workers.for_whom(in_control=self._hub.desk.holder == who.session)
-        plan = self._queued.plan(posted.number)
+        plan = self.changes.queued.plan(posted.number)
         await worker.run(keep_note, plan, posted, self._utc())
         about = posted.run or plan.plan.name
         self._hub.say("note", f"{about}: {posted.text} ({posted.author})")
-        return {"said": f"noted on {about}"}
+        return Done(f"noted on {about}", present=posted.number)
 
     async def audit(self, _request: Request) -> Response:
         """Return who did what with the present campaign, from its folder."""
@@ -255,20 +270,14 @@ class PageActions:
         return Response(encode_answer({"audit": found}), media_type="application/json")
 
     def _require_control(self, who: Who) -> None:
-        who.visitor.require_operator()
+        who.visitor.require(Role.OPERATE)
         self._hub.desk.require(who.session)
 
-    async def _take(self, posted: TakePosted, who: Who) -> dict[str, Any]:
-        who.visitor.require_operator()
+    async def _take(self, posted: TakePosted, who: Who) -> Done:
+        who.visitor.require(Role.OPERATE)
         self._hub.desk.take_over(who.session)
         self._hub.news.set()
-        return {"said": "this browser has control"}
-
-    def _tell_plans(self) -> None:
-        last = self._hub.last
-        if last is not None:
-            self._queued.at_hand((last.plan, *last.queue))
-        self._hub.tell_plans(encode_answer(self._queued.pictures()))
+        return Done("this browser has control")
 
 
 async def body_of(request: Request, largest: int = LARGEST_REQUEST) -> bytes:

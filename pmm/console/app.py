@@ -31,7 +31,7 @@ from pmm.console.limits import MOST_STREAMS
 from pmm.console.live.process import Publishing
 from pmm.console.lockout import Lockout
 from pmm.console.loop_side import LoopSide
-from pmm.console.messages import Notice, Reply, Told
+from pmm.console.messages import Frame, Hello, Notice, Reply, Told
 from pmm.console.openapi import description
 from pmm.console.pages import Pages
 from pmm.console.plans import Plans
@@ -73,9 +73,10 @@ class Console:
         self.actions = PageActions(
             self.hub, self.loop, self.workers, plans, settings.log_folder, _utc
         )
+        self._restoring: asyncio.Future[None] | None = None
         figures = self.workers.figures
         self.finished = Finished(self.hub, figures, settings.earlier, settings.reference)
-        self.pages = Pages(self.actions.folders, settings.log_folder)
+        self.pages = Pages(self.actions.changes.queued.folders, settings.log_folder)
         self._around = Shared(
             lambda: self.workers.around.run(look_around, plans, self.pages.folders())
         )
@@ -84,6 +85,10 @@ class Console:
     def _take(self, message: Told) -> None:
         """Take what the loop tells, for the browsers and for those who read along."""
         self.hub.take(message)
+        if isinstance(message, Hello):
+            self._restoring = asyncio.ensure_future(self.actions.changes.restore())
+        elif isinstance(message, Frame):
+            self.actions.changes.seen((message.plan, *message.queue))
         if self._publishing is not None:
             self._publishing.take(message)
             self.hub.tell_live(self._publishing.statuses())
@@ -211,6 +216,8 @@ def _routes(console: Console) -> list[BaseRoute]:
         "/api/plans/move": act.move,
         "/api/plans/hold": act.hold,
         "/api/plans/note": act.note,
+        "/api/proposals/approve": act.approve,
+        "/api/proposals/refuse": act.refuse,
         "/login": console.log_in,
     }
     return [

@@ -60,6 +60,7 @@ class Hub:
         self._replied, self._written, self._utc = replied, written, utc
         self._hello, self._connected = "null", False
         self._plans = self._figures = "{}"
+        self._proposals = "[]"
         self._campaign = "null"
         self._live: dict[str, OutletStatus] = {}
         self._finished: list[str] = []
@@ -96,6 +97,11 @@ class Hub:
         """Keep and hand on the plans that were queued, as JSON: their pictures by their numbers."""
         self._plans = plans
         self._tell(f'{{"type":"plans","plans":{plans}}}')
+
+    def tell_proposals(self, proposals: Sequence[Mapping[str, Any]]) -> None:
+        """Keep and hand on the changes of the queue that are proposed."""
+        self._proposals = encode(proposals)
+        self._tell(f'{{"type":"proposals","proposals":{self._proposals}}}')
 
     def tell_figures(self, figures: dict[str, Any]) -> None:
         """Keep and hand on what was worked out of runs that ended."""
@@ -183,7 +189,7 @@ class Hub:
                 f'"hello":{self._hello},"frame":{self._pictures.frame(self._pictures.next_piece)},'
                 f'"needles":{encode(needles_picture(self._needles))},'
                 f'"traces":{self._pictures.traces(0)},"notices":[{",".join(self._notices)}],'
-                f'"audit":[{",".join(self._done)}],"plans":{self._plans},"live":{self._live_picture()},"finished":[{",".join(self._finished)}],'
+                f'"audit":[{",".join(self._done)}],"plans":{self._plans},"proposals":{self._proposals},"live":{self._live_picture()},"finished":[{",".join(self._finished)}],'
                 f'"figures":{self._figures},"campaign":{self._campaign}'
             )
         return f'{own[:-1]},{self._common},"desk":{desk}}}'

@@ -13,7 +13,17 @@ from pmm.console.quick_stop import PATIENCE_S, QuickStop
 
 
 class RefusedError(PmmError):
-    """The loop does not carry out an order; the message says why."""
+    """The loop does not carry out an order; the message says why.
+
+    Attributes
+    ----------
+    present
+        Number of the plan that is under way then; ``None`` where the loop does not say.
+    """
+
+    def __init__(self, text: str, present: int | None = None) -> None:
+        super().__init__(text)
+        self.present = present
 
 
 class LoopSide:
@@ -47,7 +57,7 @@ class LoopSide:
 
     async def order(
         self, kind: OrderKind, text: str = "", question: str = "", plan: PackedPlan | None = None
-    ) -> str:
+    ) -> Reply:
         """Give an order; return what the loop says.
 
         Raises
@@ -68,8 +78,8 @@ class LoopSide:
         finally:
             self._open.pop(order.number, None)
         if not reply.done:
-            raise RefusedError(reply.text)
-        return reply.text
+            raise RefusedError(reply.text, reply.plan)
+        return reply
 
     async def stop_quickly(self) -> str:
         """Stop at once; return when the loop has taken it.

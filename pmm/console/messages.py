@@ -105,11 +105,18 @@ class LoopOrder:
 
 @dataclass(frozen=True)
 class Reply:
-    """Whether an order was carried out; else why not."""
+    """Whether an order was carried out; else why not.
+
+    Attributes
+    ----------
+    plan
+        Number of the plan that is present after it; 0 for none.
+    """
 
     number: int
     done: bool
     text: str = ""
+    plan: int = 0
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from hardware.description.version import program
 from pmm.console.requests import (
     AnswerPosted,
     CommandPosted,
+    DecisionPosted,
     DropPosted,
     EditPosted,
     HoldPosted,
@@ -31,6 +32,8 @@ POSTS: Final[dict[str, tuple[type[Posted], str, bool]]] = {
     "/api/plans/edit": (EditPosted, "Change the settings of a run that is planned.", True),
     "/api/plans/move": (MovePosted, "Move a run that is planned, or a plan that waits.", True),
     "/api/plans/hold": (HoldPosted, "Pass a run or a plan over, or release it.", True),
+    "/api/proposals/approve": (DecisionPosted, "Carry out what is proposed.", True),
+    "/api/proposals/refuse": (DecisionPosted, "Refuse or withdraw what is proposed.", False),
     "/api/plans/note": (NotePosted, "Keep a line on a run or a campaign.", False),
 }
 GETS: Final = {
@@ -63,7 +66,8 @@ def description() -> dict[str, Any]:
             "title": "Console of a planar motion mechanism",
             "version": program().split()[-1],
             "description": "Requests that act carry the console's own origin, and the session that "
-            "the stream's snapshot has told. Live values come over the WebSocket /stream.",
+            "the stream's snapshot has told. Live values come over the WebSocket /stream. "
+            "What whoever has the token for proposing posts about the queue is kept as a proposal.",
         },
         "paths": {
             **{path: {"post": _post(*about)} for path, about in POSTS.items()},

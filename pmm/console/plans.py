@@ -92,6 +92,19 @@ class Plans:
                 return self._read(path)
         return self._read(self._known(name))
 
+    def possible(self, name: str, text: str) -> CheckedPlan:
+        """Read a plan that might be run; nothing is kept.
+
+        Raises
+        ------
+        ConfigurationError, PlanRefusedError
+            If it is wrong, or the rig cannot run it.
+        """
+        if text:
+            with self._written(text) as path:
+                return self._possible(path)
+        return self._possible(self._known(name))
+
     def queue(self, name: str, text: str) -> CheckedPlan:
         """Read a plan that is to be run; a text is kept beside the other plans.
 
@@ -101,8 +114,7 @@ class Plans:
             If it is wrong, or the rig cannot run it.
         """
         if text:
-            with self._written(text) as path:  # what is refused is not kept
-                self._possible(path)
+            self.possible(name, text)  # what is refused is not kept
             name = f"console-{_digest(text)}.toml"
             (self.folder / name).write_text(text, encoding="utf-8")
         return self._possible(self._known(name))

@@ -37,6 +37,7 @@ class ConsoleRequest:
     port: int
     token_file: str | None
     watch_token_file: str | None
+    propose_token_file: str | None
     certificate: str | None
     key: str | None
     earlier: tuple[str, ...]
@@ -90,10 +91,15 @@ class ConsoleRequest:
                 f"--token-file with a secret of at least {_LEAST_TOKEN} characters, or listen on "
                 f"{LOCAL[0]}"
             )
-        if self.watch_token_file is not None and self.token_file is None:
-            raise ConfigurationError(
-                "--watch-token-file: whoever has no token operates; give --token-file, too"
-            )
+        lesser = {
+            "--watch-token-file": self.watch_token_file,
+            "--propose-token-file": self.propose_token_file,
+        }
+        for option, name in lesser.items():
+            if name is not None and self.token_file is None:
+                raise ConfigurationError(
+                    f"{option}: whoever has no token operates; give --token-file, too"
+                )
         for option, name in (("--certificate", self.certificate), ("--key", self.key)):
             if name is not None and not Path(name).is_file():
                 raise ConfigurationError(f"{option} {name}: no such file")
@@ -125,10 +131,13 @@ class ConsoleRequest:
         tokens = (
             _token("--token-file", self.token_file),
             _token("--watch-token-file", self.watch_token_file),
+            _token("--propose-token-file", self.propose_token_file),
         )
-        if tokens[0] and tokens[0] == tokens[1]:
+        given = [one for one in tokens if one]
+        if len(set(given)) < len(given):
             raise ConfigurationError(
-                f"--watch-token-file {self.watch_token_file}: is the operators' token; make another"
+                "--token-file, --watch-token-file, --propose-token-file: two hold the same token, "
+                "whose holder's rights would be unclear; make another"
             )
         return ConsoleSettings(
             rig_path=rig_file.path,
@@ -136,7 +145,7 @@ class ConsoleRequest:
             plans=rig_file.path.parent if self.plans is None else Path(self.plans),
             output=output,
             log_folder=output or rig_file.path.parent / rig_file.recorder.folder,
-            door=Door(self.host, port, tokens[0], self.certificate is not None, tokens[1]),
+            door=Door(self.host, port, tokens[0], self.certificate is not None, *tokens[1:]),
             earlier=tuple(Path(one) for one in self.earlier),
             reference=None if self.reference is None else Path(self.reference),
             live=self._live(rig_file),

@@ -78,6 +78,12 @@ class NotePosted(RunPosted):
     author: str = Field(min_length=1, max_length=100)
 
 
+class DecisionPosted(Posted):
+    """The number of a proposal that is approved or refused."""
+
+    number: int = Field(ge=1)
+
+
 class TakePosted(Posted):
     """The wish to have control, said in so many words."""
 

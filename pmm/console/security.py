@@ -38,7 +38,11 @@ class Role(StrEnum):
     """What a token lets its holder do."""
 
     WATCH = "watch"  # and stop quickly, as everybody may
+    PROPOSE = "propose"  # changes of the queue besides, which whoever has control approves
     OPERATE = "operate"  # and take control
+
+
+_MAY: Final = {Role.WATCH: "watching", Role.PROPOSE: "proposing"}
 
 
 @dataclass(frozen=True)
@@ -54,18 +58,19 @@ class Visitor:
     role: Role = Role.OPERATE
     name: str = ""
 
-    def require_operator(self) -> None:
-        """Refuse who may only watch.
+    def require(self, least: Role) -> None:
+        """Refuse who may do less.
 
         Raises
         ------
         NotInControlError
-            If the token is the one for watching.
+            If the token is for less.
         """
-        if self.role is not Role.OPERATE:
+        roles = list(Role)
+        if roles.index(self.role) < roles.index(least):
             raise NotInControlError(
-                "this token is for watching; log in with the operators' (quick stop is always "
-                "possible)"
+                f"this token is for {_MAY[self.role]}; log in with the operators' (quick stop is "
+                "always possible)"
             )
 
 
@@ -83,8 +88,8 @@ class Door:
         Where the console listens.
     token
         Of the operators; needed where it listens beyond this machine; empty for none.
-    watch_token
-        Of those who only watch; empty for none.
+    watch_token, propose_token
+        Of those who only watch, and of those who propose changes too; empty for none.
     tls
         Whether it speaks HTTPS.
     """
@@ -94,11 +99,16 @@ class Door:
     token: str = field(default="", repr=False)
     tls: bool = False
     watch_token: str = field(default="", repr=False)
+    propose_token: str = field(default="", repr=False)
     _visitors: dict[str, Visitor] = field(default_factory=dict, repr=False)
 
     def log_in(self, token: str, name: str = "") -> tuple[str, Visitor] | None:
         """Return a cookie's value and who has it, for a right token."""
-        known = ((self.token, Role.OPERATE), (self.watch_token, Role.WATCH))
+        known = (
+            (self.token, Role.OPERATE),
+            (self.propose_token, Role.PROPOSE),
+            (self.watch_token, Role.WATCH),
+        )
         fit = [role for one, role in known if one and _same(token, one)]
         if not fit:
             return None

@@ -22,6 +22,7 @@ from pmm.console.plans_in_hand import PlansInHand
 from pmm.console.quick_stop import QuickStop
 from pmm.console.station_view import StationView
 from pmm.console.writing import Writer
+from pmm.document.notation import counted
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.run.journal import Taps
@@ -166,10 +167,11 @@ class Station:
 
     def _carry_out(self, order: LoopOrder) -> Reply:
         try:
-            text = self._obey(order)
+            done, text = True, self._obey(order)
         except (PmmError, ValueError) as error:
-            return Reply(order.number, False, str(error))
-        return Reply(order.number, True, text)
+            done, text = False, str(error)
+        present = self._plans.present
+        return Reply(order.number, done, text, 0 if present is None else present.number)
 
     def _obey(self, order: LoopOrder) -> str:
         if order.quick_stops < self._quick_stop.pressed:
@@ -206,7 +208,7 @@ class Station:
             )
         self._writer.begin(plan)
         self._plans.waiting.append(plan)
-        what = "runs to be chosen" if plan.chooses else f"{len(plan.runs)} runs"
+        what = "runs to be chosen" if plan.chooses else counted(len(plan.runs), "run")
         self._view.notice("queue", f"{plan.plan.name}: {what}, queued")
         self._take_turns()
         return f"{plan.plan.name} is queued"

@@ -9,7 +9,8 @@ from pmm.archive.notebook import NoteLine, write_note
 from pmm.console.encoding import EncodedText, encode
 from pmm.console.messages import PackedPlan, pack, unpack
 from pmm.console.pages import pages_in
-from pmm.console.plans import Plans, plan_picture
+from pmm.console.plans import CheckedPlan, Plans, plan_picture
+from pmm.console.queue_journal import KeptPlan
 from pmm.console.requests import NotePosted, RunPosted
 from pmm.recorder.files import is_run
 from pmm.run.campaign_folder import check_names
@@ -36,7 +37,30 @@ def ready_plan(plans: Plans, name: str, text: str) -> ReadyPlan:
     ConfigurationError, PlanRefusedError
         If it is wrong, or the rig cannot run it.
     """
-    found = plans.queue(name, text)
+    return _ready(plans.queue(name, text))
+
+
+def possible_plan(plans: Plans, name: str, text: str) -> ReadyPlan:
+    """Return a plan that might be run; raises as :func:`ready_plan` does, and keeps nothing."""
+    return _ready(plans.possible(name, text))
+
+
+def restored_plan(plans: Plans, kept: KeptPlan) -> ReadyPlan | None:
+    """Return a plan as it was in the queue, or nothing if all its runs are complete.
+
+    Raises
+    ------
+    ConfigurationError, PlanRefusedError
+        If its file is wrong by now, or the rig cannot run it any more.
+    """
+    found = plans.queue(kept.name, "")
+    for change in kept.changes:
+        found = plans.changed(found.waiting, change)
+    waiting = found.waiting
+    return _ready(found) if waiting.runs or waiting.chooses else None
+
+
+def _ready(found: CheckedPlan) -> ReadyPlan:
     return ReadyPlan(pack(found.waiting), EncodedText(encode(plan_picture(found))))
 
 
@@ -48,8 +72,7 @@ def changed_plan(plans: Plans, packed: PackedPlan, posted: RunPosted) -> ReadyPl
     ConfigurationError, PlanRefusedError
         If that cannot be.
     """
-    found = plans.changed(unpack(packed), posted)
-    return ReadyPlan(pack(found.waiting), EncodedText(encode(plan_picture(found))))
+    return _ready(plans.changed(unpack(packed), posted))
 
 
 def keep_note(packed: PackedPlan, posted: NotePosted, utc: str) -> None:
@@ -80,14 +103,37 @@ class Queued:
     def __init__(self) -> None:
         self._plans: dict[int, ReadyPlan] = {}
         self._folders: dict[Path, None] = {}
+        self._changes: dict[int, tuple[RunPosted, ...]] = {}
+        self._order: tuple[int, ...] = ()
         self._count = self._told = 0
 
-    def add(self, plan: ReadyPlan) -> int:
-        """Keep a plan that is about to be queued; return its number."""
+    @property
+    def count(self) -> int:
+        """The latest number."""
+        return self._count
+
+    def add(self, plan: ReadyPlan, changes: tuple[RunPosted, ...] = ()) -> int:
+        """Keep a plan that is about to be queued; return its number.
+
+        Parameters
+        ----------
+        changes
+            Of its file, as they were made before.
+        """
         self._count += 1
         self._plans[self._count] = replace(plan, packed=replace(plan.packed, number=self._count))
+        self._changes[self._count] = changes
         self._folders[plan.packed.folder] = None
         return self._count
+
+    def kept(self) -> tuple[KeptPlan, ...]:
+        """Return what is to be queued again after a restart, in the order of the queue."""
+        later = [one for one in self._plans if one not in self._order]
+        return tuple(
+            KeptPlan(one, self._plans[one].packed.plan.path.name, self._changes[one])
+            for one in (*self._order, *later)
+            if one in self._plans
+        )
 
     def drop(self, number: int) -> None:
         """Forget a plan that was refused or taken out of the queue."""
@@ -107,19 +153,22 @@ class Queued:
             raise ConfigurationError(f"no plan {number} is in the queue; there are: {known}")
         return found.packed
 
-    def change(self, plan: ReadyPlan) -> None:
+    def change(self, plan: ReadyPlan, posted: RunPosted) -> None:
         """Keep a plan as it is from now on, if it is still at hand."""
-        if plan.packed.number in self._plans:
-            self._plans[plan.packed.number] = plan
+        number = plan.packed.number
+        if number in self._plans:
+            self._plans[number] = plan
+            self._changes[number] += (posted,)
 
     def at_hand(self, numbers: Collection[int]) -> None:
         """Forget the others, by what the latest frame tells of; it may not know the newest yet."""
-        self._told = max(self._told, *numbers)
+        self._told, self._order = max(self._told, *numbers), tuple(numbers)
         self._plans = {
             number: plan
             for number, plan in self._plans.items()
             if number > self._told or number in numbers
         }
+        self._changes = {number: self._changes[number] for number in self._plans}
 
     def folder(self, number: int) -> Path | None:
         """Return the folder of a plan that is at hand."""

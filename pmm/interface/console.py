@@ -26,7 +26,7 @@ _LISTS: Final = {
     "notice": ("notices", None),
     "audit": ("audit", "entry"),
 }
-_PARTS: Final = ("plans", "figures", "campaign", "live")
+_PARTS: Final = ("plans", "figures", "campaign", "live", "proposals")
 _UNDER_WAY: Final = 3  # frames that may be of before a command's answer
 _BROKEN: Final = ("stopped", "fault")
 

@@ -83,6 +83,14 @@ class QueueCalls:
         """Release what is held; at rest nothing moves before a start."""
         return self._said("/api/plans/hold", {"number": number, "run": run, "held": False})
 
+    def approve(self, number: int) -> str:
+        """Carry out what somebody has proposed, one of ``known["proposals"]`` by its number."""
+        return self._said("/api/proposals/approve", {"number": number})
+
+    def refuse(self, number: int) -> str:
+        """Do not carry out what somebody has proposed; whoever has proposed it withdraws it so."""
+        return self._said("/api/proposals/refuse", {"number": number})
+
     def _said(self, path: str, body: Message) -> str:
         return str(self._requests.ask(path, body)["said"])
 

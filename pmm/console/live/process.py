@@ -4,6 +4,7 @@ import asyncio
 import time
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import replace
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from threading import Thread
@@ -19,6 +20,7 @@ from pmm.console.worker_process import yield_to_the_loop
 SILENT_S: Final = 2.0  # without a tick: then nobody vouches for the values any more
 _MOST_FRAMES: Final = 750  # 30 s: starting takes 1 to 10 s, and nothing is to be lost meanwhile
 _TELL_S: Final = 1.0
+_LOST: Final = "its process has ended, and nothing goes out any more; start the console anew"
 _JOIN_S: Final = 3.0  # for a last word to the broker
 
 
@@ -32,6 +34,7 @@ class Publishing:
             target=carry_out, args=(theirs, settings), name="console live values", daemon=True
         )
         self._process.start()
+        self._last: tuple[OutletStatus, ...] = ()
         theirs.close()
         self._link: Link[tuple[OutletStatus, ...]] = Link(ours, _MOST_FRAMES)
 
@@ -47,15 +50,16 @@ class Publishing:
         """The process that carries out."""
         return self._process.pid or 0
 
-    @property
-    def lost(self) -> bool:
-        """Whether the process is gone."""
-        return self._link.lost
-
     def statuses(self) -> tuple[OutletStatus, ...]:
-        """Return how the outlets are, if they have said so since the last call."""
+        """Return how the outlets are, if there is something new since the last call."""
         told = self._link.orders()
-        return told[-1] if told else ()
+        if told:
+            self._last = told[-1]
+            return self._last
+        if self._link.lost and any(one.connected or not one.trouble for one in self._last):
+            self._last = tuple(replace(one, connected=False, trouble=_LOST) for one in self._last)
+            return self._last
+        return ()
 
     def close(self) -> None:
         """End the process, with a last word to the broker where that is quick."""
@@ -118,6 +122,8 @@ class _Source(Thread):
 
 
 async def _carry_out(connection: Connection, settings: LiveSettings) -> None:
+    # aiomqtt waits for sockets that have just gone; whatever matters ends a task.
+    asyncio.get_running_loop().set_exception_handler(lambda *_: None)
     outlets = outlets_of(settings)
     source = _Source(connection, outlets)
     source.start()

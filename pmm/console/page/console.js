@@ -13,7 +13,7 @@ const readings = new Readings(), traces = new Traces(), facts = new Facts(), ala
 const finished = new Finished(), coefficients = new Coefficients();
 const FIGURES = 4; // figures change in every fourth picture: nobody reads 25 numbers a second
 let drawn = 0;
-let holder = "nobody", priority = "", live = [], latest = null, due = false, shown = false, ended = false;
+let holder = "nobody", priority = "", live = [], role = "", proposals = [], latest = null, due = false, shown = false, ended = false;
 
 function draw() {
   due = false;
@@ -30,7 +30,7 @@ function draw() {
     shown = true;
     facts.show({ ...frame, priority, live });
     showProgress(frame, queue.plans);
-    queue.show(frame, holder === "you");
+    queue.show(frame, holder === "you" || role === "propose");
   }
   until.show(frame, holder === "you");
   showQuestion(frame);
@@ -65,9 +65,11 @@ function showQuestion(frame) {
 
 function showDesk(desk) {
   holder = desk.holder;
+  role = desk.role;
+  queue.propose(proposals, role);
   const others = desk.browsers > 1 ? `, ${desk.browsers - 1} watching` : "";
-  text(byId("desk"), { you: `You have control${others}`, other: "You watch: another browser has control", nobody: "Nobody has control" }[holder]);
-  byId("take").hidden = holder === "you" || desk.role === "watch";
+  text(byId("desk"), { you: `You have control${others}`, other: role === "propose" ? "You propose: another browser has control and decides" : "You watch: another browser has control", nobody: "Nobody has control" }[holder]);
+  byId("take").hidden = holder === "you" || desk.role !== "operate";
   document.body.dataset.holder = holder;
   if (latest) showButtons(latest);
 }
@@ -110,6 +112,7 @@ function begin(snapshot) {
   snapshot.audit.forEach(showDone);
   queue.take(snapshot.plans);
   live = snapshot.live;
+  proposals = snapshot.proposals;
   until.take(snapshot.campaign);
   showDesk(snapshot.desk);
   if (snapshot.needles) readings.show(snapshot.needles);
@@ -126,6 +129,7 @@ const stream = new Stream({
   notice: (one) => alarms.add(one),
   audit: (one) => showDone(one.entry),
   plans: (one) => queue.take(one.plans),
+  proposals: (one) => { proposals = one.proposals; queue.propose(proposals, role); },
   live: (one) => { live = one.live; },
   campaign: (one) => until.take(one.campaign),
   finished: (one) => {

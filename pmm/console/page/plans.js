@@ -1,5 +1,5 @@
 // Plans: chosen, checked, queued; and the pages that campaigns have.
-import { byId, html, text } from "./svg.js";
+import { byId, html, runsOf, text } from "./svg.js";
 import { post } from "./stream.js";
 
 export class Plans {
@@ -46,7 +46,7 @@ export class Plans {
     if (plan.chooses) return [html("p", {}, `${said ?? "a design"}: its runs are chosen one after the other, to ${plan.folder}`)];
     const minutes = Math.ceil(plan.runs.reduce((sum, one) => sum + one.duration_s, 0) / 60);
     const done = plan.complete ? `, ${plan.complete} complete already` : "";
-    const first = html("p", {}, `${said ?? (plan.refused ? "the rig cannot run it" : "it can be run")}: ${plan.runs.length} runs${done}, at most ${minutes} min, to ${plan.folder}`);
+    const first = html("p", {}, `${said ?? (plan.refused ? "the rig cannot run it" : "it can be run")}: ${runsOf(plan.runs.length)}${done}, at most ${minutes} min, to ${plan.folder}`);
     return [first, ...plan.findings.map((one) => html("p", { "data-verdict": one.verdict }, one.run ? `${one.run}: ${one.message}` : one.message))];
   }
 }

@@ -1,6 +1,6 @@
 // The queue: plans and their runs before they are made, edited, moved, held, taken out.
 import { movable } from "./order.js";
-import { byId, html } from "./svg.js";
+import { byId, html, runsOf } from "./svg.js";
 import { post } from "./stream.js";
 
 const MOST = 60; // runs of a plan that are listed; those behind them follow as these are made
@@ -47,7 +47,7 @@ export class Queue {
     const plan = this.plans[number], waits = frame.plan !== number;
     const left = plan.chooses ? [] : this.left(plan, frame);
     const held = left.length > 0 && left.every((one) => plan.held.includes(one.name));
-    const count = plan.chooses ? "a design" : `${left.length} runs`;
+    const count = plan.chooses ? "a design" : runsOf(left.length);
     const words = `${plan.name}, ${count} ${held ? "(held) " : waits ? "(waits) " : ""}`;
     const order = () => frame.queue;
     const row = waits
@@ -113,6 +113,17 @@ export class Queue {
     byId("note-form").hidden = !options.length;
   }
 
+  // What others propose: whoever has control decides, whoever has proposed may withdraw.
+  propose(proposals, role) {
+    byId("proposals").replaceChildren(...proposals.map((one) => {
+      const act = (what) => this.send(what, { number: one.number }, "proposals");
+      const no = role === "propose" ? "Withdraw" : "Refuse";
+      const buttons = [this.button(no, `${no} ${one.text}`, () => act("refuse"))];
+      if (role === "operate") buttons.unshift(this.button("Approve", `Approve ${one.text}`, () => act("approve")), " ");
+      return html("li", {}, `${one.name || "somebody"} proposes: ${one.text} `, ...(role === "watch" ? [] : buttons));
+    }));
+  }
+
   async note() {
     const [, number, run] = /^(\d+) (.*)$/.exec(byId("note-run").value);
     const author = byId("note-author").value.trim();
@@ -137,8 +148,8 @@ export class Queue {
 
   drop(number) { return this.send("drop", { number }); }
 
-  async send(what, body) {
-    const answer = await post(this.stream, `/api/plans/${what}`, body);
+  async send(what, body, where = "plans") {
+    const answer = await post(this.stream, `/api/${where}/${what}`, body);
     this.say(answer.ok ? answer.said : answer.error, !answer.ok);
     return answer.ok;
   }

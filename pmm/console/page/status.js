@@ -77,7 +77,7 @@ export function showProgress(frame, plans) {
   byId("campaign-bar").value = frame.run_count ? done / frame.run_count : 0;
   const left = plan ? plan.runs.slice(Math.max(frame.run_number - 1, 0)).filter((one) => !plan.held.includes(one.name)).reduce((sum, one) => sum + one.duration_s, 0) : 0;
   const hours = left >= 3600 ? `${Math.floor(left / 3600)} h ` : "";
-  const where = all ? `all ${frame.run_count} runs are done`
+  const where = all ? `${frame.run_count === 1 ? "its run is" : `all ${frame.run_count} runs are`} done`
     : `run ${frame.run_number} of ${frame.run_count}, at most ${hours}${Math.ceil((left % 3600) / 60)} min left`;
   text(byId("campaign-line"), plan ? `${where}; recorded to ${plan.folder}` : "");
   const next = frame.next.map((name) => {

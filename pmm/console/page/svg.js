@@ -47,3 +47,5 @@ export function nice(size) {
   const power = 10 ** Math.floor(Math.log10(size));
   return [1, 2, 5, 10].map((one) => one * power).find((one) => one >= size * 0.999999);
 }
+
+export const runsOf = (count) => (count === 1 ? "1 run" : `${count} runs`);

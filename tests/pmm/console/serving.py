@@ -66,6 +66,7 @@ def served(
     *,
     token: str = "",
     watch_token: str = "",
+    propose_token: str = "",
     host: str = "127.0.0.1",
     origin: str = OWN,
 ) -> Iterator[Served]:
@@ -79,7 +80,7 @@ def served(
         plans=rig,
         output=folder,
         log_folder=folder,
-        door=Door(host, PORT, token, watch_token=watch_token),
+        door=Door(host, PORT, token, watch_token=watch_token, propose_token=propose_token),
     )
     quick_stop = QuickStop()
     orders: list[LoopOrder] = []

@@ -20,6 +20,8 @@ _RIGHT = {
     "/api/plans/edit": {"number": 1, "run": "heave-f1", "frequency_hz": 1.1},
     "/api/plans/move": {"number": 1, "run": "heave-f1", "by": -1},
     "/api/plans/hold": {"number": 1, "held": True},
+    "/api/proposals/approve": {"number": 1},
+    "/api/proposals/refuse": {"number": 1},
     "/api/plans/note": {"number": 1, "text": "calm", "author": "me"},
 }
 

@@ -1,0 +1,203 @@
+"""What is done to the queue: checked by a worker, carried out by the loop, kept on the disk."""
+
+import asyncio
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from hardware.description.errors import PmmError
+from pmm.console.encoding import EncodedText, encode_answer
+from pmm.console.hub import Hub
+from pmm.console.loop_side import LoopSide
+from pmm.console.messages import OrderKind, Reply
+from pmm.console.plans import Plans
+from pmm.console.proposals import Proposals
+from pmm.console.queue_journal import KeptPlan, KeptQueue, QueueJournal
+from pmm.console.queue_keeper import QueueKeeper
+from pmm.console.requests import (
+    DropPosted,
+    HoldPosted,
+    MovePosted,
+    PlanPosted,
+    Posted,
+    RunPosted,
+)
+from pmm.console.worker_process import Workers
+from pmm.console.worker_tasks import (
+    Queued,
+    ReadyPlan,
+    changed_plan,
+    possible_plan,
+    ready_plan,
+    restored_plan,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable, Callable
+
+
+@dataclass(frozen=True)
+class Done:
+    """What came of a request.
+
+    Attributes
+    ----------
+    said, plan
+        The answer; empty or ``None`` where there is nothing to say.
+    present
+        Number of the plan to which it belongs; ``None`` where the loop was not asked.
+    """
+
+    said: str
+    plan: EncodedText | None = None
+    present: int | None = None
+
+    def answer(self) -> dict[str, Any]:
+        """Return what the page gets."""
+        parts = {"said": self.said or None, "plan": self.plan}
+        return {key: one for key, one in parts.items() if one is not None}
+
+
+def of_reply(reply: Reply, plan: EncodedText | None = None) -> Done:
+    """Return what came of an order to the loop."""
+    return Done(reply.text, plan, reply.plan)
+
+
+class QueueChanges:
+    """Carries out changes of the queue, one after the other where they build on each other.
+
+    Attributes
+    ----------
+    queued
+        The plans at hand.
+    """
+
+    def __init__(
+        self,
+        hub: Hub,
+        loop: LoopSide,
+        workers: Workers,
+        plans: Plans,
+        proposals: Proposals,
+        journal: QueueJournal,
+    ) -> None:
+        self._hub, self._loop, self._workers, self._plans = hub, loop, workers, plans
+        self._proposals = proposals
+        self._keeper = QueueKeeper(journal, self._kept, lambda text: hub.say("alarm", text))
+        self._changing, self._order = asyncio.Lock(), tuple[int, ...]()
+        self.queued = Queued()
+        self._acts: dict[str, Callable[[Any], Awaitable[Done]]] = {
+            "queue": self._queue,
+            "drop": self._drop,
+            "edit": self._change,
+            "move": self._move,
+            "hold": self._change,
+        }
+
+    async def carry_out(self, action: str, posted: Posted) -> Done:
+        """Do one of :data:`~pmm.console.proposals.PROPOSED`.
+
+        Raises
+        ------
+        PmmError
+            If the rig, the plan or the loop does not allow it.
+        """
+        return await self._acts[action](posted)
+
+    async def try_out(self, posted: Posted) -> tuple[str, EncodedText]:
+        """Return the plan's name and its picture as it would be; raises as carrying out does."""
+        worker = self._workers.for_whom(in_control=False)
+        if isinstance(posted, PlanPosted):
+            found = await worker.run(possible_plan, self._plans, posted.name, posted.text)
+            return found.packed.plan.name, found.picture
+        number: int = getattr(posted, "number", 0)
+        plan = self.queued.plan(number)
+        picture = self.queued.pictures()[str(number)]
+        if isinstance(posted, RunPosted) and (posted.run or isinstance(posted, HoldPosted)):
+            picture = (await worker.run(changed_plan, self._plans, plan, posted)).picture
+        return plan.plan.name, picture
+
+    async def _queue(self, posted: PlanPosted) -> Done:
+        worker = self._workers.for_whom(in_control=True)
+        async with self._changing:
+            found = await worker.run(ready_plan, self._plans, posted.name, posted.text)
+            reply = await self._add(found)
+        self._tell_plans()
+        return of_reply(reply, found.picture)
+
+    async def _add(self, found: ReadyPlan, changes: tuple[RunPosted, ...] = ()) -> Reply:
+        number = self.queued.add(found, changes)
+        try:
+            return await self._loop.order(OrderKind.QUEUE, plan=self.queued.plan(number))
+        except PmmError:
+            self.queued.drop(number)
+            raise
+
+    async def _drop(self, posted: DropPosted) -> Done:
+        reply = await self._loop.order(OrderKind.DROP, str(posted.number))
+        self.queued.drop(posted.number)
+        self._tell_plans()
+        return of_reply(reply)
+
+    async def _move(self, posted: MovePosted) -> Done:
+        if posted.run:
+            return await self._change(posted)
+        return of_reply(await self._loop.order(OrderKind.MOVE, f"{posted.number} {posted.by}"))
+
+    async def _change(self, posted: RunPosted) -> Done:
+        worker = self._workers.for_whom(in_control=True)
+        async with self._changing:  # each change begins with what the one before has made
+            before = self.queued.plan(posted.number)
+            found = await worker.run(changed_plan, self._plans, before, posted)
+            reply = await self._loop.order(OrderKind.CHANGE, plan=found.packed)
+            self.queued.change(found, posted)
+        self._tell_plans()
+        return of_reply(reply, found.picture)
+
+    def seen(self, numbers: tuple[int, ...]) -> None:
+        """Take the order of the queue as the latest frame tells it."""
+        if numbers != self._order:
+            self._order = numbers
+            self.queued.at_hand(numbers)
+            self._keeper.changed()
+
+    async def restore(self) -> None:
+        """Queue again what was in the queue when the console before ended; nothing moves by it."""
+        async with self._changing:
+            try:
+                kept = self._keeper.read()
+            except PmmError as error:
+                self._hub.say("alarm", str(error))
+                kept = KeptQueue()
+            numbers = {plan.number: await self._again(plan) for plan in kept.plans}
+            self._proposals.restore(kept.proposals, numbers)
+        self._tell_plans()
+        self.tell_proposals()
+        self._keeper.begin()
+
+    async def _again(self, kept: KeptPlan) -> int:
+        """Queue a plan again; return its number now, 0 if nothing of it is left to be made."""
+        worker = self._workers.for_whom(in_control=True)
+        try:
+            found = await worker.run(restored_plan, self._plans, kept)
+            if found is None:
+                return 0
+            await self._add(found, kept.changes)
+        except PmmError as error:
+            self._hub.say("alarm", f"{kept.name} is not in the queue again: {error}")
+            return 0
+        return self.queued.count
+
+    def tell_proposals(self) -> None:
+        """Tell what is proposed, and keep it."""
+        self._hub.tell_proposals(self._proposals.pictures())
+        self._keeper.changed()
+
+    def _tell_plans(self) -> None:
+        last = self._hub.last
+        if last is not None:
+            self.queued.at_hand((last.plan, *last.queue))
+        self._hub.tell_plans(encode_answer(self.queued.pictures()))
+        self._keeper.changed()
+
+    def _kept(self) -> KeptQueue:
+        return KeptQueue(self.queued.kept(), tuple(self._proposals.waiting.values()))
