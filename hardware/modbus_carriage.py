@@ -206,7 +206,7 @@ class ModbusCarriage(ModbusDevice):
         speed = self.measured_speed_m_s
         if self._returning:
             self._approach(self.position_m - self._track.low)
-        if abs(speed - self._goal_m_s) > self.tolerance_m_s:
+        if not abs(speed - self._goal_m_s) <= self.tolerance_m_s:  # nor is what is no number
             self._steady_s = None
         elif self._steady_s is None:
             self._steady_s = self._now_s

@@ -76,11 +76,11 @@ class ModbusLink:
     """Asks a device; raises as its port does where it cannot be opened."""
 
     def __init__(self, name: str, settings: ModbusSettings, services: Services) -> None:
-        from pymodbus.pdu import DecodePDU
-
         self.name = name
         self._settings = settings
-        self._framer = framer_of(name, settings.port.framing)
+        self._framer = framer_of(name, settings.port.framing)  # says what to install
+        from pymodbus.pdu import DecodePDU
+
         self._requests = DecodePDU(True)
         self._port = services.port(name, settings.port)
         self._number = 0

@@ -97,7 +97,7 @@ def gauges_of(hardware: RigConfiguration) -> tuple[Gauge, ...]:
 
 
 def carriage_faults(own: RigTables, hardware: RigConfiguration) -> Iterator[Fault]:
-    """Yield what the tank's table asks of the carriage beyond its driver's own limits."""
+    """Yield what is asked of carriage and angles that their drivers or the rig do not do."""
     settings = None if hardware.carriage is None else hardware.carriage.settings
     for key, limit in (
         ("carriage_acceleration_m_s2", "acceleration_m_s2"),
@@ -109,6 +109,9 @@ def carriage_faults(own: RigTables, hardware: RigConfiguration) -> Iterator[Faul
                 ("tank", key),
                 f"= {asked:g} is above carriage.{limit} = {most:g}, which its drive does; lower it",
             )
+    for name, part in hardware.angles.items():
+        if (unit := getattr(part.settings, "unit", "rad")) != "rad":
+            yield Fault((name, "unit"), f'= {unit!r}: {name} is an angle; say "rad"')
     if "drift" in hardware.angles and own.oscillator.drift_by is DriftBy.STRUTS_OFFSET:
         yield Fault(
             ("drift",),

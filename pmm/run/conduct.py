@@ -218,7 +218,7 @@ def check_speed(c: Conduct) -> None:
         return
     measured = carriage.measured_speed_m_s
     allowed = CARRIAGE_SHARE * wanted + carriage.tolerance_m_s
-    c.off_speed = c.off_speed + 1 if abs(measured - wanted) > allowed else 0
+    c.off_speed = 0 if abs(measured - wanted) <= allowed else c.off_speed + 1
     if c.off_speed > CARRIAGE_S * c.rate_hz:
         raise CarriageSpeedError(
             carriage.name,

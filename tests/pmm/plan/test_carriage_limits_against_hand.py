@@ -91,6 +91,17 @@ def test_a_tank_that_asks_more_than_the_carriage_does_is_an_error_of_the_file() 
     assert ("drift",) in {one.place for one in carriage_faults(turned, rig_with().hardware)}
 
 
+def test_an_angle_in_metres_is_refused() -> None:
+    metres = {
+        "driver": "manual-axis", "low": -0.3, "high": 0.3, "standard_uncertainty": 1e-3,
+        "tolerance": 1e-2, "dial_unit": "deg", "dial_per_unit": 57.3,
+    }  # fmt: skip
+    own = RigTables(oscillator=HORIZONTAL_1963)
+    (fault,) = carriage_faults(own, read_rig({"heel": metres}, DRIVERS))
+    assert fault.place == ("heel", "unit")
+    assert 'say "rad"' in fault.message
+
+
 def test_the_page_shows_a_rig_that_can_be_read() -> None:
     text = PAGE.read_text(encoding="utf-8").split("```toml\n")[1].split("```")[0]
     rig = read_rig(tomllib.loads(text), DRIVERS)

@@ -1,7 +1,9 @@
 """What a Modbus device or its map can get wrong: one fault each, one sentence, with a remedy."""
 
+import math
 import random
 import re
+import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from copy import deepcopy
@@ -112,6 +114,30 @@ def test_a_wrong_map_is_told_before_a_run_begins(path, kind, remedy) -> None:
         assert (kind == "") == (found == [])
         assert all(kind in one and remedy in one for one in found)
         assert rig.carriage.at_speed == (kind == "")
+
+
+def test_a_speed_that_is_no_number_is_no_speed() -> None:
+    table = other("port", PORT)
+    with carriage_of(table, table) as (rig, world):
+        rig.carriage.enable()
+        faults_of(rig, 30)
+        rig.carriage.run_at(0.5)
+        faults_of(rig, 50)
+        device = world.talkers["carriage"]
+        device.move = lambda _step_s: device.show(rig.configuration.carriage.settings.registers
+                                                  .speed, math.nan)  # fmt: skip
+        found = faults_of(rig, 700)
+        assert not rig.carriage.at_speed
+        assert rig.carriage.moving
+        assert "TransitionTimeoutError" in found[0]
+        assert "it reads speed nan" in found[0]
+
+
+def test_without_pymodbus_it_is_said_what_to_install(monkeypatch) -> None:
+    monkeypatch.setitem(sys.modules, "pymodbus.framer", None)
+    table = other("port", PORT)
+    with pytest.raises(ConfigurationError, match=r"pip install planar-motion-mechanism\[modbus\]"):
+        carriage_of(table, table).__enter__()
 
 
 @pytest.mark.parametrize("framing", ["tcp", "rtu"])
