@@ -106,6 +106,16 @@ def test_a_track_that_ends_stops_the_carriage_before_its_end(tmp_path) -> None:
         assert 1.5 < one.world.talkers["carriage"].position_m < 2.0
 
 
+def test_a_carriage_that_cannot_go_back_is_brought_back(tmp_path) -> None:
+    table = {key: one for key, one in QUICK.items() if key != "track_m"}
+    table["registers"] = {k: v for k, v in QUICK["registers"].items() if k != "position"}
+    with towed(tmp_path, [TOW], tables={"carriage": table}) as one:
+        one.finish()
+        assert one.control.outcomes[0].outcome == "complete", one.control.status().alarms
+    (asked,) = told(tmp_path / "tow", "operator")
+    assert asked.startswith("carriage: bring it back to its start")
+
+
 def test_a_drift_table_is_set_and_nobody_is_asked(tmp_path) -> None:
     zero = at_rest("zero", RunKind.ZERO, drift_rad=0.1)
     runs = [zero, at_rest("drift", RunKind.STATIC_DRIFT, drift_rad=0.1)]
