@@ -44,6 +44,7 @@ NAMES = (
     "steering",
     "roll",
     "multisine",
+    "paths",
     "sequential",
     "campaign",
     "cluster",

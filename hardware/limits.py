@@ -52,7 +52,7 @@ FREQUENCY_S: Final = 0.3
 
 LATE_PERIODS: Final = 1.0
 """Periods that a cycle may come late while struts follow a path: then a set-point was left out. The
-drive goes on at its last speed for one period, so that a strut at 0.8 m/s and 100 Hz is 8 mm ahead.
+drive goes on by itself for one period; a strut at 0.8 m/s goes 8 mm in one of 100 Hz.
 Half as much stops a run for what the drive's window of following error would bear; twice as much
 lets two set-points go, and the drives fault by themselves."""
 

@@ -41,6 +41,7 @@ from hardware.roles import Cycle, Role, Sample, SampleBlock, blocks
 
 _TURN = 2.0 * math.pi
 LEAD_CYCLES = 2  # from sending a set-point to its SYNC (hardware/path_strut.py)
+_EASE_S = 1.0  # from rest to the approach's speed: at 0.1 m/s a model of 100 kg pulls with 10 N
 _KEPT_CYCLES = 20  # for samples of a strut that come late
 STRUTS = ("aft", "fore")
 
@@ -282,6 +283,10 @@ class PathShaft:
         if faults:
             raise worst(faults)
 
+    def angle_at(self, number: int) -> float:
+        """Return the master angle at a SYNC of the latest; NaN at one that it knows nothing of."""
+        return self._told[number][0] if number in self._told else math.nan
+
     def take(self) -> tuple[SampleBlock, ...]:
         """Return angle, displacements and commands since the last call."""
         taken, self._samples = self._samples, []
@@ -333,8 +338,8 @@ class PathShaft:
             self._due = False
             self._from, self._goal = self._points, self._wanted()
             way = float(np.abs(self._goal - self._from).max())
-            slope = min(strut.settings.acceleration for strut in self.struts)
             speed = self.settings.approach_speed
+            slope = speed / _EASE_S
             self._ramp = Ramp(way, speed, slope)
             self._share = 1.0 / way if way else 0.0
             time_s = way / speed + 2.0 * speed / slope

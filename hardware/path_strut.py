@@ -13,7 +13,7 @@ _MILLISECONDS = -3
 
 
 class PathStrut(DriveAxis):
-    """A position axis that takes a set-point with every SYNC, and moves in a straight line to it.
+    """A position axis that takes a set-point with every SYNC, and is there at the next one.
 
     The set-point that is sent after SYNC ``n`` is taken by the drive at SYNC ``n + 1`` and reached
     at SYNC ``n + 2``.

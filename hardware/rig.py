@@ -50,6 +50,8 @@ class Rig:
     ----------
     shaft, eccentricity, phase, photocell, inclinometer, forces, carriage, angles
         The devices by role, behind the interlock; absent ones are ``None``.
+    path
+        The shaft as what is told its struts' path; ``None`` where they follow no other.
     faults
         What is latched: nothing moves before :meth:`reset`.
     prompt
@@ -99,6 +101,7 @@ class Rig:
             raise
         opened = self._devices
         self.shaft, self.eccentricity, self.phase = opened.shaft, opened.eccentricity, opened.phase
+        self.path = opened.path
         self.photocell, self.inclinometer = opened.photocell, opened.inclinometer
         self.carriage, self.angles = opened.carriage, opened.angles
         self._watch, self.forces = opened.watch, opened.watch.forces

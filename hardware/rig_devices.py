@@ -15,6 +15,7 @@ from hardware.roles import (
     Device,
     ForceChannels,
     Inclinometer,
+    PathFollower,
     Photocell,
     PositionAxis,
     Shaft,
@@ -32,6 +33,8 @@ class RigDevices:
 
     Attributes
     ----------
+    path
+        The shaft, where its struts follow a path that it is told.
     opened
         All devices that are open, in the order in which they tick.
     angles
@@ -44,6 +47,7 @@ class RigDevices:
         self._faults = faults
         self.opened: list[Device] = []
         self.shaft: Shaft | None = None
+        self.path: PathFollower | None = None
         self.eccentricity: PositionAxis | None = None
         self.phase: PositionAxis | None = None
         self.photocell: Photocell | None = None
@@ -63,6 +67,8 @@ class RigDevices:
             If a port cannot be opened.
         """
         shaft = cast("Shaft | None", self._device(one.shaft, services))
+        led: object = shaft
+        self.path = led if isinstance(led, PathFollower) else None
         services = replace(services, shaft=shaft)
         axes = [
             cast("PositionAxis | None", self._device(part, services))

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from datetime import date
 
+from hardware.path_shaft import PathShaftSettings
 from pmm.campaign.calibrated_recording import expiry_text
 from pmm.plan.check_table import CALIBRATION
 from pmm.plan.condition_checks import condition_findings
@@ -67,6 +68,12 @@ def _expired(rig: RigFile, today: date | None) -> Iterator[PlanFinding]:
         yield PlanFinding(PlanVerdict.WARN, CALIBRATION.quantity, late, 0.0, "", text)
 
 
+def _leads(rig: RigFile) -> bool:
+    """Tell whether the program itself leads the struts."""
+    shaft = rig.hardware.shaft
+    return shaft is not None and isinstance(shaft.settings, PathShaftSettings)
+
+
 def _not_checked(plan: Plan, rig: RigFile) -> Iterator[PlanFinding]:
     """Yield what the rig's file does not say, and which checks are missing for it."""
     model, towed = rig.model, any(run.set_point.carriage_speed_m_s for run in plan.runs)
@@ -97,7 +104,7 @@ def _not_checked(plan: Plan, rig: RigFile) -> Iterator[PlanFinding]:
         (turning and not rig.modes, "[[modes]] (pluck test)", "structural modes are"),
         (not rig.gauges, "[[gauges]]", "the gauges' range is"),
         (
-            paths and rig.oscillator.paths is None,
+            paths and rig.oscillator.paths is None and not _leads(rig),
             "oscillator.paths",
             "whether struts can follow lines or exact paths is",
         ),

@@ -5,16 +5,28 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import NamedTuple
 
+import numpy as np
+
+from hardware.description.lines import struts_over_turn
 from hardware.description.setpoint import ANGLE_KEYS
+from hardware.path_shaft import STRUTS, PathShaftSettings
 from hardware.rig_configuration import RigPart, load_of
 from pmm.plan import check_table as table
 from pmm.plan.check import Check
 from pmm.plan.duration import carriage_track_m, tank_length_m
 from pmm.plan.findings import PlanFinding, PlanVerdict
 from pmm.plan.force_estimate import force_peak_n
-from pmm.plan.motion_peaks import acceleration_peak_m_s2, peak_place, velocity_peak_m_s
+from pmm.plan.motion_peaks import (
+    acceleration_peak_m_s2,
+    omega_of,
+    peak_place,
+    velocity_peak_m_s,
+)
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
+
+_INSTANTS = 720  # of a turn
+_ROUNDING = 1.0 + 1e-6
 
 
 class _Bound(NamedTuple):
@@ -57,6 +69,7 @@ def _turning(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
         velocity_peak_m_s(run, oscillator),
         acceleration_peak_m_s2(run, oscillator),
     )
+    yield from _led(run, rig)
     for check, value, limit, where in (
         (table.VELOCITY, velocity, limits.velocity_m_s, peak_place(run, 1, "of a strut")),
         (
@@ -69,6 +82,22 @@ def _turning(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
     ):
         if value is not None and limit is not None:
             yield _Bound(check, value, 0.0, limit, where)
+
+
+def _led(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
+    """Yield what drives of the struts' own may do, each strut with the time of its peak."""
+    settings = None if rig.hardware.shaft is None else rig.hardware.shaft.settings
+    if not isinstance(settings, PathShaftSettings):
+        return
+    omega, e = omega_of(run), run.set_point.eccentricity_m
+    for times, check in enumerate((table.STROKE, table.VELOCITY, table.ACCELERATION)):
+        size = 2.0 * e if times == 0 else omega**times * e
+        over = size * np.abs(struts_over_turn(run.set_point.every_line, times, _INSTANTS))
+        for name, one in zip(STRUTS, over, strict=True):
+            strut, at_s = getattr(settings, name), one.argmax() / len(one) / omega * 2.0 * math.pi
+            most = (2.0 * min(-strut.low, strut.high), strut.speed, strut.acceleration)[times]
+            where = f"shaft.{name}: {at_s:.3g} s into the period"
+            yield _Bound(check, float(one.max()), 0.0, most * _ROUNDING, where)
 
 
 def _setting(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:

@@ -10,9 +10,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from hardware.description.channels import SHAFT_ANGLE, STANDARD, Channel
+from hardware.description.channels import DISPLACEMENTS, SHAFT_ANGLE, STANDARD, Channel
 from hardware.description.simulation_tables import GAUGES, merged
 from hardware.dictionary import Entry, entry
+from hardware.path_shaft import STRUTS
 from hardware.rig_configuration import RigConfiguration, RigPart
 from pmm.campaign.calibration import Calibration
 from pmm.plan.rig_file import RigFile
@@ -68,7 +69,12 @@ def resolutions(hardware: RigConfiguration) -> dict[str, float]:
     found = {one.name: abs(one.scale) for part in hardware.forces for one in _counting(part)}
     settings = None if hardware.shaft is None else hardware.shaft.settings
     counts = getattr(settings, "counts_per_turn", None)
-    return found if not counts else found | {SHAFT_ANGLE.name: 2.0 * math.pi / abs(counts)}
+    if counts:
+        found[SHAFT_ANGLE.name] = 2.0 * math.pi / abs(counts)
+    for strut, name in zip(STRUTS, DISPLACEMENTS, strict=True):
+        if getattr(settings, "encoders", False) and name not in found:
+            found[name] = 1.0 / abs(getattr(settings, strut).counts_per_unit)
+    return found
 
 
 def _counting(part: RigPart) -> Iterator[Any]:

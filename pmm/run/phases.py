@@ -42,8 +42,10 @@ def _homing(c: Conduct) -> State | None:
 
 
 def _enter_setting(c: Conduct) -> None:
-    oscillator = c.rig_file.oscillator
-    c.questions.ask(c.surroundings.before(c.present, oscillator, c.rig.angles))
+    oscillator, by_axis = c.rig_file.oscillator, {*c.rig.angles}
+    if c.rig.path is not None:
+        by_axis.add("lines")
+    c.questions.ask(c.surroundings.before(c.present, oscillator, by_axis))
     for one in c.rig.powered():
         if not one.enabled:
             one.enable()
@@ -56,6 +58,8 @@ def _setting(c: Conduct) -> State | None:
         return None
     if not c.told:
         c.told = True
+        if c.rig.path is not None and c.present.oscillates:
+            c.rig.path.follow(c.present.set_point.lines)
         for axis, wanted in c.axes():
             if c.placed.get(axis.name) != wanted:
                 axis.move_to(wanted)

@@ -54,14 +54,15 @@ class Surroundings:
         Parameters
         ----------
         by_axis
-            Angles that an axis of the rig sets: nobody is asked for them.
+            Angles that an axis of the rig sets, and ``lines`` that its struts are told: nobody is
+            asked for them.
         """
         yield from self._change_medium(str(run.set_point.medium))
         yield from self._change_mass(run)
         if "drift" not in by_axis:
             yield from self._change_drift(run, oscillator)
         yield from self._change_settings(run.set_point, by_axis)
-        if run.oscillates:
+        if run.oscillates and "lines" not in by_axis:
             yield from self._change_lines(run.set_point)
         wanted = run.load if run.kind is RunKind.CHECK_WEIGHT else None
         yield from self._change_load(

@@ -7,7 +7,7 @@ from typing import Any, Final
 from hardware.description.errors import ConfigurationError
 
 PLANES: Final = ("vertical", "horizontal")
-AXES: Final = ("driven", "by-hand")
+AXES: Final = ("driven", "by-hand", "paths")
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,12 @@ RIG: Final = (
         "interface", "CAN interface (pmm-simulated: no hardware needed)", "pmm-simulated"
     ),
     StartQuestion("channel", "Its channel", "simulated.toml"),
-    StartQuestion("axes", "Eccentricity and strut phase are set", "driven", AXES),
+    StartQuestion(
+        "axes",
+        "Eccentricity and strut phase are set (paths: each strut has a drive)",
+        "driven",
+        AXES,
+    ),
     SPACING,
     *MODEL,
     StartQuestion("length_m", "Length of the model [m]", 2.5, lowest=0.0),

@@ -24,6 +24,7 @@ DRIVERS: Final = tuple(
         "cia402-shaft": "hardware.shaft:DRIVER",
         "cia402-axis": "hardware.axis:DRIVER",
         "path-struts": "hardware.path_shaft:DRIVER",
+        "path-pulse": "hardware.path_pulse:DRIVER",
         "path-setting": "hardware.path_setting:DRIVER",
         "manual-axis": "hardware.manual_axis:DRIVER",
         "manual-shaft": "hardware.manual_shaft:DRIVER",

@@ -1,12 +1,12 @@
 """The drive of a strut that follows a path: cyclic synchronous position, a loop, a load.
 
-The set-point that came before a SYNC is the end of the straight way that the reference goes until
-the next one. What moves follows it by a position loop around a speed loop, against the force that
-the strut exerts on the model:
+The set-point that came before a SYNC is where the reference is at the next one; it goes there on
+the parabola through this set-point and the two before. What moves follows it by a position loop
+around a speed loop, against the force that the strut exerts on the model:
 
     x'' = kv e + ki integral of e dt - F / M,    e = r' + kp (r - x) - x'
 
-with the reference r. Within a period r is linear and F constant, and the step is exact.
+with the reference r. Within a period r'' and F are constant, and the step is exact.
 """
 
 from collections.abc import Callable
@@ -26,7 +26,7 @@ from sim.devices.node import Number
 Motion = tuple[float, float, float]  # displacement, velocity, acceleration of a strut
 LATE_CODE: Final = 0x8250
 SYNC_CODE: Final = 0x8700
-_ALLOWED: Final = 1  # set-points or SYNCs in a row that the drive bridges at its last speed
+_ALLOWED: Final = 1  # set-points or SYNCs in a row that the drive bridges on its parabola
 
 
 @dataclass(frozen=True)
@@ -41,31 +41,25 @@ class PositionLoop:
         M: strut, slide and the motor's rotor at the strut, without the model.
     """
 
-    position_per_s: float = 15.0
-    speed_per_s: float = 100.0
-    integral_per_s2: float = 1250.0
+    position_per_s: float = 30.0
+    speed_per_s: float = 250.0
+    integral_per_s2: float = 7800.0
     moved_kg: float = 300.0
 
     def step(self, period_s: float) -> tuple[FloatArray, FloatArray]:
-        """Return what takes (x, x', integral of e) over a period, and (r, r', F) in it."""
+        """Return what takes (x, x', integral of e) over a period, and (r, r', r'', F) in it."""
         from scipy.linalg import expm
 
         kp, kv, ki = self.position_per_s, self.speed_per_s, self.integral_per_s2
-        error = np.array([-kp, -1.0, 0.0, kp, 1.0, 0.0])
-        rates = np.zeros((6, 6))
-        rates[0, 1] = rates[3, 4] = 1.0
+        error = np.array([-kp, -1.0, 0.0, kp, 1.0, 0.0, 0.0])
+        rates = np.zeros((7, 7))
+        rates[0, 1] = rates[3, 4] = rates[4, 5] = 1.0
         rates[1] = kv * error
         rates[1, 2] += ki
-        rates[1, 5] -= 1.0 / self.moved_kg
+        rates[1, 6] -= 1.0 / self.moved_kg
         rates[2] = error
         whole = expm(rates * period_s)
         return whole[:3, :3], whole[:3, 3:]
-
-    def acceleration(self, state: FloatArray, given: FloatArray) -> float:
-        """Return x'' at a state (x, x', integral of e) with (r, r', F)."""
-        error = given[1] + self.position_per_s * (given[0] - state[0]) - state[1]
-        pushed = self.speed_per_s * error + self.integral_per_s2 * state[2]
-        return float(pushed - given[2] / self.moved_kg)
 
 
 class StrutDrive(AxisDrive):
@@ -102,7 +96,7 @@ class StrutDrive(AxisDrive):
         self._own, self._given = loop.step(1.0 / sample_rate_hz)
         self._moved_to = np.array([position, 0.0, 0.0])
         self._reference = self._next = position
-        self._way = 0.0
+        self._way = self._bend = self._mean = 0.0
         self._following = False
         self._new = False
         self._missed = 0
@@ -160,13 +154,13 @@ class StrutDrive(AxisDrive):
             self._demand, self._speed = self.position, float(self._moved_to[1])
 
     def _follow(self) -> None:
-        """Go the straight way to the newest set-point for a period."""
+        """Go to the newest set-point for a period."""
         if not self._following:
             self._following = True
             self._goal, self._speed, self._missed = None, 0.0, 0
             self._moved_to = np.array([self.position, 0.0, 0.0])
             self._reference = self._next = self.position
-            self._way = 0.0
+            self._way = self._bend = self._mean = 0.0
         if not self._bridged():
             return
         self.show_motion(float(self._moved_to[1]))
@@ -177,18 +171,24 @@ class StrutDrive(AxisDrive):
 
     def _go_on(self) -> None:
         """Have the loop bring the strut to where it is at the next sample."""
-        self._way = self._next - self._reference
-        given = np.array([self._reference, self._way / self._dt, self._load()])
+        before, self._way = self._way, self._next - self._reference
+        self._bend = self._way - before
+        speed, gain = (before + self._way) / 2.0 / self._dt, self._bend / self._dt**2
+        given = np.array([self._reference, speed, gain, self._load()])
+        speed_before = float(self._moved_to[1])
         self._moved_to = self._own @ self._moved_to + self._given @ given
-        self._reference = given[0] = self._next
+        self._reference = self._next
         if self.blocked:
             self._moved_to = np.array([self.position, 0.0, 0.0])
-        gained = 0.0 if self.blocked else self._loop.acceleration(self._moved_to, given)
         self.position = float(self._moved_to[0])
-        self._led((self.position, float(self._moved_to[1]), gained))
+        # What the loop does within a period is more than samples hold: the mean acceleration of
+        # this period and of the one before, carried on to the sample, is what they hold.
+        mean_before = self._mean
+        self._mean = (float(self._moved_to[1]) - speed_before) / self._dt
+        self._led((self.position, float(self._moved_to[1]), 1.5 * self._mean - 0.5 * mean_before))
 
     def _bridged(self) -> bool:
-        """Take the newest set-point, or one at the last speed; tell whether the drive goes on."""
+        """Take the newest set-point, or one on the parabola; tell whether the drive goes on."""
         new, self._new = self._new and not self.late, False
         self.late = max(self.late - 1, 0)
         heard = self.wire.synchronous
@@ -202,7 +202,7 @@ class StrutDrive(AxisDrive):
             super().move()
             self._led((self.position, self._speed, 0.0))
             return False
-        self._next = self._reference + self._way
+        self._next = self._reference + self._way + self._bend
         return True
 
 

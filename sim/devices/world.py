@@ -14,6 +14,7 @@ from hardware.inclinometer import InclinometerSettings
 from hardware.manual_axis import ManualAxisSettings
 from hardware.manual_shaft import ManualShaftSettings
 from hardware.modbus_axis import ModbusAxisSettings
+from hardware.path_pulse import PathPulseSettings
 from hardware.path_setting import PathSettingSettings
 from hardware.path_shaft import STRUTS, PathShaftSettings
 from hardware.photocell_probe import ProbeSettings
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
     from sim.devices.node import SimulatedNode
 
 # A person, or another part's device, does it: nothing answers.
-_OPERATED: Final = (ManualAxisSettings, ManualShaftSettings, PathSettingSettings)
+_OPERATED: Final = (ManualAxisSettings, ManualShaftSettings, PathSettingSettings, PathPulseSettings)
 _DRIVEN: Final = (ShaftSettings, PathShaftSettings, PositionAxisSettings)
 _LOADS: Final = (signals.FORCE_AFT.name, signals.FORCE_FORE.name)
 

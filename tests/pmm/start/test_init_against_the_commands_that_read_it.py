@@ -1,6 +1,7 @@
 """What ``pmm init`` writes passes the commands it is for, and nothing is written over."""
 
 import json
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,13 @@ from pmm.cli import cli
 from pmm.start.questions import JOBS
 from pmm.steering.settings import read_steering_settings
 
+PATHS = pytest.param(
+    "paths",
+    marks=pytest.mark.skipif(
+        not entry_points(group="pmm.drivers", name="path-struts"),
+        reason="the package is installed as it was before this driver; install it anew",
+    ),
+)
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
@@ -18,7 +26,7 @@ def pmm(*words: object, typed: str | None = None) -> Result:
 
 
 @pytest.mark.parametrize("plane", ["vertical", "horizontal"])
-@pytest.mark.parametrize("axes", ["driven", "by-hand"])
+@pytest.mark.parametrize("axes", ["driven", "by-hand", PATHS])
 @pytest.mark.parametrize("interface", ["pmm-simulated", "socketcan"])
 def test_a_rig_passes_the_check_of_its_plan(
     tmp_path: Path, plane: str, axes: str, interface: str
