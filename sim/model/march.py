@@ -118,14 +118,14 @@ def _free_outputs(
 @compile_loop
 def _maps(model: ModelLoop, stepped: bool, work: FloatArray) -> None:
     """Fill in what struts and loads of a sample add to its outputs, by way of the state too."""
-    columns = work.shape[1]
-    work[3:9] = model.from_struts[:, :columns]
-    work[9:15] = model.from_loads[:, :columns]
-    if stepped:
-        for i in range(model.after.shape[0]):
-            for j in range(6):
-                work[3 + j] += model.after[i, j] * model.from_states[i, :columns]
-                work[9 + j] += model.by_loads[3, i, j] * model.from_states[i, :columns]
+    after, by_loads, from_states = model.after, model.by_loads, model.from_states
+    for j in range(6):
+        for column in range(work.shape[1]):
+            by_strut, by_load = model.from_struts[j, column], model.from_loads[j, column]
+            for i in range(after.shape[0] if stepped else 0):
+                by_strut += after[i, j] * from_states[i, column]
+                by_load += by_loads[3, i, j] * from_states[i, column]
+            work[3 + j, column], work[9 + j, column] = by_strut, by_load
 
 
 @compile_loop
