@@ -47,11 +47,13 @@ def _of_joint(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
             'joint = "yaw_table": a turntable is analysed but not simulated; simulate '
             '"slides_on_model" or "slides_on_rig", which have two struts'
         )
+    if rig.oscillator.joint is not Joint.SLIDES_ON_RIG:
+        return
     aft, fore = set_point.eccentricity_m * struts_over_turn(set_point.every_line, least=_INSTANTS)
     sine = float(np.abs(fore - aft).max()) / (2.0 * rig.oscillator.half_spacing_m)
     if rig.oscillator.drift_by is DriftBy.STRUTS_OFFSET:
         sine += abs(math.sin(set_point.drift_rad))
-    if rig.oscillator.joint is Joint.SLIDES_ON_RIG and sine >= 1.0:
+    if sine >= 1.0:
         yield (
             f'joint = "slides_on_rig": the displacements would differ by {sine:.3g} of their '
             "spacing (limit 1, where the model stands across); lower eccentricity_m"

@@ -1,8 +1,8 @@
 """Harmonic balance of the force laws with the mounting's deflection: compiled.
 
 The same as sweeping :func:`sim.model.forces.law_harmonics` by :func:`sim.solve.relaxation.relax`,
-for laws in a table. Loaded when it is first needed, because numba is. Complex harmonics are kept as
-real and imaginary parts, ``(orders + 1, 2, columns)``.
+for laws in a table. Loaded when it is first needed, because numba is. Complex harmonics of the laws
+are kept as real and imaginary parts, ``(orders + 1, 2, columns)``.
 """
 
 from dataclasses import dataclass
@@ -14,7 +14,6 @@ import numpy as np
 from hardware.description.arrays import ComplexArray, FloatArray
 from sim.model.law_response import respond
 from sim.model.law_table import LawTable
-from sim.model.numbers import corners_only, geometry_only, without_corners
 from sim.solve.anderson_mixing import mix
 from sim.solve.array_loops import copy, largest
 from sim.solve.compilation import compile_loop
@@ -31,6 +30,8 @@ class LawBalance:
 
     Attributes
     ----------
+    parts
+        The table's hull in parts (:attr:`sim.model.system.HullSystem.parts`).
     give
         What the model gives way per rigid load, ``None`` for not at all: ``(orders + 1, 2, 2)``.
     impedance
@@ -38,6 +39,7 @@ class LawBalance:
     """
 
     table: LawTable
+    parts: tuple[FloatArray, FloatArray]
     give: ComplexArray | None
     impedance: ComplexArray
     period: Period
@@ -55,66 +57,142 @@ class LawBalance:
         """
         harmonics_given = np.stack([laws.real, laws.imag], axis=1)
         answer = np.empty_like(harmonics_given)
-        respond(*self._given(y, harmonics_given, answer))
+        _answer(*self._given(y, harmonics_given, answer))
         harmonics: ComplexArray = answer[:, 0] + 1j * answer[:, 1]
         return harmonics
 
-    def balanced(self, y: ComplexArray) -> ComplexArray | None:
-        """Return what the laws ask for once nothing changes; ``None`` if they do not settle."""
-        harmonics_found = np.zeros((self.period.s.size, 2, 3))
-        settled = _balance(*self._given(y, self.give is not None, harmonics_found))
-        harmonics: ComplexArray = harmonics_found[:, 0] + 1j * harmonics_found[:, 1]
-        return harmonics if settled else None
+    def force(self, y: ComplexArray) -> ComplexArray | None:
+        """Return the forces once nothing changes, the laws' in them; ``None`` without such.
+
+        Shape ``(orders + 1, 3)``: at the struts and along the model.
+        """
+        force = np.empty((len(y), 3), dtype=np.complex128)
+        settled = _balance(*self._given(y, self.give is not None, force))
+        return force if settled else None
 
     def _given(self, y: ComplexArray, *more: Any) -> tuple[Any, ...]:
-        return *self._laws, self._free(y), *self._whatever_moves, *more
-
-    def _free(self, y: ComplexArray) -> ComplexArray:
-        """Return h, h', h'' and linear force without the laws, two columns each."""
-        h = y
-        if self.give is not None:
-            h = y + (self.give @ (self.impedance @ y[:, :, np.newaxis]))[:, :, 0]
-        linear = (self.impedance @ h[:, :, np.newaxis])[:, :, 0]
-        moving = (self._powers[:, :, None] * h[:, None, :]).reshape(-1, 6)
-        return np.concatenate([moving, linear], axis=1)
+        return *self._laws, y, *self._whatever_moves, *more
 
     @cached_property
     def _laws(self) -> tuple[Any, ...]:
-        table = self.table
-        moving = bool(table.arguments[:, :, 8:].any())
-        return table.laws, table.arguments, table.corners, *self._smooth(), moving
+        """The table, rows of it without corners, the hull in parts, and whether corners move."""
+        laws, _, arguments, corners = self.table
+        cornered = set(corners[:, 0].tolist())
+        smooth = laws[[row for row in range(len(laws)) if row not in cornered]]
+        moving = bool(arguments[:, :, 8:].any())
+        return laws, arguments, corners, smooth, *self.parts, moving
 
     @cached_property
     def _whatever_moves(self) -> tuple[Any, ...]:
         period = self.period
         waves = _waves(period.orders, period.points)
-        return self._by_laws(), *waves, gauss(period.orders), period.step_s, self.speed_m_s
-
-    def _smooth(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """The rows of the laws that have no corners, and the hull in parts.
-
-        Without its loads that have corners; and without any loads, and with these alone.
-        """
-        laws, cornered, hull = self.table.laws, self.table.corners[:, 0], self.table.hull
-        rows = laws[~np.isin(np.arange(len(laws)), cornered)]
-        return rows, without_corners(hull), np.stack([geometry_only(hull), corners_only(hull)])
-
-    @cached_property
-    def _powers(self) -> ComplexArray:
-        s = self.period.s
-        return np.stack([np.ones_like(s), s, s**2], axis=1)
-
-    def _by_laws(self) -> ComplexArray:
-        """What a law's harmonic adds to them, shape ``(orders + 1, 8, 2)``."""
         way = np.zeros_like(self.impedance) if self.give is None else self.give
-        by_motion = (self._powers[:, :, None, None] * way[:, None, :, :]).reshape(-1, 6, 2)
-        return np.concatenate([by_motion, self.impedance @ way], axis=1)
+        linear = (way, self.impedance, period.s)
+        return *linear, *waves, gauss(period.orders), period.step_s, self.speed_m_s
 
 
 @lru_cache(maxsize=16)
 def _waves(orders: int, points: int) -> tuple[FloatArray, FloatArray]:
     angle = 2.0 * np.pi * np.outer(np.arange(points), np.arange(orders + 1)) / points
     return np.cos(angle), np.sin(angle)
+
+
+@compile_loop
+def _unladen(
+    y: ComplexArray, give: ComplexArray, impedance: ComplexArray, s: ComplexArray
+) -> ComplexArray:
+    """Return h, h', h'' and linear force without the laws, two columns each."""
+    free = np.empty((s.size, 8), dtype=np.complex128)
+    for n in range(s.size):
+        for i in range(2):
+            free[n, 6 + i] = impedance[n, i, 0] * y[n, 0] + impedance[n, i, 1] * y[n, 1]
+        for i in range(2):
+            free[n, i] = y[n, i] + give[n, i, 0] * free[n, 6] + give[n, i, 1] * free[n, 7]
+            free[n, 2 + i] = s[n] * free[n, i]
+            free[n, 4 + i] = s[n] * free[n, 2 + i]
+        for i in range(2):
+            free[n, 6 + i] = impedance[n, i, 0] * free[n, 0] + impedance[n, i, 1] * free[n, 1]
+    return free
+
+
+@compile_loop
+def _per_law(give: ComplexArray, impedance: ComplexArray, s: ComplexArray) -> ComplexArray:
+    """Return what a law's harmonic adds to them, shape ``(orders + 1, 8, 2)``."""
+    by_laws = np.empty((s.size, 8, 2), dtype=np.complex128)
+    for n in range(s.size):
+        for i in range(2):
+            for j in range(2):
+                by_laws[n, i, j] = give[n, i, j]
+                by_laws[n, 2 + i, j] = s[n] * give[n, i, j]
+                by_laws[n, 4 + i, j] = s[n] * by_laws[n, 2 + i, j]
+                by_laws[n, 6 + i, j] = (
+                    impedance[n, i, 0] * give[n, 0, j] + impedance[n, i, 1] * give[n, 1, j]
+                )
+    return by_laws
+
+
+@compile_loop
+def _answer(
+    laws: FloatArray,
+    arguments: FloatArray,
+    corners: FloatArray,
+    smooth: FloatArray,
+    smooth_hull: FloatArray,
+    parts: FloatArray,
+    moving: bool,
+    y: ComplexArray,
+    give: ComplexArray,
+    impedance: ComplexArray,
+    s: ComplexArray,
+    cosine: FloatArray,
+    sine: FloatArray,
+    nodes: FloatArray,
+    step_s: float,
+    speed_m_s: float,
+    at: FloatArray,
+    answer: FloatArray,
+) -> None:
+    """Fill in the harmonics that the laws ask for where they are ``at``."""
+    free, by_laws = _unladen(y, give, impedance, s), _per_law(give, impedance, s)
+    laws_given = (laws, arguments, corners, smooth, smooth_hull, parts, moving)
+    respond(*laws_given, free, by_laws, cosine, sine, nodes, step_s, speed_m_s, at, answer)
+
+
+@compile_loop
+def _balance(
+    laws: FloatArray,
+    arguments: FloatArray,
+    corners: FloatArray,
+    smooth: FloatArray,
+    smooth_hull: FloatArray,
+    parts: FloatArray,
+    moving: bool,
+    y: ComplexArray,
+    give: ComplexArray,
+    impedance: ComplexArray,
+    s: ComplexArray,
+    cosine: FloatArray,
+    sine: FloatArray,
+    nodes: FloatArray,
+    step_s: float,
+    speed_m_s: float,
+    acts_back: bool,
+    force: ComplexArray,
+) -> bool:
+    """Fill in the forces under laws that come back unchanged; tell whether there are any."""
+    free, by_laws = _unladen(y, give, impedance, s), _per_law(give, impedance, s)
+    laws_given = (laws, arguments, corners, smooth, smooth_hull, parts, moving)
+    given = (*laws_given, free, by_laws, cosine, sine, nodes, step_s, speed_m_s)
+    found = np.zeros((s.size, 2, 3))
+    settled = _settle(given, acts_back, found)
+    for n in range(s.size):
+        for i in range(3):
+            force[n, i] = complex(found[n, 0, i], found[n, 1, i])
+        first, second = force[n, 0], force[n, 1]
+        for i in range(2):
+            linear = by_laws[n, 6 + i, 0] * first + by_laws[n, 6 + i, 1] * second
+            force[n, i] += free[n, 6 + i] + linear
+    return settled
 
 
 @compile_loop
@@ -127,30 +205,18 @@ def _largest_linear(free: ComplexArray) -> float:
 
 
 @compile_loop
-def _balance(
-    laws: FloatArray,
-    arguments: FloatArray,
-    corners: FloatArray,
-    smooth: FloatArray,
-    smooth_hull: FloatArray,
-    parts: FloatArray,
-    moving: bool,
-    free: ComplexArray,
-    by_laws: ComplexArray,
-    cosine: FloatArray,
-    sine: FloatArray,
-    nodes: FloatArray,
-    step_s: float,
-    speed_m_s: float,
-    acts_back: bool,
-    laws_found: FloatArray,
-) -> bool:
-    """Fill in the harmonics that come back unchanged; tell whether there are any."""
-    answer, flat = np.zeros(laws_found.shape), laws_found.reshape(-1)
+def _settle(given: tuple[Any, ...], acts_back: bool, laws_found: FloatArray) -> bool:
+    """Fill in the laws' harmonics that come back unchanged; tell whether there are any.
+
+    Parameters
+    ----------
+    given
+        The arguments of :func:`sim.model.law_response.respond` but for the last two.
+    """
+    answer, flat, free = np.zeros(laws_found.shape), laws_found.reshape(-1), given[7]
     answered = answer.reshape(-1)
-    laws_given = (laws, arguments, corners, smooth, smooth_hull, parts, moving)
-    given = (*laws_given, free, by_laws, cosine, sine, nodes, step_s, speed_m_s)
-    respond(*given, laws_found, answer)
+    whole: Any = (*given, laws_found, answer)
+    respond(*whole)
     copy(answered, flat)
     if not acts_back:
         return True
@@ -159,7 +225,7 @@ def _balance(
     allowed = TOLERANCE * max(largest(flat), _largest_linear(free), 1e-300)
     best, stalled, count = np.inf, 0, 0
     for _ in range(MOST_SWEEPS):
-        respond(*given, laws_found, answer)
+        respond(*whole)
         if count > _DEPTH:
             count = _DEPTH
             for i in range(_DEPTH):

@@ -171,8 +171,7 @@ class Hull(ModelParameters):
         if self.mounting.joint is not None:
             return period, hull._settled(period, inputs)
         y = np.stack([inputs[signal.name] for signal in self.reads[:2]], axis=1)
-        model = _steadily(hull, period)
-        rows = model.force(y, model.balanced(y)).T
+        rows = _steadily(hull, period).balanced(y).T
         if self.steering is None and self.heeling is None:
             return period, self._written(rows)
         struts = np.stack([period.values(inputs[signal.name]) for signal in self.reads[:6]], axis=1)

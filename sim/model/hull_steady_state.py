@@ -58,14 +58,14 @@ class HullSteady:
         return law_harmonics(self.acting, self.system, waves, self.period, self.speed_m_s)
 
     def balanced(self, y: ComplexArray) -> ComplexArray:
-        """Return the laws' forces in balance with the deflection that they cause."""
-        balanced = None if self._compiled is None else self._compiled.balanced(y)
-        if balanced is not None:
-            return balanced
-        start = self.laws(y, np.zeros((len(y), 3), dtype=np.complex128))
-        if self.give is None:
-            return start
-        return relax(lambda at: self.laws(y, at), start, "hull", self.scale(y, start))
+        """Return the forces, the laws in balance with the deflection that they cause."""
+        force = None if self._compiled is None else self._compiled.force(y)
+        if force is not None:
+            return force
+        laws = self.laws(y, np.zeros((len(y), 3), dtype=np.complex128))
+        if self.give is not None:
+            laws = relax(lambda at: self.laws(y, at), laws, "hull", self.scale(y, laws))
+        return self.force(y, laws)
 
     def scale(self, y: ComplexArray, laws: ComplexArray) -> float:
         """Return what a change of the laws counts relative to: them, or the linear force.
@@ -88,7 +88,8 @@ class HullSteady:
             return None
         from sim.model.balance import LawBalance
 
-        return LawBalance(table, self.give, self.impedance, self.period, self.speed_m_s)
+        given = (table, self.system.parts, self.give, self.impedance)
+        return LawBalance(*given, self.period, self.speed_m_s)
 
 
 def _mounting_gain(

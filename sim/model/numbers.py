@@ -12,6 +12,7 @@ from sim.mechanism import geometry
 from sim.mechanism.geometry import BodyMotion, body_loads, body_motion, gauge_readings
 from sim.model.parameters import ModelParameters
 
+_STILL = (np.float64(0.0),) * 7  # displacements, rates, accelerations and speed
 _BENDING = slice(geometry.QUADRATIC, geometry.QUADRATIC + 2)
 
 
@@ -29,8 +30,9 @@ def numbers_of(hull: ModelParameters, added_mass: FloatArray, linear: FloatArray
     numbers[geometry.GEOMETRY] = _geometry(hull)
     _fill_body(numbers, hull)
     _fill_water(numbers, hull, added_mass)
-    still = moving(numbers, np.zeros((1, 6)), np.zeros(1))
-    numbers[geometry.AT_REST, :3] = readings(numbers, still)[0]
+    still = body_motion(numbers, *_STILL)
+    loads = body_loads(numbers, still)
+    numbers[geometry.AT_REST, :3] = gauge_readings(numbers, still.cosine, still.sine, *loads)
     numbers[geometry.LINEAR : geometry.LINEAR + 2, :6] = linear
     return numbers
 

@@ -20,6 +20,7 @@ import numpy as np
 
 from hardware.description.arrays import ComplexArray, FloatArray
 from sim.model.mounting import Elastic, StrutJoint
+from sim.model.numbers import corners_only, geometry_only, without_corners
 from sim.model.water.radiation import Radiation
 from sim.solve.linear_system import Hold, LinearSystem, causal_hold, hermite_hold
 
@@ -77,6 +78,15 @@ class HullSystem:
     def per_motion(self) -> FloatArray:
         """C, B and M side by side: force per (h, h', h''), shape ``(2, 6)``."""
         return np.hstack([self.stiffness, self.damping, self.mass])
+
+    @cached_property
+    def parts(self) -> tuple[FloatArray, FloatArray]:
+        """The hull's numbers without its loads that have corners, and these alone.
+
+        The second are two, without any loads and with those that have corners.
+        """
+        alone = (geometry_only(self.numbers), corners_only(self.numbers))
+        return without_corners(self.numbers), np.stack(alone)
 
     @cached_property
     def memory_load(self) -> FloatArray:
@@ -182,13 +192,13 @@ class HullSystem:
         """Return force per motion h and per extra velocity g, each of shape ``(k, 2, 2)``."""
         column = s[:, np.newaxis, np.newaxis]
         rigid = self.mass * column**2 + self.damping * column + self.stiffness
-        memory = np.zeros_like(rigid)
-        if self.radiation.states:
-            resolvent = column * np.eye(self.radiation.states) - self.radiation.state_matrix
-            into = np.broadcast_to(
-                self.radiation.input_matrix.astype(complex), (s.size, self.radiation.states, 2)
-            )
-            memory = self.memory_load @ np.linalg.solve(resolvent, into)
+        if not self.radiation.states:
+            return rigid, np.zeros_like(rigid)
+        resolvent = column * np.eye(self.radiation.states) - self.radiation.state_matrix
+        into = np.broadcast_to(
+            self.radiation.input_matrix.astype(complex), (s.size, self.radiation.states, 2)
+        )
+        memory = self.memory_load @ np.linalg.solve(resolvent, into)
         return rigid + memory @ (self.to_motion * column + self.incidence), memory
 
     def mounting_impedance(self, s: ComplexArray) -> ComplexArray:

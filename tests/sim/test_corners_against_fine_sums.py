@@ -94,7 +94,7 @@ def compiled(
     for order in range(ORDERS + 1):
         with np.errstate(divide="ignore", invalid="ignore"):
             impedance[order] = np.diag(np.where(h[order] == 0.0, 0.0, load[order] / h[order]))
-    balance = LawBalance(table, None, impedance, PERIOD, SPEED_M_S)
+    balance = LawBalance(table, system.parts, None, impedance, PERIOD, SPEED_M_S)
     return balance.answer(h, np.zeros((ORDERS + 1, 3), dtype=np.complex128))
 
 
