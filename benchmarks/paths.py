@@ -160,11 +160,11 @@ def run(quick: bool, report: Report) -> Outcome:
     """Lead the struts by the clock for ten minutes, and free-running for an hour."""
     lines = pure_rotation(HORIZONTAL_1963, _FREQUENCY_HZ, _SPEED_M_S, _AMPLITUDE_M)
     report("by the clock")
-    late, clocked = _by_the_clock(lines, 10.0 if quick else 600.0)
+    late, clocked = _by_the_clock(lines, 5.0 if quick else 600.0)
     following = clocked[1:3] - clocked[3:5]
     report("an hour of SYNCs")
     begun = time.perf_counter()
-    missing, values = _hour(lines, 20.0 if quick else 3600.0)
+    missing, values = _hour(lines, 5.0 if quick else 3600.0)
     seconds = time.perf_counter() - begun
     steps = np.diff(values[0]) - _TURN * _FREQUENCY_HZ / _HOUR_HZ
     off = np.abs(values[3:5] - _exact(values[0], lines)).max()
