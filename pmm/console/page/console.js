@@ -66,7 +66,7 @@ function showQuestion(frame) {
 function showDesk(desk) {
   holder = desk.holder;
   role = desk.role;
-  queue.propose(proposals, role);
+  queue.propose(proposals, role, holder === "you");
   const others = desk.browsers > 1 ? `, ${desk.browsers - 1} watching` : "";
   text(byId("desk"), { you: `You have control${others}`, other: role === "propose" ? "You propose: another browser has control and decides" : "You watch: another browser has control", nobody: "Nobody has control" }[holder]);
   byId("take").hidden = holder === "you" || desk.role !== "operate";
@@ -129,7 +129,7 @@ const stream = new Stream({
   notice: (one) => alarms.add(one),
   audit: (one) => showDone(one.entry),
   plans: (one) => queue.take(one.plans),
-  proposals: (one) => { proposals = one.proposals; queue.propose(proposals, role); },
+  proposals: (one) => { proposals = one.proposals; queue.propose(proposals, role, holder === "you"); },
   live: (one) => { live = one.live; },
   campaign: (one) => until.take(one.campaign),
   finished: (one) => {

@@ -114,12 +114,13 @@ export class Queue {
   }
 
   // What others propose: whoever has control decides, whoever has proposed may withdraw.
-  propose(proposals, role) {
+  propose(proposals, role, mine) {
     byId("proposals").replaceChildren(...proposals.map((one) => {
       const act = (what) => this.send(what, { number: one.number }, "proposals");
       const no = role === "propose" ? "Withdraw" : "Refuse";
       const buttons = [this.button(no, `${no} ${one.text}`, () => act("refuse"))];
       if (role === "operate") buttons.unshift(this.button("Approve", `Approve ${one.text}`, () => act("approve")), " ");
+      for (const button of buttons) if (role === "operate" && button.tagName) button.disabled = !mine;
       return html("li", {}, `${one.name || "somebody"} proposes: ${one.text} `, ...(role === "watch" ? [] : buttons));
     }));
   }

@@ -59,7 +59,7 @@ def test_needles_settle_where_the_analysis_ends(
         assert seen == pytest.approx(list(wanted), abs=0.06 * half_width)
         assert len(page.complaints()) == 1  # of the plan that was refused
     lines = (tmp_path / "out" / "heave" / "commands.jsonl").read_text(encoding="utf-8")
-    assert [json.loads(line)["action"] for line in lines.splitlines()] == ["command"]
+    assert [json.loads(line)["action"] for line in lines.splitlines()] == ["queue", "command"]
 
 
 def test_stops_quickly_comes_back_and_shows_what_was_missed(

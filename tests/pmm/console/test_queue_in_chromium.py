@@ -39,7 +39,7 @@ def test_runs_are_edited_moved_and_held_on_the_page(tmp_path: Path, chromium: Br
         page.until(lambda: "You have control" in page.text("#desk"), "control")
         page.queue(THREE)
         page.queue(plan("later"))
-        page.until(lambda: "later, 1 runs (waits)" in page.text("#queue"), "the queue")
+        page.until(lambda: "later, 1 run (waits)" in page.text("#queue"), "the queue")
         page.click("#queue summary")
         first = ["run-f1-a20: 1 Hz, 20 mm, 4 periods ", "run-f1.1-a20: 1.1 Hz, 20 mm, 4 periods "]
         assert _runs(page)[:2] == first
