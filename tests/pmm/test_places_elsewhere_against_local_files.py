@@ -30,34 +30,28 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "cache"
 
 
-def _memory() -> Iterator[tuple[Any, str]]:
-    yield fsspec.filesystem("memory"), "memory://bucket"
-
-
-def _s3(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[Any, str]]:
-    pytest.importorskip("s3fs", reason="optional dependency s3")
-    server = pytest.importorskip("moto.server", reason="no moto[server]").ThreadedMotoServer(
-        "127.0.0.1", 0, verbose=False
-    )
-    server.start()
-    host, port = server.get_host_and_port()
-    for name, value in {
-        "AWS_ENDPOINT_URL": f"http://{host}:{port}", "AWS_ACCESS_KEY_ID": "any",
-        "AWS_SECRET_ACCESS_KEY": "any", "AWS_DEFAULT_REGION": "us-east-1",
-    }.items():  # fmt: skip
-        monkeypatch.setenv(name, value)
-    system = fsspec.filesystem("s3", skip_instance_cache=True)
-    system.mkdir("bucket")
-    yield system, "s3://bucket"
-    server.stop()
-
-
-@pytest.fixture(params=["memory", "s3"])
-def system(
-    request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
-) -> Iterator[tuple[Any, str]]:
+@pytest.fixture(params=["memory", "s3"], scope="module")
+def system(request: pytest.FixtureRequest) -> Iterator[tuple[Any, str]]:
     """A system of files elsewhere, and the URL of an empty folder or bucket there."""
-    yield from _memory() if request.param == "memory" else _s3(monkeypatch)
+    if request.param == "memory":
+        yield fsspec.filesystem("memory"), "memory://bucket"
+        return
+    pytest.importorskip("s3fs", reason="optional dependency s3")
+    moto = pytest.importorskip("moto.server", reason="no moto[server]")
+    server = moto.ThreadedMotoServer("127.0.0.1", 0, verbose=False)
+    server.start()
+    try:
+        host, port = server.get_host_and_port()
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setenv("AWS_ENDPOINT_URL", f"http://{host}:{port}")
+            patch.setenv("AWS_DEFAULT_REGION", "us-east-1")
+            for name in ("AWS_ACCESS_KEY_ID", "AWS_SECRET_ACCESS_KEY"):
+                patch.setenv(name, "any")
+            files = fsspec.filesystem("s3")
+            files.mkdir("bucket")
+            yield files, "s3://bucket"
+    finally:
+        server.stop()
 
 
 @pytest.fixture
@@ -115,13 +109,14 @@ def test_only_what_changed_is_copied_again(
     there: str, system: tuple[Any, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     copied: list[str] = []
-    get = type(system[0]).get_file
+    files = system[0]
+    get = files.get_file
 
-    def noted(self: Any, one: str, *args: Any, **options: Any) -> Any:
+    def noted(one: str, *args: Any, **options: Any) -> Any:
         copied.append(Path(one).name)
-        return get(self, one, *args, **options)
+        return get(one, *args, **options)
 
-    monkeypatch.setattr(type(system[0]), "get_file", noted)
+    monkeypatch.setattr(files, "get_file", noted)
     target = here(there)
     assert sorted(copied) == ["campaign.toml", "run-0000.nc", "run-0001.nc"]
     copied.clear()
