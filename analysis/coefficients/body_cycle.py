@@ -34,6 +34,7 @@ SURGE_FORCE = CHANNELS[-1]
 
 _SAME_FREQUENCY = 5e-3
 _SAME_MOTION = 1e-2
+_STEPS = 720  # of a base period, in which the peak of many lines is sought
 
 
 def _nothing() -> FloatArray:
@@ -137,6 +138,16 @@ class BodyCycle:
     def motion(self) -> ComplexArray:
         """Translation and rotation at the fundamental (of a static run none), shape ``(2,)``."""
         return self._at(MOTIONS)
+
+    @property
+    def amplitude(self) -> FloatArray:
+        """Translation (m) and rotation (rad), shape ``(2,)``; of lines the peak of all together."""
+        if not self.lines:
+            return np.abs(self.motion)
+        orders = np.arange(1, self.orders + 1)
+        turn = np.exp(2j * math.pi * np.outer(orders, np.arange(_STEPS)) / _STEPS)
+        moved = np.array([self._at(MOTIONS, int(order)) for order in orders])
+        return np.asarray(np.abs((moved.T @ turn).real).max(axis=1))
 
     @property
     def at_struts(self) -> ComplexArray:

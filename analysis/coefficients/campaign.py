@@ -24,6 +24,7 @@ from analysis.coefficients.campaign_records import (
 from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
 from analysis.coefficients.campaign_solve import GroupCoefficients, solve_group
 from analysis.coefficients.cycle_checks import missing_roll_gauge
+from analysis.coefficients.line_cycles import by_lines
 from analysis.coefficients.names import place_of
 from analysis.coefficients.repeats import Repeatability, outliers, repeatability, with_repeats
 from analysis.coefficients.terms import term_of
@@ -67,13 +68,22 @@ def campaign_coefficients(
     DataError
         If a wanted coefficient is not determined: the message says which run would do it.
     """
+    groups, single, known = planned(cycles, request)
+    return assemble(list(mapped(_Solver(request), groups)), single, known, request)
+
+
+def planned(
+    cycles: Sequence[BodyCycle], request: Request
+) -> tuple[tuple[Group, ...], tuple[BodyCycle, ...], Repeatability]:
+    """Return the groups, the runs with each line by itself, and what repeating them adds.
+
+    It raises what :func:`campaign_coefficients` raises of the runs.
+    """
     check_campaign(cycles)
-    known = repeatability(cycles)
-    widened = [
-        with_repeats(cycle, known) if cycle.frequency_hz > 0.0 else cycle for cycle in cycles
-    ]
-    groups = plan(widened, request)
-    return assemble(list(mapped(_Solver(request), groups)), widened, known, request)
+    lines = [one for cycle in cycles for one in by_lines(cycle)]
+    known = repeatability(lines)
+    single = tuple(with_repeats(one, known) if one.frequency_hz > 0.0 else one for one in lines)
+    return plan(single, request, [one for one in cycles if one.lines]), single, known
 
 
 def assemble(

@@ -8,7 +8,7 @@ import numpy as np
 
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_plan import Request, set_heel_of
-from analysis.coefficients.campaign_records import HIGHER_ORDER, FormChoice, Missing
+from analysis.coefficients.campaign_records import HIGHER_ORDER, JOINT, FormChoice, Missing
 from analysis.coefficients.cycle_fit import (
     FIRST,
     HIGHER,
@@ -17,9 +17,15 @@ from analysis.coefficients.cycle_fit import (
     CycleFit,
     fit_cycles,
 )
-from analysis.coefficients.form_choice import LINEAR_FORM, choose_form, forms_of, rival_forms
-from analysis.coefficients.identifiability import fundamental_velocities
-from analysis.coefficients.names import Form
+from analysis.coefficients.form_choice import (
+    DESCRIBES,
+    LINEAR_FORM,
+    choose_form,
+    forms_of,
+    rival_forms,
+)
+from analysis.coefficients.identifiability import velocity_sizes
+from analysis.coefficients.line_cycles import names_of_lines
 from analysis.coefficients.resistance_form import fit_surge
 from analysis.coefficients.terms import ROLL, VELOCITY_LETTERS, letter_of_load
 from hardware.description.arrays import FloatArray
@@ -61,7 +67,7 @@ def nonlinear_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
     fits, missing = group.fits, group.missing
     motions, cross = _motions(cycles)
     orders = tuple(n for n in HIGHER if n <= min(cycle.orders for cycle in cycles))
-    plane = cycles[0].plane
+    plane, joint = cycles[0].plane, any(cycle.lines for cycle in cycles)
     for row in _rows(cycles):
         angles = _moving_heel(cycles, motions, orders, cross=cross)
         try:
@@ -69,19 +75,28 @@ def nonlinear_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
         except DataError as error:
             missing.append(Missing(f"{letter_of_load(plane, row)} terms", str(error)))
             continue
-        group.choices.append(choice)
+        fails = joint and choice.dispersion > DESCRIBES  # coefficients that go with frequency
+        group.choices.append(choice if fails else _with_lines(choice, cycles))
         group.richest.append(richest)
+        if fails or (joint and choice.fitted == LINEAR_FORM):
+            continue  # each line by itself tells more
         of_all: list[tuple[str, CycleFit]] = []
         for method, of, chosen in _methods(cycles, orders):
             angles = _moving_heel(cycles, motions, chosen, cross=cross)
             forms = forms_of(plane, row, motions, cross=cross, angles=angles)
             _try_form(of_all, missing, method, of, forms, choice, chosen, request)
         fits += of_all
-        for _, several in of_all[:1]:
+        for _, several in of_all[: int(not joint)]:
             fits += _single_runs(several, row, choice, orders, request)
     if all(cycle.has_surge for cycle in cycles):
         _surge(group, cycles, motions, cross, request)
     return group
+
+
+def _with_lines(choice: FormChoice, cycles: Sequence[BodyCycle]) -> FormChoice:
+    """Return a choice that holds for each line of its runs too."""
+    lines = (name for one in cycles for name in (one.name, *names_of_lines(one)))
+    return replace(choice, runs=tuple(dict.fromkeys(lines)))
 
 
 def _rows(cycles: Sequence[BodyCycle]) -> tuple[int, ...]:
@@ -137,6 +152,8 @@ def _left_out(fit: CycleFit, several: CycleFit) -> FloatArray:
 def _methods(
     cycles: Sequence[BodyCycle], orders: tuple[int, ...]
 ) -> list[tuple[str, Sequence[BodyCycle], tuple[int, ...]]]:
+    if any(cycle.lines for cycle in cycles):
+        return [(JOINT, cycles, orders)]
     methods: list[tuple[str, Sequence[BodyCycle], tuple[int, ...]]] = []
     if orders != FIRST:
         methods.append((HIGHER_ORDER, cycles, orders))
@@ -190,9 +207,8 @@ def _try(
 def _motions(cycles: Sequence[BodyCycle]) -> tuple[str, bool]:
     """Return in what the runs move through the water, and whether any moves in both at once."""
     speeds = []
-    for cycle, moved in zip(
-        cycles, np.abs(fundamental_velocities(cycles, Form.MANOEUVRING)), strict=True
-    ):
+    for cycle in cycles:
+        moved = velocity_sizes(cycle)
         steady = abs(cycle.speed_m_s * math.sin(cycle.drift_rad))
         speeds.append((moved[0] + steady, moved[1]))
     size = np.array(speeds)

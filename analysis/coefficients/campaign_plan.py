@@ -9,6 +9,7 @@ from typing import Final
 
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.identifiability import fundamental_velocities, identifiable_motions
+from analysis.coefficients.line_cycles import names_of_lines
 from analysis.coefficients.names import Form
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from hardware.description.errors import ConfigurationError
@@ -124,12 +125,23 @@ def _incomplete(cycle: BodyCycle) -> Iterator[str]:
         yield f"{cycle.name} has values that are not finite; leave the run out"
 
 
-def plan(cycles: Sequence[BodyCycle], request: Request) -> tuple[Group, ...]:
+def plan(
+    cycles: Sequence[BodyCycle], request: Request, whole: Sequence[BodyCycle] = ()
+) -> tuple[Group, ...]:
     """Return the groups: by speed, frequency and amplitude; all amplitudes together; static runs.
 
     Linear coefficients come from runs with one amplitude, so that what the amplitude does can be
     seen. Where one amplitude alone tells nothing apart (pitch about the midpoint at forward speed,
     with heave at another amplitude), all amplitudes of that frequency are solved as one.
+    Runs of many lines, whole, are one more group of their speed, with the single sines there: the
+    lines' products tell what is not linear, and all frequencies share it.
+
+    Parameters
+    ----------
+    cycles
+        Single sines, among them each line by itself, and static runs.
+    whole
+        Runs of many lines.
     """
     groups = []
     for speed in _classes([cycle.speed_m_s for cycle in cycles], _SAME_SPEED, 0.01):
@@ -141,6 +153,11 @@ def plan(cycles: Sequence[BodyCycle], request: Request) -> tuple[Group, ...]:
         for frequency in _classes([c.frequency_hz for c in moving], _SAME_FREQUENCY, 0.0):
             same = [c for c in moving if _near(c.frequency_hz, frequency, _SAME_FREQUENCY, 0.0)]
             groups += _by_amplitude(same, request)
+        lined = [one for one in whole if _near(one.speed_m_s, speed, _SAME_SPEED, 0.01)]
+        if lined and request.nonlinear:
+            lines = {name for one in lined for name in names_of_lines(one)}
+            sines = [one for one in moving if one.name not in lines and not set_heel_of(one)]
+            groups.append(Group(GroupKind.NONLINEAR, (*lined, *sines)))
     return tuple(groups)
 
 

@@ -41,6 +41,7 @@ class CoefficientEntry:
 LINEAR = "linear"
 HIGHER_ORDER = "higher order, several runs"
 ZERO_FREQUENCY = "zero frequency"
+JOINT = "all lines and runs"
 ROLL_DECAY = "roll decay"
 
 

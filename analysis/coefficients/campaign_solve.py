@@ -1,5 +1,6 @@
 """One group of a campaign, solved: its entries of the table, and what was noticed."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -13,7 +14,13 @@ from analysis.coefficients.campaign_nonlinear import (
     static_fits,
 )
 from analysis.coefficients.campaign_plan import Group, GroupKind, Request
-from analysis.coefficients.campaign_records import LINEAR, CoefficientEntry, FormChoice, Missing
+from analysis.coefficients.campaign_records import (
+    JOINT,
+    LINEAR,
+    CoefficientEntry,
+    FormChoice,
+    Missing,
+)
 from analysis.coefficients.campaign_result import TrialColumns, no_trials
 from analysis.coefficients.cycle_fit import FIRST, CycleFit, fit_cycles
 from analysis.coefficients.cycle_trials import cycle_trials
@@ -138,13 +145,13 @@ def _fits_trials(fits: Sequence[tuple[str, CycleFit]], request: Request) -> Tria
 
 def _fit_entry(method: str, fit: CycleFit, k: int) -> CoefficientEntry:
     cycles = fit.problem.numbers.cycles
-    moving = [cycle.motion for cycle in cycles if cycle.frequency_hz > 0.0]
-    size = np.abs(np.stack(moving)).max(axis=0) if moving else np.zeros(2)
+    moving = [cycle.amplitude for cycle in cycles if cycle.frequency_hz > 0.0]
+    size = np.stack(moving).max(axis=0) if moving else np.zeros(2)
     return CoefficientEntry(
         fit.names[k],
         fit.terms[k].unit,
         method,
-        cycles[0].frequency_hz,
+        math.nan if method == JOINT else cycles[0].frequency_hz,
         cycles[0].speed_m_s,
         float(size[0]),
         float(size[1]),

@@ -7,7 +7,7 @@ import numpy as np
 
 from analysis.coefficients.body_cycle import BodyCycle, at_order
 from analysis.coefficients.names import Form, Place
-from hardware.description.arrays import ComplexArray
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.oscillator import Plane
 
 ALONE = 1e-2  # of the other motion: less may be left out
@@ -26,6 +26,15 @@ def fundamental_velocities(cycles: Sequence[BodyCycle], form: Form) -> ComplexAr
         )
         moved.append((across, rate * cycle.half_spacing_m * phasors[at_order("rotation", 1)]))
     return np.array(moved)
+
+
+def velocity_sizes(cycle: BodyCycle) -> FloatArray:
+    """Return the sizes of a run's manoeuvring velocities; of lines the root of their squares."""
+    phasors, rate = cycle.hull.phasors, 2.0 * math.pi * cycle.frequency_hz
+    across = [phasors[at_order("across", n)] for n in cycle.lines or (1,)]
+    turned = [n * rate * phasors[at_order("rotation", n)] for n in cycle.lines or (1,)]
+    arm = cycle.half_spacing_m
+    return np.array([np.linalg.norm(across), arm * float(np.linalg.norm(turned))])
 
 
 def identifiable_motions(moved: ComplexArray) -> tuple[int, ...]:

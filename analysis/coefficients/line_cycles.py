@@ -34,17 +34,23 @@ def by_lines(cycle: BodyCycle) -> tuple[BodyCycle, ...]:
             f"{cycle.name}: resolved up to harmonic {cycle.orders}, and its highest line is "
             f"{max(cycle.lines)}; resolve as many harmonics"
         )
-    return tuple(_line(cycle, order) for order in cycle.lines)
+    both = zip(names_of_lines(cycle), cycle.lines, strict=True)
+    return tuple(_line(cycle, name, order) for name, order in both)
 
 
-def _line(cycle: BodyCycle, order: int) -> BodyCycle:
+def names_of_lines(cycle: BodyCycle) -> tuple[str, ...]:
+    """Return what the runs are called that a run's lines become; its own name of a single sine."""
+    return tuple(f"{cycle.name} line {order}" for order in cycle.lines) or (cycle.name,)
+
+
+def _line(cycle: BodyCycle, name: str, order: int) -> BodyCycle:
     places = [cycle.phasors.index(at_order(name, n)) for n in (0, order) for name in cycle.channels]
     names = labels(cycle.channels, 1)
     own = cycle.phasors.select([cycle.phasors.names[place] for place in places])
     sensitivity = cycle.sensitivity
     alone = replace(
         cycle,
-        name=f"{cycle.name} line {order}",
+        name=name,
         frequency_hz=order * cycle.frequency_hz,
         phasors=replace(own, names=names),
         orders=1,

@@ -17,6 +17,7 @@ from analysis.coefficients.campaign_nonlinear import (
 )
 from analysis.coefficients.campaign_records import (
     HIGHER_ORDER,
+    JOINT,
     LINEAR,
     ROLL_DECAY,
     ZERO_FREQUENCY,
@@ -29,6 +30,7 @@ from analysis.coefficients.terms import LOAD_WORDS, load_of, term_of
 
 _FIRST = (
     ZERO_FREQUENCY,
+    JOINT,
     HIGHER_ORDER,
     FIRST_HARMONICS,
     STATIC_DRIFT,

@@ -97,9 +97,10 @@ def campaign_cycles(
     found = _recordings(work, executor, progress, with_dry=body is None)
     wet, dry = _sorted(found, {task.name for task in work.dry})
     wet = [with_own_body(one, campaign, settings, body) for one in wet]
-    cycles = [one.about(settings.point_ahead_m) for cycle in wet for one in by_lines(cycle)]
+    if body is None:  # a dry run is taken off line by line
+        wet, dry = ([one for cycle in some for one in by_lines(cycle)] for some in (wet, dry))
+    cycles = [one.about(settings.point_ahead_m) for one in wet]
     if body is None:
-        dry = [one for cycle in dry for one in by_lines(cycle)]
         cycles = [without_dry(one, dry, campaign) if one.frequency_hz else one for one in cycles]
     done = [one for one in found if isinstance(one, Done)]
     gauges = [one.calibration for one in done if one.calibration is not None]

@@ -164,9 +164,10 @@ def _turning(task: Task, recording: Recording) -> Done:
     found = tuple(flag for flag in analysis.flags if flag not in recording.flags)
     attitude, told = attitude_of(task, recording)
     flags = (*found, *flags, *_speed_flags(task, recording), *told)
-    periods = analysis.readings[0].periods
-    done = _done(task, recording, _model(task, struts), None, periods, flags)
-    return replace(done, seen=first_harmonics(recording, analysis), attitude=attitude)
+    reading = analysis.readings[0]
+    done = _done(task, recording, _model(task, struts), None, reading.periods, flags)
+    lines = reading if task.set_point.lines else None
+    return replace(done, seen=first_harmonics(recording, analysis), attitude=attitude, lines=lines)
 
 
 def _towed(task: Task, recording: Recording) -> Done:

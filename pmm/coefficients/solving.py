@@ -11,14 +11,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.coefficients.body_cycle import BodyCycle
-from analysis.coefficients.campaign import assemble
-from analysis.coefficients.campaign_plan import Group, GroupKind, Request, check_campaign, plan
+from analysis.coefficients.campaign import assemble, planned
+from analysis.coefficients.campaign_plan import Group, GroupKind, Request
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.campaign_solve import GroupCoefficients, solve_group
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.cycle_trials import block_sizes, columns, draw_cycles
 from analysis.coefficients.linear_fit import linear_fit
-from analysis.coefficients.repeats import repeatability, with_repeats
 from hardware.description.arrays import FloatArray
 
 Progress = Callable[[int, int, str], None]
@@ -65,15 +64,12 @@ def solve_campaign(
 
     It raises what :func:`analysis.coefficients.campaign.campaign_coefficients` raises.
     """
-    check_campaign(cycles)
-    known = repeatability(cycles)
-    widened = [with_repeats(one, known) if one.frequency_hz > 0.0 else one for one in cycles]
-    groups = plan(widened, request)
+    groups, single, known = planned(cycles, request)
     solver = GroupSolver(request)
     blocks = list(_counted(executor.map(solver, groups), len(groups), "solving", progress))
     if request.trials:
         blocks = _with_trials(blocks, groups, request, executor, progress)
-    return assemble(blocks, widened, known, request)
+    return assemble(blocks, single, known, request)
 
 
 def _counted(

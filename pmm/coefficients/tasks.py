@@ -10,6 +10,7 @@ from analysis.attitude import Attitude, RestPosition
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.corrections import ZeroReading
 from analysis.plausibility import RunHarmonics
+from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.reference_choice import ReferenceChoice
 from analysis.resolver.settings import ResolverSettings
 from hardware.description.arrays import FloatArray
@@ -153,6 +154,8 @@ class Done:
         What the checks across all runs look at; ``None`` for a record at rest.
     attitude
         Sinkage and trim; ``None`` without their sensors, in a zero run or without a zero.
+    lines
+        Of a run of many lines, what was resolved of struts and gauges.
     """
 
     name: str
@@ -167,6 +170,7 @@ class Done:
     calibration: Calibration | None = None
     seen: RunHarmonics | None = None
     attitude: Attitude | None = None
+    lines: Harmonics | None = None
 
 
 @dataclass(frozen=True)

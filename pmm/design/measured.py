@@ -25,6 +25,7 @@ from pmm.coefficients.settings import settings_of
 from pmm.coefficients.stated_inputs import largest
 from pmm.design.design_file import DesignFile
 
+_LINES = "a design goes on from single sines; runs of many lines are not among them"
 _ENOUGH = 3  # runs, or repeats beyond the first of their kind: fewer say too little of the noise
 
 
@@ -126,7 +127,8 @@ def measured(file: DesignFile, folder: Path, executor: Executor) -> Measured:
     runs = {one.name: one for one in campaign.runs}
     settings, _ = settings_of(folder, None)
     found = campaign_cycles(folder, campaign, settings, executor, lambda *_: None)
-    cycles = [one for one in found.cycles if one.frequency_hz > 0.0]
+    moving = [one for one in found.cycles if one.frequency_hz > 0.0]
+    cycles = [one for one in moving if not one.lines]
     oscillator = file.rig.oscillator
     for one in cycles:
         if (one.plane, one.half_spacing_m) != (oscillator.plane, oscillator.half_spacing_m):
@@ -137,6 +139,7 @@ def measured(file: DesignFile, folder: Path, executor: Executor) -> Measured:
     made = [runs[one.name] for one in cycles]
     candidates = tuple(CandidateRun(one.set_point, one.periods, math.inf) for one in made)
     failed = {one.name: one.message for one in found.failed}
+    failed |= {one.name: _LINES for one in moving if one.lines}
     return Measured(candidates, tuple(cycles), found.stated, failed)
 
 

@@ -51,6 +51,7 @@ from pmm.report.coefficient_tables import (
 from pmm.report.conditions import conditions_table
 from pmm.report.heel import heel_table
 from pmm.report.heel_figure import heel_figures
+from pmm.report.line_sections import line_sections
 
 SCHEMA: Final = "pmm-coefficients-1"
 _LIKELIHOOD = (
@@ -96,6 +97,7 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
             Section(
                 "Figures", (*figures(found), *attitude_figures(outcome), *heel_figures(outcome))
             ),
+            *line_sections(outcome),
             Section("What was found", tuple(_findings(found))),
             Section("What was flagged", (Text(("Nothing.",)) if flags.empty else flags,)),
             Section("Uncertainty", (_given(outcome), budget_table(found))),
@@ -276,7 +278,7 @@ def _runs(outcome: CampaignOutcome) -> Table[Done]:
     def motion(one: Done) -> str:
         known = cycle(one)
         moved = known is not None and known.frequency_hz > 0.0
-        return amplitudes(*(float(abs(part)) for part in known.motion)) if moved else NOT_KNOWN  # type: ignore[union-attr]
+        return amplitudes(*known.amplitude.tolist()) if moved else NOT_KNOWN  # type: ignore[union-attr]
 
     columns: tuple[Column[Done], ...] = (
         word("run", "name"),

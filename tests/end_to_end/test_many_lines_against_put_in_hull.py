@@ -63,6 +63,28 @@ def test_recordings_fit_their_set_points(told: dict) -> None:  # type: ignore[ty
     assert "set_point_differs" not in json.dumps(told)
 
 
+def test_a_report_has_responses_and_runs_deliverables(made: Path, tmp_path: Path) -> None:
+    page, folder = tmp_path / "page.html", tmp_path / "simman"
+    done = CliRunner().invoke(cli, ["report", str(made), "--output", str(page)])
+    assert done.exit_code == 0, done.output
+    text = page.read_text(encoding="utf-8")
+    for run in ("sway", "yaw"):
+        section = text.partition(f"Many frequencies at once: {run}</h2>")[2].partition("<h2")[0]
+        assert "Response to displacement_aft" in section
+        assert section.count("<svg") == 1
+        turns = run == "yaw"  # the gauges turn with the model: loads of odd degree in its angle
+        assert ("more than noise" in section) == turns, "the hull is linear"
+    done = CliRunner().invoke(cli, ["coefficients", str(made), "--simman", str(folder)])
+    assert done.exit_code == 0, done.output
+    assert sorted(one.name for one in folder.iterdir()) == ["sway", "yaw"]
+
+
+def test_a_linear_hull_is_linear_all_lines_together(told: dict) -> None:  # type: ignore[type-arg]
+    choices = told["coefficients"]["choices"]
+    assert {one["load"] for one in choices} == {"force", "moment"}
+    assert {one["fitted"] for one in choices} == {"linear"}
+
+
 def test_a_diagnosis_says_that_it_takes_runs_of_one_frequency(made: Path) -> None:
     done = CliRunner().invoke(cli, ["gap", str(made)])
     assert done.exit_code == 1
