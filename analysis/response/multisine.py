@@ -92,21 +92,31 @@ def multisine(
     weights
         Amplitude of each line over the others'.
     strut_phases_rad
-        Of the lines in turn, from the first again after the last: 0 and pi make one run sway and
-        yaw.
+        As in :func:`with_strut_phases`.
     """
     phases = schroeder_phases(np.asarray(weights, dtype=np.float64))
     lines = [
-        Line(
-            order,
-            float(weight),
-            float(phase),
-            strut_phases_rad[k % len(strut_phases_rad)],
-        )
-        for k, (order, weight, phase) in enumerate(zip(orders, weights, phases, strict=True))
+        Line(order, float(weight), float(phase))
+        for order, weight, phase in zip(orders, weights, phases, strict=True)
     ]
-    peak = peak_of(lines)
-    return tuple(replace(line, share=line.share / peak) for line in lines)
+    return with_strut_phases(lines, strut_phases_rad)
+
+
+def with_strut_phases(lines: Sequence[Line], strut_phases_rad: Sequence[float]) -> tuple[Line, ...]:
+    """Return lines whose peak, of either strut, is the eccentricity.
+
+    Parameters
+    ----------
+    strut_phases_rad
+        Of the lines in turn, from the first again after the last: 0 and pi make one run sway and
+        yaw.
+    """
+    count = max(1, len(strut_phases_rad))
+    turned = [
+        replace(line, strut_phase_rad=strut_phases_rad[k % count]) for k, line in enumerate(lines)
+    ]
+    peak = peak_of(turned) if turned else 1.0
+    return tuple(replace(line, share=line.share / peak) for line in turned)
 
 
 def lines_of(samples: FloatArray, highest: int, least: float = 1e-3) -> tuple[Line, ...]:
@@ -139,8 +149,7 @@ def lines_of(samples: FloatArray, highest: int, least: float = 1e-3) -> tuple[Li
     if not kept.size:
         raise ConfigurationError("the motion given does not move; give one period that does")
     lines = [Line(int(n), float(size[n]), float(np.angle(spectrum[n]))) for n in kept]
-    peak = peak_of(lines)
-    return tuple(replace(line, share=line.share / peak) for line in lines)
+    return with_strut_phases(lines, (0.0,))
 
 
 def chirp(lowest: int, highest: int) -> tuple[Line, ...]:

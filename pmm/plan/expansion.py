@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from analysis.response.multisine import multisine
+from analysis.response.multisine import chirp, lines_of, multisine, with_strut_phases
 from analysis.response.pure_rotation import pure_rotation
 from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import Motion, RunKind
@@ -165,15 +165,24 @@ def _lines(
             return pure_rotation(oscillator, point.frequency_hz, speed_m_s, point.eccentricity_m)
         except ConfigurationError as error:
             raise ConfigurationError(f"{entry.name or _prefix(entry)}: exact: {error}") from error
-    if not entry.lines:
-        return ()
+    shape = _shape(entry)
     phases = [
         point.strut_phase_rad
         if motion is Motion.PHASE
-        else strut_phase_of(motion, n * point.frequency_hz, speed_m_s, half)
-        for n in entry.lines
+        else strut_phase_of(motion, line.order * point.frequency_hz, speed_m_s, half)
+        for line in shape
     ]
-    return multisine(entry.lines, 1.0 / np.array(entry.lines), phases)
+    return with_strut_phases(shape, phases)
+
+
+def _shape(entry: PlanEntry) -> tuple[Line, ...]:
+    """Return the lines of one strut, whatever the other does."""
+    if entry.sweep:
+        return chirp(*entry.sweep)
+    if entry.recorded:
+        highest = min(entry.highest, (len(entry.recorded) - 1) // 2)
+        return lines_of(np.array(entry.recorded), highest)
+    return multisine(entry.lines, 1.0 / np.array(entry.lines)) if entry.lines else ()
 
 
 def _lengths(entry: PlanEntry, defaults: Defaults, *, oscillates: bool) -> dict[str, Any]:

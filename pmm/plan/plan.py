@@ -25,6 +25,7 @@ from pmm.plan.plan_rules import (
 )
 from pmm.plan.plan_tables import ControlTable, Defaults, PlanEntry, PlanTables
 from pmm.plan.plan_units import EXTRA_KEYS, expand_units
+from pmm.plan.recorded_motion import read_recorded
 from pmm.plan.rig_file import RigFile, RigFileReading, examine_rig
 from pmm.plan.run_plan import RunPlan
 
@@ -141,6 +142,7 @@ def examine_plan(original: dict[str, Any], path: Path) -> PlanReading:
     table = deepcopy(original)
     faults: list[Fault] = []
     expand_units(table, faults)
+    faults += read_recorded(table, path.parent)
     tables = validate(PlanTables, table, faults, EXTRA_KEYS)
     rig_path = _rig_path(path, table)
     found = examine_rig(rig_path)

@@ -22,9 +22,10 @@ _MATRIX: Final = _GATE | {
     "drifts_rad",
 }
 _REST: Final = {"duration_s", "medium"}
+_PATHS: Final = {"lines", "sweep", "recorded", "highest", "exact"}
 _TAKES: Final[dict[RunKind, set[str]]] = {
-    RunKind.OSCILLATION: _MATRIX | _SET | {"lines", "exact"},
-    RunKind.DRY: (_MATRIX - {"drifts_rad"}) | {"lines", "exact"},
+    RunKind.OSCILLATION: _MATRIX | _SET | _PATHS,
+    RunKind.DRY: (_MATRIX - {"drifts_rad"}) | _PATHS,
     RunKind.KNOWN_MASS: (_MATRIX - {"drifts_rad"}) | {"known_mass"},
     RunKind.RESTORING: _MATRIX - {"speeds_m_s", "drifts_rad"},
     RunKind.CHECK_WEIGHT: _REST | {"channels", "loads_n"},
@@ -98,9 +99,20 @@ def _number_faults(entry: PlanEntry, place: Place) -> Iterator[Fault]:
         yield Fault((*place, "loads_n"), "should be one number: about how hard the push is")
     if entry.kind in (RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW) and 0.0 in entry.speeds_m_s:
         yield Fault((*place, "speeds_m_s"), "has 0; a tow needs a speed above 0")
+    yield from _line_faults(entry, place)
+    yield from gate_faults(entry, place)
+
+
+def _line_faults(entry: PlanEntry, place: Place) -> Iterator[Fault]:
     if entry.lines and (entry.lines[0] < 1 or list(entry.lines) != sorted(set(entry.lines))):
         yield Fault((*place, "lines"), "should be rising harmonics, each from 1 on and once")
-    yield from gate_faults(entry, place)
+    if entry.highest < 1:
+        yield Fault((*place, "highest"), f"= {entry.highest} should be a harmonic from 1 on")
+    if entry.sweep and not (len(entry.sweep) == 2 and 1 <= entry.sweep[0] < entry.sweep[1]):
+        yield Fault((*place, "sweep"), "should be two harmonics, from 1 on and rising: [3, 17]")
+    several = [key for key in ("lines", "sweep", "recorded") if getattr(entry, key)]
+    for key in several[1:]:
+        yield Fault((*place, key), f"and {several[0]} are both given; one is enough")
 
 
 def gate_faults(one: PlanEntry | Defaults, place: Place) -> Iterator[Fault]:
@@ -168,11 +180,12 @@ def rig_faults(
 def path_faults(entry: PlanEntry, oscillator: Oscillator | None, place: Place) -> Iterator[Fault]:
     """Yield paths that go with nothing else there, or that the rig's struts do not follow."""
     if entry.exact:
-        if entry.lines:
-            yield Fault((*place, "exact"), "is for one frequency at a time; leave lines out")
+        if entry.many_lines:
+            text = f"is for one frequency at a time; leave {entry.many_lines} out"
+            yield Fault((*place, "exact"), text)
         if entry.motion in (Motion.PHASE, Motion.YAW_DRIFT) or any(entry.drifts_rad):
             yield Fault((*place, "exact"), "is for heave, pitch, sway and yaw without a drift")
-    key = "exact" if entry.exact else "lines" if entry.lines else ""
+    key = "exact" if entry.exact else entry.many_lines
     if key and oscillator is not None:
         yield from (Fault((*place, key), f": {text}") for text in struts_faults(oscillator))
 

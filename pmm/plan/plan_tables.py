@@ -86,6 +86,12 @@ class PlanEntry:
     lines
         Harmonics of each frequency, which is the base of a motion of many lines; one run has them
         all, with amplitudes as one over their order.
+    sweep
+        Lowest and highest harmonic of a sweep that repeats with the base period.
+    recorded
+        Of the struts over one base period, evenly spaced, in any unit: what a file holds.
+    highest
+        Harmonic up to which a recorded motion is followed.
     exact
         Whether the struts follow the paths that make the motion pure at any angle.
     channels, loads_n
@@ -115,12 +121,21 @@ class PlanEntry:
     target_relative: float | None = None
     max_periods: int | None = None
     lines: tuple[int, ...] = ()
+    sweep: tuple[int, ...] = ()
+    recorded: tuple[float, ...] = ()
+    highest: int = 20
     exact: bool = False
     channels: tuple[str, ...] = ()
     loads_n: tuple[float, ...] = ()
     known_mass: KnownMass | None = None
     medium: Medium | None = None
     prompt: str = ""
+
+    @property
+    def many_lines(self) -> str:
+        """Which key asks for many lines at once; empty where none does."""
+        several = (key for key in ("lines", "sweep", "recorded") if getattr(self, key))
+        return next(several, "")
 
 
 @dataclass(frozen=True)
