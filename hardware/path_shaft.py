@@ -7,12 +7,10 @@ one path. Time is the count of SYNCs; the set-point's place in it is its time st
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from hardware.axis import nodes as axis_nodes
-from hardware.axis_settings import PositionAxisSettings
 from hardware.command_limits import check_speed
 from hardware.description.channels import (
     COMMAND_AFT,
@@ -21,10 +19,8 @@ from hardware.description.channels import (
     DISPLACEMENT_FORE,
     SHAFT_ANGLE,
 )
-from hardware.description.errors import ConfigurationError
-from hardware.description.lines import Line, struts_over_turn
+from hardware.description.lines import Line
 from hardware.description.oscillator import Range
-from hardware.drive import STEP_CYCLES
 from hardware.driver import Driver, NodePlan, Services
 from hardware.errors import (
     CycleJumpError,
@@ -34,49 +30,17 @@ from hardware.errors import (
     as_fault,
     worst,
 )
-from hardware.limits import LATE_PERIODS, RAMP_MARGIN
+from hardware.limits import LATE_PERIODS
+from hardware.path_approach import PathApproach
+from hardware.path_record import PathRecord
+from hardware.path_shaft_settings import STRUTS, PathShaftSettings
 from hardware.path_strut import PathStrut
-from hardware.ramp import Ramp
-from hardware.roles import Cycle, Role, Sample, SampleBlock, blocks
+from hardware.roles import Cycle, Role, SampleBlock
+from hardware.strut_path import StrutPath
 
 _TURN = 2.0 * math.pi
 LEAD_CYCLES = 2  # from sending a set-point to its SYNC (hardware/path_strut.py)
-_EASE_S = 1.0  # from rest to the approach's speed: at 0.1 m/s a model of 100 kg pulls with 10 N
-_KEPT_CYCLES = 20  # for samples of a strut that come late
-STRUTS = ("aft", "fore")
-
-
-@dataclass(frozen=True)
-class PathShaftSettings:
-    """Settings of two struts that follow paths.
-
-    Attributes
-    ----------
-    aft, fore
-        Each strut's drive, as an axis in metres whose ``speed`` and ``acceleration`` are the
-        strut's largest.
-    approach_speed
-        At which a strut goes to where its path begins, in m/s.
-    encoders
-        Whether the drives' positions are recorded as the struts' displacements; ``False`` where
-        sensors of their own are.
-    """
-
-    aft: PositionAxisSettings
-    fore: PositionAxisSettings
-    highest_frequency_hz: float
-    acceleration_hz_per_s: float
-    lowest_frequency_hz: float = 0.0
-    approach_speed: float = 0.02
-    encoders: bool = True
-
-    def __post_init__(self) -> None:
-        for key in ("highest_frequency_hz", "acceleration_hz_per_s", "approach_speed"):
-            if not getattr(self, key) > 0.0:
-                raise ConfigurationError(f"{key} = {getattr(self, key):g} has to be above 0")
-        for name in STRUTS:
-            if getattr(self, name).unit != "m":
-                raise ConfigurationError(f'{name}.unit has to be "m"')
+_ROUNDING = 1.0 + 1e-6
 
 
 class PathShaft:
@@ -102,15 +66,11 @@ class PathShaft:
         )
         self.eccentricity_m = self.strut_phase_rad = 0.0
         self._lines: tuple[Line, ...] = ()
-        self._path = _path_of((), 0.0)
+        self._path = StrutPath()
         self._angle = self._speed_hz = self._target_hz = 0.0
         self._points = np.zeros(2)
-        self._from = self._goal = self._points
-        self._ramp: Ramp | None = None
-        self._due = False  # the path is another: the struts have to go to it
-        self._told: dict[int, tuple[float, ...]] = {}
-        self._seen: tuple[dict[int, float], ...] = ({}, {})
-        self._samples: list[Sample] = []
+        self._approach = PathApproach(self.struts, settings.approach_speed, self.sample_rate_hz)
+        self._record = PathRecord(self.struts, encoders=settings.encoders)
 
     @property
     def enabled(self) -> bool:
@@ -126,12 +86,12 @@ class PathShaft:
     def setting(self) -> bool:
         """Whether the struts are being homed, or go to another path at rest."""
         homing = any(strut.homing for strut in self.struts)
-        return homing or ((self._due or self._ramp is not None) and self._target_hz == 0.0)
+        return homing or (self._approach.under_way and self._target_hz == 0.0)
 
     @property
     def placed(self) -> bool:
         """Whether the struts stand where the path is now, by their encoders, or follow it."""
-        if self._due or self._ramp is not None or not self.homed:
+        if self._approach.under_way or not self.homed:
             return False
         return bool((np.abs(self._points - self._wanted()) <= 1e-9).all())
 
@@ -202,9 +162,9 @@ class PathShaft:
             self.strut_phase_rad = strut_phase_rad
         if lines is not None:
             self._lines = lines
-        self._path = _path_of(self._lines, self.strut_phase_rad)
+        self._path = StrutPath(self._lines, self.strut_phase_rad)
         if self.enabled and self.homed:
-            self._approach()
+            self._approach.begin()
 
     def turn(self, frequency_hz: float) -> None:
         """Go to the path if the struts are not on it, then run up or down to a speed.
@@ -223,15 +183,13 @@ class PathShaft:
             raise NotReadyError(self.name, "is not homed; home its struts before it turns")
         self._check_path(frequency_hz)
         if not self.placed:
-            self._approach()
+            self._approach.begin()
         self._target_hz = frequency_hz
 
     def stop(self) -> None:
         """Decelerate along the path, then stand under power."""
         self._target_hz = 0.0
-        self._due = False
-        if self._ramp is not None:
-            self._ramp.stop()
+        self._approach.stop()
         for strut in self.struts:
             if strut.homing:
                 strut.stop()
@@ -274,7 +232,7 @@ class PathShaft:
                 strut.tick(cycle)
             except HardwareError as error:
                 faults.append(error)
-        self._record(cycle.number)
+        self._record.tick(cycle.number, self._angle)
         try:
             self._check_clock(cycle)
             self._lead(cycle.number + LEAD_CYCLES)
@@ -285,12 +243,11 @@ class PathShaft:
 
     def angle_at(self, number: int) -> float:
         """Return the master angle at a SYNC of the latest; NaN at one that it knows nothing of."""
-        return self._told[number][0] if number in self._told else math.nan
+        return self._record.angle_at(number)
 
     def take(self) -> tuple[SampleBlock, ...]:
         """Return angle, displacements and commands since the last call."""
-        taken, self._samples = self._samples, []
-        return blocks(taken)
+        return self._record.take()
 
     def close(self) -> None:
         """Nothing to let go of: the bus is the master's."""
@@ -298,14 +255,9 @@ class PathShaft:
     def _halt(self) -> None:
         """End what is under way, off the path: the drives decelerate."""
         self._target_hz = self._speed_hz = 0.0
-        self._due, self._ramp = False, None
+        self._approach.drop()
         for strut in self.struts:
             strut.drive.done()
-
-    def _approach(self) -> None:
-        if self._ramp is not None:
-            self._ramp.stop()
-        self._due = True
 
     def _wanted(self) -> np.ndarray:
         """Return where the path has the struts now."""
@@ -317,8 +269,8 @@ class PathShaft:
         free = [not strut.enabled or strut.homing for strut in self.struts]
         if any(free):
             self._points = np.array([strut.position for strut in self.struts])
-        elif self._due or self._ramp is not None:
-            self._go(period_s)
+        elif self._approach.under_way:
+            self._points = self._approach.step(self._points, self._wanted())
         elif self._target_hz or self._speed_hz:
             before = self._speed_hz
             most = self.settings.acceleration_hz_per_s * period_s
@@ -328,41 +280,10 @@ class PathShaft:
         for strut, point, is_free in zip(self.struts, self._points, free, strict=True):
             if not strut.homing:
                 strut.lead(strut.position if is_free else float(point))
-        self._told[number] = (self._angle, *map(float, self._points))
-
-    def _go(self, period_s: float) -> None:
-        """Go on towards the path, each strut straight and both in the same time."""
-        if self._ramp is None or (self._due and self._ramp.at_rest):
-            if not all(strut.drive.in_mode for strut in self.struts):
-                return
-            self._due = False
-            self._from, self._goal = self._points, self._wanted()
-            way = float(np.abs(self._goal - self._from).max())
-            speed = self.settings.approach_speed
-            slope = speed / _EASE_S
-            self._ramp = Ramp(way, speed, slope)
-            self._share = 1.0 / way if way else 0.0
-            time_s = way / speed + 2.0 * speed / slope
-            for strut in self.struts:
-                limit = 4 * STEP_CYCLES + RAMP_MARGIN * time_s * self.sample_rate_hz
-                strut.drive.within(limit, "way to the path")
-        self._ramp.step(period_s)
-        share = 1.0 if self._ramp.arrived else self._ramp.position * self._share
-        self._points = self._from + share * (self._goal - self._from)
-        if self._ramp.at_rest and not self._due and (not self._ramp.arrived or self._there()):
-            self._ramp = None
-            for strut in self.struts:
-                strut.drive.done()
-
-    def _there(self) -> bool:
-        """Whether the struts stand at the goal by their encoders."""
-        return all(
-            abs(strut.position - goal) <= strut.near and strut.drive.motion.at_rest
-            for strut, goal in zip(self.struts, self._goal, strict=True)
-        )
+        self._record.led(number, self._angle, self._points)
 
     def _check_clock(self, cycle: Cycle) -> None:
-        moves = self._speed_hz or (self._ramp is not None and not self._ramp.at_rest)
+        moves = self._speed_hz or self._approach.moves
         periods = cycle.lateness_s * self.sample_rate_hz
         if moves and periods >= LATE_PERIODS:
             raise CycleJumpError(
@@ -376,51 +297,17 @@ class PathShaft:
         """Refuse a path beyond a strut's own limits, with the place in it."""
         for times, key in ((0, "stroke"), (1, "speed"), (2, "acceleration")):
             size = self.eccentricity_m * (_TURN * frequency_hz) ** times
-            over = size * np.abs(struts_over_turn(self._path.lines, times, _INSTANTS))
-            for strut, name, one in zip(self.struts, STRUTS, over, strict=True):
+            both = zip(self.struts, STRUTS, self._path.peaks(times), strict=True)
+            for strut, name, (peak, part) in both:
                 own = strut.settings
                 most = min(-own.low, own.high) if key == "stroke" else getattr(own, key)
-                if one.max() > most * _ROUNDING:
-                    at_s = float(one.argmax()) / len(one) / frequency_hz
+                if size * peak > most * _ROUNDING:
                     raise LimitError(
                         self.name,
-                        f"the path's {key} of {one.max():.4g} at {at_s:.3g} s of its period is "
-                        f"beyond {name}.{key} = {most:.4g}; lower amplitude or frequency",
+                        f"the path's {key} of {size * peak:.4g} at {part / frequency_hz:.3g} s of "
+                        f"its period is beyond {name}.{key} = {most:.4g}; lower amplitude or "
+                        "frequency",
                     )
-
-    def _record(self, now: int) -> None:
-        """Make samples of what both struts have told of a SYNC."""
-        for strut, seen in zip(self.struts, self._seen, strict=True):
-            seen |= {n: counts / strut.settings.counts_per_unit for n, counts in strut.positions}
-        aft, fore = self._seen
-        for number in sorted(aft.keys() & fore.keys()):
-            places = (aft.pop(number), fore.pop(number))
-            angle, *points = self._told.get(number, (self._angle, *places))
-            own = places if self.settings.encoders else ()
-            self._samples.append((number, (angle, *own, *points)))
-        for kept in (aft, fore, self._told):
-            for number in [one for one in kept if one < now - _KEPT_CYCLES]:
-                del kept[number]
-
-
-_INSTANTS = 720  # of a turn
-_ROUNDING = 1.0 + 1e-6
-
-
-class _Path:
-    """Where the struts are over the master angle, per eccentricity."""
-
-    def __init__(self, lines: tuple[Line, ...]) -> None:
-        self.lines = lines
-        self._orders = 1j * np.array([line.order for line in lines])
-        self._phasors = np.array([line.phasors for line in lines])
-
-    def at(self, angle: float) -> np.ndarray:
-        return np.asarray((np.exp(self._orders * angle) @ self._phasors).imag)
-
-
-def _path_of(lines: tuple[Line, ...], strut_phase_rad: float) -> _Path:
-    return _Path(lines or (Line(1, strut_phase_rad=strut_phase_rad),))
 
 
 def nodes(name: str, settings: PathShaftSettings) -> tuple[NodePlan, ...]:

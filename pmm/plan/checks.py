@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from datetime import date
 
-from hardware.path_shaft import PathShaftSettings
+from hardware.path_shaft_settings import PathShaftSettings
 from pmm.campaign.calibrated_recording import expiry_text
 from pmm.plan.check_table import CALIBRATION
 from pmm.plan.condition_checks import condition_findings

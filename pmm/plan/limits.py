@@ -9,7 +9,7 @@ import numpy as np
 
 from hardware.description.lines import struts_over_turn
 from hardware.description.setpoint import ANGLE_KEYS
-from hardware.path_shaft import STRUTS, PathShaftSettings
+from hardware.path_shaft_settings import STRUTS, PathShaftSettings
 from hardware.rig_configuration import RigPart, load_of
 from pmm.plan import check_table as table
 from pmm.plan.check import Check

@@ -13,7 +13,7 @@ import numpy as np
 from hardware.description.channels import DISPLACEMENTS, SHAFT_ANGLE, STANDARD, Channel
 from hardware.description.simulation_tables import GAUGES, merged
 from hardware.dictionary import Entry, entry
-from hardware.path_shaft import STRUTS
+from hardware.path_shaft_settings import STRUTS
 from hardware.rig_configuration import RigConfiguration, RigPart
 from pmm.campaign.calibration import Calibration
 from pmm.plan.rig_file import RigFile

@@ -16,7 +16,7 @@ from hardware.manual_shaft import ManualShaftSettings
 from hardware.modbus_axis import ModbusAxisSettings
 from hardware.path_pulse import PathPulseSettings
 from hardware.path_setting import PathSettingSettings
-from hardware.path_shaft import STRUTS, PathShaftSettings
+from hardware.path_shaft_settings import STRUTS, PathShaftSettings
 from hardware.photocell_probe import ProbeSettings
 from hardware.photocell_serial import TimestamperSettings
 from hardware.rig_configuration import RigConfiguration, RigPart, check
