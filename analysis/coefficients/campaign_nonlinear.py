@@ -13,7 +13,6 @@ from analysis.coefficients.cycle_fit import (
     FIRST,
     HIGHER,
     QUASI_STEADY,
-    STATIC,
     CycleFit,
     fit_cycles,
 )
@@ -38,7 +37,6 @@ STATIC_DRIFT = "static drift"
 SURGE_FORCES = "surge"
 
 _LEFT_OUT = "other motion left out"
-_LINEAR_ANGLES = 4  # of rudder or heel; more of them tell what is cubic
 _MOVES = 0.05  # of the larger motion at the struts: less tells nothing of its terms
 
 
@@ -68,7 +66,7 @@ def nonlinear_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
     motions, cross = _motions(cycles)
     orders = tuple(n for n in HIGHER if n <= min(cycle.orders for cycle in cycles))
     plane, joint = cycles[0].plane, any(cycle.lines for cycle in cycles)
-    for row in _rows(cycles):
+    for row in load_rows(cycles):
         angles = _moving_heel(cycles, motions, orders, cross=cross)
         try:
             choice, richest = choose_form(cycles, row, motions, orders, cross=cross, angles=angles)
@@ -84,7 +82,7 @@ def nonlinear_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
         for method, of, chosen in _methods(cycles, orders):
             angles = _moving_heel(cycles, motions, chosen, cross=cross)
             forms = forms_of(plane, row, motions, cross=cross, angles=angles)
-            _try_form(of_all, missing, method, of, forms, choice, chosen, request)
+            try_form(of_all, missing, method, of, forms, choice, chosen, request)
         fits += of_all
         for _, several in of_all[: int(not joint)]:
             fits += _single_runs(several, row, choice, orders, request)
@@ -99,7 +97,7 @@ def _with_lines(choice: FormChoice, cycles: Sequence[BodyCycle]) -> FormChoice:
     return replace(choice, runs=tuple(dict.fromkeys(lines)))
 
 
-def _rows(cycles: Sequence[BodyCycle]) -> tuple[int, ...]:
+def load_rows(cycles: Sequence[BodyCycle]) -> tuple[int, ...]:
     """Return the loads across, about and, where all runs have a gauge for it, in roll."""
     return (0, 1, *((ROLL,) if all(cycle.has_roll for cycle in cycles) else ()))
 
@@ -131,7 +129,7 @@ def _single_runs(
         own, both = _motions([cycle])
         forms = forms_of(cycle.plane, row, own, cross=both)
         alone: list[tuple[str, CycleFit]] = []
-        _try_form(alone, [], SINGLE_RUN, [cycle], forms, choice, orders, request)
+        try_form(alone, [], SINGLE_RUN, [cycle], forms, choice, orders, request)
         fits += [(method, fit.beside(_LEFT_OUT, _left_out(fit, several))) for method, fit in alone]
     return fits
 
@@ -164,7 +162,7 @@ def _methods(
     return methods
 
 
-def _try_form(
+def try_form(
     fits: list[tuple[str, CycleFit]],
     missing: list[Missing],
     method: str,
@@ -241,16 +239,17 @@ def _surge(
         own = [letter for letter, here in ((v, "v"), (r, "r")) if here in motions]
         names += [f"X_{letter}phi" for letter in own] + (["X_phiphi"] if means else [])
         orders = tuple(sorted({1, *orders}))
-    _try_surge(fits, cycles, names, orders, request)
+    try_surge(fits, cycles, names, orders, request)
 
 
-def _try_surge(
+def try_surge(
     fits: GroupFits,
     cycles: Sequence[BodyCycle],
     names: Sequence[str],
     orders: tuple[int, ...],
     request: Request,
 ) -> None:
+    """Fit X, or record which of its terms cannot be determined."""
     try:
         fit, choice = fit_surge(cycles, names, orders, stated=request.stated)
     except DataError as error:
@@ -259,63 +258,3 @@ def _try_surge(
     fits.fits.append((SURGE_FORCES, fit))
     fits.richest.append(fit)
     fits.choices += [] if choice is None else [choice]
-
-
-def static_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
-    """Return the loads over drift (or trim) angles, straight tows among them.
-
-    Runs on a circle beside them tell the terms of the rate of turn. Force and moment take the form
-    that the data support, and what they misfit it by widens their intervals; X is the resistance
-    and, where the model was turned, quadratic. A rudder that was laid and a heel that was set add
-    terms, as mirrored runs mirror the loads: odd ones, in X even.
-    """
-    plane, speed = cycles[0].plane, cycles[0].speed_m_s
-    odd, even = _set_angles(cycles)
-    turning = any(cycle.turn_rate_rad_s for cycle in cycles)
-    motions = "vr" if turning else "v"
-    cross = any(cycle.turn_rate_rad_s and cycle.drift_rad for cycle in cycles)
-    group = GroupFits()
-    fits, missing = group.fits, group.missing
-    for row in _rows(cycles):
-        forms = forms_of(plane, row, motions, cross=cross, steady=True, angles=odd)
-        try:
-            choice, richest = choose_form(
-                cycles, row, motions, STATIC, cross=cross, steady=True, angles=odd
-            )
-        except DataError as error:
-            missing += [Missing(name, f"{STATIC_DRIFT}: {error}") for name in forms[LINEAR_FORM]]
-            continue
-        group.choices.append(choice)
-        group.richest.append(richest)
-        _try_form(fits, missing, STATIC_DRIFT, cycles, forms, choice, STATIC, request)
-        label = f"misfit of the {choice.load}, {STATIC_DRIFT} at {speed:g} m/s"
-        fits[-1] = (STATIC_DRIFT, fits[-1][1].with_misfit(label, row))
-    if all(cycle.has_surge for cycle in cycles):
-        v, r = tuple(VELOCITY_LETTERS[plane])
-        turned = any(round(cycle.drift_rad, 6) for cycle in cycles)
-        names = ["X_0", *([f"X_{v}{v}"] if turned else []), *(f"X_{one}" for one in even)]
-        names += [*([f"X_{r}{r}"] if turning else []), *([f"X_{v}{r}"] if cross else [])]
-        _try_surge(group, cycles, names, STATIC, request)
-    return group
-
-
-def _set_angles(cycles: Sequence[BodyCycle]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return the factors of rudder and heel that static runs may tell: odd ones, even ones."""
-    v = VELOCITY_LETTERS[cycles[0].plane][0]
-    odd: list[str] = []
-    even: list[str] = []
-    for letter, angles in (
-        ("d", [round(cycle.rudder_rad, 4) for cycle in cycles]),
-        ("phi", [round(set_heel_of(cycle), 4) for cycle in cycles]),
-    ):
-        if set(angles) == {0.0}:
-            continue
-        pairs = [
-            (angle, round(cycle.drift_rad, 4)) for angle, cycle in zip(angles, cycles, strict=True)
-        ]
-        turned = {abs(angle) for angle, drift in pairs if drift}
-        odd += [letter] + ([letter * 3] if len(set(angles)) > _LINEAR_ANGLES else [])
-        odd += [f"{v}{v}{letter}"] if turned - {0.0} else []
-        odd += [f"{v}{letter * 2}"] if letter == "phi" and len(turned) > 1 else []
-        even += [letter * 2] + ([f"{v}{letter}"] if turned - {0.0} else [])
-    return tuple(odd), tuple(even)

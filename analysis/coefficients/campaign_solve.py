@@ -11,7 +11,6 @@ from analysis.coefficients.campaign_nonlinear import (
     SINGLE_RUN,
     GroupFits,
     nonlinear_fits,
-    static_fits,
 )
 from analysis.coefficients.campaign_plan import Group, GroupKind, Request
 from analysis.coefficients.campaign_records import (
@@ -22,6 +21,7 @@ from analysis.coefficients.campaign_records import (
     Missing,
 )
 from analysis.coefficients.campaign_result import TrialColumns, no_trials
+from analysis.coefficients.campaign_static import static_fits
 from analysis.coefficients.cycle_fit import FIRST, CycleFit, fit_cycles
 from analysis.coefficients.cycle_trials import cycle_trials
 from analysis.coefficients.linear_fit import lacking_places, linear_fit
