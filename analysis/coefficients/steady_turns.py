@@ -2,7 +2,7 @@
 
 With the arm's rate ``r`` and radius ``R`` about which the midpoint goes round, at a drift angle b:
 
-    U = |r| R      u = U cos b      v = -U sin b
+    U = abs(r) R      u = U cos b      v = -U sin b
 
 They stand among the static runs of their speed, so that straight tows and oblique ones at the same
 speed are fitted with them.

@@ -34,6 +34,11 @@ DRIVERS = tuple(
         "touch-probe": "hardware.photocell_probe:DRIVER",
         "timestamper": "hardware.photocell_serial:DRIVER",
         "serial-inclinometer": "hardware.inclinometer:DRIVER",
+        "modbus-carriage": "hardware.modbus_carriage:DRIVER",
+        "modbus-axis": "hardware.modbus_axis:DRIVER",
+        "path-struts": "hardware.path_shaft:DRIVER",
+        "path-pulse": "hardware.path_pulse:DRIVER",
+        "path-setting": "hardware.path_setting:DRIVER",
     }.items()
 )
 

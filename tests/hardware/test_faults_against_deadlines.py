@@ -242,7 +242,7 @@ def test_an_sdo_within_a_receive_callback_is_refused_instead_of_hanging(running)
 def test_sdos_from_many_threads_do_not_mix() -> None:
     with on_bus({"shaft": SHAFT}, lambda n: Drive(n, 1), "virtual") as (rig, _):
         sdo = rig.master.nodes[0].sdo
-        wanted = {Entry(0x6502): 0x25, Entry(0x1017): 100, Entry(0x6007): 3}
+        wanted = {Entry(0x6502): 0xA5, Entry(0x1017): 100, Entry(0x6007): 3}
         wrong = []
 
         def ask(at: Entry) -> None:

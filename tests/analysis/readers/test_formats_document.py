@@ -41,7 +41,7 @@ def cells(heading: str, tables: int = 1) -> list[list[str]]:
 
 def test_every_block_is_of_a_kind_that_a_test_reads() -> None:
     kinds = set(re.findall(r"^```(\w+)$", TEXT, re.MULTILINE))
-    assert kinds == {"csv", "toml", "options", "json", "python"}
+    assert kinds == {"csv", "toml", "options", "json", "python", "sh"}
 
 
 @pytest.mark.parametrize("text", blocks("csv"))
