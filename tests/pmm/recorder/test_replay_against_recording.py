@@ -166,7 +166,7 @@ def test_samples_wait_four_cycles_for_a_late_device() -> None:
 
     quick = Halting("quick", (), *(one(n, float(n)) for n in range(1, 13)))
     late = Halting("late", (), one(1, 10.0), (), (), (), one(2, 20.0), (), (), (), one(8, 80.0))
-    rig = SimpleNamespace(number=0, shaft=None, forces=(quick, late), photocell=None)
+    rig = SimpleNamespace(number=0, shaft=None, forces=(quick, late), photocell=None, carriage=None)
     path = LivePath(rig)
     found, came_in = [], []
     for rig.number in range(1, 13):
@@ -183,7 +183,9 @@ def test_samples_wait_four_cycles_for_a_late_device() -> None:
 def test_a_device_that_counts_its_own_samples_is_put_where_they_came() -> None:
     quick = Halting("quick", (), *((SampleBlock(n, np.array([[1.0]])),) for n in range(101, 105)))
     own = Halting("own", (), *((SampleBlock(n, np.array([[float(n)]])),) for n in range(7, 11)))
-    rig = SimpleNamespace(number=100, shaft=None, forces=(quick, own), photocell=None)
+    rig = SimpleNamespace(
+        number=100, shaft=None, forces=(quick, own), photocell=None, carriage=None
+    )
     path = LivePath(rig)
     found = []
     for rig.number in range(101, 105):
