@@ -13,7 +13,7 @@ from hardware.errors import (
     TransitionTimeoutError,
     worst,
 )
-from hardware.modbus_link import READ, WRITE, Answer, ModbusLink, ModbusSettings, Request
+from hardware.modbus_link import READ, WRITE, Answer, ModbusLink, ModbusRequest, ModbusSettings
 from hardware.modbus_registers import CommandRegister, Register, StatusRegister
 from hardware.roles import Cycle
 
@@ -163,7 +163,7 @@ class ModbusDevice:
             self._life = (life, self._now_s)
         return True
 
-    def _following(self) -> Request | None:
+    def _following(self) -> ModbusRequest | None:
         """Return what is written where it is due, and what is read in turn with it."""
         self._read_next = not self._read_next
         if not self._read_next and (write := self._due()) is not None:
@@ -172,18 +172,18 @@ class ModbusDevice:
             return None
         (function, address), count = self._spans[self._turn % len(self._spans)]
         self._turn += 1
-        return Request(function, address, count)
+        return ModbusRequest(function, address, count)
 
-    def _due(self) -> Request | None:
+    def _due(self) -> ModbusRequest | None:
         command = self._command
         if command is not None:
             word = command.word(enable=self._wants_power, reset=self._resets, toggle=self._toggle)
             if not self._stands(command.address, (word,)):
                 self._resets, self._toggle = False, not self._toggle
-                return Request(WRITE, command.address, 1, (word,))
+                return ModbusRequest(WRITE, command.address, 1, (word,))
         for address, words in self._told.items():
             if not self._stands(address, words):
-                return Request(WRITE, address, len(words), words)
+                return ModbusRequest(WRITE, address, len(words), words)
         return None
 
     def _stands(self, address: int, words: tuple[int, ...]) -> bool:

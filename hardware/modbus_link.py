@@ -59,7 +59,7 @@ class ModbusSettings:
 
 
 @dataclass(frozen=True)
-class Request:
+class ModbusRequest:
     """What is asked: so many registers read, or words written, from an address on."""
 
     function: int
@@ -68,7 +68,7 @@ class Request:
     words: tuple[int, ...] = ()
 
 
-Answer = tuple[Request, tuple[int, ...]]
+Answer = tuple[ModbusRequest, tuple[int, ...]]
 """What was asked, and the words that were read or written."""
 
 
@@ -112,7 +112,7 @@ class ModbusLink:
         self._port.close()
 
     def exchange(
-        self, cycle: Cycle, following: Callable[[], Request | None]
+        self, cycle: Cycle, following: Callable[[], ModbusRequest | None]
     ) -> tuple[list[Answer], list[HardwareError]]:
         """Take the answers of the cycle and ask for what follows; return both, faults once each."""
         answers: list[Answer] = []
@@ -161,7 +161,7 @@ class ModbusLink:
             raise LineError(self.name, f"{said.hex()} is no answer; check what is at that address")
         if answer.isError():
             raise self._refusal(asked[1], request.address, answer.exception_code)
-        one = Request(asked[1], request.address, request.count, tuple(request.registers))
+        one = ModbusRequest(asked[1], request.address, request.count, tuple(request.registers))
         words = one.words or tuple(answer.registers)
         if answer.function_code != one.function or len(words) != (len(one.words) or one.count):
             raise LineError(
@@ -180,7 +180,7 @@ class ModbusLink:
             self.name, f"refuses {doing} register {address}: exception {code}, {what}; {remedy}"
         )
 
-    def _frame(self, request: Request) -> bytes:
+    def _frame(self, request: ModbusRequest) -> bytes:
         from pymodbus.pdu.register_message import (
             ReadHoldingRegistersRequest,
             ReadInputRegistersRequest,
@@ -215,7 +215,7 @@ def read_once(
     """
     services = Services(time.monotonic, lambda _: None, _LOOKS_HZ)
     link = ModbusLink(name, settings, services)
-    left = [Request(function, address, count) for (function, address), count in places]
+    left = [ModbusRequest(function, address, count) for (function, address), count in places]
     found, began_s = 0, time.monotonic()
     try:
         while left:

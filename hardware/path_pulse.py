@@ -3,9 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from hardware.description.errors import ConfigurationError
 from hardware.driver import Driver, Services
-from hardware.path_shaft import PathShaft
+from hardware.path_shaft import led_shaft
 from hardware.roles import Cycle, Pulse, Role
 
 _TURN = 2.0 * math.pi
@@ -26,10 +25,8 @@ class PathPulse:
     """
 
     def __init__(self, name: str, settings: PathPulseSettings, services: Services) -> None:
-        if not isinstance(services.shaft, PathShaft):
-            raise ConfigurationError(f'{name}: needs [shaft] driver = "path-struts"')
         self.name = name
-        self._shaft = services.shaft
+        self._shaft = led_shaft(name, services)
         self._period_s = 1.0 / services.sample_rate_hz
         self._pulses: list[Pulse] = []
         self._count = 0

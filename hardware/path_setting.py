@@ -8,7 +8,7 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
 from hardware.driver import Driver, Services
 from hardware.errors import NotReadyError
-from hardware.path_shaft import PathShaft
+from hardware.path_shaft import led_shaft
 from hardware.roles import Cycle, Reading, Role
 
 
@@ -46,12 +46,10 @@ class PathSetting:
     """
 
     def __init__(self, name: str, settings: PathSettingSettings, services: Services) -> None:
-        if not isinstance(services.shaft, PathShaft):
-            raise ConfigurationError(f'{name}: needs [shaft] driver = "path-struts"')
         self.name = name
         self.unit: str = settings.unit
         self.limits = Range(settings.low, settings.high)
-        self._settings, self._shaft = settings, services.shaft
+        self._settings, self._shaft = settings, led_shaft(name, services)
         self._moved = False
 
     @property

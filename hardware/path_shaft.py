@@ -19,6 +19,7 @@ from hardware.description.channels import (
     DISPLACEMENT_FORE,
     SHAFT_ANGLE,
 )
+from hardware.description.errors import ConfigurationError
 from hardware.description.lines import Line
 from hardware.description.oscillator import Range
 from hardware.driver import Driver, NodePlan, Services
@@ -308,6 +309,19 @@ class PathShaft:
                         f"its period is beyond {name}.{key} = {most:.4g}; lower amplitude or "
                         "frequency",
                     )
+
+
+def led_shaft(name: str, services: Services) -> PathShaft:
+    """Return the rig's shaft, for a device whose motors are its struts'.
+
+    Raises
+    ------
+    ConfigurationError
+        If it has no struts that follow a path.
+    """
+    if not isinstance(services.shaft, PathShaft):
+        raise ConfigurationError(f'{name}: needs [shaft] driver = "path-struts"')
+    return services.shaft
 
 
 def nodes(name: str, settings: PathShaftSettings) -> tuple[NodePlan, ...]:

@@ -20,7 +20,7 @@ from pmm.console.loop_side import LoopSide, RefusedError
 from pmm.console.messages import OrderKind
 from pmm.console.plans import Plans
 from pmm.console.proposals import PROPOSED, Proposals
-from pmm.console.queue_changes import Done, QueueChanges, of_reply
+from pmm.console.queue_changes import ActionReply, QueueChanges, of_reply
 from pmm.console.queue_journal import QueueJournal
 from pmm.console.requests import (
     AnswerPosted,
@@ -153,7 +153,7 @@ class PageActions:
         request: Request,
         kind: type[P],
         action: str,
-        act: Callable[[P, Who], Awaitable[Done]],
+        act: Callable[[P, Who], Awaitable[ActionReply]],
     ) -> Response:
         who = who_asks(request)
         given, present = "", None
@@ -204,7 +204,7 @@ class PageActions:
     async def _alter(self, request: Request, action: str) -> Response:
         """Change the queue, or keep the wish where the token is for proposing."""
 
-        async def act(posted: Posted, who: Who) -> Done:
+        async def act(posted: Posted, who: Who) -> ActionReply:
             if who.visitor.role is Role.PROPOSE:
                 return await self._propose(action, posted, who)
             self._require_control(who)
@@ -212,15 +212,17 @@ class PageActions:
 
         return await self._do(request, PROPOSED[action], action, act)
 
-    async def _propose(self, action: str, posted: Posted, who: Who) -> Done:
+    async def _propose(self, action: str, posted: Posted, who: Who) -> ActionReply:
         """Keep what would be done, once it is checked that it could be."""
         self._proposals.require_room()
         name, picture = await self.changes.try_out(posted)
         one = self._proposals.add(action, posted, name, who.visitor, self._utc())
         self.changes.tell_proposals()
-        return Done(f"proposal {one.number}, {one.text}: whoever has control decides", picture)
+        return ActionReply(
+            f"proposal {one.number}, {one.text}: whoever has control decides", picture
+        )
 
-    async def _approve(self, posted: DecisionPosted, who: Who) -> Done:
+    async def _approve(self, posted: DecisionPosted, who: Who) -> ActionReply:
         self._require_control(who)
         one = self._proposals.take(posted.number)
         try:
@@ -231,38 +233,38 @@ class PageActions:
         self.changes.tell_proposals()
         return replace(done, said=f"{one.text}, proposed by {one.visitor.name!r}: {done.said}")
 
-    async def _refuse(self, posted: DecisionPosted, who: Who) -> Done:
+    async def _refuse(self, posted: DecisionPosted, who: Who) -> ActionReply:
         one = self._proposals.waiting.get(posted.number)
         own = one is not None and one.visitor is who.visitor
         if not own:
             self._require_control(who)
         one = self._proposals.take(posted.number)
         self.changes.tell_proposals()
-        return Done(f"{one.text}, proposed by {one.visitor.name!r}: {_ENDED[own]}")
+        return ActionReply(f"{one.text}, proposed by {one.visitor.name!r}: {_ENDED[own]}")
 
-    async def _command(self, posted: CommandPosted, who: Who) -> Done:
+    async def _command(self, posted: CommandPosted, who: Who) -> ActionReply:
         if posted.command is Command.QUICK_STOP:
-            return Done(await self._loop.stop_quickly())
+            return ActionReply(await self._loop.stop_quickly())
         self._require_control(who)
         return of_reply(await self._loop.order(OrderKind.COMMAND, str(posted.command)))
 
-    async def _answer(self, posted: AnswerPosted, who: Who) -> Done:
+    async def _answer(self, posted: AnswerPosted, who: Who) -> ActionReply:
         self._require_control(who)
         return of_reply(await self._loop.order(OrderKind.ANSWER, posted.answer, posted.question))
 
-    async def _check(self, posted: PlanPosted, who: Who) -> Done:
+    async def _check(self, posted: PlanPosted, who: Who) -> ActionReply:
         worker = self._workers.for_whom(in_control=self._hub.desk.holder == who.session)
         found = await worker.run(check_plan_text, self._plans, posted.name, posted.text)
-        return Done("", found)
+        return ActionReply("", found)
 
-    async def _note(self, posted: NotePosted, who: Who) -> Done:
+    async def _note(self, posted: NotePosted, who: Who) -> ActionReply:
         who.visitor.require(Role.PROPOSE)
         worker = self._workers.for_whom(in_control=self._hub.desk.holder == who.session)
         plan = self.changes.queued.plan(posted.number)
         await worker.run(keep_note, plan, posted, self._utc())
         about = posted.run or plan.plan.name
         self._hub.say("note", f"{about}: {posted.text} ({posted.author})")
-        return Done(f"noted on {about}", present=posted.number)
+        return ActionReply(f"noted on {about}", present=posted.number)
 
     async def audit(self, _request: Request) -> Response:
         """Return who did what with the present campaign, from its folder."""
@@ -273,11 +275,11 @@ class PageActions:
         who.visitor.require(Role.OPERATE)
         self._hub.desk.require(who.session)
 
-    async def _take(self, posted: TakePosted, who: Who) -> Done:
+    async def _take(self, posted: TakePosted, who: Who) -> ActionReply:
         who.visitor.require(Role.OPERATE)
         self._hub.desk.take_over(who.session)
         self._hub.news.set()
-        return Done("this browser has control")
+        return ActionReply("this browser has control")
 
 
 async def body_of(request: Request, largest: int = LARGEST_REQUEST) -> bytes:

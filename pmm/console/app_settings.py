@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pmm.console.live.live_settings import LiveSettings
+from pmm.console.live.live_settings import OutletSettings
 from pmm.console.security import Door
 
 
@@ -37,4 +37,4 @@ class ConsoleSettings:
     door: Door
     earlier: tuple[Path, ...] = ()
     reference: Path | None = None
-    live: LiveSettings = field(default_factory=LiveSettings)
+    live: OutletSettings = field(default_factory=OutletSettings)

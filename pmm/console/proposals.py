@@ -27,7 +27,7 @@ PROPOSED: Final[dict[str, type[Posted]]] = {
 
 
 @dataclass(frozen=True)
-class Proposal:
+class ProposedChange:
     """A change of the queue that waits for whoever has control.
 
     Attributes
@@ -75,7 +75,7 @@ class Proposal:
 class Proposals:
     """Those that wait, by their numbers, which are never used twice."""
 
-    waiting: dict[int, Proposal] = field(default_factory=dict)
+    waiting: dict[int, ProposedChange] = field(default_factory=dict)
     count: int = 0
 
     def require_room(self) -> None:
@@ -92,15 +92,17 @@ class Proposals:
                 "wait until whoever has control has decided"
             )
 
-    def add(self, action: str, posted: Posted, plan: str, visitor: Visitor, utc: str) -> Proposal:
+    def add(
+        self, action: str, posted: Posted, plan: str, visitor: Visitor, utc: str
+    ) -> ProposedChange:
         """Keep one more."""
         self.require_room()
         self.count += 1
-        found = Proposal(self.count, action, posted, plan, visitor, utc)
+        found = ProposedChange(self.count, action, posted, plan, visitor, utc)
         self.waiting[found.number] = found
         return found
 
-    def take(self, number: int) -> Proposal:
+    def take(self, number: int) -> ProposedChange:
         """Take one out that is decided on.
 
         Raises
@@ -114,7 +116,7 @@ class Proposals:
             raise ConfigurationError(f"no proposal {number} waits; there are: {known}")
         return found
 
-    def restore(self, proposals: Iterable[Proposal], numbers: Mapping[int, int]) -> None:
+    def restore(self, proposals: Iterable[ProposedChange], numbers: Mapping[int, int]) -> None:
         """Take in those of a console before.
 
         Parameters

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Done:
+class ActionReply:
     """What came of a request.
 
     Attributes
@@ -57,9 +57,9 @@ class Done:
         return {key: one for key, one in parts.items() if one is not None}
 
 
-def of_reply(reply: Reply, plan: EncodedText | None = None) -> Done:
+def of_reply(reply: Reply, plan: EncodedText | None = None) -> ActionReply:
     """Return what came of an order to the loop."""
-    return Done(reply.text, plan, reply.plan)
+    return ActionReply(reply.text, plan, reply.plan)
 
 
 class QueueChanges:
@@ -85,7 +85,7 @@ class QueueChanges:
         self._keeper = QueueKeeper(journal, self._kept, lambda text: hub.say("alarm", text))
         self._changing, self._order = asyncio.Lock(), tuple[int, ...]()
         self.queued = Queued()
-        self._acts: dict[str, Callable[[Any], Awaitable[Done]]] = {
+        self._acts: dict[str, Callable[[Any], Awaitable[ActionReply]]] = {
             "queue": self._queue,
             "drop": self._drop,
             "edit": self._change,
@@ -93,7 +93,7 @@ class QueueChanges:
             "hold": self._change,
         }
 
-    async def carry_out(self, action: str, posted: Posted) -> Done:
+    async def carry_out(self, action: str, posted: Posted) -> ActionReply:
         """Do one of :data:`~pmm.console.proposals.PROPOSED`.
 
         Raises
@@ -116,7 +116,7 @@ class QueueChanges:
             picture = (await worker.run(changed_plan, self._plans, plan, posted)).picture
         return plan.plan.name, picture
 
-    async def _queue(self, posted: PlanPosted) -> Done:
+    async def _queue(self, posted: PlanPosted) -> ActionReply:
         worker = self._workers.for_whom(in_control=True)
         async with self._changing:
             found = await worker.run(ready_plan, self._plans, posted.name, posted.text)
@@ -132,18 +132,18 @@ class QueueChanges:
             self.queued.drop(number)
             raise
 
-    async def _drop(self, posted: DropPosted) -> Done:
+    async def _drop(self, posted: DropPosted) -> ActionReply:
         reply = await self._loop.order(OrderKind.DROP, str(posted.number))
         self.queued.drop(posted.number)
         self._tell_plans()
         return of_reply(reply)
 
-    async def _move(self, posted: MovePosted) -> Done:
+    async def _move(self, posted: MovePosted) -> ActionReply:
         if posted.run:
             return await self._change(posted)
         return of_reply(await self._loop.order(OrderKind.MOVE, f"{posted.number} {posted.by}"))
 
-    async def _change(self, posted: RunPosted) -> Done:
+    async def _change(self, posted: RunPosted) -> ActionReply:
         worker = self._workers.for_whom(in_control=True)
         async with self._changing:  # each change begins with what the one before has made
             before = self.queued.plan(posted.number)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from hardware.description.errors import ConfigurationError
-from pmm.console.proposals import PROPOSED, Proposal
+from pmm.console.proposals import PROPOSED, ProposedChange
 from pmm.console.requests import RunPosted
 from pmm.console.security import Role, Visitor
 from pmm.whole_file import write_whole
@@ -44,7 +44,7 @@ class KeptQueue:
     """A queue in its order, and what is proposed."""
 
     plans: tuple[KeptPlan, ...] = ()
-    proposals: tuple[Proposal, ...] = ()
+    proposals: tuple[ProposedChange, ...] = ()
 
 
 class QueueJournal:
@@ -113,10 +113,10 @@ def _change(record: dict[str, Any]) -> RunPosted:
     return posted
 
 
-def _proposal(record: dict[str, Any]) -> Proposal:
+def _proposal(record: dict[str, Any]) -> ProposedChange:
     posted = _posted(record["action"], record["posted"])
     visitor = Visitor(Role.PROPOSE, record["name"])
-    return Proposal(
+    return ProposedChange(
         record["number"], record["action"], posted, record["plan"], visitor, record["utc"]
     )
 

@@ -12,7 +12,7 @@ from typing import Final
 
 from hardware.description.errors import ConfigurationError
 from pmm.console.app_settings import ConsoleSettings
-from pmm.console.live.live_settings import LiveSettings, live_settings
+from pmm.console.live.live_settings import OutletSettings, live_settings
 from pmm.console.plans import is_plan
 from pmm.console.security import LOCAL, Door
 from pmm.plan.rig_file import RigFile, is_simulated, read_rig_file
@@ -75,7 +75,7 @@ class ConsoleRequest:
         self._live(rig_file)
         return rig_file
 
-    def _live(self, rig_file: RigFile) -> LiveSettings:
+    def _live(self, rig_file: RigFile) -> OutletSettings:
         return live_settings(
             rig_file.name, self.mqtt, self.mqtt_password_file, self.mqtt_authority, self.epics
         )

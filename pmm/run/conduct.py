@@ -25,7 +25,7 @@ from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.live_path import LivePath
 from pmm.recorder.run_recorder import RunEnd
-from pmm.run.errors import CarriageSpeedError, FrequencyError
+from pmm.run.errors import CarriageOffSpeedError, FrequencyError
 from pmm.run.measurement import Measurement
 from pmm.run.states import RunStateMachine, State
 from pmm.run.surroundings import Questions, Surroundings
@@ -210,7 +210,7 @@ def check_speed(c: Conduct) -> None:
 
     Raises
     ------
-    CarriageSpeedError
+    CarriageOffSpeedError
         If it is further off than allowed for longer than its time.
     """
     carriage, wanted = c.rig.carriage, c.present.set_point.carriage_speed_m_s
@@ -220,7 +220,7 @@ def check_speed(c: Conduct) -> None:
     allowed = CARRIAGE_SHARE * wanted + carriage.tolerance_m_s
     c.off_speed = 0 if abs(measured - wanted) <= allowed else c.off_speed + 1
     if c.off_speed > CARRIAGE_S * c.rate_hz:
-        raise CarriageSpeedError(
+        raise CarriageOffSpeedError(
             carriage.name,
             f"runs at {measured:.4g} m/s where the run wants {wanted:g} m/s (limit {allowed:.2g} "
             "m/s off); look at its drive and rails, then tow again",

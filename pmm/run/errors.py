@@ -9,7 +9,7 @@ class FrequencyError(HardwareError):
     reaction = Reaction.PROFILE_STOP
 
 
-class CarriageSpeedError(HardwareError):
+class CarriageOffSpeedError(HardwareError):
     """The carriage runs at another speed than the run's while it is measured."""
 
     reaction = Reaction.PROFILE_STOP

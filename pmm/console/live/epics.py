@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import Any, Final
 
 from pmm.console.live.outlet import NotCarriedError, Outlet
-from pmm.console.live.values import Severity, Tick, Value
+from pmm.console.live.values import Alarm, LiveValue, Tick
 
 MOST_WAITING: Final = 25  # ticks, one second's: a variable shows the latest, and keeps none
 _LISTENS: Final = "EPICS_CAS_INTF_ADDR_LIST"
@@ -19,7 +19,7 @@ _UNIT: Final = 7  # bytes of a unit
 _DIGITS: Final = 6  # behind the point, for whoever shows a number
 _TEXT: Final = "latin-1"
 _STATUS: Final = {  # of the protocol: no alarm, a state's, nothing is known
-    Severity.FINE: 0, Severity.MINOR: 7, Severity.MAJOR: 7, Severity.INVALID: 17,
+    Alarm.FINE: 0, Alarm.MINOR: 7, Alarm.MAJOR: 7, Alarm.INVALID: 17,
 }  # fmt: skip
 
 
@@ -42,7 +42,7 @@ class EpicsOutlet(Outlet):
         logging.getLogger("caproto").setLevel(logging.CRITICAL)  # of each foreign packet, else
         self._prefix = prefix
         self._variables: dict[str, Any] = {}
-        self._shown: dict[str, Value] = {}
+        self._shown: dict[str, LiveValue] = {}
 
     async def _carry(self) -> None:
         if not os.environ.get(_LISTENS):  # nobody beyond this machine is to hear of it
@@ -51,7 +51,7 @@ class EpicsOutlet(Outlet):
         from caproto.asyncio.server import Context
 
         (first,) = await self._next()
-        counts = {"carried": Value(0), "dropped": Value(0)}
+        counts = {"carried": LiveValue(0), "dropped": LiveValue(0)}
         self._variables = {k: _variable(v) for k, v in {**first.values, **counts}.items()}
         self._shown = {}
         served = {f"{self._prefix}:{name}": one for name, one in self._variables.items()}
@@ -79,13 +79,13 @@ class EpicsOutlet(Outlet):
         self._open()
         self._done(1)
         status = self.status()
-        counts = {"carried": Value(status.carried), "dropped": _dropped(status.dropped)}
+        counts = {"carried": LiveValue(status.carried), "dropped": _dropped(status.dropped)}
         for name, value in {**tick.values, **counts}.items():
             if self._shown.get(name) != value and name in self._variables:
                 self._shown[name] = value
                 await self._write(name, value, tick)
 
-    async def _write(self, name: str, value: Value, tick: Tick) -> None:
+    async def _write(self, name: str, value: LiveValue, tick: Tick) -> None:
         variable, alarm = self._variables[name], int(value.severity)
         if variable.alarm.severity != alarm:  # its own fields would stay
             await variable.alarm.write(
@@ -94,11 +94,11 @@ class EpicsOutlet(Outlet):
         await variable.write(_plain(value), verify_value=False, timestamp=tick.utc_s)
 
 
-def _dropped(count: int) -> Value:
-    return Value(count, severity=Severity.MINOR if count else Severity.FINE)
+def _dropped(count: int) -> LiveValue:
+    return LiveValue(count, severity=Alarm.MINOR if count else Alarm.FINE)
 
 
-def _variable(value: Value) -> Any:
+def _variable(value: LiveValue) -> Any:
     """Return a process variable; whoever is outside reads it and nothing else."""
     from caproto import AccessRights, ChannelDouble, ChannelInteger, ChannelString
 
@@ -119,7 +119,7 @@ def _variable(value: Value) -> Any:
     return ReadOnly(**about)
 
 
-def _plain(value: Value) -> float | int | str:
+def _plain(value: LiveValue) -> float | int | str:
     if not isinstance(value.value, str):
         return value.value
     return value.value.encode(_TEXT, "replace")[:_LONGEST].decode(_TEXT)

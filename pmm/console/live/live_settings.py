@@ -39,7 +39,7 @@ class BrokerSettings:
 
 
 @dataclass(frozen=True)
-class LiveSettings:
+class OutletSettings:
     """Where live values go.
 
     Attributes
@@ -61,7 +61,7 @@ class LiveSettings:
 
 def live_settings(
     rig: str, mqtt: str | None, password_file: str | None, authority: str | None, epics: str | None
-) -> LiveSettings:
+) -> OutletSettings:
     """Return where live values of a rig go.
 
     Raises
@@ -79,7 +79,7 @@ def live_settings(
             raise ConfigurationError(
                 f"--epics {epics!r}: a prefix has 1 to 28 letters, digits and _ : -, such as PMM"
             )
-    return LiveSettings(broker, epics or "")
+    return OutletSettings(broker, epics or "")
 
 
 def _broker(rig: str, url: str, password_file: str | None, authority: str | None) -> BrokerSettings:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 from pmm.console.encoding import number
 from pmm.console.live.live_settings import BrokerSettings
 from pmm.console.live.outlet import NotCarriedError, Outlet
-from pmm.console.live.values import Severity, Tick
+from pmm.console.live.values import Alarm, Tick
 
 if TYPE_CHECKING:
     from aiomqtt import Client
@@ -120,7 +120,7 @@ def message(tick: Tick) -> str:
     alarms = {
         name: one.severity.name.lower()
         for name, one in tick.values.items()
-        if one.severity is not Severity.FINE
+        if one.severity is not Alarm.FINE
     }
     utc = datetime.fromtimestamp(tick.utc_s, UTC).isoformat(timespec="milliseconds")
     content = {"n": tick.number, "utc": utc, "values": values, "alarms": alarms}

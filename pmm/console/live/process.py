@@ -11,7 +11,7 @@ from threading import Thread
 from typing import Any, Final
 
 from pmm.console.link import Link
-from pmm.console.live.live_settings import LiveSettings
+from pmm.console.live.live_settings import OutletSettings
 from pmm.console.live.outlet import Outlet, OutletStatus
 from pmm.console.live.values import LiveTable, Tick
 from pmm.console.messages import Frame, Hello, Told
@@ -27,7 +27,7 @@ _JOIN_S: Final = 3.0  # for a last word to the broker
 class Publishing:
     """The server's end: hands ticks on and never waits; the oldest are dropped and counted."""
 
-    def __init__(self, settings: LiveSettings) -> None:
+    def __init__(self, settings: OutletSettings) -> None:
         context = get_context("spawn")
         ours, theirs = context.Pipe()
         self._process = context.Process(
@@ -70,7 +70,7 @@ class Publishing:
             self._process.join()
 
 
-def carry_out(connection: Connection, settings: LiveSettings) -> None:
+def carry_out(connection: Connection, settings: OutletSettings) -> None:
     """Carry out what comes through the pipe until that is closed."""
     yield_to_the_loop()
     # Sockets are waited for by their numbers, which not every system's own event loop does.
@@ -78,7 +78,7 @@ def carry_out(connection: Connection, settings: LiveSettings) -> None:
         runner.run(_carry_out(connection, settings))
 
 
-def outlets_of(settings: LiveSettings) -> list[Outlet]:
+def outlets_of(settings: OutletSettings) -> list[Outlet]:
     """Return an outlet for each protocol that is wished for."""
     from pmm.console.live.epics import EpicsOutlet
     from pmm.console.live.mqtt import MqttOutlet
@@ -121,7 +121,7 @@ class _Source(Thread):
             outlet.offer(tick)
 
 
-async def _carry_out(connection: Connection, settings: LiveSettings) -> None:
+async def _carry_out(connection: Connection, settings: OutletSettings) -> None:
     # aiomqtt waits for sockets that have just gone; whatever matters ends a task.
     asyncio.get_running_loop().set_exception_handler(lambda *_: None)
     outlets = outlets_of(settings)

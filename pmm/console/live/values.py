@@ -22,7 +22,7 @@ _SET: Final = {  # names, their units, the settings of a run
 }
 
 
-class Severity(IntEnum):
+class Alarm(IntEnum):
     """How bad a value is; numbers as EPICS has them."""
 
     FINE = 0
@@ -32,7 +32,7 @@ class Severity(IntEnum):
 
 
 @dataclass(frozen=True)
-class Value:
+class LiveValue:
     """A number, a count or a text with its unit.
 
     Attributes
@@ -43,7 +43,7 @@ class Value:
 
     value: float | int | str
     unit: str = ""
-    severity: Severity = Severity.FINE
+    severity: Alarm = Alarm.FINE
     full_scale: float = math.nan
 
 
@@ -61,11 +61,11 @@ class Tick:
 
     number: int
     utc_s: float
-    values: dict[str, Value]
+    values: dict[str, LiveValue]
 
     def unknown(self) -> "Tick":
         """Return the same values as those that nobody vouches for any more."""
-        values = {k: replace(v, severity=Severity.INVALID) for k, v in self.values.items()}
+        values = {k: replace(v, severity=Alarm.INVALID) for k, v in self.values.items()}
         return replace(self, values=values)
 
 
@@ -87,12 +87,12 @@ class LiveTable:
 
     def _of_channel(
         self, row: int, channel: ChannelInfo, frame: Frame
-    ) -> Iterator[tuple[str, Value]]:
+    ) -> Iterator[tuple[str, LiveValue]]:
         """Yield the latest sample, and the needles: mean and harmonics."""
         name = _FOREIGN.sub("_", channel.name)
         sample = self._samples[row]
         over = abs(sample) > channel.full_scale
-        worst = Severity.MAJOR if over else Severity.FINE
+        worst = Alarm.MAJOR if over else Alarm.FINE
         yield name, _number(sample, channel.unit, worst, channel.full_scale)
         count = 2 * self._hello.harmonics + 1
         needles = frame.needles
@@ -107,20 +107,20 @@ class LiveTable:
         yield f"{name}:half_width", _number(width, channel.unit)
 
 
-def _of_the_run(frame: Frame) -> dict[str, Value]:
+def _of_the_run(frame: Frame) -> dict[str, LiveValue]:
     status = frame.status
     fault = status.state is State.FAULT
-    asked = Severity.MINOR if frame.question else Severity.FINE
+    asked = Alarm.MINOR if frame.question else Alarm.FINE
     values = {
-        "state": Value(str(status.state), severity=Severity.MAJOR if fault else Severity.FINE),
-        "run": Value(status.run),
-        "run_number": Value(status.run_number),
-        "run_count": Value(status.run_count),
-        "gate": Value(str(status.gate)),
-        "periods": Value(status.periods),
-        "periods_wanted": Value(status.wanted_periods),
-        "final": Value(int(frame.needles is not None and frame.needles.final)),
-        "question": Value(frame.question, severity=asked),
+        "state": LiveValue(str(status.state), severity=Alarm.MAJOR if fault else Alarm.FINE),
+        "run": LiveValue(status.run),
+        "run_number": LiveValue(status.run_number),
+        "run_count": LiveValue(status.run_count),
+        "gate": LiveValue(str(status.gate)),
+        "periods": LiveValue(status.periods),
+        "periods_wanted": LiveValue(status.wanted_periods),
+        "final": LiveValue(int(frame.needles is not None and frame.needles.final)),
+        "question": LiveValue(frame.question, severity=asked),
     }
     for name, (unit, key) in _SET.items():
         point = frame.set_point
@@ -128,26 +128,26 @@ def _of_the_run(frame: Frame) -> dict[str, Value]:
     return values
 
 
-def _of_the_rig(frame: Frame) -> dict[str, Value]:
+def _of_the_rig(frame: Frame) -> dict[str, LiveValue]:
     free = frame.status.free_bytes
     free_bytes = math.nan if free is None else float(free)
-    bus = Severity.FINE if frame.bus.ok else Severity.MAJOR
-    late = Severity.MINOR if frame.loop.late else Severity.FINE
-    scarce = Severity.MINOR if free_bytes < LEAST_FREE else Severity.FINE
+    bus = Alarm.FINE if frame.bus.ok else Alarm.MAJOR
+    late = Alarm.MINOR if frame.loop.late else Alarm.FINE
+    scarce = Alarm.MINOR if free_bytes < LEAST_FREE else Alarm.FINE
     return {
-        "time": Value(frame.status.time_s, "s"),
+        "time": LiveValue(frame.status.time_s, "s"),
         "shaft": _number(frame.shaft_hz, "Hz"),
         **{_FOREIGN.sub("_", name): _number(one, unit) for name, unit, one in frame.axes},
-        "bus": Value(int(frame.bus.ok), severity=bus),
-        "fault": Value("; ".join(frame.bus.faults), severity=bus),
-        "late_cycles": Value(frame.loop.late, severity=late),
+        "bus": LiveValue(int(frame.bus.ok), severity=bus),
+        "fault": LiveValue("; ".join(frame.bus.faults), severity=bus),
+        "late_cycles": LiveValue(frame.loop.late, severity=late),
         "free_space": _number(free_bytes, "byte", scarce),
     }
 
 
 def _number(
-    value: float, unit: str, severity: Severity = Severity.FINE, full_scale: float = math.nan
-) -> Value:
+    value: float, unit: str, severity: Alarm = Alarm.FINE, full_scale: float = math.nan
+) -> LiveValue:
     if not math.isfinite(value):
-        return Value(math.nan, unit, Severity.INVALID, full_scale)
-    return Value(value, unit, severity, full_scale)
+        return LiveValue(math.nan, unit, Alarm.INVALID, full_scale)
+    return LiveValue(value, unit, severity, full_scale)

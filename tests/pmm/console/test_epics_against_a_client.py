@@ -10,7 +10,7 @@ import pytest
 from caproto import AlarmSeverity, AlarmStatus, CaprotoError
 from caproto.sync.client import read, write
 
-from pmm.console.live.live_settings import LiveSettings
+from pmm.console.live.live_settings import OutletSettings
 from pmm.console.live.process import Publishing
 from tests.pmm.console.live_rig import HELLO, frame, free_port, until
 
@@ -55,7 +55,7 @@ def _fed(one: Publishing, force_n: list[float]) -> Iterator[None]:
 
 def test_values_units_and_alarms_are_read_and_nothing_is_written(ports: int) -> None:
     before = threading.active_count()
-    one, force_n = Publishing(LiveSettings(epics_prefix="PMM")), [501.0]
+    one, force_n = Publishing(OutletSettings(epics_prefix="PMM")), [501.0]
     with _fed(one, force_n):
         until(lambda: any(status.carried > 10 for status in one.statuses()))
         _values_are_read_and_not_written()

@@ -12,7 +12,7 @@ import pytest
 import pmm
 from hardware.description.errors import ConfigurationError
 from pmm.console.live import live_settings as settings_module
-from pmm.console.live.live_settings import LiveSettings, live_settings
+from pmm.console.live.live_settings import OutletSettings, live_settings
 from pmm.console.live.mqtt import MqttOutlet
 from pmm.console.live.outlet import OutletStatus
 from pmm.console.live.process import Publishing
@@ -38,7 +38,9 @@ unfinished = pytest.mark.filterwarnings(
 )
 
 
-def settings(url: str, *, password: str | None = None, trusted: str | None = None) -> LiveSettings:
+def settings(
+    url: str, *, password: str | None = None, trusted: str | None = None
+) -> OutletSettings:
     return live_settings("tank", url, password, trusted, None)
 
 

@@ -12,7 +12,7 @@ import pytest
 
 import pmm
 from hardware.description.errors import ConfigurationError
-from pmm.console.proposals import Proposal
+from pmm.console.proposals import ProposedChange
 from pmm.console.queue_journal import KeptPlan, KeptQueue, QueueJournal
 from pmm.console.requests import EditPosted, HoldPosted, MovePosted, PlanPosted
 from pmm.console.security import Role, Visitor
@@ -28,7 +28,11 @@ KEPT = KeptQueue(
         )),
         KeptPlan(1, "ä.toml"),
     ),
-    (Proposal(7, "queue", PlanPosted(name="c.toml"), "c", Visitor(Role.PROPOSE, "Ann"), "utc"),),
+    (
+        ProposedChange(
+            7, "queue", PlanPosted(name="c.toml"), "c", Visitor(Role.PROPOSE, "Ann"), "utc"
+        ),
+    ),
 )  # fmt: skip
 
 

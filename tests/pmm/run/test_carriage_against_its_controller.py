@@ -92,7 +92,7 @@ def test_a_carriage_that_another_hand_slows_ends_the_run(tmp_path) -> None:
         one.until(State.GATE_OPEN)
         one.world.plant.surround(carriage_speed_m_s=0.9 * SPEED_M_S)
         one.until(State.FAULT)
-        assert type(one.control.fault).__name__ == "CarriageSpeedError"
+        assert type(one.control.fault).__name__ == "CarriageOffSpeedError"
         assert "0.72 m/s where the run wants 0.8 m/s" in str(one.control.fault)
 
 
