@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 from selenium import webdriver
+from selenium.common.exceptions import StaleElementReferenceException
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.remote.webelement import WebElement
@@ -157,8 +158,12 @@ class Browser:
 
     def click(self, selector: str) -> None:
         """Click what a person would first scroll into the middle."""
+        self.until(lambda: self._clicked(selector), selector)
+
+    def _clicked(self, selector: str) -> bool:
         self.run("document.querySelector(arguments[0]).scrollIntoView({block: 'center'})", selector)
         self.find(selector).click()
+        return True
 
     def press(self, name: str) -> None:
         """Press a command's button as soon as it can be pressed."""
@@ -180,8 +185,10 @@ class Browser:
     def until(self, condition: Callable[[], bool], what: str) -> None:
         """Wait for something that must come."""
         state = "state {}, alarms {}, plan {}"
+        # What the page draws anew between two looks is looked at again.
+        redrawn = [StaleElementReferenceException]
         try:
-            WebDriverWait(self.driver, WITHIN_S, 0.05).until(lambda _: condition())
+            WebDriverWait(self.driver, WITHIN_S, 0.05, redrawn).until(lambda _: condition())
         except Exception as error:
             seen = [self.text(one) for one in ("#state-name", "#alarms", "#plan-said")]
             raise AssertionError(f"{what} never came; {state.format(*seen)}") from error
