@@ -110,7 +110,14 @@ def campaign_cycles(
         tuple(done),
         tuple(one for one in found if isinstance(one, Failed)),
         work,
-        stated_of(campaign, settings, models, gauges, motion_asked=_asked(cycles)),
+        stated_of(
+            campaign,
+            settings,
+            models,
+            gauges,
+            motion_asked=_asked(cycles),
+            following=[one.following for one in done if one.following],
+        ),
         body,
     )
 

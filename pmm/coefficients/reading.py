@@ -17,6 +17,7 @@ from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static
 from analysis.recording import Recording
 from analysis.resolver.analysis import analyse
 from analysis.resolver.first_harmonics import first_harmonics
+from analysis.response.following import StrutFollowing, led_struts, strut_following
 from hardware.description.arrangement import Joint
 from hardware.description.channels import (
     CARRIAGE_SPEED,
@@ -163,11 +164,37 @@ def _turning(task: Task, recording: Recording) -> Done:
     struts, flags = zeroed(struts, task, recording)
     found = tuple(flag for flag in analysis.flags if flag not in recording.flags)
     attitude, told = attitude_of(task, recording)
-    flags = (*found, *flags, *_speed_flags(task, recording), *told)
+    following, unknown = _following(task, recording)
+    flags = (*found, *flags, *_speed_flags(task, recording), *told, *unknown)
     reading = analysis.readings[0]
     done = _done(task, recording, _model(task, struts), None, reading.periods, flags)
     lines = reading if task.set_point.lines else None
-    return replace(done, seen=first_harmonics(recording, analysis), attitude=attitude, lines=lines)
+    return replace(
+        done,
+        seen=first_harmonics(recording, analysis),
+        attitude=attitude,
+        lines=lines,
+        following=following,
+    )
+
+
+def _following(
+    task: Task, recording: Recording
+) -> tuple[tuple[StrutFollowing, ...], tuple[Flag, ...]]:
+    """Return how each strut followed its set-points, or why that is not told."""
+    both = [name for one in led_struts(recording) for name in one]
+    if not both:
+        return (), ()
+    order = max(task.set_point.every_line, key=lambda line: line.share).order
+    settings = replace(
+        task.settings, channels=tuple(both), harmonics=max(order, task.settings.harmonics)
+    )
+    try:
+        reading = analyse(recording, task.choice, settings).readings[0]
+        return tuple(strut_following(recording, reading, order)), ()
+    except DataError as error:
+        text = f"how the struts followed their set-points is not told: {error}"
+        return (), (Flag("following_unknown", Severity.NOTE, text),)
 
 
 def _towed(task: Task, recording: Recording) -> Done:

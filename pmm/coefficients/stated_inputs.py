@@ -10,6 +10,7 @@ import numpy as np
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_plan import OWN_MODEL
 from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainties
+from analysis.response.following import StrutFollowing
 from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
 from hardware.description.channels import FORCES
@@ -161,6 +162,7 @@ def stated_of(
     calibrations: Sequence[Calibration],
     *,
     motion_asked: bool,
+    following: Sequence[Sequence[StrutFollowing]] = (),
 ) -> StatedUncertainties:
     """Return the standard uncertainties: the settings', else those of inertia, gauges, set-points.
 
@@ -170,11 +172,19 @@ def stated_of(
         Of the bodies that are taken off, and that made readings forces; of several the larger
         counts.
     motion_asked
-        Whether set-points stand in for displacements that were not measured: only then does it
-        matter how well eccentricity and phase were set.
+        Whether set-points stand in for displacements that were not measured: then it matters how
+        well eccentricity and phase were set.
+    following
+        How the struts of each run followed that were led by set-points. What is not known of their
+        displacements is then what the runs state of eccentricity and phase, since no other
+        sensor's uncertainty is; and where set-points stand in for the displacements of other runs,
+        those are off by as much.
     """
-    set_points = StatedUncertainties(**(_of_set_points(campaign.runs) if motion_asked else {}))
+    led = any(following)
+    own_set = motion_asked or led
+    set_points = StatedUncertainties(**(_of_set_points(campaign.runs) if own_set else {}))
     known = [
+        *([of_following(following)] if motion_asked and led else []),
         *map(of_model, models),
         *map(of_gauges, calibrations),
     ]
@@ -210,6 +220,16 @@ def _of_set_points(runs: Sequence[Run]) -> dict[str, float]:
         "amplitude_relative": max(relative, default=0.0),
         "strut_phase_rad": max((one.u_strut_phase_rad for one in runs), default=0.0),
     }
+
+
+def of_following(runs: Sequence[Sequence[StrutFollowing]]) -> StatedUncertainties:
+    """Return by how much set-points are off that stand in for struts like these."""
+    every = [one for run in runs for one in run]
+    return StatedUncertainties(
+        amplitude_relative=max(abs(one.amplitude_relative) for one in every),
+        strut_phase_rad=max(abs(run[0].phase_rad - run[-1].phase_rad) for run in runs if run),
+        latency_s=max(abs(one.phase_rad) / (2.0 * np.pi * one.frequency_hz) for one in every),
+    )
 
 
 def of_gauges(one: Calibration) -> StatedUncertainties:

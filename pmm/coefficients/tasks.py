@@ -13,6 +13,7 @@ from analysis.plausibility import RunHarmonics
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.reference_choice import ReferenceChoice
 from analysis.resolver.settings import ResolverSettings
+from analysis.response.following import StrutFollowing
 from hardware.description.arrays import FloatArray
 from hardware.description.attitude import AttitudeSensors
 from hardware.description.flags import Flag, Severity
@@ -156,6 +157,8 @@ class Done:
         Sinkage and trim; ``None`` without their sensors, in a zero run or without a zero.
     lines
         Of a run of many lines, what was resolved of struts and gauges.
+    following
+        How each strut followed its set-points; empty where one of both was not recorded.
     """
 
     name: str
@@ -171,6 +174,7 @@ class Done:
     seen: RunHarmonics | None = None
     attitude: Attitude | None = None
     lines: Harmonics | None = None
+    following: tuple[StrutFollowing, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -49,6 +49,7 @@ from pmm.report.coefficient_tables import (
     recommended_table,
 )
 from pmm.report.conditions import conditions_table
+from pmm.report.following import following_figures, following_table
 from pmm.report.heel import heel_table
 from pmm.report.heel_figure import heel_figures
 from pmm.report.line_sections import line_sections
@@ -95,7 +96,13 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
             Section("Coefficients", (recommended_table(found), *alternatives_tables(found))),
             *stories,
             Section(
-                "Figures", (*figures(found), *attitude_figures(outcome), *heel_figures(outcome))
+                "Figures",
+                (
+                    *figures(found),
+                    *attitude_figures(outcome),
+                    *heel_figures(outcome),
+                    *following_figures(outcome),
+                ),
             ),
             *line_sections(outcome),
             Section("What was found", tuple(_findings(found))),
@@ -110,7 +117,7 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
 def _conditions(outcome: CampaignOutcome) -> tuple[Content, ...]:
     speeds = (one.speed_m_s for one in outcome.result.entries)
     conditions = conditions_table(speeds, outcome.settings.ship, outcome.water)
-    return conditions, attitude_table(outcome), heel_table(outcome)
+    return conditions, attitude_table(outcome), heel_table(outcome), following_table(outcome)
 
 
 _CIRCLES: Final[tuple[Column[SteadyTurn], ...]] = (

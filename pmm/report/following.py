@@ -1,0 +1,101 @@
+"""How struts that are led by set-points followed them: a table of all runs, and a figure."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Final
+
+from analysis.response.following import StrutFollowing
+from hardware.description.channels import DISPLACEMENTS
+from pmm.coefficients.workflow import CampaignOutcome
+from pmm.document.content import Column, Figure, Table, data_only, number, word
+from pmm.document.notation import rounded, written
+from pmm.document.style import PALETTE, drawing
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Drawing
+
+_MILLIONTH: Final = 1e6
+_DEGREES: Final = 180.0 / math.pi
+
+
+def _with_u(key: str, factor: float) -> Callable[[StrutFollowing], str]:
+    return lambda row: rounded(factor * getattr(row, key), factor * getattr(row, f"u_{key}"))
+
+
+_COLUMNS: Final[tuple[Column[StrutFollowing], ...]] = (
+    word("run", "run"),
+    word("displacement", "channel"),
+    number("f", "frequency_hz", written(".4g"), "Hz"),
+    Column("rms", lambda row: f"{_MILLIONTH * row.rms:.3g}", number=True),
+    Column("peak", lambda row: f"{_MILLIONTH * row.peak:.3g}", number=True),
+    Column("", lambda row: f"µ{row.unit}"),
+    Column("amplitude error", _with_u("amplitude_relative", 100.0), unit="%", number=True),
+    Column("phase", _with_u("phase_rad", _DEGREES), unit="deg", number=True),
+    *data_only(
+        "unit",
+        "rms",
+        "peak",
+        "amplitude_relative",
+        "phase_rad",
+        "u_amplitude_relative",
+        "u_phase_rad",
+    ),
+)
+_NOTE: Final = (
+    "Displacement less set-point over the gate; amplitude and phase of the displacement over those "
+    "of the set-point at the run's own frequency, a lag negative, ± standard uncertainty. "
+    "Coefficients are taken from the displacements."
+)
+_CAPTION: Final = (
+    "Following error of struts that are led by set-points, over frequency: rms (filled) and peak "
+    "(open), amplitude and phase of the displacement over those of the set-point, with two "
+    "standard uncertainties."
+)
+
+
+def following_rows(outcome: CampaignOutcome) -> list[StrutFollowing]:
+    """Return each strut of each run whose set-points were recorded, by frequency."""
+    rows = [strut for one in outcome.runs for strut in one.following]
+    return sorted(rows, key=lambda row: row.frequency_hz)
+
+
+def following_table(outcome: CampaignOutcome) -> Table[StrutFollowing]:
+    """Return how each strut followed its set-points in each run."""
+    rows = following_rows(outcome)
+    return Table("Following error", _COLUMNS, rows, "following", titled=True, notes=(_NOTE,))
+
+
+def following_figures(outcome: CampaignOutcome) -> Iterator[Figure]:
+    """Yield the figure where any run's set-points were recorded."""
+    if rows := following_rows(outcome):
+        yield Figure("following", _CAPTION, partial(following_figure, rows))
+
+
+def following_figure(rows: Sequence[StrutFollowing]) -> "Drawing":
+    """Draw rms and peak, amplitude error and phase over frequency, a colour for each strut."""
+    from matplotlib.figure import Figure as Drawing
+
+    with drawing():
+        figure = Drawing(figsize=(10.0, 3.2), layout="constrained")
+        size, gain, phase = figure.subplots(1, 3)
+        for name, colour in zip(DISPLACEMENTS, PALETTE, strict=False):
+            own = [row for row in rows if row.channel == name]
+            at = [row.frequency_hz for row in own]
+            for key, face in (("rms", colour), ("peak", "none")):
+                sizes = [_MILLIONTH * getattr(row, key) for row in own]
+                size.plot(at, sizes, "o", color=colour, markerfacecolor=face)
+            for axes, key, factor in (
+                (gain, "amplitude_relative", 100.0), (phase, "phase_rad", _DEGREES),
+            ):  # fmt: skip
+                values = [factor * getattr(row, key) for row in own]
+                apart = [2.0 * factor * getattr(row, f"u_{key}") for row in own]
+                axes.errorbar(at, values, apart, fmt="o", color=colour, label=name)
+        units = dict.fromkeys(f"µ{row.unit}" for row in rows)
+        labels = (f"following error ({', '.join(units)})", "amplitude error (%)", "phase (°)")
+        for axes, label in zip((size, gain, phase), labels, strict=True):
+            axes.set_xlabel("frequency (Hz)")
+            axes.set_ylabel(label)
+        size.set_ylim(bottom=0.0)
+        gain.legend()
+    return figure
