@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from hardware.axis_settings import PositionAxisSettings
 from hardware.cia402 import ControlWord, Mode, StatusWord
-from hardware.command_limits import check_position
+from hardware.command_limits import check_enabled, check_move
 from hardware.description.oscillator import Range
 from hardware.dictionary import Entry
 from hardware.drive import (
@@ -20,7 +20,7 @@ from hardware.drive import (
 )
 from hardware.drive_state_machine import Goal
 from hardware.driver import Driver, NodePlan, Services, gap_cycles, join
-from hardware.errors import HomingError, NotReadyError
+from hardware.errors import HomingError
 from hardware.limits import AXIS_REST_SHARE, RAMP_MARGIN
 from hardware.motion import EncoderMotion
 from hardware.roles import Cycle, Reading, Role
@@ -138,9 +138,7 @@ class DriveAxis:
         NotReadyError
             If the axis is not enabled or not homed.
         """
-        check_position(self, position)
-        if not self.homed:
-            raise NotReadyError(self.name, "is not homed; home it before it moves")
+        check_move(self, position)
         speed, way = self._settings.speed, abs(position - self.position)
         time_s = way / speed + 2.0 * speed / self._settings.acceleration
         self._begin(Mode.PROFILE_POSITION, time_s, f"move to {position:g} {self.unit}")
@@ -217,8 +215,7 @@ class DriveAxis:
         """Nothing to let go of: the bus is the master's."""
 
     def _begin(self, mode: Mode, time_s: float, what: str) -> None:
-        if not self.enabled:
-            raise NotReadyError(self.name, "is not enabled; enable it first")
+        check_enabled(self)
         self.settled = False
         self._stale_cycles = 0
         self.drive.mode, self.drive.extra = mode, ControlWord(0)

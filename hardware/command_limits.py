@@ -1,7 +1,7 @@
-"""Commands against the limits of the axis or shaft that they are for."""
+"""Commands against the limits of the axis or shaft that they are for, and whether it may move."""
 
-from hardware.errors import LimitError
-from hardware.roles import PositionAxis, Shaft
+from hardware.errors import LimitError, NotReadyError
+from hardware.roles import PositionAxis, Powered, Shaft
 
 
 def check_position(axis: PositionAxis, position: float, *, told: str = "") -> None:
@@ -23,6 +23,32 @@ def check_position(axis: PositionAxis, position: float, *, told: str = "") -> No
             f"{position:g} {axis.unit} is outside {axis.limits.low:g} to {axis.limits.high:g} "
             f"{axis.unit}{told}",
         )
+
+
+def check_enabled(device: Powered) -> None:
+    """Refuse a command to a device that is not under power.
+
+    Raises
+    ------
+    NotReadyError
+        If it is not enabled.
+    """
+    if not device.enabled:
+        raise NotReadyError(device.name, "is not enabled; enable it first")
+
+
+def check_move(axis: PositionAxis, position: float) -> None:
+    """Refuse a move as :func:`check_position` and :func:`check_enabled`, and before homing.
+
+    Raises
+    ------
+    LimitError, NotReadyError
+        As these two; the latter if it does not know where it is, too.
+    """
+    check_position(axis, position)
+    check_enabled(axis)
+    if not axis.homed:
+        raise NotReadyError(axis.name, "is not homed; home it before it moves")
 
 
 def check_speed(shaft: Shaft, frequency_hz: float, *, told: str = "") -> None:

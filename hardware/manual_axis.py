@@ -8,12 +8,12 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from hardware.command_limits import check_position
+from hardware.command_limits import check_enabled, check_move
 from hardware.demand import Demand
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
 from hardware.driver import Driver, Services
-from hardware.errors import DialReadingError, NotReadyError
+from hardware.errors import DialReadingError
 from hardware.roles import Cycle, Reading, Role
 
 
@@ -161,9 +161,7 @@ class ManualAxis:
         NotReadyError
             If the axis is not enabled or was never read.
         """
-        check_position(self, position)
-        if not self.homed:
-            raise NotReadyError(self.name, "was never read; home it before it moves")
+        check_move(self, position)
         dial = f"{position * self._settings.dial_per_unit:.6g} {self._settings.dial_unit}"
         self._target = position
         self._ask(f"{self.name}: set the {self._settings.dial} to {dial} and read it")
@@ -185,8 +183,7 @@ class ManualAxis:
         """Nothing to let go of."""
 
     def _ask(self, text: str) -> None:
-        if not self.enabled:
-            raise NotReadyError(self.name, "is not enabled; enable it first")
+        check_enabled(self)
         self.settled = False
         one = self._settings
         self._question.ask(f"{text} [{one.dial_unit}]", self._target, one.dial_per_unit)

@@ -3,11 +3,11 @@
 import math
 from dataclasses import dataclass
 
-from hardware.command_limits import check_speed
+from hardware.command_limits import check_enabled, check_speed
 from hardware.description.channels import Channel
 from hardware.description.oscillator import Range
 from hardware.driver import Driver, Services
-from hardware.errors import DialReadingError, NotReadyError
+from hardware.errors import DialReadingError
 from hardware.manual_axis import DialQuestion
 from hardware.roles import Cycle, Role, SampleBlock
 
@@ -64,8 +64,7 @@ class ManualShaft:
     def turn(self, frequency_hz: float) -> None:
         """Ask the operator to set a speed and to read it; raises as the driven shaft does."""
         check_speed(self, frequency_hz)
-        if not self.enabled:
-            raise NotReadyError(self.name, "is not enabled; enable it before it turns")
+        check_enabled(self)
         self._wanted_hz = frequency_hz
         text = f"{self.name}: set {frequency_hz:g} Hz and read the speed [Hz]"
         self._question.ask(text, frequency_hz)

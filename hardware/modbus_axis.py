@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from hardware.command_limits import check_position
+from hardware.command_limits import check_move
 from hardware.description.errors import ConfigurationError
 from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from hardware.description.oscillator import Range
@@ -127,10 +127,8 @@ class ModbusAxis(ModbusDevice):
         NotReadyError
             If the axis is not enabled, or was never read.
         """
-        check_position(self, position)
         self._require_power()
-        if not self.homed:
-            raise NotReadyError(self.name, "was never read; home it before it moves")
+        check_move(self, position)
         self._goal = position
         self.tell(self._settings.registers.set_position, position)
         takes_s = abs(position - self.position) / self._settings.speed

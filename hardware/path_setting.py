@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from hardware.command_limits import check_position
+from hardware.command_limits import check_move
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
 from hardware.driver import Driver, Services
-from hardware.errors import NotReadyError
 from hardware.path_shaft import led_shaft
 from hardware.roles import Cycle, Reading, Role
 
@@ -109,11 +108,7 @@ class PathSetting:
         NotReadyError
             If the struts are not enabled or not homed.
         """
-        check_position(self, position)
-        if not self.enabled:
-            raise NotReadyError(self.name, "is not enabled; enable it first")
-        if not self.homed:
-            raise NotReadyError(self.name, "is not homed; home it before it moves")
+        check_move(self, position)
         self._moved = True
         if self.unit == "m":
             self._shaft.aim(eccentricity_m=position)

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hardware.axis import nodes as axis_nodes
-from hardware.command_limits import check_speed
+from hardware.command_limits import check_enabled, check_speed
 from hardware.description.channels import (
     COMMAND_AFT,
     COMMAND_FORE,
@@ -23,16 +23,9 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.lines import Line
 from hardware.description.oscillator import Range
 from hardware.driver import Driver, NodePlan, Services
-from hardware.errors import (
-    CycleJumpError,
-    HardwareError,
-    LimitError,
-    NotReadyError,
-    as_fault,
-    worst,
-)
-from hardware.limits import LATE_PERIODS
+from hardware.errors import HardwareError, NotReadyError, as_fault, worst
 from hardware.path_approach import PathApproach
+from hardware.path_checks import check_clock, check_path
 from hardware.path_record import PathRecord
 from hardware.path_shaft_settings import STRUTS, PathShaftSettings
 from hardware.path_strut import PathStrut
@@ -41,7 +34,6 @@ from hardware.strut_path import StrutPath
 
 _TURN = 2.0 * math.pi
 LEAD_CYCLES = 2  # from sending a set-point to its SYNC (hardware/path_strut.py)
-_ROUNDING = 1.0 + 1e-6
 
 
 class PathShaft:
@@ -178,11 +170,10 @@ class PathShaft:
             If the struts are not enabled or not homed.
         """
         check_speed(self, frequency_hz)
-        if not self.enabled:
-            raise NotReadyError(self.name, "is not enabled; enable it before it turns")
+        check_enabled(self)
         if not self.homed:
             raise NotReadyError(self.name, "is not homed; home its struts before it turns")
-        self._check_path(frequency_hz)
+        check_path(self.name, self.settings, self._path, self.eccentricity_m, frequency_hz)
         if not self.placed:
             self._approach.begin()
         self._target_hz = frequency_hz
@@ -235,7 +226,8 @@ class PathShaft:
                 faults.append(error)
         self._record.tick(cycle.number, self._angle)
         try:
-            self._check_clock(cycle)
+            if self._speed_hz or self._approach.moves:
+                check_clock(self.name, cycle, self.sample_rate_hz)
             self._lead(cycle.number + LEAD_CYCLES)
         except Exception as error:  # beside what the drives have raised
             faults.append(as_fault(self.name, error))
@@ -282,33 +274,6 @@ class PathShaft:
             if not strut.homing:
                 strut.lead(strut.position if is_free else float(point))
         self._record.led(number, self._angle, self._points)
-
-    def _check_clock(self, cycle: Cycle) -> None:
-        moves = self._speed_hz or self._approach.moves
-        periods = cycle.lateness_s * self.sample_rate_hz
-        if moves and periods >= LATE_PERIODS:
-            raise CycleJumpError(
-                self.name,
-                f"SYNC {cycle.number} came {1e3 * cycle.lateness_s:.3g} ms late (limit "
-                f"{1e3 * LATE_PERIODS / self.sample_rate_hz:.3g} ms): set-points have lost their "
-                "time; look at the load and the clock of this computer (pmm doctor), then reset",
-            )
-
-    def _check_path(self, frequency_hz: float) -> None:
-        """Refuse a path beyond a strut's own limits, with the place in it."""
-        for times, key in ((0, "stroke"), (1, "speed"), (2, "acceleration")):
-            size = self.eccentricity_m * (_TURN * frequency_hz) ** times
-            both = zip(self.struts, STRUTS, self._path.peaks(times), strict=True)
-            for strut, name, (peak, part) in both:
-                own = strut.settings
-                most = min(-own.low, own.high) if key == "stroke" else getattr(own, key)
-                if size * peak > most * _ROUNDING:
-                    raise LimitError(
-                        self.name,
-                        f"the path's {key} of {size * peak:.4g} at {part / frequency_hz:.3g} s of "
-                        f"its period is beyond {name}.{key} = {most:.4g}; lower amplitude or "
-                        "frequency",
-                    )
 
 
 def led_shaft(name: str, services: Services) -> PathShaft:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hardware.cia402 import Mode, StatusWord
-from hardware.command_limits import check_speed
+from hardware.command_limits import check_enabled, check_speed
 from hardware.description.channels import SHAFT_ANGLE, Channel
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
@@ -24,7 +24,6 @@ from hardware.drive import (
 )
 from hardware.drive_state_machine import Goal
 from hardware.driver import Driver, NodePlan, Services, gap_cycles, join
-from hardware.errors import NotReadyError
 from hardware.limits import RAMP_MARGIN, SHAFT_REST_SHARE, check_quick_stop
 from hardware.motion import EncoderMotion
 from hardware.roles import Cycle, Role, Sample, SampleBlock, blocks
@@ -156,8 +155,7 @@ class DriveShaft:
             If the shaft is not enabled.
         """
         check_speed(self, frequency_hz)
-        if not self.enabled:
-            raise NotReadyError(self.name, "is not enabled; enable it before it turns")
+        check_enabled(self)
         self._aim(frequency_hz)
         self.drive.within(self._cycles(frequency_hz), f"run-up to {frequency_hz:g} Hz")
 
