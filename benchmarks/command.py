@@ -35,6 +35,7 @@ NAMES = (
     "uneven",
     "recorder",
     "archive",
+    "questions",
     "kill",
     "soak",
     "faults",

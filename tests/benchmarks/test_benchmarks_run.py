@@ -18,7 +18,7 @@ _QUICK = [
 
 
 # These start processes, or solve what no small size makes cheap.
-_SLOW = ("sealed", "sequential", "campaign", "cluster", "gap_cost", "campaign_boards")
+_SLOW = ("sealed", "sequential", "campaign", "cluster", "gap_cost", "campaign_boards", "questions")
 
 
 @pytest.mark.parametrize(
