@@ -16,6 +16,9 @@ class CarriageRegisters:
     ----------
     set_speed, speed, position
         Speed asked for, speed measured, place along the track. Positive along the track.
+    set_turn_rate, turn_rate
+        Of a carriage or an arm that drives circles: rate of turn asked for and measured, positive
+        to starboard.
     life
         A number that the controller's program changes all the time; what stands is old.
     """
@@ -26,12 +29,19 @@ class CarriageRegisters:
     status: StatusRegister | None = None
     command: CommandRegister | None = None
     life: Register | None = None
+    set_turn_rate: Register | None = None
+    turn_rate: Register | None = None
 
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def read(self) -> dict[str, Register]:
         """Return those that are read, by name."""
-        found = {"speed": self.speed, "position": self.position, "life": self.life}
+        found = {
+            "speed": self.speed,
+            "position": self.position,
+            "life": self.life,
+            "turn_rate": self.turn_rate,
+        }
         return {name: one for name, one in found.items() if one is not None}
 
 
@@ -51,6 +61,8 @@ class ModbusCarriageSettings(ModbusSettings):
         Start and end of the way that may be used, as the position reads there.
     return_speed_m_s
         At which it goes back.
+    highest_turn_rate_rad_s
+        Of one that drives circles; 0 for one that goes straight.
     """
 
     registers: CarriageRegisters
@@ -60,6 +72,7 @@ class ModbusCarriageSettings(ModbusSettings):
     settle_s: float = 2.0
     track_m: tuple[float, float] | None = None
     return_speed_m_s: float = 0.5
+    highest_turn_rate_rad_s: float = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -78,6 +91,27 @@ class ModbusCarriageSettings(ModbusSettings):
                 f"track_m = {list(self.track_m)}: the start has to be below the end; a negative "
                 "scale of registers.position turns it round"
             )
+        self._check_turning()
         slowest = -self.return_speed_m_s if self.track_m is not None else 0.0
         for speed in (self.highest_speed_m_s, slowest):
             self.registers.set_speed.written(speed)
+
+    def _check_turning(self) -> None:
+        told, read, most = (
+            self.registers.set_turn_rate,
+            self.registers.turn_rate,
+            self.highest_turn_rate_rad_s,
+        )
+        if most < 0.0 or len({told is None, read is None, most == 0.0}) > 1:
+            raise ConfigurationError(
+                "highest_turn_rate_rad_s (above 0), registers.set_turn_rate and "
+                "registers.turn_rate belong together; give all three, or none"
+            )
+        if told is not None and self.track_m is not None:
+            raise ConfigurationError(
+                "track_m is of a straight way; leave it and registers.position out of a carriage "
+                "that drives circles"
+            )
+        for rate in (-most, most):
+            if told is not None:
+                told.written(rate)

@@ -22,15 +22,18 @@ class Demand(str):
         The gauge that a load is for.
     at_m
         Where a mass goes, forward of the midpoint between the struts.
+    turn_rate_rad_s
+        Of the circle that a carriage drives, positive to starboard; 0 for a straight way.
     """
 
-    __slots__ = ("at_m", "channel", "part", "per_unit", "value")
+    __slots__ = ("at_m", "channel", "part", "per_unit", "turn_rate_rad_s", "value")
 
     part: str
     value: float | str | None
     per_unit: float
     channel: str
     at_m: float
+    turn_rate_rad_s: float
 
     def __new__(
         cls,
@@ -40,9 +43,10 @@ class Demand(str):
         per_unit: float = 1.0,
         channel: str = "",
         at_m: float = 0.0,
+        turn_rate_rad_s: float = 0.0,
     ) -> "Demand":
         """Make a question from its text and what it asks for."""
         made = super().__new__(cls, text)
         made.part, made.value, made.per_unit = part, value, per_unit
-        made.channel, made.at_m = channel, at_m
+        made.channel, made.at_m, made.turn_rate_rad_s = channel, at_m, turn_rate_rad_s
         return made

@@ -57,10 +57,10 @@ class _GuardedShaft(_Guarded):
 class _GuardedCarriage(_Guarded):
     """A carriage that does not start while an axis moves."""
 
-    def run_at(self, speed_m_s: float) -> None:
+    def run_at(self, speed_m_s: float, turn_rate_rad_s: float = 0.0) -> None:
         """Run, if the axes stand still."""
         self._refuse(f"run at {speed_m_s:g} m/s", "moves; let it arrive first")
-        self._inner.run_at(speed_m_s)
+        self._inner.run_at(speed_m_s, turn_rate_rad_s)
 
     def go_back(self) -> None:
         """Go back, if nothing is latched."""

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from hardware.carriage_settings import ModbusCarriageSettings
-from hardware.description.channels import CARRIAGE_SPEED, Channel
+from hardware.description.channels import CARRIAGE_SPEED, TURN_RATE, Channel
 from hardware.description.oscillator import Range
 from hardware.driver import Driver, Services
 from hardware.errors import (
@@ -31,10 +31,8 @@ _AT_START: Final = 0.02  # of the track, in metres: so near the start it stands 
 class ModbusCarriage(ModbusDevice):
     """A :class:`hardware.roles.Carriage`.
 
-    Its channel has a sample in every cycle: what was read last, NaN before and in silence.
+    Its channels have a sample in every cycle: what was read last, NaN before and in silence.
     """
-
-    channels: tuple[Channel, ...] = (CARRIAGE_SPEED,)
 
     def __init__(self, name: str, settings: ModbusCarriageSettings, services: Services) -> None:
         registers = settings.registers
@@ -47,7 +45,9 @@ class ModbusCarriage(ModbusDevice):
         self._settings = settings
         self._track = Range(*(settings.track_m or (-math.inf, math.inf)))
         self._rest_m_s = CARRIAGE_REST_SHARE * settings.highest_speed_m_s
-        self._goal_m_s = 0.0
+        self._goal_m_s = self._turn_rad_s = 0.0
+        turns = registers.turn_rate is not None
+        self.channels: tuple[Channel, ...] = (CARRIAGE_SPEED, *((TURN_RATE,) if turns else ()))
         self._steady_s: float | None = None  # since when it keeps the goal
         self._returning = False
         self._samples: list[Sample] = []
@@ -57,6 +57,11 @@ class ModbusCarriage(ModbusDevice):
     def measured_speed_m_s(self) -> float:
         """Speed that it reads; NaN before, and in silence."""
         return self.values["speed"] if self._link.heard else math.nan
+
+    @property
+    def measured_turn_rate_rad_s(self) -> float:
+        """Rate of turn that it reads; NaN before and in silence, 0 where it goes straight."""
+        return self.values.get("turn_rate", 0.0) if self._link.heard else math.nan
 
     @property
     def position_m(self) -> float:
@@ -79,13 +84,14 @@ class ModbusCarriage(ModbusDevice):
         """Whether it moves, is told to, or is not heard."""
         return self._goal_m_s != 0.0 or not abs(self.measured_speed_m_s) <= self._rest_m_s
 
-    def run_at(self, speed_m_s: float) -> None:
-        """Run up to a speed.
+    def run_at(self, speed_m_s: float, turn_rate_rad_s: float = 0.0) -> None:
+        """Run up to a speed, straight or round a circle.
 
         Raises
         ------
         LimitError
-            If it is beyond the highest, or what is left of the track is shorter than its ramps.
+            If it is beyond the highest, or what is left of the track is shorter than its ramps, or
+            it cannot turn so fast.
         NotReadyError
             If it is not enabled.
         """
@@ -93,6 +99,12 @@ class ModbusCarriage(ModbusDevice):
             raise LimitError(
                 self.name,
                 f"{speed_m_s:g} m/s is outside 0 to {self.speed_m_s.high:g} m/s (and above 0)",
+            )
+        if abs(turn_rate_rad_s) > self._settings.highest_turn_rate_rad_s:
+            raise LimitError(
+                self.name,
+                f"{turn_rate_rad_s:g} rad/s is beyond {self._settings.highest_turn_rate_rad_s:g} "
+                "rad/s (highest_turn_rate_rad_s; 0 for a carriage that goes straight)",
             )
         ramp_s = speed_m_s / self._settings.acceleration_m_s2
         needs_m, left_m = speed_m_s * (ramp_s + self._settings.settle_s), self._left_m
@@ -102,7 +114,7 @@ class ModbusCarriage(ModbusDevice):
                 f"{left_m:.3g} m of track are left and {speed_m_s:g} m/s takes {needs_m:.3g} m to "
                 "reach, settle and stop; take it back, or run slower",
             )
-        self._go(speed_m_s)
+        self._go(speed_m_s, turn_rate_rad_s)
         self.within(
             RAMP_MARGIN * ramp_s + 3.0 * self._settings.settle_s,
             f"{speed_m_s:g} m/s within {self.tolerance_m_s:g} m/s",
@@ -154,7 +166,8 @@ class ModbusCarriage(ModbusDevice):
             As :meth:`ModbusDevice.exchange` says.
         """
         fresh, faults = self.exchange(cycle)
-        self._samples.append((cycle.number, (self.measured_speed_m_s,)))
+        read = (self.measured_speed_m_s, self.measured_turn_rate_rad_s)
+        self._samples.append((cycle.number, read[: len(self.channels)]))
         if fresh:
             self._pursue()
             wrong = [one for one in self._beyond() if type(one) not in self._known]
@@ -165,7 +178,7 @@ class ModbusCarriage(ModbusDevice):
         raise_worst(faults)
 
     def take(self) -> tuple[SampleBlock, ...]:
-        """Return the samples since the last call: the speed in m/s."""
+        """Return the samples since the last call: the speed in m/s, the rate of turn in rad/s."""
         taken, self._samples = self._samples, []
         return blocks(taken)
 
@@ -183,35 +196,47 @@ class ModbusCarriage(ModbusDevice):
         """Track that is left ahead; infinite where nobody reads the place."""
         return math.inf if math.isnan(self.position_m) else self._track.high - self.position_m
 
-    def _go(self, speed_m_s: float) -> None:
+    def _go(self, speed_m_s: float, turn_rate_rad_s: float = 0.0) -> None:
         if not self.enabled:
             raise NotReadyError(
                 self.name, "is not enabled; enable it, and look whether it is in remote and ready"
             )
-        self._set(speed_m_s)
+        self._set(speed_m_s, turn_rate_rad_s)
 
     def _come_to_rest(self, what: str) -> None:
         """Wait for rest: for as long as the ramp takes from the highest speed."""
         ramp_s = self.speed_m_s.high / self._settings.acceleration_m_s2
         self.within(RAMP_MARGIN * ramp_s + REST_DEADLINE_S, what)
 
-    def _set(self, speed_m_s: float) -> None:
-        if speed_m_s != self._goal_m_s:
+    def _set(self, speed_m_s: float, turn_rate_rad_s: float = 0.0) -> None:
+        if (speed_m_s, turn_rate_rad_s) != (self._goal_m_s, self._turn_rad_s):
             self._steady_s = None
-        self._goal_m_s, self._returning = speed_m_s, False
+        self._goal_m_s, self._turn_rad_s, self._returning = speed_m_s, turn_rate_rad_s, False
         self.tell(self._settings.registers.set_speed, speed_m_s)
+        if self._settings.registers.set_turn_rate is not None and speed_m_s:
+            # At rest it keeps the last: on its ramp the carriage stays on the circle.
+            self.tell(self._settings.registers.set_turn_rate, turn_rate_rad_s)
 
     def _pursue(self) -> None:
         """Look at what was read: whether the goal is kept, or the way back is at its end."""
         speed = self.measured_speed_m_s
         if self._returning:
             self._approach(self.position_m - self._track.low)
-        if not abs(speed - self._goal_m_s) <= self.tolerance_m_s:  # nor is what is no number
+        # Nor is it kept by what is no number.
+        if not max(abs(speed - self._goal_m_s), self._astray_m_s) <= self.tolerance_m_s:
             self._steady_s = None
         elif self._steady_s is None:
             self._steady_s = self._now_s
         if self.at_speed or not self.moving:
             self.done()
+
+    @property
+    def _astray_m_s(self) -> float:
+        """How far the midpoint's speed is off by the rate of turn, the radius being right."""
+        if not (self._turn_rad_s and self._goal_m_s):
+            return 0.0
+        radius_m = self._goal_m_s / abs(self._turn_rad_s)
+        return radius_m * abs(self.measured_turn_rate_rad_s - self._turn_rad_s)
 
     def _approach(self, way_m: float) -> None:
         """Brake towards the start at half the ramp, so that it is not overrun."""

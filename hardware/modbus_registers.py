@@ -16,6 +16,7 @@ _CODES: Final = {"int16": "h", "uint16": "H", "int32": "i", "uint32": "I", "floa
 _UNITS: Final = {
     "m/s": 1.0, "mm/s": 1e-3, "m/min": 1.0 / 60.0, "m": 1.0, "mm": 1e-3,
     "rad": 1.0, "deg": math.pi / 180.0, "1": 1.0,
+    "rad/s": 1.0, "deg/s": math.pi / 180.0, "rpm": math.pi / 30.0,
 }  # fmt: skip
 _LAST: Final = 0xFFFF
 Table = Literal["holding", "input"]
@@ -38,7 +39,9 @@ class Register:
     """
 
     address: int
-    unit: Literal["m/s", "mm/s", "m/min", "m", "mm", "rad", "deg", "1"]
+    unit: Literal[
+        "m/s", "mm/s", "m/min", "m", "mm", "rad", "deg", "1", "rad/s", "deg/s", "rpm"
+    ]  # fmt: skip
     type: Literal["int16", "uint16", "int32", "uint32", "float32"] = "int16"
     table: Table = "holding"
     words: Literal["high-first", "low-first"] = "high-first"

@@ -239,7 +239,9 @@ class PositionAxis(Powered, Protocol):
 
 @runtime_checkable
 class Carriage(Powered, Sampled, Protocol):
-    """The carriage along the tank. Its channel is the speed that it measures.
+    """The carriage along the tank, or one that drives circles.
+
+    Its channels are the speed that it measures, and the rate of turn where it drives circles.
 
     Attributes
     ----------
@@ -261,12 +263,20 @@ class Carriage(Powered, Sampled, Protocol):
         ...
 
     @property
+    def measured_turn_rate_rad_s(self) -> float:
+        """Rate of turn now, positive to starboard; NaN if it is not known, 0 if it cannot turn."""
+        ...
+
+    @property
     def returns(self) -> bool:
         """Whether it can go back to the start of its track by itself."""
         ...
 
-    def run_at(self, speed_m_s: float) -> None:
-        """Run up to a speed along the track; 0 is refused: that is :meth:`stop`."""
+    def run_at(self, speed_m_s: float, turn_rate_rad_s: float = 0.0) -> None:
+        """Run up to a speed along the track; 0 is refused: that is :meth:`stop`.
+
+        With a rate of turn it drives a circle of that speed over it.
+        """
         ...
 
     def go_back(self) -> None:

@@ -109,7 +109,7 @@ class SimulatedRig:
         """
         check_run(self, set_point)
         check_within(self.oscillator, set_point)
-        carriage = Carriage(set_point.carriage_speed_m_s, self.carriage)
+        carriage = Carriage(set_point.carriage_speed_m_s, self.carriage, set_point.turn_rate_rad_s)
         mechanism = Mechanism(
             set_point.eccentricity_m,
             set_point.strut_phase_rad,
@@ -118,7 +118,7 @@ class SimulatedRig:
             self.linkage_fore,
             set_point.lines,
         )
-        hull = self._hull(set_point, carriage.mean_m_s)
+        hull = self._hull(set_point, carriage)
         stages: tuple[Stage[Any], ...]
         if self.drive.motor is None and self.drive.gear is None:
             drive = ConstantSpeedDrive(set_point.frequency_hz, self.drive)
@@ -155,7 +155,7 @@ class SimulatedRig:
         in_water, terms = set_point.medium is Medium.WATER, HeelTerms.of(self.heel_loads)
         return Heeling(self.heel, self.body, terms, set_point.heel_rad, in_water)
 
-    def _hull(self, set_point: SetPoint, carriage_speed_m_s: float) -> Hull:
+    def _hull(self, set_point: SetPoint, carriage: Carriage) -> Hull:
         in_water = set_point.medium is Medium.WATER
         return Hull(
             self.oscillator.plane,
@@ -166,7 +166,7 @@ class SimulatedRig:
             self.mounting,
             tuple(force for force in self.forces if in_water or not force.in_water),
             self.cross_flow if in_water else None,
-            carriage_speed_m_s * self.flow_factor,
+            carriage.mean_m_s * self.flow_factor,
             self.flow_factor,
             set_point.drift_rad,
             self.oscillator.arrangement,
@@ -174,6 +174,7 @@ class SimulatedRig:
             in_water,
             None if self.steering is None else self.steering.set_for(set_point),
             self.heeling(set_point),
+            carriage.mean_turn_rad_s,
         )
 
     def ideal(self) -> "SimulatedRig":

@@ -29,7 +29,7 @@ def check_run(rig: "SimulatedRig", set_point: SetPoint) -> None:
     ConfigurationError
         Naming all that is missing, or that does not go together.
     """
-    checks = (_of_joint, _of_steering, _of_lines, _of_attitude, _of_heel)
+    checks = (_of_joint, _of_circle, _of_steering, _of_lines, _of_attitude, _of_heel)
     faults = [fault for check in checks for fault in check(rig, set_point)]
     if faults:
         raise ConfigurationError("; ".join(faults))
@@ -58,6 +58,15 @@ def _of_joint(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
             f'joint = "slides_on_rig": the displacements would differ by {sine:.3g} of their '
             "spacing (limit 1, where the model stands across); lower eccentricity_m"
         )
+
+
+def _of_circle(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
+    if not set_point.turn_rate_rad_s:
+        return
+    if rig.oscillator.plane is Plane.VERTICAL:
+        yield "a circle (turn_rate_rad_s) is for the horizontal oscillator"
+    if rig.flow_factor != 1.0:
+        yield "a circle is simulated in open water: leave the blockage of the tank out"
 
 
 def _of_steering(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:

@@ -42,6 +42,8 @@ _WORDS = {
     "density_relative": "density",
     "heel_rad": "heel",
     "roll_gauge_relative": "calibration, roll gauge",
+    "turn_rate_relative": "rate of turn on the circle",
+    "turn_radius_m": "radius of the circle",
 }
 _DIGIT = 0.1
 

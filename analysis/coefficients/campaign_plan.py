@@ -115,6 +115,11 @@ def _incomplete(cycle: BodyCycle) -> Iterator[str]:
     dry = any(flag.code == "dry_run_taken_off" for flag in cycle.flags)
     if cycle.medium is Medium.AIR:
         yield f"{cycle.name} was run in air; take it off as a dry run, or leave it out"
+    elif cycle.body is None and cycle.turn_rate_rad_s:
+        yield (
+            f"{cycle.name} is a circle and has no inertia to take off, which no dry run tells: "
+            "give the model's mass, centre of gravity and moment of inertia"
+        )
     elif cycle.body is None and not dry and cycle.frequency_hz > 0.0:
         yield (
             f"{cycle.name} has no inertia to take off: give the model's mass, centre of gravity "

@@ -211,9 +211,7 @@ class CycleProblem:
 
     def _load_slope(self, row: int) -> FloatArray:
         slope = np.zeros((2 * len(self.orders), self.numbers.parts.shape[1]))
-        place = np.arange(self.numbers.parts.shape[1] - 1).reshape(
-            self.numbers.highest + 1, len(self.numbers.channels), 2
-        )
+        place = self.numbers.shaped(np.arange(float(self.numbers.parts.shape[1]))).astype(int)
         rows = place[list(self.orders), _LOADS + row].ravel()
         slope[np.arange(len(rows)), rows] = -self.numbers.form.sign
         return slope

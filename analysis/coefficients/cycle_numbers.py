@@ -1,7 +1,7 @@
 """The numbers of whole cycles, which a fit follows, and the moves that they describe.
 
 The numbers of a cycle are its hull's phasors, real and imaginary part in turn, order by order, and
-last the relative error of its frequency.
+behind them its steady rate of turn and the relative error of its frequency.
 """
 
 import math
@@ -22,6 +22,7 @@ from analysis.uncertainty.values import Contribution
 from hardware.description.arrays import FloatArray
 
 _AHEAD, _ROTATION, _TRANSLATION = 2, 1, 0
+_TURN, _PACE, _BEHIND = -2, -1, 2
 _ACROSS = {Form.MANOEUVRING: 3, Form.SEAKEEPING: _TRANSLATION}
 
 
@@ -49,8 +50,14 @@ class CycleNumbers:
     @cached_property
     def parts(self) -> FloatArray:
         """The cycles' numbers, shape ``(cycles, numbers)``."""
-        return np.stack([self.filled(cycle, interleaved(cycle.hull.phasors.values))
+        return np.stack([self.whole(cycle, interleaved(cycle.hull.phasors.values))
                          for cycle in self.cycles])  # fmt: skip
+
+    def whole(self, cycle: BodyCycle, rows: FloatArray) -> FloatArray:
+        """Return a cycle's numbers, of its hull's phasors as :meth:`filled` takes them."""
+        parts = self.filled(cycle, rows)
+        parts[_TURN] = cycle.turn_rate_rad_s
+        return parts
 
     def filled(self, cycle: BodyCycle, rows: FloatArray) -> FloatArray:
         """Return what stands by a cycle's own phasors as it stands by its numbers here.
@@ -58,8 +65,8 @@ class CycleNumbers:
         Parameters
         ----------
         rows
-            Shape ``(2 n, k)``, to ``(numbers, k)``: a surge force not measured has nothing, nor has
-            the frequency.
+            Shape ``(2 n, k)``, to ``(numbers, k)``: a surge force not measured has nothing, nor
+            have turn and frequency.
         """
         shaped = rows.reshape(cycle.orders + 1, len(cycle.channels), 2, *rows.shape[1:])
         count = self.highest + 1
@@ -67,7 +74,7 @@ class CycleNumbers:
         places = [self.channels.index(name) for name in cycle.channels]
         rows_by_order[: len(shaped), places] = shaped[:count]
         return np.concatenate(
-            (rows_by_order.reshape(-1, *rows.shape[1:]), np.zeros((1, *rows.shape[1:])))
+            (rows_by_order.reshape(-1, *rows.shape[1:]), np.zeros((_BEHIND, *rows.shape[1:])))
         )
 
     def scatter(self, cycle: BodyCycle, source: Contribution) -> FloatArray:
@@ -77,12 +84,14 @@ class CycleNumbers:
     def sensitivity(self, cycle: BodyCycle) -> FloatArray:
         """Return how a cycle's numbers follow what is stated, ``(numbers, len(STATED))``."""
         sensitivity = self.filled(cycle, cycle.hull.sensitivity)
-        sensitivity[-1, STATED.index("frequency_relative")] = 1.0
+        sensitivity[_PACE, STATED.index("frequency_relative")] = 1.0
+        sensitivity[_TURN, STATED.index("turn_rate_relative")] = cycle.turn_rate_rad_s
         return sensitivity
 
     def shaped(self, parts: FloatArray) -> FloatArray:
         """Return numbers by order and channel, ``(..., highest + 1, channels, 2)``."""
-        return parts[..., :-1].reshape(*parts.shape[:-1], self.highest + 1, len(self.channels), 2)
+        shape = (*parts.shape[:-1], self.highest + 1, len(self.channels), 2)
+        return parts[..., :-_BEHIND].reshape(shape)
 
     @cached_property
     def _omega(self) -> FloatArray:
@@ -108,12 +117,12 @@ class CycleNumbers:
     def moves(self, parts: FloatArray) -> FloatArray:
         """Return :data:`MOVES` over the cycles, shape ``(..., cycles, 6 or 9, instants)``."""
         shaped = self.shaped(parts)
-        pace = self._omega * (1.0 + parts[..., -1])
+        pace = self._omega * (1.0 + parts[..., _PACE])
         moves = {}
         for name, (channel, times) in self._made_of.items():
             own = shaped[..., channel, :].reshape(*parts.shape[:-1], -1)
             moves[name] = (pace**times)[..., None] * (own @ basis(self.highest + 1, times))
-        moves["r"] = moves["r"] + np.array([c.turn_rate_rad_s for c in self.cycles])[:, None]
+        moves["r"] = moves["r"] + parts[..., _TURN, None]
         rudder = np.array([cycle.rudder_rad for cycle in self.cycles])[:, None]
         moves[RUDDER_LETTER] = np.broadcast_to(rudder, moves["u"].shape)
         moving = len(MOVES) if HEEL in self.channels else UPRIGHT
@@ -139,4 +148,5 @@ class CycleNumbers:
             slopes[..., channel, :] += own.reshape(*over.shape[:2], count, 2)
             by_pace += times * np.einsum("kct,kt->kc", over[:, :, k], self.moved[:, k])
         flat = slopes.reshape(*over.shape[:2], -1)
-        return np.concatenate((flat, by_pace[..., None]), axis=-1)
+        by_turn = over[:, :, MOVES.index("r")].sum(axis=-1)
+        return np.concatenate((flat, by_turn[..., None], by_pace[..., None]), axis=-1)

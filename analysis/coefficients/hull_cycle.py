@@ -26,7 +26,7 @@ from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium
 
 INPUTS = ((0, 0), (1, 0), (2, 0), (2, 1), (3, 0), (3, 1), (1, 1), (1, 2))
-_TURNS = (1, 1)  # the rate of the rotation
+TURNS = (1, 1)  # the rate of the rotation
 _OF_BODY = ("mass_kg", "cg_x_m", "cg_z_m", "inertia_kg_m2")
 _TAKEN = (*_OF_BODY, "restoring_relative", "alignment_rad", "heel_rad")
 
@@ -77,12 +77,13 @@ def on_hull(
     maps = per_part(count, len(channels), inputs, omega)
     parts = gross.real.values
     moved = parts @ maps
-    moved[inputs.index(_TURNS)] += turn_rate_rad_s
+    turns, turned = inputs.index(TURNS), moved.copy()
+    turned[turns] += turn_rate_rad_s
     stated = stated_at_instants(body, drift_rad, plane, medium, heel, heel_rad)
     rows = [LOADS.index(name) for name in channels if name in LOADS]
     values, slope = pointwise(
         lambda waves: loads_asked(waves, plane, tare, restoring, HEEL in channels)[..., rows, :],
-        np.concatenate((moved, stated * np.ones(moved.shape[-1]))),
+        np.concatenate((turned, stated * np.ones(moved.shape[-1]))),
     )
     orders = count - 1
     net = HullParts(count, channels)
@@ -96,6 +97,8 @@ def on_hull(
     times = np.array([often for _, often in inputs])
     faster = (slope[:, : len(inputs)] * (times[:, None] * moved)).sum(axis=1)
     own[net.loads, STATED.index("frequency_relative")] += harmonics(faster, orders)
+    steadily = turn_rate_rad_s * harmonics(slope[:, turns], orders)
+    own[net.loads, STATED.index("turn_rate_relative")] += steadily
     sensitivity = own + whole @ sensitivity
     changes = net.parts(parts, harmonics(values, orders))
     shift, by_pace, by_speed = to_point(count, channels, point_ahead_m, plane, omega, speed_m_s)
@@ -103,9 +106,9 @@ def on_hull(
     sensitivity[:, STATED.index("frequency_relative")] += by_pace @ changes
     sensitivity[:, STATED.index("speed_m_s")] += by_speed @ changes
     changes = shift @ changes
-    # A steady turn is no harmonic of the rotation: what it adds to the point's velocity.
-    side = -1.0 if plane is Plane.VERTICAL else 1.0
-    changes[2 * channels.index("across")] += side * point_ahead_m * turn_rate_rad_s
+    across, of_turn = 2 * channels.index("across"), by_turn(plane, point_ahead_m, turn_rate_rad_s)
+    changes[across] += of_turn
+    sensitivity[across, STATED.index("turn_rate_relative")] += of_turn
     return HullCycle(
         Phasors(
             labels(channels, orders),
@@ -216,6 +219,11 @@ def loads_asked(
         loads[..., 3, :] += righting_moment(of_gm, of_bm, rolling[..., 0, :])
         loads[..., 3, :] -= righting_moment(of_gm, of_bm, resting)
     return np.asarray(loads)
+
+
+def by_turn(plane: Plane, ahead_m: float, turn_rate_rad_s: float) -> float:
+    """Return what a steady turn, no harmonic of the rotation, adds to a point's velocity across."""
+    return (-1.0 if plane is Plane.VERTICAL else 1.0) * ahead_m * turn_rate_rad_s
 
 
 def to_point(

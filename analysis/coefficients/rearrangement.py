@@ -16,7 +16,9 @@ from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.form_choice import DESCRIBES
 from analysis.coefficients.hull_cycle import (
+    TURNS,
     HullParts,
+    by_turn,
     inputs_of,
     loads_asked,
     stated_at_instants,
@@ -133,7 +135,7 @@ def _gross(cycles: Sequence[BodyCycle], way: Arrangement) -> tuple[FloatArray, T
 def _refitted(fit: CycleFit, table: Mapping[str, FloatArray]) -> tuple[FloatArray, FloatArray]:
     problem = fit.problem
     parts = np.stack(
-        [problem.numbers.filled(cycle, table[cycle.name]) for cycle in problem.numbers.cycles]
+        [problem.numbers.whole(cycle, table[cycle.name]) for cycle in problem.numbers.cycles]
     )
     return fit.refitted(np.moveaxis(parts, -1, 0))
 
@@ -174,6 +176,8 @@ def _on_hull(gross: FloatArray, tare: Tare, cycles: Sequence[BodyCycle]) -> Floa
     moved = np.stack(
         [rates[times][..., channel, :] for channel, times in inputs_of(channels)], axis=-2
     )
+    turns = np.array([cycle.turn_rate_rad_s for cycle in cycles])
+    moved[..., inputs_of(channels).index(TURNS), :] += turns[:, None]
     stated = np.stack(
         [
             stated_at_instants(
@@ -195,4 +199,6 @@ def _on_hull(gross: FloatArray, tare: Tare, cycles: Sequence[BodyCycle]) -> Floa
         pace, speed = float(omega[k]), cycle.speed_m_s
         shift, *_ = to_point(count, channels, cycle.point_ahead_m, plane, pace, speed)
         turned[:, k] = net[:, k] @ shift.T
+        of_turn = by_turn(plane, cycle.point_ahead_m, cycle.turn_rate_rad_s)
+        turned[:, k, 2 * channels.index("across")] += of_turn
     return turned

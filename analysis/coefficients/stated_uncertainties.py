@@ -46,6 +46,9 @@ class StatedUncertainties:
         Of the heel as it was set, or as the inclinometer's zero has it.
     roll_gauge_relative
         Of the roll gauge's own gain.
+    turn_rate_relative, turn_radius_m
+        Of the rate and the radius of runs on a circle. Where no speed was recorded the speed of
+        these is the one times the other, and ``speed_m_s`` does not act on it.
     inertia_degrees_of_freedom
         Of the repeats behind ``inertia_kg_m2``; 0 where it does not rest on any.
     """
@@ -73,6 +76,8 @@ class StatedUncertainties:
     density_relative: float = 0.0
     heel_rad: float = 0.0
     roll_gauge_relative: float = 0.0
+    turn_rate_relative: float = 0.0
+    turn_radius_m: float = 0.0
     inertia_degrees_of_freedom: float = 0.0
 
     @property

@@ -9,17 +9,22 @@ speed are fitted with them.
 """
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
-from analysis.coefficients.body_cycle import BodyCycle, labels
+from analysis.coefficients.body_cycle import SURGE_FORCE, BodyCycle, at_order, labels
 from analysis.coefficients.phasors import Phasors
+from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainties
 from analysis.kinematics.body_frame import CHANNELS, UNIT_OF
 from analysis.uncertainty.values import Contribution
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Plane
+
+_TINY: Final = 1e-12  # N or N m: of a record without any scatter
 
 
 @dataclass(frozen=True)
@@ -38,13 +43,13 @@ class SteadyTurn:
     force_n, moment_n_m, surge_force_n
         Of what holds the model **on the model**, in its own axes: to starboard, bow to starboard,
         ahead (``None`` where there is no gauge for it). Inertia is in them, as the gauges read.
-    u_force_n, u_moment_n_m, u_surge_force_n
+    u_force_n, u_moment_n_m, u_surge_force_n, u_radius_m, u_turn_rate_rad_s
         Standard uncertainties.
 
     Raises
     ------
     ConfigurationError
-        If the radius or an uncertainty is not above 0, or nothing turns.
+        If the radius or an uncertainty of the loads is not above 0, or nothing turns.
     """
 
     run: str
@@ -57,6 +62,8 @@ class SteadyTurn:
     drift_rad: float = 0.0
     surge_force_n: float | None = None
     u_surge_force_n: float = 0.0
+    u_radius_m: float = 0.0
+    u_turn_rate_rad_s: float = 0.0
 
     def __post_init__(self) -> None:
         for key in ("radius_m", "u_force_n", "u_moment_n_m"):
@@ -107,7 +114,7 @@ def turn_cycle(turn: SteadyTurn, half_spacing_m: float, body: Body) -> BodyCycle
         np.array([values.get(name, 0.0) for name in channels], dtype=np.complex128),
         sources,
     )
-    return BodyCycle(
+    cycle = BodyCycle(
         turn.run,
         Plane.HORIZONTAL,
         half_spacing_m,
@@ -119,4 +126,57 @@ def turn_cycle(turn: SteadyTurn, half_spacing_m: float, body: Body) -> BodyCycle
         drift_rad=turn.drift_rad,
         mean_known=True,
         turn_rate_rad_s=turn.turn_rate_rad_s,
+    )
+    by_speed = np.zeros((len(phasors.values), 2, len(STATED)))
+    for name, share in (("ahead", math.cos(turn.drift_rad)), ("across", -math.sin(turn.drift_rad))):
+        by_speed[channels.index(name), 0, STATED.index("speed_m_s")] = share
+    return by_radius(replace(cycle, sensitivity=by_speed.reshape(-1, len(STATED))))
+
+
+def by_radius(cycle: BodyCycle) -> BodyCycle:
+    """Return a run on a circle whose speed is its rate times its radius, and uncertain by these."""
+    sensitivity = cycle.sensitivity.copy()
+    speed, rate, radius = (
+        STATED.index(name) for name in ("speed_m_s", "turn_rate_relative", "turn_radius_m")
+    )
+    sensitivity[:, rate] += sensitivity[:, speed] * cycle.speed_m_s
+    sensitivity[:, radius] += sensitivity[:, speed] * abs(cycle.turn_rate_rad_s)
+    sensitivity[:, speed] = 0.0
+    return replace(cycle, sensitivity=sensitivity)
+
+
+def turn_of(cycle: BodyCycle, u_radius_m: float, u_turn_rate_rad_s: float) -> SteadyTurn:
+    """Return what was recorded on a circle, of a static cycle whose zeros were taken off.
+
+    Parameters
+    ----------
+    u_radius_m, u_turn_rate_rad_s
+        By the scatter of what was recorded.
+    """
+    rows = ("force", "moment", *([SURGE_FORCE] if cycle.has_surge else []))
+    loads = cycle.phasors.select([at_order(name, 0) for name in rows]).real
+    values, spread = loads.values[::2].tolist(), loads.standard_uncertainty[::2].tolist()
+    return SteadyTurn(
+        cycle.name,
+        cycle.speed_m_s / abs(cycle.turn_rate_rad_s),
+        cycle.turn_rate_rad_s,
+        values[0],
+        values[1],
+        max(spread[0], _TINY),
+        max(spread[1], _TINY),
+        cycle.drift_rad,
+        values[2] if cycle.has_surge else None,
+        spread[2] if cycle.has_surge else 0.0,
+        u_radius_m,
+        u_turn_rate_rad_s,
+    )
+
+
+def of_turns(turns: Sequence[SteadyTurn]) -> StatedUncertainties:
+    """Return what is uncertain of the circles themselves: of several runs the largest."""
+    return StatedUncertainties(
+        turn_rate_relative=max(
+            (one.u_turn_rate_rad_s / abs(one.turn_rate_rad_s) for one in turns), default=0.0
+        ),
+        turn_radius_m=max((one.u_radius_m for one in turns), default=0.0),
     )

@@ -152,6 +152,7 @@ class StrutCycle:
             heel=self.heel,
             heel_rad=point.heel_rad,
             lines=point.own_orders,
+            turn_rate_rad_s=point.turn_rate_rad_s,
         )
 
 

@@ -67,6 +67,8 @@ FORCE_AFT = Channel("force_aft", "N")
 FORCE_FORE = Channel("force_fore", "N")
 FORCE_X = Channel("force_x", "N")
 CARRIAGE_SPEED = Channel("carriage_speed", "m/s")
+# Of a carriage or arm that drives a circle: how fast it turns, positive to starboard.
+TURN_RATE = Channel("turn_rate", "rad/s")
 # Behind the model. A positive rudder angle turns the ship to starboard, and its normal force is
 # then positive (to port); thrust is positive ahead, both are those of the propeller and the rudder
 # on their gauges in the model.
@@ -108,5 +110,5 @@ POSITIONS_OF_MODEL: Final = (POSITION_AFT, POSITION_FORE)
 POSITIONS: Final = (POSITION_AFT.name, POSITION_FORE.name)
 STANDARD: Final = (
     SHAFT_ANGLE, DISPLACEMENT_AFT, DISPLACEMENT_FORE, FORCE_AFT, FORCE_FORE, FORCE_X,
-    CARRIAGE_SPEED, *STEERING, *POSITIONS_OF_MODEL, *HEELING, COMMAND_AFT, COMMAND_FORE,
+    CARRIAGE_SPEED, TURN_RATE, *STEERING, *POSITIONS_OF_MODEL, *HEELING, COMMAND_AFT, COMMAND_FORE,
 )  # fmt: skip

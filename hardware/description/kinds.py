@@ -16,6 +16,7 @@ class RunKind(StrEnum):
     RESTORING = "restoring"  # a turn so slow that the force is that of the displacement
     STATIC_DRIFT = "static-drift"  # towed at an angle, the shaft at rest
     STRAIGHT_TOW = "straight-tow"  # towed straight, the shaft at rest
+    CIRCLE = "circle"  # towed round a circle, the shaft at rest
     CONTROL = "control"  # a condition that is repeated through the campaign
 
     @property
@@ -31,7 +32,7 @@ class RunKind(StrEnum):
     @property
     def towed(self) -> bool:
         """Whether the run needs forward speed."""
-        return self in (RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW)
+        return self in (RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW, RunKind.CIRCLE)
 
     @property
     def wants_zeros(self) -> bool:

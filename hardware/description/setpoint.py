@@ -53,6 +53,9 @@ class SetPoint:
     lines
         Of a motion of many frequencies, each with its own strut phase, and what makes a motion
         exact; empty for a single sine.
+    turn_rate_rad_s
+        Of the way of the midpoint between the struts, a circle of radius ``U / abs(r)`` that is
+        driven at the carriage speed; positive to starboard, 0 for a straight way.
     """
 
     frequency_hz: float
@@ -65,6 +68,7 @@ class SetPoint:
     revolutions_hz: float = 0.0
     heel_rad: float = 0.0
     lines: tuple[Line, ...] = ()
+    turn_rate_rad_s: float = 0.0
 
     @property
     def every_line(self) -> tuple[Line, ...]:

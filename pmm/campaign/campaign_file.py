@@ -30,8 +30,9 @@ _UNITS = {
     "drift_deg": ("drift_rad", math.pi / 180.0),
     "rudder_angle_deg": ("rudder_angle_rad", math.pi / 180.0),
     "heel_deg": ("heel_rad", math.pi / 180.0),
+    "turn_rate_deg_s": ("turn_rate_rad_s", math.pi / 180.0),
 }
-_RESTING = ("drift_deg", "rudder_angle_deg", "heel_deg")
+_RESTING = ("drift_deg", "rudder_angle_deg", "heel_deg", "turn_rate_deg_s")
 _EXTRA_KEYS = {"oscillator": ("preset",), "runs": tuple(_UNITS), "at_rest": _RESTING}
 # Tables and keys for which ``false`` says that the rig has no such thing.
 _MAY_BE_FALSE = ("photocell", "acquisition")
@@ -120,6 +121,8 @@ def _run_faults(table: dict[str, Any]) -> Iterator[Fault]:
     zeros = [one.name for _, one in rest if one.kind is RunKind.ZERO]
     for place, one in every:
         yield from _zero_faults(one, place, zeros)
+    for place, still in rest:
+        yield from _circle_faults(still, place)
 
 
 def _valid(table: dict[str, Any], array: str, kind: type[T]) -> Iterator[tuple[Place, T]]:
@@ -146,6 +149,13 @@ def _zero_faults(run: Run | AtRest, place: Place, zeros: list[str]) -> Iterator[
             near = get_close_matches(name, zeros, n=1, cutoff=0.5)
             hint = f"did you mean {near[0]!r}?" if near else "list it in [[at_rest]], kind zero"
             yield Fault((*place, key), f"= {name!r} is no zero run of the campaign; {hint}")
+
+
+def _circle_faults(one: AtRest, place: Place) -> Iterator[Fault]:
+    if one.kind is RunKind.CIRCLE and not (one.turn_rate_rad_s and one.carriage_speed_m_s > 0.0):
+        yield Fault(place, "needs carriage_speed_m_s and turn_rate_deg_s for a run of kind circle")
+    elif one.turn_rate_rad_s and one.kind is not RunKind.CIRCLE:
+        yield Fault((*place, "turn_rate_deg_s"), f"is of no use to a run of kind {one.kind}")
 
 
 def _beyond(oscillator: Oscillator, run: Run, place: Place) -> Iterator[Fault]:

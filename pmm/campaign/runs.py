@@ -140,6 +140,7 @@ class AtRest:
     rudder_angle_rad: float = 0.0
     revolutions_hz: float = 0.0
     heel_rad: float = 0.0
+    turn_rate_rad_s: float = 0.0
     repeat: int = 1
     load: LoadStep | None = None
     known_mass: KnownMass | None = None
@@ -163,6 +164,7 @@ class AtRest:
             self.rudder_angle_rad,
             self.revolutions_hz,
             self.heel_rad,
+            turn_rate_rad_s=self.turn_rate_rad_s,
         )
 
     def recording_path(self, folder: Path) -> Path:

@@ -1,6 +1,7 @@
 """One recording becomes one cycle: what a worker does, in whichever process or machine it is."""
 
 import hashlib
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +14,7 @@ from analysis.coefficients.corrections import (
     zero_reading,
 )
 from analysis.coefficients.resistance_form import PROPELLED
+from analysis.coefficients.steady_turns import by_radius, turn_of
 from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static_cycle
 from analysis.recording import Recording
 from analysis.resolver.analysis import analyse
@@ -27,10 +29,12 @@ from hardware.description.channels import (
     HEEL_ANGLE,
     HEELING,
     ROLL_MOMENT,
+    TURN_RATE,
     units_on,
 )
 from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag, Severity
+from hardware.description.kinds import RunKind
 from pmm.campaign.calibrated_recording import applied
 from pmm.campaign.recording_source import RAW, open_recording
 from pmm.coefficients.attitude import attitude_of, rest_of
@@ -198,6 +202,9 @@ def _following(
 
 
 def _towed(task: Task, recording: Recording) -> Done:
+    spread = (0.0, 0.0)
+    if task.kind is RunKind.CIRCLE:
+        task, spread = _as_driven(task, recording)
     reading = zero_reading(recording, 0.0, (*FORCES, *_besides(task, recording)))
     struts = static_cycle(task.name, reading, task.oscillator, task.set_point)
     struts, flags = zeroed(struts, task, recording)
@@ -208,8 +215,40 @@ def _towed(task: Task, recording: Recording) -> Done:
             "the campaign file, where zeros were taken off before it was recorded"
         )
     attitude, told = attitude_of(task, recording)
-    done = _done(task, recording, _model(task, struts), None, 0, (*flags, *told))
-    return replace(done, attitude=attitude)
+    cycle, turn = _model(task, struts), None
+    if task.kind is RunKind.CIRCLE:
+        turn = turn_of(cycle, *spread)
+        cycle = cycle if CARRIAGE_SPEED.name in recording.channel_names else by_radius(cycle)
+    done = _done(task, recording, cycle, None, 0, (*flags, *told))
+    return replace(done, attitude=attitude, turn=turn)
+
+
+def _as_driven(task: Task, recording: Recording) -> tuple[Task, tuple[float, float]]:
+    """Return a run on a circle as speed and rate of turn were recorded.
+
+    Without a speed it is that of the circle's radius. Beside it the standard uncertainties of
+    radius and rate by the scatter of what was recorded.
+    """
+    point, spread = task.set_point, [0.0, 0.0]
+    means = [point.carriage_speed_m_s, point.turn_rate_rad_s]
+    for k, name in enumerate((CARRIAGE_SPEED.name, TURN_RATE.name)):
+        if name in recording.channel_names:
+            mean = zero_reading(recording, 0.0, (name,)).offsets.real
+            means[k] = float(mean.values[0])
+            spread[k] = float(mean.standard_uncertainty[0])
+    speed, rate = means
+    if not rate * point.turn_rate_rad_s > 0.0:
+        raise DataError(
+            f"{task.name}: the rate of turn is {rate:.4g} rad/s on average where the run asks for "
+            f"{point.turn_rate_rad_s:.4g}; correct the sign of the channel {TURN_RATE.name}, or "
+            "turn_rate_deg_s in the campaign file"
+        )
+    if CARRIAGE_SPEED.name not in recording.channel_names:
+        driven = replace(point, carriage_speed_m_s=speed * rate / point.turn_rate_rad_s)
+        return replace(task, set_point=replace(driven, turn_rate_rad_s=rate)), (0.0, spread[1])
+    u_radius = math.hypot(spread[0] / rate, speed * spread[1] / rate**2)
+    driven = replace(point, carriage_speed_m_s=speed, turn_rate_rad_s=rate)
+    return replace(task, set_point=driven), (u_radius, spread[1])
 
 
 def _model(task: Task, struts: StrutCycle) -> BodyCycle:

@@ -10,6 +10,7 @@ import numpy as np
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_plan import OWN_MODEL
 from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainties
+from analysis.coefficients.steady_turns import SteadyTurn, of_turns
 from analysis.response.following import StrutFollowing
 from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
@@ -199,6 +200,12 @@ def largest(every: Sequence[StatedUncertainties]) -> StatedUncertainties:
     inertia = max(every, key=lambda one: one.inertia_kg_m2)
     vector = np.max([one.vector for one in every], axis=0)
     return _stated(vector, inertia.inertia_degrees_of_freedom)
+
+
+def with_turns(stated: StatedUncertainties, turns: Sequence[SteadyTurn]) -> StatedUncertainties:
+    """Return it with what runs on a circle say of rate and radius where nothing is stated."""
+    vector = np.where(stated.vector == 0.0, of_turns(turns).vector, stated.vector)
+    return _stated(vector, stated.inertia_degrees_of_freedom)
 
 
 def _stated(vector: FloatArray, freedom: float) -> StatedUncertainties:

@@ -9,6 +9,7 @@ from typing import Final
 from analysis.attitude import Attitude, RestPosition
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.corrections import ZeroReading
+from analysis.coefficients.steady_turns import SteadyTurn
 from analysis.plausibility import RunHarmonics
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.reference_choice import ReferenceChoice
@@ -34,7 +35,7 @@ _NO_STEERING = (
     "it states neither rudder_angle_deg nor revolutions_hz in the campaign file; give them where a "
     "propeller turned or a rudder was there"
 )
-TOWED = (RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW)
+TOWED = tuple(kind for kind in RunKind if kind.towed)
 
 
 _OVERTONES: Final = 2
@@ -159,6 +160,8 @@ class Done:
         Of a run of many lines, what was resolved of struts and gauges.
     following
         How each strut followed its set-points; empty where one of both was not recorded.
+    turn
+        Of a run on a circle, what was recorded.
     """
 
     name: str
@@ -175,6 +178,7 @@ class Done:
     attitude: Attitude | None = None
     lines: Harmonics | None = None
     following: tuple[StrutFollowing, ...] = ()
+    turn: SteadyTurn | None = None
 
 
 @dataclass(frozen=True)

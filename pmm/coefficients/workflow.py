@@ -23,9 +23,7 @@ from pmm.coefficients.campaign_cycles import campaign_cycles
 from pmm.coefficients.run_names import check_left_out, check_names
 from pmm.coefficients.settings import CoefficientSettings
 from pmm.coefficients.solving import Progress, solve_campaign
-from pmm.coefficients.stated_inputs import (
-    largest,
-)
+from pmm.coefficients.stated_inputs import largest, with_turns
 from pmm.coefficients.tasks import Done, Failed
 from pmm.coefficients.turn_file import read_turns, turn_cycles
 
@@ -134,7 +132,10 @@ def coefficients_of(
     missing = tuple(name for part in parts for name in part.work.not_recorded)
     if not cycles:
         raise DataError(_nothing(folders, failed, missing))
+    turns = (*(one.turn for part in parts for one in part.runs if one.turn is not None), *turns)
     stated = largest([part.stated for part in parts])
+    nothing = () if stated.vector.any() else (_NOTHING_STATED,)
+    stated = with_turns(stated, turns)
     result = solve_campaign(cycles, request_of(settings, stated), executor, progress)
     result = with_decays(result, settings.roll_decays, campaigns[0][1].heel, parts[0].body)
     runs = tuple(one for part in parts for one in part.runs)
@@ -148,7 +149,7 @@ def coefficients_of(
         {one.name: one.flags for one in runs if one.flags},
         (
             *(flag for part in parts for flag in (*part.work.left_out, *part.doubts)),
-            *(() if stated.vector.any() else (_NOTHING_STATED,)),
+            *nothing,
         ),
         stated,
         parts[0].body,

@@ -101,6 +101,30 @@ WAY: Final = Check(
     "tow slower, or ask for fewer periods or less settling",
     _OWN,
 )
+TURN_RATE: Final = Check(
+    "rate of turn [rad/s]",
+    "refuse above the carriage's own `highest_turn_rate_rad_s`",
+    _RIG,
+    "tow slower, choose a larger radius, or have the circle driven by hand: leave the carriage's "
+    "table out",
+    _OWN,
+)
+RADIUS: Final = Check(
+    "radius of the circle [m]",
+    "refuse outside `tank.radius_m`",
+    _RIG,
+    "choose another radius",
+    _OWN,
+)
+TURNS: Final = Check(
+    "turns of the circle",
+    "warn above {0:g}",
+    _OURS,
+    "the model meets its own wake; ask for a shorter duration_s, or a larger radius",
+    "half: warned of after half a circle, though its water is calm; twice: a second turn in the "
+    "wake of the first is let go by",
+    (1.0,),
+)
 BUS: Final = Check(
     "bus load",
     "refuse above {0:.0%}, when the rig's file is read; else note",
@@ -291,8 +315,8 @@ CALIBRATION: Final = Check(
 
 CHECKS: Final = (
     FREQUENCY, AMPLITUDE, STROKE, STRUT_PHASE, VELOCITY, ACCELERATION, STRUT_FORCE, GAUGE_FORCE,
-    LOAD, SPEED, STATIC_ANGLE, WAY, BUS, ROTATION, ANGLE_TO_FLOW, FROUDE, REYNOLDS, TURNING,
-    REDUCED_SWAY,
+    LOAD, SPEED, STATIC_ANGLE, WAY, TURN_RATE, RADIUS, TURNS, BUS, ROTATION, ANGLE_TO_FLOW,
+    FROUDE, REYNOLDS, TURNING, REDUCED_SWAY,
     REDUCED_YAW, REDUCED, WAVE_FREQUENCY, TAU_SWAY, TAU_HEAVE, ECHO, REACH, KEEL, BLOCKAGE,
     DEPTH, DEPTH_FROUDE, TANK_MODE, STRUCTURE, CYCLES, SETTLING, RIPPLE, SAMPLING,
     CALIBRATION,

@@ -114,7 +114,8 @@ def _of_waves(run: RunPlan, rig: RigFile, made: MotionWaves) -> Iterator[_Condit
     if rig.model is None or rig.model.length_m is None:
         return
     length = rig.model.length_m
-    yield _Condition(table.TURNING, float(np.abs(made.velocity[2]).max()) * length / speed)
+    turning = np.abs(made.velocity[2] + run.set_point.turn_rate_rad_s).max()
+    yield _Condition(table.TURNING, float(turning) * length / speed)
     yield _Condition(table.WAVE_FREQUENCY, omega * math.sqrt(length / gravity))
     check = _REDUCED.get(run.motion, table.REDUCED)
     yield _below(check, omega * length / speed, check.numbers[-1] if check.numbers else math.nan)

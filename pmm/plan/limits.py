@@ -53,6 +53,7 @@ def limit_findings(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
             )
             yield PlanFinding(PlanVerdict.REFUSE, quantity, one.value, limit, run.name, text)
     yield from _near_full_scale(run, rig)
+    yield from _many_turns(run)
 
 
 def _turning(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
@@ -127,11 +128,32 @@ def _towing(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
     yield _Bound(table.SPEED, speed, 0.0, high, "the carriage's drive")
     if rig.tank is not None:
         yield _Bound(table.SPEED, speed, 0.0, rig.tank.highest_speed_m_s, "the carriage")
+    if run.set_point.turn_rate_rad_s:
+        yield from _circling(run, rig)
+        return
+    if rig.tank is not None:
         way = tank_length_m(run, rig)
         yield _Bound(table.WAY, way, 0.0, rig.tank.length_m, "from rest to rest")
     if (track := carriage_track_m(rig)) is not None:
         way = tank_length_m(run, rig)
         yield _Bound(table.WAY, way, 0.0, track, "the carriage's own track")
+
+
+def _circling(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
+    rate = abs(run.set_point.turn_rate_rad_s)
+    _, high = _ends(rig.hardware.carriage, "", "highest_turn_rate_rad_s")
+    yield _Bound(table.TURN_RATE, rate, 0.0, high, "the carriage's drive")
+    if rig.tank is not None and rig.tank.radius_m is not None:
+        low, high = rig.tank.radius_m
+        yield _Bound(table.RADIUS, run.set_point.carriage_speed_m_s / rate, low, high, "the tank")
+
+
+def _many_turns(run: RunPlan) -> Iterator[PlanFinding]:
+    turns = abs(run.set_point.turn_rate_rad_s) * run.moving_s / (2.0 * math.pi)
+    check, (most,) = table.TURNS, table.TURNS.numbers
+    if turns > most:
+        text = f"{turns:.3g} {check.quantity}: {check.reason}"
+        yield PlanFinding(PlanVerdict.WARN, check.quantity, turns, most, run.name, text)
 
 
 def _loading(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:

@@ -13,7 +13,7 @@ from pmm.plan.expansion import all_of, expand, snake
 from pmm.plan.plan_tables import OrderTable, PlanEntry, PlanTables, Scheme, ZeroTable
 from pmm.plan.run_plan import RunPlan
 
-_ORDERED = (RunKind.OSCILLATION, RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW)
+_ORDERED = (RunKind.OSCILLATION, *(kind for kind in RunKind if kind.towed))
 
 
 def runs_of(

@@ -16,6 +16,7 @@ from pmm.plan.expansion import MOST_RUNS, run_count
 from pmm.plan.ordering import runs_of
 from pmm.plan.plan_rules import (
     channel_faults,
+    circle_faults,
     control_faults,
     end_faults,
     entry_faults,
@@ -182,6 +183,7 @@ def _entry_faults(
     yield from end_faults(entry, defaults, place)
     yield from rig_faults(entry.motion, found.oscillator, place)
     yield from path_faults(entry, found.oscillator, place)
+    yield from circle_faults(entry, found.oscillator, place)
     yield from channel_faults(entry, found.channels, place)
     if any(entry.heels_rad) and found.rig is not None and "heel" not in found.rig.campaign:
         text = "needs [campaign.heel] in the rig's file: how the model is held in roll"

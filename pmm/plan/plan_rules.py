@@ -34,6 +34,7 @@ _TAKES: Final[dict[RunKind, set[str]]] = {
     RunKind.ZERO: _REST,
     RunKind.STATIC_DRIFT: {"duration_s", "speeds_m_s", "drifts_rad"} | _SET,
     RunKind.STRAIGHT_TOW: {"duration_s", "speeds_m_s"} | _SET,
+    RunKind.CIRCLE: {"duration_s", "speeds_m_s", "drifts_rad", "radii_m"} | _SET,
 }
 _NEEDS: Final[dict[RunKind, tuple[str, ...]]] = {
     RunKind.OSCILLATION: ("motion", "frequencies_hz", "amplitudes_m"),
@@ -44,6 +45,7 @@ _NEEDS: Final[dict[RunKind, tuple[str, ...]]] = {
     RunKind.PUSH: ("loads_n",),
     RunKind.STATIC_DRIFT: ("speeds_m_s", "drifts_rad"),
     RunKind.STRAIGHT_TOW: ("speeds_m_s",),
+    RunKind.CIRCLE: ("speeds_m_s", "radii_m"),
 }
 _SHOWN: Final = {
     "amplitudes_m": "amplitudes_mm",
@@ -97,7 +99,9 @@ def _number_faults(entry: PlanEntry, place: Place) -> Iterator[Fault]:
                 yield Fault((*place, key), f"has {value:g}, which should be {asked}")
     if entry.kind is RunKind.PUSH and len(entry.loads_n) > 1:
         yield Fault((*place, "loads_n"), "should be one number: about how hard the push is")
-    if entry.kind in (RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW) and 0.0 in entry.speeds_m_s:
+    if 0.0 in entry.radii_m:
+        yield Fault((*place, "radii_m"), "has 0; a circle has a radius, below 0 to port")
+    if entry.kind.towed and 0.0 in entry.speeds_m_s:
         yield Fault((*place, "speeds_m_s"), "has 0; a tow needs a speed above 0")
     yield from _line_faults(entry, place)
     yield from gate_faults(entry, place)
@@ -161,6 +165,13 @@ def _motion_faults(entry: PlanEntry, place: Place) -> Iterator[Fault]:
         yield Fault(place, 'needs drifts_deg for the motion "yaw-drift"')
     elif motion in (Motion.HEAVE, Motion.PITCH, Motion.YAW) and drifts:
         yield Fault((*place, "drifts_deg"), f"is of no use to {motion}; yaw-drift has a drift")
+
+
+def circle_faults(entry: PlanEntry, oscillator: Oscillator | None, place: Place) -> Iterator[Fault]:
+    """Yield a circle on a rig that does not measure what turning does."""
+    vertical = oscillator is not None and oscillator.plane is Plane.VERTICAL
+    if entry.kind is RunKind.CIRCLE and vertical:
+        yield Fault((*place, "kind"), '= "circle" is for the horizontal oscillator')
 
 
 def rig_faults(

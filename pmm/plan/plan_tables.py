@@ -83,6 +83,8 @@ class PlanEntry:
         Of the rudder, positive to turn to starboard; of the propeller.
     heels_rad
         Heel angles, positive to starboard.
+    radii_m
+        Of circles, positive to starboard.
     lines
         Harmonics of each frequency, which is the base of a motion of many lines; one run has them
         all, with amplitudes as one over their order.
@@ -113,6 +115,7 @@ class PlanEntry:
     rudder_angles_rad: tuple[float, ...] = ()
     revolutions_hz: tuple[float, ...] = ()
     heels_rad: tuple[float, ...] = ()
+    radii_m: tuple[float, ...] = ()
     periods: int | None = None
     settling_periods: int | None = None
     repeats: int | None = None

@@ -30,6 +30,7 @@ _MANY: Final = (
     "rudder_angles_rad",
     "revolutions_hz",
     "heels_rad",
+    "radii_m",
     "channels",
     "loads_n",
 )

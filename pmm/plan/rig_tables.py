@@ -36,6 +36,8 @@ class TankTable:
         What the carriage may use, from rest to rest.
     depth_m
         ``None`` for deep water.
+    radius_m
+        Smallest and largest radius of a circle; ``None`` where nobody says.
     """
 
     length_m: float
@@ -43,6 +45,7 @@ class TankTable:
     carriage_acceleration_m_s2: float
     highest_speed_m_s: float
     depth_m: float | None = None
+    radius_m: tuple[float, float] | None = None
     gravity_m_s2: float = STANDARD_GRAVITY_M_S2
 
 

@@ -40,6 +40,7 @@ from pmm.document.flag_lines import flag_lines, flag_notes
 from pmm.document.notation import NOT_KNOWN, counted, joined, rounded, written
 from pmm.report.attitude import attitude_table
 from pmm.report.attitude_figure import attitude_figures
+from pmm.report.circle_figure import circle_figures
 from pmm.report.coefficient_plots import figures
 from pmm.report.coefficient_tables import (
     alternatives_tables,
@@ -99,6 +100,7 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
                 "Figures",
                 (
                     *figures(found),
+                    *circle_figures(outcome),
                     *attitude_figures(outcome),
                     *heel_figures(outcome),
                     *following_figures(outcome),
@@ -120,10 +122,15 @@ def _conditions(outcome: CampaignOutcome) -> tuple[Content, ...]:
     return conditions, attitude_table(outcome), heel_table(outcome), following_table(outcome)
 
 
+def _known(value: float, uncertainty: float) -> str:
+    return rounded(value, uncertainty) if uncertainty else f"{value:.4g}"
+
+
 _CIRCLES: Final[tuple[Column[SteadyTurn], ...]] = (
     word("run", "run"),
-    number("radius", "radius_m", written(".4g"), "m"),
-    number("r", "turn_rate_rad_s", written(".4g"), "rad/s"),
+    Column("radius", lambda one: _known(one.radius_m, one.u_radius_m), unit="m", number=True),
+    Column("r", lambda one: _known(one.turn_rate_rad_s, one.u_turn_rate_rad_s), unit="rad/s",
+           number=True),
     number("U", "speed_m_s", written(".4g"), "m/s"),
     Column("drift", lambda one: f"{math.degrees(one.drift_rad):.3g}", unit="deg", number=True),
     Column("force", lambda one: rounded(one.force_n, one.u_force_n), unit="N", number=True),

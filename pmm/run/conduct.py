@@ -32,7 +32,7 @@ from pmm.run.surroundings import Questions, Surroundings
 
 Begin = Callable[[RunPlan], Measurement]
 _UNKNOWN_RAMP_S: Final = 60.0  # of a shaft that states no acceleration
-_UNDISPLACED: Final = frozenset({RunKind.ZERO, RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW})
+_UNDISPLACED: Final = frozenset({RunKind.ZERO, *(kind for kind in RunKind if kind.towed)})
 
 
 @dataclass
@@ -206,24 +206,30 @@ def check_frequency(c: Conduct) -> None:
 
 
 def check_speed(c: Conduct) -> None:
-    """Compare the carriage's speed with the run's.
+    """Compare the carriage's speed, and on a circle its rate of turn, with the run's.
 
     Raises
     ------
     CarriageOffSpeedError
         If it is further off than allowed for longer than its time.
     """
-    carriage, wanted = c.rig.carriage, c.present.set_point.carriage_speed_m_s
+    carriage, point = c.rig.carriage, c.present.set_point
     if carriage is None:
         return
-    measured = carriage.measured_speed_m_s
-    allowed = CARRIAGE_SHARE * wanted + carriage.tolerance_m_s
-    c.off_speed = 0 if abs(measured - wanted) <= allowed else c.off_speed + 1
+    speed, rate = point.carriage_speed_m_s, point.turn_rate_rad_s
+    of_speed = CARRIAGE_SHARE * speed + carriage.tolerance_m_s
+    kept = [(carriage.measured_speed_m_s, speed, of_speed, "runs", "m/s")]
+    if rate:  # as far off as the speed may be where the radius is right
+        turned, allowed = carriage.measured_turn_rate_rad_s, abs(rate) * of_speed / speed
+        kept.append((turned, rate, allowed, "turns", "rad/s"))
+    off = [one for one in kept if not abs(one[0] - one[1]) <= one[2]]
+    c.off_speed = c.off_speed + 1 if off else 0
     if c.off_speed > CARRIAGE_S * c.rate_hz:
+        measured, wanted, allowed, does, unit = off[0]
         raise CarriageOffSpeedError(
             carriage.name,
-            f"runs at {measured:.4g} m/s where the run wants {wanted:g} m/s (limit {allowed:.2g} "
-            "m/s off); look at its drive and rails, then tow again",
+            f"{does} at {measured:.4g} {unit} where the run wants {wanted:g} {unit} (limit "
+            f"{allowed:.2g} {unit} off); look at its drive and rails, then tow again",
         )
 
 

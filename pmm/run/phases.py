@@ -80,7 +80,8 @@ def _pausing(c: Conduct) -> State | None:
 def _enter_starting(c: Conduct) -> None:
     c.measurement, c.path = c.begin(c.present), LivePath(c.rig)
     if c.rig.carriage is None:
-        c.questions.ask(c.surroundings.tow(c.present.set_point.carriage_speed_m_s))
+        point = c.present.set_point
+        c.questions.ask(c.surroundings.tow(point.carriage_speed_m_s, point.turn_rate_rad_s))
 
 
 def _at_speed(c: Conduct) -> bool:
@@ -90,7 +91,7 @@ def _at_speed(c: Conduct) -> bool:
         return True
     if not c.towed:
         c.towed = True
-        carriage.run_at(speed)
+        carriage.run_at(speed, c.present.set_point.turn_rate_rad_s)
     return carriage.at_speed
 
 

@@ -32,6 +32,8 @@ class Surroundings:
         Mean heading of the model to the tow, however it is set.
     rudder_angle_rad, revolutions_hz, heel_rad
         Of the rudder, of the propeller and of the model.
+    turn_rate_rad_s
+        Of the carriage on a circle.
     lines
         That the struts follow.
     """
@@ -42,6 +44,7 @@ class Surroundings:
     rudder_angle_rad: float = 0.0
     revolutions_hz: float = 0.0
     heel_rad: float = 0.0
+    turn_rate_rad_s: float = 0.0
     lines: tuple[Line, ...] = ()
     mass_kg: float = 0.0
     load: tuple[str, float] = ("", 0.0)
@@ -71,17 +74,16 @@ class Surroundings:
         for text in run.prompts:
             yield Demand(f"{run.name}: {text}; press Enter when it is done", "prompt")
 
-    def tow(self, speed_m_s: float) -> Iterator[Demand]:
-        """Yield what brings the carriage to a speed; 0 stops it."""
-        if speed_m_s == self.carriage_speed_m_s:
+    def tow(self, speed_m_s: float, turn_rate_rad_s: float = 0.0) -> Iterator[Demand]:
+        """Yield what brings the carriage to a speed, straight or round a circle; 0 stops it."""
+        if (speed_m_s, turn_rate_rad_s) == (self.carriage_speed_m_s, self.turn_rate_rad_s):
             return
-        self.carriage_speed_m_s = speed_m_s
-        text = (
-            f"carriage: tow at {speed_m_s:g} m/s; press Enter when the speed is steady"
-            if speed_m_s
-            else "carriage: stop and go back; press Enter when it stands"
-        )
-        yield Demand(text, "carriage", speed_m_s)
+        self.carriage_speed_m_s, self.turn_rate_rad_s = speed_m_s, turn_rate_rad_s
+        text = "carriage: stop and go back; press Enter when it stands"
+        if speed_m_s:
+            way = f" {_circle(speed_m_s, turn_rate_rad_s)}" if turn_rate_rad_s else ""
+            text = f"carriage: tow at {speed_m_s:g} m/s{way}; press Enter when the speed is steady"
+        yield Demand(text, "carriage", speed_m_s, turn_rate_rad_s=turn_rate_rad_s)
 
     def fetch(self) -> Iterator[Demand]:
         """Yield what brings a carriage back that cannot go back by itself."""
@@ -203,6 +205,15 @@ def _heel(angle_rad: float) -> str:
         return "set the model upright; press Enter when it is so"
     to, by = _side_and_size(angle_rad)
     return f"heel the model to {to} by {by}; press Enter when it is so"
+
+
+def _circle(speed_m_s: float, turn_rate_rad_s: float) -> str:
+    to, _ = _side_and_size(turn_rate_rad_s)
+    size = abs(turn_rate_rad_s)
+    return (
+        f"on a circle of {speed_m_s / size:.4g} m to {to}, {size:.4g} rad/s "
+        f"({math.degrees(size):.3g} deg/s)"
+    )
 
 
 def _side_and_size(angle_rad: float) -> tuple[str, str]:

@@ -38,6 +38,7 @@ _SOURCES = {
     channels.FORCE_FORE: signals.DYNAMOMETER_FORCE_FORE,
     channels.FORCE_X: signals.FORCE_X,
     channels.CARRIAGE_SPEED: signals.CARRIAGE_SPEED,
+    channels.TURN_RATE: signals.TURN_RATE,
     channels.RUDDER_ANGLE: signals.RUDDER_ANGLE,
     channels.REVOLUTIONS: signals.REVOLUTIONS,
     channels.PROPELLER_THRUST: signals.PROPELLER_THRUST,
@@ -68,6 +69,7 @@ class Acquisition:
     force_aft: Digitiser | None = _PERFECT
     force_fore: Digitiser | None = _PERFECT
     carriage_speed: Digitiser | None = None
+    turn_rate: Digitiser | None = None
     force_x: Digitiser | None = None
     rudder_angle: Digitiser | None = None
     revolutions: Digitiser | None = None

@@ -171,22 +171,22 @@ class SimulatedCarriage(Controller):
 
     Parameters
     ----------
-    speed_m_s
-        Returns the speed that the carriage really has, with what ripples on it.
+    driven
+        Returns speed and rate of turn that the carriage really has, with what ripples on them.
     runs
-        Told the speed along the ramp, in steps.
+        Told both along the ramp, in steps: the circle is kept.
     """
 
     def __init__(
         self,
         name: str,
         settings: ModbusCarriageSettings,
-        speed_m_s: Callable[[], float],
-        runs: Callable[[float], None],
+        driven: Callable[[], tuple[float, float]],
+        runs: Callable[[float, float], None],
     ) -> None:
         super().__init__(name, settings)
-        self._settings, self._speed_m_s, self._runs = settings, speed_m_s, runs
-        self._ramp_m_s = self._told_m_s = 0.0
+        self._settings, self._really, self._runs = settings, driven, runs
+        self._ramp_m_s = self._told_m_s = self._curvature = 0.0
         self.position_m = settings.track_m[0] if settings.track_m is not None else 0.0
         self.show(settings.registers.position, self.position_m)
 
@@ -199,12 +199,20 @@ class SimulatedCarriage(Controller):
         late = abs(self._ramp_m_s - self._told_m_s) >= one.acceleration_m_s2 * _STEP_S
         if self._ramp_m_s != self._told_m_s and (late or self._ramp_m_s == wanted):
             self._told_m_s = self._ramp_m_s
-            self._runs(self._ramp_m_s)
-        speed = self._speed_m_s()
+            self._runs(self._ramp_m_s, self._ramp_m_s * self._per_radius(wanted))
+        speed, turn = self._really()
         self.position_m += speed * step_s
         if not self.stale:
             self.show(one.registers.speed, speed)
             self.show(one.registers.position, self.position_m)
+            self.show(one.registers.turn_rate, turn)
+
+    def _per_radius(self, wanted_m_s: float) -> float:
+        """Return one over the circle's radius; on the ramp down that which it has."""
+        told = self._settings.registers.set_turn_rate
+        if told is not None and wanted_m_s:
+            self._curvature = self.number(told) / wanted_m_s
+        return self._curvature
 
 
 class SimulatedAngle(Controller):

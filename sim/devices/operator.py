@@ -94,6 +94,13 @@ def _setting(key: str) -> Callable[[World, Demand], None]:
     return doing
 
 
+def _tow(world: World, question: Demand) -> None:
+    world.plant.surround(
+        carriage_speed_m_s=float(question.value or 0.0),
+        turn_rate_rad_s=question.turn_rate_rad_s,
+    )
+
+
 def _immerse(world: World, question: Demand) -> None:
     world.plant.surround(medium=Medium(str(question.value)))
 
@@ -111,7 +118,7 @@ def _follow(world: World, question: Demand) -> None:
 
 
 _DOING: Final[dict[str, Callable[[World, Demand], None]]] = {
-    "carriage": _setting("carriage_speed_m_s"),
+    "carriage": _tow,
     "medium": _immerse,
     "load": _load,
     "mass": _ballast,

@@ -39,6 +39,7 @@ class PlantConditions:
     revolutions_hz: float = 0.0
     heel_rad: float = 0.0
     lines: tuple[Line, ...] = ()
+    turn_rate_rad_s: float = 0.0
 
 
 @dataclass(frozen=True)

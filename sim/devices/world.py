@@ -218,7 +218,13 @@ class World:
             case ModbusCarriageSettings():
                 plant = self.plant
                 return SimulatedCarriage(
-                    part.name, settings, lambda: plant.value(signals.CARRIAGE_SPEED.name), self._tow
+                    part.name,
+                    settings,
+                    lambda: (
+                        plant.value(signals.CARRIAGE_SPEED.name),
+                        plant.value(signals.TURN_RATE.name),
+                    ),
+                    self._tow,
                 )
             case ModbusAxisSettings():
                 return SimulatedAngle(part.name, settings, self._moved(part.name))
@@ -251,8 +257,8 @@ class World:
         key = "eccentricity_m" if name == "eccentricity" else "strut_phase_rad"
         return lambda place: self.plant.set_linkage(**{key: place})
 
-    def _tow(self, speed_m_s: float) -> None:
-        self.plant.surround(carriage_speed_m_s=speed_m_s)
+    def _tow(self, speed_m_s: float, turn_rate_rad_s: float) -> None:
+        self.plant.surround(carriage_speed_m_s=speed_m_s, turn_rate_rad_s=turn_rate_rad_s)
 
     def _source(self, channel: str) -> Source:
         signal = f"recorded_{channel}"

@@ -43,7 +43,8 @@ RIG_COSINE: Final = 5  # of the angle by which the rig is turned on the carriage
 RIG_SINE: Final = 6
 STRUTS_COSINE: Final = 7  # of the angle by which the model is turned on its struts
 STRUTS_SINE: Final = 8
-COLUMNS: Final = 9
+TURN: Final = 9  # rate at which carriage and rig go round a circle, from ahead to across
+COLUMNS: Final = 10
 
 
 Value: TypeAlias = Any
@@ -67,6 +68,8 @@ class BodyMotion(NamedTuple):
         Their time derivatives, the carriage's speed steady.
     ahead, across
         Acceleration of the reference point against the tank, in body axes.
+
+    On a circle the tank's axes are those of the rig's way, and turn with it.
     """
 
     cosine: Value
@@ -93,7 +96,12 @@ def body_motion(
     fore_acceleration: Value,
     speed_m_s: Value,
 ) -> BodyMotion:
-    """Return the model's motion that the struts' displacements and their derivatives make."""
+    """Return the model's motion that the struts' displacements and their derivatives make.
+
+    The rig goes straight at the speed, or round a circle with the midpoint of its struts on it:
+    then point p in the rig's axes, which turn at W, has the velocity U + p' + W x p and the
+    acceleration p'' + W x (U + 2 p' + W x p).
+    """
     half, pivot = hull[GEOMETRY, HALF_SPACING], hull[GEOMETRY, PIVOT]
     rig_cosine, rig_sine = hull[GEOMETRY, RIG_COSINE], hull[GEOMETRY, RIG_SINE]
     slope = (fore - aft) / (2.0 * half) + hull[GEOMETRY, OFFSET]
@@ -122,6 +130,14 @@ def body_motion(
     n_rate = held_rate + ahead * r - speed_m_s * rig_sine
     x_acceleration = -aside * r_rate - ahead * r * r
     n_acceleration = held_acceleration + ahead * r_rate - aside * r * r
+    turn = hull[GEOMETRY, TURN]
+    if turn != 0.0:
+        x, n = ahead - reach, held - reach * hull[GEOMETRY, OFFSET] + aside
+        x_acceleration = x_acceleration - turn * (2.0 * n_rate + speed_m_s * rig_sine + turn * x)
+        n_acceleration = n_acceleration + turn * (2.0 * x_rate - speed_m_s * rig_cosine - turn * n)
+        x_rate = x_rate - turn * n
+        n_rate = n_rate + turn * x
+        r = r + turn
     body_cosine = cosine * hull[GEOMETRY, STRUTS_COSINE] - sine * hull[GEOMETRY, STRUTS_SINE]
     body_sine = sine * hull[GEOMETRY, STRUTS_COSINE] + cosine * hull[GEOMETRY, STRUTS_SINE]
     u = x_rate * body_cosine + n_rate * body_sine

@@ -27,13 +27,14 @@ def numbers_of(hull: ModelParameters, added_mass: FloatArray, linear: FloatArray
         What the linear system has for the struts' forces already, per (h, h', h''): ``(2, 6)``.
     """
     numbers = np.zeros((geometry.ROWS, geometry.COLUMNS))
-    numbers[geometry.GEOMETRY] = _geometry(hull)
+    numbers[geometry.GEOMETRY, : geometry.TURN] = _geometry(hull)
     _fill_body(numbers, hull)
     _fill_water(numbers, hull, added_mass)
-    still = body_motion(numbers, *_STILL)
+    still = body_motion(numbers, *_STILL)  # at rest, before anything turns
     loads = body_loads(numbers, still)
     numbers[geometry.AT_REST, :3] = gauge_readings(numbers, still.cosine, still.sine, *loads)
     numbers[geometry.LINEAR : geometry.LINEAR + 2, :6] = linear
+    numbers[geometry.GEOMETRY, geometry.TURN] = turns_with(hull.plane) * hull.turn_rate_rad_s
     return numbers
 
 

@@ -83,6 +83,8 @@ class ModelParameters:
     steering
         Propeller and rudder. Their loads go by the struts' motion, and through the mounting to the
         gauges without moving it.
+    turn_rate_rad_s
+        Of carriage and rig on a circle, to starboard.
     heeling
         Of a model that is heeled or free to roll; its loads go by the struts' motion likewise.
     """
@@ -103,3 +105,4 @@ class ModelParameters:
     afloat: bool = True
     steering: Steering | None = None
     heeling: Heeling | None = None
+    turn_rate_rad_s: float = 0.0

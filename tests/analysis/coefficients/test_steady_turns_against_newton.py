@@ -6,12 +6,15 @@ used. The water's loads are put in by their coefficients.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from analysis.coefficients.campaign import campaign_coefficients
 from analysis.coefficients.campaign_plan import Request
+from analysis.coefficients.cycle_fit import fit_cycles
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.steady_turns import SteadyTurn, turn_cycle
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
@@ -21,6 +24,7 @@ MASSES = np.array([[20.0, 0.7, 0.0], [15.0, -0.5, 0.1], [15.0, -0.5, -0.1], [10.
 PUT_IN = {"Y_v": -120.0, "Y_r": 30.0, "N_v": -40.0, "N_r": -25.0}
 CUBIC = {"Y_vvv": -300.0, "Y_rrr": 8.0, "Y_vvr": 60.0, "Y_vrr": -45.0}
 U_M_S = 1.0
+NAMES = (*PUT_IN, "X_0")
 
 
 def body() -> Body:
@@ -104,6 +108,34 @@ def test_about_a_point_ahead_they_are_those_of_the_shifted_hull() -> None:
         "N_r": n_r - ahead * n_v - ahead * (y_r - ahead * y_v),
     }
     assert {name: found[name] for name in shifted} == pytest.approx(shifted, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("stated", "key"), [("turn_rate_relative", "turn_rate_rad_s"), ("turn_radius_m", "radius_m")]
+)
+def test_radius_and_rate_are_budgeted_as_a_slip_of_theirs_moves_the_values(stated, key) -> None:
+    """About a point ahead, where a rate moves the velocity across too; no noise, no scatter."""
+    turns = [turn(radius, drift, PUT_IN, sign) for radius in (3.0, 8.0)
+             for drift in (-0.1, 0.0, 0.12) for sign in (1.0, -1.0)]  # fmt: skip
+
+    def values(by: float) -> np.ndarray:
+        slipped = [
+            replace(
+                one, **{key: getattr(one, key) * (1.0 + by) if "rate" in key else one.radius_m + by}
+            )
+            for one in turns
+        ]
+        fitted = fit_cycles(
+            [turn_cycle(one, 0.5, body()).about(0.3) for one in slipped], NAMES, (0,)
+        )
+        return fitted.values
+
+    cycles = [turn_cycle(one, 0.5, body()).about(0.3) for one in turns]
+    fit = fit_cycles(cycles, NAMES, (0,), stated=StatedUncertainties(**{stated: 1.0}))
+    (found,) = [one.dense(len(NAMES))[:, 0] for one in fit.uncertain.contributions
+                if one.label == stated]  # fmt: skip
+    shown = (values(1e-5) - values(-1e-5)) / 2e-5
+    assert found == pytest.approx(shown, rel=1e-4, abs=1e-4 * np.abs(shown).max())
 
 
 @pytest.mark.parametrize(
