@@ -15,7 +15,10 @@ from analysis.gap.inference.constants import ALIKE, PLAIN, STRANGE
 from analysis.gap.inference.gaussian import Nuisances
 from hardware.description.arrays import BoolArray, FloatArray
 
-_LEAST: Final = 0.03  # of an effect's largest direction, below which one is rounding
+_LEAST: Final = 0.03  # of an effect's largest direction, below which one is as good as none
+# Of a deviation of 1: less is rounding. A saturation that no run reaches changes 1e-16; brought to
+# the size of the others, that would be a shape drawn by chance, another one on each machine.
+_ROUNDING: Final = float(np.sqrt(np.finfo(np.float64).eps))
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +104,8 @@ class Shapes:
 
 def _directions(changes: FloatArray, scale: FloatArray) -> FloatArray:
     sizes = np.sqrt(np.mean((changes / scale[:, None]) ** 2, axis=0))
-    seen = changes[:, sizes > 0.0] / sizes[sizes > 0.0] / np.sqrt(max(int((sizes > 0.0).sum()), 1))
+    there = sizes > _ROUNDING
+    seen = changes[:, there] / sizes[there] / np.sqrt(max(int(there.sum()), 1))
     left, values, _ = np.linalg.svd(seen, full_matrices=False)
     kept = values > _LEAST * values.max(initial=0.0)
     return np.asarray(left[:, kept] * values[kept], np.float64)

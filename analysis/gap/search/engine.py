@@ -171,7 +171,8 @@ def _join(
         for second in partners:
             if not set(second.names) & set(first.names):
                 key = frozenset((*first.names, *second.names))
-                both = joined(problem, first, second)
+                # in one order: two ways that differ by rounding alone are the same one
+                both = joined(problem, *sorted((first, second), key=lambda one: one.names))
                 promise = expected_evidence(problem, both)
                 if key not in chances or promise > chances[key].promise:
                     chances[key] = _Chance(promise, both)
