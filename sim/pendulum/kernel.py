@@ -15,8 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from hardware.description.arrays import FloatArray
-from sim.pendulum.vectors import cross, times
+from hardware.description.arrays import FloatArray, IntArray
+from sim.pendulum.two_lines import suspended
+from sim.pendulum.vectors import combine, times
+from sim.solve.array_loops import copy, solve
 from sim.solve.compilation import compile_loop
 
 LINEAR, PENDULUM, SUSPENSION = 0, 1, 2
@@ -42,95 +44,6 @@ def resist(q: FloatArray, v: FloatArray, applied: FloatArray, loads: FloatArray)
 
 
 @compile_loop
-def attitude(p: FloatArray, length: float, q: FloatArray) -> tuple[float, float]:
-    """Return depth of the beam and roll angle that lines of this length allow.
-
-    Sum and difference of ``|P - A|^2 = l^2`` for both lines; the roll is second order, so the
-    iteration contracts by the fourth order of the displacements.
-    """
-    d, x, y = p[2], q[0], q[1]
-    sp, cp = np.sin(q[2]), np.cos(q[2])
-    roll, z = 0.0, length
-    for _ in range(30):
-        z = np.sqrt(length**2 - x * x - y * y - 2.0 * d * d * (1.0 - cp * np.cos(roll)))
-        b = x * sp - y * cp
-        new = np.arctan2(b, z) + np.arcsin(y / np.hypot(z, b))
-        if abs(new - roll) < 1e-16:
-            break
-        roll = new
-    return z, roll
-
-
-@compile_loop
-def suspended(
-    p: FloatArray, t: float, q: FloatArray, v: FloatArray, load: FloatArray
-) -> FloatArray:
-    """Return the accelerations of a rigid body on two lines: Newton and Euler, two tensions.
-
-    ``p``: line length, its creep per decade of minutes, half spacing d, depth of the centre of
-    gravity, moving mass, weight, then I_xx, I_yy, I_zz, I_xz of the body about that centre.
-    Coordinates: surge, sway of the beam's middle, yaw, pitch about the beam; ``load`` belongs to
-    these. Lines from (0, +-d, 0) to the beam's ends, x forward, y starboard, z down.
-    """
-    length = p[0] * (1.0 + p[1] * np.log10(1.0 + max(t, 0.0) / 60.0))
-    d, depth, mass = p[2], p[3], p[4]
-    z, roll = attitude(p, length, q)
-    sp, cp, sr, cr = np.sin(q[2]), np.cos(q[2]), np.sin(roll), np.cos(roll)
-    # rates of depth and roll, from the derivative of both constraints
-    a11, a12 = z, d * d * cp * sr
-    b1 = -(q[0] * v[0] + q[1] * v[1] + d * d * sp * cr * v[2])
-    a21, a22 = sr, z * cr + (q[0] * sp - q[1] * cp) * sr
-    b2 = v[0] * sp * cr + v[1] * (1.0 - cp * cr) + (q[0] * cp + q[1] * sp) * cr * v[2]
-    det = a11 * a22 - a12 * a21
-    z_rate, roll_rate = (b1 * a22 - a12 * b2) / det, (a11 * b2 - a21 * b1) / det
-    # unit vectors: vertical, roll axis, beam, and rows of the body's own axes
-    ez, e1 = np.array((0.0, 0.0, 1.0)), np.array((cp, sp, 0.0))
-    beam, e3 = np.array((-sp * cr, cp * cr, sr)), np.array((sp * sr, -cp * sr, cr))
-    axes = np.empty((3, 3))
-    axes[0] = np.cos(q[3]) * e1 - np.sin(q[3]) * e3
-    axes[1] = beam
-    axes[2] = np.sin(q[3]) * e1 + np.cos(q[3]) * e3
-    spin = v[2] * ez + roll_rate * e1 + v[3] * beam
-    body = np.array(((p[6], 0.0, p[9]), (0.0, p[7], 0.0), (p[9], 0.0, p[8])))
-    inner = p[6] * p[8] - p[9] * p[9]
-    inverse = np.array(((p[8], 0.0, -p[9]), (0.0, inner / p[7], 0.0), (-p[9], 0.0, p[6]))) / inner
-    across = np.ascontiguousarray(axes.T)
-    momentum = times(across, times(body, times(axes, spin)))
-    ease = np.dot(across, np.dot(inverse, axes))
-    # loads: a force at the beam's middle, a couple about it that works on yaw and pitch only
-    middle = -depth * axes[2]
-    force = np.array((load[0], load[1], 0.0))
-    share = 1.0 - sr * sr
-    couple = ((load[2] - sr * load[3]) * ez + (load[3] - sr * load[2]) * beam) / share
-    c0 = (force + p[5] * ez) / mass
-    w0 = times(ease, couple + cross(middle, force) - cross(spin, momentum))
-    # tensions per length of both lines, from their lengths that do not change
-    right, line, lever, eased = np.empty(2), np.empty((2, 3)), np.empty((2, 3)), np.empty((2, 3))
-    start = np.array((v[0], v[1], z_rate))
-    for i in range(2):
-        side = d if i == 0 else -d
-        line[i] = np.array((q[0], q[1] - side, z)) + side * beam
-        arm = side * beam + middle
-        lever[i] = cross(arm, line[i])
-        eased[i] = times(ease, lever[i])
-        speed = start + cross(spin, side * beam)
-        swung = c0 + cross(spin, cross(spin, arm))
-        right[i] = np.dot(line[i], swung) + np.dot(w0, lever[i]) + np.dot(speed, speed)
-    m00 = np.dot(line[0], line[0]) / mass + np.dot(lever[0], eased[0])
-    m01 = np.dot(line[0], line[1]) / mass + np.dot(lever[0], eased[1])
-    m11 = np.dot(line[1], line[1]) / mass + np.dot(lever[1], eased[1])
-    det = m00 * m11 - m01 * m01
-    pull0, pull1 = (right[0] * m11 - m01 * right[1]) / det, (m00 * right[1] - m01 * right[0]) / det
-    centre = c0 - (pull0 * line[0] + pull1 * line[1]) / mass
-    turning = w0 - pull0 * eased[0] - pull1 * eased[1]
-    at_beam = centre + cross(turning, middle) + cross(spin, cross(spin, middle))
-    rolled = v[2] * ez + roll_rate * e1
-    free = turning - roll_rate * v[2] * cross(ez, e1) - v[3] * cross(rolled, beam)
-    up, along = free[2], np.dot(free, beam)
-    return np.array((at_beam[0], at_beam[1], (up - sr * along) / share, (along - sr * up) / share))
-
-
-@compile_loop
 def accelerate(model: Any, t: float, q: FloatArray, v: FloatArray, load: FloatArray) -> FloatArray:
     """Return the accelerations under an applied load, all forces of the body's own included."""
     kind, p, minv, K, loads, _, _ = model
@@ -144,8 +57,28 @@ def accelerate(model: Any, t: float, q: FloatArray, v: FloatArray, load: FloatAr
         if p[1] > 0.0:  # a periodic force: its frequency, then cosine and sine of four orders
             for n in range(1, 5):
                 force[0] += p[2 * n] * np.cos(n * p[1] * t) + p[2 * n + 1] * np.sin(n * p[1] * t)
-        force -= times(K, q)
+        force = combine(1.0, force, -1.0, times(K, q))
     return times(minv, force)
+
+
+@compile_loop
+def rubbing(sign: FloatArray, loads: FloatArray) -> FloatArray:
+    """Return the loads of dry friction where coordinates slide."""
+    load = np.empty(sign.size)
+    for i in range(sign.size):
+        load[i] = -sign[i] * loads[i, COULOMB]
+    return load
+
+
+@compile_loop
+def holding(sign: FloatArray, loads: FloatArray) -> IntArray:
+    """Return the coordinates that friction holds."""
+    stuck, count = np.empty(sign.size, dtype=np.int64), 0
+    for i in range(sign.size):
+        if loads[i, COULOMB] > 0.0 and sign[i] == 0.0:
+            stuck[count] = i
+            count += 1
+    return stuck[:count]
 
 
 @compile_loop
@@ -153,30 +86,36 @@ def motion(model: Any, t: float, x: FloatArray, sign: FloatArray) -> tuple[Float
     """Return accelerations, and what friction has to hold where a coordinate is stuck (sign 0)."""
     n = sign.size
     q, v = x[:n], x[n:]
-    coulomb = model[4][:, COULOMB]
-    load, held = -sign * coulomb, np.zeros(n)
+    load, held = rubbing(sign, model[4]), np.zeros(n)
     a = accelerate(model, t, q, v, load)
     if not model[6]:
         return a, held
-    stuck = np.nonzero((coulomb > 0.0) & (sign == 0.0))[0]
-    if stuck.size > 0:
-        columns = np.empty((stuck.size, n))
-        for j in range(stuck.size):
-            load[stuck[j]] += 1.0
-            columns[j] = accelerate(model, t, q, v, load) - a
-            load[stuck[j]] -= 1.0
-        square = np.ascontiguousarray(columns[:, stuck].T)
-        held[stuck] = np.linalg.solve(square, a[stuck])
-        a -= np.dot(held[stuck], columns)
-        a[stuck] = 0.0
+    stuck = holding(sign, model[4])
+    square, right = np.empty((stuck.size, stuck.size)), np.empty(stuck.size)
+    columns = np.empty((stuck.size, n))
+    for j in range(stuck.size):
+        load[stuck[j]] += 1.0
+        copy(combine(1.0, accelerate(model, t, q, v, load), -1.0, a), columns[j])
+        load[stuck[j]] -= 1.0
+        right[j] = a[stuck[j]]
+        for i in range(stuck.size):
+            square[i, j] = columns[j, stuck[i]]
+    needed = solve(square, right)
+    for j in range(stuck.size):
+        held[stuck[j]] = needed[j]
+        a = combine(1.0, a, -needed[j], columns[j])
+    for j in range(stuck.size):
+        a[stuck[j]] = 0.0
     return a, held
 
 
 @compile_loop
 def pattern(sign: FloatArray, loads: FloatArray) -> int:
     """Number the set of coordinates that friction holds: bit i for coordinate i."""
-    stuck = (loads[:, COULOMB] > 0.0) & (sign == 0.0)
-    return int(np.sum(stuck * 2 ** np.arange(sign.size)))
+    number = 0
+    for i in holding(sign, loads):
+        number += 1 << i
+    return number
 
 
 @compile_loop
@@ -187,8 +126,8 @@ def remainder(
     n = sign.size
     rate = np.zeros(2 * n)
     a, _ = motion(model, t, x, sign)
-    rub = -sign * model[4][:, COULOMB]
-    rate[n:] = a - times(A[n:], x) - times(B[n:], rub)
+    flow = combine(1.0, times(A[n:], x), 1.0, times(B[n:], rubbing(sign, model[4])))
+    copy(combine(1.0, a, -1.0, flow), rate[n:])
     return rate
 
 
@@ -199,40 +138,51 @@ def advance(
     """Return the state after ``step / 2^level``, no reversal within it."""
     index, A, B, E, G = tables
     k = index[pattern(sign, model[4])] if model[6] else 0
-    rub = -sign * model[4][:, COULOMB]
+    rub = rubbing(sign, model[4])
     if not model[5]:
-        return times(E[k, level], x) + times(G[k, level], rub)
+        return combine(1.0, times(E[k, level], x), 1.0, times(G[k, level], rub))
     h = step / 2.0**level
     half, push = E[k, level + 1], times(G[k, level + 1], rub)
     r1 = remainder(model, A[k], B[k], t, x, sign)
-    middle = times(half, x) + push
+    middle = combine(1.0, times(half, x), 1.0, push)
     r1_half = times(half, r1)
-    r2 = remainder(model, A[k], B[k], t + h / 2.0, middle + h / 2.0 * r1_half, sign)
-    r3 = remainder(model, A[k], B[k], t + h / 2.0, middle + h / 2.0 * r2, sign)
-    late = times(half, middle + h * r3) + push
+    at = combine(1.0, middle, h / 2.0, r1_half)
+    r2 = remainder(model, A[k], B[k], t + h / 2.0, at, sign)
+    at = combine(1.0, middle, h / 2.0, r2)
+    r3 = remainder(model, A[k], B[k], t + h / 2.0, at, sign)
+    late = combine(1.0, times(half, combine(1.0, middle, h, r3)), 1.0, push)
     r4 = remainder(model, A[k], B[k], t + h, late, sign)
-    moved = middle + h / 6.0 * (r1_half + 2.0 * (r2 + r3))
-    return times(half, moved) + push + h / 6.0 * r4
+    rates = combine(1.0, r1_half, 2.0, combine(1.0, r2, 1.0, r3))
+    moved = combine(1.0, times(half, combine(1.0, middle, h / 6.0, rates)), 1.0, push)
+    return combine(1.0, moved, h / 6.0, r4)
 
 
 @compile_loop
 def settle(model: Any, t: float, x: FloatArray, sign: FloatArray) -> None:
     """Set each friction's sign: along the velocity, or held at rest where it can hold."""
     n = sign.size
-    coulomb = model[4][:, COULOMB]
-    sign[:] = np.where(coulomb > 0.0, np.sign(x[n:]), 0.0)
+    loads = model[4]
+    for i in range(n):
+        sign[i] = np.sign(x[n + i]) if loads[i, COULOMB] > 0.0 else 0.0
     for _ in range(n):
         held = motion(model, t, x, sign)[1]
-        sign[:] = np.where(np.abs(held) > coulomb, np.sign(held), sign)
+        for i in range(n):
+            if abs(held[i]) > loads[i, COULOMB]:
+                sign[i] = np.sign(held[i])
 
 
 @compile_loop
 def turned(model: Any, t: float, x: FloatArray, sign: FloatArray) -> bool:
     """Tell whether a sliding coordinate has reversed, or a held one broken loose."""
-    if np.any(x[sign.size :] * sign < 0.0):
-        return True
+    n = sign.size
+    for i in range(n):
+        if x[n + i] * sign[i] < 0.0:
+            return True
     if pattern(sign, model[4]) > 0:
-        return bool(np.any(np.abs(motion(model, t, x, sign)[1]) > model[4][:, COULOMB]))
+        held = motion(model, t, x, sign)[1]
+        for i in range(n):
+            if abs(held[i]) > model[4][i, COULOMB]:
+                return True
     return False
 
 
@@ -259,10 +209,20 @@ def interval(
         steps += whole >> level
         x = after
         if new:
-            x[n:] = np.where(x[n:] * sign < 0.0, 0.0, x[n:])
+            for i in range(n):
+                if x[n + i] * sign[i] < 0.0:
+                    x[n + i] = 0.0
             settle(model, t + step * steps / whole, x, sign)
             level = 0
     return x
+
+
+@compile_loop
+def place(given: FloatArray, k: int, x: FloatArray) -> None:
+    """Fill the state with what is given for a sample: at rest while held, else as released."""
+    n = x.size // 2
+    for i in range(n):
+        x[i], x[n + i] = given[1 + i, k], 0.0 if given[0, k] > 0.0 else given[1 + n + i, k]
 
 
 @compile_loop
@@ -286,16 +246,16 @@ def run(
     step = interval_s / steps
     for k in range(count):
         t = (first + k) * interval_s
-        if given[0, k] > 0.0:
-            x[:n], x[n:] = given[1 : 1 + n, k], 0.0
-            free = False
-        elif not free:
-            x[:], free = given[1:, k], True
+        held = given[0, k] > 0.0
+        if held or not free:
+            place(given, k, x)
+        if not held and not free:
             settle(model, t, x, sign)
-        out[: 2 * n, k] = x
-        out[2 * n :, k] = 0.0
+        free = not held
+        rates = motion(model, t, x, sign)[0] if free else np.zeros(n)
+        for i in range(n):
+            out[i, k], out[n + i, k], out[2 * n + i, k] = x[i], x[n + i], rates[i]
         if free:
-            out[2 * n :, k] = motion(model, t, x, sign)[0]
             for j in range(steps):
                 x = interval(model, tables, t + j * step, step, x, sign)
     return x, free

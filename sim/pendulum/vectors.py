@@ -1,8 +1,4 @@
-"""Products of small vectors and matrices for the compiled loop, without a library call each.
-
-numba keeps compiled code on disk and does not notice when a function of another file changes: who
-changes one of these removes ``__pycache__``.
-"""
+"""Sums and products of small vectors for the compiled loop, without a library call each."""
 
 import numpy as np
 
@@ -19,12 +15,31 @@ def product(matrix: FloatArray, vector: FloatArray) -> FloatArray:
     return out
 
 
+def total(a: float, one: FloatArray, b: float, other: FloatArray) -> FloatArray:
+    """Return ``a one + b other``."""
+    out = np.empty(one.size)
+    for i in range(one.size):
+        out[i] = a * one[i] + b * other[i]
+    return out
+
+
+def _by_arrays(a: float, one: FloatArray, b: float, other: FloatArray) -> FloatArray:
+    return a * one + b * other
+
+
 times = compile_loop(product) if available() else np.dot
+combine = compile_loop(total) if available() else _by_arrays
+
+
+@compile_loop
+def vector(x: float, y: float, z: float) -> FloatArray:
+    """Return the vector of three components."""
+    out = np.empty(3)
+    out[0], out[1], out[2] = x, y, z
+    return out
 
 
 @compile_loop
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:
     """Return a x b."""
-    return np.array(
-        (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-    )
+    return vector(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
