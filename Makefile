@@ -37,15 +37,17 @@ demo: $(VENV)/.user
 
 # A file's tests stay together: what they prepare is prepared once. Files go in the order of their
 # names: those of few and long tests would else be left for the end. The tests share the cores, so a
-# library's own threads would only get in each other's way.
+# library's own threads would only get in each other's way. Commands that they start find compiled
+# sources, whatever the environment says.
 WORKERS := -n auto --dist loadfile --no-loadscope-reorder
+PYTEST  := env -u PYTHONDONTWRITEBYTECODE OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 \
+	$(BIN)/python -m pytest $(WORKERS)
 test: $(VENV)/.dev
-	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest $(WORKERS)
+	$(PYTEST)
 
 # A context for each test: `python -m benchmarks.mutants` asks which tests run a line.
 coverage: $(VENV)/.dev
-	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest $(WORKERS) \
-		-m "" --cov --cov-context=test --cov-report=term:skip-covered
+	$(PYTEST) -m "" --cov --cov-context=test --cov-report=term:skip-covered
 
 lint: $(VENV)/.dev
 	$(BIN)/ruff check
@@ -64,8 +66,7 @@ docs: $(VENV)/.docs
 
 # First the tests that draw their inputs, with many more of them than `make test` draws.
 bench: $(VENV)/.bench
-	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest $(WORKERS) \
-		-m hypothesis --hypothesis-profile=full
+	$(PYTEST) -m hypothesis --hypothesis-profile=full
 	$(BIN)/python -m benchmarks
 
 # Scored once for each commit: the commit's hash is the seed. Goes on where it was broken off.
@@ -74,7 +75,7 @@ sealed: $(VENV)/.sealed
 
 # First the tests that take long. Of a commit a step is done once: goes on where it was broken off.
 release: $(VENV)/.dev
-	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest $(WORKERS) -m slow
+	$(PYTEST) -m slow
 	$(BIN)/python -m benchmarks.release
 
 clean:

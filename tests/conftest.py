@@ -1,6 +1,7 @@
 """What holds for every test: the same examples each time, and nothing is left behind."""
 
 import os
+from collections import defaultdict
 from collections.abc import Iterator
 
 import can
@@ -20,6 +21,23 @@ settings.register_profile(
 )
 settings.register_profile("full", settings.get_profile("seeded"), max_examples=200)
 settings.load_profile("seeded")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark as slow all cases of a test but the sample of them that it asks for, evenly drawn."""
+    cases = defaultdict(list)
+    for item in items:
+        if item.get_closest_marker("sample"):
+            cases[item.nodeid.partition("[")[0]].append(item)
+    for those in cases.values():
+        mark = those[0].get_closest_marker("sample")
+        assert mark is not None
+        (count,) = mark.args
+        drawn = {(2 * k + 1) * len(those) // (2 * count) for k in range(count)}
+        for place, item in enumerate(those):
+            if place not in drawn:
+                item.add_marker(pytest.mark.slow)
 
 
 @pytest.fixture(autouse=True)

@@ -46,6 +46,7 @@ def integrated(force: float, start: list[float], seconds: float) -> solve_ivp:
     ).sol
 
 
+@pytest.mark.slow
 def test_period_and_decay_of_a_swing() -> None:
     rng, motion = np.random.default_rng(28), integrated(0.0, [0.1, 0.0], 41.0)
     off = []
@@ -77,6 +78,7 @@ def forced(rng: np.random.Generator, seconds: float = 30.0) -> tuple[Analysis, n
     return found, np.array([-turned.imag, turned.real])
 
 
+@pytest.mark.slow
 def test_harmonics_of_a_forced_motion() -> None:
     rng, held = np.random.default_rng(8), []
     for _ in range(12):

@@ -83,6 +83,7 @@ def test_friction_has_the_snr_that_is_said(tmp_path: Path) -> None:
     assert np.sqrt(squares) == pytest.approx(said, rel=0.03)
 
 
+@pytest.mark.slow
 def test_a_seed_spoils_alike_each_time(tmp_path: Path) -> None:
     folders = [tmp_path / "one", tmp_path / "two"]
     for folder in folders:
@@ -128,6 +129,7 @@ def test_sealed_cases_of_all_worlds_take_turns_and_are_seeded_by_the_frozen_comm
         frozen([{"frozen": "0" * 40}])
 
 
+@pytest.mark.slow
 def test_figures_of_kept_marks_are_those_of_the_answers_themselves() -> None:
     """Oracle: counts by hand of six lines."""
     right = {"top_1_by_class": [1.0], "stage": [1.0], "shrinkage_covered": [], "false_alarms": []}

@@ -37,6 +37,7 @@ def test_the_whole_board_is_a_million_with_its_parts() -> None:
     assert {sizes[one] for one in ("MAT 5", "MAT 7.3", "TDMS")} == {3_000}
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("target", TARGETS, ids=[one.name for one in TARGETS])
 def test_good_inputs_are_read_without_a_broken_promise(target, tmp_path: Path) -> None:
     with opened(target, tmp_path) as (seeds, read):
@@ -92,6 +93,7 @@ def test_a_flag_of_the_channel_or_of_all_says_a_missing_value() -> None:
         check_recording(Recording("a", one.channels, values, 10.0, flags=(flag,)))
 
 
+@pytest.mark.slow
 def test_a_board_goes_on_where_it_was_left(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -46,6 +46,7 @@ def test_figures_by_hand() -> None:
     assert wrong(LINES) == pytest.approx(1 / 2)
 
 
+@pytest.mark.slow
 def test_each_snr_and_world_is_held_to_its_thresholds() -> None:
     found = counted(LINES)
     assert found.measured["needed_over_random_from_10"] == pytest.approx(13 / 16)

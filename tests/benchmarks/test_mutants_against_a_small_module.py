@@ -36,6 +36,7 @@ def house(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> House:
     return House(tmp_path)
 
 
+@pytest.mark.slow
 def test_what_is_noticed_is_killed_and_the_boundary_survives(house: House) -> None:
     tests = ["test_small.py::test_broken", "test_small.py::test_larger"]
     covering = Covering({2: [""], 3: tests})

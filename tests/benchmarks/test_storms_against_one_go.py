@@ -4,9 +4,12 @@ import json
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from benchmarks.storms import TRIALS
 
 
+@pytest.mark.slow
 def test_it_goes_on_where_it_ended(tmp_path: Path) -> None:
     once, twice = tmp_path / "once.json", tmp_path / "twice.json"
     assert _main(["--to", "2", "--file", str(once), "--workers", "1"]) == 0
@@ -17,6 +20,7 @@ def test_it_goes_on_where_it_ended(tmp_path: Path) -> None:
     assert (found["sequences"], found["wrong"]) == (2, [])
 
 
+@pytest.mark.slow
 def test_two_workers_find_what_one_does(tmp_path: Path) -> None:
     alone, shared = tmp_path / "alone.json", tmp_path / "shared.json"
     assert _main(["--to", "4", "--file", str(alone), "--workers", "1"]) == 0

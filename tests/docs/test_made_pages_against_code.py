@@ -12,6 +12,7 @@ from pmm.plan import check_table
 DOCS = Path(__file__).parents[2] / "docs"
 
 
+@pytest.mark.slow
 def test_the_page_of_errors_is_the_scripts() -> None:
     assert (DOCS / "errors.md").read_text(encoding="utf-8") == errors.page()
 
@@ -72,6 +73,7 @@ def test_every_picture_is_there_and_small(entry: gallery.Entry) -> None:
         assert entry.picture.stat().st_size < 150_000
 
 
+@pytest.mark.slow
 def test_a_command_draws_what_the_gallery_says(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

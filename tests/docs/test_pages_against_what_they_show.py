@@ -61,6 +61,7 @@ def test_python_is_python(block: Block) -> None:
     compile(block.text, str(block), "exec")
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "block",
     [one for one in blocks("python") if one.page not in RUN_BY and not one.reason],
@@ -128,6 +129,7 @@ def _run_here() -> list[Block]:
     return run
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("block", [one for one in _run_here() if " gap " not in one.text], ids=str)
 def test_commands_run(block: Block, place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(place)

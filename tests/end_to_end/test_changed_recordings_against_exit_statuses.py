@@ -57,6 +57,7 @@ def an_attribute(file: h5py.File) -> None:
     file["force_aft"].attrs["units"] = "V"
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("command", "change"), [*((one, a_value) for one in COMMANDS), ("analyse", an_attribute)]
 )

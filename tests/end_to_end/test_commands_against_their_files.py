@@ -151,6 +151,7 @@ def test_simulated_runs_are_not_put_among_measured_ones(tmp_path: Path) -> None:
     assert "into another folder" in refused.stderr
 
 
+@pytest.mark.slow
 def test_one_run_alone_is_the_run_among_all(folder: Path, tmp_path: Path) -> None:
     assert (
         run(
@@ -271,6 +272,7 @@ def test_recordings_are_saved_and_kept(folder: Path, tmp_path: Path) -> None:
     assert "run_1.nc: exists already" in again.stderr
 
 
+@pytest.mark.slow
 def test_plots_are_written(folder: Path, tmp_path: Path) -> None:
     plots = ("--channel", "force_aft", "--plot", tmp_path / "plots")
     assert run("analyse", folder / "heave-1.20.nc", *plots).exit_code == 0
@@ -279,6 +281,7 @@ def test_plots_are_written(folder: Path, tmp_path: Path) -> None:
     assert names == {f"heave-1.20-{kind}.{end}" for kind in kinds for end in ("svg", "png")}
 
 
+@pytest.mark.slow
 def test_plots_by_two_processes_are_those_of_one(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -375,6 +378,7 @@ def _command(*arguments: str | Path) -> list[str]:
     return [sys.executable, "-c", code, *map(str, arguments)]
 
 
+@pytest.mark.slow
 def test_a_closed_pipe_is_quiet(folder: Path) -> None:
     environment = os.environ | {"PYTHONPATH": str(HOUSE)}
     with subprocess.Popen(
@@ -390,6 +394,7 @@ def test_a_closed_pipe_is_quiet(folder: Path) -> None:
         assert process.wait() == 1
 
 
+@pytest.mark.slow
 def test_the_real_command_in_a_process_of_its_own(folder: Path) -> None:
     done = subprocess.run(
         _command("analyse", folder / "heave-1.20.nc", "--channel", "force_aft"),

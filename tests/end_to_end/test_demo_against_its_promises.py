@@ -22,6 +22,7 @@ def demo(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Result]:
     )
 
 
+@pytest.mark.slow
 def test_the_last_line_is_the_page(demo: tuple[Path, Result]) -> None:
     folder, done = demo
     assert done.exit_code == 0
@@ -34,16 +35,19 @@ def test_the_last_line_is_the_page(demo: tuple[Path, Result]) -> None:
     assert not re.search(r"(?:src|href)=\"(?:https?:)?//", page)
 
 
+@pytest.mark.slow
 def test_the_table_has_a_line_per_run_and_force(demo: tuple[Path, Result]) -> None:
     lines = demo[1].stdout.splitlines()
     assert len([line for line in lines if re.search(r"force_(?:aft|fore) \[N\]\s+1 ", line)]) == 18
 
 
+@pytest.mark.slow
 def test_plots_are_written(demo: tuple[Path, Result]) -> None:
     names = {path.name for path in (demo[0] / "plots").iterdir()}
     assert {f"heave-f0.5-a20-{one}" for one in ("gate.svg", "gate.png", "phasors.svg")} <= names
 
 
+@pytest.mark.slow
 def test_the_command_it_names_repeats_one_of_them(demo: tuple[Path, Result]) -> None:
     (line,) = (line for line in demo[1].stdout.splitlines() if line.startswith("again"))
     program, *arguments = shlex.split(line.removeprefix("again"))
@@ -56,6 +60,7 @@ def test_the_command_it_names_repeats_one_of_them(demo: tuple[Path, Result]) -> 
         assert value in done.stdout
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", COMMANDS, ids=lambda words: words[0])
 @pytest.mark.parametrize("name", CAMPAIGNS)
 def test_every_command_takes_its_campaigns(

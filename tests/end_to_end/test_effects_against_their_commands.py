@@ -81,6 +81,7 @@ def test_one_effect_has_its_signature_beside_the_simulated_one() -> None:
     assert found["force_aft", 1] == pytest.approx(8.0 / np.pi, rel=1e-3)
 
 
+@pytest.mark.sample(50)
 @pytest.mark.parametrize("name", list(catalogue()))
 def test_every_effect_can_be_shown(name: str) -> None:
     shown = run("effects", name, "--speed", 1.0, "--phase", 90)
@@ -165,6 +166,7 @@ def test_wrong_effects_of_a_file_are_all_said(tmp_path: Path) -> None:
     assert "effects[2]: effect cable has no parameter 'x'" in message
 
 
+@pytest.mark.slow
 def test_an_effect_on_a_campaign_knows_the_run_before(tmp_path: Path) -> None:
     path = campaign(tmp_path, runs=("first", "second"))
     option = ("--effect", "residual-waves")
@@ -183,6 +185,7 @@ def test_an_effect_on_a_campaign_knows_the_run_before(tmp_path: Path) -> None:
     np.testing.assert_array_equal(force(alone), force(same))
 
 
+@pytest.mark.slow
 def test_plots_of_runs_with_and_without_effects(tmp_path: Path) -> None:
     path = campaign(tmp_path)
     for name, effects in (("nominal", ()), ("lag", ("--effect", "amplifier-lag"))):

@@ -50,6 +50,7 @@ def test_every_job_has_a_command() -> None:
     }
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("command", COMMANDS)
 def test_every_command_runs(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
@@ -104,6 +105,7 @@ def test_every_key_is_on_the_page(kind: type) -> None:
     assert sorted(_keys(kind) - words) == []
 
 
+@pytest.mark.slow
 def test_the_section_is_a_campaigns(tmp_path: Path) -> None:
     target = tmp_path / "campaign.toml"
     result = run(f"pmm inertia bifilar examples/inertia/hull.toml --output {target}")
@@ -118,6 +120,7 @@ def test_the_section_is_a_campaigns(tmp_path: Path) -> None:
     assert spread.cg_x_m == 0.001
 
 
+@pytest.mark.slow
 def test_forms_of_one_oscillation_are_said_to_be_that() -> None:
     told = {
         example: run(f"pmm inertia {job} examples/inertia/{example}.toml --fits").stdout

@@ -136,6 +136,7 @@ def test_a_decay_that_a_hand_cuts_down_is_used_up_to_there() -> None:
     assert mode.period_s == pytest.approx(make.PERIOD_S, rel=2e-4)
 
 
+@pytest.mark.slow
 def test_a_struck_beam_rings_as_its_frequency_response_says() -> None:
     columns = parse_options(["acc=Time_chan_2:m/s2"])
     beam = read_recording(

@@ -63,6 +63,7 @@ def test_recordings_fit_their_set_points(told: dict) -> None:  # type: ignore[ty
     assert "set_point_differs" not in json.dumps(told)
 
 
+@pytest.mark.slow
 def test_a_report_has_responses_and_runs_deliverables(made: Path, tmp_path: Path) -> None:
     page, folder = tmp_path / "page.html", tmp_path / "simman"
     done = CliRunner().invoke(cli, ["report", str(made), "--output", str(page)])

@@ -12,6 +12,7 @@ DOOR = range(10)
 COMMANDS = range(2)
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("seed", DOOR)
 def test_through_the_door_and_the_quality_checks(seed: int) -> None:
     row = through_the_door(seed)
@@ -19,6 +20,7 @@ def test_through_the_door_and_the_quality_checks(seed: int) -> None:
     assert {*row["mutations"]} <= MUTATIONS.keys()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", COMMANDS)
 def test_through_whole_commands(seed: int) -> None:
     row = through_commands(seed)

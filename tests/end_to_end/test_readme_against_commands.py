@@ -34,6 +34,7 @@ def test_the_example_prints_what_the_readme_shows(monkeypatch: pytest.MonkeyPatc
         assert line in {*printed, "..."}
 
 
+@pytest.mark.slow
 def test_the_campaign_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     wanted = [block for block in blocks("sh") if " my-campaign" in block]
     assert len(wanted) == 2

@@ -29,6 +29,7 @@ def written(folder: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_table_figure_and_json(tmp_path: Path) -> None:
     path, plots = written(tmp_path), tmp_path / "plots"
     asked = ["analyse", str(path), "--frequency", str(BASE_HZ), "--harmonics", "10",

@@ -74,6 +74,7 @@ def channel(rows: dict[str, Any], name: str) -> dict[str, Any]:
     return dict(found)
 
 
+@pytest.mark.slow
 def test_without_noise_the_forces_are_those_of_theory(tmp_path: Path) -> None:
     text = (SHIPPED / "vertical" / "campaign.toml").read_text(encoding="utf-8")
     assert text.count(NOISE) == 2
@@ -90,6 +91,7 @@ def test_without_noise_the_forces_are_those_of_theory(tmp_path: Path) -> None:
                 assert found == pytest.approx(force, abs=1e-8 * abs(forces[0]))
 
 
+@pytest.mark.slow
 def test_with_noise_theory_lies_within_the_intervals(tmp_path: Path) -> None:
     assert (
         run("simulate", SHIPPED / "vertical" / "campaign.toml", "--output", tmp_path).exit_code == 0

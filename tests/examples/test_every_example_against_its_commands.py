@@ -50,6 +50,7 @@ def test_no_example_is_forgotten() -> None:
         assert name in text or name == "recordings"
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("plane", "damping", "put_in"), [("vertical", "Z_w", -190.0), ("horizontal", "Y_v", -120.0)]
 )
@@ -69,6 +70,7 @@ def test_a_campaign_gives_the_damping_that_was_put_in(
     assert values == pytest.approx([put_in] * len(values), rel=5e-3)
 
 
+@pytest.mark.slow
 def test_the_model_sinks_and_trims_as_the_example_says(tmp_path: Path) -> None:
     campaign, out = EXAMPLES / "attitude" / "campaign.toml", str(tmp_path / "squat")
     made = CliRunner().invoke(cli, ["simulate", str(campaign), "--output", out])
@@ -93,6 +95,7 @@ def test_the_model_sinks_and_trims_as_the_example_says(tmp_path: Path) -> None:
     assert len(rows) == 5
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("name", INERTIA)
 def test_an_inertia_file_gives_its_numbers(name: str) -> None:
     path = EXAMPLES / "inertia" / f"{name}.toml"

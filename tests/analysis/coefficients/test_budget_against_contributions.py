@@ -48,6 +48,7 @@ def test_lines_add_up_to_gtcs_uncertainty(name: str) -> None:
     assert "harmonic scatter" in {line.source for line in own.lines}
 
 
+@pytest.mark.slow
 def test_repeats_behind_the_inertia_widen_the_interval_and_the_trials() -> None:
     """Of the inertia alone: u is its own, and Student's t of four degrees of freedom around it."""
     stated = StatedUncertainties(inertia_kg_m2=0.2, inertia_degrees_of_freedom=4.0)

@@ -144,6 +144,7 @@ def test_a_system_divides_by_its_factors(horizontal: CampaignCoefficients, kind:
         without_dimensions(there, system)
 
 
+@pytest.mark.slow
 @settings(max_examples=20, deadline=None)
 @given(st.floats(0.5, 300.0), st.floats(0.01, 10.0), st.floats(900.0, 1100.0))
 def test_the_seakeeping_system_divides_by_its_factors(

@@ -4,10 +4,12 @@ import re
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "coefficients.md"
 
 
+@pytest.mark.slow
 def test_the_example_runs() -> None:
     text = DOCUMENT.read_text(encoding="utf-8")
     names: dict[str, object] = {}

@@ -150,6 +150,7 @@ def test_terms_of_a_model_that_rolls_come_back() -> None:
         assert fit[name] == pytest.approx(value, rel=1e-5, abs=1e-4), name
 
 
+@pytest.mark.slow
 def test_a_campaign_tells_them_by_itself() -> None:
     found = campaign_coefficients(matrix(TERMS), Request(wanted=("K_v", "K_r", "Y_vphiphi")))
     for name in ("K_v", "K_r", "K_vdot", "Y_vphiphi", "N_rrphi", "K_vvphi"):
@@ -160,6 +161,7 @@ def test_a_campaign_tells_them_by_itself() -> None:
     assert upright.values[row] == pytest.approx(TERMS["K_v"], rel=0.01)
 
 
+@pytest.mark.slow
 def test_without_a_roll_gauge_a_sentence_says_so() -> None:
     runs = matrix(TERMS, roll_gauge=False)
     with pytest.raises(DataError, match="a missing roll gauge: K terms need the channel roll_mom"):

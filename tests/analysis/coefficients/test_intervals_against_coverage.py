@@ -29,6 +29,7 @@ TRUTH = {
 MIXED = [SetPoint(0.8, ECCENTRICITY_M, phase, 1.2) for phase in (0.0, 1.0, 2.2, 3.0)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("points", [pair(), MIXED, pair(0.15)], ids=["two", "four", "slow"])
 @pytest.mark.parametrize("periods", [4, 20])
 def test_coverage_of_closed_form_runs(points: list[SetPoint], periods: int) -> None:
@@ -49,6 +50,7 @@ def test_coverage_of_closed_form_runs(points: list[SetPoint], periods: int) -> N
     assert rate.max() < 0.995
 
 
+@pytest.mark.slow
 def test_coverage_of_simulated_campaigns() -> None:
     """The whole way, 100 seeded campaigns of heave and pitch through rig, recorder and resolver."""
     rig = vertical_rig()

@@ -66,6 +66,7 @@ def cycle(
     return struts.model().without(rig.body)
 
 
+@pytest.mark.slow
 def test_one_run_tells_ten_coefficients_of_a_hull_that_is_not_linear() -> None:
     many = cycle("many", SetPoint(0.15, 0.15, lines=LINES))
     fit = fit_cycles([many], tuple(TRUE))

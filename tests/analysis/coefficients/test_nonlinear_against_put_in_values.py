@@ -182,6 +182,7 @@ def test_a_published_ship_comes_out_in_the_mmg_system(ship: Published) -> None:
         assert own == pytest.approx(value, rel=5e-4, abs=2e-5), name
 
 
+@pytest.mark.slow
 def test_scatter_of_fits_is_what_their_budget_says() -> None:
     generator = np.random.default_rng(4)
     names = ("Y_vdot", "Y_v", "Y_vvv")

@@ -22,6 +22,7 @@ def divided(
     }
 
 
+@pytest.mark.slow
 @given(st.sampled_from(PLACES), st.sampled_from(list(Plane)), st.sampled_from(list(Form)))
 def test_names_and_places_are_a_pair(place, plane, form) -> None:  # type: ignore[no-untyped-def]
     assert place_of(name_of(place, plane, form), plane, form) == place

@@ -33,6 +33,7 @@ def campaign(truth: dict[str, float], seed: int) -> CampaignCoefficients:
     return campaign_coefficients(cycles, Request())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("truth", [HORIZONTAL, {**HORIZONTAL, **CUBIC}])
 def test_each_coefficient_has_one_value_and_it_is_the_one_put_in(truth: dict[str, float]) -> None:
     inside = []
@@ -48,6 +49,7 @@ def test_each_coefficient_has_one_value_and_it_is_the_one_put_in(truth: dict[str
     assert np.mean(inside) > 0.85  # intervals of 95 %
 
 
+@pytest.mark.slow
 def test_a_cubic_campaign_that_the_fit_explains_has_no_disagreement() -> None:
     found = campaign({**HORIZONTAL, **CUBIC}, 1)
     assert len(found.checks) > 20
@@ -71,6 +73,7 @@ def test_a_form_is_taken_at_its_evidence_and_linear_below_it() -> None:
     assert fitted[-900.0] != LINEAR_FORM
 
 
+@pytest.mark.slow
 def test_what_an_undecided_form_leaves_open_is_in_the_intervals() -> None:
     """Where cubic and quadratic do as well, the linear term lies in an interval that holds both."""
     truth = {**HORIZONTAL, "Y_vvv": -60.0}

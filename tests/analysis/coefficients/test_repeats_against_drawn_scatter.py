@@ -45,6 +45,7 @@ def repeats(
     return found
 
 
+@pytest.mark.slow
 def test_scatter_between_runs_is_found() -> None:
     found = repeatability(repeats(200, 0.01, np.random.default_rng(0)))
     (one,) = repeats(1, 0.0, np.random.default_rng(0))
@@ -54,11 +55,13 @@ def test_scatter_between_runs_is_found() -> None:
     assert found.degrees_of_freedom == 199
 
 
+@pytest.mark.slow
 def test_runs_that_differ_by_their_own_scatter_add_nothing_much() -> None:
     found = repeatability(repeats(200, 0.0, np.random.default_rng(0)))
     assert found.relative.max() < 2e-4
 
 
+@pytest.mark.slow
 def test_intervals_hold_where_runs_differ_between_each_other() -> None:
     generator = np.random.default_rng(5)
     hits, without = np.zeros(4), np.zeros(4)
@@ -88,6 +91,7 @@ def test_a_run_that_stands_off_is_named() -> None:
     assert "look at its record" in named[0].message
 
 
+@pytest.mark.slow
 def test_good_campaigns_seldom_name_anybody() -> None:
     generator = np.random.default_rng(8)
     named = sum(bool(outliers(repeatability(repeats(5, 0.005, generator)))) for _ in range(60))

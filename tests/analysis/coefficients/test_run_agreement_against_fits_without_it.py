@@ -59,6 +59,7 @@ def test_a_run_that_is_off_is_named_with_the_coefficients_without_it() -> None:
     assert "without it a33" in flag.message.lower()
 
 
+@pytest.mark.slow
 def test_clean_runs_name_none() -> None:
     generator, named = np.random.default_rng(2), 0
     for _ in range(100):

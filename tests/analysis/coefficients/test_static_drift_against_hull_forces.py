@@ -98,6 +98,7 @@ def test_a_hull_that_no_form_describes_widens_the_interval_and_is_named() -> Non
     assert "no form describes these runs" in found.choices[0].message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("between_n", [0.0, 30.0 * NOISE_N])
 def test_intervals_hold_the_slope_as_often_as_they_say(between_n: float) -> None:
     inside = 0

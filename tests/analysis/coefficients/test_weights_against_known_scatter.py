@@ -41,6 +41,7 @@ def repeated(cycle: BodyCycle, generator: np.random.Generator, runs: int) -> Cyc
     return fit_cycles(found, TERMS, (1,))
 
 
+@pytest.mark.slow
 def test_repeats_are_as_sure_as_with_the_scatter_known(sway: BodyCycle) -> None:
     covariance = np.diag(spread(sway) ** 2 / PERIODS)
     known = [

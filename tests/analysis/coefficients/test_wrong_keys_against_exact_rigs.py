@@ -114,6 +114,7 @@ EVERY = pytest.mark.parametrize(
 )
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("plane", Plane)
 @pytest.mark.parametrize("part", [1.0, 0.1, 0.01])
 @EVERY
@@ -131,6 +132,7 @@ def test_a_wrong_key_that_moves_a_coefficient_is_told(
     assert not doubted, "the recordings doubt the true arrangement"
 
 
+@pytest.mark.sample(10)
 @pytest.mark.parametrize("plane", Plane)
 @EVERY
 def test_what_the_recordings_do_not_tell_is_named_as_resting_on_the_key(
@@ -145,6 +147,7 @@ def test_what_the_recordings_do_not_tell_is_named_as_resting_on_the_key(
     assert told(wrong, key, true) == ((OPEN, "rests_on_arrangement") if moved else (SAME, ""))
 
 
+@pytest.mark.slow
 def test_the_message_says_what_moves_and_by_how_much() -> None:
     true, stated = Arrangement(gauges=Gauges.RIG), Arrangement()
     rigs = rigs_of(Plane.HORIZONTAL, true)

@@ -33,6 +33,7 @@ def test_what_all_frequencies_share_does_not_average_out() -> None:
     assert found.uncertain.shares(0)["mass"] > 0.99
 
 
+@pytest.mark.slow
 def test_intervals_hold_the_value_at_zero() -> None:
     generator = np.random.default_rng(11)
     exact = 75.0 + 30.0 * FREQUENCIES**2

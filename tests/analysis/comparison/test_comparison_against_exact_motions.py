@@ -64,6 +64,7 @@ def test_without_noise_nothing_is_off(order: int) -> None:
     assert found.modulo_s is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order", [-1, 0, 2])
 def test_intervals_hold_in_irregular_motion(order: int) -> None:
     what, missed = truth(order), []
@@ -136,12 +137,14 @@ def test_a_dead_band_is_found_and_not_taken_for_a_lag(width: float, irregularly:
     assert found.gain.value == pytest.approx(1.2, rel=2e-3)
 
 
+@pytest.mark.slow
 def test_without_a_dead_band_none_is_found() -> None:
     for seed in range(10):
         motion = irregular(np.random.default_rng(200 + seed))
         assert not compared(motion, truth(), seed, noise=0.05).dead_band_found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("noise", [(0.5, 0.0), (1.0, 0.0), (0.0, 1.0), (0.7, 0.7)])
 def test_strong_noise_is_no_dead_band_and_leaves_the_intervals_right(
     noise: tuple[float, float],
@@ -246,6 +249,7 @@ def test_missing_samples_leave_the_longest_stretch() -> None:
     assert found.from_s > 3.6
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("order", [0, 1])
 def test_uneven_stamps_leave_the_intervals_right(order: int) -> None:
     what, missed = truth(order), []

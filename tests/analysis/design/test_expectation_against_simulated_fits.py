@@ -27,6 +27,7 @@ RUNS = [
 TARGETS = [DesignTarget(name, 1.0) for name in WHOLE.values]
 
 
+@pytest.mark.slow
 def test_fits_of_noisy_periods_scatter_as_expected() -> None:
     """Runs are made sample by sample, each period's harmonics are drawn, and all is fitted."""
     noise = Noise(force_n=2.0, sample_rate_hz=100.0)

@@ -26,6 +26,7 @@ def test_a_mean_that_is_off(rig: SimulatedRig) -> None:
     assert getattr(effect, "relative", 0.0) == pytest.approx(0.02, rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_speed_that_is_uneven(rig: SimulatedRig) -> None:
     """The walk along the chain begins with the carriage, and ends there where it deviates."""
     found = diagnosed(rig, "carriage-fluctuation:relative=0.002,frequency_hz=0.37", 72)

@@ -52,11 +52,13 @@ def test_what_does_not_ask_for_water_is_as_large_in_air(problem: Problem) -> Non
     assert found.air_over_water == pytest.approx(1.0, abs=0.05)
 
 
+@pytest.mark.slow
 def test_noise_is_not_described(problem: Problem) -> None:
     noise = np.random.default_rng(7).standard_normal(len(problem.residual))
     assert describe(problem, noise) is None
 
 
+@pytest.mark.slow
 def test_the_polynomial_control_predicts_a_polynomial_and_no_sign(problem: Problem) -> None:
     stack = problem.simulator.stack
     every = regimes(stack.runs)

@@ -33,6 +33,7 @@ def diagnosed(
     return diagnose(rig, runs, Settings({name: find(name) for name in known}))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [11, 12, 13])
 def test_a_campaign_without_an_effect_has_no_gap(rig: SimulatedRig, seed: int) -> None:
     found = diagnosed(rig, (), seed)
@@ -42,6 +43,7 @@ def test_a_campaign_without_an_effect_has_no_gap(rig: SimulatedRig, seed: int) -
     assert not any(one.beyond for one in found.walk.steps)
 
 
+@pytest.mark.slow
 def test_an_encoder_tells_the_phase_without_scatter(rig: SimulatedRig) -> None:
     """Forces that scatter less from cycle to cycle than a photocell's pulses would let them."""
     quiet = Digitiser(noise_rms=1e-4)
@@ -73,6 +75,7 @@ def friction(rig: SimulatedRig) -> Diagnosis:
     return diagnosed(rig, ("coulomb-friction:friction_n=0.3",), 21)
 
 
+@pytest.mark.slow
 def test_friction_is_named_with_its_stage_and_size(friction: Diagnosis) -> None:
     _holds(friction, "coulomb-friction:friction_n=0.3")
     assert max(friction.stages, key=lambda name: friction.stages[name]) == "structure"
@@ -81,11 +84,13 @@ def test_friction_is_named_with_its_stage_and_size(friction: Diagnosis) -> None:
     assert "strut motion" not in beyond
 
 
+@pytest.mark.slow
 def test_no_coefficient_passes_for_friction(friction: Diagnosis, rig: SimulatedRig) -> None:
     assert friction.cause is not None
     assert not coefficient_twins(friction.problem, friction.cause, free_numbers(rig, Tolerances()))
 
 
+@pytest.mark.slow
 def test_the_gap_goes_away_where_friction_is_added(friction: Diagnosis) -> None:
     assert friction.shrinkage is not None
     assert friction.shrinkage.before > 5.0
@@ -93,6 +98,7 @@ def test_the_gap_goes_away_where_friction_is_added(friction: Diagnosis) -> None:
     assert friction.shrinkage.share > 0.9
 
 
+@pytest.mark.slow
 def test_a_run_that_was_not_made_is_foretold(friction: Diagnosis, rig: SimulatedRig) -> None:
     tolerances, problem = Tolerances(), friction.problem
     point = SetPoint(0.75, 0.03, 0.0, 1.0)
@@ -112,11 +118,13 @@ def test_a_run_that_was_not_made_is_foretold(friction: Diagnosis, rig: Simulated
     assert np.linalg.norm(off) < 0.2 * np.linalg.norm(without)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("said", ["quadratic-damping", "amplifier-lag"])
 def test_other_effects_are_named_with_their_parameters(rig: SimulatedRig, said: str) -> None:
     _holds(diagnosed(rig, (said,), 22, (said, "coulomb-friction")), said)
 
 
+@pytest.mark.slow
 def test_two_at_once_are_both_named(rig: SimulatedRig) -> None:
     put_in = ("coulomb-friction:friction_n=0.3", "cross-talk:aft=0.03,fore=0.02")
     found = diagnosed(rig, put_in, 23, ("coulomb-friction", "cross-talk"))
@@ -124,6 +132,7 @@ def test_two_at_once_are_both_named(rig: SimulatedRig) -> None:
     _holds(found, put_in[0])
 
 
+@pytest.mark.slow
 def test_an_effect_that_is_taken_out_of_the_catalogue_is_unknown(rig: SimulatedRig) -> None:
     found = diagnosed(rig, ("coulomb-friction:friction_n=0.3",), 24, ("amplifier-lag",))
     assert found.answers.best == UNKNOWN

@@ -211,6 +211,7 @@ def largest_n(problem: Problem, point: SetPoint) -> float:
     return max(abs(one["force_aft 1"]), abs(one["force_fore 1"]))
 
 
+@pytest.mark.slow
 def test_a_dead_weight_presses_both_struts_beside_its_own_inertia(problem: Problem) -> None:
     choices = Choices(Range(1.0, 2.39), Range(0.015, 0.06), (0.0,), media=(Medium.AIR,))
     found = pressed(problem, choices)
@@ -226,6 +227,7 @@ def test_a_dead_weight_presses_both_struts_beside_its_own_inertia(problem: Probl
         assert not pressed(problem, only(choices, one.set_point, 0.999 * limit_n))
 
 
+@pytest.mark.slow
 def test_a_dead_weight_is_proposed_where_the_most_telling_runs_would_throw_it_off(
     problem: Problem,
 ) -> None:
@@ -251,6 +253,7 @@ def only(choices: Choices, point: SetPoint, limit_n: float) -> Choices:
     )
 
 
+@pytest.mark.slow
 def test_the_strut_that_is_not_recorded_has_its_limit_too(
     rig: SimulatedRig, clean: tuple[GapRun, ...], problem: Problem
 ) -> None:
@@ -280,6 +283,7 @@ class Twin(JointPlay):
     taken_up = False
 
 
+@pytest.mark.slow
 def test_a_dead_weight_tells_play_from_its_twin_and_no_other_run_does(rig: SimulatedRig) -> None:
     problem = problem_of(rig, record(rig, (build("joint-play:half_play_m=2e-5"),), 51)[:3])
     parts = [next(iter(candidates(kind, (0.5, 1.0)))) for kind in (find("joint-play"), Twin)]

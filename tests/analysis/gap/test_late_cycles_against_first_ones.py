@@ -65,6 +65,7 @@ def test_a_run_that_settles_is_a_gap_beside_the_harmonics(rig: SimulatedRig) -> 
     assert "trend" in settling.worst
 
 
+@pytest.mark.slow
 def test_steady_runs_show_no_trend_beyond_their_noise(rig: SimulatedRig) -> None:
     problem = problem_of(rig, [grown(rig, 0.0, seed) for seed in range(5, 17)])
     trends = [one.part in TRENDS for one in problem.simulator.stack.components]

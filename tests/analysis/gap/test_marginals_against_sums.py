@@ -74,6 +74,7 @@ def alike(friction: Diagnosis) -> dict[str, Marginal]:
     return {one.name: one for one in marginals(replace(friction, weighed=weighed))}
 
 
+@pytest.mark.slow
 def test_friction_passes_for_the_cable_and_both_count(friction: Diagnosis) -> None:
     first = marginals(friction)[0]
     assert first.name == "coulomb-friction"
@@ -85,6 +86,7 @@ def test_friction_passes_for_the_cable_and_both_count(friction: Diagnosis) -> No
     assert first.class_probability == of_any(told, [first.name, *first.alike])
 
 
+@pytest.mark.slow
 def test_none_is_out_of_the_question(friction: Diagnosis, alike: dict[str, Marginal]) -> None:
     every = marginals(friction)
     assert all(one.probability > LEAST for one in every)
@@ -94,6 +96,7 @@ def test_none_is_out_of_the_question(friction: Diagnosis, alike: dict[str, Margi
     assert set(alike) == set(by_effect(friction.answers.by_answer))
 
 
+@pytest.mark.slow
 def test_what_is_smaller_than_the_noise_has_no_class(alike: dict[str, Marginal]) -> None:
     """Any effect would pass for it: here of a phase that nobody put in, beside friction."""
     slight = alike.pop("strut-phase-error")
@@ -106,6 +109,7 @@ def test_what_is_smaller_than_the_noise_has_no_class(alike: dict[str, Marginal])
         assert all(left < ALIKE for left in one.alike.values())
 
 
+@pytest.mark.slow
 def test_a_size_is_what_least_squares_leave(friction: Diagnosis) -> None:
     """Of friction alone: the nuisances, held by their priors, take what they can."""
     assert friction.best is not None

@@ -41,6 +41,7 @@ def diagnosed(rig: SimulatedRig, runs: Sequence[GapRun]) -> Diagnosis:
     return diagnose(rig, runs, Settings({name: find(name) for name in FEW}))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("change", "at"), [(with_gain, 0), (with_gain, WET), (with_zero, 0), (with_zero, 3)]
 )
@@ -52,12 +53,14 @@ def test_one_run_off_is_named(
     assert found.odd_runs[f"r{at}"] > 0.5
 
 
+@pytest.mark.slow
 def test_a_clean_campaign_has_none(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> None:
     found = diagnosed(rig, clean).answers
     assert found.best == NONE
     assert max(found.odd_runs.values()) < 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FEW)
 def test_an_effect_in_all_runs_is_no_odd_run(rig: SimulatedRig, name: str) -> None:
     found = diagnosed(rig, record(rig, [build(name)], seed=2)).answers
@@ -65,6 +68,7 @@ def test_an_effect_in_all_runs_is_no_odd_run(rig: SimulatedRig, name: str) -> No
     assert max(found.odd_runs.values()) < 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "share"),
     [
@@ -84,6 +88,7 @@ def test_an_effect_at_the_edge_of_the_noise_is_no_odd_run(
     assert found.by_answer[ODD_RUN] < 0.5
 
 
+@pytest.mark.slow
 def test_of_two_runs_off_one_after_the_other_is_named(
     rig: SimulatedRig, clean: tuple[GapRun, ...]
 ) -> None:
@@ -96,6 +101,7 @@ def test_of_two_runs_off_one_after_the_other_is_named(
     assert max(diagnosed(rig, left).answers.odd_runs.values()) < 0.5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", [with_gain, with_zero])
 def test_an_odd_run_beside_an_effect_leaves_the_effect_named(
     rig: SimulatedRig, change: Change
@@ -113,6 +119,7 @@ def test_one_of_two_runs_of_a_kind_is_named(rig: SimulatedRig) -> None:
     assert found.odd_runs[f"r{AIR}"] > 0.5
 
 
+@pytest.mark.slow
 def test_of_two_runs_that_a_coefficient_rests_on_neither_is_sure(
     rig: SimulatedRig, clean: tuple[GapRun, ...]
 ) -> None:

@@ -79,6 +79,7 @@ def test_what_it_does_by_chance_is_left_out_of_the_harmonics(
     assert own[~simulator.stack.steady].any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "costs"), [("gear-backlash", True), ("torque-cogging", False)])
 def test_what_is_costly_has_to_promise_more(
     name: str, costs: bool, problem: Problem, tmp_path: Path
@@ -90,6 +91,7 @@ def test_what_is_costly_has_to_promise_more(
         assert ((kind.name,) not in names) is costs
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("name", "shown"),
     [

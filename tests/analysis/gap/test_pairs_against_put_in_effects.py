@@ -20,6 +20,7 @@ KNOWN = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("said", "seed"),
     [
@@ -34,6 +35,7 @@ def test_both_are_named(rig: SimulatedRig, said: tuple[str, str], seed: int) -> 
     assert found.answers.best == "+".join(sorted(one.split(":")[0] for one in said))
 
 
+@pytest.mark.slow
 def test_neither_need_be_among_the_likeliest_alone(rig: SimulatedRig) -> None:
     """Friction and quadratic damping make a cubic one, a lag and a skew the best single answers."""
     said = ("coulomb-friction:friction_n=0.5", "quadratic-damping:translation_n_s2_m2=300")
@@ -53,6 +55,7 @@ def test_every_start_is_within_its_range() -> None:
             assert np.all((low <= one.start) & (one.start <= high)), one.name
 
 
+@pytest.mark.slow
 def test_what_does_not_repeat_is_looked_at_from_about_its_size(rig: SimulatedRig) -> None:
     problem = problem_of(rig, record(rig, [build("carriage-fluctuation:relative=0.001")], 83))
     fit = look(problem, find("carriage-fluctuation")).fit

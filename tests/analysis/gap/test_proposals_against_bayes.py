@@ -57,6 +57,7 @@ def test_what_is_worth_more_than_enough_goes_by_how_much_more() -> None:
     assert sorted(worth, key=lambda odds: worth[odds].order) == [5000.0, 30.0, 19.0]
 
 
+@pytest.mark.slow
 def test_of_runs_that_are_worth_the_same_the_gentlest_comes_first(
     rig: SimulatedRig, clean: tuple[GapRun, ...]
 ) -> None:

@@ -41,6 +41,7 @@ def test_a_trend_grows_with_the_size() -> None:
     assert grown(trend, np.array([-0.3]), 2.0) == pytest.approx([-0.6])
 
 
+@pytest.mark.slow
 def test_trends_of_few_periods_have_no_heavy_tails(rig: SimulatedRig) -> None:
     found = []
     for seed in range(3, 6):
@@ -52,6 +53,7 @@ def test_trends_of_few_periods_have_no_heavy_tails(rig: SimulatedRig) -> None:
     assert np.abs(found).max() < 4.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jitter_rad", [1e-3, 1e-2])
 def test_a_look_from_one_start_finds_the_jitter(rig: SimulatedRig, jitter_rad: float) -> None:
     found = []
@@ -62,6 +64,7 @@ def test_a_look_from_one_start_finds_the_jitter(rig: SimulatedRig, jitter_rad: f
     assert np.mean(found) == pytest.approx(jitter_rad, rel=0.3)
 
 
+@pytest.mark.slow
 def test_jitter_says_nothing_of_the_harmonics_beforehand(rig: SimulatedRig) -> None:
     simulator = _problem(rig, 0.0, 6).simulator
     change = simulator.predict((TriggerJitter(5e-3),)) - simulator.nominal

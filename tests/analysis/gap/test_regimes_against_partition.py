@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -85,6 +86,7 @@ def test_kinds_of_runs_are_in_one_order_and_each_is_named_once(given_: list[SetP
     ]
 
 
+@pytest.mark.slow
 def test_no_observation_of_a_withheld_run_is_fitted(
     rig: SimulatedRig, clean: tuple[GapRun, ...]
 ) -> None:

@@ -125,6 +125,7 @@ def named(found: Diagnosis, kind: type[E]) -> E:
     return effect
 
 
+@pytest.mark.slow
 def test_a_zero_offset_stays_at_rest(rig: SimulatedRig) -> None:
     runs = both(rig, ZeroOffset(0.4, -0.2), seed=3)
     effect = named(diagnosed(rig, runs, (ZeroOffset, *MOVING)), ZeroOffset)
@@ -132,6 +133,7 @@ def test_a_zero_offset_stays_at_rest(rig: SimulatedRig) -> None:
     assert effect.fore_n == pytest.approx(-0.2, abs=3e-3)
 
 
+@pytest.mark.slow
 def test_uneven_friction_does_not_and_the_odds_say_so(rig: SimulatedRig) -> None:
     """The mean of the runs alone leaves its size to the free zero; the rest record does not."""
     runs = both(rig, UnevenFriction(0.4), seed=3)
@@ -155,6 +157,7 @@ def advantage(found: Diagnosis) -> float:
     return expected[0] - expected[1]
 
 
+@pytest.mark.slow
 def test_a_drift_over_the_campaign_has_the_slope_of_its_zeros(rig: SimulatedRig) -> None:
     runs = both(rig, CampaignDrift(2e-4, 0.0), seed=3)
     effect = named(diagnosed(rig, runs, (CampaignDrift, ZeroOffset)), CampaignDrift)
@@ -165,6 +168,7 @@ def test_a_drift_over_the_campaign_has_the_slope_of_its_zeros(rig: SimulatedRig)
     assert abs(effect.fore_n_s) < 4e-6
 
 
+@pytest.mark.slow
 def test_no_gap_stays_no_gap(
     rig: SimulatedRig, clean: tuple[GapRun, ...], still: tuple[GapRun, ...]
 ) -> None:
@@ -182,6 +186,7 @@ def test_what_acts_on_motion_predicts_nothing(rig: SimulatedRig, still: tuple[Ga
     assert moved == {"zero-offset", "temperature", "quadratic-drift"}
 
 
+@pytest.mark.slow
 def test_runs_are_predicted_as_without_records_at_rest(
     rig: SimulatedRig, clean: tuple[GapRun, ...], still: tuple[GapRun, ...]
 ) -> None:

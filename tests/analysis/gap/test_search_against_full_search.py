@@ -50,6 +50,7 @@ def test_stages_solved_once_give_the_whole_chain(said: str, rig: SimulatedRig) -
                 np.testing.assert_array_equal(found[name], harmonics)
 
 
+@pytest.mark.slow
 def test_nothing_costly_is_looked_at_where_nothing_shows(
     rig: SimulatedRig, clean: tuple[GapRun, ...]
 ) -> None:
@@ -60,6 +61,7 @@ def test_nothing_costly_is_looked_at_where_nothing_shows(
     assert worth_a_look(find("coulomb-friction"), seen)
 
 
+@pytest.mark.slow
 def test_hum_is_looked_at_where_lines_show(rig: SimulatedRig) -> None:
     runs = record(rig, [build("hum:amplitude_n=1,frequency_hz=7.3")], 31)
     seen = shown(_scattering(rig, runs))
@@ -67,11 +69,13 @@ def test_hum_is_looked_at_where_lines_show(rig: SimulatedRig) -> None:
     assert worth_a_look(find("hum"), seen)
 
 
+@pytest.mark.slow
 def test_a_drive_is_looked_at_where_the_struts_deviate(rig: SimulatedRig) -> None:
     seen = shown(_scattering(rig, record(rig, [build("speed-ripple")], 33)))
     assert worth_a_look(find("load-ripple"), seen)
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(("said", "shows"), [("speed-ripple", True), ("connecting-rod", False)])
 def test_backlash_is_looked_at_where_the_shaft_turns_unevenly(
     said: str, shows: bool, rig: SimulatedRig
@@ -81,6 +85,7 @@ def test_backlash_is_looked_at_where_the_shaft_turns_unevenly(
     assert worth_a_look(find("load-ripple"), seen)  # the struts tell of either
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "name", ["load-ripple", "coulomb-friction", "quadratic-damping", "joint-play", "speed-ripple"]
 )
@@ -96,6 +101,7 @@ def test_a_tenth_of_an_effect_is_found_by_the_power_of_its_size(
     assert 0.05 < sizes[1] / sizes[0] < 0.2
 
 
+@pytest.mark.slow
 def test_a_slight_droop_is_not_taken_for_a_large_flywheel(rig: SimulatedRig) -> None:
     """From 0.02 rad/(s N m), and not by way of a flywheel on which no droop shows."""
     off = build("speed-droop:droop_rad_s_n_m=5e-4,inertia_kg_m2=100")
@@ -116,6 +122,7 @@ def test_a_clearance_is_looked_at_between_teeth_that_the_load_hardly_bends() -> 
     assert one.held["stiffness_n_m_rad"] > 1e6
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", ["coulomb-friction", "viscous-guides", "strut-phase-error"])
 def test_a_rough_slope_is_near_the_slope(
     name: str, rig: SimulatedRig, clean: tuple[GapRun, ...]
@@ -127,6 +134,7 @@ def test_a_rough_slope_is_near_the_slope(
     assert np.linalg.norm(rough - exact) < 0.05 * np.linalg.norm(exact)
 
 
+@pytest.mark.slow
 def test_an_effect_acts_on_the_rig_as_its_coefficients_are(rig: SimulatedRig) -> None:
     """A photocell turned by 0.03 rad turns what 20 % more added mass changes as well."""
     free = free_numbers(rig, Tolerances())
@@ -142,6 +150,7 @@ def test_an_effect_acts_on_the_rig_as_its_coefficients_are(rig: SimulatedRig) ->
     assert moved.cost < 1.3 * len(problem.residual)
 
 
+@pytest.mark.slow
 def test_pulses_quieter_than_believed_are_no_gap(
     rig: SimulatedRig, clean: tuple[GapRun, ...]
 ) -> None:
@@ -155,6 +164,7 @@ def test_pulses_quieter_than_believed_are_no_gap(
         assert (not residual[pulses].any()) is zero
 
 
+@pytest.mark.slow
 def test_what_cannot_be_simulated_here_ends_no_diagnosis(
     rig: SimulatedRig, clean: tuple[GapRun, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -31,6 +31,7 @@ def problem(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> Problem:
     return problem_of(rig, clean)
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize("name", KINDS)
 def test_it_is_named_with_either_sign(
@@ -47,6 +48,7 @@ def test_it_is_named_with_either_sign(
         assert fitted[one] * value >= 0.0, one
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("skew_s", [-3e-3, 3e-3])
 def test_three_milliseconds_are_named_and_measured(skew_s: float, rig: SimulatedRig) -> None:
     runs = record(rig, [ChannelSkew(skew_s, 0.0)], seed=52)

@@ -18,6 +18,7 @@ from sim.rig import SimulatedRig
 from tests.analysis.gap.small import POINTS, USUAL, problem_of, record
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", ["coulomb-friction", "quadratic-damping", "amplifier-lag"])
 def test_of_an_effect(name: str, rig: SimulatedRig, clean: tuple[GapRun, ...]) -> None:
     problem = problem_of(rig, clean)
@@ -75,6 +76,7 @@ def test_a_memory_counts_as_what_is_believed(rig: SimulatedRig) -> None:
     assert found == pytest.approx(stated)
 
 
+@pytest.mark.slow
 def test_water_is_other_where_the_carriage_stands(rig: SimulatedRig) -> None:
     """Damping a tenth higher in the runs at rest alone is one tolerance of it."""
     still = tuple(replace(one, carriage_speed_m_s=0.0) for one in POINTS[:2])

@@ -32,6 +32,7 @@ def test_a_load_ripple_is_that_of_a_simulated_motor(
     assert np.linalg.norm(column - change) < 0.1 * np.linalg.norm(change)
 
 
+@pytest.mark.slow
 def test_drift_is_that_of_simulated_zeros(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> None:
     stack = Stack.of(pooled(clean, rig, USUAL))
     simulator = Simulator(rig, stack)
@@ -56,6 +57,7 @@ def test_hum_is_that_of_simulated_lines(rig: SimulatedRig) -> None:
     np.testing.assert_allclose(change[lines], told[lines], atol=0.9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("effect", "name", "step"),
     [

@@ -14,6 +14,7 @@ KNOWN = (
 )  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("put_in", "forgotten"),
     [

@@ -64,6 +64,7 @@ def strained(found: Walk, what: str) -> Mapping[str, float]:
     return step.strained
 
 
+@pytest.mark.slow
 def test_a_ripple_of_the_shaft_goes_where_the_measured_shaft_is_fed(rig: SimulatedRig) -> None:
     found = walked(rig, RIPPLE)
     seen = beyond(found)
@@ -75,6 +76,7 @@ def test_a_ripple_of_the_shaft_goes_where_the_measured_shaft_is_fed(rig: Simulat
     assert found.stages == (StageName.DRIVE,)
 
 
+@pytest.mark.slow
 def test_a_rod_in_place_of_a_yoke_stays_where_the_measured_shaft_is_fed(
     rig: SimulatedRig,
 ) -> None:
@@ -86,6 +88,7 @@ def test_a_rod_in_place_of_a_yoke_stays_where_the_measured_shaft_is_fed(
     assert StageName.MECHANISM in found.stages
 
 
+@pytest.mark.slow
 def test_without_struts_sensors_the_measured_shaft_is_fed_to_the_forces(rig: SimulatedRig) -> None:
     ripple = walked(rig, RIPPLE, DISPLACEMENTS)
     assert strained(ripple, SHAFT)
@@ -96,12 +99,14 @@ def test_without_struts_sensors_the_measured_shaft_is_fed_to_the_forces(rig: Sim
     assert StageName.STRUCTURE in friction.stages
 
 
+@pytest.mark.slow
 def test_without_an_encoder_nothing_stands_for_the_shaft(rig: SimulatedRig) -> None:
     found = walked(rig, RIPPLE, (SHAFT_ANGLE.name,))
     assert not {SHAFT, MOTION_FED, FORCE_BY_SHAFT} & beyond(found).keys()
     assert {StageName.DRIVE, StageName.MECHANISM} <= {*found.stages}
 
 
+@pytest.mark.slow
 def test_a_motor_that_feels_its_load_is_walked_too(rig: SimulatedRig) -> None:
     """What the shaft really did is fed: whether the motor is believed right does not matter."""
     weak = replace(rig, drive=DriveSettings(motor=ShuntMotor()))
@@ -117,6 +122,7 @@ def rms_of(found: Fed) -> tuple[float, float]:
     return tuple(float(np.sqrt(np.mean(one[found.rows] ** 2))) for one in (found.left, found.unfed))
 
 
+@pytest.mark.slow
 def test_the_measured_frequency_takes_the_place_of_the_one_that_was_set(rig: SimulatedRig) -> None:
     """With no number free: inertia goes with the square of the frequency, stiffness does not."""
     runs = record(rig, [build("frequency-error:relative=0.004")], 43)
@@ -132,6 +138,7 @@ def test_the_measured_frequency_takes_the_place_of_the_one_that_was_set(rig: Sim
     assert unfed > 10.0
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("ripple", ["relative=0.03,phase_rad=1.57", "relative=0.01,order=2"])
 def test_a_large_ripple_is_the_drives_wherever_it_puts_the_pulse(
     rig: SimulatedRig, ripple: str
@@ -139,6 +146,7 @@ def test_a_large_ripple_is_the_drives_wherever_it_puts_the_pulse(
     assert walked(rig, f"speed-ripple:{ripple}").stages == (StageName.DRIVE,)
 
 
+@pytest.mark.slow
 def test_a_force_as_phase_reference_is_that_of_the_fed_chain(rig: SimulatedRig) -> None:
     lines = replace(rig.acquisition, displacement_aft=None, displacement_fore=None)
     blind = replace(rig, photocell=None, acquisition=lines)
@@ -149,6 +157,7 @@ def test_a_force_as_phase_reference_is_that_of_the_fed_chain(rig: SimulatedRig) 
     assert not beyond(found)[FORCE_BY_SHAFT]
 
 
+@pytest.mark.slow
 def test_what_is_fed_is_what_the_channel_measures(rig: SimulatedRig) -> None:
     """A rig as it is believed has no gap, whatever is known of its displacement channels."""
     slow = Digitiser(noise_rms=5e-6, offset=1e-3, gain=1.01, low_pass=LowPass(10.0))
@@ -159,6 +168,7 @@ def test_what_is_fed_is_what_the_channel_measures(rig: SimulatedRig) -> None:
     assert not seen[FORCE_FED]
 
 
+@pytest.mark.slow
 def test_a_run_without_a_channel_is_not_fed_with_nothing(
     rig: SimulatedRig, clean: tuple[GapRun, ...]
 ) -> None:
@@ -171,6 +181,7 @@ def test_a_run_without_a_channel_is_not_fed_with_nothing(
     assert not beyond(walk(problem))[FORCE_FED]
 
 
+@pytest.mark.slow
 def test_nothing_is_acquitted_where_the_shafts_own_noise_would_hide_it(rig: SimulatedRig) -> None:
     """A long rod shows in the motion, but less than an encoder's steps make of it."""
     lines = replace(rig.acquisition, shaft_angle=Digitiser(resolution=2.0 * np.pi / 2**10))

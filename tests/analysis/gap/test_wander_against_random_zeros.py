@@ -35,6 +35,7 @@ def drawn(deviation_n: float, count: int, seed: int, slope_n: float = 0.0) -> np
     return 0.4 + slope_n * np.arange(count) + deviation_n * rng.standard_normal(count) + noise
 
 
+@pytest.mark.slow
 def test_a_wander_comes_back_whatever_the_zeros_offset_and_even_drift(rig: SimulatedRig) -> None:
     squares = []
     for seed in range(60):
@@ -44,6 +45,7 @@ def test_a_wander_comes_back_whatever_the_zeros_offset_and_even_drift(rig: Simul
     assert np.mean(squares) == pytest.approx((0.05 * student) ** 2, rel=0.25)
 
 
+@pytest.mark.slow
 def test_few_records_say_it_wider(rig: SimulatedRig) -> None:
     """A new zero lies within 1.96 of them in nine of ten or so, for two records as for twelve."""
     for count in (2, 12):
@@ -64,6 +66,7 @@ def test_one_record_that_is_off_is_no_wander(rig: SimulatedRig, count: int) -> N
     assert level_n < 0.1  # N, of the one that it is off by
 
 
+@pytest.mark.slow
 def test_noise_alone_is_hardly_a_wander(rig: SimulatedRig) -> None:
     found = [wander(rig, at_rest(drawn(0.0, 12, seed))) for seed in range(40)]
     levels = [one[FORCES[0]][0] if one else 0.0 for one in found]

@@ -40,6 +40,7 @@ def sized(problem: Problem, said: str) -> Effect:
     return build(said.format(10.0**low))
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(("said", "seed"), list(zip(WEAK, SEEDS, strict=True)))
 def test_it_is_named(said: str, seed: int, rig: SimulatedRig, problem: Problem) -> None:
     there = sized(problem, said)
@@ -49,6 +50,7 @@ def test_it_is_named(said: str, seed: int, rig: SimulatedRig, problem: Problem) 
     assert found.answers.best == there.name
 
 
+@pytest.mark.slow
 def test_a_third_of_it_is_not(rig: SimulatedRig, problem: Problem) -> None:
     """At 2.3 sigma nothing can be told from chance: whoever names it there names noise."""
     whole = sized(problem, WEAK[0])

@@ -30,6 +30,7 @@ def cramer_rao_period(
     return float(noise * np.sqrt(np.linalg.inv(jacobian.T @ jacobian)[0, 0]))
 
 
+@pytest.mark.slow
 def test_scatter_of_many_fits_is_within_a_tenth_of_the_bound() -> None:
     rng = np.random.default_rng(1)
     t = np.arange(0.0, 40.0, 0.1)
@@ -44,6 +45,7 @@ def test_scatter_of_many_fits_is_within_a_tenth_of_the_bound() -> None:
     assert np.median(stated) == pytest.approx(bound, rel=0.15)
 
 
+@pytest.mark.slow
 def test_poor_starts_always_succeed_and_the_peer_does_not() -> None:
     own, *peers = compare_rivals(60, seed=3)
     assert own.success == 1.0
@@ -72,6 +74,7 @@ def test_any_start_finds_the_same_period(
     assert fit.offset == pytest.approx(0.3, abs=1e-3)
 
 
+@pytest.mark.slow
 @given(ratio=st.floats(1.03, 2.5), share=st.floats(0.2, 5.0), phase=st.floats(-3.0, 3.0))
 def test_two_modes_are_told_apart(ratio: float, share: float, phase: float) -> None:
     t = np.arange(0.0, 120.0, 0.05)
@@ -82,6 +85,7 @@ def test_two_modes_are_told_apart(ratio: float, share: float, phase: float) -> N
     assert fit.modes[1].period_s == pytest.approx(3.8, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_coloured_noise_widens_the_covariance_to_what_is_seen() -> None:
     rng = np.random.default_rng(2)
     t = np.arange(0.0, 60.0, 0.05)
@@ -98,6 +102,7 @@ def test_coloured_noise_widens_the_covariance_to_what_is_seen() -> None:
     assert fit.diagnostics.lag1_correlation > 0.9
 
 
+@pytest.mark.slow
 def test_parameters_covariance_against_scatter() -> None:
     rng = np.random.default_rng(4)
     t = np.arange(0.0, 30.0, 0.1)

@@ -45,6 +45,7 @@ def test_swing() -> None:
     assert found.relative < 2e-3
 
 
+@pytest.mark.slow
 def test_bifilar() -> None:
     by_period, by_ratio = load("bifilar").analyse()
     for found in (by_period, by_ratio):

@@ -59,6 +59,7 @@ def test_keelboat_of_table_4() -> None:
     assert back.gyradii[1].value == pytest.approx(1.448, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_covariance_against_monte_carlo() -> None:
     rng = np.random.default_rng(0)
     a, b = point("a", 3.0, 0.5, 0.1, 0.2, 0.01), point("b", 2.0, -0.8, 0.0, -0.1, 0.01)

@@ -74,10 +74,12 @@ def assert_covered(found: list[Estimate], true_s: float, *, widest: float = 3.0)
     assert np.mean(stated**2) < widest**2 * np.mean(errors**2)
 
 
+@pytest.mark.slow
 def test_intervals_of_one_oscillation_cover() -> None:
     assert_covered([swing(seed).period() for seed in range(RECORDS)], PERIOD_S)
 
 
+@pytest.mark.slow
 def test_intervals_of_two_oscillations_cover() -> None:
     """What the change of yaw leaves in its parts makes the intervals of sway too wide."""
     runs = [bifilar(seed) for seed in range(RECORDS)]

@@ -60,6 +60,7 @@ def test_both_modes_of_a_record() -> None:
     assert found.modes[0].decay.time_constant_s == pytest.approx(625.0, rel=0.05)
 
 
+@pytest.mark.slow
 def test_interval_of_the_swings_inertia_covers() -> None:
     """Five releases that scatter by 0.2 %, a first moment known to 0.4 %: 400 tests."""
     rng = np.random.default_rng(2021)

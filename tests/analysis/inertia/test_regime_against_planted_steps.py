@@ -51,6 +51,7 @@ def drawn(generator: Generator, *, stopped: bool) -> tuple[Series, float, float]
     return recorded(amplitude, period, 10.0 ** generator.uniform(-3.5, -2.3), generator), at, period
 
 
+@pytest.mark.slow
 def test_the_moment_is_found_within_a_period_and_no_smooth_decay_has_one() -> None:
     generator, near, false = np.random.default_rng(1), 0, 0
     for _ in range(100):

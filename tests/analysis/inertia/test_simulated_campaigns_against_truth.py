@@ -29,6 +29,7 @@ from sim.pendulum.benches import SWING_2021, SWING_MODEL_2021
 from sim.pendulum.pivot import RigidPart
 
 
+@pytest.mark.slow
 def test_gyradius_to_a_thousandth_and_centre_of_gravity_to_a_millimetre() -> None:
     worst = worst_errors(1)
     assert worst["gyradius"] < 1e-3
@@ -39,6 +40,7 @@ def test_the_period_scatters_as_the_noise_allows() -> None:
     assert bound_ratio(500, 3) == pytest.approx(1.0, abs=0.1)
 
 
+@pytest.mark.slow
 def test_both_periods_of_one_record_scatter_as_the_noise_allows() -> None:
     assert bound_ratio_two(300, 5) == pytest.approx(1.0, abs=0.1)
 

@@ -148,6 +148,7 @@ def test_modulation_is_removed_from_gate_periods() -> None:
         remove_modulation(t[:10], period[:10])
 
 
+@pytest.mark.slow
 @given(k=lengths, a=lengths, h=st.floats(0.1, 1.0))
 @settings(max_examples=25, deadline=None)
 def test_compound_and_lamboley(k: float, a: float, h: float) -> None:

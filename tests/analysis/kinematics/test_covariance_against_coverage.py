@@ -47,6 +47,7 @@ def resolved(rig: ExactRig, seed: int) -> Phasors:
     return struts.model().phasors
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "arrangement",
     [

@@ -63,6 +63,7 @@ def test_rates_are_those_of_the_paper() -> None:
     assert ship.rate_hz[0] == pytest.approx(kvlcc2.N, rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("ship", "side"), [(kvlcc2, 1.0), (kvlcc2, -1.0), (kcs, 1.0), (kcs, -1.0)])
 def test_turning_circle(ship: Published, side: float) -> None:
     order, helm = side * math.radians(35.0), Helm(ship=ship)
@@ -99,6 +100,7 @@ def _by_angle(state: np.ndarray, delta: float) -> np.ndarray:
     return still.rates(state, 0.0) + np.array([*added, 0.0, 0.0, 0.0])
 
 
+@pytest.mark.slow
 def test_a_rudder_of_abkowitz_terms_turns_as_written_out() -> None:
     values = kvlcc2.terms() | {name: np.array([one]) for name, one in BY_ANGLE.items()}
     ship = replace(kvlcc2.ship(), rudder=None, helm_deg_s=kvlcc2.RATE, hull=HullLoads(
@@ -115,6 +117,7 @@ def test_a_rudder_of_abkowitz_terms_turns_as_written_out() -> None:
         replace(kvlcc2.ship(), rudder=None)
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("ship", [kvlcc2, kcs])
 @pytest.mark.parametrize(("degrees", "side"), [(10.0, 1.0), (20.0, -1.0)])
 def test_zigzag(ship: Published, degrees: float, side: float) -> None:
@@ -157,6 +160,7 @@ def alike(ship: Ship) -> Ship:
     return replace(ship, rudder=rudder, propeller=propeller)
 
 
+@pytest.mark.slow
 def test_port_mirrors_starboard() -> None:
     ship, order = alike(kvlcc2.ship()), math.radians(35.0)
     starboard, port = turning_circle(ship, order), turning_circle(ship, -order)
@@ -166,6 +170,7 @@ def test_port_mirrors_starboard() -> None:
     np.testing.assert_allclose(found.up, -found.down[::-1], atol=1e-4)
 
 
+@pytest.mark.slow
 def test_a_spiral_has_no_lag() -> None:
     """Each turn is where the paper's equations stand still, near to neutral stability too."""
     found = spiral(kvlcc2.ship(), math.radians(5.0), math.radians(5.0))
@@ -187,6 +192,7 @@ def test_a_turn_that_is_not_steady_has_no_number(monkeypatch: pytest.MonkeyPatch
     assert np.isnan(found.height).all(), "10 L/U leave a lag in the loop of KVLCC2"
 
 
+@pytest.mark.slow
 @given(st.floats(2.0, 100.0))
 @settings(max_examples=3)
 def test_a_ship_of_another_size_does_the_same_by_froude(scale: float) -> None:
@@ -206,6 +212,7 @@ def test_a_ship_of_another_size_does_the_same_by_froude(scale: float) -> None:
     assert turns[1].tactical_diameter[0] == pytest.approx(turns[0].tactical_diameter[0], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_many_ships_at_once_are_each_as_one() -> None:
     """Three ships with other derivatives, turned together and one by one."""
     values = {name: np.repeat(one, 3) for name, one in kvlcc2.terms().items()}

@@ -23,6 +23,7 @@ SHIPMMG = {
 """Advance, transfer and tactical diameter over the length, to starboard and to port."""
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("side", SHIPMMG)
 def test_a_turning_circle_is_that_of_shipmmg(side: float) -> None:
     ship = SHIP.ship()

@@ -73,6 +73,7 @@ def dying(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     end_children()
 
 
+@pytest.mark.sample(3)
 @pytest.mark.usefixtures("dying")
 @pytest.mark.parametrize(
     ("does", "said"),
@@ -106,6 +107,7 @@ def test_a_reader_that_hangs_is_ended(tmp_path: Path, monkeypatch: pytest.Monkey
         read_recording(path)
 
 
+@pytest.mark.slow
 def test_one_reader_serves_many_files_and_ends_with_its_parent(mat: Path) -> None:
     text = f"""
 import json, pathlib
@@ -139,6 +141,7 @@ def test_a_module_of_the_users_folder_is_not_taken(
     assert read_recording("run.mat").sample_count == 200
 
 
+@pytest.mark.slow
 def test_spoiled_mat_files_never_end_this_process(mat: Path) -> None:
     """Some of these end scipy's reader by a segmentation fault; benchmarks.fuzz has thousands."""
     whole, ends = np.frombuffer(mat.read_bytes(), np.uint8), 0

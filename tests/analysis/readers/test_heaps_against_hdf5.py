@@ -42,6 +42,7 @@ def _objects(data: bytes) -> list[int]:
     return found
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("which", "number", "size", "endless"),
     [

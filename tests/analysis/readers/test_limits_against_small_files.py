@@ -37,6 +37,7 @@ except DataError as error:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="no resource limits to measure with")
 def test_a_gigabyte_of_gzip_takes_no_memory(tmp_path: Path) -> None:
     path = tmp_path / "run.csv.gz"

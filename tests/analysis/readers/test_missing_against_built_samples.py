@@ -66,6 +66,7 @@ def with_gaps(count: int, gaps: dict[int, list[tuple[int, int]]]) -> np.ndarray:
     return samples
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     "gaps",
     [

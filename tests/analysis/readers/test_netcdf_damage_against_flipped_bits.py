@@ -71,6 +71,7 @@ def test_an_unharmed_file_is_silent(path: Path) -> None:
     assert read_recording(path).flags == ()
 
 
+@pytest.mark.slow
 def test_a_flipped_bit_anywhere_is_refused_said_or_harmless(path: Path) -> None:
     whole, before, expected = path.read_bytes(), read_recording(path), values(read_recording(path))
     rng, silent = np.random.default_rng(23), 0

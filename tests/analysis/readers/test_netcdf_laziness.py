@@ -41,6 +41,7 @@ def test_slicing_takes_the_memory_of_the_slice(stored: Recording) -> None:
     assert peak_of(lambda: stored.samples[:, 500_000:510_000]) < 1_000_000
 
 
+@pytest.mark.slow
 def test_opening_and_selecting_read_no_samples(stored: Recording) -> None:
     path = getattr(stored.samples, "path", None)
     assert isinstance(path, Path)
@@ -51,6 +52,7 @@ def test_opening_and_selecting_read_no_samples(stored: Recording) -> None:
     assert np.array_equal(chosen.samples[:, 10:20], stored.samples[[2, 1], 10:20])
 
 
+@pytest.mark.slow
 def test_copying_goes_by_blocks(stored: Recording, tmp_path: Path) -> None:
     copy = tmp_path / "copy.nc"
     assert peak_of(lambda: write_recording(stored, copy)) < 30_000_000

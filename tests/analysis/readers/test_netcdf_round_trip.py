@@ -66,6 +66,7 @@ def assert_same(found: Recording, expected: Recording) -> None:
     assert dict(found.provenance) == dict(expected.provenance)
 
 
+@pytest.mark.slow
 @given(recording=recordings())
 def test_a_file_gives_back_what_was_written(
     tmp_path_factory: pytest.TempPathFactory, recording: Recording

@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 READER = '''
 import numpy as np
 from analysis.foreign.columns import ForeignColumns
@@ -46,6 +48,7 @@ def asked(folder: Path, name: str, entry: str) -> subprocess.CompletedProcess[st
     )
 
 
+@pytest.mark.slow
 def test_a_package_brings_a_reader_in_one_file(tmp_path: Path) -> None:
     (tmp_path / "run.raw").write_bytes(b"\0" * 8 * 7)
     done = asked(tmp_path, "run.raw", "lab:READER")

@@ -86,6 +86,7 @@ def test_shapes(name: str) -> None:
         assert find_spikes(np.round(values / step)[None] * step) == ((),), (rate, frequency, step)
 
 
+@pytest.mark.sample(37)
 @pytest.mark.parametrize("kind", catalogue().values(), ids=lambda kind: kind.code)
 @pytest.mark.parametrize("rate_hz", [40.0, 200.0])
 def test_every_effect_of_the_catalogue(kind: type[Effect], rate_hz: float) -> None:

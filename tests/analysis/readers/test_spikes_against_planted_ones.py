@@ -83,6 +83,7 @@ def _made(folder: Path) -> Path:
     return folder
 
 
+@pytest.mark.slow
 @given(
     start=st.integers(10, COUNT - 20),
     length=st.integers(1, 3),

@@ -32,6 +32,7 @@ def read(path: Path, block: int) -> tuple[list[list[float]], list[str], str]:
     return values, [flag.message for flag in one.flags], one.provenance["sha256"]
 
 
+@pytest.mark.slow
 @given(
     block=st.integers(1, 300),
     layout=st.sampled_from([(",", "."), (";", ","), ("\t", "."), (" ", ".")]),

@@ -82,6 +82,7 @@ def test_noise_at_rest_does_not_turn_the_phase_back() -> None:
     assert np.abs(inside).max() < 2e-3
 
 
+@pytest.mark.slow
 def test_many_samples_are_thinned_without_losing_the_ripple() -> None:
     time = np.arange(200_000) / 10_000.0
     turned = 2.0 * np.pi * 1.03 * time

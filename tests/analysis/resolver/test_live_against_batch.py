@@ -74,6 +74,7 @@ def same(ours: list[Harmonics], theirs: list[Harmonics]) -> None:
         assert one.interval_source == other.interval_source
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(
     st.lists(st.integers(1, 200), min_size=1, max_size=6),
@@ -266,6 +267,7 @@ def test_memory_before_the_first_pulse_is_bounded() -> None:
     assert max(sizes) <= 3 * 8 * 1024 * 2
 
 
+@pytest.mark.slow
 def test_memory_does_not_grow_with_the_run() -> None:
     live = LiveResolver(run().channels, RATE_HZ)
     readings = 0
@@ -308,6 +310,7 @@ def test_missing_samples_cost_their_periods_and_no_more(periods: int) -> None:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("length", [1, 2, 3])
 def test_a_spike_is_taken_out_wherever_a_period_ends(length: int) -> None:
     """What has come when a period is summed up ends in the middle of a spike, too."""
@@ -322,6 +325,7 @@ def test_a_spike_is_taken_out_wherever_a_period_ends(length: int) -> None:
         assert [taken.number for taken in live.spikes()] == [at]
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(
     st.lists(st.integers(1, 200), min_size=1, max_size=6),

@@ -57,6 +57,7 @@ def noise(kind: str, periods: int) -> FloatArray:
     return np.asarray(wave + 0.2 * rng.standard_normal(shape))
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("periods", [10, 20])
 @pytest.mark.parametrize(("kind", "part"), [("slow", 0), ("beside", 1), ("dying", 1)])
 def test_intervals_hold_where_the_noise_remembers(kind: str, part: int, periods: int) -> None:
@@ -97,6 +98,7 @@ def test_units_scale_and_constants_stay() -> None:
     assert np.all((wider**2).sum(axis=0) >= (left**2).sum(axis=0) * (1.0 - 1e-12))
 
 
+@pytest.mark.slow
 def test_hundreds_of_periods_are_as_well_held_as_some() -> None:
     values = np.random.default_rng(5).standard_normal((200, TRIALS, 7))
     values[:, :, 1:] *= np.sqrt(2.0)
@@ -123,6 +125,7 @@ def test_covariances_of_averages_against_quadrature(kind: str, apart: float) -> 
     assert found == pytest.approx(expected, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_parts_of_harmonics_against_drawn_noise() -> None:
     tau = 0.3
     drawn = autoregressive(

@@ -110,6 +110,7 @@ def test_few_periods_of_motion_in_a_long_rest() -> None:
     assert np.abs(away_rad(reference, time[inside], cycles[inside])).max() < 1e-2
 
 
+@pytest.mark.slow
 def test_noise_is_no_reference() -> None:
     """Of 100 records of white noise of any length, at most a few may pass for a motion."""
     generator = np.random.default_rng(7)

@@ -69,11 +69,13 @@ def test_drift_costs_higher_harmonics_less(harmonic: int) -> None:
     assert ratio == pytest.approx(1.0 + 2.0 / (np.pi * harmonic) ** 2, rel=0.05)
 
 
+@pytest.mark.slow
 def test_hann_costs_half_as_much_again() -> None:
     ratio = variance(10, drift=False, hann=True)
     assert ratio[1:] == pytest.approx(1.5 * np.ones(2 * HARMONICS), rel=0.05)
 
 
+@pytest.mark.slow
 def test_random_noise_agrees_with_the_exact_variance() -> None:
     """The oracle itself: 4000 channels of noise scatter as the squared responses say."""
     noise = np.random.default_rng(2).normal(size=(4000, 600))

@@ -84,6 +84,7 @@ def test_square_stands_at_even_lines() -> None:
     assert one[Degree.ODD].chance > 1e-3
 
 
+@pytest.mark.slow
 def test_noise_is_taken_for_a_distortion_as_seldom_as_it_says() -> None:
     u = motion()
     told = [one.told for run in seen(u, noisy(50.0 * u, 100)) for one in run.values()]

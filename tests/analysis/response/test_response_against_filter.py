@@ -74,6 +74,7 @@ def test_lines_are_found_where_the_motion_has_them() -> None:
     assert excited_lines(local(motion()[None]), "motion") == LINES
 
 
+@pytest.mark.slow
 def test_variance_is_that_of_theory_in_coloured_noise() -> None:
     """Whole periods have the noise's spectrum over the samples; local polynomials ``cost`` of it.
 

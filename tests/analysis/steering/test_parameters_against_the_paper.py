@@ -57,6 +57,7 @@ def test_wakes_in_drift_and_turn_are_the_papers() -> None:
         assert wake == pytest.approx(1.0 - (1.0 - paper.W_P0) * grown, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
     rng = np.random.default_rng(29)
     truth = np.array(list(TRUTH.values()))

@@ -118,6 +118,7 @@ def test_a_datum_that_nothing_checks_departs_from_nothing() -> None:
     assert agreement.agree
 
 
+@pytest.mark.slow
 def test_uncertainties_from_few_repeats_are_no_certainty() -> None:
     """Each datum's uncertainty is itself drawn from five repeats."""
     generator, named = np.random.default_rng(4), 0

@@ -76,6 +76,7 @@ def test_runs_alike_deviate_alike(clean: tuple[GapRun, ...]) -> None:
     assert likeness([clean[0].set_point, clean[0].set_point])[0, 1] == pytest.approx(0.8)
 
 
+@pytest.mark.slow
 def test_a_deviation_is_relative_to_what_is_predicted(
     rig: SimulatedRig, clean: tuple[GapRun, ...]
 ) -> None:
@@ -114,6 +115,7 @@ def test_what_nothing_names_has_its_normal_density(beside: Background) -> None:
             assert coefficients[at_] == pytest.approx(mean, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_what_is_unknown_has_its_normal_density(beside: Background) -> None:
     stated = beside.residual
     dense, free = _dense(beside.kernel), np.eye(len(stated)) + _square(beside.tolerances)
@@ -125,6 +127,7 @@ def test_what_is_unknown_has_its_normal_density(beside: Background) -> None:
             _holds(logs[at_], stated, free + tau**2 * dense * _both(beside.kinds[kind].rows), free)
 
 
+@pytest.mark.slow
 def test_an_odd_run_has_its_normal_density(beside: Background) -> None:
     stated, dense = beside.residual, _dense(beside.kernel)
     free = np.eye(len(stated)) + _square(beside.tolerances)
@@ -139,6 +142,7 @@ def test_an_odd_run_has_its_normal_density(beside: Background) -> None:
         assert beside.odd_runs()[run][at_] == pytest.approx(wanted, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_named_effect_of_no_free_size_has_its_normal_density(
     rig: SimulatedRig, clean: tuple[GapRun, ...], beside: Background
 ) -> None:

@@ -59,6 +59,7 @@ SIZES = {
 }
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", list(LOSSES))
 def test_loss_is_named_with_its_size(name: str) -> None:
     problem = decay(LOSSES[name], seed=3)
@@ -76,6 +77,7 @@ def test_nothing_missing_is_none() -> None:
     assert answers.by_answer["none"] > 0.5
 
 
+@pytest.mark.slow
 def test_period_that_falls_with_amplitude_is_no_damping() -> None:
     # T = T0 (1 + slope A): the phase falls behind evenly at constant amplitude, so let it decay
     amplitude = LOSSES["viscous_damping"]
@@ -87,6 +89,7 @@ def test_period_that_falls_with_amplitude_is_no_damping() -> None:
     assert weigh(problem, chosen, most=2).answers.best == "amplitude_period+viscous_damping"
 
 
+@pytest.mark.slow
 def test_withheld_swings_are_foretold_by_the_true_loss() -> None:
     problem = decay(LOSSES["quadratic_drag"], seed=11)
     sets = [fit(problem, [cause(one)]) for one in (body.QuadraticDrag, body.CubicRateDamping)]

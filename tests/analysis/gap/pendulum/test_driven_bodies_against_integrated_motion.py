@@ -53,6 +53,7 @@ def weighed_without(problem: PendulumProblem, names: tuple[str, ...] = ()) -> We
     return weigh(problem, [one for one in causes_for(problem.trials) if one.name in left], most=1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PUT_IN)
 def test_what_is_put_in_is_named_with_its_size(name: str) -> None:
     weighed = weighed_without(problem_with(name))
@@ -63,6 +64,7 @@ def test_what_is_put_in_is_named_with_its_size(name: str) -> None:
     assert axis.value(float(best.units[0])) == pytest.approx(PUT_IN[name][1], rel=0.02)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", WITHHELD)
 def test_what_the_catalogue_does_not_have_is_called_nothing_else(name: str) -> None:
     weighed = weighed_without(problem_with(name), WITHHELD[name])
@@ -71,6 +73,7 @@ def test_what_the_catalogue_does_not_have_is_called_nothing_else(name: str) -> N
     assert judge(weighed).said in ("unknown", "untold")
 
 
+@pytest.mark.slow
 def test_a_law_beside_less_linear_damping_than_stated_is_the_best() -> None:
     problem = driven(Made(damping=45.0, quadratic=60.0), RUNS, 3, KNOWN)
     tried = ("damping", "viscous_damping", "quadratic_drag", "cubic_damping")
@@ -87,6 +90,7 @@ def test_a_law_beside_less_linear_damping_than_stated_is_the_best() -> None:
     assert all(one.told_apart for one in others)
 
 
+@pytest.mark.slow
 def test_a_drag_far_above_its_typical_size_is_found_as_any_power() -> None:
     problem = driven(Made(power=150.0), RUNS[:3], 3, KNOWN)
     tried = ("damping", "quadratic_drag", "power_drag")
@@ -98,6 +102,7 @@ def test_a_drag_far_above_its_typical_size_is_found_as_any_power() -> None:
     assert damping_laws(weighed, best, causes)[0].name == "any power"
 
 
+@pytest.mark.slow
 def test_nothing_put_in_is_none() -> None:
     assert weighed_without(driven(Made(), RUNS, 5, KNOWN)).answers.by_answer["none"] > 0.5
 

@@ -65,6 +65,7 @@ def lengths(one: FurtherRecord) -> tuple[float, float]:
     return float(half.split()[2]), float(line.split()[2])
 
 
+@pytest.mark.slow
 def test_a_further_suspension_brings_what_is_expected_of_it() -> None:
     kinds = (setup.ClampMass, setup.SpacingError)
     places = ((0.25, 0.6), (0.25, 1.2), (0.45, 0.6))
@@ -104,6 +105,7 @@ def decayed(release: float, loss: float, seed: int) -> Trial:
     return Trial("decay", bench, "roll", windows, found, scatter(found)).released()
 
 
+@pytest.mark.slow
 def test_a_larger_release_brings_what_is_expected_of_it() -> None:
     kinds = (body.QuadraticDrag, body.CubicRateDamping)
     known, counted = (tolerance("restoring", 1e-3),), ("decay", "period")
