@@ -208,7 +208,7 @@ class PageActions:
             if who.visitor.role is Role.PROPOSE:
                 return await self._propose(action, posted, who)
             self._require_control(who)
-            return await self.changes.carry_out(action, posted)
+            return await self.changes.kept(await self.changes.carry_out(action, posted))
 
         return await self._do(request, PROPOSED[action], action, act)
 
@@ -218,9 +218,8 @@ class PageActions:
         name, picture = await self.changes.try_out(posted)
         one = self._proposals.add(action, posted, name, who.visitor, self._utc())
         self.changes.tell_proposals()
-        return ActionReply(
-            f"proposal {one.number}, {one.text}: whoever has control decides", picture
-        )
+        said = f"proposal {one.number}, {one.text}: whoever has control decides"
+        return await self.changes.kept(ActionReply(said, picture))
 
     async def _approve(self, posted: DecisionPosted, who: Who) -> ActionReply:
         self._require_control(who)
@@ -231,7 +230,8 @@ class PageActions:
             self._proposals.waiting[one.number] = one
             raise
         self.changes.tell_proposals()
-        return replace(done, said=f"{one.text}, proposed by {one.visitor.name!r}: {done.said}")
+        said = f"{one.text}, proposed by {one.visitor.name!r}: {done.said}"
+        return await self.changes.kept(replace(done, said=said))
 
     async def _refuse(self, posted: DecisionPosted, who: Who) -> ActionReply:
         one = self._proposals.waiting.get(posted.number)
@@ -240,7 +240,8 @@ class PageActions:
             self._require_control(who)
         one = self._proposals.take(posted.number)
         self.changes.tell_proposals()
-        return ActionReply(f"{one.text}, proposed by {one.visitor.name!r}: {_ENDED[own]}")
+        said = f"{one.text}, proposed by {one.visitor.name!r}: {_ENDED[own]}"
+        return await self.changes.kept(ActionReply(said))
 
     async def _command(self, posted: CommandPosted, who: Who) -> ActionReply:
         if posted.command is Command.QUICK_STOP:

@@ -88,7 +88,7 @@ class Console:
         if isinstance(message, Hello):
             self._restoring = asyncio.ensure_future(self.actions.changes.restore())
         elif isinstance(message, Frame):
-            self.actions.changes.seen((message.plan, *message.queue))
+            self.actions.changes.seen(message.number, (message.plan, *message.queue))
         if self._publishing is not None:
             self._publishing.take(message)
             self.hub.tell_live(self._publishing.statuses())

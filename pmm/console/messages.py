@@ -111,12 +111,15 @@ class Reply:
     ----------
     plan
         Number of the plan that is present after it; 0 for none.
+    frame
+        Number of the first frame that is of after it.
     """
 
     number: int
     done: bool
     text: str = ""
     plan: int = 0
+    frame: int = 0
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """What is done to the queue: checked by a worker, carried out by the loop, kept on the disk."""
 
 import asyncio
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from hardware.description.errors import PmmError
@@ -84,6 +84,7 @@ class QueueChanges:
         self._proposals = proposals
         self._keeper = QueueKeeper(journal, self._kept, lambda text: hub.say("alarm", text))
         self._changing, self._order = asyncio.Lock(), tuple[int, ...]()
+        self._frame, self._told = 0, asyncio.Event()
         self.queued = Queued()
         self._acts: dict[str, Callable[[Any], Awaitable[ActionReply]]] = {
             "queue": self._queue,
@@ -141,7 +142,11 @@ class QueueChanges:
     async def _move(self, posted: MovePosted) -> ActionReply:
         if posted.run:
             return await self._change(posted)
-        return of_reply(await self._loop.order(OrderKind.MOVE, f"{posted.number} {posted.by}"))
+        reply = await self._loop.order(OrderKind.MOVE, f"{posted.number} {posted.by}")
+        while self._frame < reply.frame:  # only frames tell the order
+            self._told.clear()
+            await self._told.wait()
+        return of_reply(reply)
 
     async def _change(self, posted: RunPosted) -> ActionReply:
         worker = self._workers.for_whom(in_control=True)
@@ -153,8 +158,10 @@ class QueueChanges:
         self._tell_plans()
         return of_reply(reply, found.picture)
 
-    def seen(self, numbers: tuple[int, ...]) -> None:
+    def seen(self, frame: int, numbers: tuple[int, ...]) -> None:
         """Take the order of the queue as the latest frame tells it."""
+        self._frame = frame
+        self._told.set()
         if numbers != self._order:
             self._order = numbers
             self.queued.at_hand(numbers)
@@ -170,9 +177,9 @@ class QueueChanges:
                 kept = KeptQueue()
             numbers = {plan.number: await self._again(plan) for plan in kept.plans}
             self._proposals.restore(kept.proposals, numbers)
-        self._tell_plans()
-        self.tell_proposals()
-        self._keeper.begin()
+            self._tell_plans()
+            self.tell_proposals()
+            self._keeper.begin()
 
     async def _again(self, kept: KeptPlan) -> int:
         """Queue a plan again; return its number now, 0 if nothing of it is left to be made."""
@@ -186,6 +193,12 @@ class QueueChanges:
             self._hub.say("alarm", f"{kept.name} is not in the queue again: {error}")
             return 0
         return self.queued.count
+
+    async def kept(self, reply: ActionReply) -> ActionReply:
+        """Return an answer once what it says is on the disk; the answer says where it is not."""
+        async with self._changing:  # what was kept before is known by then
+            trouble = await self._keeper.kept()
+        return replace(reply, said=f"{reply.said}; {trouble}") if trouble else reply
 
     def tell_proposals(self) -> None:
         """Tell what is proposed, and keep it."""

@@ -1,4 +1,7 @@
-"""Writes the queue down when it changes: one writing at a time, the latest state, in a thread."""
+"""Writes the queue down when it changes: one writing at a time, the latest state, in a thread.
+
+Whoever changed something waits with the answer until it is on the disk.
+"""
 
 import asyncio
 from collections.abc import Callable
@@ -25,6 +28,7 @@ class QueueKeeper:
         self._journal, self._state, self._alarm = journal, state, alarm
         self._begun = self._again = False
         self._task: asyncio.Task[None] | None = None
+        self._trouble = ""
 
     def read(self) -> KeptQueue:
         """Return what is kept; raises ConfigurationError as the journal does."""
@@ -41,10 +45,17 @@ class QueueKeeper:
         if self._begun and (self._task is None or self._task.done()):
             self._task = asyncio.get_running_loop().create_task(self._write())
 
+    async def kept(self) -> str:
+        """Wait until what was changed so far is on the disk; return why it is not, if it is not."""
+        if self._task is not None:
+            await asyncio.wait([self._task])
+        return self._trouble
+
     async def _write(self) -> None:
         while self._again:
-            self._again = False
+            self._again, self._trouble = False, ""
             try:
                 await run_sync(self._journal.write, self._state())
             except OSError as error:
-                self._alarm(f"the queue is not kept: {error}")
+                self._trouble = f"the queue is not kept: {error}"
+                self._alarm(self._trouble)

@@ -171,7 +171,8 @@ class Station:
         except (PmmError, ValueError) as error:
             done, text = False, str(error)
         present = self._plans.present
-        return Reply(order.number, done, text, 0 if present is None else present.number)
+        number = 0 if present is None else present.number
+        return Reply(order.number, done, text, number, self._view.next_frame)
 
     def _obey(self, order: LoopOrder) -> str:
         if order.quick_stops < self._quick_stop.pressed:

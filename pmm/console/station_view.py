@@ -98,6 +98,11 @@ class StationView:
             self._latest = None
             self._writer.write(plan, self._link.tell)
 
+    @property
+    def next_frame(self) -> int:
+        """Number of the frame that is handed on next."""
+        return self._ticks + 1
+
     def notice(self, kind: str, text: str, plan: int = 0) -> None:
         """Tell the browsers what has happened."""
         self._link.tell(Notice(kind, self._time_s, text, plan=plan))
