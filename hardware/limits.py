@@ -63,6 +63,15 @@ COASTING_S: Final = 10.0
 """Seconds for which an axis without power is recorded and waited for until it rests: twice what the
 simulated shaft takes from 3 Hz."""
 
+RECONNECT_TRIES: Final = 3
+"""How often a reset opens a lost port again, and waits for its device to be heard. Half of it does
+not outlast a controller that has just come back; twice as much keeps who has forgotten to plug in
+waiting for no more than he knows."""
+
+RECONNECT_S: Final = 1.0
+"""Seconds that each of these tries waits; a device is silent after as long. At half, an answer that
+has to be asked for five times is missed."""
+
 RAMP_MARGIN: Final = 1.5
 """Over the time that a ramp takes by its settings: load, jerk limits and the drive's own cycle."""
 

@@ -68,6 +68,19 @@ class ModbusDevice:
         refused = False in (self._says("remote"), self._says("ready"))
         return self._wants_power and self._link.heard and not refused
 
+    @property
+    def heard(self) -> bool:
+        """Whether it answers, and has told all that is read."""
+        told = not any(map(math.isnan, self.values.values()))
+        return self._link.is_open and self._link.heard and told
+
+    def reconnect(self) -> None:
+        """Open a lost port again, and ask anew; raises as :meth:`reset_fault`."""
+        self._kept.clear()
+        self._life = None
+        self.values = dict.fromkeys(self.values, math.nan)  # what it read before is old
+        self._link.reset()
+
     def prepare(self) -> None:
         """Nothing to write: the first answers come with the first cycles."""
 
@@ -76,7 +89,7 @@ class ModbusDevice:
         self._wants_power = True
 
     def reset_fault(self) -> None:
-        """Open a lost port again, clear an alarm; it stays without power.
+        """Clear an alarm; it stays without power. A port that is still lost is opened again.
 
         Raises
         ------
@@ -84,11 +97,13 @@ class ModbusDevice:
             If the port is still not there.
         """
         self._wants_power, self._resets = False, True
-        self._kept.clear()
         self._known.clear()
-        self._life = None
         self.done()
-        self._link.reset()
+        if self.heard:
+            self._life = None
+            self._link.forget()
+        else:
+            self.reconnect()
 
     def close(self) -> None:
         """Close the port."""

@@ -91,6 +91,11 @@ class ModbusLink:
         self._told: set[type] = set()
 
     @property
+    def is_open(self) -> bool:
+        """Whether its port is open, as far as is known."""
+        return self._port.is_open
+
+    @property
     def heard(self) -> bool:
         """Whether it answers."""
         return self._answers
@@ -100,6 +105,10 @@ class ModbusLink:
         self._port.open()
         self._asked_s = self._heard_s = None
         self._answers = False
+        self.forget()
+
+    def forget(self) -> None:
+        """Tell again what was told once."""
         self._trouble = ""
         self._told.clear()
 

@@ -20,6 +20,7 @@ from hardware.errors import (
 from hardware.line_log import HeardPort, LineObserver
 from hardware.master import Clock, Master, Observer
 from hardware.pacing import Pacer
+from hardware.reconnection import reconnect
 from hardware.rest import come_to_rest
 from hardware.rig_configuration import RigConfiguration, check
 from hardware.rig_devices import RigDevices
@@ -196,6 +197,8 @@ class Rig:
     def reset(self) -> None:
         """Forget the latched faults and reset those of the devices: on the operator's demand.
 
+        What is not heard is connected again first, with the loop going on meanwhile.
+
         Raises
         ------
         NotReadyError
@@ -203,6 +206,7 @@ class Rig:
         HardwareError
             If a device cannot be reset (a port is still unplugged); its fault stays latched.
         """
+        reconnect(self._devices.opened, self.cycle, self._period_s)
         moving = [one.name for one in self.powered() if one.moving]
         if moving:
             raise NotReadyError(

@@ -146,6 +146,20 @@ class Sampled(Device, Protocol):
 
 
 @runtime_checkable
+class Reconnecting(Device, Protocol):
+    """A device behind a port that may be lost and come back."""
+
+    @property
+    def heard(self) -> bool:
+        """Whether it answers."""
+        ...
+
+    def reconnect(self) -> None:
+        """Open its port again if it is lost, and begin to ask anew."""
+        ...
+
+
+@runtime_checkable
 class Powered(Device, Protocol):
     """A device that moves."""
 

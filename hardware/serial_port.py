@@ -280,8 +280,11 @@ class SerialPort:
         """Close the port; may be called twice."""
         port, self._port = self._port, None
         if port is not None:
+            own = getattr(port, "_socket", None)  # pyserial leaves it where its other end is gone
             with suppress(OSError):  # an unplugged port has nothing left to close
                 port.close()
+            if own is not None:
+                own.close()
         self._disown()
 
     def _disown(self) -> None:

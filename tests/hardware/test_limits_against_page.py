@@ -27,6 +27,8 @@ STATED = [
     f"its tolerance, but for {limits.CARRIAGE_S:g} s |",
     f"| a reading is no speed of the carriage beyond | {limits.CARRIAGE_PLAUSIBLE:g} times",
     f"end of its track by | {limits.TRACK_MARGIN:g} times its braking way",
+    f"| a lost port is opened on a reset | {limits.RECONNECT_TRIES} times, each waits "
+    f"{limits.RECONNECT_S:g} s |",
     f"| a shaft that has to stand may move for | {limits.RESTLESS_S:g} s |",
 ]
 

@@ -5,14 +5,14 @@ import socket
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 
 import pytest
 from pymodbus.client import ModbusTcpClient
 from pymodbus.server import ModbusTcpServer
 from pymodbus.simulator import DataType, SimData, SimDevice
 
-from hardware.errors import PortOpenError
+from hardware.errors import PortOpenError, UnpluggedError
 from hardware.modbus_registers import Register
 from hardware.pacing import RealTime
 from hardware.rig import Rig
@@ -58,12 +58,16 @@ class Follower:
         registers[15 - start] = len(self.written)
 
 
-@contextmanager
-def served(follower: Follower) -> Iterator[int]:
-    """A server of pymodbus in a thread of its own; yields its port."""
+def free_port() -> int:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+        return int(probe.getsockname()[1])
+
+
+@contextmanager
+def served(follower: Follower, port: int | None = None) -> Iterator[int]:
+    """A server of pymodbus in a thread of its own; yields its port."""
+    port = free_port() if port is None else port
     loop = asyncio.new_event_loop()
     block = SimData(0, count=120, values=0, datatype=DataType.REGISTERS)
     device = SimDevice(1, simdata=[block], action=follower.act)
@@ -109,9 +113,40 @@ def test_a_carriage_behind_their_server_is_set_and_read() -> None:
     assert max(follower.written) == pytest.approx(0.75)
 
 
+def test_a_server_that_goes_away_and_comes_back_is_connected_by_a_reset(monkeypatch) -> None:
+    """The run's own end is at rest; the reset that finds nobody says how often it has tried."""
+    monkeypatch.setattr("hardware.reconnection.RECONNECT_S", 0.3)
+    follower, port = Follower(), free_port()
+    with ExitStack() as stack:
+        with served(follower, port):
+            rig = stack.enter_context(rig_at(port))
+            rig.prepare()
+            carriage = rig.carriage
+            carriage.enable()
+            rig.run_until(lambda: carriage.enabled and not carriage.moving, 300, "enable")
+            carriage.run_at(0.75)
+            rig.run_until(lambda: carriage.at_speed, 300, "speed")
+        with pytest.raises(UnpluggedError):
+            rig.run_until(lambda: False, 300, "the server's end")
+        assert carriage.moving  # nobody hears it
+        carriage.disable()
+        with pytest.raises(PortOpenError, match=rf"{port} cannot be opened: .*3 tries"):
+            rig.reset()
+        assert rig.faults
+        with served(follower, port):
+            rig.reset()
+            assert not rig.faults
+            assert not carriage.moving
+            assert not carriage.enabled
+            assert follower.written[-1] == 0.0
+            carriage.enable()
+            rig.run_until(lambda: carriage.enabled, 300, "enable again")
+            carriage.run_at(0.5)
+            rig.run_until(lambda: carriage.at_speed, 300, "speed again")
+            rig.close()
+
+
 def test_a_connection_that_is_refused_is_told_with_the_address() -> None:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+    port = free_port()
     with pytest.raises(PortOpenError, match=f"socket://127.0.0.1:{port} cannot be opened"):
         rig_at(port)

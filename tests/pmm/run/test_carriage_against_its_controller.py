@@ -78,6 +78,20 @@ def test_what_goes_wrong_in_a_tow_ends_at_rest(tmp_path, words, latched, remedy)
         assert not one.rig.carriage.enabled
 
 
+def test_after_a_lost_port_a_reset_connects_again_and_the_runs_go_on(tmp_path) -> None:
+    with towed(tmp_path, [TOW, replace(TOW, name="next")]) as one:
+        one.until(State.GATE_OPEN)
+        inject(one.world, "unplug carriage")
+        one.until(State.FAULT)
+        one.finish()
+        inject(one.world, "plug carriage")
+        one.control.request(Command.RESET)
+        assert one.control.state is State.IDLE
+        one.control.request(Command.START)
+        one.finish()
+        assert one.control.outcomes[-1].outcome == "complete", one.control.status().alarms
+
+
 def test_nobody_starts_a_carriage_that_is_in_a_persons_hand(tmp_path) -> None:
     with towed(tmp_path, [TOW], start=False) as one:
         inject(one.world, "local carriage")
