@@ -1,10 +1,12 @@
 """The pulse of a shaft that is a program: one for each whole turn of the master angle."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from hardware.driver import Driver, Services
-from hardware.path_shaft import led_shaft
+from hardware.led_shaft import led_shaft
 from hardware.roles import Cycle, Pulse, Role
 
 _TURN = 2.0 * math.pi
@@ -50,6 +52,14 @@ class PathPulse:
         """Return the pulses since the last call."""
         taken, self._pulses = tuple(self._pulses), []
         return taken
+
+    def carried(self) -> dict[str, Any]:
+        """Return the count; see :mod:`hardware.carry_over`."""
+        return {"count": self._count}
+
+    def carry_on(self, carried: Mapping[str, Any]) -> None:
+        """Count on from there."""
+        self._count = int(carried["count"])
 
     def prepare(self) -> None:
         """Nothing to write."""

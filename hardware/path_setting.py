@@ -7,7 +7,7 @@ from hardware.command_limits import check_move
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
 from hardware.driver import Driver, Services
-from hardware.path_shaft import led_shaft
+from hardware.led_shaft import led_shaft
 from hardware.roles import Cycle, Reading, Role
 
 

@@ -6,7 +6,8 @@ one path. Time is the count of SYNCs; the set-point's place in it is its time st
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
 
 import numpy as np
 
@@ -19,7 +20,6 @@ from hardware.description.channels import (
     DISPLACEMENT_FORE,
     SHAFT_ANGLE,
 )
-from hardware.description.errors import ConfigurationError
 from hardware.description.lines import Line
 from hardware.description.oscillator import Range
 from hardware.driver import Driver, NodePlan, Services
@@ -30,9 +30,11 @@ from hardware.path_record import PathRecord
 from hardware.path_shaft_settings import STRUTS, PathShaftSettings
 from hardware.path_strut import PathStrut
 from hardware.roles import Cycle, Role, SampleBlock
+from hardware.serial_port import PortSettings
 from hardware.strut_path import StrutPath
 
 _TURN = 2.0 * math.pi
+_LOOPED: Final = "loop://"  # of pyserial: what is written is read back
 LEAD_CYCLES = 2  # from sending a set-point to its SYNC (hardware/path_strut.py)
 
 
@@ -63,7 +65,8 @@ class PathShaft:
         self._angle = self._speed_hz = self._target_hz = 0.0
         self._points = np.zeros(2)
         self._approach = PathApproach(self.struts, settings.approach_speed, self.sample_rate_hz)
-        self._record = PathRecord(self.struts, encoders=settings.encoders)
+        port = services.port(name, PortSettings(_LOOPED))
+        self._record = PathRecord(self.struts, port, encoders=settings.encoders)
 
     @property
     def enabled(self) -> bool:
@@ -242,8 +245,17 @@ class PathShaft:
         """Return angle, displacements and commands since the last call."""
         return self._record.take()
 
+    def carried(self) -> dict[str, Any]:
+        """Return what the struts are led to; see :mod:`hardware.carry_over`."""
+        return self._record.carried()
+
+    def carry_on(self, carried: Mapping[str, Any]) -> None:
+        """Go on recording from there; a replay leads nothing."""
+        self._record.carry_on(carried)
+
     def close(self) -> None:
-        """Nothing to let go of: the bus is the master's."""
+        """Close the record; the bus is the master's."""
+        self._record.close()
 
     def _halt(self) -> None:
         """End what is under way, off the path: the drives decelerate."""
@@ -274,19 +286,6 @@ class PathShaft:
             if not strut.homing:
                 strut.lead(strut.position if is_free else float(point))
         self._record.led(number, self._angle, self._points)
-
-
-def led_shaft(name: str, services: Services) -> PathShaft:
-    """Return the rig's shaft, for a device whose motors are its struts'.
-
-    Raises
-    ------
-    ConfigurationError
-        If it has no struts that follow a path.
-    """
-    if not isinstance(services.shaft, PathShaft):
-        raise ConfigurationError(f'{name}: needs [shaft] driver = "path-struts"')
-    return services.shaft
 
 
 def nodes(name: str, settings: PathShaftSettings) -> tuple[NodePlan, ...]:

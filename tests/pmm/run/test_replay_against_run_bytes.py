@@ -1,22 +1,26 @@
 """A replay of the raw log writes the very file of samples that the run wrote, byte for byte."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from analysis.response.multisine import multisine
 from hardware.description.kinds import RunKind
 from pmm.recorder.batches import read_batches
 from pmm.recorder.decoding import decode
 from pmm.recorder.files import SAMPLES
 from pmm.recorder.live_path import joined
 from pmm.recorder.recording import RunData, read_run
+from pmm.recorder.replay import replay
 from pmm.recorder.samples import SampleWriter
 from pmm.run.states import Command, State
 from sim.devices.bench_file import DRIVERS
 from sim.devices.faults import inject
 from tests.pmm.run.harness import TABLES, Bench, at_rest, bench, oscillation
+from tests.sim.devices.test_paths_against_exact_struts import BARE, PATHS
 
 FORCES = 0x184, 0x185
 
@@ -85,6 +89,25 @@ def test_where_frames_come_late_and_some_not_in_time(tmp_path: Path) -> None:
     run = read_run(tmp_path / "heave")
     assert np.isnan(run.samples[:, :]).any()
     assert written_again(run) == (tmp_path / "heave" / SAMPLES).read_bytes()
+
+
+def test_of_led_struts_angle_and_commands_too(tmp_path: Path) -> None:
+    """Two runs of another path each: what the first one left is carried over."""
+    lines = multisine((1, 3), np.array([1.0, 0.3]))
+    sway = oscillation("sway", 1.0, periods=1, max_periods=1)
+    point = replace(sway.set_point, eccentricity_m=0.02)
+    runs = [
+        replace(sway, set_point=point),
+        replace(sway, name="other", set_point=replace(point, lines=lines)),
+    ]
+    with bench(tmp_path, runs, tables=PATHS, simulated=BARE) as one:
+        one.finish(20000)
+        assert one.control.state is State.DONE, one.control.status().alarms
+    for name in ("sway", "other"):
+        run = read_run(tmp_path / name)
+        assert np.ptp(run.samples[:, :], axis=1).min() > 0.01  # all of its channels move
+        assert written_again(run) == (tmp_path / name / SAMPLES).read_bytes()
+    assert replay(tmp_path / "other", DRIVERS).same
 
 
 @pytest.mark.parametrize("words", ["silence forces[0]", "bus-off", "heartbeat phase"])

@@ -114,6 +114,10 @@ class TestPathShaft(ShaftContract):
         rehomed(led[0])
         return bench
 
+    def test_it_closes_twice(self) -> None:
+        with in_process(TABLES, BARE) as (rig, _):  # the others go on with theirs
+            super().test_it_closes_twice(Bench(rig))
+
 
 class TestPathSetting(PositionAxisContract):
     @pytest.fixture
