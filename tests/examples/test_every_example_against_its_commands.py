@@ -2,6 +2,7 @@
 
 import json
 import math
+import shutil
 import tomllib
 from pathlib import Path
 
@@ -25,7 +26,7 @@ ELSEWHERE = {
     "steering": "tests/pmm/steering/test_command_against_its_example.py",
     "recordings": "tests/analysis/readers/test_examples_against_their_recipe.py",
 }
-HERE = ("attitude", "horizontal", "inertia", "vertical")
+HERE = ("attitude", "horizontal", "inertia", "paths", "vertical")
 INERTIA = {
     "axes": "bifilar",
     "ballast": "ballast",
@@ -93,6 +94,32 @@ def test_the_model_sinks_and_trims_as_the_example_says(tmp_path: Path) -> None:
     second = put_in["z_vv"] * (0.2 * 2.0 * math.pi * 0.25) ** 2 / 2.0
     assert rows["sway-0.25"]["sinkage"]["amplitude"][1] == pytest.approx(second, rel=0.02)
     assert len(rows) == 5
+
+
+@pytest.mark.slow
+def test_led_struts_give_what_was_put_in_and_tell_how_they_followed(tmp_path: Path) -> None:
+    own = EXAMPLES / "paths"
+    for name in ("rig.toml", "simulated.toml"):
+        shutil.copy(own / name, tmp_path)
+    text = (own / "plan.toml").read_text(encoding="utf-8")
+    quick = text.replace("\nperiods = 3", "\nperiods = 1").replace("[0.05, 0.1]", "[0.4]")
+    plan, out = tmp_path / "plan.toml", str(tmp_path / "out")
+    plan.write_text(quick, encoding="utf-8")
+    only = [word for one in ("sway", "yaw") for word in ("--only", f"{one}-f0.4-a150")]
+    made = CliRunner().invoke(cli, ["run", str(plan), "--output", out, *only])
+    assert made.exit_code == 0, made.stderr
+    found = json.loads(CliRunner().invoke(cli, ["coefficients", out, "--json"]).stdout)
+    values = {row["name"]: row["value"] for row in found["recommended"]}
+    damping = tomllib.loads((own / "rig.toml").read_text())["hull"]["damping"]
+    assert values["Y_v"] == pytest.approx(-damping[0][0], rel=5e-3)
+    assert len(found["following"]) == 4
+    for row in found["following"]:
+        # docs/paths.md: 3 millionths and 0.0006 degrees at 0.2 Hz; both grow with its third power.
+        assert abs(row["amplitude_relative"]) < 8.0 * 6e-6
+        assert abs(row["phase_rad"]) < 8.0 * 2e-5
+        assert 0.0 < row["rms"] < row["peak"] < 1e-4
+    shares = {line["source"] for one in found["budgets"] for line in one["lines"]}
+    assert {"amplitude", "phase setting"} <= shares
 
 
 @pytest.mark.sample(5)

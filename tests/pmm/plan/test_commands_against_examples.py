@@ -41,7 +41,7 @@ from pmm.plan.rig_tables import (
 )
 from tests.pmm.plan.plans import EXAMPLES, HEAVE, HOUSE, write_plan
 
-NAMES = ("vertical", "horizontal", "manual")
+NAMES = ("vertical", "horizontal", "manual", "paths")
 
 
 def _pmm(*arguments: object) -> Result:
