@@ -11,7 +11,8 @@ class Demand(str):
     Attributes
     ----------
     part
-        What is to be changed: an axis by its name, ``"carriage"``, ``"medium"``, ``"mass"``, or
+        What is to be changed: an axis by its name, ``"carriage"``, ``"medium"``, ``"mass"``,
+        ``"release"`` (the heel that the model is let go from, 0 where it is held again), or
         ``"load"`` of the channel in :attr:`channel`; ``"lines"``, whose value is a JSON list of
         :class:`hardware.description.lines.Line`.
     value

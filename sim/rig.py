@@ -153,7 +153,8 @@ class SimulatedRig:
         if self.heel is None:
             return None
         in_water, terms = set_point.medium is Medium.WATER, HeelTerms.of(self.heel_loads)
-        return Heeling(self.heel, self.body, terms, set_point.heel_rad, in_water)
+        rest, release = set_point.heel_rad, set_point.release_rad
+        return Heeling(self.heel, self.body, terms, rest, in_water, release)
 
     def _hull(self, set_point: SetPoint, carriage: Carriage) -> Hull:
         in_water = set_point.medium is Medium.WATER

@@ -115,7 +115,7 @@ def _of_heel(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
     if rig.heel is None:
         for name in recorded(rig.acquisition, {one.name for one in HEELING}):
             yield f"acquisition.{name}, but [heel] is missing"
-        if set_point.heel_rad:
+        if set_point.heel_rad or set_point.release_rad:
             yield "a heel angle, but [heel] is missing"
         if rig.heel_loads:
             yield "[heel_loads], but [heel] is missing"

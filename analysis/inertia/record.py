@@ -6,6 +6,8 @@ series -> usable part -> one regime -> checks -> fit -> parts of it -> period at
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from analysis.inertia.amplitude import (
     PowerDecay,
     ZeroAmplitude,
@@ -142,3 +144,15 @@ def from_runs(
         what=what,
         names=[run.part.series.name for run in runs],
     )
+
+
+def damping_of(records: Sequence[RecordAnalysis]) -> Estimate:
+    """Return the damping ratio, the mean over records; one alone has the scatter along it."""
+    ratios = np.array([one.fit.modes[0].damping_ratio for one in records])
+    if ratios.size > 1:
+        spread = float(ratios.std(ddof=1)) / np.sqrt(ratios.size)
+        return Estimate.of(float(ratios.mean()), float(spread), "1", float(ratios.size - 1))
+    local, mode = records[0].modes[0].local, records[0].fit.modes[0]
+    rates = -np.diff(np.log(local.amplitude)) / np.diff(local.time_s)
+    along = rates * mode.period_s / (2.0 * np.pi)
+    return Estimate.of(float(ratios[0]), float(along.std(ddof=1)), "1", float(along.size - 1))

@@ -17,6 +17,7 @@ class RunKind(StrEnum):
     STATIC_DRIFT = "static-drift"  # towed at an angle, the shaft at rest
     STRAIGHT_TOW = "straight-tow"  # towed straight, the shaft at rest
     CIRCLE = "circle"  # towed round a circle, the shaft at rest
+    FREE_DECAY = "free-decay"  # let go from a heel, to roll by itself until it rests
     CONTROL = "control"  # a condition that is repeated through the campaign
 
     @property

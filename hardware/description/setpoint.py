@@ -56,6 +56,8 @@ class SetPoint:
     turn_rate_rad_s
         Of the way of the midpoint between the struts, a circle of radius ``U / abs(r)`` that is
         driven at the carriage speed; positive to starboard, 0 for a straight way.
+    release_rad
+        Heel off its rest from which the model is let go to roll by itself; 0 where nobody does.
     """
 
     frequency_hz: float
@@ -69,6 +71,7 @@ class SetPoint:
     heel_rad: float = 0.0
     lines: tuple[Line, ...] = ()
     turn_rate_rad_s: float = 0.0
+    release_rad: float = 0.0
 
     @property
     def every_line(self) -> tuple[Line, ...]:

@@ -31,8 +31,9 @@ _UNITS = {
     "rudder_angle_deg": ("rudder_angle_rad", math.pi / 180.0),
     "heel_deg": ("heel_rad", math.pi / 180.0),
     "turn_rate_deg_s": ("turn_rate_rad_s", math.pi / 180.0),
+    "release_deg": ("release_rad", math.pi / 180.0),
 }
-_RESTING = ("drift_deg", "rudder_angle_deg", "heel_deg", "turn_rate_deg_s")
+_RESTING = ("drift_deg", "rudder_angle_deg", "heel_deg", "turn_rate_deg_s", "release_deg")
 _EXTRA_KEYS = {"oscillator": ("preset",), "runs": tuple(_UNITS), "at_rest": _RESTING}
 # Tables and keys for which ``false`` says that the rig has no such thing.
 _MAY_BE_FALSE = ("photocell", "acquisition")
@@ -122,7 +123,7 @@ def _run_faults(table: dict[str, Any]) -> Iterator[Fault]:
     for place, one in every:
         yield from _zero_faults(one, place, zeros)
     for place, still in rest:
-        yield from _circle_faults(still, place)
+        yield from _kind_faults(still, place)
 
 
 def _valid(table: dict[str, Any], array: str, kind: type[T]) -> Iterator[tuple[Place, T]]:
@@ -151,11 +152,13 @@ def _zero_faults(run: Run | AtRest, place: Place, zeros: list[str]) -> Iterator[
             yield Fault((*place, key), f"= {name!r} is no zero run of the campaign; {hint}")
 
 
-def _circle_faults(one: AtRest, place: Place) -> Iterator[Fault]:
+def _kind_faults(one: AtRest, place: Place) -> Iterator[Fault]:
     if one.kind is RunKind.CIRCLE and not (one.turn_rate_rad_s and one.carriage_speed_m_s > 0.0):
         yield Fault(place, "needs carriage_speed_m_s and turn_rate_deg_s for a run of kind circle")
     elif one.turn_rate_rad_s and one.kind is not RunKind.CIRCLE:
         yield Fault((*place, "turn_rate_deg_s"), f"is of no use to a run of kind {one.kind}")
+    if one.release_rad and one.kind is not RunKind.FREE_DECAY:
+        yield Fault((*place, "release_deg"), f"is of no use to a run of kind {one.kind}")
 
 
 def _beyond(oscillator: Oscillator, run: Run, place: Place) -> Iterator[Fault]:

@@ -119,7 +119,7 @@ class Run(Asked):
 
 @dataclass(frozen=True)
 class AtRest:
-    """A record with the shaft at rest: a zero run, a load step, a push, a pluck, a tow.
+    """A record with the shaft at rest: a zero run, a load step, a push, a tow, a free decay.
 
     It carries no harmonics, so it stands beside the runs. Attributes are as in :class:`Run`; the
     file is beside the campaign file.
@@ -141,6 +141,7 @@ class AtRest:
     revolutions_hz: float = 0.0
     heel_rad: float = 0.0
     turn_rate_rad_s: float = 0.0
+    release_rad: float = 0.0
     repeat: int = 1
     load: LoadStep | None = None
     known_mass: KnownMass | None = None
@@ -165,6 +166,7 @@ class AtRest:
             self.revolutions_hz,
             self.heel_rad,
             turn_rate_rad_s=self.turn_rate_rad_s,
+            release_rad=self.release_rad,
         )
 
     def recording_path(self, folder: Path) -> Path:

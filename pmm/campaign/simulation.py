@@ -42,9 +42,10 @@ class SimulatedRun:
 
 
 def at_rest_runs(campaign: Campaign) -> tuple[AtRest, ...]:
-    """Return zero runs and tows whose place in the campaign is known, in the order made."""
+    """Return zero runs, tows and decays whose place in the campaign is known, as made."""
     made = (one for one in made_in_order(campaign) if isinstance(one, AtRest))
-    return tuple(one for one in made if one.kind is RunKind.ZERO or one.kind.towed)
+    kinds = (RunKind.ZERO, RunKind.FREE_DECAY)
+    return tuple(one for one in made if one.kind in kinds or one.kind.towed)
 
 
 def check_target(
@@ -118,7 +119,7 @@ def simulate_at_rest(
     overwrite: bool,
     effects: Sequence[Effect] = (),
 ) -> Iterator[str]:
-    """Simulate zero runs and tows, the shaft standing, the struts at their middle; yield files.
+    """Simulate records with a standing shaft, the struts at their middle; yield files.
 
     Raises
     ------

@@ -115,6 +115,14 @@ class ReferenceFile:
 
 
 @dataclass(frozen=True)
+class DecayTable:
+    """Standard uncertainties of metacentric height and inertia of ``[heel]``."""
+
+    u_gm_m: float = 0.0
+    u_inertia_kg_m2: float = 0.0
+
+
+@dataclass(frozen=True)
 class CoefficientSettings:
     """How a campaign's coefficients are had.
 
@@ -142,6 +150,8 @@ class CoefficientSettings:
         The same by hand: force for a reading, aft and fore.
     roll_decays
         What K_p and K_pdot come from.
+    decays
+        What is uncertain of the model in the free decays that were recorded.
     steady_turns
         File of runs on a circle, as :class:`analysis.coefficients.steady_turns.SteadyTurn`.
     uncertainty
@@ -170,6 +180,7 @@ class CoefficientSettings:
     amplifiers: dict[str, AmplifierTable] = field(default_factory=dict)
     references: tuple[ReferenceFile, ...] = ()
     roll_decays: tuple[RollDecay, ...] = ()
+    decays: DecayTable = field(default_factory=DecayTable)
     steady_turns: str | None = None
 
     __pydantic_config__ = STRICT_TABLE

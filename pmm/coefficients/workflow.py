@@ -20,6 +20,7 @@ from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.campaign.water import TankWater, common_water
 from pmm.coefficients.campaign_cycles import campaign_cycles
+from pmm.coefficients.decays import Decay, decays_of, with_recorded
 from pmm.coefficients.run_names import check_left_out, check_names
 from pmm.coefficients.settings import CoefficientSettings
 from pmm.coefficients.solving import Progress, solve_campaign
@@ -64,6 +65,7 @@ class CampaignOutcome:
     water: TankWater | None
     with_memory: tuple[Campaign, ...] = ()
     turns: tuple[SteadyTurn, ...] = ()
+    decays: tuple[Decay, ...] = ()
 
     @property
     def noticed(self) -> tuple[Flag, ...]:
@@ -122,13 +124,19 @@ def coefficients_of(
         campaign_cycles(folder, campaign, settings, executor, progress, hashed=hashed)
         for folder, campaign in campaigns
     ]
+    read = [decays_of(campaign, folder, settings.leave_out) for folder, campaign in campaigns]
+    decays = tuple(one for found, _ in read for one in found)
+    settings, alone = with_recorded(settings, decays, campaigns[0][1].heel)
     turns = () if settings.steady_turns is None else read_turns(Path(settings.steady_turns))
     circles = turn_cycles(turns, campaigns[0][1].oscillator, parts[0].body)
     cycles = (
         *(cycle for part in parts for cycle in part.cycles),
         *(cycle.about(settings.point_ahead_m) for cycle in circles),
     )
-    failed = tuple(one for part in parts for one in part.failed)
+    failed = (
+        *(one for part in parts for one in part.failed),
+        *(one for _, some in read for one in some),
+    )
     missing = tuple(name for part in parts for name in part.work.not_recorded)
     if not cycles:
         raise DataError(_nothing(folders, failed, missing))
@@ -150,6 +158,8 @@ def coefficients_of(
         (
             *(flag for part in parts for flag in (*part.work.left_out, *part.doubts)),
             *nothing,
+            *alone,
+            *(flag for one in decays for flag in one.flags),
         ),
         stated,
         parts[0].body,
@@ -157,6 +167,7 @@ def coefficients_of(
         water,
         tuple(one for _, one in campaigns if one.radiation is not None),
         turns,
+        decays,
     )
 
 

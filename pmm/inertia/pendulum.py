@@ -1,6 +1,6 @@
 """``pmm inertia pendulum``: a body swinging about one axis or two, or on a torsion rod."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from analysis.inertia.compound_pendulum import compound_pendulum, lamboley
 from analysis.inertia.elementary_functions import Value, sqrt
-from analysis.inertia.record import RecordAnalysis
+from analysis.inertia.record import damping_of
 from analysis.uncertainty.estimate import Estimate
 from analysis.uncertainty.monte_carlo import Assessment, assess
 from hardware.description.oscillator import Plane
@@ -192,17 +192,5 @@ def decay_findings(runs: PeriodRuns) -> list[Finding]:
         damped = float(np.mean([one.fit.modes[0].period_s for one in runs.records]))
         own = period.following(damped, 1.0)
         found.append(Finding("damped_period_s", "damped period of the whole record", own))
-        found.append(Finding("damping_ratio", "damping ratio", _damping(runs.records)))
+        found.append(Finding("damping_ratio", "damping ratio", damping_of(runs.records)))
     return found
-
-
-def _damping(records: Sequence[RecordAnalysis]) -> Estimate:
-    """Return the mean over the records; one alone has the scatter along it, undivided."""
-    ratios = np.array([one.fit.modes[0].damping_ratio for one in records])
-    if ratios.size > 1:
-        spread = float(ratios.std(ddof=1)) / np.sqrt(ratios.size)
-        return Estimate.of(float(ratios.mean()), float(spread), "1", float(ratios.size - 1))
-    local, mode = records[0].modes[0].local, records[0].fit.modes[0]
-    rates = -np.diff(np.log(local.amplitude)) / np.diff(local.time_s)
-    along = rates * mode.period_s / (2.0 * np.pi)
-    return Estimate.of(float(ratios[0]), float(along.std(ddof=1)), "1", float(along.size - 1))

@@ -141,8 +141,8 @@ def _common(one: FinishedRun, names: set[str], number: int) -> dict[str, Any]:
 
 
 def _set_besides(point: SetPoint) -> dict[str, Any]:
-    """Return rudder angle, revolutions, heel, turn and lines, where the run has them."""
-    keys = ("rudder_angle_rad", "revolutions_hz", "heel_rad", "turn_rate_rad_s")
+    """Return rudder angle, revolutions, heel, turn, release and lines, where the run has them."""
+    keys = ("rudder_angle_rad", "revolutions_hz", "heel_rad", "turn_rate_rad_s", "release_rad")
     found: dict[str, Any] = {key: getattr(point, key) for key in keys}
     found["lines"] = [asdict(line) for line in point.lines]
     return {key: value for key, value in found.items() if value}

@@ -91,6 +91,7 @@ def expand(
         entry.drifts_rad or (0.0,),
         entry.rudder_angles_rad or (0.0,),
         entry.radii_m or (math.inf,),
+        entry.releases_rad or (0.0,),
         entry.strut_phases_rad or (math.nan,),
         entry.amplitudes_m or (0.0,),
         frequencies,
@@ -110,6 +111,7 @@ def run_count(entry: PlanEntry, defaults: Defaults, channels: Sequence[str]) -> 
         entry.drifts_rad,
         entry.rudder_angles_rad,
         entry.radii_m,
+        entry.releases_rad,
         entry.strut_phases_rad,
         entry.amplitudes_m,
         entry.frequencies_hz,
@@ -120,7 +122,19 @@ def run_count(entry: PlanEntry, defaults: Defaults, channels: Sequence[str]) -> 
 def _run(
     entry: PlanEntry, defaults: Defaults, oscillator: Oscillator, one: tuple[Any, ...]
 ) -> RunPlan:
-    repeat, speed, revolutions, heel, drift, rudder, radius, phase, amplitude, frequency = one
+    (
+        repeat,
+        speed,
+        revolutions,
+        heel,
+        drift,
+        rudder,
+        radius,
+        release,
+        phase,
+        amplitude,
+        frequency,
+    ) = one
     motion = entry.motion or Motion.NONE
     if motion is not Motion.PHASE:
         phase = strut_phase_of(motion, frequency, speed, oscillator.half_spacing_m)
@@ -137,6 +151,7 @@ def _run(
         revolutions,
         heel,
         turn_rate_rad_s=speed / radius,
+        release_rad=release,
     )
     lines = _lines(entry, oscillator, set_point, speed)
     if lines:
@@ -214,7 +229,19 @@ def _name(entry: PlanEntry, one: tuple[Any, ...]) -> str:
 
     Frequency and amplitude always stand there.
     """
-    repeat, speed, revolutions, heel, drift, rudder, radius, phase, amplitude, frequency = one
+    (
+        repeat,
+        speed,
+        revolutions,
+        heel,
+        drift,
+        rudder,
+        radius,
+        release,
+        phase,
+        amplitude,
+        frequency,
+    ) = one
     parts = [entry.name or _prefix(entry)]
     if frequency and entry.kind is not RunKind.CONTROL:
         parts += [f"f{frequency:g}", f"a{1e3 * amplitude:.6g}"]
@@ -225,6 +252,7 @@ def _name(entry: PlanEntry, one: tuple[Any, ...]) -> str:
         ("b", entry.drifts_rad, math.degrees(drift)),
         ("d", entry.rudder_angles_rad, math.degrees(rudder)),
         ("c", entry.radii_m, radius),
+        ("k", entry.releases_rad, math.degrees(release)),
         ("p", entry.strut_phases_rad, math.degrees(phase)),
     )
     parts += [f"{letter}{value:g}" for letter, values, value in varied if len(values) > 1]

@@ -185,9 +185,10 @@ def _entry_faults(
     yield from path_faults(entry, found.oscillator, place)
     yield from circle_faults(entry, found.oscillator, place)
     yield from channel_faults(entry, found.channels, place)
-    if any(entry.heels_rad) and found.rig is not None and "heel" not in found.rig.campaign:
-        text = "needs [campaign.heel] in the rig's file: how the model is held in roll"
-        yield Fault((*place, "heels_deg"), text)
+    for key, angles in (("heels_deg", entry.heels_rad), ("releases_deg", entry.releases_rad)):
+        if any(angles) and found.rig is not None and "heel" not in found.rig.campaign:
+            text = "needs [campaign.heel] in the rig's file: how the model is held in roll"
+            yield Fault((*place, key), text)
 
 
 def _table_faults(table: dict[str, Any], found: RigFileReading) -> Iterator[Fault]:

@@ -35,6 +35,7 @@ _TAKES: Final[dict[RunKind, set[str]]] = {
     RunKind.STATIC_DRIFT: {"duration_s", "speeds_m_s", "drifts_rad"} | _SET,
     RunKind.STRAIGHT_TOW: {"duration_s", "speeds_m_s"} | _SET,
     RunKind.CIRCLE: {"duration_s", "speeds_m_s", "drifts_rad", "radii_m"} | _SET,
+    RunKind.FREE_DECAY: {"duration_s", "speeds_m_s", "releases_rad"} | _SET,
 }
 _NEEDS: Final[dict[RunKind, tuple[str, ...]]] = {
     RunKind.OSCILLATION: ("motion", "frequencies_hz", "amplitudes_m"),
@@ -46,12 +47,14 @@ _NEEDS: Final[dict[RunKind, tuple[str, ...]]] = {
     RunKind.STATIC_DRIFT: ("speeds_m_s", "drifts_rad"),
     RunKind.STRAIGHT_TOW: ("speeds_m_s",),
     RunKind.CIRCLE: ("speeds_m_s", "radii_m"),
+    RunKind.FREE_DECAY: ("releases_rad",),
 }
 _SHOWN: Final = {
     "amplitudes_m": "amplitudes_mm",
     "drifts_rad": "drifts_deg",
     "rudder_angles_rad": "rudder_angles_deg",
     "heels_rad": "heels_deg",
+    "releases_rad": "releases_deg",
     "strut_phases_rad": "strut_phases_deg",
 }
 _SINGLE: Final = {"strut_phases_deg": "strut_phase_deg", "drifts_deg": "drift_deg"}
@@ -99,12 +102,19 @@ def _number_faults(entry: PlanEntry, place: Place) -> Iterator[Fault]:
                 yield Fault((*place, key), f"has {value:g}, which should be {asked}")
     if entry.kind is RunKind.PUSH and len(entry.loads_n) > 1:
         yield Fault((*place, "loads_n"), "should be one number: about how hard the push is")
+    yield from _nothing_faults(entry, place)
+    yield from _line_faults(entry, place)
+    yield from gate_faults(entry, place)
+
+
+def _nothing_faults(entry: PlanEntry, place: Place) -> Iterator[Fault]:
+    """Yield what is 0 where that would be no such run."""
+    if 0.0 in entry.releases_rad:
+        yield Fault((*place, "releases_deg"), "has 0; a model is let go from a heel")
     if 0.0 in entry.radii_m:
         yield Fault((*place, "radii_m"), "has 0; a circle has a radius, below 0 to port")
     if entry.kind.towed and 0.0 in entry.speeds_m_s:
         yield Fault((*place, "speeds_m_s"), "has 0; a tow needs a speed above 0")
-    yield from _line_faults(entry, place)
-    yield from gate_faults(entry, place)
 
 
 def _line_faults(entry: PlanEntry, place: Place) -> Iterator[Fault]:

@@ -85,6 +85,8 @@ class PlanEntry:
         Heel angles, positive to starboard.
     radii_m
         Of circles, positive to starboard.
+    releases_rad
+        Heel angles off its rest from which the model is let go, positive to starboard.
     lines
         Harmonics of each frequency, which is the base of a motion of many lines; one run has them
         all, with amplitudes as one over their order.
@@ -116,6 +118,7 @@ class PlanEntry:
     revolutions_hz: tuple[float, ...] = ()
     heels_rad: tuple[float, ...] = ()
     radii_m: tuple[float, ...] = ()
+    releases_rad: tuple[float, ...] = ()
     periods: int | None = None
     settling_periods: int | None = None
     repeats: int | None = None

@@ -19,6 +19,7 @@ _LISTS: Final = {
     "drifts_deg": ("drifts_rad", _DEGREE),
     "rudder_angles_deg": ("rudder_angles_rad", _DEGREE),
     "heels_deg": ("heels_rad", _DEGREE),
+    "releases_deg": ("releases_rad", _DEGREE),
 }
 # Keys of lists that a single value may stand for.
 _MANY: Final = (
@@ -31,6 +32,7 @@ _MANY: Final = (
     "revolutions_hz",
     "heels_rad",
     "radii_m",
+    "releases_rad",
     "channels",
     "loads_n",
 )

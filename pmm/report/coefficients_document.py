@@ -50,6 +50,7 @@ from pmm.report.coefficient_tables import (
     recommended_table,
 )
 from pmm.report.conditions import conditions_table
+from pmm.report.decays import decay_figures, decay_table
 from pmm.report.following import following_figures, following_table
 from pmm.report.heel import heel_table
 from pmm.report.heel_figure import heel_figures
@@ -101,6 +102,7 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
                 (
                     *figures(found),
                     *circle_figures(outcome),
+                    *decay_figures(outcome),
                     *attitude_figures(outcome),
                     *heel_figures(outcome),
                     *following_figures(outcome),
@@ -110,7 +112,7 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
             Section("What was found", tuple(_findings(found))),
             Section("What was flagged", (Text(("Nothing.",)) if flags.empty else flags,)),
             Section("Uncertainty", (_given(outcome), budget_table(found))),
-            Section("Runs", (_runs(outcome), _circles(outcome))),
+            Section("Runs", (_runs(outcome), _circles(outcome), decay_table(outcome))),
         ),
         SCHEMA,
     )

@@ -32,7 +32,9 @@ from pmm.run.surroundings import Questions, Surroundings
 
 Begin = Callable[[RunPlan], Measurement]
 _UNKNOWN_RAMP_S: Final = 60.0  # of a shaft that states no acceleration
-_UNDISPLACED: Final = frozenset({RunKind.ZERO, *(kind for kind in RunKind if kind.towed)})
+_UNDISPLACED: Final = frozenset(
+    {RunKind.ZERO, RunKind.FREE_DECAY, *(kind for kind in RunKind if kind.towed)}
+)
 
 
 @dataclass

@@ -82,6 +82,8 @@ def _enter_starting(c: Conduct) -> None:
     if c.rig.carriage is None:
         point = c.present.set_point
         c.questions.ask(c.surroundings.tow(point.carriage_speed_m_s, point.turn_rate_rad_s))
+    if c.present.kind is RunKind.FREE_DECAY:
+        c.questions.ask(c.surroundings.hold(c.present.set_point.release_rad))
 
 
 def _at_speed(c: Conduct) -> bool:
@@ -135,6 +137,11 @@ def _armed(c: Conduct) -> State | None:
     return State.GATE_OPEN if c.recording.gate.state is not GateState.ARMED else None
 
 
+def _enter_gate_open(c: Conduct) -> None:
+    if c.present.kind is RunKind.FREE_DECAY:
+        c.questions.ask(c.surroundings.let_go(c.present.set_point.release_rad))
+
+
 def _gate_open(c: Conduct) -> State | None:
     """Measure until the gate closes by itself, is closed, or is void."""
     check_frequency(c)
@@ -142,6 +149,7 @@ def _gate_open(c: Conduct) -> State | None:
     gate = c.recording.gate
     if not _by_pulses(c):
         _push(c)
+        c.questions.done()
         if c.elapsed_s >= _gate_s(c.present) and not c.questions.present:
             c.recording.close_by_time()
     else:
@@ -190,7 +198,6 @@ def _push(c: Conduct) -> None:
         c.pushed = 2
         c.recording.let_go()
         c.questions.ask(c.surroundings.push(run.load.channel, 0.0))
-    c.questions.done()
 
 
 def _by_pulses(c: Conduct) -> bool:
@@ -218,6 +225,7 @@ _ENTER: Final[Mapping[State, Callable[[Conduct], None]]] = MappingProxyType(
         State.SETTING: _enter_setting,
         State.STARTING: _enter_starting,
         State.ARMED: _enter_armed,
+        State.GATE_OPEN: _enter_gate_open,
         State.STOPPING: _enter_stopping,
     }
 )

@@ -34,6 +34,8 @@ class Surroundings:
         Of the rudder, of the propeller and of the model.
     turn_rate_rad_s
         Of the carriage on a circle.
+    release_rad
+        Heel that the model was let go from.
     lines
         That the struts follow.
     """
@@ -45,6 +47,7 @@ class Surroundings:
     revolutions_hz: float = 0.0
     heel_rad: float = 0.0
     turn_rate_rad_s: float = 0.0
+    release_rad: float = 0.0
     lines: tuple[Line, ...] = ()
     mass_kg: float = 0.0
     load: tuple[str, float] = ("", 0.0)
@@ -62,6 +65,13 @@ class Surroundings:
         """
         yield from self._change_medium(str(run.set_point.medium))
         yield from self._change_mass(run)
+        if self.release_rad:
+            self.release_rad = 0.0
+            yield Demand(
+                "release: hold the model in roll as before; press Enter when it is so",
+                "release",
+                0.0,
+            )
         if "drift" not in by_axis:
             yield from self._change_drift(run, oscillator)
         yield from self._change_settings(run.set_point, by_axis)
@@ -89,6 +99,18 @@ class Surroundings:
         """Yield what brings a carriage back that cannot go back by itself."""
         text = "carriage: bring it back to its start; press Enter when it stands there"
         yield Demand(text, "carriage", 0.0)
+
+    def hold(self, release_rad: float) -> Iterator[Demand]:
+        """Yield what has somebody heel a model and hold it."""
+        to, by = _side_and_size(release_rad)
+        text = f"release: free the model in roll, heel it to {to} by {by} and hold it still"
+        yield Demand(f"{text}; press Enter when it is so", "hold", release_rad)
+
+    def let_go(self, release_rad: float) -> Iterator[Demand]:
+        """Yield what has somebody let go of the model."""
+        self.release_rad = release_rad
+        text = "release: let go of the model and do not touch it; press Enter at once"
+        yield Demand(text, "release", release_rad)
 
     def push(self, channel: str, force_n: float) -> Iterator[Demand]:
         """Yield what has somebody push a gauge by hand, or let go."""

@@ -127,4 +127,5 @@ _DOING: Final[dict[str, Callable[[World, Demand], None]]] = {
     "rudder": _setting("rudder_angle_rad"),
     "propeller": _setting("revolutions_hz"),
     "heel": _setting("heel_rad"),
+    "release": _setting("release_rad"),
 }

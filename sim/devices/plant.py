@@ -40,6 +40,7 @@ class PlantConditions:
     heel_rad: float = 0.0
     lines: tuple[Line, ...] = ()
     turn_rate_rad_s: float = 0.0
+    release_rad: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,8 @@ class Heeling:
         Heel at which it is fixed, or rests where it is free.
     in_water
         Else it hangs on the roll axis.
+    release_rad
+        Heel off its rest from which it is let go: it is free to roll then, however it is held else.
     """
 
     heel: Heel
@@ -38,11 +40,12 @@ class Heeling:
     terms: HeelTerms
     rest_rad: float = 0.0
     in_water: bool = True
+    release_rad: float = 0.0
 
     @property
     def free(self) -> bool:
         """Whether it rolls by itself."""
-        return self.heel.held is Held.FREE
+        return self.heel.held is Held.FREE or self.release_rad != 0.0
 
     @property
     def righting(self) -> tuple[float, float]:
@@ -58,11 +61,15 @@ class Heeling:
         Parameters
         ----------
         before
-            The state before; none before the first sample, where the model rests.
+            The state before, the release that it goes on from last; none before the first sample.
+            From there, and after another release, the model begins at its own.
         """
         if not self.free:
             return self._still(len(at.u)), ()
-        return march_roll(self._course(at), self.rest_rad, before, step_s)
+        own = before[:-1] if before and before[-1] == self.release_rad else ()
+        first = self.rest_rad + self.release_rad
+        roll, after = march_roll(self._course(at), first, own, step_s)
+        return roll, (*after, self.release_rad)
 
     def settled(self, at: BodyMotion, period: Period) -> FloatArray:
         """Return phi, p and pdot over a period that repeats."""

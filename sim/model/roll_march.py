@@ -64,7 +64,7 @@ def rolled(factors: tuple[str, ...], phi: Any, p: Any) -> Any:
 
 
 def march_roll(
-    course: RollCourse, rest_rad: float, before: tuple[float, ...], step_s: float
+    course: RollCourse, first_rad: float, before: tuple[float, ...], step_s: float
 ) -> tuple[FloatArray, tuple[float, ...]]:
     """Return phi, p and pdot at each sample, shape ``(3, n)``, and the state after the last.
 
@@ -72,6 +72,8 @@ def march_roll(
 
     Parameters
     ----------
+    first_rad
+        Heel at the first sample, at rest.
     before
         phi, p and the driving moments at the last sample; empty before the first.
     """
@@ -91,7 +93,7 @@ def march_roll(
             total += part * rolled(key, phi, p)
         return total / course.inertia
 
-    phi, p = before[:2] if before else (rest_rad, 0.0)
+    phi, p = before[:2] if before else (first_rad, 0.0)
     last = list(before[2:]) if before else None
     rows = []
     for given in driven:

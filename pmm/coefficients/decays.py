@@ -1,0 +1,119 @@
+"""Free decays of a campaign: what ``pmm run`` or another system recorded, read into roll decays."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from analysis.coefficients.roll_decay import RollDecay
+from analysis.inertia.record import RecordAnalysis, analyse_record, damping_of, from_runs
+from analysis.inertia.series import series_from_recording
+from analysis.uncertainty.estimate import Estimate
+from hardware.description.channels import HEEL_ANGLE
+from hardware.description.errors import PmmError
+from hardware.description.flags import Flag, Severity
+from hardware.description.heel import Heel
+from hardware.description.kinds import RunKind
+from pmm.campaign.campaign import Campaign
+from pmm.campaign.recording_source import COMPLETE, RecordingSource, open_recording
+from pmm.campaign.runs import AtRest
+from pmm.coefficients.settings import CoefficientSettings
+from pmm.coefficients.tasks import Failed
+
+_SAME_M_S = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Decay:
+    """The decays at one speed.
+
+    Attributes
+    ----------
+    records
+        One for each run, in their order.
+    period, ratio
+        Damped period, s, and the share of critical damping, of small rolls: the period at no
+        amplitude, and the decay of the whole records over it.
+    """
+
+    runs: tuple[AtRest, ...]
+    records: tuple[RecordAnalysis, ...]
+    period: Estimate
+    ratio: Estimate
+
+    @property
+    def speed_m_s(self) -> float:
+        """At which the model was towed."""
+        return self.runs[0].carriage_speed_m_s
+
+    @property
+    def flags(self) -> tuple[Flag, ...]:
+        """What was noticed, with the runs' names."""
+        pairs = zip(self.runs, self.records, strict=True)
+        return tuple(flag.of(run.name) for run, record in pairs for flag in record.flags)
+
+
+def decays_of(
+    campaign: Campaign, folder: Path, leave_out: Sequence[str] = ()
+) -> tuple[tuple[Decay, ...], tuple[Failed, ...]]:
+    """Return a campaign's free decays by speed, and the records that could not be used."""
+    groups: dict[float, list[tuple[AtRest, RecordAnalysis]]] = {}
+    failed = []
+    for one in campaign.at_rest:
+        used = one.outcome == COMPLETE and one.name not in leave_out
+        if one.kind is RunKind.FREE_DECAY and used:
+            source = RecordingSource.of(campaign, one, folder.resolve())
+            try:
+                series = series_from_recording(open_recording(source), HEEL_ANGLE.name)
+                own = one, analyse_record(replace(series, name=one.name))
+                groups.setdefault(round(one.carriage_speed_m_s / _SAME_M_S), []).append(own)
+            except PmmError as error:
+                failed.append(Failed(one.name, str(source.path), str(error), error.exit_status))
+    return tuple(_joined(some) for some in groups.values()), tuple(failed)
+
+
+def _joined(some: Sequence[tuple[AtRest, RecordAnalysis]]) -> Decay:
+    """Join the records of one speed, at the amplitudes at which GM is what rights the model."""
+    runs, records = zip(*some, strict=True)
+    small, along = from_runs(records).estimate, damping_of(records)
+    slower = small.value * len(records) / sum(one.fit.modes[0].period_s for one in records)
+    ratio = along.following(along.value * slower, slower)
+    # The rate of decay is taken for the same at all amplitudes; as far as the period is not, it may
+    # not be either: anything between, evenly.
+    ratio = ratio.widened(ratio.value * abs(slower - 1.0) / math.sqrt(3.0))
+    return Decay(runs, records, small, ratio)
+
+
+def with_recorded(
+    settings: CoefficientSettings, decays: Sequence[Decay], heel: Heel | None
+) -> tuple[CoefficientSettings, tuple[Flag, ...]]:
+    """Return settings whose roll decays have those that were recorded too.
+
+    A decay of a speed that the settings have one of themselves is theirs. Without metacentric
+    height and inertia nothing follows but period and damping ratio, and a flag says so.
+    """
+    stated = {round(one.speed_m_s / _SAME_M_S) for one in settings.roll_decays}
+    new = [one for one in decays if round(one.speed_m_s / _SAME_M_S) not in stated]
+    if new and (heel is None or heel.gm_m is None or heel.inertia_kg_m2 is None):
+        text = (
+            "free decays: period and damping ratio alone; state gm_m and inertia_kg_m2 in [heel] "
+            "of the campaign file for K_p and K_pdot"
+        )
+        names = tuple(run.name for one in new for run in one.runs)
+        return settings, (Flag("decay_alone", Severity.NOTE, text, None, names),)
+    own = settings.decays
+    found = [
+        RollDecay(
+            one.period.value,
+            one.ratio.value,
+            one.period.uncertainty,
+            one.ratio.uncertainty,
+            own.u_gm_m,
+            own.u_inertia_kg_m2,
+            one.speed_m_s,
+            one.period.degrees_of_freedom,
+            one.ratio.degrees_of_freedom,
+        )
+        for one in new
+    ]
+    return replace(settings, roll_decays=(*settings.roll_decays, *found)), ()

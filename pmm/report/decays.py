@@ -1,0 +1,74 @@
+"""Free decays of a campaign: a table of periods and damping, and the figure of their records."""
+
+import math
+from collections.abc import Iterator, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Final
+
+from pmm.coefficients.decays import Decay
+from pmm.coefficients.workflow import CampaignOutcome
+from pmm.document.content import Column, Figure, Table
+from pmm.document.notation import rounded
+from pmm.document.style import PALETTE, drawing
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Drawing
+
+_CAPTION: Final = (
+    "Heel of the free decays over time, the part of each record that was used; lines are the "
+    "amplitudes found along it."
+)
+_DEGREES: Final = 180.0 / math.pi
+
+
+def _runs(one: Decay) -> str:
+    return ", ".join(run.name for run in one.runs)
+
+
+def _power(one: Decay) -> str:
+    """How fast the decay rate grows with amplitude: 0 for linear damping, 1 for quadratic."""
+    return ", ".join(f"{record.modes[0].decay.beta:.2g}" for record in one.records)
+
+
+_COLUMNS: Final[tuple[Column[Decay], ...]] = (
+    Column("runs", _runs),
+    Column("U", lambda one: f"{one.speed_m_s:g}", unit="m/s", number=True),
+    Column("damped period", lambda one: rounded(one.period.value, one.period.uncertainty),
+           unit="s", number=True),
+    Column("damping ratio", lambda one: rounded(one.ratio.value, one.ratio.uncertainty),
+           number=True),
+    Column("power of the decay", _power, number=True),
+)  # fmt: skip
+
+
+def decay_table(outcome: CampaignOutcome) -> Table[Decay]:
+    """Return period and damping ratio at each speed; empty without decays."""
+    title = "Free decays in roll, one standard uncertainty"
+    return Table(title, _COLUMNS, outcome.decays, "free_decays", titled=True)
+
+
+def decay_figures(outcome: CampaignOutcome) -> Iterator[Figure]:
+    """Yield the figure where any model was let go."""
+    if outcome.decays:
+        yield Figure("decays", _CAPTION, partial(decay_figure, outcome.decays))
+
+
+def decay_figure(decays: Sequence[Decay]) -> "Drawing":
+    """Draw a panel for each speed."""
+    from matplotlib.figure import Figure as Drawing
+
+    with drawing():
+        figure = Drawing(figsize=(7.2, 0.8 + 2.2 * len(decays)), layout="constrained")
+        panels = figure.subplots(len(decays), 1, sharex=True, squeeze=False)[:, 0]
+        for axes, decay in zip(panels, decays, strict=True):
+            for k, (run, record) in enumerate(zip(decay.runs, decay.records, strict=True)):
+                colour, series = PALETTE[k % len(PALETTE)], record.part.series
+                local = record.modes[0].local
+                start_s = series.time_s[0]
+                axes.plot(series.time_s - start_s, _DEGREES * series.values, color=colour, lw=0.6)
+                axes.plot(local.time_s - start_s, _DEGREES * local.amplitude, color=colour, lw=1.4,
+                          label=run.name)  # fmt: skip
+            axes.set_ylabel(f"heel (°), {decay.speed_m_s:g} m/s")
+            axes.legend(loc="upper right", fontsize=7.5)
+        panels[-1].set_xlabel("time (s)")
+    return figure
