@@ -70,21 +70,28 @@ class MqttOutlet(Outlet):
                         await self._send(client, "status", gone, retain=True)
         except (MqttError, OSError, ValueError) as error:
             raise NotCarriedError(
-                f"{broker.url}: no connection to the broker ({error}); is it running, and are "
-                "address, user, password and certificate right? It is tried again by itself"
+                f"{broker.url}: no connection to the broker, or no answer within "
+                f"{_PATIENCE_S:g} s ({error}); is it running, are address, user, password and "
+                "certificate right, and does it take 25 messages a second? It is tried again by "
+                "itself"
             ) from error
 
     async def _publish(self, client: "Client") -> None:
         while True:
             ticks = await self._next(_TOGETHER)
+            left = dict(enumerate(ticks))
             try:
                 await self._tell_units(client, ticks[-1])
-                sent = (self._send(client, "live", message(one)) for one in ticks)
-                await asyncio.gather(*sent)
-            except BaseException:
-                self._put_back(ticks)
-                raise
-            self._done(len(ticks))
+                await asyncio.gather(
+                    *(self._send_tick(client, left, place) for place in list(left))
+                )
+            finally:  # a broker that takes some before it fails has taken them
+                self._put_back(list(left.values()))
+                self._done(len(ticks) - len(left))
+
+    async def _send_tick(self, client: "Client", left: dict[int, Tick], place: int) -> None:
+        await self._send(client, "live", message(left[place]))
+        left.pop(place, None)
 
     async def _tell_units(self, client: "Client", tick: Tick) -> None:
         units = {name: value.unit for name, value in tick.values.items()}

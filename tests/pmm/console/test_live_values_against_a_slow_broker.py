@@ -1,0 +1,78 @@
+"""A broker that is slow, or reads no more: nothing waits for it or grows, drops are counted."""
+
+import asyncio
+from collections.abc import Callable
+
+import pytest
+
+from pmm.console.live import mqtt
+from pmm.console.live.live_settings import live_settings
+from pmm.console.live.mqtt import MqttOutlet
+from pmm.console.live.values import LiveTable
+from tests.pmm.console.hand_broker import HandBroker
+from tests.pmm.console.live_rig import HELLO, WITHIN_S, frame
+
+TABLE = LiveTable(HELLO)
+MOST = 40
+
+
+@pytest.fixture(autouse=True)
+def _impatient(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(mqtt, "_PATIENCE_S", 0.5)
+    monkeypatch.setattr("pmm.console.live.outlet.AGAIN_S", 0.05)
+
+
+async def _until(condition: Callable[[], bool]) -> None:
+    async with asyncio.timeout(WITHIN_S):
+        while not condition():
+            await asyncio.sleep(0.005)
+
+
+def _outlet(broker: HandBroker, most: int) -> MqttOutlet:
+    given = live_settings("tank", f"mqtt://127.0.0.1:{broker.port}/t", None, None, None)
+    return MqttOutlet(given.broker, most)
+
+
+def _offer(outlet: MqttOutlet, first: int, last: int) -> None:
+    for number in range(first, last + 1):
+        outlet.offer(TABLE.tick(frame(number), 0.0))
+
+
+def test_one_that_stops_reading_costs_what_is_counted() -> None:
+    async def run(broker: HandBroker) -> None:
+        outlet = _outlet(broker, MOST)
+        running = asyncio.create_task(outlet.run())
+        _offer(outlet, 1, 30)
+        await _until(lambda: outlet.status().carried == 30)
+        broker.reading.clear()
+        _offer(outlet, 31, 130)
+        await _until(lambda: not outlet.status().connected)
+        assert "no answer within 0.5 s" in outlet.status().trouble
+        _offer(outlet, 131, 230)
+        status = outlet.status()
+        assert (status.carried, status.dropped) == (30, 200 - MOST)
+        broker.reading.set()
+        await _until(lambda: outlet.status().carried == 30 + MOST)
+        running.cancel()
+        assert set(broker.numbers) >= {*range(1, 31), *range(231 - MOST, 231)}
+
+    with HandBroker() as broker:
+        asyncio.run(run(broker))
+
+
+def test_one_that_is_slow_gets_all_in_the_end() -> None:
+    """It takes longer for those that go together than it is waited for: some pass each time."""
+
+    async def run(broker: HandBroker) -> None:
+        outlet = _outlet(broker, 100)
+        broker.wait_s = 0.02
+        _offer(outlet, 1, 60)
+        running = asyncio.create_task(outlet.run())
+        await _until(lambda: outlet.status().carried == 60)
+        running.cancel()
+        assert outlet.status().dropped == 0
+
+    with HandBroker() as broker:
+        asyncio.run(run(broker))
+        assert set(broker.numbers) == set(range(1, 61))
+        assert broker.connections > 1
