@@ -16,7 +16,7 @@ HOUSE: Final = HERE.parent
 # The lock that it adds to, and extras, by the Makefile's installation.
 LOCKS: Final = {
     "user": ("", ("fast",)),
-    "dev": ("user", ("dev",)),
+    "dev": ("user", ("dev", "s3")),
     "docs": ("dev", ("docs",)),
     "bench": ("dev", ("bench",)),
     "sealed": ("dev", ("peers",)),

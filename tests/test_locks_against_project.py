@@ -36,6 +36,14 @@ def test_a_lock_has_all_that_its_extras_ask_for(name: str) -> None:
         assert one.specifier.contains(locked[canonicalize_name(one.name)]), one
 
 
+def test_developers_have_what_any_user_may_ask_for() -> None:
+    optional = PROJECT["project"]["optional-dependencies"]
+    locked = _pins([TEXTS[one] for one in chain("dev")])
+    for extra in optional.keys() - {"dev", "docs", "bench", "peers"}:
+        for one in map(Requirement, optional[extra]):
+            assert one.specifier.contains(locked[canonicalize_name(one.name)]), (extra, one)
+
+
 def test_a_lock_pins_what_the_constraints_pin() -> None:
     constrained = _pins([(HOUSE / "constraints.txt").read_text(encoding="utf-8")])
     locked = _pins(list(TEXTS.values()))
