@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import pytest
 from selenium.webdriver import ActionChains
 from selenium.webdriver.common.keys import Keys
 
@@ -35,6 +36,7 @@ def _in_words(shown: str) -> str:
     return shown.rpartition(", ")[0]
 
 
+@pytest.mark.slow
 def test_runs_are_moved_left_out_and_approved(tmp_path: Path, chromium: Browser) -> None:
     rig = rig_in(tmp_path / "rig")
     design = DESIGN.format(repeat=0.007)
@@ -102,6 +104,7 @@ effects = ["eccentricity-error", "gain-error"]
 """
 
 
+@pytest.mark.slow
 def test_causes_are_shown_as_bars_that_close(tmp_path: Path, chromium: Browser) -> None:
     rig = rig_in(tmp_path / "rig", whole=True)
     text, simulated = rig.read_text(), (tmp_path / "rig" / "simulated.toml").read_text()

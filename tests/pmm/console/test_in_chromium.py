@@ -29,6 +29,7 @@ def _needles(page: Browser) -> list[float]:
     return [float(page.text(f"{card} .{part} b")) for part in ("in-phase", "quadrature")]
 
 
+@pytest.mark.slow
 def test_needles_settle_where_the_analysis_ends(
     rig: Path, tmp_path: Path, chromium: Browser
 ) -> None:
@@ -62,6 +63,7 @@ def test_needles_settle_where_the_analysis_ends(
     assert [json.loads(line)["action"] for line in lines.splitlines()] == ["queue", "command"]
 
 
+@pytest.mark.slow
 def test_stops_quickly_comes_back_and_shows_what_was_missed(
     rig: Path, tmp_path: Path, chromium: Browser
 ) -> None:
@@ -86,6 +88,7 @@ def test_stops_quickly_comes_back_and_shows_what_was_missed(
         assert not page.complaints()
 
 
+@pytest.mark.slow
 def test_an_alarm_is_shown_and_reset(rig: Path, tmp_path: Path, chromium: Browser) -> None:
     with (
         console(rig, tmp_path / "out", *FAST) as one,
@@ -110,6 +113,7 @@ def test_an_alarm_is_shown_and_reset(rig: Path, tmp_path: Path, chromium: Browse
         assert page.run("return document.documentElement.scrollWidth") <= 390
 
 
+@pytest.mark.slow
 def test_a_second_browser_only_watches_until_it_takes_over(
     rig: Path, tmp_path: Path, chromium: Browser
 ) -> None:

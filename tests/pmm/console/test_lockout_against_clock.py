@@ -84,6 +84,7 @@ def test_a_page_that_is_logged_in_stops_quickly_while_its_address_is_shut_out(
     assert TOKEN not in text
 
 
+@pytest.mark.slow
 def test_plain_http_beyond_the_machine_is_warned_of(tmp_path: Path) -> None:
     token = tmp_path / "token"
     token.write_text(TOKEN, encoding="utf-8")

@@ -95,6 +95,7 @@ def test_all_that_an_operator_looks_for_is_there(tmp_path: Path, chromium: Brows
         assert told == pytest.approx(wanted, abs=0.06 * float(widths[k : k + 2].max()))
 
 
+@pytest.mark.slow
 def test_pages_of_gap_and_inertia_open_beside_the_console(
     tmp_path: Path, chromium: Browser
 ) -> None:
@@ -129,6 +130,7 @@ def test_pages_of_gap_and_inertia_open_beside_the_console(
         assert page.text("#state-name").endswith("idle")
 
 
+@pytest.mark.slow
 def test_keys_alone_reach_every_command_and_no_text_is_too_pale(
     tmp_path: Path, chromium: Browser
 ) -> None:

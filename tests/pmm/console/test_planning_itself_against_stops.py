@@ -128,6 +128,7 @@ def test_a_fault_of_the_rig_is_said_and_the_campaign_stands_where_it_was(shown: 
     assert _settings(shown) == before
 
 
+@pytest.mark.slow
 def test_a_run_that_is_left_for_the_next_is_made_again_where_it_is_still_due(shown: Shown) -> None:
     _answer(shown, "y")
     made = []

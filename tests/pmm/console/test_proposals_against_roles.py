@@ -35,6 +35,7 @@ def _enter(one: Served, role: str, name: str) -> None:
     assert one.post("/login", {"token": TOKENS[role], "name": name})[0] == 200
 
 
+@pytest.mark.slow
 def test_what_is_proposed_reaches_the_loop_when_it_is_approved(tmp_path: Path) -> None:
     with served(tmp_path, **PLANS) as one:
         _enter(one, "propose_token", "Ann")

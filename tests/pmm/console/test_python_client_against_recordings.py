@@ -23,6 +23,7 @@ TOKEN = "0123456789abcdef-token"  # noqa: S105 - of this test alone
 TWO_RUNS = plan("whole", periods=PERIODS).replace("= 1.0", "= [1.0, 1.1]")
 
 
+@pytest.mark.slow
 def test_a_whole_campaign_is_driven_without_a_browser(tmp_path: Path) -> None:
     rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
     rig.with_name("whole.toml").write_text(TWO_RUNS, encoding="utf-8")
@@ -62,6 +63,7 @@ def test_a_whole_campaign_is_driven_without_a_browser(tmp_path: Path) -> None:
     assert log.count('"action": "command"') == 1
 
 
+@pytest.mark.slow
 def test_the_program_of_the_page_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (block,) = (one for one in blocks("python") if one.page == "docs/console-api.md")
     rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
@@ -90,6 +92,7 @@ def test_a_run_is_stopped_and_a_plan_taken_out(tmp_path: Path) -> None:
             client.wait(lambda known: known["frame"]["state"] == "gate open", 0.2)
 
 
+@pytest.mark.slow
 def test_who_watches_acts_only_once_it_has_control(tmp_path: Path) -> None:
     rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
     token = tmp_path / "token"

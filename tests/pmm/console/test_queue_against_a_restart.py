@@ -71,6 +71,7 @@ def _kept(out: Path) -> dict[str, Any]:
     return json.loads(file.read_text(encoding="utf-8"))
 
 
+@pytest.mark.slow
 def test_a_console_that_was_killed_has_its_queue_again(tmp_path: Path) -> None:
     rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
     two = plan("two", periods=4).replace("= 1.0", "= [1.0, 1.1]")

@@ -16,6 +16,7 @@ RUNS = [f"run-f{one}-a20" for one in ("1", "1.1", "1.2", "1.3")]
 FOUR = plan("four", periods=4).replace("= 1.0", "= [1.0, 1.1, 1.2, 1.3]")
 
 
+@pytest.mark.slow
 def test_a_queue_is_edited_moved_and_held_before_and_while_it_runs(tmp_path: Path) -> None:
     rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
     rig.with_name("four.toml").write_text(FOUR, encoding="utf-8")
@@ -71,6 +72,7 @@ def test_a_queue_is_edited_moved_and_held_before_and_while_it_runs(tmp_path: Pat
     assert log.count('"action": "edit"') == 5
 
 
+@pytest.mark.slow
 def test_what_was_edited_is_complete_when_the_plan_is_queued_anew(tmp_path: Path) -> None:
     rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
     two = FOUR.replace(", 1.2, 1.3]", "]")

@@ -27,6 +27,7 @@ def _press(page: Browser, label: str) -> None:
     page.click(f"#queue [aria-label='{label}']")
 
 
+@pytest.mark.slow
 def test_runs_are_edited_moved_and_held_on_the_page(tmp_path: Path, chromium: Browser) -> None:
     with (
         console(rig_in(tmp_path / "rig"), tmp_path / "out", "--speed", "8") as one,
@@ -83,6 +84,7 @@ def test_runs_are_edited_moved_and_held_on_the_page(tmp_path: Path, chromium: Br
         assert not [text for text in page.complaints() if "SEVERE" in text and "409" not in text]
 
 
+@pytest.mark.slow
 def test_the_page_shows_who_did_what(tmp_path: Path, chromium: Browser) -> None:
     with (
         console(rig_in(tmp_path / "rig"), tmp_path / "out") as one,

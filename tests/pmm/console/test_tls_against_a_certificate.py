@@ -75,6 +75,7 @@ def remote(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Remote]:
         yield Remote(one.address, ssl.create_default_context(cafile=str(certificate)))
 
 
+@pytest.mark.slow
 def test_token_cookie_and_frames_go_through_tls_alone(remote: Remote) -> None:
     assert remote.address.startswith(f"https://{HOST}:")
     quick = {"command": "quick stop"}
@@ -138,6 +139,7 @@ def _end_s(half: socket) -> float:
     return time.monotonic()
 
 
+@pytest.mark.slow
 @needed
 def test_the_page_logs_in_and_draws_over_tls(remote: Remote, chromium: Browser) -> None:
     with chromium.window() as page:
