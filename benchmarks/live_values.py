@@ -1,11 +1,13 @@
 """Live values over MQTT: whether a tick is lost in real time, and what a day of them costs.
 
 Real time is ``pmm console`` on the simulated rig during a run. The day goes through the same
-process as fast as frames can be made, 2.16 million of them, and for an hour of it the broker is
-away. The broker is a real one, and a client of its own counts what it hands on.
+process as fast as ticks arrive, 2.16 million of them, with no more than 20 s of them on their way.
+For an hour of it the broker reads nothing, for another it is away; then ticks come as fast as
+frames are made. The broker is a real one, and a client of its own counts what it hands on.
 """
 
 import json
+import signal
 import statistics
 import tempfile
 import time
@@ -26,8 +28,10 @@ from pmm.console.live.process import Publishing
 _REAL_S: Final = 600.0
 _RATE_HZ: Final = 25.0
 _DAY_S: Final = 86400.0
-_TOGETHER: Final = 100  # frames between two rests of a millisecond
-_LOOKS: Final = 10  # at the memory, over the day
+_TOGETHER: Final = 100  # frames between two looks at how many are on their way
+_ON_THE_WAY: Final = 500  # frames: two thirds of what may wait in front of the process
+_HOURS: Final = 24
+_STUCK, _AWAY = 8, 16  # hours in which the broker reads nothing, and is away
 _PATIENCE_S: Final = 120.0
 _MEGA: Final = 1e6
 
@@ -59,6 +63,7 @@ class _Day:
 
     offered: int
     counted: _Counted
+    reached: int
     status: OutletStatus
     sizes_mb: list[float]
     took_s: float
@@ -73,7 +78,7 @@ def _run(quick: bool, report: Report) -> Outcome:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         report("a day as fast as it goes")
-        day = _day(folder, share)
+        day = _day(folder, share, report)
         report("real time")
         real = _real(folder, seconds)
     half = len(day.sizes_mb) // 2
@@ -81,18 +86,22 @@ def _run(quick: bool, report: Report) -> Outcome:
     measured = {
         "lost_in_real_time": float(real["lost"]),
         "dropped_in_real_time": float(real["dropped"]),
-        "unaccounted": abs(day.offered - day.counted.once - day.status.dropped),
+        "unaccounted": max(day.offered - day.counted.once - day.status.dropped, 0),
+        "arrived": day.counted.once / day.reached,
         "growth_mb": growth_mb,
+        "day_s": day.took_s,
     }
     row: Row = {
-        "ticks": day.offered, "received": day.counted.once, "twice": day.counted.again,
+        "ticks": day.offered, "while it reads": day.reached,
+        "received": day.counted.once, "twice": day.counted.again,
         "dropped, counted": day.status.dropped, "took [s]": round(day.took_s),
         "memory at first [MB]": round(day.sizes_mb[0], 1),
         "memory at last [MB]": round(day.sizes_mb[-1], 1),
     }  # fmt: skip
     tables = {
         f"{seconds:g} s in real time, a run of the simulated rig": [real],
-        f"{share * 24:g} h of ticks as fast as frames are made; broker away for a 24th": [row],
+        f"{share * 24:g} h of ticks as fast as they arrive; for a 24th the broker reads nothing, "
+        "for a 24th it is away": [row],
     }
     load = psutil.getloadavg()[0] / (psutil.cpu_count() or 1)
     return Outcome(tables, measured, (f"load per core at the end: {load:.1f}",))
@@ -122,51 +131,91 @@ def _real(folder: Path, seconds: float) -> Row:
             "dropped": status["dropped"]}  # fmt: skip
 
 
-def _day(folder: Path, share: float) -> _Day:
-    from tests.pmm.console.live_rig import HELLO, Reader, broker, frame, free_port
+class _Feed:
+    """Hands ticks on; while the broker reads it waits for those that are on their way.
 
-    offered, port, counted = round(share * _DAY_S * _RATE_HZ), free_port(), _Counted()
-    away = range(offered // 2, offered // 2 + offered // 24)
-    one, sizes, first = Publishing(_settings(port)), list[float](), frame(1)
+    Attributes
+    ----------
+    number, reached
+        Ticks that were handed on, and those of them while the broker read.
+    """
+
+    def __init__(self, one: Publishing, counted: _Counted) -> None:
+        from tests.pmm.console.live_rig import HELLO, frame
+
+        self.one, self.counted = one, counted
+        self.number = self.reached = 0
+        self.status = OutletStatus("MQTT", False, 0, 0)
+        self._first = frame(1)
+        one.take(HELLO)
+
+    @property
+    def on_the_way(self) -> int:
+        """Ticks that are neither there nor known to be dropped."""
+        return self.number - self.counted.once - self.status.dropped
+
+    def give(self, ticks: int, *, reads: bool) -> None:
+        """Hand so many on."""
+        for _ in range(ticks):
+            self.number += 1
+            self.one.take(replace(self._first, number=self.number))
+            if self.number % _TOGETHER:
+                continue
+            if reads:
+                _wait(lambda: self.on_the_way <= _ON_THE_WAY)
+            else:
+                time.sleep(1e-3)
+        self.reached += ticks * reads
+
+    def settle(self) -> None:
+        """Wait until none waits any more; one that was made up in silence is carried as well."""
+
+        def still() -> bool:
+            told = self.one.statuses()
+            self.status = told[0] if told else self.status
+            return self.status.carried + self.status.dropped >= self.number
+
+        _wait(still)
+        _wait(lambda: self.on_the_way <= 0, patient=False)
+
+
+def _day(folder: Path, share: float, report: Report) -> _Day:
+    """A day of 24 hours: in one the broker reads nothing, in another it is away."""
+    from tests.pmm.console.live_rig import Reader, broker, free_port
+
+    hour, port, counted = round(share * _DAY_S * _RATE_HZ / _HOURS), free_port(), _Counted()
+    one, sizes = Publishing(_settings(port)), list[float]()
     started = time.monotonic()
     with ExitStack() as stack:
         stack.callback(one.close)
         there = stack.enter_context(ExitStack())
-        there.enter_context(broker(port, folder))
+        running = there.enter_context(broker(port, folder))
         there.enter_context(Reader(port, counted))
-        one.take(HELLO)
-        process = psutil.Process(one.pid)
-        status = OutletStatus("MQTT", False, 0, 0)
-        for number in range(1, offered + 1):
-            one.take(replace(first, number=number))
-            if number % _TOGETHER == 0:
-                time.sleep(1e-3)
-            if number == away.start:
-                _settled(one, status)
+        feed, process = _Feed(one, counted), psutil.Process(one.pid)
+        for number in range(1, _HOURS + 1):
+            report(f"hour {number}")
+            if number in (_STUCK, _AWAY):
+                feed.settle()
+            if number == _STUCK:
+                running.send_signal(signal.SIGSTOP)
+            if number == _AWAY:
                 there.close()
-            if number == away.stop:
+            feed.give(hour, reads=number not in (_STUCK, _AWAY))
+            if number == _STUCK:
+                running.send_signal(signal.SIGCONT)
+            if number == _AWAY:
                 there.enter_context(broker(port, folder))
                 there.enter_context(Reader(port, counted))
-            if number % max(offered // _LOOKS, 1) == 0:
-                sizes.append(process.memory_info().rss / _MEGA)
-        status = _settled(one, status)
-        _wait(lambda: counted.once + status.dropped >= offered, patient=False)
-    return _Day(offered, counted, status, sizes, time.monotonic() - started)
+            if number in (_STUCK, _AWAY):
+                feed.settle()
+            sizes.append(process.memory_info().rss / _MEGA)
+        feed.settle()
+    took_s = time.monotonic() - started
+    return _Day(feed.number, counted, feed.reached, feed.status, sizes, took_s)
 
 
 def _settings(port: int) -> Any:
     return live_settings("tank", f"mqtt://127.0.0.1:{port}/t", None, None, None)
-
-
-def _settled(one: Publishing, status: OutletStatus) -> OutletStatus:
-    """Wait until nothing is carried any more; what comes in silence is not counted twice."""
-    end_s, before = time.monotonic() + _PATIENCE_S, -1
-    while time.monotonic() < end_s and (status.carried != before or not status.carried):
-        before = status.carried
-        time.sleep(3.0)
-        told = one.statuses()
-        status = told[0] if told else status
-    return status
 
 
 def _wait(condition: Any, *, patient: bool = True) -> None:

@@ -24,6 +24,8 @@ _TOGETHER: Final = 50
 _AT_LEAST_ONCE: Final = 1
 _PATIENCE_S: Final = 5.0  # for an answer of the broker
 _STATUS_S: Final = 1.0
+_ALARMS: Final = {one: one.name.lower() for one in Alarm}
+_ENCODER: Final = json.JSONEncoder(allow_nan=False, ensure_ascii=False, separators=(",", ":"))
 
 
 class MqttOutlet(Outlet):
@@ -123,15 +125,14 @@ class MqttOutlet(Outlet):
 
 def message(tick: Tick) -> str:
     """Return a tick as JSON; what is not known is ``null``."""
-    values = {name: _plain(one.value) for name, one in tick.values.items()}
-    alarms = {
-        name: one.severity.name.lower()
-        for name, one in tick.values.items()
-        if one.severity is not Alarm.FINE
-    }
+    values, alarms = {}, {}
+    for name, one in tick.values.items():
+        values[name] = _plain(one.value)
+        if one.severity is not Alarm.FINE:
+            alarms[name] = _ALARMS[one.severity]
     utc = datetime.fromtimestamp(tick.utc_s, UTC).isoformat(timespec="milliseconds")
     content = {"n": tick.number, "utc": utc, "values": values, "alarms": alarms}
-    return json.dumps(content, allow_nan=False, ensure_ascii=False, separators=(",", ":"))
+    return _ENCODER.encode(content)
 
 
 def _plain(value: float | int | str) -> Any:

@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from enum import IntEnum
-from typing import Final
+from typing import Final, NamedTuple
 
 from pmm.console.messages import ChannelInfo, Frame, Hello
 from pmm.run.states import State
@@ -31,8 +31,7 @@ class Alarm(IntEnum):
     INVALID = 3  # not known
 
 
-@dataclass(frozen=True)
-class LiveValue:
+class LiveValue(NamedTuple):
     """A number, a count or a text with its unit.
 
     Attributes
@@ -65,7 +64,7 @@ class Tick:
 
     def unknown(self) -> "Tick":
         """Return the same values as those that nobody vouches for any more."""
-        values = {k: replace(v, severity=Alarm.INVALID) for k, v in self.values.items()}
+        values = {k: v._replace(severity=Alarm.INVALID) for k, v in self.values.items()}
         return replace(self, values=values)
 
 
@@ -75,6 +74,7 @@ class LiveTable:
     def __init__(self, hello: Hello) -> None:
         self._hello = hello
         self._samples = [math.nan] * len(hello.channels)
+        self._names = [_names(one, hello.harmonics) for one in hello.channels]
 
     def tick(self, frame: Frame, utc_s: float) -> Tick:
         """Return a frame's values."""
@@ -89,7 +89,7 @@ class LiveTable:
         self, row: int, channel: ChannelInfo, frame: Frame
     ) -> Iterator[tuple[str, LiveValue]]:
         """Yield the latest sample, and the needles: mean and harmonics."""
-        name = _FOREIGN.sub("_", channel.name)
+        name, *parts, width_name = self._names[row]
         sample = self._samples[row]
         over = abs(sample) > channel.full_scale
         worst = Alarm.MAJOR if over else Alarm.FINE
@@ -98,13 +98,19 @@ class LiveTable:
         needles = frame.needles
         read = [math.nan] * count if needles is None else needles.coefficients[row].tolist()
         widths = [math.nan] * count if needles is None else needles.half_widths[row].tolist()
-        parts = ["mean", "in_phase", "quadrature"]
-        for order in range(2, self._hello.harmonics + 1):
-            parts += [f"in_phase_{order}", f"quadrature_{order}"]
         for part, value in zip(parts, read, strict=True):
-            yield f"{name}:{part}", _number(value, channel.unit, full_scale=channel.full_scale)
+            yield part, _number(value, channel.unit, full_scale=channel.full_scale)
         width = max(widths[1:3])  # of the first harmonic
-        yield f"{name}:half_width", _number(width, channel.unit)
+        yield width_name, _number(width, channel.unit)
+
+
+def _names(channel: ChannelInfo, harmonics: int) -> list[str]:
+    """Return the names of a channel's values: sample, mean, harmonics, half-width."""
+    parts = ["mean", "in_phase", "quadrature"]
+    for order in range(2, harmonics + 1):
+        parts += [f"in_phase_{order}", f"quadrature_{order}"]
+    name = _FOREIGN.sub("_", channel.name)
+    return [name, *(f"{name}:{part}" for part in (*parts, "half_width"))]
 
 
 def _of_the_run(frame: Frame) -> dict[str, LiveValue]:
