@@ -4,6 +4,7 @@ import json
 import socket
 import threading
 from types import TracebackType
+from typing import Any
 
 _CONNECT, _PUBLISH, _PING = 1, 3, 12
 _CONNACK, _PONG = b"\x20\x02\x00\x00", b"\xd0\x00"
@@ -16,6 +17,8 @@ class HandBroker:
     ----------
     numbers
         Of the ticks that it has acknowledged, in their order.
+    told
+        The latest message of each topic.
     reading
         Cleared: it takes no byte more until it is set.
     wait_s
@@ -24,6 +27,7 @@ class HandBroker:
 
     def __init__(self) -> None:
         self.numbers: list[int] = []
+        self.told: dict[str, dict[str, Any]] = {}
         self.connections = 0
         self.reading = threading.Event()
         self.reading.set()
@@ -80,8 +84,10 @@ class HandBroker:
         end = 2 + int.from_bytes(body[:2], "big")
         self._end.wait(self.wait_s)
         one.sendall(b"\x40\x02" + body[end : end + 2])
-        if body[2:end].endswith(b"/live"):
-            self.numbers.append(json.loads(body[end + 2 :])["n"])
+        topic, content = body[2:end].decode(), json.loads(body[end + 2 :])
+        self.told[topic] = content
+        if topic.endswith("/live"):
+            self.numbers.append(content["n"])
 
     def _length(self, one: socket.socket) -> int:
         length, shift = 0, 0

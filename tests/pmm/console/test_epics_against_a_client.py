@@ -1,17 +1,20 @@
 """Live values as process variables, by what another Channel Access client reads."""
 
+import asyncio
 import socket
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from itertools import count
 
 import pytest
 from caproto import AlarmSeverity, AlarmStatus, CaprotoError
 from caproto.sync.client import read, write
 
+from pmm.console.live.epics import EpicsOutlet
 from pmm.console.live.live_settings import OutletSettings
 from pmm.console.live.process import Publishing
+from pmm.console.live.values import LiveTable
 from tests.pmm.console.live_rig import HELLO, frame, free_port, until
 
 WITHIN_S = 30.0
@@ -53,6 +56,24 @@ def _fed(one: Publishing, force_n: list[float]) -> Iterator[None]:
         thread.join()
 
 
+def test_values_are_read_where_they_are_made(ports: int) -> None:
+    async def run() -> None:
+        outlet, table = EpicsOutlet("PMM"), LiveTable(HELLO)
+        running = asyncio.create_task(outlet.run())
+        for number in range(1, 13):
+            outlet.offer(table.tick(frame(number, force_n=501.0), 0.0))
+        async with asyncio.timeout(WITHIN_S):
+            while outlet.status().carried < 12:
+                await asyncio.sleep(0.01)
+        await asyncio.to_thread(_values_are_read_and_not_written)
+        running.cancel()
+        with suppress(asyncio.CancelledError):
+            await running
+
+    asyncio.run(run())
+
+
+@pytest.mark.slow
 def test_values_units_and_alarms_are_read_and_nothing_is_written(ports: int) -> None:
     before = threading.active_count()
     one, force_n = Publishing(OutletSettings(epics_prefix="PMM")), [501.0]

@@ -38,6 +38,26 @@ def _offer(outlet: MqttOutlet, first: int, last: int) -> None:
         outlet.offer(TABLE.tick(frame(number), 0.0))
 
 
+def test_ticks_have_their_numbers_and_are_told_with_units() -> None:
+    async def run(broker: HandBroker) -> None:
+        outlet = _outlet(broker, MOST)
+        running = asyncio.create_task(outlet.run())
+        _offer(outlet, 1, 20)
+        await _until(lambda: outlet.status().carried == 20)
+        await _until(lambda: broker.told.get("t/status", {}).get("carried") == 20)
+        assert broker.told["t/status"]["dropped"] == 0
+        running.cancel()
+
+    with HandBroker() as broker:
+        asyncio.run(run(broker))
+    assert broker.numbers == list(range(1, 21))
+    live, units = broker.told["t/live"], broker.told["t/units"]
+    assert set(units) == set(live["values"])
+    assert (live["values"]["force_aft"], units["force_aft"]) == (40.0, "N")
+    assert (live["values"]["moment__fore"], live["values"]["shaft"]) == (7.0, None)
+    assert live["alarms"] == {"shaft": "invalid", "free_space": "invalid"}
+
+
 def test_one_that_stops_reading_costs_what_is_counted() -> None:
     async def run(broker: HandBroker) -> None:
         outlet = _outlet(broker, MOST)
