@@ -1,9 +1,13 @@
-"""The keys of a carriage behind a programmable controller."""
+"""The keys of a carriage behind a programmable controller, or behind a panel that says lines."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
+from hardware.asked_link import AskedSettings
 from hardware.description.errors import ConfigurationError
 from hardware.description.motor import UNKNOWN_KEYS_REFUSED
+from hardware.line_link import LineSettings
+from hardware.line_registers import Line, LineCommand, LineNumber, LineStatus
 from hardware.modbus_link import ModbusSettings
 from hardware.modbus_registers import CommandRegister, Register, StatusRegister
 
@@ -46,8 +50,8 @@ class CarriageRegisters:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ModbusCarriageSettings(ModbusSettings):
-    """Settings of a carriage.
+class CarriageSettings(AskedSettings):
+    """Settings of a carriage, however it is asked.
 
     Attributes
     ----------
@@ -65,7 +69,6 @@ class ModbusCarriageSettings(ModbusSettings):
         Of one that drives circles; 0 for one that goes straight.
     """
 
-    registers: CarriageRegisters
     highest_speed_m_s: float
     acceleration_m_s2: float
     tolerance_m_s: float
@@ -73,6 +76,11 @@ class ModbusCarriageSettings(ModbusSettings):
     track_m: tuple[float, float] | None = None
     return_speed_m_s: float = 0.5
     highest_turn_rate_rad_s: float = 0.0
+
+    @property
+    def asked(self) -> "CarriageRegisters | CarriageLines":
+        """What it is asked and told."""
+        raise AssertionError("a carriage is asked for its speed")
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -84,8 +92,8 @@ class ModbusCarriageSettings(ModbusSettings):
                 raise ConfigurationError(f"{key} = {getattr(self, key):g} has to be above 0")
         if self.return_speed_m_s > self.highest_speed_m_s:
             raise ConfigurationError("return_speed_m_s is above highest_speed_m_s; lower it")
-        if (self.track_m is None) != (self.registers.position is None):
-            raise ConfigurationError("track_m and registers.position belong together; give both")
+        if (self.track_m is None) != (self.asked.position is None):
+            raise ConfigurationError("track_m and position belong together; give both")
         if self.track_m is not None and not self.track_m[0] < self.track_m[1]:
             raise ConfigurationError(
                 f"track_m = {list(self.track_m)}: the start has to be below the end; a negative "
@@ -94,12 +102,12 @@ class ModbusCarriageSettings(ModbusSettings):
         self._check_turning()
         slowest = -self.return_speed_m_s if self.track_m is not None else 0.0
         for speed in (self.highest_speed_m_s, slowest):
-            self.registers.set_speed.written(speed)
+            self.asked.set_speed.written(speed)
 
     def _check_turning(self) -> None:
         told, read, most = (
-            self.registers.set_turn_rate,
-            self.registers.turn_rate,
+            self.asked.set_turn_rate,
+            self.asked.turn_rate,
             self.highest_turn_rate_rad_s,
         )
         if most < 0.0 or len({told is None, read is None, most == 0.0}) > 1:
@@ -115,3 +123,67 @@ class ModbusCarriageSettings(ModbusSettings):
         for rate in (-most, most):
             if told is not None:
                 told.written(rate)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModbusCarriageSettings(CarriageSettings, ModbusSettings):
+    """Settings of a carriage behind a programmable controller."""
+
+    registers: CarriageRegisters
+
+    @property
+    def asked(self) -> CarriageRegisters:
+        """Its registers."""
+        return self.registers
+
+
+@dataclass(frozen=True, kw_only=True)
+class CarriageLines:
+    """Which lines are the carriage's; those it lacks are left out.
+
+    Attributes
+    ----------
+    set_speed, speed, position
+        As the registers of :class:`CarriageRegisters`.
+    """
+
+    set_speed: LineNumber
+    speed: LineNumber
+    position: LineNumber | None = None
+    status: LineStatus | None = None
+    command: LineCommand | None = None
+
+    set_turn_rate: ClassVar[None] = None
+    turn_rate: ClassVar[None] = None
+
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
+
+    def __post_init__(self) -> None:
+        every = (self.set_speed, self.speed, self.position, self.status, self.command)
+        for number, one in enumerate(every, 1):
+            if one is not None:
+                one.at(number)
+
+    def read(self) -> dict[str, LineNumber]:
+        """Return those that are read, by name."""
+        found = {"speed": self.speed, "position": self.position}
+        return {name: one for name, one in found.items() if one is not None}
+
+
+@dataclass(frozen=True, kw_only=True)
+class LineCarriageSettings(CarriageSettings, LineSettings):
+    """Settings of a carriage behind a drive panel that answers lines of text."""
+
+    lines: CarriageLines
+
+    @property
+    def asked(self) -> CarriageLines:
+        """Its lines."""
+        return self.lines
+
+    @property
+    def every_line(self) -> tuple[Line, ...]:
+        """All that it is asked and told."""
+        one = self.lines
+        every = (one.set_speed, one.speed, one.position, one.status, one.command)
+        return tuple(each for each in every if each is not None)

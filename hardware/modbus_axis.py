@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from hardware.asked_device import AskedDevice, raise_worst
 from hardware.command_limits import check_move
 from hardware.description.errors import ConfigurationError
 from hardware.description.motor import UNKNOWN_KEYS_REFUSED
@@ -10,7 +11,6 @@ from hardware.description.oscillator import Range
 from hardware.driver import Driver, Services
 from hardware.errors import NotReadyError
 from hardware.limits import RAMP_MARGIN, REST_DEADLINE_S
-from hardware.modbus_device import ModbusDevice, raise_worst
 from hardware.modbus_link import ModbusSettings
 from hardware.modbus_registers import CommandRegister, Register, StatusRegister
 from hardware.roles import Cycle, Reading, Role
@@ -56,6 +56,11 @@ class ModbusAxisSettings(ModbusSettings):
     standard_uncertainty: float
     settle_s: float = 1.0
 
+    @property
+    def asked(self) -> AxisRegisters:
+        """Its registers."""
+        return self.registers
+
     def __post_init__(self) -> None:
         super().__post_init__()
         if not self.low < self.high:
@@ -67,7 +72,7 @@ class ModbusAxisSettings(ModbusSettings):
             self.registers.set_position.written(position)
 
 
-class ModbusAxis(ModbusDevice):
+class ModbusAxis(AskedDevice):
     """A :class:`hardware.roles.PositionAxis` that reads absolutely: to home it is to read it."""
 
     unit = "rad"
@@ -156,12 +161,12 @@ class ModbusAxis(ModbusDevice):
         self.quick_stop()
 
     def reset_fault(self) -> None:
-        """Begin anew, without power; raises as :meth:`ModbusDevice.reset_fault`."""
+        """Begin anew, without power; raises as :meth:`AskedDevice.reset_fault`."""
         self.stop()
         super().reset_fault()
 
     def tick(self, cycle: Cycle) -> None:
-        """Take what came; raises as :meth:`ModbusDevice.exchange` says."""
+        """Take what came; raises as :meth:`AskedDevice.exchange` says."""
         fresh, faults = self.exchange(cycle)
         if fresh:
             if self._stood is None or not abs(self.position - self._stood[0]) <= self._still:

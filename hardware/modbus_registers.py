@@ -13,13 +13,16 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 
 _CODES: Final = {"int16": "h", "uint16": "H", "int32": "i", "uint32": "I", "float32": "f"}
-_UNITS: Final = {
+UNITS: Final = {
     "m/s": 1.0, "mm/s": 1e-3, "m/min": 1.0 / 60.0, "m": 1.0, "mm": 1e-3,
     "rad": 1.0, "deg": math.pi / 180.0, "1": 1.0,
     "rad/s": 1.0, "deg/s": math.pi / 180.0, "rpm": math.pi / 30.0,
 }  # fmt: skip
 _LAST: Final = 0xFFFF
 Table = Literal["holding", "input"]
+Unit = Literal[
+    "m/s", "mm/s", "m/min", "m", "mm", "rad", "deg", "1", "rad/s", "deg/s", "rpm"
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -39,9 +42,7 @@ class Register:
     """
 
     address: int
-    unit: Literal[
-        "m/s", "mm/s", "m/min", "m", "mm", "rad", "deg", "1", "rad/s", "deg/s", "rpm"
-    ]  # fmt: skip
+    unit: Unit
     type: Literal["int16", "uint16", "int32", "uint32", "float32"] = "int16"
     table: Table = "holding"
     words: Literal["high-first", "low-first"] = "high-first"
@@ -63,7 +64,7 @@ class Register:
         """Return the number in SI units that stands in its registers."""
         data = struct.pack(f">{self.count}H", *self._ordered(words))
         (raw,) = struct.unpack(f">{_CODES[self.type]}", data)
-        return float(raw) * self.scale * _UNITS[self.unit]
+        return float(raw) * self.scale * UNITS[self.unit]
 
     def written(self, value: float) -> tuple[int, ...]:
         """Return what its registers have to hold for a number in SI units.
@@ -73,7 +74,7 @@ class Register:
         ConfigurationError
             If its type does not hold the number.
         """
-        counts = value / (self.scale * _UNITS[self.unit])
+        counts = value / (self.scale * UNITS[self.unit])
         try:
             raw = counts if self.type == "float32" else round(counts)
             data = struct.pack(f">{_CODES[self.type]}", raw)

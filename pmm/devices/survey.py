@@ -5,12 +5,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from hardware.asked_device import spans
+from hardware.asked_link import AskedSettings, read_once
 from hardware.bus import BusConfiguration
 from hardware.errors import HardwareError
 from hardware.listening import Heard, listen
 from hardware.master import Master
-from hardware.modbus_device import spans
-from hardware.modbus_link import ModbusSettings, read_once
+from hardware.modbus_link import ModbusSettings
 from hardware.scan import Ear, FoundNode, scan
 from hardware.serial_port import PortSettings, SerialPort
 from pmm.devices.device_source import DeviceTables
@@ -59,12 +60,12 @@ def survey_rig(tables: DeviceTables, listen_s: float) -> Survey:
     heard: dict[str, Heard] = {}
     wrong: list[str] = []
     nodes = _scan(rig.bus, listen_s) if rig.bus is not None else ()
-    modbus = {part.name: part for part in rig.parts() if isinstance(part.settings, ModbusSettings)}
+    silent = {part.name: part for part in rig.parts() if isinstance(part.settings, AskedSettings)}
     for name, port in tables.ports().items():
-        if name not in modbus:
+        if name not in silent:
             _hear(name, PortSettings(**port), listen_s, heard, wrong)
     asked: dict[str, str] = {}
-    for name, part in modbus.items():
+    for name, part in silent.items():
         _ask(name, part.settings, asked, wrong)
     wrong += _missing(nodes, expected)
     return Survey(nodes, {one.node_id: one.name for one in expected}, heard, wrong, asked)
@@ -114,14 +115,15 @@ def _hear(
 
 
 def _ask(name: str, settings: Any, asked: dict[str, str], wrong: list[str]) -> None:
-    """Read what a Modbus device shows, once; nothing is written."""
+    """Read what a device shows that says nothing by itself, once; nothing is written."""
+    places = spans(settings.asked.read().values(), settings.asked.status)
     try:
-        registers = settings.registers
-        found = read_once(name, settings, spans(registers.read().values(), registers.status))
+        found = read_once(name, settings, places)
     except HardwareError as error:
         wrong.append(str(error))
     else:
-        asked[name] = f"{found} registers"
+        has_registers = isinstance(settings, ModbusSettings)
+        asked[name] = f"{found} registers" if has_registers else f"{len(places)} lines"
 
 
 def _expected(tables: DeviceTables) -> tuple[_Expected, ...]:

@@ -33,6 +33,7 @@ DRIVERS: Final = tuple(
         "timestamper": "hardware.photocell_serial:DRIVER",
         "serial-inclinometer": "hardware.inclinometer:DRIVER",
         "modbus-carriage": "hardware.modbus_carriage:DRIVER",
+        "line-carriage": "hardware.line_carriage:DRIVER",
         "modbus-axis": "hardware.modbus_axis:DRIVER",
     }.items()
 )

@@ -4,12 +4,17 @@ import math
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Final
 
-from hardware.carriage_settings import ModbusCarriageSettings
-from hardware.modbus_axis import ModbusAxisSettings
-from hardware.modbus_device import Place, spans
+from hardware.asked_device import Number, Place, Status, spans
+from hardware.asked_link import READ, WRITE
+from hardware.carriage_settings import (
+    CarriageLines,
+    CarriageRegisters,
+    CarriageSettings,
+    ModbusCarriageSettings,
+)
+from hardware.modbus_axis import AxisRegisters, ModbusAxisSettings
 from hardware.modbus_frames import framer_of
-from hardware.modbus_link import READ, WRITE
-from hardware.modbus_registers import Register, StatusRegister
+from hardware.modbus_registers import StatusRegister
 from sim.devices.plant import Passage
 from sim.devices.serial_devices import SerialCable
 
@@ -42,16 +47,17 @@ class Controller:
     def __init__(self, name: str, settings: ModbusCarriageSettings | ModbusAxisSettings) -> None:
         from pymodbus.pdu import DecodePDU
 
-        self.cable = SerialCable()
-        self.mute = self.local = self.alarm = self.stale = self.torn = False
-        self.refuses = 0
         self.unit_id = settings.unit_id
         self._framer = framer_of(name, settings.port.framing)
         self._framer.decoder = DecodePDU(True)
-        registers = settings.registers
-        self._status, self._command, self._life = (
-            registers.status, registers.command, registers.life,
-        )  # fmt: skip
+        self._begin(settings.registers)
+
+    def _begin(self, registers: CarriageRegisters | AxisRegisters | CarriageLines) -> None:
+        self.cable = SerialCable()
+        self.mute = self.local = self.alarm = self.stale = self.torn = False
+        self.refuses = 0
+        self._status, self._command = registers.status, registers.command
+        self._life = getattr(registers, "life", None)
         self._words: dict[Place, int] = {}
         self._heard_s = -math.inf
         self._asked = b""
@@ -67,6 +73,10 @@ class Controller:
             self._show()
         self._asked += bytes(self.cable.heard)
         self.cable.heard.clear()
+        self._serve()
+
+    def _serve(self) -> None:
+        """Answer what has been asked."""
         while self._asked:
             used, unit, number, request = self._framer.decode(self._asked)
             if not used:
@@ -85,19 +95,19 @@ class Controller:
         alone = self._time_s - self._heard_s > _ALONE_S
         return not (self.local or self.alarm or alone) and self._commanded("enable")
 
-    def number(self, register: Register) -> float:
+    def number(self, register: Number) -> float:
         """Return the number that stands in a register."""
         places = range(register.address, register.address + register.count)
         return register.value([self._words.get((_HOLDING, at), 0) for at in places])
 
-    def show(self, register: Register | None, value: float) -> None:
+    def show(self, register: Number | None, value: float) -> None:
         """Let a number stand in a register."""
         if register is None:
             return
         for i, word in enumerate(register.written(value)):
             self._words[READ[register.table], register.address + i] = word
 
-    def _map(self, numbers: Iterable[Register], status: StatusRegister | None) -> None:
+    def _map(self, numbers: Iterable[Number], status: Status | None) -> None:
         for (function, first), count in spans(numbers, status):
             self._words |= {(function, first + i): 0 for i in range(count)}
 
@@ -112,17 +122,20 @@ class Controller:
         self._count = (self._count + 1) % 1000
         self.show(self._life, self._count)
         status = self._status
-        if status is not None:
-            says = {
-                "remote": not self.local,
-                "ready": self.driven,
-                "alarm": self.alarm,
-                "at_end": False,
-            }
+        if isinstance(status, StatusRegister):
+            says = self._states()
             bits = ((getattr(status, name), on != (name in status.inverted))
                     for name, on in says.items())  # fmt: skip
             word = sum(1 << bit for bit, on in bits if bit is not None and on)
             self._words[READ[status.table], status.address] = word
+
+    def _states(self) -> dict[str, bool]:
+        return {
+            "remote": not self.local,
+            "ready": self.driven,
+            "alarm": self.alarm,
+            "at_end": False,
+        }
 
     def _answer(self, unit: int, number: int, request: bytes) -> None:
         pdu = self._framer.decoder.decode(request)
@@ -180,20 +193,25 @@ class SimulatedCarriage(Controller):
     def __init__(
         self,
         name: str,
-        settings: ModbusCarriageSettings,
+        settings: CarriageSettings,
         driven: Callable[[], tuple[float, float]],
         runs: Callable[[float, float], None],
     ) -> None:
-        super().__init__(name, settings)
+        self._open(name, settings)
         self._settings, self._really, self._runs = settings, driven, runs
         self._ramp_m_s = self._told_m_s = self._curvature = 0.0
         self.position_m = settings.track_m[0] if settings.track_m is not None else 0.0
-        self.show(settings.registers.position, self.position_m)
+        self.show(settings.asked.position, self.position_m)
+
+    def _open(self, name: str, settings: CarriageSettings) -> None:
+        if not isinstance(settings, ModbusCarriageSettings):
+            raise TypeError(f"{name}: a controller has registers")
+        Controller.__init__(self, name, settings)
 
     def move(self, step_s: float) -> None:
         """Go on along the ramp and the track."""
         one = self._settings
-        wanted = self.number(one.registers.set_speed) if self.driven else 0.0
+        wanted = self.number(one.asked.set_speed) if self.driven else 0.0
         most = one.acceleration_m_s2 * step_s
         self._ramp_m_s += min(max(wanted - self._ramp_m_s, -most), most)
         late = abs(self._ramp_m_s - self._told_m_s) >= one.acceleration_m_s2 * _STEP_S
@@ -203,13 +221,13 @@ class SimulatedCarriage(Controller):
         speed, turn = self._really()
         self.position_m += speed * step_s
         if not self.stale:
-            self.show(one.registers.speed, speed)
-            self.show(one.registers.position, self.position_m)
-            self.show(one.registers.turn_rate, turn)
+            self.show(one.asked.speed, speed)
+            self.show(one.asked.position, self.position_m)
+            self.show(one.asked.turn_rate, turn)
 
     def _per_radius(self, wanted_m_s: float) -> float:
         """Return one over the circle's radius; on the ramp down that which it has."""
-        told = self._settings.registers.set_turn_rate
+        told = self._settings.asked.set_turn_rate
         if told is not None and wanted_m_s:
             self._curvature = self.number(told) / wanted_m_s
         return self._curvature

@@ -7,7 +7,7 @@ import can
 
 from hardware.amplifier import AmplifierSettings
 from hardware.axis_settings import PositionAxisSettings
-from hardware.carriage_settings import ModbusCarriageSettings
+from hardware.carriage_settings import LineCarriageSettings, ModbusCarriageSettings
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import ANGLE_KEYS
 from hardware.inclinometer import InclinometerSettings
@@ -26,6 +26,7 @@ from sim.devices.amplifier import SimulatedAmplifier, Source
 from sim.devices.axis_drive import AxisDrive
 from sim.devices.modbus_devices import SimulatedAngle, SimulatedCarriage
 from sim.devices.network import Wire
+from sim.devices.panel import SimulatedPanel
 from sim.devices.plant import Passage, Plant, PlantConditions
 from sim.devices.serial_devices import Angles, SimulatedInclinometer, Talker, Timestamper, held
 from sim.devices.shaft_drive import ShaftDrive
@@ -215,9 +216,10 @@ class World:
                 return SimulatedInclinometer(
                     settings.sample_rate_hz, settings.rad_per_unit, scene.angles
                 )
-            case ModbusCarriageSettings():
+            case ModbusCarriageSettings() | LineCarriageSettings():
                 plant = self.plant
-                return SimulatedCarriage(
+                said = isinstance(settings, LineCarriageSettings)
+                return (SimulatedPanel if said else SimulatedCarriage)(
                     part.name,
                     settings,
                     lambda: (

@@ -24,6 +24,7 @@ from tests.sim.devices.benches import (
     push,
     slotted,
 )
+from tests.sim.devices.line_tables import PANEL
 from tests.sim.devices.modbus_tables import CARRIAGE, DRIFT
 
 PARTS = {
@@ -139,6 +140,13 @@ class TestCarriage(CarriageContract):
     @pytest.fixture
     def bench(self) -> Iterator[Bench]:
         with modbus("carriage", CARRIAGE, "tcp") as (rig, _):
+            yield bench(rig)
+
+
+class TestPanel(CarriageContract):
+    @pytest.fixture
+    def bench(self) -> Iterator[Bench]:
+        with in_process({"carriage": PANEL}, on_bus=False, serial=("carriage",)) as (rig, _):
             yield bench(rig)
 
 

@@ -1,9 +1,10 @@
-"""What Modbus devices that move share: their power, whose hand they are in, what they are asked."""
+"""What devices behind registers share that move: power, whose hand they are in, what is asked."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
+from hardware.asked_link import READ, WRITE, Answer, AskedSettings, ModbusRequest
 from hardware.driver import Services
 from hardware.errors import (
     DriveFaultError,
@@ -13,15 +14,18 @@ from hardware.errors import (
     TransitionTimeoutError,
     worst,
 )
-from hardware.modbus_link import READ, WRITE, Answer, ModbusLink, ModbusRequest, ModbusSettings
+from hardware.line_registers import LineCommand, LineNumber, LineStatus
 from hardware.modbus_registers import CommandRegister, Register, StatusRegister
 from hardware.roles import Cycle
 
 _HOLDING: Final = READ["holding"]
 Place = tuple[int, int]  # function that reads it, address
+Number = Register | LineNumber
+Status = StatusRegister | LineStatus
+Command = CommandRegister | LineCommand
 
 
-class ModbusDevice:
+class AskedDevice:
     """Reads registers in turn and writes what has changed.
 
     Parameters
@@ -38,15 +42,15 @@ class ModbusDevice:
     def __init__(
         self,
         name: str,
-        settings: ModbusSettings,
+        settings: AskedSettings,
         services: Services,
-        numbers: Mapping[str, Register],
-        status: StatusRegister | None,
-        command: CommandRegister | None,
+        numbers: Mapping[str, Number],
+        status: Status | None,
+        command: Command | None,
     ) -> None:
         self.name = name
         self.values = dict.fromkeys(numbers, math.nan)
-        self._link = ModbusLink(name, settings, services)
+        self._link = settings.link(name, services)
         self._numbers, self._status, self._command = dict(numbers), status, command
         self._refresh_s, self._silent_s = settings.refresh_s, settings.silent_s
         self._spans = spans(numbers.values(), status)
@@ -117,7 +121,7 @@ class ModbusDevice:
         """Take the deadline back."""
         self._deadline_s = math.inf
 
-    def tell(self, register: Register, value: float) -> None:
+    def tell(self, register: Number, value: float) -> None:
         """Have a number, in SI units, stand in a register from now on."""
         self._told[register.address] = register.written(value)
 
@@ -214,9 +218,7 @@ class ModbusDevice:
         return (words[0] & ~(1 << command.toggle),)
 
 
-def spans(
-    numbers: Iterable[Register], status: StatusRegister | None
-) -> tuple[tuple[Place, int], ...]:
+def spans(numbers: Iterable[Number], status: Status | None) -> tuple[tuple[Place, int], ...]:
     """Return what is read at once: registers that follow each other in their table."""
     wanted = {(READ[one.table], one.address + i) for one in numbers for i in range(one.count)}
     if status is not None:

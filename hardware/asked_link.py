@@ -1,0 +1,185 @@
+"""A device asked through a port, a request at a time, without ever waiting.
+
+What is asked for are registers, whether a programmable controller has them or a panel says them in
+lines of text.
+"""
+
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Final
+
+from hardware.description.errors import ConfigurationError
+from hardware.driver import Services
+from hardware.errors import HardwareError, LineError, ModbusError, SilentPortError, worst
+from hardware.roles import Cycle
+from hardware.serial_port import Port
+
+READ: Final = {"holding": 3, "input": 4}
+WRITE: Final = 16
+_LOOKS_HZ: Final = 100.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class AskedSettings:
+    """How a device is asked.
+
+    Attributes
+    ----------
+    answer_s
+        After so long without an answer it is asked again.
+    silent_s
+        After so long without any it is silent.
+    refresh_s
+        So often is written again what it was told, so that it notices when nobody is there.
+    """
+
+    answer_s: float = 0.2
+    silent_s: float = 1.0
+    refresh_s: float = 0.2
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.answer_s < self.silent_s:
+            raise ConfigurationError(
+                f"answer_s = {self.answer_s:g} has to be above 0 and below silent_s = "
+                f"{self.silent_s:g}: a single answer that is lost is asked for again"
+            )
+
+    def link(self, name: str, services: Services) -> "AskedLink":
+        """Return what asks it; raises as :class:`AskedLink`."""
+        raise AssertionError(f"{name}: no settings of a link")
+
+
+@dataclass(frozen=True)
+class ModbusRequest:
+    """What is asked: so many registers read, or words written, from an address on."""
+
+    function: int
+    address: int
+    count: int = 0
+    words: tuple[int, ...] = ()
+
+
+Answer = tuple[ModbusRequest, tuple[int, ...]]
+"""What was asked, and the words that were read or written."""
+
+
+class AskedLink(ABC):
+    """Asks a device."""
+
+    def __init__(self, name: str, settings: AskedSettings, port: Port) -> None:
+        self.name = name
+        self._settings, self._port = settings, port
+        self._asked_s: float | None = None  # since when an answer is waited for
+        self._heard_s: float | None = None
+        self._answers = False
+        self._trouble = ""
+        self._told: set[type] = set()
+
+    @property
+    def is_open(self) -> bool:
+        """Whether its port is open, as far as is known."""
+        return self._port.is_open
+
+    @property
+    def heard(self) -> bool:
+        """Whether it answers."""
+        return self._answers
+
+    def reset(self) -> None:
+        """Open a lost port again and begin anew; raises as :meth:`SerialPort.open`."""
+        self._port.open()
+        self._asked_s = self._heard_s = None
+        self._answers = False
+        self.forget()
+
+    def forget(self) -> None:
+        """Tell again what was told once."""
+        self._trouble = ""
+        self._told.clear()
+
+    def assume(self, *, heard: bool) -> None:
+        """Go on where another link stood: whether the device had answered."""
+        self._answers = heard
+
+    def close(self) -> None:
+        """Close the port."""
+        self._port.close()
+
+    def exchange(
+        self, cycle: Cycle, following: Callable[[], ModbusRequest | None]
+    ) -> tuple[list[Answer], list[HardwareError]]:
+        """Take the answers of the cycle and ask for what follows; return both, faults once each."""
+        answers: list[Answer] = []
+        faults: list[HardwareError] = []
+        now_s = cycle.time_s
+        try:
+            for line in self._port.lines():
+                self._asked_s = None
+                answers += self._understood(line)
+            due = self._asked_s is None or now_s - self._asked_s > self._settings.answer_s
+            request = following() if due and self._port.is_open else None
+            if request is not None:
+                self._asked_s = now_s
+                self._port.write(self._frame(request))
+        except LineError as error:  # a single one is asked for again
+            self._trouble = str(error)
+        except HardwareError as error:
+            faults.append(error)
+        refused = any(isinstance(one, ModbusError) for one in faults)
+        since_s = now_s if answers or refused or self._heard_s is None else self._heard_s
+        self._heard_s = since_s
+        self._answers = (bool(answers) or self._answers) and not refused
+        faults += self._silence(now_s - since_s)
+        fresh = [one for one in faults if type(one) not in self._told]
+        self._told |= {type(one) for one in fresh}
+        return answers, fresh
+
+    def _silence(self, silent_s: float) -> Iterator[HardwareError]:
+        if silent_s <= self._settings.silent_s:
+            return
+        self._answers = False
+        why = self._trouble or "check its power, the cable and unit_id"
+        yield SilentPortError(
+            self.name,
+            f"no answer for {silent_s:.2f} s (limit {self._settings.silent_s:g} s); {why}",
+        )
+
+    @abstractmethod
+    def _understood(self, line: bytes) -> Iterator[Answer]:
+        """Yield the answers of a line; raise what it shows."""
+
+    @abstractmethod
+    def _frame(self, request: ModbusRequest) -> bytes:
+        """Return what is sent for a request."""
+
+
+def read_once(
+    name: str, settings: AskedSettings, places: Sequence[tuple[tuple[int, int], int]]
+) -> int:
+    """Read registers of a device once, waiting for them; return how many there were.
+
+    Raises
+    ------
+    PortOpenError, SilentPortError, ModbusError
+        If it cannot be reached, does not answer, or refuses.
+    """
+    services = Services(time.monotonic, lambda _: None, _LOOKS_HZ)
+    link = settings.link(name, services)
+    left = [ModbusRequest(function, address, count) for (function, address), count in places]
+    found, began_s = 0, time.monotonic()
+    try:
+        while left:
+            cycle = Cycle(0, time.monotonic() - began_s)
+            answers, faults = link.exchange(cycle, partial(next, iter(left), None))
+            if faults:
+                raise worst(faults)
+            for request, words in answers:
+                left = [one for one in left if one != request]
+                found += len(words)
+            time.sleep(1.0 / _LOOKS_HZ)
+    finally:
+        link.close()
+    return found

@@ -1,0 +1,119 @@
+"""A drive panel asked by lines of text, one at a time, without ever waiting."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from hardware.asked_link import READ, WRITE, Answer, AskedLink, AskedSettings, ModbusRequest
+from hardware.description.motor import UNKNOWN_KEYS_REFUSED
+from hardware.driver import Services
+from hardware.errors import LineError
+from hardware.line_registers import Ending, Line, LineCommand, LineNumber, LineStatus
+from hardware.serial_port import PortSettings, Splitter
+
+_LONGEST: Final = 256
+_UNKNOWN: Final = -1  # address of what a log has, and nobody asked
+
+
+@dataclass(frozen=True)
+class LinePortSettings(PortSettings):
+    """How to open a port to a panel; ``ending`` closes lines and replies."""
+
+    baud_rate: int = 9600
+    ending: Ending = "\r\n"
+
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
+
+    def splitter(self, name: str) -> Splitter:
+        """Return what makes exchanges of bytes."""
+        return LineExchanges(name, self.ending.encode())
+
+
+class LineExchanges:
+    """Finds the reply to the line that was sent last: both, with a tab between, for the log."""
+
+    def __init__(self, name: str, ending: bytes) -> None:
+        self._name, self._ending = name, ending
+        self._asked = self._rest = b""
+
+    def sent(self, data: bytes) -> None:
+        """Take a line; what is left of a reply to another one is forgotten."""
+        self._asked, self._rest = data.removesuffix(self._ending), b""
+
+    def split(self, data: bytes) -> list[bytes]:
+        """Return the exchange that bytes complete; an echo of the line is left out.
+
+        Raises
+        ------
+        LineError
+            If so much has come without an ending that it cannot be a reply.
+        """
+        *whole, self._rest = (self._rest + data).split(self._ending)
+        if len(self._rest) > _LONGEST:
+            seen, self._rest = self._rest[:32], b""
+            raise LineError(
+                self._name, f"no ending after {_LONGEST} bytes ({seen!r} ...); check port.ending"
+            )
+        said = [one for one in whole if one.strip() and one.strip() != self._asked.strip()]
+        return [self._asked + b"\t" + one for one in said[-1:]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LineSettings(AskedSettings):
+    """How a panel is reached."""
+
+    port: LinePortSettings
+
+    @property
+    def every_line(self) -> tuple[Line, ...]:
+        """All that it is asked and told, each with an address of its own."""
+        raise AssertionError("a panel has something to say")
+
+    def link(self, name: str, services: Services) -> "LineLink":
+        """Return what asks it."""
+        return LineLink(name, self, services)
+
+
+class LineLink(AskedLink):
+    """Registers that are lines."""
+
+    def __init__(self, name: str, settings: LineSettings, services: Services) -> None:
+        self._lines = {one.address: one for one in settings.every_line}
+        self._ending = settings.port.ending
+        self._sent: dict[str, ModbusRequest] = {}
+        super().__init__(name, settings, services.port(name, settings.port))
+
+    def _frame(self, request: ModbusRequest) -> bytes:
+        text = self._lines[request.address].text(request.words)
+        self._sent[text] = request
+        return (text + self._ending).encode()
+
+    def _understood(self, line: bytes) -> Iterator[Answer]:
+        asked, _, said = line.decode("ascii", "replace").partition("\t")
+        one = next((one for one in self._reads() if one.text(()) == asked), None)
+        if one is None:  # what was told: the reply alone counts
+            request = self._sent.get(asked, ModbusRequest(WRITE, _UNKNOWN))
+            told = self._lines.get(request.address)
+            if told is not None and told.words(said) is None:
+                raise self._unexpected(asked, said)
+            yield request, request.words
+            return
+        words = one.words(said)
+        if words is None:
+            raise self._unexpected(asked, said)
+        yield ModbusRequest(READ[one.table], one.address, one.count), words
+
+    def _reads(self) -> Iterator[LineNumber | LineStatus]:
+        for one in self._lines.values():
+            if not isinstance(one, LineCommand) and not is_told(one):
+                yield one
+
+    def _unexpected(self, asked: str, said: str) -> LineError:
+        return LineError(
+            self.name, f"{said!r} is no answer to {asked!r}; correct line or answer of its table"
+        )
+
+
+def is_told(one: Line) -> bool:
+    """Whether a line sets something."""
+    return isinstance(one, LineCommand) or "{value" in getattr(one, "line", "")
