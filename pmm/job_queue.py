@@ -14,6 +14,12 @@ _KINDS: Final = {
     "slurm": "SLURMCluster", "pbs": "PBSCluster", "sge": "SGECluster", "lsf": "LSFCluster",
     "oar": "OARCluster", "moab": "MoabCluster",
 }  # fmt: skip
+# Of a worker's environment; docs/parallel.md says what each is for.
+WORKER_ENVIRONMENT: Final = {
+    "MALLOC_TRIM_THRESHOLD_": "134217728",
+    "MALLOC_MMAP_THRESHOLD_": "33554432",
+    "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "False",
+}
 _NAMED: Final = re.compile(rf"({'|'.join(_KINDS)}):(\d+)")
 
 
@@ -27,7 +33,8 @@ def queued_jobs(address: str) -> Iterator[str]:
     """Submit jobs, yield the address of their scheduler, and cancel them at the end.
 
     Cores, memory, time and partition of a job are those of ``jobqueue.yaml`` in Dask's own folder
-    of settings; each core gets a worker of one thread.
+    of settings; each core gets a worker of one thread. Before what the settings have in front of
+    the worker come the exports of :data:`WORKER_ENVIRONMENT`.
 
     Raises
     ------
@@ -84,4 +91,8 @@ def _cluster(address: str, name: str) -> Any:
             "~/.config/dask/jobqueue.yaml (docs/parallel.md)"
         )
     options = {"dashboard": False, **settings["scheduler-options"]}
-    return kind(processes=settings["cores"], scheduler_options=options)
+    exports = [f"export {name}={value}" for name, value in WORKER_ENVIRONMENT.items()]
+    prologue = [*exports, *(settings.get("job-script-prologue") or [])]
+    return kind(
+        processes=settings["cores"], scheduler_options=options, job_script_prologue=prologue
+    )

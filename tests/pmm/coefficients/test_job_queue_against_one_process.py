@@ -13,6 +13,7 @@ from pmm.parallel import as_done, open_executor
 from tests.pmm.coefficients.work import drawn
 
 COUNT = 6
+_PAGE = (Path(__file__).parents[3] / "docs" / "parallel.md").read_text(encoding="utf-8")
 # As the real one: it keeps the script, answers with a number, and the job runs on by itself.
 _SBATCH = """#!/bin/sh
 script={folder}/script-$$
@@ -62,10 +63,30 @@ def test_jobs_give_the_same_and_end_with_the_command(queue: Path) -> None:
     scripts = [one.read_text(encoding="utf-8") for one in queue.glob("script-*[0-9]")]
     assert len(scripts) == 1
     assert all("--nthreads 1" in one for one in scripts)
+    assert all("export MALLOC_TRIM_THRESHOLD_=134217728\n" in one for one in scripts)
     ends_s = time.monotonic() + 10.0
     while any(map(_runs, jobs)) and time.monotonic() < ends_s:
         time.sleep(0.05)
     assert not any(map(_runs, jobs))
+
+
+def test_a_job_has_the_workers_environment_and_then_what_the_settings_say(
+    queue: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import dask
+
+    (queue / "sbatch").write_text(f"#!/bin/sh\ncp $1 {queue}/kept; exit 1\n", encoding="utf-8")
+    with (
+        dask.config.set({"jobqueue.slurm.job-script-prologue": ["module load python"]}),
+        pytest.raises(DataError, match="a job was refused"),
+        open_executor(scheduler="slurm:1"),
+    ):
+        pass
+    script = (queue / "kept").read_text(encoding="utf-8")
+    before, _, after = script.partition("module load python\n")
+    exports = [line for line in before.splitlines() if line.startswith("export ")]
+    assert exports == [line for line in _PAGE.splitlines() if line.startswith("export ")]
+    assert "distributed.cli.dask_worker" in after
 
 
 def test_a_queue_that_refuses_is_quoted(queue: Path) -> None:
