@@ -31,6 +31,7 @@ from sim.model.mounting import Mounting
 from sim.model.steering import Steering
 from sim.model.water.force_laws import CrossFlow, SurgeForces
 from sim.model.water.radiation import Radiation
+from sim.model.waves import Waves
 from sim.rig_checks import check_run, recorded
 
 if TYPE_CHECKING:
@@ -69,6 +70,8 @@ class SimulatedRig:
         Propeller and rudder, in water.
     attitude, squat
         Sensors of position on the model, and how it sinks and trims in water where it is free to.
+    waves
+        What waves do to the model; the run says which there are.
     heel, heel_loads
         How the model heels, and the terms of the water's loads on it then
         (:class:`sim.model.heel_terms.HeelTerms`).
@@ -93,6 +96,7 @@ class SimulatedRig:
     steering: Steering | None = None
     attitude: AttitudeSensors | None = None
     squat: Squat | None = None
+    waves: Waves | None = None
     heel: Heel | None = None
     heel_loads: Mapping[str, float] = field(default_factory=dict, hash=False)
 
@@ -176,6 +180,7 @@ class SimulatedRig:
             None if self.steering is None else self.steering.set_for(set_point),
             self.heeling(set_point),
             carriage.mean_turn_rad_s,
+            None if self.waves is None else self.waves.met_in(set_point),
         )
 
     def ideal(self) -> "SimulatedRig":

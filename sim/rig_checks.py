@@ -8,7 +8,7 @@ import numpy as np
 
 from hardware.description.arrangement import DriftBy, Joint
 from hardware.description.attitude import HeaveAndPitch
-from hardware.description.channels import HEELING, POSITIONS, STEERING
+from hardware.description.channels import HEELING, POSITIONS, STEERING, WAVE_PROBE
 from hardware.description.errors import ConfigurationError
 from hardware.description.lines import struts_over_turn
 from hardware.description.oscillator import Plane
@@ -29,7 +29,7 @@ def check_run(rig: "SimulatedRig", set_point: SetPoint) -> None:
     ConfigurationError
         Naming all that is missing, or that does not go together.
     """
-    checks = (_of_joint, _of_circle, _of_steering, _of_lines, _of_attitude, _of_heel)
+    checks = (_of_joint, _of_circle, _of_waves, _of_steering, _of_lines, _of_attitude, _of_heel)
     faults = [fault for check in checks for fault in check(rig, set_point)]
     if faults:
         raise ConfigurationError("; ".join(faults))
@@ -67,6 +67,16 @@ def _of_circle(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
         yield "a circle (turn_rate_rad_s) is for the horizontal oscillator"
     if rig.flow_factor != 1.0:
         yield "a circle is simulated in open water: leave the blockage of the tank out"
+
+
+def _of_waves(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
+    if rig.waves is None:
+        if set_point.wave_frequency_hz:
+            yield "waves, but [waves] is missing"
+        for name in recorded(rig.acquisition, (WAVE_PROBE.name,)):
+            yield f"acquisition.{name}, but [waves] is missing"
+    elif _is_driven(rig):
+        yield "[waves] needs a drive without motor and gear"
 
 
 def _of_steering(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:

@@ -34,6 +34,7 @@ _OVERTONES, _POINTS = 3, 4
 _FINITE = (
     "strut_phase_rad", "carriage_speed_m_s", "drift_rad", "rudder_angle_rad", "revolutions_hz",
     "heel_rad", "turn_rate_rad_s", "release_rad",
+    "wave_frequency_hz", "wave_amplitude_m", "wave_heading_rad",
 )  # fmt: skip
 
 

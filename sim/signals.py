@@ -91,6 +91,9 @@ FORCE_FORE = of_channel(channels.FORCE_FORE)
 # Force of the strut on the model along it, positive ahead.
 FORCE_X = of_channel(channels.FORCE_X)
 
+# A probe on the carriage.
+WAVE_PROBE = of_channel(channels.WAVE_PROBE)
+
 # Behind the model: what propeller and rudder do to their own gauges.
 RUDDER_ANGLE = of_channel(channels.RUDDER_ANGLE)
 REVOLUTIONS = of_channel(channels.REVOLUTIONS)

@@ -69,6 +69,8 @@ FORCE_X = Channel("force_x", "N")
 CARRIAGE_SPEED = Channel("carriage_speed", "m/s")
 # Of a carriage or arm that drives a circle: how fast it turns, positive to starboard.
 TURN_RATE = Channel("turn_rate", "rad/s")
+# Elevation of the water at a probe on the carriage, positive up.
+WAVE_PROBE = Channel("wave_probe", "m")
 # Behind the model. A positive rudder angle turns the ship to starboard, and its normal force is
 # then positive (to port); thrust is positive ahead, both are those of the propeller and the rudder
 # on their gauges in the model.
@@ -110,5 +112,6 @@ POSITIONS_OF_MODEL: Final = (POSITION_AFT, POSITION_FORE)
 POSITIONS: Final = (POSITION_AFT.name, POSITION_FORE.name)
 STANDARD: Final = (
     SHAFT_ANGLE, DISPLACEMENT_AFT, DISPLACEMENT_FORE, FORCE_AFT, FORCE_FORE, FORCE_X,
-    CARRIAGE_SPEED, TURN_RATE, *STEERING, *POSITIONS_OF_MODEL, *HEELING, COMMAND_AFT, COMMAND_FORE,
+    CARRIAGE_SPEED, TURN_RATE, WAVE_PROBE, *STEERING, *POSITIONS_OF_MODEL, *HEELING, COMMAND_AFT,
+    COMMAND_FORE,
 )  # fmt: skip

@@ -1,5 +1,6 @@
 """What a run was told to do."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
@@ -58,6 +59,9 @@ class SetPoint:
         driven at the carriage speed; positive to starboard, 0 for a straight way.
     release_rad
         Heel off its rest from which the model is let go to roll by itself; 0 where nobody does.
+    wave_frequency_hz, wave_amplitude_m, wave_heading_rad
+        Of the wave maker, 0 in calm water; amplitude is half the height, the heading that of the
+        waves' way against the carriage's: 0 from astern, pi from ahead.
     """
 
     frequency_hz: float
@@ -72,6 +76,9 @@ class SetPoint:
     lines: tuple[Line, ...] = ()
     turn_rate_rad_s: float = 0.0
     release_rad: float = 0.0
+    wave_frequency_hz: float = 0.0
+    wave_amplitude_m: float = 0.0
+    wave_heading_rad: float = math.pi
 
     @property
     def every_line(self) -> tuple[Line, ...]:

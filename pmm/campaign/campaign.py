@@ -35,6 +35,7 @@ from sim.model.mounting import Mounting
 from sim.model.steering import Steering
 from sim.model.water.force_laws import CrossFlow, SurgeForces
 from sim.model.water.radiation_file import RadiationFile
+from sim.model.waves import Waves
 from sim.rig import SimulatedRig
 
 if TYPE_CHECKING:
@@ -80,7 +81,7 @@ class Campaign:
     hull, drive, dynamometers, acquisition, photocell, simulation
         What the simulation believes.
     radiation, carriage, linkage_aft, linkage_fore, mounting, forces, cross_flow, surge, steering,
-    squat, heel_loads
+    squat, waves, heel_loads
         More of that, as in :class:`sim.rig.SimulatedRig`; the memory comes from a table.
     effects
         What is switched on besides, in this order.
@@ -125,6 +126,7 @@ class Campaign:
     surge: SurgeForces | None = None
     steering: Steering | None = None
     squat: Squat | None = None
+    waves: Waves | None = None
     heel: Heel | None = None
     heel_loads: Mapping[str, float] = field(default_factory=dict, hash=False)
     effects: tuple[SwitchedOn, ...] = ()
@@ -177,6 +179,7 @@ class Campaign:
             steering=self.steering,
             attitude=self.attitude,
             squat=self.squat,
+            waves=self.waves,
             heel=self.heel,
             heel_loads=self.heel_loads,
         )

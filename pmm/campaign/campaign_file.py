@@ -32,6 +32,8 @@ _UNITS = {
     "heel_deg": ("heel_rad", math.pi / 180.0),
     "turn_rate_deg_s": ("turn_rate_rad_s", math.pi / 180.0),
     "release_deg": ("release_rad", math.pi / 180.0),
+    "wave_amplitude_mm": ("wave_amplitude_m", 1e-3),
+    "wave_heading_deg": ("wave_heading_rad", math.pi / 180.0),
 }
 _RESTING = ("drift_deg", "rudder_angle_deg", "heel_deg", "turn_rate_deg_s", "release_deg")
 _EXTRA_KEYS = {"oscillator": ("preset",), "runs": tuple(_UNITS), "at_rest": _RESTING}

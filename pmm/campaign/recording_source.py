@@ -203,6 +203,7 @@ def _differences(
         ("heel", "rad", own.heel_rad, told.heel_rad, 0.0),
         ("rate of turn", "rad/s", own.turn_rate_rad_s, told.turn_rate_rad_s, 0.0),
         ("release", "rad", own.release_rad, told.release_rad, 0.0),
+        ("waves", "Hz", own.wave_frequency_hz, told.wave_frequency_hz, 0.0),
     )
     found = [
         f"{what} {mine:.6g} {unit}, the campaign says {theirs:.6g} {unit}"

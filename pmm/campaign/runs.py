@@ -1,5 +1,6 @@
 """What a campaign says of its runs: set-points, records at rest, what each was recorded with."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -48,6 +49,9 @@ class Asked:
     revolutions_hz: float = 0.0
     heel_rad: float = 0.0
     lines: tuple[Line, ...] = ()
+    wave_frequency_hz: float = 0.0
+    wave_amplitude_m: float = 0.0
+    wave_heading_rad: float = math.pi
 
     @property
     def set_point(self) -> SetPoint:
@@ -63,6 +67,9 @@ class Asked:
             self.revolutions_hz,
             self.heel_rad,
             self.lines,
+            wave_frequency_hz=self.wave_frequency_hz,
+            wave_amplitude_m=self.wave_amplitude_m,
+            wave_heading_rad=self.wave_heading_rad,
         )
 
 
@@ -75,7 +82,8 @@ class Run(Asked):
     name
         Unique within the campaign; its recording is called so.
     frequency_hz, eccentricity_m, strut_phase_rad, carriage_speed_m_s, medium, drift_rad
-    rudder_angle_rad, revolutions_hz, heel_rad, lines
+    rudder_angle_rad, revolutions_hz, heel_rad, lines, wave_frequency_hz, wave_amplitude_m
+    wave_heading_rad
         As in :class:`hardware.description.setpoint.SetPoint`.
     periods
         Whole periods wanted.

@@ -20,6 +20,7 @@ from analysis.recording import Recording
 from analysis.resolver.analysis import analyse
 from analysis.resolver.first_harmonics import first_harmonics
 from analysis.response.following import StrutFollowing, led_struts, strut_following
+from analysis.response.waves import in_waves
 from hardware.description.arrangement import Joint
 from hardware.description.channels import (
     CARRIAGE_SPEED,
@@ -163,12 +164,18 @@ def _turning(task: Task, recording: Recording) -> Done:
     channels = tuple(name for name in wanted if name in recording.channel_names)
     if not all(name in channels for name in DISPLACEMENTS):
         channels = tuple(name for name in channels if name not in DISPLACEMENTS)
-    analysis = analyse(recording, task.choice, replace(task.settings, channels=channels))
+    settings, waves = replace(task.settings, channels=channels), None
+    analysis = analyse(recording, task.choice, settings)
+    if task.set_point.wave_frequency_hz:
+        waves, recording = in_waves(recording, analysis, task.set_point, task.depth_m)
+        analysis = analyse(recording, task.choice, settings)
     struts = measured_cycle(analysis, task.oscillator, set_point=task.set_point)
     struts, flags = zeroed(struts, task, recording)
     found = tuple(flag for flag in analysis.flags if flag not in recording.flags)
     attitude, told = attitude_of(task, recording)
     following, unknown = _following(task, recording)
+    if waves is not None:  # what they add to the mean is no load of calm water
+        struts = replace(struts, mean_known=False)
     flags = (*found, *flags, *_speed_flags(task, recording), *told, *unknown)
     reading = analysis.readings[0]
     done = _done(task, recording, _model(task, struts), None, reading.periods, flags)
@@ -179,6 +186,7 @@ def _turning(task: Task, recording: Recording) -> Done:
         attitude=attitude,
         lines=lines,
         following=following,
+        waves=waves,
     )
 
 

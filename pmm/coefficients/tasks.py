@@ -15,6 +15,7 @@ from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.reference_choice import ReferenceChoice
 from analysis.resolver.settings import ResolverSettings
 from analysis.response.following import StrutFollowing
+from analysis.response.waves import InWaves
 from hardware.description.arrays import FloatArray
 from hardware.description.attitude import AttitudeSensors
 from hardware.description.flags import Flag, Severity
@@ -108,6 +109,8 @@ class Task:
         Of sinkage and trim; ``None`` where the campaign file states none.
     heel
         How the model heels; ``None`` where the campaign file does not say.
+    depth_m
+        Of the tank; ``None`` for deep water.
     """
 
     source: RecordingSource
@@ -124,6 +127,7 @@ class Task:
     hashed: bool = False
     sensors: AttitudeSensors | None = None
     heel: Heel | None = None
+    depth_m: float | None = None
 
     @property
     def name(self) -> str:
@@ -162,6 +166,8 @@ class Done:
         How each strut followed its set-points; empty where one of both was not recorded.
     turn
         Of a run on a circle, what was recorded.
+    waves
+        Of a run in waves, what these did.
     """
 
     name: str
@@ -179,6 +185,7 @@ class Done:
     lines: Harmonics | None = None
     following: tuple[StrutFollowing, ...] = ()
     turn: SteadyTurn | None = None
+    waves: InWaves | None = None
 
 
 @dataclass(frozen=True)
@@ -265,6 +272,7 @@ def work_of(
             hashed=hashed,
             sensors=campaign.attitude,
             heel=campaign.heel,
+            depth_m=None if campaign.water is None else campaign.water.depth_m,
         )
         kept = zeros if one.kind is RunKind.ZERO else dry if _is_dry(one) else runs
         kept.append(task)

@@ -27,6 +27,7 @@ from pmm.coefficients.solving import Progress, solve_campaign
 from pmm.coefficients.stated_inputs import largest, with_turns
 from pmm.coefficients.tasks import Done, Failed
 from pmm.coefficients.turn_file import read_turns, turn_cycles
+from pmm.coefficients.wave_runs import WaveRun, wave_runs
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +67,7 @@ class CampaignOutcome:
     with_memory: tuple[Campaign, ...] = ()
     turns: tuple[SteadyTurn, ...] = ()
     decays: tuple[Decay, ...] = ()
+    waves: tuple[WaveRun, ...] = ()
 
     @property
     def noticed(self) -> tuple[Flag, ...]:
@@ -168,6 +170,11 @@ def coefficients_of(
         tuple(one for _, one in campaigns if one.radiation is not None),
         turns,
         decays,
+        tuple(
+            one
+            for (_, campaign), part in zip(campaigns, parts, strict=True)
+            for one in wave_runs(campaign, part.runs)
+        ),
     )
 
 

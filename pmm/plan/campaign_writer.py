@@ -141,8 +141,10 @@ def _common(one: FinishedRun, names: set[str], number: int) -> dict[str, Any]:
 
 
 def _set_besides(point: SetPoint) -> dict[str, Any]:
-    """Return rudder angle, revolutions, heel, turn, release and lines, where the run has them."""
-    keys = ("rudder_angle_rad", "revolutions_hz", "heel_rad", "turn_rate_rad_s", "release_rad")
+    """Return what a run has set besides: rudder, propeller, heel, turn, waves, lines."""
+    keys = ["rudder_angle_rad", "revolutions_hz", "heel_rad", "turn_rate_rad_s", "release_rad"]
+    if point.wave_frequency_hz:
+        keys += ["wave_frequency_hz", "wave_amplitude_m", "wave_heading_rad"]
     found: dict[str, Any] = {key: getattr(point, key) for key in keys}
     found["lines"] = [asdict(line) for line in point.lines]
     return {key: value for key, value in found.items() if value}

@@ -152,6 +152,9 @@ def _run(
         heel,
         turn_rate_rad_s=speed / radius,
         release_rad=release,
+        wave_frequency_hz=entry.wave_frequency_hz,
+        wave_amplitude_m=entry.wave_amplitude_m,
+        wave_heading_rad=entry.wave_heading_rad,
     )
     lines = _lines(entry, oscillator, set_point, speed)
     if lines:
@@ -256,6 +259,8 @@ def _name(entry: PlanEntry, one: tuple[Any, ...]) -> str:
         ("p", entry.strut_phases_rad, math.degrees(phase)),
     )
     parts += [f"{letter}{value:g}" for letter, values, value in varied if len(values) > 1]
+    if entry.wave_frequency_hz:
+        parts.append(f"w{entry.wave_frequency_hz:g}")
     if repeat > 1:
         parts.append(f"r{repeat}")
     return "-".join(parts)

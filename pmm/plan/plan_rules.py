@@ -22,9 +22,10 @@ _MATRIX: Final = _GATE | {
     "drifts_rad",
 }
 _REST: Final = {"duration_s", "medium"}
+_WAVES: Final = {"wave_frequency_hz", "wave_amplitude_m", "wave_heading_rad"}
 _PATHS: Final = {"lines", "sweep", "recorded", "highest", "exact"}
 _TAKES: Final[dict[RunKind, set[str]]] = {
-    RunKind.OSCILLATION: _MATRIX | _SET | _PATHS,
+    RunKind.OSCILLATION: _MATRIX | _SET | _PATHS | _WAVES,
     RunKind.DRY: (_MATRIX - {"drifts_rad"}) | _PATHS,
     RunKind.KNOWN_MASS: (_MATRIX - {"drifts_rad"}) | {"known_mass"},
     RunKind.RESTORING: _MATRIX - {"speeds_m_s", "drifts_rad"},
@@ -109,6 +110,11 @@ def _number_faults(entry: PlanEntry, place: Place) -> Iterator[Fault]:
 
 def _nothing_faults(entry: PlanEntry, place: Place) -> Iterator[Fault]:
     """Yield what is 0 where that would be no such run."""
+    for key in ("wave_frequency_hz", "wave_amplitude_m"):
+        if getattr(entry, key) < 0.0:
+            yield Fault((*place, key), f"= {getattr(entry, key):g} should be above 0")
+    if (entry.wave_frequency_hz > 0.0) != (entry.wave_amplitude_m > 0.0):
+        yield Fault(place, "needs wave_frequency_hz and wave_amplitude_mm for waves; give both")
     if 0.0 in entry.releases_rad:
         yield Fault((*place, "releases_deg"), "has 0; a model is let go from a heel")
     if 0.0 in entry.radii_m:

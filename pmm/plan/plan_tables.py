@@ -1,5 +1,6 @@
 """The tables of ``plan.toml``."""
 
+import math
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TypeVar
@@ -87,6 +88,8 @@ class PlanEntry:
         Of circles, positive to starboard.
     releases_rad
         Heel angles off its rest from which the model is let go, positive to starboard.
+    wave_frequency_hz, wave_amplitude_m, wave_heading_rad
+        Of the waves in which all of the entry's runs are made; amplitude is half the height.
     lines
         Harmonics of each frequency, which is the base of a motion of many lines; one run has them
         all, with amplitudes as one over their order.
@@ -119,6 +122,9 @@ class PlanEntry:
     heels_rad: tuple[float, ...] = ()
     radii_m: tuple[float, ...] = ()
     releases_rad: tuple[float, ...] = ()
+    wave_frequency_hz: float = 0.0
+    wave_amplitude_m: float = 0.0
+    wave_heading_rad: float = math.pi
     periods: int | None = None
     settling_periods: int | None = None
     repeats: int | None = None

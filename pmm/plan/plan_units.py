@@ -20,6 +20,8 @@ _LISTS: Final = {
     "rudder_angles_deg": ("rudder_angles_rad", _DEGREE),
     "heels_deg": ("heels_rad", _DEGREE),
     "releases_deg": ("releases_rad", _DEGREE),
+    "wave_amplitude_mm": ("wave_amplitude_m", 1e-3),
+    "wave_heading_deg": ("wave_heading_rad", _DEGREE),
 }
 # Keys of lists that a single value may stand for.
 _MANY: Final = (

@@ -194,4 +194,5 @@ HANDED_ON = (
     "steering",
     "surge",
     "tolerances",
+    "waves",
 )

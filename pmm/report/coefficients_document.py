@@ -55,6 +55,7 @@ from pmm.report.following import following_figures, following_table
 from pmm.report.heel import heel_table
 from pmm.report.heel_figure import heel_figures
 from pmm.report.line_sections import line_sections
+from pmm.report.waves import wave_figures, wave_table
 
 SCHEMA: Final = "pmm-coefficients-1"
 _LIKELIHOOD = (
@@ -103,6 +104,7 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
                     *figures(found),
                     *circle_figures(outcome),
                     *decay_figures(outcome),
+                    *wave_figures(outcome),
                     *attitude_figures(outcome),
                     *heel_figures(outcome),
                     *following_figures(outcome),
@@ -112,7 +114,10 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
             Section("What was found", tuple(_findings(found))),
             Section("What was flagged", (Text(("Nothing.",)) if flags.empty else flags,)),
             Section("Uncertainty", (_given(outcome), budget_table(found))),
-            Section("Runs", (_runs(outcome), _circles(outcome), decay_table(outcome))),
+            Section(
+                "Runs",
+                (_runs(outcome), _circles(outcome), decay_table(outcome)),
+            ),
         ),
         SCHEMA,
     )
@@ -121,7 +126,13 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
 def _conditions(outcome: CampaignOutcome) -> tuple[Content, ...]:
     speeds = (one.speed_m_s for one in outcome.result.entries)
     conditions = conditions_table(speeds, outcome.settings.ship, outcome.water)
-    return conditions, attitude_table(outcome), heel_table(outcome), following_table(outcome)
+    return (
+        conditions,
+        attitude_table(outcome),
+        heel_table(outcome),
+        following_table(outcome),
+        wave_table(outcome),
+    )
 
 
 def _known(value: float, uncertainty: float) -> str:

@@ -17,6 +17,8 @@ from hardware.description.setpoint import SetPoint
 from hardware.driver import Prompt
 from pmm.plan.run_plan import RunPlan
 
+_CALM: Final = (0.0, 0.0, math.pi)
+_WAVE_KEYS: Final = ("wave_frequency_hz", "wave_amplitude_m", "wave_heading_rad")
 Answered = Callable[[Demand, str], None]
 
 
@@ -36,6 +38,8 @@ class Surroundings:
         Of the carriage on a circle.
     release_rad
         Heel that the model was let go from.
+    waves
+        Frequency, amplitude and heading of the waves.
     lines
         That the struts follow.
     """
@@ -48,6 +52,7 @@ class Surroundings:
     heel_rad: float = 0.0
     turn_rate_rad_s: float = 0.0
     release_rad: float = 0.0
+    waves: tuple[float, float, float] = _CALM
     lines: tuple[Line, ...] = ()
     mass_kg: float = 0.0
     load: tuple[str, float] = ("", 0.0)
@@ -72,6 +77,7 @@ class Surroundings:
                 "release",
                 0.0,
             )
+        yield from self._change_waves(run.set_point)
         if "drift" not in by_axis:
             yield from self._change_drift(run, oscillator)
         yield from self._change_settings(run.set_point, by_axis)
@@ -148,6 +154,21 @@ class Surroundings:
             self.drift_rad = drift_rad
             text = f"drift: {drift_prompt(Geometry.of(oscillator, run.set_point))}; press Enter"
             yield Demand(text, "drift", drift_rad)
+
+    def _change_waves(self, point: SetPoint) -> Iterator[Demand]:
+        asked = {key: getattr(point, key) for key in _WAVE_KEYS}
+        waves = (point.wave_frequency_hz, point.wave_amplitude_m, point.wave_heading_rad)
+        if waves == self.waves:
+            return
+        self.waves = waves
+        text = "stop the wave maker; press Enter when the water is calm"
+        if point.wave_frequency_hz:
+            text = (
+                f"run the wave maker at {waves[0]:g} Hz, {1e3 * waves[1]:g} mm amplitude (half the "
+                f"height), {math.degrees(waves[2]):g} deg to the carriage's way (180: from ahead); "
+                "press Enter when the waves are there"
+            )
+        yield Demand(f"waves: {text}", "waves", json.dumps(asked))
 
     def _change_settings(self, point: SetPoint, by_axis: Collection[str]) -> Iterator[Demand]:
         for part, key, words in _SETTINGS:

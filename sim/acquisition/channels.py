@@ -39,6 +39,7 @@ _SOURCES = {
     channels.FORCE_X: signals.FORCE_X,
     channels.CARRIAGE_SPEED: signals.CARRIAGE_SPEED,
     channels.TURN_RATE: signals.TURN_RATE,
+    channels.WAVE_PROBE: signals.WAVE_PROBE,
     channels.RUDDER_ANGLE: signals.RUDDER_ANGLE,
     channels.REVOLUTIONS: signals.REVOLUTIONS,
     channels.PROPELLER_THRUST: signals.PROPELLER_THRUST,
@@ -70,6 +71,7 @@ class Acquisition:
     force_fore: Digitiser | None = _PERFECT
     carriage_speed: Digitiser | None = None
     turn_rate: Digitiser | None = None
+    wave_probe: Digitiser | None = None
     force_x: Digitiser | None = None
     rudder_angle: Digitiser | None = None
     revolutions: Digitiser | None = None

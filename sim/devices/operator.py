@@ -113,6 +113,10 @@ def _ballast(world: World, question: Demand) -> None:
     world.plant.load(float(question.value or 0.0), question.at_m)
 
 
+def _wave(world: World, question: Demand) -> None:
+    world.plant.surround(**json.loads(str(question.value)))
+
+
 def _follow(world: World, question: Demand) -> None:
     world.plant.surround(lines=tuple(Line(**one) for one in json.loads(str(question.value))))
 
@@ -123,6 +127,7 @@ _DOING: Final[dict[str, Callable[[World, Demand], None]]] = {
     "load": _load,
     "mass": _ballast,
     "lines": _follow,
+    "waves": _wave,
     "drift": _setting("drift_rad"),
     "rudder": _setting("rudder_angle_rad"),
     "propeller": _setting("revolutions_hz"),

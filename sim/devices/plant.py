@@ -6,6 +6,7 @@ sample; from there the changed chain goes on. A run in which nothing changes cos
 a sample.
 """
 
+import math
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, Final
 
@@ -41,6 +42,9 @@ class PlantConditions:
     lines: tuple[Line, ...] = ()
     turn_rate_rad_s: float = 0.0
     release_rad: float = 0.0
+    wave_frequency_hz: float = 0.0
+    wave_amplitude_m: float = 0.0
+    wave_heading_rad: float = math.pi
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hardware.description.arrays import FloatArray
 from hardware.description.struts import to_motion
 from sim import signals
-from sim.mechanism.geometry import BodyMotion
+from sim.mechanism.geometry import BodyMotion, gauge_readings
 from sim.model.block_forces import BlockForces, HullState
 from sim.model.forces import Instants
 from sim.model.heel import Heeling
@@ -22,6 +22,7 @@ from sim.model.parameters import HullCoefficients, ModelParameters, mass_matrix
 from sim.model.steering_loads import steering_loads
 from sim.model.system import HullSystem
 from sim.model.water.radiation import constant
+from sim.model.waves import MetWaves
 from sim.signals import Signal, Signals
 from sim.solve.linear_system import Hold
 from sim.solve.period import Period, Spectra
@@ -64,7 +65,8 @@ class Hull(ModelParameters):
     def writes(self) -> tuple[Signal, ...]:
         """The struts' forces, that along the model, what propeller and rudder write, and roll."""
         steering = () if self.steering is None else self.steering.writes
-        return (*_FORCES, *steering, *(() if self.heeling is None else _HEELING))
+        probe = () if self.waves is None else (signals.WAVE_PROBE,)
+        return (*_FORCES, *steering, *(() if self.heeling is None else _HEELING), *probe)
 
     @property
     def system(self) -> HullSystem:
@@ -98,7 +100,25 @@ class Hull(ModelParameters):
             roll, rolled = self.heeling.rolling(at, rolled, instants.step_s)
             rows = self._heeled(self.heeling, rows, at, roll)
             state = state._replace(roll=rolled)
+        if self.waves is not None:
+            rows = self._in_waves(self.waves, rows, struts, flow, block.time_s)
         return state, self._written(rows)
+
+    def _in_waves(
+        self,
+        waves: MetWaves,
+        rows: FloatArray,
+        struts: FloatArray,
+        flow_m_s: FloatArray,
+        time_s: FloatArray,
+    ) -> FloatArray:
+        """Return the rows with what the waves' loads ask of the struts, and the probe behind."""
+        at = moving(self.system.numbers, struts, flow_m_s)
+        loads, elevation = waves.at_instants(time_s, self.carriage_speed_m_s / self.flow_factor)
+        loads[2] *= turns_with(self.plane)
+        held = gauge_readings(self.system.numbers, at.cosine, at.sine, *-loads)
+        rows[:3] += np.stack(held)
+        return np.concatenate((rows, elevation[np.newaxis]))
 
     def _heeled(
         self, heeling: Heeling, rows: FloatArray, at: BodyMotion, roll: FloatArray
@@ -172,6 +192,10 @@ class Hull(ModelParameters):
             return period, hull._settled(period, inputs)
         y = np.stack([inputs[signal.name] for signal in self.reads[:2]], axis=1)
         rows = _steadily(hull, period).balanced(y).T
+        if self.waves is not None:  # of a frequency of their own: no part of the period
+            calm_hull = replace(hull, waves=None)
+            _, calm = calm_hull.steady(period, inputs)
+            return period, {**calm, signals.WAVE_PROBE.name: period.constant(0.0)}
         if self.steering is None and self.heeling is None:
             return period, self._written(rows)
         struts = np.stack([period.values(inputs[signal.name]) for signal in self.reads[:6]], axis=1)

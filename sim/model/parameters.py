@@ -13,6 +13,7 @@ from sim.model.steering import Steering
 from sim.model.water.force_laws import CrossFlow, SurgeForces
 from sim.model.water.hydrostatics import Matrix
 from sim.model.water.radiation import Radiation
+from sim.model.waves import MetWaves
 
 _NONE: Matrix = ((0.0, 0.0), (0.0, 0.0))
 
@@ -85,6 +86,8 @@ class ModelParameters:
         gauges without moving it.
     turn_rate_rad_s
         Of carriage and rig on a circle, to starboard.
+    waves
+        What the waves of the run do, and what their probe sees.
     heeling
         Of a model that is heeled or free to roll; its loads go by the struts' motion likewise.
     """
@@ -106,3 +109,4 @@ class ModelParameters:
     steering: Steering | None = None
     heeling: Heeling | None = None
     turn_rate_rad_s: float = 0.0
+    waves: MetWaves | None = None

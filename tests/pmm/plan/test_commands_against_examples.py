@@ -39,7 +39,7 @@ from pmm.plan.rig_tables import (
     StructuralMode,
     TankTable,
 )
-from tests.pmm.plan.plans import EXAMPLES, HEAVE, HOUSE, write_plan
+from tests.pmm.plan.plans import EXAMPLES, HEAVE, HORIZONTAL_TEXT, HOUSE, RIG_TEXT, write_plan
 
 NAMES = ("vertical", "horizontal", "manual", "paths")
 
@@ -92,9 +92,9 @@ def test_the_examples_hold_the_matrices_that_they_promise() -> None:
     assert {one.motion for one in wet} == {Motion.SWAY, Motion.YAW, Motion.YAW_DRIFT}
     assert min(one.set_point.frequency_hz for one in wet) == 0.02
     assert all(one.set_point.carriage_speed_m_s for one in wet)
-    # The simulated rig's structure is rigid: it has nothing to pluck.
+    # The simulated rig's structure is rigid: nothing to pluck. Nor is its model free in roll.
     kinds = {one.kind for one in (*vertical, *horizontal)}
-    assert kinds == set(RunKind) - {RunKind.PLUCK}
+    assert kinds == set(RunKind) - {RunKind.PLUCK, RunKind.FREE_DECAY}
 
 
 def test_what_is_shown_are_the_plan_s_own_numbers() -> None:
@@ -209,7 +209,8 @@ def test_the_pages_examples_are_valid(page: str, tmp_path: Path) -> None:
     assert blocks
     for block in blocks:
         if page == "plans.md":
-            assert read_plan(write_plan(tmp_path, block)).runs
+            rig = HORIZONTAL_TEXT if 'kind = "circle"' in block else RIG_TEXT
+            assert read_plan(write_plan(tmp_path, block, rig)).runs
         else:
             (tmp_path / "rig.toml").write_text(block)
             assert read_rig_file(tmp_path / "rig.toml").gauges

@@ -1,0 +1,51 @@
+"""A campaign's runs in waves, each beside the same run in calm water."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from analysis.coefficients.body_cycle import BodyCycle
+from analysis.response.waves import InWaves
+from hardware.description.setpoint import SetPoint
+from pmm.campaign.campaign import Campaign
+from pmm.coefficients.tasks import Done
+
+
+@dataclass(frozen=True, eq=False)
+class WaveRun:
+    """One run in waves.
+
+    Attributes
+    ----------
+    cycle
+        Without the waves' lines, the mean as it was in waves.
+    calm
+        That of the same set-point in calm water; ``None`` where it was not made.
+    """
+
+    found: InWaves
+    cycle: BodyCycle
+    calm: BodyCycle | None
+
+
+def wave_runs(campaign: Campaign, done: Sequence[Done]) -> Iterator[WaveRun]:
+    """Yield the runs in waves that were read."""
+    points = {one.name: one.set_point for one in campaign.runs}
+    cycles = {one.name: one.cycle for one in done if one.cycle is not None}
+    calm = {
+        points[name]: cycle
+        for name, cycle in cycles.items()
+        if name in points and not points[name].wave_frequency_hz
+    }
+    for one in done:
+        if one.waves is not None and one.cycle is not None:
+            yield WaveRun(one.waves, one.cycle, calm.get(_calm(one.waves.point)))
+
+
+def _calm(point: SetPoint) -> SetPoint:
+    own = SetPoint(0.0, 0.0)
+    return replace(
+        point,
+        wave_frequency_hz=own.wave_frequency_hz,
+        wave_amplitude_m=own.wave_amplitude_m,
+        wave_heading_rad=own.wave_heading_rad,
+    )
