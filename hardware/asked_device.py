@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
+from hardware.analogue_link import AnalogueNumber
 from hardware.asked_link import READ, WRITE, Answer, AskedSettings, ModbusRequest
 from hardware.driver import Services
 from hardware.errors import (
@@ -20,7 +21,7 @@ from hardware.roles import Cycle
 
 _HOLDING: Final = READ["holding"]
 Place = tuple[int, int]  # function that reads it, address
-Number = Register | LineNumber
+Number = Register | LineNumber | AnalogueNumber
 Status = StatusRegister | LineStatus
 Command = CommandRegister | LineCommand
 

@@ -64,15 +64,16 @@ class ModbusRequest:
 
 Answer = tuple[ModbusRequest, tuple[int, ...]]
 """What was asked, and the words that were read or written."""
+Following = Callable[[], ModbusRequest | None]
+"""Returns what is asked for next."""
 
 
 class AskedLink(ABC):
     """Asks a device."""
 
-    def __init__(self, name: str, settings: AskedSettings, port: Port) -> None:
+    def __init__(self, name: str, settings: AskedSettings) -> None:
         self.name = name
-        self._settings, self._port = settings, port
-        self._asked_s: float | None = None  # since when an answer is waited for
+        self._settings = settings
         self._heard_s: float | None = None
         self._answers = False
         self._trouble = ""
@@ -81,7 +82,7 @@ class AskedLink(ABC):
     @property
     def is_open(self) -> bool:
         """Whether its port is open, as far as is known."""
-        return self._port.is_open
+        return True
 
     @property
     def heard(self) -> bool:
@@ -89,9 +90,8 @@ class AskedLink(ABC):
         return self._answers
 
     def reset(self) -> None:
-        """Open a lost port again and begin anew; raises as :meth:`SerialPort.open`."""
-        self._port.open()
-        self._asked_s = self._heard_s = None
+        """Begin anew; a port that is lost is opened again."""
+        self._heard_s = None
         self._answers = False
         self.forget()
 
@@ -104,30 +104,15 @@ class AskedLink(ABC):
         """Go on where another link stood: whether the device had answered."""
         self._answers = heard
 
-    def close(self) -> None:
-        """Close the port."""
-        self._port.close()
+    def close(self) -> None:  # noqa: B027
+        """Close the port, if it has one."""
 
     def exchange(
-        self, cycle: Cycle, following: Callable[[], ModbusRequest | None]
+        self, cycle: Cycle, following: Following
     ) -> tuple[list[Answer], list[HardwareError]]:
         """Take the answers of the cycle and ask for what follows; return both, faults once each."""
-        answers: list[Answer] = []
-        faults: list[HardwareError] = []
         now_s = cycle.time_s
-        try:
-            for line in self._port.lines():
-                self._asked_s = None
-                answers += self._understood(line)
-            due = self._asked_s is None or now_s - self._asked_s > self._settings.answer_s
-            request = following() if due and self._port.is_open else None
-            if request is not None:
-                self._asked_s = now_s
-                self._port.write(self._frame(request))
-        except LineError as error:  # a single one is asked for again
-            self._trouble = str(error)
-        except HardwareError as error:
-            faults.append(error)
+        answers, faults = self._asked(cycle, following)
         refused = any(isinstance(one, ModbusError) for one in faults)
         since_s = now_s if answers or refused or self._heard_s is None else self._heard_s
         self._heard_s = since_s
@@ -146,6 +131,56 @@ class AskedLink(ABC):
             self.name,
             f"no answer for {silent_s:.2f} s (limit {self._settings.silent_s:g} s); {why}",
         )
+
+    @abstractmethod
+    def _asked(
+        self, cycle: Cycle, following: Following
+    ) -> tuple[list[Answer], list[HardwareError]]:
+        """Return the answers of the cycle, and what went wrong; ask for what follows."""
+
+
+class PortLink(AskedLink):
+    """Asks a device behind a port; raises as its port does where it cannot be opened."""
+
+    def __init__(self, name: str, settings: AskedSettings, port: Port) -> None:
+        super().__init__(name, settings)
+        self._port = port
+        self._asked_s: float | None = None  # since when an answer is waited for
+
+    @property
+    def is_open(self) -> bool:
+        """Whether its port is open, as far as is known."""
+        return self._port.is_open
+
+    def reset(self) -> None:
+        """Open a lost port again and begin anew; raises as :meth:`SerialPort.open`."""
+        self._port.open()
+        self._asked_s = None
+        super().reset()
+
+    def close(self) -> None:
+        """Close the port."""
+        self._port.close()
+
+    def _asked(
+        self, cycle: Cycle, following: Following
+    ) -> tuple[list[Answer], list[HardwareError]]:
+        answers: list[Answer] = []
+        now_s = cycle.time_s
+        try:
+            for line in self._port.lines():
+                self._asked_s = None
+                answers += self._understood(line)
+            due = self._asked_s is None or now_s - self._asked_s > self._settings.answer_s
+            request = following() if due and self._port.is_open else None
+            if request is not None:
+                self._asked_s = now_s
+                self._port.write(self._frame(request))
+        except LineError as error:  # a single one is asked for again
+            self._trouble = str(error)
+        except HardwareError as error:
+            return answers, [error]
+        return answers, []
 
     @abstractmethod
     def _understood(self, line: bytes) -> Iterator[Answer]:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+from hardware.analogue_link import AnalogueNumber, AnalogueSettings
 from hardware.asked_link import AskedSettings
 from hardware.description.errors import ConfigurationError
 from hardware.description.motor import UNKNOWN_KEYS_REFUSED
@@ -78,7 +79,7 @@ class CarriageSettings(AskedSettings):
     highest_turn_rate_rad_s: float = 0.0
 
     @property
-    def asked(self) -> "CarriageRegisters | CarriageLines":
+    def asked(self) -> "CarriageRegisters | CarriageLines | CarriageVoltages":
         """What it is asked and told."""
         raise AssertionError("a carriage is asked for its speed")
 
@@ -187,3 +188,49 @@ class LineCarriageSettings(CarriageSettings, LineSettings):
         one = self.lines
         every = (one.set_speed, one.speed, one.position, one.status, one.command)
         return tuple(each for each in every if each is not None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CarriageVoltages:
+    """Which voltages are the carriage's: speed asked for and measured, in m/s."""
+
+    set_speed: AnalogueNumber
+    speed: AnalogueNumber
+
+    position: ClassVar[None] = None
+    status: ClassVar[None] = None
+    command: ClassVar[None] = None
+    set_turn_rate: ClassVar[None] = None
+    turn_rate: ClassVar[None] = None
+
+    __pydantic_config__ = UNKNOWN_KEYS_REFUSED
+
+    def __post_init__(self) -> None:
+        for number, one in enumerate((self.set_speed, self.speed), 1):
+            one.at(number)
+
+    def read(self) -> dict[str, AnalogueNumber]:
+        """Return those that are read, by name."""
+        return {"speed": self.speed}
+
+
+@dataclass(frozen=True, kw_only=True)
+class AnalogueCarriageSettings(CarriageSettings, AnalogueSettings):
+    """Settings of a carriage behind voltages: without power it is told 0 m/s, and nothing more."""
+
+    voltages: CarriageVoltages
+
+    @property
+    def asked(self) -> CarriageVoltages:
+        """Its voltages."""
+        return self.voltages
+
+    @property
+    def outputs(self) -> tuple[AnalogueNumber, ...]:
+        """What is set."""
+        return (self.voltages.set_speed,)
+
+    @property
+    def inputs(self) -> tuple[AnalogueNumber, ...]:
+        """What is read."""
+        return (self.voltages.speed,)

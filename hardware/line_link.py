@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from hardware.asked_link import READ, WRITE, Answer, AskedLink, AskedSettings, ModbusRequest
+from hardware.asked_link import READ, WRITE, Answer, AskedSettings, ModbusRequest, PortLink
 from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from hardware.driver import Services
 from hardware.errors import LineError
@@ -74,7 +74,7 @@ class LineSettings(AskedSettings):
         return LineLink(name, self, services)
 
 
-class LineLink(AskedLink):
+class LineLink(PortLink):
     """Registers that are lines."""
 
     def __init__(self, name: str, settings: LineSettings, services: Services) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from hardware.asked_link import READ, WRITE, Answer, AskedLink, AskedSettings, ModbusRequest
+from hardware.asked_link import READ, WRITE, Answer, AskedSettings, ModbusRequest, PortLink
 from hardware.description.errors import ConfigurationError
 from hardware.driver import Services
 from hardware.errors import HardwareError, LineError, ModbusError
@@ -44,7 +44,7 @@ class ModbusSettings(AskedSettings):
         return ModbusLink(name, self, services)
 
 
-class ModbusLink(AskedLink):
+class ModbusLink(PortLink):
     """Asks a device; raises as its port does where it cannot be opened."""
 
     def __init__(self, name: str, settings: ModbusSettings, services: Services) -> None:

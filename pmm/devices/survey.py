@@ -60,7 +60,8 @@ def survey_rig(tables: DeviceTables, listen_s: float) -> Survey:
     heard: dict[str, Heard] = {}
     wrong: list[str] = []
     nodes = _scan(rig.bus, listen_s) if rig.bus is not None else ()
-    silent = {part.name: part for part in rig.parts() if isinstance(part.settings, AskedSettings)}
+    asks = [part for part in rig.parts() if isinstance(part.settings, AskedSettings)]
+    silent = {part.name: part for part in asks if not part.nodes()}  # others are on the bus
     for name, port in tables.ports().items():
         if name not in silent:
             _hear(name, PortSettings(**port), listen_s, heard, wrong)

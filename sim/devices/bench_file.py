@@ -34,6 +34,7 @@ DRIVERS: Final = tuple(
         "serial-inclinometer": "hardware.inclinometer:DRIVER",
         "modbus-carriage": "hardware.modbus_carriage:DRIVER",
         "line-carriage": "hardware.line_carriage:DRIVER",
+        "analogue-carriage": "hardware.analogue_carriage:DRIVER",
         "modbus-axis": "hardware.modbus_axis:DRIVER",
     }.items()
 )

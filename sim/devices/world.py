@@ -7,7 +7,11 @@ import can
 
 from hardware.amplifier import AmplifierSettings
 from hardware.axis_settings import PositionAxisSettings
-from hardware.carriage_settings import LineCarriageSettings, ModbusCarriageSettings
+from hardware.carriage_settings import (
+    AnalogueCarriageSettings,
+    LineCarriageSettings,
+    ModbusCarriageSettings,
+)
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import ANGLE_KEYS
 from hardware.inclinometer import InclinometerSettings
@@ -24,6 +28,7 @@ from hardware.shaft import ShaftSettings
 from sim import signals
 from sim.devices.amplifier import SimulatedAmplifier, Source
 from sim.devices.axis_drive import AxisDrive
+from sim.devices.converter import SimulatedConverter
 from sim.devices.modbus_devices import SimulatedAngle, SimulatedCarriage
 from sim.devices.network import Wire
 from sim.devices.panel import SimulatedPanel
@@ -175,6 +180,15 @@ class World:
         settings, rate = part.settings, self.plant.sample_rate_hz
         if isinstance(settings, _DRIVEN):
             self._add_drives(part.name, settings, scene)
+        elif isinstance(settings, AnalogueCarriageSettings):
+            self.nodes[part.name] = SimulatedConverter(
+                self.wire,
+                part.name,
+                settings,
+                rate,
+                lambda: self.plant.value(signals.CARRIAGE_SPEED.name),
+                lambda speed_m_s: self._tow(speed_m_s, 0.0),
+            )
         elif isinstance(settings, AmplifierSettings):
             self.nodes[part.name] = SimulatedAmplifier(
                 self.wire, part.name, settings, rate, self._source

@@ -36,6 +36,7 @@ DRIVERS = tuple(
         "serial-inclinometer": "hardware.inclinometer:DRIVER",
         "modbus-carriage": "hardware.modbus_carriage:DRIVER",
         "line-carriage": "hardware.line_carriage:DRIVER",
+        "analogue-carriage": "hardware.analogue_carriage:DRIVER",
         "modbus-axis": "hardware.modbus_axis:DRIVER",
         "path-struts": "hardware.path_shaft:DRIVER",
         "path-pulse": "hardware.path_pulse:DRIVER",

@@ -37,7 +37,7 @@ def test_a_node_id_twice_is_named_with_both_owners() -> None:
         ({"tpdos": [["9130:1", "9130:2", "6150:1"]]}, "take 9 bytes; the limit of a PDO is 8"),
         ({"tpdos": [["9130:1"]] * 5}, "5 tpdos; the limit is 4"),
         ({"tpdos": [["force"]]}, "'force' is no object"),
-        ({"eds": "hbk.eds"}, "eds = 'hbk.eds': no such file; give a path, or one of cia402"),
+        ({"eds": "hbk.eds"}, "eds = 'hbk.eds': no such file; give a path, or one of cia401"),
         ({"nod": 3}, "forces[0].nod is not a known key; did you mean node?"),
         ({"node": "4"}, "forces[0].node = '4'"),
         ({"channels": [{"name": "force_aft"}]}, "forces[0].channels.0.object: Field required"),

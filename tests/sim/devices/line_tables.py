@@ -2,6 +2,18 @@
 
 from typing import Any
 
+VOLTAGES: dict[str, Any] = {
+    "driver": "analogue-carriage",
+    "node": 9,
+    "highest_speed_m_s": 3.0,
+    "acceleration_m_s2": 0.5,
+    "tolerance_m_s": 0.01,
+    "settle_s": 0.5,
+    "voltages": {
+        "set_speed": {"object": "6411:2", "per_volt": -0.4, "offset_v": 0.25},
+        "speed": {"object": "6401:1", "per_volt": 0.5, "offset_v": -0.1},
+    },
+}
 PANEL: dict[str, Any] = {
     "driver": "line-carriage",
     "highest_speed_m_s": 3.0,

@@ -24,7 +24,7 @@ from tests.sim.devices.benches import (
     push,
     slotted,
 )
-from tests.sim.devices.line_tables import PANEL
+from tests.sim.devices.line_tables import PANEL, VOLTAGES
 from tests.sim.devices.modbus_tables import CARRIAGE, DRIFT
 
 PARTS = {
@@ -147,6 +147,13 @@ class TestPanel(CarriageContract):
     @pytest.fixture
     def bench(self) -> Iterator[Bench]:
         with in_process({"carriage": PANEL}, on_bus=False, serial=("carriage",)) as (rig, _):
+            yield bench(rig)
+
+
+class TestVoltages(CarriageContract):
+    @pytest.fixture
+    def bench(self) -> Iterator[Bench]:
+        with in_process({"carriage": VOLTAGES}) as (rig, _):
             yield bench(rig)
 
 
