@@ -124,6 +124,7 @@ class AnalogueLink(AskedLink):
         for one in settings.outputs:
             number, counts = entry(one.object).subindex, signed(one.written(0.0))
             lost |= {Entry(_ERROR_MODE, number): 1, Entry(_ERROR_VALUE, number): counts}
+            node.put(entry(one.object), counts)  # 0 V is not rest where there is an offset
         present = {at: value for at, value in lost.items() if has(node.dictionary, at)}
         self._objects = present | {entry(at): value for at, value in settings.settings.items()}
 

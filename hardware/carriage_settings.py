@@ -7,7 +7,7 @@ from hardware.analogue_link import AnalogueNumber, AnalogueSettings
 from hardware.asked_link import AskedSettings
 from hardware.description.errors import ConfigurationError
 from hardware.description.motor import UNKNOWN_KEYS_REFUSED
-from hardware.line_link import LineSettings
+from hardware.line_link import LineSettings, is_told
 from hardware.line_registers import Line, LineCommand, LineNumber, LineStatus
 from hardware.modbus_link import ModbusSettings
 from hardware.modbus_registers import CommandRegister, Register, StatusRegister
@@ -160,10 +160,15 @@ class CarriageLines:
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def __post_init__(self) -> None:
+        for name, one in (("speed", self.speed), ("position", self.position)):
+            if one is not None and is_told(one):
+                raise ConfigurationError(f"{name} is read: {{value}} stands in its answer")
+        if not is_told(self.set_speed):
+            raise ConfigurationError("set_speed is set: {value} stands in its line")
         every = (self.set_speed, self.speed, self.position, self.status, self.command)
-        for number, one in enumerate(every, 1):
-            if one is not None:
-                one.at(number)
+        for number, line in enumerate(every, 1):
+            if line is not None:
+                line.at(number)
 
     def read(self) -> dict[str, LineNumber]:
         """Return those that are read, by name."""

@@ -105,10 +105,12 @@ def test_each_fault_is_told_with_its_remedy(words: str, kind: str, remedy: str) 
         ("speed", "unit", "knots", "unit"),
         ("speed", "rate", 1.0, "rate"),
         ("set_speed", "line", "SP{value:q}", "cannot be written"),
+        ("set_speed", None, {"line": "RS", "answer": "{value}", "unit": "m/s"}, "set_speed is set"),
+        ("speed", None, {"line": "S{value}", "answer": "OK", "unit": "m/s"}, "speed is read"),
     ],
 )
 def test_a_table_that_cannot_be_is_refused_when_it_is_read(part, key, value, said) -> None:
     table = deepcopy({**PANEL, "port": {"url": "/dev/null"}})
-    table["lines"][part][key] = value
+    table["lines"][part] = value if key is None else {**table["lines"][part], key: value}
     with pytest.raises(ConfigurationError, match=said):
         read_rig({"carriage": table}, DRIVERS)

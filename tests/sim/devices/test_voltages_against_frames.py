@@ -39,6 +39,8 @@ def test_the_frames_carry_them_and_a_module_left_alone_goes_to_rest() -> None:
     with in_process({"carriage": VOLTAGES}) as (rig, world):
         sent = {}
         rig.master._observers = (lambda frame: sent.update({frame.arbitration_id: frame.data}),)
+        rig.cycle()
+        assert bytes(sent[0x209]) == struct.pack("<h", ZERO_COUNTS)
         at_speed(rig)
         assert bytes(sent[0x209]) == struct.pack("<h", COUNTS)
         (read,) = struct.unpack("<h", bytes(sent[0x189]))
