@@ -6,7 +6,6 @@ from typing import Any
 
 import click
 
-from analysis.reading_limits import MEMORY_SETTING
 from hardware.description.errors import DataError, PmmError
 from hardware.description.room import said
 from pmm.cli.group import CommandGroup
@@ -61,6 +60,8 @@ def _print_version(ctx: click.Context, parameter: click.Parameter, wanted: bool)
 
 def _set_memory(ctx: click.Context, parameter: click.Parameter, gigabytes: float | None) -> None:  # noqa: ARG001
     """Set the limit for this process and those that it starts."""
+    from analysis.reading_limits import MEMORY_SETTING
+
     if gigabytes is not None:
         os.environ[MEMORY_SETTING] = repr(gigabytes)
 

@@ -1,7 +1,5 @@
 """``pmm demo``: a small campaign run on the simulated rig, as a table, plots and a page."""
 
-import shutil
-from importlib.resources import as_file, files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -61,6 +59,9 @@ def _campaign(name: str, folder: Path) -> "dict[Path, Analysis]":
     dict
         What was found in each recording.
     """
+    import shutil
+    from importlib.resources import as_file, files
+
     from analysis.readers import read_recording
     from analysis.resolver.analysis import analyse
     from pmm.campaign.campaign_file import read_campaign

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.cli.screen import error_line, messages
-from pmm.remote import url_of
 
 if TYPE_CHECKING:
     from hardware.description.flags import Flag
@@ -26,6 +25,8 @@ def check_folder(folder: Path, option: str) -> None:
     ConfigurationError
         If a file is in the way, the permission is missing, or the folder lies elsewhere.
     """
+    from pmm.remote import url_of
+
     if url_of(folder):
         raise ConfigurationError(f"{option} {folder}: only a folder of this computer is written to")
     place = folder

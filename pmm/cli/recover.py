@@ -1,6 +1,5 @@
 """``pmm recover``: recordings out of whatever a crash left of runs."""
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -37,6 +36,8 @@ def recover(places: tuple[str, ...], as_json: bool) -> None:
     found = [_recovered(folder) for folder in show_progress(folders, "recovering")]
     told = recovery_document(found)
     if as_json:
+        import json
+
         click.echo(json.dumps(as_data(told)["runs"], indent=1))
     else:
         print_document(output(), told)

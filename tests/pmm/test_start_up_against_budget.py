@@ -16,6 +16,8 @@ HEAVY = {
     "numpy", "scipy", "pandas", "xarray", "pydantic", "matplotlib", "rich", "h5py", "h5netcdf",
     "can", "canopen", "control", "starlette", "uvicorn", "pmm.configuration",
 }  # fmt: skip
+# Of some commands alone: 40 ms together on a common processor.
+SPARED = {"json", "tempfile", "importlib.resources", "analysis", "pmm.remote"}
 
 
 def _run(code: str) -> "subprocess.CompletedProcess[str]":
@@ -40,7 +42,7 @@ def _groups() -> list[list[str]]:
 def test_help_imports_nothing_heavy() -> None:
     loaded = _loaded([])
     assert "pmm.cli.analyse" in loaded
-    assert not HEAVY & loaded
+    assert not (HEAVY | SPARED) & loaded
 
 
 @pytest.mark.parametrize("words", _groups(), ids=" ".join)
