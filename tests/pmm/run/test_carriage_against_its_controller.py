@@ -78,6 +78,7 @@ def test_what_goes_wrong_in_a_tow_ends_at_rest(tmp_path, words, latched, remedy)
         assert not one.rig.carriage.enabled
 
 
+@pytest.mark.slow
 def test_after_a_lost_port_a_reset_connects_again_and_the_runs_go_on(tmp_path) -> None:
     with towed(tmp_path, [TOW, replace(TOW, name="next")]) as one:
         one.until(State.GATE_OPEN)

@@ -92,10 +92,10 @@ def test_where_frames_come_late_and_some_not_in_time(tmp_path: Path) -> None:
 
 
 def test_of_led_struts_angle_and_commands_too(tmp_path: Path) -> None:
-    """Two runs of another path each: what the first one left is carried over."""
+    """Two runs of another path each: what the first one left is carried over to the other."""
     lines = multisine((1, 3), np.array([1.0, 0.3]))
-    sway = oscillation("sway", 1.0, periods=1, max_periods=1)
-    point = replace(sway.set_point, eccentricity_m=0.02)
+    sway = oscillation("sway", 1.9, periods=1, max_periods=1)
+    point = replace(sway.set_point, eccentricity_m=0.006)
     runs = [
         replace(sway, set_point=point),
         replace(sway, name="other", set_point=replace(point, lines=lines)),
@@ -103,11 +103,10 @@ def test_of_led_struts_angle_and_commands_too(tmp_path: Path) -> None:
     with bench(tmp_path, runs, tables=PATHS, simulated=BARE) as one:
         one.finish(20000)
         assert one.control.state is State.DONE, one.control.status().alarms
-    for name in ("sway", "other"):
-        run = read_run(tmp_path / name)
-        assert np.ptp(run.samples[:, :], axis=1).min() > 0.01  # all of its channels move
-        assert written_again(run) == (tmp_path / name / SAMPLES).read_bytes()
-    assert replay(tmp_path / "other", DRIVERS).same
+    run = read_run(tmp_path / "other")
+    assert np.ptp(run.samples[:, :], axis=1).min() > 0.01  # all of its channels move
+    assert written_again(run) == (tmp_path / "other" / SAMPLES).read_bytes()
+    assert replay(tmp_path / "sway", DRIVERS).same
 
 
 @pytest.mark.parametrize("words", ["silence forces[0]", "bus-off", "heartbeat phase"])
