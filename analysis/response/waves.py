@@ -26,6 +26,7 @@ _APART: Final = 1.5  # times one over the stretch: closer lines are one
 _SOUGHT: Final = 0.2  # of the expected frequency to either side
 _HEARD: Final = 8.0  # times the usual line beside: a peak of the probe that is a wave
 _STRONG: Final = 0.1  # of the probe's strongest line: a wave is that, or nearly
+_WHOLE: Final = 0.8  # of the samples
 _BESIDE: Final = 12  # lines of the spectrum to either side, whose mean is the noise of a line
 _HARMONICS: Final = 5
 _SWEEPS: Final = 8
@@ -59,10 +60,8 @@ class InWaves:
         The encounter frequency, by maker, speed and depth.
     channels
         In the order of the lines' values; the probe comes first.
-    means
-        Of the channels.
-    left_out
-        Lines that fall on others.
+    lines
+        That of the encounter first; lines that fall on others are left out.
     """
 
     run: str
@@ -71,8 +70,6 @@ class InWaves:
     frequency_hz: float
     channels: tuple[str, ...]
     lines: tuple[WaveLine, ...]
-    means: FloatArray
-    left_out: tuple[str, ...] = ()
 
     @property
     def wave(self) -> complex:
@@ -105,9 +102,18 @@ def in_waves(
         )
     sums = analysis.steady_sums
     chosen = recording.between(float(sums.opened_s[0]), float(sums.closed_s[-1]))
+    recording.check_even("telling waves from an oscillation")
     names = (WAVE_PROBE.name, *(name for name in _LOADS if name in recording.channel_names))
     time_s = chosen.time_s()
     values = np.stack([chosen.values(name) for name in names])
+    whole = np.isfinite(values).all(axis=0)
+    if whole.mean() < _WHOLE:
+        raise DataError(
+            f"{recording.name}: only {100 * whole.mean():.0f} % of the samples have all of "
+            f"{', '.join(names)}, and {100 * _WHOLE:g} % are needed to tell the waves; repeat it"
+        )
+    for row in values:
+        row[~whole] = np.interp(time_s[~whole], time_s[whole], row[whole])
     shaft_hz = point.frequency_hz
     expected = abs(
         encounter_hz(
@@ -116,21 +122,19 @@ def in_waves(
     )
     span_s = time_s[-1] - time_s[0]
     found = _measured_hz(recording.name, time_s, values[0], expected)
-    lines, left_out = _apart(recording.name, found, shaft_hz, span_s)
+    lines = _apart(recording.name, found, shaft_hz, span_s)
     turns = analysis.reference.cycles_at(time_s)
     own = [_wave(time_s - time_s[0], frequency) for frequency in lines.values()]
     harmonics = [_wave(turns, float(n)) for n in range(1, _HARMONICS + 1)]
     trend = np.stack((np.ones_like(time_s), (time_s - time_s.mean()) / span_s))
     design = np.concatenate((trend, *own, *harmonics)).T
-    solved, *_ = np.linalg.lstsq(design, values.T, rcond=None)
-    left = values - (design @ solved).T
+    solved, *_ = np.linalg.lstsq(design[whole], values.T[whole], rcond=None)
+    left = np.where(whole, values - (design @ solved).T, 0.0)
     told = tuple(
         WaveLine(name, hz, solved[2 + 2 * k] - 1j * solved[3 + 2 * k], _noise(left, hz * span_s))
         for k, (name, hz) in enumerate(lines.items())
     )
-    result = InWaves(
-        recording.name, point, expected, found, names, told, solved[0], tuple(left_out)
-    )
+    result = InWaves(recording.name, point, expected, found, names, told)
     return result, _without(recording, result, time_s[0])
 
 
@@ -165,10 +169,8 @@ def _measured_hz(run: str, time_s: FloatArray, probe: FloatArray, expected_hz: f
     return found
 
 
-def _apart(
-    run: str, wave_hz: float, shaft_hz: float, span_s: float
-) -> tuple[dict[str, float], list[str]]:
-    """Return the lines that can be told from all before them, and those that cannot."""
+def _apart(run: str, wave_hz: float, shaft_hz: float, span_s: float) -> dict[str, float]:
+    """Return the frequencies of the lines that can be told from all before them, by name."""
     least_hz = _APART / span_s
     taken = [0.0, *(n * shaft_hz for n in range(1, _HARMONICS + 1))]
     near = min(taken, key=lambda one: abs(one - wave_hz))
@@ -178,19 +180,17 @@ def _apart(
             f"{run}: the encounter frequency of {wave_hz:.4g} Hz cannot be told from {what} "
             f"({near:.4g} Hz) within {span_s:.3g} s; choose another frequency, or more periods"
         )
-    lines, left_out = {ENCOUNTER: wave_hz}, []
+    lines = {ENCOUNTER: wave_hz}
     taken.append(wave_hz)
     for name, hz in (
         (TWICE, 2.0 * wave_hz),
         (SUM, wave_hz + shaft_hz),
         (DIFFERENCE, abs(wave_hz - shaft_hz)),
     ):
-        if min(abs(one - hz) for one in taken) < least_hz:
-            left_out.append(name)
-        else:
+        if min(abs(one - hz) for one in taken) >= least_hz:
             lines[name] = hz
             taken.append(hz)
-    return lines, left_out
+    return lines
 
 
 def _noise(left: FloatArray, cycles: float) -> FloatArray:

@@ -144,6 +144,24 @@ def test_loads_of_the_waves_come_back_by_the_probe(folder: Path) -> None:
     assert first["amplitude_m"] == pytest.approx(WAVE_M, rel=1e-3)
 
 
+def test_a_dropout_costs_nothing_and_half_a_record_is_refused(folder: Path) -> None:
+    path = folder / "waves.csv"
+    lines = path.read_text(encoding="utf-8").splitlines()
+    for missing, status in ((40, 0), (1500, 1)):
+        torn = [
+            line.rsplit(",", 2)[0] + ",nan," + line.rsplit(",", 2)[2] if 900 < k < 900 + missing
+            else line
+            for k, line in enumerate(lines)
+        ]  # fmt: skip
+        path.write_text("\n".join(torn) + "\n", encoding="utf-8")
+        document = coefficients(folder, status=status)
+        if status:
+            assert "% are needed to tell the waves" in document["failed"][0]["message"]
+        else:
+            row = next(one for one in document["waves"] if one["load"] == "force")
+            assert row["value"] == pytest.approx(FIRST[0], abs=4.0 * row["value_u"])
+
+
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
