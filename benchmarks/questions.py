@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
+from itertools import islice
 from pathlib import Path
 from typing import Final
 
@@ -27,6 +28,7 @@ _QUICK: Final = (
 )
 _LEFT: Final = 10  # each so-manieth campaign is not analysed
 _DIAGNOSED: Final = 5  # campaigns, those with the least bytes that have coefficients
+_TRIED: Final = 20  # until so many have a verdict: some are made to be refused
 _FEWEST: Final = 3  # runs that a diagnosis needs
 
 
@@ -46,11 +48,11 @@ def _run(quick: bool, report: Report) -> Outcome:
         analysed = [one for one in folders if one not in left]
         answering = [one for one in sorted(analysed, key=_bytes) if coefficients_of(one)]
         telling = [one for one in answering if len(hashes_of(one)) >= _FEWEST]
-        diagnosed = telling[: 1 if quick else _DIAGNOSED]
-        report(f"diagnosing {len(diagnosed)}")
-        _added(file, diagnosed, "--gap")
-        _noted(file, folders[0])
-        verdicts = {one: verdict for one in diagnosed if (verdict := verdict_of(one))}
+        report("diagnosing")
+        tried = ((one, verdict_of(one)) for one in telling[: 1 if quick else _TRIED])
+        verdicts = dict(islice(((one, told) for one, told in tried if told), _DIAGNOSED))
+        _added(file, list(verdicts), "--gap")
+        _noted(file, folders)
         a = asked(file, folders, analysed, verdicts)
         questions = [_judged(text, QUESTIONS[text](a)) for text in QUESTIONS]
         spoil(a)
@@ -89,11 +91,11 @@ def _added(file: Path, folders: Sequence[Path], *words: str) -> list[Path]:
     return [Path(row["folder"]) for row in json.loads(text)["added"]]
 
 
-def _noted(file: Path, folder: Path) -> None:
+def _noted(file: Path, folders: Sequence[Path]) -> None:
     from tests.pmm.archive.by_hand import runs_of
 
-    run = runs_of(folder)[0].name
-    _archive("note", run, "a word", "--campaign", str(folder), "--archive", str(file))
+    run = next(run for folder in folders for run in runs_of(folder))
+    _archive("note", run.name, "a word", "--campaign", str(run.folder), "--archive", str(file))
 
 
 def _archive(*words: str) -> str:

@@ -16,7 +16,7 @@ HEAVY = {
     "numpy", "scipy", "pandas", "xarray", "pydantic", "matplotlib", "rich", "h5py", "h5netcdf",
     "can", "canopen", "control", "starlette", "uvicorn", "pmm.configuration",
 }  # fmt: skip
-# Of some commands alone: 40 ms together on a common processor.
+# Of some commands alone: a tenth of the time.
 SPARED = {"json", "tempfile", "importlib.resources", "analysis", "pmm.remote"}
 
 
