@@ -17,13 +17,14 @@ from analysis.gap.forward.free_numbers import Free, free_numbers, tolerated, wit
 from analysis.gap.forward.noise import pooled
 from analysis.gap.forward.simulator import Simulator
 from analysis.gap.forward.tolerances import Tolerances
+from analysis.gap.inference.gaussian import Nuisances
 from analysis.gap.observe.components import STEADY_PARTS, GapRun, Observation, Stack
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
 from sim.rig import SimulatedRig
 
-_STEPS: Final = 5
+_STEPS: Final = 20
 _LONGEST: Final = 4.0
 _SETTLED: Final = 0.3  # prior deviations: a smaller step changes no slope
 
@@ -63,8 +64,10 @@ def recentred(
     simulator = Simulator(rig, stack, tuple(on), reference_channel)
     owned = np.array([one.is_sought for one in free])
     total = np.zeros(len(free))
+    # Of prescribed motions forces are linear in the coefficients: slopes are found once.
+    nuisances = tolerated(simulator, free, tolerances)
     for _ in range(_STEPS):
-        step = np.where(owned, _step(simulator, free, tolerances, total), 0.0)
+        step = np.where(owned, _step(simulator, nuisances, total), 0.0)
         if np.abs(step).max(initial=0.0) < _SETTLED:
             break
         try:
@@ -94,13 +97,10 @@ def _result(rig: SimulatedRig, free: Sequence[Free], total: FloatArray) -> Recen
     )
 
 
-def _step(
-    simulator: Simulator, free: Sequence[Free], tolerances: Tolerances, total: FloatArray
-) -> FloatArray:
+def _step(simulator: Simulator, nuisances: Nuisances, total: FloatArray) -> FloatArray:
     """Return how far to go on from where the rig is, the tolerances about what is stated."""
     stack = simulator.stack
-    nuisances = tolerated(simulator, free, tolerances)
     left = (stack.values - simulator.steady(())) / stack.uncertainty
-    stated = left + nuisances.columns[:, : len(free)] @ total
-    units = nuisances.fitted(stated)[: len(free)] - total
+    stated = left + nuisances.columns[:, : len(total)] @ total
+    units = nuisances.fitted(stated)[: len(total)] - total
     return np.asarray(units * min(1.0, _LONGEST / max(float(np.abs(units).max()), 1e-12)))

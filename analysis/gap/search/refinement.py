@@ -1,41 +1,41 @@
 """Improve a fit through the simulator, by damped Gauss-Newton steps."""
 
+from typing import Final
+
 from analysis.gap.forward.problem import Compared
-from analysis.gap.search.fit import Fit, at, linear_cost, most_probable, moved
+from analysis.gap.search.fit import Fit, linear_cost, most_probable, moved, relinearised
 from hardware.description.errors import PmmError
 
-_STEPS = 6
-_STEPS_IN_TIME = 5  # for what has to be simulated in time, a hundred times as costly
-_FULFILLED = 0.5  # share of a step's promise below which slopes are found anew
-_SETTLED = 0.05  # change of the log posterior at which a fit ends
+_STEPS: Final = 24  # at most; a fit that is still on its way then is nowhere near
+_STEPS_IN_TIME: Final = 5  # for what has to be simulated in time, a hundred times as costly
+_FULFILLED: Final = 0.5  # share of a step's promise within which, and its inverse, slopes are kept
+# Chi-square that a further step promises at which a fit has arrived: the parameters are then within
+# 0.03 of their uncertainty of where they belong.
+_SETTLED: Final = 1e-3
 
 
 def refine(problem: Compared, fit: Fit) -> Fit:
-    """Improve a fit by damped Gauss-Newton steps through the simulator.
+    """Improve a fit by damped Gauss-Newton steps through the simulator, to its optimum.
 
-    The slopes are kept as long as a step brings most of what they promise, and for what does not
-    repeat with the shaft to the end.
+    Slopes are kept as long as a step brings about what they promise: where it brings many times as
+    much, they lead to where only they are level. A fit has arrived when those found where it is
+    promise nothing more; of what does not repeat with the shaft, those it has.
     """
-    best, stale = fit, False
+    best, fresh = fit, False
     for _ in range(_STEPS if fit.repeats else _STEPS_IN_TIME):
         better, fulfilled = _step(problem, best)
-        if better is None:
-            if not stale:
-                break
-            best, stale = _anew(problem, best), False
-            continue
-        gain, best, stale = best.cost - better.cost, better, True
-        if gain < _SETTLED:
-            break
-        if fulfilled < _FULFILLED:
-            best, stale = _anew(problem, best), False
-    return _anew(problem, best) if stale and fit.repeats else best
+        if better is None and (fresh or not fit.repeats):
+            return best
+        best, fresh = best if better is None else better, False
+        if not _FULFILLED < fulfilled < 1.0 / _FULFILLED:
+            best, fresh = _anew(problem, best), True
+    return best if fresh or not fit.repeats else _anew(problem, best)
 
 
 def _anew(problem: Compared, fit: Fit) -> Fit:
     """Return a fit with slopes found where it is; as it is where nothing can be simulated aside."""
     try:
-        return at(problem, fit.candidates, fit.units)
+        return relinearised(problem, fit)
     except PmmError:
         return fit
 
@@ -45,22 +45,26 @@ def stepped(problem: Compared, fit: Fit, steps: int) -> Fit:
     best = fit
     for _ in range(steps):
         better, _ = _step(problem, best)
-        if better is None or best.cost - better.cost < _SETTLED:
-            return best if better is None else better
+        if better is None:
+            break
         best = better
     return best
 
 
 def _step(problem: Compared, fit: Fit) -> tuple[Fit | None, float]:
-    """Return a better fit along the Gauss-Newton step, and how much of its promise it keeps."""
+    """Return a better fit along the Gauss-Newton step, and how much of its promise it keeps.
+
+    None where the step promises nothing, or nothing along it is better.
+    """
     towards = most_probable(fit) - fit.units
     promise = fit.cost - linear_cost(problem, fit, fit.units + towards)
+    if promise < _SETTLED:
+        return None, 0.0
     for share in (1.0, 0.4, 0.1, 0.02):
-        units = fit.units + share * towards
         try:
-            better = moved(problem, fit, units)
+            better = moved(problem, fit, fit.units + share * towards)
         except PmmError:
             continue
         if better.cost < fit.cost:
-            return better, (fit.cost - better.cost) / max(promise, 1e-9)
+            return better, (fit.cost - better.cost) / promise
     return None, 0.0
