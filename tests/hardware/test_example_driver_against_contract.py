@@ -101,6 +101,7 @@ class TestTextAmplifier(ForceContract):
             bench.cycles(1)
 
 
+@pytest.mark.slow
 def test_it_is_found_by_name_in_a_process_of_its_own(installed: Path) -> None:
     code = (
         "from hardware.driver import find_driver; "

@@ -214,6 +214,7 @@ def test_an_sdo_that_nobody_answers_times_out(running) -> None:
         rig.master.nodes[0].sdo.read(Entry(0x1000))
 
 
+@pytest.mark.slow
 def test_an_sdo_times_out_in_real_time_too() -> None:
     with on_bus({"shaft": SHAFT}, lambda n: Drive(n, 1), "virtual") as (rig, drive):
         drive.network.unsubscribe(0x601)
@@ -263,6 +264,7 @@ def test_a_frame_of_the_wrong_length_is_no_data(running) -> None:
         rig.cycle()
 
 
+@pytest.mark.slow
 def test_a_babbling_node_does_not_hold_the_loop(running) -> None:
     rig, _ = running
     noise = can.Message(arbitration_id=0x123, data=b"", is_extended_id=False)

@@ -27,6 +27,7 @@ def turn(rig, cycles: int) -> list[str]:
     return alarms
 
 
+@pytest.mark.slow
 def test_no_start_without_a_fault_is_alarmed_and_no_pulse_is_lost() -> None:
     generator = np.random.default_rng(23)
     with on_bus(TABLES, build) as (rig, drives):

@@ -85,6 +85,7 @@ def test_commands_and_python_tell_of_it_what_they_tell_of_its_files(
     assert other == own
 
 
+@pytest.mark.slow
 def test_an_archive_holds_what_it_holds_of_the_folder_and_sees_changes_there(
     there: str, system: tuple[Any, str], folder: Path, tmp_path: Path
 ) -> None:

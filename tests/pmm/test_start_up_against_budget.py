@@ -64,6 +64,7 @@ loop = { proportional = 2.0, integral = 10.0 }
 """
 
 
+@pytest.mark.slow
 def test_only_tuning_a_drive_loads_the_library_of_controllers(tmp_path: Path) -> None:
     """It takes a second: checking a plan with a motor on its rig goes without."""
     for name in ("plan.toml", "rig.toml", "simulated.toml"):

@@ -99,6 +99,7 @@ def test_pitch_with_its_weight(one: Arrangement, medium: str) -> None:
     _agree(Plane.VERTICAL, one, replace(RUN, medium=medium), 0.0)  # type: ignore[arg-type]
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("medium", ["water", "air"])
 @pytest.mark.parametrize("plane", Plane)
 def test_stiff_gauges_read_what_rigid_ones_do(plane: Plane, medium: str) -> None:

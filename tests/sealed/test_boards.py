@@ -50,6 +50,7 @@ def _truths(board: Path) -> list[dict[str, object]]:
     ]
 
 
+@pytest.mark.slow
 def test_no_case_folder_leads_to_its_key(board: Path) -> None:
     words = {effect.name for effect in (*catalogue.CATALOGUE, *outside.OUTSIDE)}
     words |= {"truth", "keys", "seed", "null", str(board)}
@@ -73,6 +74,7 @@ def _read(folder: Path, run: dict[str, object], campaign: dict[str, object]) -> 
     return read_recording(folder / f"{run['name']}.nc")
 
 
+@pytest.mark.slow
 def test_recordings_hold_what_the_case_says(board: Path) -> None:
     foreign = 0
     for folder in sorted((board / "cases").iterdir()):
@@ -94,6 +96,7 @@ def test_recordings_hold_what_the_case_says(board: Path) -> None:
     assert foreign >= 1
 
 
+@pytest.mark.slow
 def test_keys_are_whole_and_nuisances_invisible(board: Path) -> None:
     assert any(truth["ceiling"] for truth in _truths(board))
     for truth in _truths(board):
@@ -110,11 +113,13 @@ def test_keys_are_whole_and_nuisances_invisible(board: Path) -> None:
             assert probabilities["top_1"] <= probabilities["top_1_by_class"]
 
 
+@pytest.mark.slow
 def test_another_board_s_folder_is_refused(board: Path) -> None:
     with pytest.raises(FileExistsError, match="not empty"):
         jobs_of(SEED, 1, 0, board)
 
 
+@pytest.mark.slow
 def test_a_board_that_was_broken_off_goes_on_with_the_same_bytes(
     board: Path, tmp_path: Path
 ) -> None:
@@ -129,6 +134,7 @@ def test_a_board_that_was_broken_off_goes_on_with_the_same_bytes(
     assert jobs_of(SEED, CASES, NULLS, half) == []
 
 
+@pytest.mark.slow
 def test_further_runs_are_carried_out(board: Path, tmp_path: Path) -> None:
     case = case_of(board / "keys" / "case-0001")
     white, coloured = case.campaign.rig.noise.white_n, case.campaign.rig.noise.coloured_n
@@ -144,6 +150,7 @@ def test_further_runs_are_carried_out(board: Path, tmp_path: Path) -> None:
         assert np.std(force) == pytest.approx(scatter, rel=0.15)
 
 
+@pytest.mark.slow
 def test_a_further_run_is_one_of_its_campaign(board: Path, tmp_path: Path) -> None:
     for name in sorted(path.name for path in (board / "cases").iterdir()):
         folder = shutil.copytree(board / "cases" / name, tmp_path / name)
@@ -166,6 +173,7 @@ def test_wrong_further_runs_are_named() -> None:
         parsed({"kind": "rest", "weight_n": 3.0}, last)
 
 
+@pytest.mark.slow
 def test_runs_told_one_by_one_tell_what_all_rows_together_tell(board: Path) -> None:
     case = case_of(board / "keys" / "case-0002")
     runs = case.situation.runs[:2]

@@ -65,6 +65,7 @@ def test_a_case_that_a_worker_does_not_see_has_not_failed(tmp_path: Path) -> Non
         answered_there(Asked(tmp_path, "case-0001", ("no-gap",)))
 
 
+@pytest.mark.slow
 def test_a_package_that_a_worker_lacks_has_not_failed(
     board: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -73,6 +74,7 @@ def test_a_package_that_a_worker_lacks_has_not_failed(
         answered_there(still_asked(board, ("no-gap",))[0])
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_is_not_there_answers_nothing(
     board: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

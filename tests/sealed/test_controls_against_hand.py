@@ -64,6 +64,7 @@ def board(tmp_path: Path) -> Path:
     return handmade.write(tmp_path / "board")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("row", "reached"),
     [
@@ -154,6 +155,7 @@ def seen(null_board: Path) -> Scene:
     return scene(null_board / "cases" / "case-0001")
 
 
+@pytest.mark.slow
 def test_peers_see_noise_alone_where_nothing_is(seen: Scene) -> None:
     rows = force_rows(seen.fitting)
     off = seen.fitting.values[rows] / seen.fitting.sigma[rows]
@@ -165,6 +167,7 @@ def test_peers_see_noise_alone_where_nothing_is(seen: Scene) -> None:
     assert more["withheld-1"]["force_aft"]["mean"] == pytest.approx(mean + 1.0)
 
 
+@pytest.mark.slow
 def test_rows_of_a_sealed_board_are_whole(
     null_board: Path, seen: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -185,6 +188,7 @@ def test_rows_of_a_sealed_board_are_whole(
         assert alarms.count == seconds.count == 1
 
 
+@pytest.mark.slow
 def test_rows_that_nobody_knows_are_named(null_board: Path) -> None:
     done = CliRunner().invoke(main, ["rows", str(null_board), "--only", "nogap"])
     assert done.exit_code == 2

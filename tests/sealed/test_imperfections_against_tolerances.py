@@ -19,6 +19,7 @@ from tests.sealed.generator.worlds import world
 KNOWN = {one.effect.name: one for one in tolerated(world("C"), np.random.default_rng(1))}
 
 
+@pytest.mark.slow
 def test_each_is_within_two_deviations_and_seen() -> None:
     seen, cases = 0, [make(3, index, null=True, where="C") for index in (1, 2)]
     for case in cases:

@@ -35,6 +35,7 @@ def test_oracle_answers_are_a_row_of_the_board(tmp_path: Path) -> None:
     assert (tmp_path / "answers-oracle" / "case-0001.json").exists()
 
 
+@pytest.mark.slow
 def test_foreign_recordings_keep_their_force_when_thinned(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

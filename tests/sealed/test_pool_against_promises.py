@@ -7,6 +7,7 @@ from tests.sealed.pool import Done, each
 from tests.sealed.progress import line
 
 
+@pytest.mark.slow
 def test_what_fails_dies_or_hangs_is_named_and_all_others_go_on() -> None:
     jobs = ["first", "raises", "dies", "second", "hangs", "third"]
     done = {one.job: one for one in each(awkward, jobs, 2, limit_s=5.0)}

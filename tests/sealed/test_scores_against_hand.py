@@ -157,6 +157,7 @@ def test_a_page_without_scores_is_refused(tmp_path: Path) -> None:
     assert "no scores yet" in done.output
 
 
+@pytest.mark.slow
 def test_score_keeps_what_it_may_and_refuses_before_it_scores(docs: Path, tmp_path: Path) -> None:
     board = handmade.write(tmp_path / "board")
     shown = tmp_path / "shown.json"

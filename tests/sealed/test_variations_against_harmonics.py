@@ -48,6 +48,7 @@ def test_a_ramp_is_a_ramp() -> None:
     assert resampled(ramp, Fraction(1, 5), ramp=True) == pytest.approx(ramp[::5])
 
 
+@pytest.mark.slow
 def test_folders_say_what_they_hold(board: Path, tmp_path: Path) -> None:
     output = tmp_path / "varied"
     names = list(varied(board, output, 2))
@@ -65,6 +66,7 @@ def test_folders_say_what_they_hold(board: Path, tmp_path: Path) -> None:
             assert new.end_s == pytest.approx(variation.part * old.end_s, abs=2.0 / rate)
 
 
+@pytest.mark.slow
 def test_agreement_is_counted_by_class(board: Path, tmp_path: Path) -> None:
     output = tmp_path / "varied"
     for folder, name, shares in (

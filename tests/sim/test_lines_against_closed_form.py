@@ -38,6 +38,7 @@ def test_displacement_velocity_and_acceleration() -> None:
     assert np.abs(run["displacement_aft"]).max() <= 0.08 * 1.01
 
 
+@pytest.mark.slow
 def test_steady_state_is_that_of_a_long_run() -> None:
     rig = horizontal_rig().ideal()
     steady = steady_run(rig, POINT)

@@ -69,6 +69,7 @@ def test_every_numbered_law_has_an_example() -> None:
     assert all(has_number(one) for one in EXAMPLES)
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(
     st.sampled_from([None, *EXAMPLES, *BRISTLES]),
@@ -106,6 +107,7 @@ def _loaded(rig: SimulatedRig, laws: tuple[Acting, ...]) -> SimulatedRig:
     )
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=6)
 @example(BRISTLES, True, True)
 @given(st.lists(st.sampled_from(BRISTLES + EXAMPLES), max_size=3), st.booleans(), st.booleans())

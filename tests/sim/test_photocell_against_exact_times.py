@@ -24,6 +24,7 @@ def edges(
     return chain.run(chain.start(rate, seed=5), count)[1]["photocell_edge_time"]
 
 
+@pytest.mark.slow
 @given(
     frequency=st.floats(0.01, 2.0),
     angle=st.floats(-10.0, 10.0),

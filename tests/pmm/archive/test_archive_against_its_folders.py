@@ -90,11 +90,13 @@ QUESTIONS = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("question", QUESTIONS)
 def test_runs_are_found_by_what_they_were_set_to(file: Path, question: str) -> None:
     assert _names(file, question) == QUESTIONS[question]
 
 
+@pytest.mark.slow
 def test_campaigns_are_listed_as_they_are(file: Path, tank: Path) -> None:
     first, second = told("list", "--archive", file)["campaigns"]
     assert (first["folder"], first["hull"], second["hull"]) == (str(tank / "march"), "", "KVLCC2")
@@ -106,6 +108,7 @@ def test_campaigns_are_listed_as_they_are(file: Path, tank: Path) -> None:
         assert one["changes"] == []
 
 
+@pytest.mark.slow
 def test_a_run_has_its_recordings_hash(file: Path, tank: Path) -> None:
     run = told("show", "one-0.6-20", "--archive", file)["run"]
     recording = tank / "march" / run["recording"]
@@ -113,6 +116,7 @@ def test_a_run_has_its_recordings_hash(file: Path, tank: Path) -> None:
     assert run["eccentricity_m"] == 0.02
 
 
+@pytest.mark.slow
 def test_harmonics_are_those_of_the_recording(file: Path, tank: Path) -> None:
     """Read again from the one file, not from its campaign."""
     frame = pmm.open(tank / "march" / "one-0.6-20.nc").harmonics().to_dataframe()
@@ -125,6 +129,7 @@ def test_harmonics_are_those_of_the_recording(file: Path, tank: Path) -> None:
         assert row["in_phase_half_width"] == pytest.approx(one["in_phase_half_width"], rel=1e-12)
 
 
+@pytest.mark.slow
 def test_runs_are_found_by_their_harmonics(file: Path) -> None:
     every = _found(file, "kind = 'oscillation'", "--channel", "force_aft")
     size = {one["run"]: (one["in_phase"] ** 2 + one["quadrature"] ** 2) ** 0.5 for one in every}
@@ -135,6 +140,7 @@ def test_runs_are_found_by_their_harmonics(file: Path) -> None:
     assert "no channel 'force_aff'; did you mean 'force_aft'?" in done.stderr
 
 
+@pytest.mark.slow
 def test_a_trend_has_what_was_put_in(file: Path, tmp_path: Path) -> None:
     damping = vertical_campaign(tmp_path / "rig", (0.6,)).water.damping[0][0]
     found = told("trend", "Z_w", "--archive", file)
@@ -147,6 +153,7 @@ def test_a_trend_has_what_was_put_in(file: Path, tmp_path: Path) -> None:
     assert "no coefficient 'Z_x'; did you mean 'Z_w'?" in done.stderr
 
 
+@pytest.mark.slow
 def test_coefficients_and_verdicts_are_found(copy: Path, file: Path) -> None:
     every = told("find", "coefficient = 'Z_w'", "--coefficients", "--archive", file)["coefficients"]
     trend = told("trend", "Z_w", "--archive", file)["trend"]
@@ -166,6 +173,7 @@ def test_coefficients_and_verdicts_are_found(copy: Path, file: Path) -> None:
         assert "ask for one of both" in done.stderr or "nothing is analysed yet" in done.stderr
 
 
+@pytest.mark.slow
 def test_a_repeated_run_is_compared_with_its_past(copy: Path) -> None:
     """The same recording five times, the last one's force made larger in the file by hand."""
     file = copy / "a.sqlite"
@@ -198,6 +206,7 @@ def test_a_repeated_run_is_compared_with_its_past(copy: Path) -> None:
     assert "no harmonic 1 of 'force_aff'; did you mean 'force_aft'?" in done.stderr
 
 
+@pytest.mark.slow
 def test_parquet_reads_back(file: Path, tmp_path: Path) -> None:
     pq = pytest.importorskip("pyarrow.parquet")
     path = tmp_path / "harmonics.parquet"
@@ -225,6 +234,7 @@ def _answers(file: Path) -> list[Any]:
     ]
 
 
+@pytest.mark.slow
 def test_made_again_from_the_folders_it_answers_the_same(copy: Path) -> None:
     file, folders = copy / "a.sqlite", (copy / "march", copy / "september")
     told("add", *folders, "--analyse", "--archive", file)
@@ -238,6 +248,7 @@ def test_made_again_from_the_folders_it_answers_the_same(copy: Path) -> None:
     assert _answers(file) == before
 
 
+@pytest.mark.slow
 def test_what_is_known_is_not_computed_again(copy: Path) -> None:
     calls = []
 
@@ -264,6 +275,7 @@ def test_what_is_known_is_not_computed_again(copy: Path) -> None:
     assert calls == ["march"] * 2
 
 
+@pytest.mark.slow
 def test_what_changed_or_vanished_is_said(copy: Path) -> None:
     def changes() -> list[list[str]]:
         return [one["changes"] for one in told("list", "--archive", copy / "a.sqlite")["campaigns"]]
@@ -287,6 +299,7 @@ def test_what_changed_or_vanished_is_said(copy: Path) -> None:
     assert changes()[0] == []
 
 
+@pytest.mark.slow
 def test_a_folder_that_changes_while_it_is_analysed_is_refused(copy: Path) -> None:
     def analyse(folder: Path) -> Analysed:
         (folder / "one-0.6-20.nc").unlink()
@@ -299,6 +312,7 @@ def test_a_folder_that_changes_while_it_is_analysed_is_refused(copy: Path) -> No
         add_folder(connection, copy / "march", Analyses(analyse), NOW)
 
 
+@pytest.mark.slow
 def test_bad_requests_are_said(copy: Path, tmp_path: Path) -> None:
     none = tmp_path / "none.sqlite"
     assert "no archive; make one with" in job("list", "--archive", none, status=2).stderr
@@ -335,6 +349,7 @@ def test_notes_are_lines(tmp_path: Path) -> None:
         read_notes(tmp_path)
 
 
+@pytest.mark.slow
 def test_a_campaign_outside_is_said_and_marked(tmp_path: Path) -> None:
     file = tmp_path / "archive.sqlite"
     with open_archive(file, create=True) as connection, connection:

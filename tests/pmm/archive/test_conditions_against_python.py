@@ -99,6 +99,7 @@ def _deeper(inner: st.SearchStrategy[tuple[str, Test]]) -> st.SearchStrategy[tup
     return st.one_of(bracketed, inner.map(_not), chains)
 
 
+@pytest.mark.slow
 @given(st.recursive(comparisons(), _deeper, max_leaves=8))
 def test_what_is_found_is_what_python_finds(archive: Path, asked: tuple[str, Test]) -> None:
     text, test = asked

@@ -68,6 +68,7 @@ def test_who_is_interrupted_goes_on_where_it_stopped(tmp_path: Path, folders: li
     assert _computed(tmp_path) == sorted(map(str, range(COUNT)))  # each once
 
 
+@pytest.mark.slow
 def test_workers_leave_what_one_process_leaves_and_an_error_stops_nobody(
     tmp_path: Path, folders: list[Path]
 ) -> None:

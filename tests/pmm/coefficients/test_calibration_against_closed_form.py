@@ -91,6 +91,7 @@ def lines(document: dict[str, Any], name: str) -> dict[str, float]:
     return {line["source"]: abs(line["contribution"]) for line in budget["lines"]}
 
 
+@pytest.mark.slow
 def test_what_the_calibration_leaves_open_is_in_the_budget(folder: Path, tmp_path: Path) -> None:
     """Of a force F a part u on the gauge makes ``Re(F) u / omega^2`` of a33, ``Im(F) u / omega``
     of b33, where the moments of both cancel out."""
@@ -136,6 +137,7 @@ def test_the_file_gives_the_hull_and_the_settings_own_word_goes_first(
         assert abs(rows[name]["value"] - value) < rows[name]["half_width"]
 
 
+@pytest.mark.slow
 def test_a_file_in_the_settings_that_has_expired_is_said(folder: Path, tmp_path: Path) -> None:
     settings = with_file(folder, tmp_path / "s")
     flags = [one for each in done(folder, "--settings", settings)["runs"] for one in each["flags"]]
@@ -145,6 +147,7 @@ def test_a_file_in_the_settings_that_has_expired_is_said(folder: Path, tmp_path:
     assert "expired" in run(folder, "--settings", settings).output
 
 
+@pytest.mark.slow
 def test_a_recordings_own_counts_as_the_file_does_and_nothing_is_applied_twice(
     folder: Path, tmp_path: Path
 ) -> None:
@@ -166,6 +169,7 @@ def test_a_recordings_own_counts_as_the_file_does_and_nothing_is_applied_twice(
         assert "was applied to it already" in " ".join(refused.stderr.split())
 
 
+@pytest.mark.slow
 def test_of_two_calibrations_the_wider_counts(folder: Path, tmp_path: Path) -> None:
     rig = vertical_rig()
     text = head(rig)

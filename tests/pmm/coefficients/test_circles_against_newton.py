@@ -103,6 +103,7 @@ def test_what_the_hull_was_given_comes_back_whatever_the_arm_did(tmp_path: Path)
     assert circle["duration_s"] == pytest.approx(DURATION_S, abs=0.1)
 
 
+@pytest.mark.slow
 def test_radius_and_rate_have_their_lines_in_the_budget(tmp_path: Path) -> None:
     """By the difference that a slip as large makes, where the rate is read 1 % too large."""
     campaign(tmp_path, rate_error=0.0)

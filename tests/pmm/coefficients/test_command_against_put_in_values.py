@@ -62,6 +62,7 @@ def check_truth(rows: list[dict[str, Any]], factor: float = 1.0) -> None:
         assert off <= max(factor * 1.5 * row["half_width"], 2e-3 * abs(expected[row["name"]])), row
 
 
+@pytest.mark.slow
 def test_with_the_models_inertia(campaign: Path) -> None:
     found = done(campaign)
     assert found["schema"] == "pmm-coefficients-1"
@@ -73,6 +74,7 @@ def test_with_the_models_inertia(campaign: Path) -> None:
     assert ("M_qdot", "moment of inertia") in budgets
 
 
+@pytest.mark.slow
 def test_with_dry_runs(campaign: Path) -> None:
     found = done(campaign, "--inertia", "dry")
     assert found["body"] is None
@@ -81,6 +83,7 @@ def test_with_dry_runs(campaign: Path) -> None:
     assert "dry_run_taken_off" in codes
 
 
+@pytest.mark.slow
 def test_with_a_file_of_pmm_inertia(campaign: Path, tmp_path: Path) -> None:
     body = vertical_rig().body
     path = tmp_path / "model.toml"
@@ -93,6 +96,7 @@ def test_with_a_file_of_pmm_inertia(campaign: Path, tmp_path: Path) -> None:
     assert heavier["Z_wdot"] - own["Z_wdot"] == pytest.approx(1.0, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_repeats_behind_the_inertia_count(campaign: Path, tmp_path: Path) -> None:
     body = vertical_rig().body
     path = tmp_path / "model.toml"
@@ -109,6 +113,7 @@ def test_repeats_behind_the_inertia_count(campaign: Path, tmp_path: Path) -> Non
     assert found["stated"]["inertia_degrees_of_freedom"] == 4.0
 
 
+@pytest.mark.slow
 def test_several_processes_and_trials_give_the_same_numbers(campaign: Path) -> None:
     options = ("--uncertainty", "monte-carlo", "--trials", 6000, "--seed", 4)
     one = done(campaign, *options, "--jobs", 1)
@@ -122,6 +127,7 @@ def test_several_processes_and_trials_give_the_same_numbers(campaign: Path) -> N
         assert row["trials_low"] < row["value"] < row["trials_high"]
 
 
+@pytest.mark.slow
 def test_trials_are_those_of_the_analysis(campaign: Path) -> None:
     from analysis.coefficients.campaign import campaign_coefficients
     from pmm.coefficients.settings import CoefficientSettings
@@ -136,6 +142,7 @@ def test_trials_are_those_of_the_analysis(campaign: Path) -> None:
     np.testing.assert_array_equal(found.result.trials.high, own.trials.high)
 
 
+@pytest.mark.slow
 def test_prime_system_is_that_of_the_definition(campaign: Path, tmp_path: Path) -> None:
     settings = tmp_path / "coefficients.toml"
     settings.write_text("[ship]\nlength_m = 2.5\ndensity_kg_m3 = 1000.0\n")
@@ -149,6 +156,7 @@ def test_prime_system_is_that_of_the_definition(campaign: Path, tmp_path: Path) 
         assert other["unit"] == "1"
 
 
+@pytest.mark.slow
 def test_files_hold_the_same_numbers(campaign: Path, tmp_path: Path) -> None:
     import xarray as xr
 
@@ -174,6 +182,7 @@ def test_files_hold_the_same_numbers(campaign: Path, tmp_path: Path) -> None:
     assert run(campaign, "--csv", table).exit_code == 1  # never over a file that is there
 
 
+@pytest.mark.slow
 def test_tables_for_people_name_their_system(campaign: Path) -> None:
     result = run(campaign)
     assert result.exit_code == 0
@@ -183,6 +192,7 @@ def test_tables_for_people_name_their_system(campaign: Path) -> None:
     assert "Z_wdot" in result.output
 
 
+@pytest.mark.slow
 def test_a_hull_table_beside_the_values(campaign: Path, tmp_path: Path) -> None:
     expected = truth(vertical_rig())
     path = tmp_path / "strip.csv"
@@ -233,6 +243,7 @@ def test_offsets_and_their_drift_are_taken_off_the_means(tmp_path: Path) -> None
     np.testing.assert_allclose(found.cycles[0].loads, plain.cycles[0].loads, rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_known_lag_and_gain_are_taken_out(tmp_path: Path) -> None:
     """A chain that reads 3 % too much and 2 ms late gives the truth once it is named."""
     from analysis.coefficients.corrections import Delay
@@ -271,6 +282,7 @@ def _spoil(path: Path, gain: float) -> None:
     write_recording(replace(own, samples=samples), path, overwrite=True)
 
 
+@pytest.mark.slow
 def test_figures_are_written_for_what_there_is(campaign: Path, tmp_path: Path) -> None:
     assert run(campaign, "--plot", tmp_path / "plots").exit_code == 0
     names = {path.name for path in (tmp_path / "plots").iterdir()}

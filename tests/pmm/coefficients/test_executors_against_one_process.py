@@ -50,6 +50,7 @@ def test_one_process_yields_each_result_when_it_is_there() -> None:
             executor.submit(refuses, 4).result()
 
 
+@pytest.mark.slow
 def test_two_processes_draw_the_same_numbers_in_the_same_order() -> None:
     with open_executor(jobs=2) as executor:
         assert list(executor.map(drawn, range(COUNT))) == [drawn(k) for k in range(COUNT)]
@@ -58,6 +59,7 @@ def test_two_processes_draw_the_same_numbers_in_the_same_order() -> None:
             list(executor.map(refuses, [3]))
 
 
+@pytest.mark.slow
 def test_a_killed_process_costs_no_result(tmp_path) -> None:  # type: ignore[no-untyped-def]
     tasks = [(str(tmp_path), k) for k in range(COUNT)]
     with open_executor(jobs=2) as executor:
@@ -65,6 +67,7 @@ def test_a_killed_process_costs_no_result(tmp_path) -> None:  # type: ignore[no-
     assert (tmp_path / "killed").exists()
 
 
+@pytest.mark.slow
 def test_work_that_always_kills_is_given_up() -> None:
     executor = LocalProcesses(1, most_restarts=1)
     try:
@@ -74,6 +77,7 @@ def test_work_that_always_kills_is_given_up() -> None:
         executor.shutdown(cancel_futures=True)
 
 
+@pytest.mark.slow
 def test_what_is_left_is_not_begun_after_an_error() -> None:
     def stop_early() -> None:
         with open_executor(jobs=2) as executor:
@@ -95,6 +99,7 @@ def test_in_this_process_a_task_is_done_when_its_result_is_asked_for() -> None:
         assert list(results) == []
 
 
+@pytest.mark.slow
 def test_no_more_tasks_than_allowed_are_in_hand() -> None:
     asked: list[int] = []
 
@@ -131,6 +136,7 @@ class _Growing(Executor):
         return future
 
 
+@pytest.mark.slow
 def test_tasks_in_hand_follow_the_size_of_the_cluster() -> None:
     cluster = _Growing(700)
     assert sum(1 for _ in as_done(cluster, squared, range(7000))) == 7000
@@ -186,6 +192,7 @@ def test_tasks_that_go_together_come_back_one_by_one_up_to_the_first_that_fails(
         next(found)
 
 
+@pytest.mark.slow
 def test_an_error_ends_what_comes_as_it_is_done() -> None:
     with open_executor(jobs=2) as executor, pytest.raises(ValueError, match="number 3"):
         list(as_done(executor, refuses, [3]))
@@ -203,6 +210,7 @@ def test_impossible_engines_are_refused(options, message) -> None:  # type: igno
         pass
 
 
+@pytest.mark.slow
 def test_dask_gives_the_same_with_one_worker_killed(tmp_path) -> None:  # type: ignore[no-untyped-def]
     tasks = [(str(tmp_path), k) for k in range(COUNT)]
     with cluster(2) as address, open_executor(scheduler=address) as executor:
@@ -211,6 +219,7 @@ def test_dask_gives_the_same_with_one_worker_killed(tmp_path) -> None:  # type: 
     assert (tmp_path / "killed").exists()
 
 
+@pytest.mark.slow
 def test_what_a_cluster_cannot_do_is_said() -> None:
     with cluster() as address:
         with (

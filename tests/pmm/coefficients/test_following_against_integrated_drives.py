@@ -134,6 +134,7 @@ def test_size_amplitude_and_phase_are_those_of_the_integrated_drives(
         assert row.phase_rad < -100.0 * NEAR
 
 
+@pytest.mark.slow
 def test_what_is_not_known_of_the_displacements_is_in_the_budget(
     campaign: tuple[Path, Any], found: CampaignOutcome, tmp_path: Path
 ) -> None:
@@ -168,6 +169,7 @@ def copied(folder: Path, to: Path, factors: Any, drop: tuple[str, ...] = ()) -> 
     (to / "campaign.toml").write_text((folder / "campaign.toml").read_text())
 
 
+@pytest.mark.slow
 def test_set_points_that_stand_in_are_off_by_the_other_runs_following(
     campaign: tuple[Path, Any], tmp_path: Path
 ) -> None:

@@ -143,6 +143,7 @@ def test_heel_changes_them(found: dict[str, Any]) -> None:
     assert abs(row["value"] + DAMPING[1, 0]) > 5.0 * row["half_width"]
 
 
+@pytest.mark.slow
 def test_a_model_that_nothing_rights_is_refused(tmp_path: Path) -> None:
     """In air, its centre of gravity on the roll axis; below it, it hangs and swings."""
     (tmp_path / "made.toml").write_text(FILE, encoding="utf-8")

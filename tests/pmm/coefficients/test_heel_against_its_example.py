@@ -36,6 +36,7 @@ def found(folder: Path) -> dict[str, Any]:
     return dict(json.loads(ran.stdout))
 
 
+@pytest.mark.slow
 def test_terms_of_heel_and_roll_come_out(found: dict[str, Any]) -> None:
     made = tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))
     rows = {row["name"]: row for row in found["recommended"]}
@@ -54,6 +55,7 @@ def test_terms_of_heel_and_roll_come_out(found: dict[str, Any]) -> None:
     assert rows["K_phi"]["unit"] == "N m"
 
 
+@pytest.mark.slow
 def test_the_surge_terms_come_out_of_a_resistance_that_swings(found: dict[str, Any]) -> None:
     made = tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))["surge"]
     rows = {row["name"]: row for row in found["recommended"]}
@@ -74,6 +76,7 @@ def row_of(row: dict[str, Any]) -> HeelRow:
     )
 
 
+@pytest.mark.slow
 def test_every_run_has_its_heel_and_moment(found: dict[str, Any]) -> None:
     rows = {row["run"]: row for row in found["heel"]}
     assert len(rows) == 14
@@ -87,6 +90,7 @@ def test_every_run_has_its_heel_and_moment(found: dict[str, Any]) -> None:
     assert len(marks) == 2 * 14
 
 
+@pytest.mark.slow
 def test_what_is_missing_gets_a_sentence(folder: Path, tmp_path: Path) -> None:
     text = EXAMPLE.read_text(encoding="utf-8")
     settings = tmp_path / "coefficients.toml"
@@ -117,6 +121,7 @@ def test_what_is_missing_gets_a_sentence(folder: Path, tmp_path: Path) -> None:
     assert 'heel needs gauges = "model" in [oscillator]' in said(turned)
 
 
+@pytest.mark.slow
 def test_a_campaign_that_heels_without_a_roll_gauge_is_told_so(
     folder: Path, found: dict[str, Any], tmp_path: Path
 ) -> None:
@@ -139,6 +144,7 @@ def test_a_campaign_that_heels_without_a_roll_gauge_is_told_so(
     assert "no term of K is told" in told["roll_gauge_missing"]["message"]
 
 
+@pytest.mark.slow
 def test_a_recorded_decay_puts_the_roll_damping_into_the_same_table(
     folder: Path, tmp_path: Path
 ) -> None:

@@ -114,6 +114,7 @@ def set_points() -> Iterator[tuple[str, str, SetPoint]]:
             yield f"yaw-{amplitude}{drift:+.2f}", RUN, replace(point, drift_rad=drift)
 
 
+@pytest.mark.slow
 def test_through_simulator_and_command(tmp_path: Path) -> None:
     rig, text = struts_rig(), HEAD
     for name, table, point in set_points():

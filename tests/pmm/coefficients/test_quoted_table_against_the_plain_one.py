@@ -51,6 +51,7 @@ def rows(folder: Path, *options: str) -> dict[str, dict[str, float]]:
     return {row["name"]: row for row in json.loads(ran.stdout)["recommended"]}
 
 
+@pytest.mark.slow
 def test_the_mass_is_in_the_rates(folder: Path) -> None:
     plain, quoted = rows(folder), rows(folder, "--with-mass")
     for name, shift in (("Y_r", MASS_KG * SPEED_M_S), ("N_r", MASS_KG * CG_M * SPEED_M_S)):
@@ -60,6 +61,7 @@ def test_the_mass_is_in_the_rates(folder: Path) -> None:
     assert quoted["Y_r"]["standard_uncertainty"] < plain["Y_r"]["standard_uncertainty"]
 
 
+@pytest.mark.slow
 def test_the_prime_table_divides_the_mass_too(folder: Path) -> None:
     unit = 0.5 * DENSITY * LENGTH_M**3
     plain, quoted = (
@@ -70,6 +72,7 @@ def test_the_prime_table_divides_the_mass_too(folder: Path) -> None:
     assert off == pytest.approx(-MASS_KG / unit, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_bis_is_the_seakeeping_system_of_a_floating_model(folder: Path) -> None:
     bis, other = rows(folder, "--system", "bis"), rows(folder, "--system", "seakeeping")
     assert {name: row["value"] for name, row in bis.items()} == {

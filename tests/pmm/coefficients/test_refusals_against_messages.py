@@ -61,6 +61,7 @@ def test_a_model_file_without_a_model(heave: Path, tmp_path: Path) -> None:
     assert "model is missing" in refused(2, heave, "--inertia", tmp_path / "m.toml")
 
 
+@pytest.mark.slow
 def test_a_dry_run_of_another_motion(tmp_path: Path) -> None:
     from hardware.description.setpoint import Medium
 
@@ -90,6 +91,7 @@ def test_inconsistent_geometry(heave: Path, tmp_path: Path) -> None:
     assert "elsewhere has half_spacing_m = 0.4, one-0.6-20 0.5" in refused(2, heave, tmp_path)
 
 
+@pytest.mark.slow
 def test_systems_without_what_they_need(heave: Path, tmp_path: Path) -> None:
     said = refused(2, heave, "--system", "mmg")
     assert "length_m and draught_m" in said
@@ -143,6 +145,7 @@ def test_reference_tables(
     assert message in refused(status, heave, "--reference", path)
 
 
+@pytest.mark.slow
 def test_a_run_that_cannot_be_used_is_named_and_the_others_stand(tmp_path: Path) -> None:
     vertical_campaign(tmp_path, (0.6, 0.9), only=1)
     (tmp_path / "one-0.9-20.nc").write_bytes(b"no recording at all")
@@ -157,6 +160,7 @@ def test_a_run_that_cannot_be_used_is_named_and_the_others_stand(tmp_path: Path)
     assert "none of the runs can be used" in refused(1, tmp_path)
 
 
+@pytest.mark.slow
 def test_a_run_left_out_is_said_to_be(tmp_path: Path) -> None:
     vertical_campaign(tmp_path, (0.6, 0.9), only=1)
     result = run(tmp_path, "--json", "--leave-out", "one-0.9-20")
@@ -193,6 +197,7 @@ def test_options_that_contradict_each_other(heave: Path) -> None:
     assert "campaign.toml" in refused(2, heave.parent)
 
 
+@pytest.mark.slow
 def test_nothing_stated_is_said(heave: Path, tmp_path: Path) -> None:
     text = (heave / "campaign.toml").read_text()
     cut = text.index("[model_uncertainty]")

@@ -21,6 +21,7 @@ from tests.pmm.coefficients.test_command_against_put_in_values import done, run
 KVLCC2 = {name: one for name, one in DERIVATIVES.items() if name[0] in "YN"}
 
 
+@pytest.mark.slow
 def test_a_repeat_with_another_load_is_named(tmp_path: Path) -> None:
     """One of five repeats carries 1 kg that nobody wrote down."""
     rig = vertical_rig()
@@ -40,6 +41,7 @@ def test_a_repeat_with_another_load_is_named(tmp_path: Path) -> None:
     assert done(tmp_path, "--leave-out", "heave-3")["coefficients"]["outliers"] == []
 
 
+@pytest.mark.slow
 def test_kvlcc2_comes_back_in_the_mmg_system(tmp_path: Path) -> None:
     """Published derivatives, linear and cubic, of a 2.9 m model on a rig with noise."""
     length_m, speed_m_s = 2.9091, 0.76
@@ -64,6 +66,7 @@ def test_kvlcc2_comes_back_in_the_mmg_system(tmp_path: Path) -> None:
         assert abs(row["value"] - KVLCC2.get(name, 0.0)) <= row["half_width"], row
 
 
+@pytest.mark.slow
 def test_measured_restoring_is_held_against_hydrostatics(tmp_path: Path) -> None:
     """Heave and pitch at rest, three frequencies: what is left at none is what was put in."""
     rig = vertical_rig()

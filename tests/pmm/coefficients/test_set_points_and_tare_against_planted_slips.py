@@ -46,6 +46,7 @@ def swapped(folder: Path, suffix: str) -> None:
     (folder / "x").rename(other)
 
 
+@pytest.mark.slow
 def test_two_recordings_of_our_own_that_changed_places(tmp_path: Path) -> None:
     vertical_campaign(tmp_path, (0.6, 0.9))
     assert flagged(done(tmp_path)) == set()
@@ -55,6 +56,7 @@ def test_two_recordings_of_our_own_that_changed_places(tmp_path: Path) -> None:
     assert "one-0.6-20, two-0.6-20: recorded with strut phase" in shown
 
 
+@pytest.mark.slow
 def test_two_text_recordings_that_changed_places(tmp_path: Path) -> None:
     vertical_campaign(tmp_path, (0.6,))
     for path in sorted(tmp_path.glob("*.nc")):
@@ -68,6 +70,7 @@ def test_two_text_recordings_that_changed_places(tmp_path: Path) -> None:
     assert flagged(done(tmp_path)) == {"one-0.6-20", "two-0.6-20"}
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("text", "told_hz", "named"),
     [(True, 0.604, False), (True, 0.608, True), (True, 0.45, True), (False, 0.604, True)],
@@ -126,6 +129,7 @@ def tows(folder: Path) -> None:
     (folder / "campaign.toml").write_text(text)
 
 
+@pytest.mark.slow
 def test_tared_tows_need_no_zero_runs(tmp_path: Path) -> None:
     assert (FORCE_AFT.name, FORCE_FORE.name) == ("force_aft", "force_fore")
     tows(tmp_path)

@@ -98,6 +98,7 @@ def told(folder: Path) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.slow
 def test_means_and_harmonics_of_an_oscillation_and_a_tow(campaign: Path) -> None:
     rows = {row["run"]: row for row in told(campaign)["attitude"]}
     assert set(rows) == {"sway", "tow"}
@@ -117,12 +118,14 @@ def test_means_and_harmonics_of_an_oscillation_and_a_tow(campaign: Path) -> None
     assert small > 50.0  # the small angle would be refused by the test
 
 
+@pytest.mark.slow
 def test_people_read_it_in_millimetres_and_degrees(campaign: Path) -> None:
     shown = CliRunner().invoke(cli, ["coefficients", str(campaign)]).stdout
     assert "Sinkage and trim" in shown
     assert "11.45" in shown  # degrees: 0.2 rad
 
 
+@pytest.mark.slow
 def test_the_figure_shows_each_run_over_speed_and_over_drift() -> None:
     cases = [(0.8, 0.0), (0.8, 0.1), (1.2, 0.0)]
     rows = [
@@ -205,6 +208,7 @@ def test_a_wrong_table_is_refused(tmp_path: Path, text: str, said: str) -> None:
         read_campaign(path)
 
 
+@pytest.mark.slow
 def test_a_rig_hands_the_table_on_and_refuses_a_free_one_in_the_vertical(tmp_path: Path) -> None:
     path = tmp_path / "rig.toml"
 

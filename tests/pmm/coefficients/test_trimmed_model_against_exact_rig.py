@@ -85,6 +85,7 @@ def found(folder: Path, *options: str) -> dict[str, Any]:
     return {row["name"]: row for row in json.loads(run.stdout)["recommended"]}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("floats", [True, False])
 @pytest.mark.parametrize("arrangement", ARRANGEMENTS, ids=lambda one: "-".join(vars(one).values()))
 def test_coefficients_lie_in_their_intervals(
@@ -100,6 +101,7 @@ def test_coefficients_lie_in_their_intervals(
     assert max(map(abs, apart.values())) < 2.0, apart
 
 
+@pytest.mark.slow
 def test_what_the_water_bears_stays_with_another_inertia(tmp_path: Path) -> None:
     """A swing tells nothing of it: the campaign's own holds."""
     folder = campaign(tmp_path, ARRANGEMENTS[0], floats=False)
@@ -122,6 +124,7 @@ def test_a_centre_of_buoyancy_needs_a_displacement(tmp_path: Path) -> None:
     assert "give displaced_kg as well" in run.stderr
 
 
+@pytest.mark.slow
 def test_a_zero_run_at_another_trim_is_told(tmp_path: Path) -> None:
     folder = campaign(tmp_path, ARRANGEMENTS[0], floats=True)
     head, *runs = (folder / "campaign.toml").read_text().split("[[runs]]")

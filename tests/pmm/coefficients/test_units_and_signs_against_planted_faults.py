@@ -10,6 +10,7 @@ from tests.pmm.coefficients.campaigns import vertical_campaign
 from tests.pmm.coefficients.test_set_points_and_tare_against_planted_slips import as_text
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("column", "source", "said"),
     [

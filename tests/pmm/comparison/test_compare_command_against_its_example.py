@@ -39,6 +39,7 @@ def test_what_they_were_made_of_comes_out() -> None:
     assert len(found["over_time"]) > 3
 
 
+@pytest.mark.slow
 def test_the_table_says_it_with_units(tmp_path: Path) -> None:
     said = pmm(CAMERA, IMU, "--derivative", 2, "--plot", tmp_path / "plots")
     assert said.exit_code == 0, said.stderr
@@ -71,6 +72,7 @@ def test_bad_requests_get_a_sentence(words: tuple[object, ...], status: int, sai
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(
     not WAVES.exists(), reason="the measured wave forces are not beside the project"
 )

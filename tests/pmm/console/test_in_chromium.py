@@ -139,6 +139,7 @@ def test_a_second_browser_only_watches_until_it_takes_over(
         first.until(lambda: first.text("#state-name").endswith("stopped"), "stop")
 
 
+@pytest.mark.slow
 def test_a_page_from_elsewhere_is_refused_and_beyond_here_a_token_is_asked(
     rig: Path, tmp_path: Path, chromium: Browser
 ) -> None:

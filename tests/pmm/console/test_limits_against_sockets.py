@@ -89,6 +89,7 @@ def _trickle_until_it_is_ended(one: socket.socket) -> None:
     raise AssertionError("the request goes on for ever")
 
 
+@pytest.mark.slow
 def test_one_page_more_than_the_limit_is_told_so(tmp_path: Path) -> None:
     with served(tmp_path) as one, ExitStack() as held:
 
@@ -106,6 +107,7 @@ def test_one_page_more_than_the_limit_is_told_so(tmp_path: Path) -> None:
         assert stream(f"{0:032d}").receive_json()["type"] == "snapshot"  # it has control
 
 
+@pytest.mark.slow
 def test_every_limit_is_in_the_one_table() -> None:
     rows = re.findall(r"^\| `([A-Z_]+)` \| ([0-9.]+)( KiB| MiB| s|) \|", DOCS.read_text(), re.M)
     factors = {" KiB": 1 << 10, " MiB": 1 << 20}

@@ -11,6 +11,7 @@ pytestmark = needed
 GAUGES = [f"force_{k:02d}" for k in range(CHANNELS)]
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(("width", "height"), [(1400, 900), (390, 844)])
 def test_all_gauges_fit_and_any_can_be_seen_large(
     tmp_path: Path, chromium: Browser, width: int, height: int

@@ -26,6 +26,7 @@ _RIGHT = {
 }
 
 
+@pytest.mark.slow
 def test_it_is_openapi() -> None:
     found = description()
     validate(found, cls=OpenAPIV31SpecValidator)
@@ -43,6 +44,7 @@ def test_it_is_served_and_has_all_that_is_served(tmp_path: Path) -> None:
     assert {path for path in read if path.startswith("/api")} == set(GETS)
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize("path", POSTS)
 def test_bodies_are_taken_and_refused_as_it_says(path: str, tmp_path: Path) -> None:
     from jsonschema import Draft202012Validator

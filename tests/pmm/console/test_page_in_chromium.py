@@ -45,6 +45,7 @@ def _harmonics(page: Browser, run: str, gauge: str) -> list[list[float]]:
     return [[float(n) for n in re.findall(NUMBER, " ".join(row[2:]))] for row in rows[start:][:3]]
 
 
+@pytest.mark.slow
 def test_all_that_an_operator_looks_for_is_there(tmp_path: Path, chromium: Browser) -> None:
     with (
         console(rig_in(tmp_path / "rig"), tmp_path / "out", *FAST) as one,

@@ -64,6 +64,7 @@ def _settings(one: Shown) -> list[str]:
     return [(folder / "plan.toml").read_text(), *map(str, read_decisions(folder))]
 
 
+@pytest.mark.slow
 def test_a_stop_ends_at_rest_and_goes_on_only_when_told(shown: Shown) -> None:
     _answer(shown, "y")
     shown.until(State.SETTLING)
@@ -80,6 +81,7 @@ def test_a_stop_ends_at_rest_and_goes_on_only_when_told(shown: Shown) -> None:
     shown.until(State.SETTLING)
 
 
+@pytest.mark.slow
 def test_taken_out_it_leaves_the_rig_and_its_folder_as_they_are(shown: Shown) -> None:
     _answer(shown, "y")
     shown.until(State.SETTLING)
@@ -114,6 +116,7 @@ def test_taken_out_while_it_asks_it_has_planned_nothing(shown: Shown) -> None:
     assert looks[0].proposed
 
 
+@pytest.mark.slow
 def test_a_fault_of_the_rig_is_said_and_the_campaign_stands_where_it_was(shown: Shown) -> None:
     _answer(shown, "y")
     shown.until(State.SETTLING)

@@ -55,6 +55,7 @@ def test_a_rig_is_named_from_the_list_and_no_other_file_is_opened(
     assert "rig.toml" in opened
 
 
+@pytest.mark.slow
 def test_plans_in_another_folder_name_the_rig_from_there(plans: Plans, tmp_path: Path) -> None:
     folder = tmp_path / "plans"
     folder.mkdir()
@@ -83,6 +84,7 @@ def test_a_rig_that_is_edited_while_it_is_open_takes_no_plan(tmp_path: Path, fil
     assert not plans.check("", plan("p")).refused
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
@@ -110,6 +112,7 @@ def test_millions_of_runs_are_refused_before_they_are_made(
     assert peak < 100e6  # bytes; 3,000,000 runs take ten times that
 
 
+@pytest.mark.slow
 def test_a_file_larger_than_a_plan_may_be_is_not_read(tmp_path: Path) -> None:
     with served(tmp_path) as one:
         path = tmp_path / "rig" / "large.toml"

@@ -99,6 +99,7 @@ def test_so_many_may_wait_and_no_more() -> None:
     assert proposals.add("drop", DropPosted(number=1), "p", ann, "utc").number > MOST_PROPOSALS
 
 
+@pytest.mark.slow
 def test_a_text_that_is_proposed_leaves_no_file_until_it_is_approved(tmp_path: Path) -> None:
     with served(tmp_path, **PLANS) as one:
         before = sorted((tmp_path / "rig").iterdir())

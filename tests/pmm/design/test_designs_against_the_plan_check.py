@@ -44,6 +44,7 @@ def _design(folder: Path, text: str, *more: str) -> Result:
     return CliRunner().invoke(cli, ["plan", "design", str(file), *more])
 
 
+@pytest.mark.slow
 def test_the_example_makes_a_plan_that_the_check_passes(tmp_path: Path) -> None:
     text = (EXAMPLE / "design.toml").read_text(encoding="utf-8")
     target = tmp_path / "designed.toml"
@@ -65,6 +66,7 @@ def test_the_example_makes_a_plan_that_the_check_passes(tmp_path: Path) -> None:
     assert (tmp_path / "horizontal-designed-uncertainty.png").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_less_time_leaves_targets_and_says_why(tmp_path: Path) -> None:
     targets = "repeat_relative = 0.03\n[targets]\nY_v = 1.0\nN_r = 0.5\n"
     whole = _design(tmp_path, DESIGN + targets, "--json")
@@ -127,6 +129,7 @@ def test_bad_files_are_one_sentence_each(tmp_path: Path, change: str, words: str
     assert "Traceback" not in said
 
 
+@pytest.mark.slow
 def test_many_short_runs_of_two_settings_take_the_time_of_their_plan(tmp_path: Path) -> None:
     target = tmp_path / "designed.toml"
     design = written(tmp_path, repeat=0.02)

@@ -6,6 +6,7 @@ from pathlib import Path
 from shutil import copy
 from typing import Any
 
+import pytest
 from click.testing import CliRunner
 
 from pmm.cli import cli
@@ -44,6 +45,7 @@ def _pmm(status: int, *words: object) -> Any:
     return json.loads(done.stdout)
 
 
+@pytest.mark.slow
 def test_two_parts_meet_the_targets_and_find_the_hull(tmp_path: Path) -> None:
     for one in EXAMPLE.glob("*.toml"):
         copy(one, tmp_path)

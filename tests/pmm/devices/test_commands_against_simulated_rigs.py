@@ -89,6 +89,7 @@ def test_a_live_table_ends_after_its_seconds(rig: Path) -> None:
     assert "force_fore" in shown.stdout
 
 
+@pytest.mark.slow
 def test_an_axis_moves_when_it_is_confirmed_only(rig: Path) -> None:
     words = ("move", "eccentricity", "20mm", rig, "--free-running")
     refused = devices(*words, typed="n\n")
@@ -161,6 +162,7 @@ def test_a_rig_of_serial_lines_alone_has_its_own_time(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("interface", ["udp_multicast", "slcan"])
 def test_a_bus_of_another_process_is_scanned(interface: str, tmp_path: Path) -> None:
     if interface == "udp_multicast" and not multicast_works():

@@ -90,6 +90,7 @@ def test_wrong_wiring_is_refused_with_its_fix(wiring, signs, said) -> None:
     assert any(said in text for one in found for text in one.wrong)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("pull", [1.0, -1.0])
 def test_a_push_in_another_process_is_seen_over_slcan(tmp_path, pull: float) -> None:
     host = Hosted(GAUGES, tmp_path, "slcan", real_time=True)
@@ -145,6 +146,7 @@ def test_a_rig_without_gauges_has_no_push_test() -> None:
         GaugeReadings(rig)
 
 
+@pytest.mark.slow
 def test_an_axis_homes_and_moves_within_its_limits_only() -> None:
     with in_process({"eccentricity": WHOLE["eccentricity"]}) as (rig, world):
         axis = axis_of(rig, "eccentricity")

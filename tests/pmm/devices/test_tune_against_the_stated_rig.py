@@ -31,6 +31,7 @@ def _tune(*words: object) -> Result:
     return CliRunner().invoke(cli, ["devices", "tune", *map(str, words)])
 
 
+@pytest.mark.slow
 def test_what_is_stated_is_found(rig: Path, tmp_path: Path) -> None:
     plots = tmp_path / "plots"
     told = _tune(rig, "--free-running", "--yes", "--json", "--plot", plots)
@@ -48,6 +49,7 @@ def test_what_is_stated_is_found(rig: Path, tmp_path: Path) -> None:
     }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_stated_data_alone_move_nothing_and_tell_each_run(rig: Path) -> None:
     told = _tune(rig, "--stated", "--json", "--plan", rig.with_name("plan.toml"))
     assert told.exit_code == 0, told.output

@@ -31,6 +31,7 @@ def boot_file(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_the_page_is_in_step() -> None:
     assert PAGE.read_text(encoding="utf-8") == page()
 
@@ -84,6 +85,7 @@ def test_the_example_agrees_with_its_theory(boot_file: Path) -> None:
         np.testing.assert_allclose(one, other, atol=1e-12 * np.abs(one).max())
 
 
+@pytest.mark.slow
 def test_the_commands_of_the_page_work(boot_file: Path, tmp_path: Path) -> None:
     figures = tmp_path / "figures"
     options = ["--effects-file", str(boot_file), "--plot", str(figures)]

@@ -120,6 +120,7 @@ def test_the_end_of_the_range_is_that_of_the_reading() -> None:
     assert abs(found.values("force_aft")).max() == pytest.approx(490.0 / 1.02)
 
 
+@pytest.mark.slow
 def test_wrong_gauges_with_their_calibration_give_the_forces_of_right_ones(tmp_path: Path) -> None:
     run = oscillation(periods=3, max_periods=3)
     with bench(tmp_path / "right", [run]) as one:

@@ -73,6 +73,7 @@ def pmm(*words: str | Path) -> Result:
     return CliRunner().invoke(cli, [str(one) for one in words])
 
 
+@pytest.mark.slow
 def test_every_test_has_its_table_and_its_figure(copy: Path, tmp_path: Path) -> None:
     said = pmm("evaluate", copy, "--plot", tmp_path / "plots", "--valid-days", "30")
     assert said.exit_code == 0, said.output
@@ -86,6 +87,7 @@ def test_every_test_has_its_table_and_its_figure(copy: Path, tmp_path: Path) -> 
     assert (one.expires - one.made).days == 30
 
 
+@pytest.mark.slow
 def test_the_document_says_the_same(copy: Path) -> None:
     said = pmm("evaluate", copy, "--json")
     assert said.exit_code == 0, said.output
@@ -104,6 +106,7 @@ def test_the_document_says_the_same(copy: Path) -> None:
     assert tomllib.loads((copy / "calibration.toml").read_text())["matrix"] == matrix
 
 
+@pytest.mark.slow
 def test_a_step_of_the_control_condition_is_status_1(copy: Path) -> None:
     for run in sorted(copy.glob("control-*"))[4:]:
         path = run / HARMONICS
@@ -118,6 +121,7 @@ def test_a_step_of_the_control_condition_is_status_1(copy: Path) -> None:
     assert "before control-05" in line
 
 
+@pytest.mark.slow
 def test_too_few_repeats_are_said_to_be_too_few(copy: Path) -> None:
     for run in sorted(copy.glob("control-*"))[3:]:
         shutil.rmtree(run)
@@ -127,6 +131,7 @@ def test_too_few_repeats_are_said_to_be_too_few(copy: Path) -> None:
     assert "control force_aft" not in said.stdout
 
 
+@pytest.mark.slow
 def test_a_test_that_shows_nothing_fails_alone(copy: Path) -> None:
     for run in sorted(copy.glob("check-weight-force_aft-*"))[2:]:
         shutil.rmtree(run)
@@ -144,6 +149,7 @@ def test_wrong_usage_is_status_2(tmp_path: Path) -> None:
     assert "no run of this campaign is complete" in empty.stderr
 
 
+@pytest.mark.slow
 def test_a_calibration_goes_from_check_weights_to_the_next_analysis(
     copy: Path, tmp_path: Path
 ) -> None:

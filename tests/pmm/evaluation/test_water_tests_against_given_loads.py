@@ -131,6 +131,7 @@ def test_stiffness_is_that_of_the_water_and_the_weight(
     assert np.ptp(track.displacement) == pytest.approx(0.04 if column == 0 else 0.08, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_intervals_hold_the_truth_as_often_as_they_say(tmp_path: Path) -> None:
     text = "".join(turned(tmp_path, f"slow-{k}", 0.0, seed=k) for k in range(40))
     found = evaluated(tmp_path, text).restoring
@@ -200,6 +201,7 @@ def campaign_of_tows(folder: Path, angles: tuple[float, ...], *, zeros: bool = T
 ANGLES = (-12.0, -8.0, -4.0, 4.0, 8.0, 12.0)
 
 
+@pytest.mark.slow
 def test_derivatives_of_a_drifting_model(tmp_path: Path) -> None:
     found = evaluated(tmp_path, campaign_of_tows(tmp_path, ANGLES), "horizontal")
     assert found.failed == ()
@@ -229,6 +231,7 @@ def _near(value: object) -> object:
     return pytest.approx(value, rel=1e-9, nan_ok=True) if numbers else value
 
 
+@pytest.mark.slow
 def test_evaluation_and_coefficients_say_the_same(tmp_path: Path) -> None:
     found = evaluated(tmp_path, campaign_of_tows(tmp_path, ANGLES), "horizontal")
     told = found.derivatives

@@ -36,6 +36,7 @@ def roll(tmp_path: Path) -> Path:
     return tmp_path / "roll.toml"
 
 
+@pytest.mark.slow
 def test_the_cause_is_named_added_and_gone(roll: Path) -> None:
     before = run("pendulum", roll, *FEW)
     assert before.stdout.startswith("roll: The cause: ")
@@ -130,6 +131,7 @@ def suspended(folder: Path, *effects: PendulumEffect) -> Path:
 ASKED = ("--effects", "line_excess,clamp_mass,spacing,line_twist", "--most", "2")
 
 
+@pytest.mark.slow
 def test_longer_lines_of_a_rod_are_named_added_and_gone(tmp_path: Path) -> None:
     damped = make_effect("viscous_damping", damping_ratio=1e-3, coordinate="yaw")
     path = suspended(tmp_path, make_effect("line_excess", excess_m=EXCESS_M), damped)
@@ -141,6 +143,7 @@ def test_longer_lines_of_a_rod_are_named_added_and_gone(tmp_path: Path) -> None:
     assert run("pendulum", path, *ASKED).stdout.startswith(f"{path.stem}: No gap: ")
 
 
+@pytest.mark.slow
 def test_an_effect_in_the_file_is_the_body_stated_so(tmp_path: Path) -> None:
     path = suspended(tmp_path)
     stated = path.read_text()

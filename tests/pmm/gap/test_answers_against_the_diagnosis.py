@@ -37,6 +37,7 @@ def test_coefficients_that_had_to_be_moved_are_the_answer(
     assert sum(shares.values()) == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 def test_an_effect_beside_coefficients_that_had_to_be_moved(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -58,6 +58,7 @@ def until(design: Path, goal: str, *more: str) -> Result:
     return CliRunner().invoke(cli, words)
 
 
+@pytest.mark.slow
 def test_what_truly_is_other_is_known_and_the_story_is_told(tmp_path: Path) -> None:
     done = until(written(tmp_path), "cause", "--approve", "all", "--json")
     assert done.exit_code == 0, f"{done.output}{done.exception}"
@@ -77,6 +78,7 @@ def test_what_truly_is_other_is_known_and_the_story_is_told(tmp_path: Path) -> N
     assert "eccentricity-error" in page.read_text()
 
 
+@pytest.mark.slow
 def test_the_diagnosis_goes_to_a_process_of_its_own(tmp_path: Path) -> None:
     goal = goal_of(read_design(written(tmp_path)), tmp_path / "c")
     assert isinstance(goal, CauseGoal)

@@ -101,6 +101,7 @@ def at_each(both: dict[str, Any]) -> list[tuple[dict[str, Any], dict[str, Any]]]
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("settings", SETTINGS)
 def test_names_units_form_point_and_system_are_the_commands(told: Told, settings: str) -> None:
     both = told[settings]
@@ -114,6 +115,7 @@ def test_names_units_form_point_and_system_are_the_commands(told: Told, settings
     assert all(row["unit"] == entry["unit"] for entry, row in pairs)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("settings", SETTINGS)
 def test_both_find_the_same_and_no_bias_where_nothing_is_missing(told: Told, settings: str) -> None:
     assert told[settings]["gap"]["verdict"] == "none"
@@ -124,6 +126,7 @@ def test_both_find_the_same_and_no_bias_where_nothing_is_missing(told: Told, set
         assert row["with_effect"] is row["u_with"] is row["bias_u"] is None
 
 
+@pytest.mark.slow
 def test_stated_derivatives_are_those_that_the_simulator_was_given(told: Told) -> None:
     plan, memory = told["plan"], np.zeros((2, 2, 2))
     if "radiation" in plan:

@@ -69,6 +69,7 @@ def test_it_says_so(ready: Prepared) -> None:
     assert "frequency: +0.001" in notes[2]
 
 
+@pytest.mark.slow
 def test_a_stated_tolerance_goes_before(rig: Path) -> None:
     case = rig / "case.toml"
     case.write_text("[tolerances]\nstrut_phase_rad = 0.002\n")

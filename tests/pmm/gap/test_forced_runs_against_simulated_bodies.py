@@ -39,6 +39,7 @@ def run(*arguments: str | Path) -> Result:
     return CliRunner().invoke(cli, ["gap", *map(str, arguments)])
 
 
+@pytest.mark.slow
 def test_friction_of_the_examples_guide_is_found_and_added(tmp_path: Path) -> None:
     text = (FOLDER / "heave.toml").read_text().replace('record = "', f'record = "{FOLDER}/')
     path = tmp_path / "heave.toml"

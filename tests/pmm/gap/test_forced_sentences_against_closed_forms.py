@@ -94,6 +94,7 @@ def said(path: Path) -> tuple[str, str, str]:
 EVERY = tuple(range(len(RUNS)))
 
 
+@pytest.mark.slow
 def test_a_sign_reversed_in_all_runs_is_the_cause(tmp_path: Path) -> None:
     first, second, third = said(written(tmp_path, heave_reversed=EVERY))
     assert first.startswith("The cause: ")
@@ -104,6 +105,7 @@ def test_a_sign_reversed_in_all_runs_is_the_cause(tmp_path: Path) -> None:
     assert "a push by hand in the positive direction" in third
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("runs", "said_of"), [((1,), "Record 1 is half"), ((0, 2), "Records 0 and 2 are half")]
 )
@@ -127,6 +129,7 @@ def test_tolerances_do_the_same_beside_a_reversed_sign(tmp_path: Path) -> None:
     np.testing.assert_allclose(other, own, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_two_scales_are_headed_together_and_the_share_is_theirs(tmp_path: Path) -> None:
     first, second, third = said(written(tmp_path, gain=1.05))
     assert first.startswith(
@@ -136,6 +139,7 @@ def test_two_scales_are_headed_together_and_the_share_is_theirs(tmp_path: Path) 
     assert "apart by a known weight on the force gauge" in third
 
 
+@pytest.mark.slow
 def test_damping_is_named_alone_and_takes_its_share_at_resonance(tmp_path: Path) -> None:
     more = 1.25 * DAMPING
     first, second, _ = said(written(tmp_path, damping=more))
@@ -153,6 +157,7 @@ def test_a_force_that_grows_is_followed(tmp_path: Path, growth: float) -> None:
         assert np.abs((problem.observed - problem.nominal)[rows]).max() < 1e-3
 
 
+@pytest.mark.slow
 def test_a_delay_of_more_than_half_a_period_is_found(tmp_path: Path) -> None:
     runs = ((0.6, 30.0), (0.9, 30.0), (1.3, 60.0))
     first, second, _ = said(written(tmp_path, late_s=0.45, runs=runs))

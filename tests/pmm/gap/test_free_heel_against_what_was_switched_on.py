@@ -43,6 +43,7 @@ def test_a_rig_that_is_as_it_is_believed_has_no_gap(tmp_path: Path) -> None:
     assert told(tmp_path)["verdict"] == "none"
 
 
+@pytest.mark.slow
 def test_friction_is_named_with_its_size(tmp_path: Path) -> None:
     found = told(tmp_path, "--effect", f"coulomb-friction:friction_n={FRICTION_N}")
     assert found["verdict"] == "effect"

@@ -70,11 +70,13 @@ def told(few: None, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Resul
     return found | texts  # type: ignore[return-value]
 
 
+@pytest.mark.slow
 def test_all_of_them_succeed(told: dict[str, Result]) -> None:
     for name in ("simulate", "diagnose", "json", "add", "again"):
         assert told[name].exit_code == 0, (name, told[name].output)
 
 
+@pytest.mark.slow
 def test_python_is_told_the_same(told: dict[str, Result | GapResult]) -> None:
     ours, command = told["python"], told["json"]
     assert isinstance(ours, GapResult)
@@ -90,6 +92,7 @@ def test_python_is_told_the_same(told: dict[str, Result | GapResult]) -> None:
     assert ours.plot_ranking()
 
 
+@pytest.mark.slow
 def test_a_reader_who_stops_reading_has_page_and_plan_all_the_same(
     few: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -108,6 +111,7 @@ def test_a_reader_who_stops_reading_has_page_and_plan_all_the_same(
     assert tomllib.loads(Path("next.toml").read_text())
 
 
+@pytest.mark.slow
 def test_friction_is_found_and_its_size(told: dict[str, Result]) -> None:
     said = told["diagnose"].stdout
     assert said.startswith(
@@ -117,6 +121,7 @@ def test_friction_is_found_and_its_size(told: dict[str, Result]) -> None:
     assert low - 0.002 < TRUTH_N < high + 0.002
 
 
+@pytest.mark.slow
 def test_withheld_runs_are_predicted(told: dict[str, Result]) -> None:
     found = json.loads(told["json"].stdout)
     assert found["schema"] == SCHEMA
@@ -131,6 +136,7 @@ def test_withheld_runs_are_predicted(told: dict[str, Result]) -> None:
     assert {one["what"]: one["stated_u"] for one in found["walk"]}["forces"] > 10.0
 
 
+@pytest.mark.slow
 def test_the_bias_of_the_damping_is_that_of_friction(told: dict[str, Result]) -> None:
     """Two struts with friction F take the work of 8 F / (pi omega x), x being the amplitude."""
     found = json.loads(told["json"].stdout)
@@ -152,6 +158,7 @@ def table_of(page: str, name: str) -> list[list[str]]:
     return [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in rows]
 
 
+@pytest.mark.slow
 def test_the_page_has_the_documents_numbers(told: dict[str, Result]) -> None:
     found, page = json.loads(told["json"].stdout), str(told["held out"])
     (effect,) = found["effects"]  # the other is out of the question
@@ -165,6 +172,7 @@ def test_the_page_has_the_documents_numbers(told: dict[str, Result]) -> None:
     assert [(row[0], row[4]) for row in table_of(page, "Walk")][: len(steps)] == steps
 
 
+@pytest.mark.slow
 def test_cells_and_the_numbers_in_them_sum_to_the_steps(told: dict[str, Result]) -> None:
     found = json.loads(told["json"].stdout)
     parts = {"trend": 5, "cycle scatter": 2, "between the harmonics": 2, "line": 2}
@@ -181,6 +189,7 @@ def test_cells_and_the_numbers_in_them_sum_to_the_steps(told: dict[str, Result])
     assert {(name, what) for name in ("force_aft", "force_fore") for what in parts} <= labels
 
 
+@pytest.mark.slow
 def test_every_key_of_the_document_is_on_the_page(told: dict[str, Result]) -> None:
     (section,) = re.findall(r"^## What `--json` prints\n(.*?)^## ", PAGE, re.DOTALL | re.MULTILINE)
     rows = re.findall(r"^\| (`.*?) \| (.*) \|$", section, flags=re.MULTILINE)
@@ -198,6 +207,7 @@ def test_no_paragraph_of_the_gap_pages_is_longer_than_a_reader() -> None:
         assert len(longest) < 900, f"{path.name}: {longest[:80]}"
 
 
+@pytest.mark.slow
 def test_the_effect_is_in_the_file_and_the_old_file_is_kept(told: dict[str, Result]) -> None:
     file, kept = str(told["file"]), str(told["kept"])
     assert kept == (HOUSE / "examples" / "gap" / "campaign.toml").read_text()
@@ -207,10 +217,12 @@ def test_the_effect_is_in_the_file_and_the_old_file_is_kept(told: dict[str, Resu
     assert added["parameters"]["friction_n"] == pytest.approx(TRUTH_N, rel=0.02)
 
 
+@pytest.mark.slow
 def test_the_cured_simulator_has_no_gap(told: dict[str, Result]) -> None:
     assert told["again"].stdout.startswith("gap: No gap: ")
 
 
+@pytest.mark.slow
 def test_a_bias_is_told_only_of_an_effect_that_is_named(told: dict[str, Result]) -> None:
     assert {len(row) for row in table_of(str(told["page"]), "Coefficients")} == {6}
     assert {len(row) for row in table_of(str(told["cured"]), "Coefficients")} == {4}
@@ -220,11 +232,13 @@ def test_a_bias_is_told_only_of_an_effect_that_is_named(told: dict[str, Result])
     assert "bias" not in str(told["cured"]).lower()
 
 
+@pytest.mark.slow
 def test_an_effect_is_not_added_twice(told: dict[str, Result]) -> None:
     assert told["twice"].exit_code == 2
     assert "coulomb-friction is in [[effects]] already" in told["twice"].stderr
 
 
+@pytest.mark.slow
 def test_the_page_stands_alone(told: dict[str, Result]) -> None:
     page = str(told["page"])
     assert page.count("<svg") == 4

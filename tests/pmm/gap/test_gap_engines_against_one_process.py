@@ -85,11 +85,13 @@ def assert_same(one: dict[str, Any], other: dict[str, Any]) -> None:
             assert right[place] == value, place
 
 
+@pytest.mark.slow
 def test_two_processes(rig: Path, alone: dict[str, Any]) -> None:
     assert alone["ranking"][0]["answer"] == "coulomb-friction"
     assert_same(alone, found(rig, "--jobs", "2"))
 
 
+@pytest.mark.slow
 def test_a_board_in_two_processes(board: Path, answers: dict[str, bytes], tmp_path: Path) -> None:
     assert answered(board, tmp_path / "two", "--jobs", "2") == answers
 
@@ -103,6 +105,7 @@ def test_a_cluster(
         assert answered(board, tmp_path / "cluster", "--scheduler", address) == answers
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_is_not_there_is_named(
     board: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -114,6 +117,7 @@ def test_a_scheduler_that_is_not_there_is_named(
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_a_board_has_one_engine(board: Path, tmp_path: Path) -> None:
     both = ("--jobs", "2", "--scheduler", "tcp://127.0.0.1:9")
     done = run("gap", "answer", board, "--output", tmp_path, *both)
@@ -121,6 +125,7 @@ def test_a_board_has_one_engine(board: Path, tmp_path: Path) -> None:
     assert "give --jobs or --scheduler, not both" in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "shared"),
     [

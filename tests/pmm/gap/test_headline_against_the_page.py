@@ -201,6 +201,7 @@ def reports(draw: st.DrawFn) -> GapReport:
     )  # fmt: skip
 
 
+@pytest.mark.slow
 @given(report=reports())
 def test_any_diagnosis(report: GapReport, tmp_path_factory: pytest.TempPathFactory) -> None:
     path = tmp_path_factory.getbasetemp() / "hand.html"
@@ -247,6 +248,7 @@ def shown(rig: Path, page: Path, *options: str) -> Shown:
     return Shown(text.stdout, document, page.read_text())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "options", "verdict"),
     [

@@ -48,6 +48,7 @@ def own(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_an_effect_of_ones_own_is_found_with_its_size(own: Path, tmp_path: Path) -> None:
     effect = make_effect("quintic_restoring", user_effects(own), quintic=QUINTIC)
     bench = decay_bench(AFLOAT, release=0.5).with_effects([effect])
@@ -68,6 +69,7 @@ def test_an_effect_of_ones_own_is_found_with_its_size(own: Path, tmp_path: Path)
     assert set(found["causes"]) <= {*names.split(","), "quintic_restoring"}
 
 
+@pytest.mark.slow
 def test_names_alone_restrict_and_what_a_record_cannot_show_is_said() -> None:
     done = run(ROLL, "--effects", "quadratic_drag", "--effects", "inertia,line_twist", "--json")
     assert done.exit_code == 0, done.output

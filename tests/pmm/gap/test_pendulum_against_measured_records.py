@@ -68,6 +68,7 @@ def part(rows: FloatArray, name: str) -> FloatArray:
     return np.asarray(kept.reshape(-1, each, 2).mean(axis=1), np.float64)
 
 
+@pytest.mark.slow
 @measured
 @pytest.mark.parametrize("name", ["whole", "first half", "second half", "10 Hz", "5 Hz"])
 def test_roll_decay_misses_damping_beyond_linear(name: str, tmp_path: Path) -> None:
@@ -90,6 +91,7 @@ def test_roll_decay_misses_damping_beyond_linear(name: str, tmp_path: Path) -> N
     assert verdict.by_class["damping beyond linear"] > 0.99
 
 
+@pytest.mark.slow
 @measured
 def test_quadratic_drag_foretells_the_roll_decay(tmp_path: Path) -> None:
     problem = roll(tmp_path, (SHARED / "roll_decay" / "model_test_21337.csv.gz").as_posix())
@@ -132,6 +134,7 @@ def rod(folder: Path, half: int | None = None) -> PendulumProblem:
     return load_problem(file)
 
 
+@pytest.mark.slow
 @measured
 @pytest.mark.parametrize("half", [None, 0, 1])
 def test_what_makes_a_rods_suspensions_differ_cannot_be_told(
@@ -141,6 +144,7 @@ def test_what_makes_a_rods_suspensions_differ_cannot_be_told(
     assert judge(weigh(problem, causes_for(problem.trials), most=2)).said == UNTOLD
 
 
+@pytest.mark.slow
 @measured
 def test_lines_and_clamps_of_a_rod_are_as_large_as_from_the_gyradii(tmp_path: Path) -> None:
     problem = rod(tmp_path)

@@ -66,6 +66,7 @@ def run(*arguments: str | Path) -> Result:
     return CliRunner().invoke(cli, ["gap", "pendulum", *map(str, arguments)])
 
 
+@pytest.mark.slow
 def test_drag_on_a_knife_edge_is_named_in_the_document(tmp_path: Path) -> None:
     path = recorded(tmp_path, compound_bench(ON_EDGE, release_rad=0.2), "angle", PIVOT)
     done = run(path, "--most", "1", "--json")
@@ -79,6 +80,7 @@ def test_drag_on_a_knife_edge_is_named_in_the_document(tmp_path: Path) -> None:
     assert all(one["foretold"][0]["shrinkage"] > 0.9 for one in found["withheld"])
 
 
+@pytest.mark.slow
 def test_drag_of_a_body_afloat_in_the_table_and_the_figure(tmp_path: Path) -> None:
     path = recorded(tmp_path, decay_bench(AFLOAT, release=0.2), "roll", FLOATING)
     done = run(path, "--most", "1", "--plot", tmp_path / "figures")
@@ -92,6 +94,7 @@ def test_drag_of_a_body_afloat_in_the_table_and_the_figure(tmp_path: Path) -> No
     assert figure.read_text().count("<svg") == 1
 
 
+@pytest.mark.slow
 def test_the_page_stands_alone(tmp_path: Path) -> None:
     path, page = HOUSE / "examples" / "decay" / "roll.toml", tmp_path / "gap.html"
     done = run(path, "--effects", "quadratic_drag,inertia", "--page", page)
@@ -112,6 +115,7 @@ def test_the_examples_record_is_what_its_script_makes() -> None:
     np.testing.assert_allclose(made, kept, atol=2e-6)
 
 
+@pytest.mark.slow
 def test_a_law_that_is_told_needs_no_further_record() -> None:
     path = HOUSE / "examples" / "decay" / "roll.toml"
     found = json.loads(run(path, "--without", "power_drag", "--most", "1", "--json").stdout)
@@ -121,6 +125,7 @@ def test_a_law_that_is_told_needs_no_further_record() -> None:
     assert not found["next"]
 
 
+@pytest.mark.slow
 def test_what_would_tell_a_law_is_said(tmp_path: Path) -> None:
     path = recorded(tmp_path, decay_bench(AFLOAT, release=0.01), "roll", FLOATING)
     names = "quadratic_drag,viscous_damping,bearing_friction"
@@ -169,6 +174,7 @@ def test_a_record_that_cannot_be_the_bodys_is_refused(
     assert said in " ".join(done.stderr.split())
 
 
+@pytest.mark.slow
 def test_nothing_is_added_where_the_answer_is_unknown(tmp_path: Path) -> None:
     path = recorded(tmp_path, decay_bench(AFLOAT, release=0.2), "roll", FLOATING)
     before = path.read_text()

@@ -38,6 +38,7 @@ def friction(document: dict[str, Any]) -> float:
     return float(effect["parameters"]["friction_n"]["value"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "sensors",
     [
@@ -61,6 +62,7 @@ def test_a_sensor_that_nobody_has_is_refused(rig: Path) -> None:
     assert "--sensors: no channel 'force_for'; did you mean 'force_fore'?" in done.stderr
 
 
+@pytest.mark.slow
 def test_one_amplitude(rig: Path, tmp_path: Path) -> None:
     """The law in amplitude is hidden; friction is named by its harmonics."""
     _, *runs = (rig / "campaign.toml").read_text().split("[[runs]]")
@@ -69,6 +71,7 @@ def test_one_amplitude(rig: Path, tmp_path: Path) -> None:
     assert friction(found(campaign)) == pytest.approx(FRICTION_N, rel=0.05)
 
 
+@pytest.mark.slow
 def test_runs_without_recording(rig: Path, tmp_path: Path) -> None:
     campaign = rewritten(rig, tmp_path, "", "")
     (campaign / "heave-1.10-20.nc").unlink()
@@ -109,6 +112,7 @@ def in_degrees(record: xr.Dataset) -> xr.Dataset:
     return record.assign(shaft_angle=angle.copy(data=np.degrees(angle.values) % 360.0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("change", "said"),
     [
@@ -125,6 +129,7 @@ def test_one_bad_run(rig: Path, tmp_path: Path, change: Any, said: str) -> None:
     assert friction(document) == pytest.approx(FRICTION_N, rel=0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("torn_periods", "left_out"), [((1, 4), False), ((0, 1, 3, 4), True)])
 def test_samples_that_are_missing_in_some_periods(
     rig: Path, tmp_path: Path, torn_periods: tuple[int, ...], left_out: bool
@@ -146,6 +151,7 @@ def test_samples_that_are_missing_in_some_periods(
         assert "whole periods have no missing samples" in document["left_out"]["heave-0.80-20"]
 
 
+@pytest.mark.slow
 def test_shaft_angles_in_degrees_in_all_runs(rig: Path, tmp_path: Path) -> None:
     campaign = with_angles(rig, tmp_path, in_degrees)
     done = run("gap", campaign, *FEW)
@@ -154,6 +160,7 @@ def test_shaft_angles_in_degrees_in_all_runs(rig: Path, tmp_path: Path) -> None:
     assert "deg in place of rad? Then say the column's unit in the campaign" in done.stderr
 
 
+@pytest.mark.slow
 def test_shaft_angles_that_begin_anew_at_each_turn(rig: Path, tmp_path: Path) -> None:
     def wrapped(record: xr.Dataset) -> xr.Dataset:
         angle = record["shaft_angle"]
@@ -164,6 +171,7 @@ def test_shaft_angles_that_begin_anew_at_each_turn(rig: Path, tmp_path: Path) ->
     assert friction(document) == pytest.approx(FRICTION_N, rel=0.05)
 
 
+@pytest.mark.slow
 def test_nominal_model_far_off(rig: Path, tmp_path: Path) -> None:
     """45 kg of added mass stated where there are 75, in a tolerance of 20 %."""
     campaign = rewritten(rig, tmp_path, "[[75.0, 3.0]", "[[45.0, 3.0]")
@@ -198,6 +206,7 @@ def test_an_effect_of_the_users_own_that_is_broken(
     assert said in done.stderr
 
 
+@pytest.mark.slow
 def test_an_effect_of_the_users_own(tmp_path: Path) -> None:
     own = tmp_path / "rubber_boot.py"
     own.write_text(example())
@@ -213,6 +222,7 @@ def test_an_effect_of_the_users_own(tmp_path: Path) -> None:
     assert again.stdout.startswith("gap: No gap: ")
 
 
+@pytest.mark.slow
 def test_a_zero_that_drifts_over_the_campaign(tmp_path: Path) -> None:
     """Not within the runs alone, and not a zero that is off by one amount."""
     rig = made(tmp_path, "--effect", "campaign-drift:aft_n_s=2e-4")

@@ -50,6 +50,7 @@ def whole(start: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, 
     return rig, pursue(rig, start)
 
 
+@pytest.mark.slow
 def test_a_pursuit_that_starts_unsure_finds_it(whole: tuple[Path, Result]) -> None:
     rig, done = whole
     assert done.exit_code == 0, done.output
@@ -65,6 +66,7 @@ def test_a_pursuit_that_starts_unsure_finds_it(whole: tuple[Path, Result]) -> No
     assert all((rig / f"{name}.nc").is_file() for name in added)
 
 
+@pytest.mark.slow
 def test_a_pursuit_killed_after_its_last_plan_goes_on(
     whole: tuple[Path, Result], start: Path, tmp_path: Path
 ) -> None:
@@ -79,6 +81,7 @@ def test_a_pursuit_killed_after_its_last_plan_goes_on(
     assert json.loads(resumed.stdout)["decisions"] == json.loads(done.stdout)["decisions"]
 
 
+@pytest.mark.slow
 def test_a_folder_waits_for_its_recordings(rig: Path, whole: tuple[Path, Result]) -> None:
     made = whole[0]
     shutil.copy(made / "next-1.toml", rig)
@@ -94,6 +97,7 @@ def test_a_folder_waits_for_its_recordings(rig: Path, whole: tuple[Path, Result]
     assert (rig / "campaign.toml").read_text() == before
 
 
+@pytest.mark.slow
 def test_nobody_to_ask_is_said_and_nothing_written(rig: Path) -> None:
     found = run("gap", "pursue", rig, *ONLY)
     assert found.exit_code == 1
@@ -101,6 +105,7 @@ def test_nobody_to_ask_is_said_and_nothing_written(rig: Path) -> None:
     assert not list(rig.glob("next-*.toml"))
 
 
+@pytest.mark.slow
 def test_what_is_not_approved_is_not_planned(rig: Path, start: Path) -> None:
     told = ("gap", "pursue", rig, "--simulated", start / "truth.toml", *ONLY)
     found = json.loads(run(*told, given="n\n").stdout)
@@ -108,6 +113,7 @@ def test_what_is_not_approved_is_not_planned(rig: Path, start: Path) -> None:
     assert not list(rig.glob("next-*.toml"))
 
 
+@pytest.mark.slow
 def test_what_would_tell_outside_is_said_when_the_rig_can_do_no_more(rig: Path) -> None:
     (rig / "case.toml").write_text(ONE_RUN_MADE_ALREADY)
     twins = ("--effects", "coulomb-friction,cable", *ONLY[2:])
@@ -116,6 +122,7 @@ def test_what_would_tell_outside_is_said_when_the_rig_can_do_no_more(rig: Path) 
     assert "cable disconnected" in found["remark"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "old", "new", "said"),
     [

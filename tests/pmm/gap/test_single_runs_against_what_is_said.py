@@ -44,6 +44,7 @@ def with_zero(record: xr.Dataset) -> xr.Dataset:
     return record.assign(force_aft=record["force_aft"] + 5.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", [with_gain, with_zero])
 def test_a_gain_or_zero_off_in_one_run(
     clean: Path, tmp_path: Path, change: Callable[[xr.Dataset], xr.Dataset]
@@ -62,6 +63,7 @@ def test_a_gain_or_zero_off_in_one_run(
     assert notes(campaign, option, name) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", [with_gain, with_zero])
 def test_a_gain_or_zero_off_in_one_run_beside_friction_in_all(
     tmp_path: Path, change: Callable[[xr.Dataset], xr.Dataset]
@@ -81,10 +83,12 @@ def test_a_gain_or_zero_off_in_one_run_beside_friction_in_all(
     assert note.startswith(f"run {ODD} is not foretold: ")
 
 
+@pytest.mark.slow
 def test_nothing_is_said_of_runs_as_they_should_be(clean: Path) -> None:
     assert notes(clean) == []
 
 
+@pytest.mark.slow
 def test_an_effect_in_all_runs_is_no_bad_run(tmp_path: Path) -> None:
     assert not [one for one in notes(with_friction(tmp_path)) if one.startswith("run ")]
 
@@ -112,6 +116,7 @@ def cut_short(rig: Path, folder: Path, value: float, *periods: int, **how: Any) 
     return found.cut_short.get(ODD, "")
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(("period", "left"), [(1, 8), (4, 5), (6, 6), (9, 9)])
 def test_one_missing_sample(clean: Path, tmp_path: Path, period: int, left: int) -> None:
     """The longer part before or after the period that has it is used."""
@@ -141,6 +146,7 @@ def test_a_period_that_settles_is_nothing_to_say(clean: Path, tmp_path: Path) ->
     assert cut_short(clean, tmp_path, 1e4, 0, samples=1, names=["force_aft"]) == ""
 
 
+@pytest.mark.slow
 def test_a_run_that_is_cut_short_is_noted(clean: Path, tmp_path: Path) -> None:
     def change(record: xr.Dataset) -> Any:
         return damaged(record, np.nan, 4, samples=1, names=["force_aft"])

@@ -60,6 +60,7 @@ def test_what_these_runs_do_not_show_does_not_move(table: dict[str, dict[str, An
     assert all(0.0 < own["u"] < 0.9 for one in table.values() for own in one["moved"].values())
 
 
+@pytest.mark.slow
 def test_people_read_the_same(rig: Path) -> None:
     said = run("gap", rig, "--tolerances").output
     assert f"1 of {len(fields(Tolerances))} tolerances are stated" in said

@@ -31,6 +31,7 @@ def test_what_the_same_rig_made_is_foretold(rubbing: Path) -> None:
     assert found["notes"] == []
 
 
+@pytest.mark.slow
 def test_a_single_run_that_is_not_foretold_may_itself_be_off(rubbing: Path, tmp_path: Path) -> None:
     smooth = made(tmp_path, names=NAMES)
     mixed = shutil.copytree(rubbing, tmp_path / "mixed")
@@ -40,6 +41,7 @@ def test_a_single_run_that_is_not_foretold_may_itself_be_off(rubbing: Path, tmp_
     assert f"run {FAST[0]} is not foretold: coulomb-friction leaves" in found["notes"][0]
 
 
+@pytest.mark.slow
 def test_what_a_rig_without_friction_made_is_not(rubbing: Path, tmp_path: Path) -> None:
     """The fitting runs have friction, the withheld ones none."""
     smooth = made(tmp_path, names=NAMES)

@@ -70,6 +70,7 @@ def offset(document: dict[str, Any]) -> dict[str, float]:
     return size
 
 
+@pytest.mark.slow
 def test_they_are_runs_among_the_others(rig: Path) -> None:
     document = found(rig)
     assert offset(document)["value"] == pytest.approx(OFFSET_N, abs=3e-3)
@@ -80,6 +81,7 @@ def test_they_are_runs_among_the_others(rig: Path) -> None:
     assert not {one for one in withheld if one.endswith(" 0 mm")}
 
 
+@pytest.mark.slow
 def test_runs_are_withheld_as_ever(rig: Path) -> None:
     document = found(rig, "--hold-out", "frequency=1.1")
     assert offset(document)["value"] == pytest.approx(OFFSET_N, abs=3e-3)
@@ -95,6 +97,7 @@ def loaded_with_a_newton(record: xr.Dataset) -> xr.Dataset:
     return loaded(record, 1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("said", "names"), [("zero-8", ["zero-8"]), ("medium=rest", [*ZEROS])], ids=["name", "all"]
 )
@@ -114,6 +117,7 @@ def test_they_are_withheld_and_predicted(
     assert len(told) == 1
 
 
+@pytest.mark.slow
 def test_one_that_is_off_is_named_and_takes_no_name_away(tmp_path: Path) -> None:
     """Friction does not show at rest: what a zero record has besides says nothing of it."""
     (tmp_path / "zeros.toml").write_text(with_zeros())
@@ -139,6 +143,7 @@ def test_a_record_at_rest_that_nobody_compares_cannot_be_withheld(
     assert "zero runs alone are compared, and this is of kind 'pluck'" in done.stderr
 
 
+@pytest.mark.slow
 def test_without_struts_nothing_tells_where_they_stand(rig: Path) -> None:
     loaded = load_campaign(rig, sensors=("photocell", "force_aft", "force_fore"))
     assert {*loaded.left_out} == {*ZEROS}
@@ -146,6 +151,7 @@ def test_without_struts_nothing_tells_where_they_stand(rig: Path) -> None:
     assert not loaded.at_rest
 
 
+@pytest.mark.slow
 def test_what_cannot_be_used_is_said(rig: Path, tmp_path: Path) -> None:
     copy = shutil.copytree(rig, tmp_path / "copy")
     (copy / "zero-5.nc").unlink()
@@ -158,6 +164,7 @@ def test_what_cannot_be_used_is_said(rig: Path, tmp_path: Path) -> None:
     assert [one.name for one in loaded.at_rest] == ["zero-1"]
 
 
+@pytest.mark.slow
 def test_what_run_control_has_put_in_folders_is_used(rig: Path, tmp_path: Path) -> None:
     copy = shutil.copytree(rig, tmp_path / "copy")
     for name in ZEROS:
@@ -166,6 +173,7 @@ def test_what_run_control_has_put_in_folders_is_used(rig: Path, tmp_path: Path) 
     assert [one.name for one in load_campaign(copy).at_rest] == list(ZEROS)
 
 
+@pytest.mark.slow
 def test_one_that_nobody_numbers_is_left_out(rig: Path, tmp_path: Path) -> None:
     copy = shutil.copytree(rig, tmp_path / "copy")
     path = copy / "campaign.toml"
@@ -173,6 +181,7 @@ def test_one_that_nobody_numbers_is_left_out(rig: Path, tmp_path: Path) -> None:
     assert "nothing says when 'zero-8' was made" in load_campaign(copy).left_out["zero-8"]
 
 
+@pytest.mark.slow
 def test_run_controls_own_are_read_within_their_gate(tmp_path: Path) -> None:
     """The simulated gauges' zero is none, and the gate is open for a second: ten blocks."""
     runs = [at_rest("zero-1", RunKind.ZERO), oscillation(), at_rest("zero-2", RunKind.ZERO)]

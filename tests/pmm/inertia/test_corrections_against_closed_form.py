@@ -178,6 +178,7 @@ def test_what_a_rod_needs_is_said(text: str, message: str, tmp_path: Path) -> No
         pendulum.run(write(tmp_path, text))
 
 
+@pytest.mark.slow
 def test_the_principal_angles_uncertainty_is_that_of_its_slopes() -> None:
     angles, true = [0.1, 1.0, 2.2], np.array([0.2, 1.1, 0.08])
     s, c = np.sin(angles), np.cos(angles)

@@ -60,6 +60,7 @@ def test_the_examples_are_read(name: str) -> None:
     assert read_job(EXAMPLES / f"{name}.toml", KINDS[name]).table.name
 
 
+@pytest.mark.slow
 @given(data=st.data())
 def test_a_spoiled_file_is_read_or_refused(
     data: st.DataObject, tmp_path_factory: pytest.TempPathFactory

@@ -63,6 +63,7 @@ def test_a_common_error_of_all_angles_turns_body_about_nothing_else(tmp_path: Pa
     assert own["cg_z_m"].uncertainty == pytest.approx(abs(moved[1]), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_uncertainties_against_trials() -> None:
     generator = np.random.default_rng(1)
     points, u_point, u_angle = ((0.5, -0.8), (-0.6, -0.7), (0.0, -1.1), (0.9, 0.1)), 1e-3, 3e-3

@@ -135,6 +135,7 @@ def test_raw_trace(tmp_path: Path) -> None:
 ROLL = (("model_test_21337.csv.gz", "time"), ("fnpf_kvlcc2_rolldecay_0kn.csv.gz", "Time"))
 
 
+@pytest.mark.slow
 def test_roll_decay_of_test_and_simulation(tmp_path: Path) -> None:
     """The periods agree, the decay does not; GM gives the inertia, the water's included."""
     periods, damping, inertias = [], [], []

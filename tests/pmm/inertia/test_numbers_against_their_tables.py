@@ -47,6 +47,7 @@ def test_the_same_document_twice(hull: Outcome) -> None:
     assert as_data(document(hull)) == as_data(document(again))
 
 
+@pytest.mark.slow
 def test_the_table_prints_the_documents_numbers(hull: Outcome) -> None:
     arguments = ["inertia", "bifilar", str(EXAMPLES / "hull.toml")]
     printed = CliRunner().invoke(cli, arguments, catch_exceptions=False).stdout
@@ -55,6 +56,7 @@ def test_the_table_prints_the_documents_numbers(hull: Outcome) -> None:
     assert f"{row['interval_95'][0]:.5g} to {row['interval_95'][1]:.5g}" in printed
 
 
+@pytest.mark.slow
 def test_figures_of_records_are_drawn(hull: Outcome, tmp_path: Path) -> None:
     written = {
         path.name for path in write_figures(document(hull).figures, tmp_path, "hull", ("svg",))

@@ -71,6 +71,7 @@ def found(outcome: Outcome, name: str) -> tuple[float, float]:
     return one.value, one.uncertainty
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("channel", "header", "factor"),
     [
@@ -119,6 +120,7 @@ def hull(seed: int, yaw_rad: float = 0.06, sway_m: float = 0.04) -> PendulumReco
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("channel", "header", "factor", "oscillations"),
     [
@@ -152,6 +154,7 @@ def test_a_range_finder_and_motion_capture_on_two_lines(
     assert by_records[0] == pytest.approx(by_gates[0], rel=5e-4)
 
 
+@pytest.mark.slow
 def test_beats_are_counted_in_records(tmp_path: Path) -> None:
     """Yaw and sway of one size at the stern; three records of four beats each."""
     names = [
@@ -170,6 +173,7 @@ def test_beats_are_counted_in_records(tmp_path: Path) -> None:
     assert uncertainty < 0.01 * value
 
 
+@pytest.mark.slow
 def test_a_carried_inclinometer_and_motion_capture_see_the_same_amplitude(tmp_path: Path) -> None:
     """Below the upper pivot P2 it reads -0.05 of the angle: refused; below P1, 0.93 of it."""
     bench = swing_bench(release_rad=0.03).with_effects(losses("angle", 2e-5, 1e-3))

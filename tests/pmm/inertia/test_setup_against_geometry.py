@@ -46,6 +46,7 @@ def test_axes_and_centre_lie_where_the_test_says(tmp_path: Path) -> None:
     assert {"0.1 m", f"body: {1e3 * depth_m:.4g} mm"} <= shown
 
 
+@pytest.mark.slow
 def test_a_photo_is_within_the_page(tmp_path: Path) -> None:
     pixels = np.zeros((40, 2000, 3))
     pixels[:, :1000, 0] = 1.0

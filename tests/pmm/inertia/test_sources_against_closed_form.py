@@ -52,6 +52,7 @@ def test_one_gate_with_sway(more: str, within: float, tmp_path: Path) -> None:
     assert "single_run" in {flag.code for flag in outcome.flags}
 
 
+@pytest.mark.slow
 def test_both_pitch_modes_of_one_record(tmp_path: Path) -> None:
     gyradius, depth = 1.0, 0.4
     slow_s, fast_s = mode_periods(gyradius, depth, LINE_M, G)

@@ -62,6 +62,7 @@ def flagged(path: Path, shifted: float, seed: int) -> int:
     return count
 
 
+@pytest.mark.slow
 def test_contradictory_axes_are_flagged_and_clean_ones_are_not(tmp_path: Path) -> None:
     assert flagged(tmp_path, 5.0, seed=1) >= 97
     assert flagged(tmp_path, 0.0, seed=2) <= 2

@@ -80,6 +80,7 @@ def test_inertia_is_that_of_the_command() -> None:
     assert set(found.to_dataset()["name"].values) == set(results)
 
 
+@pytest.mark.slow
 def test_a_design_is_that_of_the_command() -> None:
     file = EXAMPLES / "horizontal" / "design.toml"
     found, told = pmm.open(file).design(), _json("plan", "design", str(file))
@@ -147,6 +148,7 @@ def test_a_notebook_shows_the_commands_tables(
     assert "force_aft" in heave._repr_html_()
 
 
+@pytest.mark.slow
 def test_figures_are_axes(heave: HarmonicsResult, coefficients: CoefficientsResult) -> None:
     drawn = [*heave.plot_phasors(), *(one for axes in coefficients.plot_budget().values()
                                       for one in axes)]  # fmt: skip
@@ -159,6 +161,7 @@ def test_figures_are_axes(heave: HarmonicsResult, coefficients: CoefficientsResu
         heave.plot("gate-9")
 
 
+@pytest.mark.slow
 def test_a_figure_of_several_runs_asks_which(campaign: Records) -> None:
     found = campaign.harmonics(channels=["force_aft"], harmonics=1)
     assert len(found.runs) > 1
@@ -259,6 +262,7 @@ def test_the_page_lists_what_there_is() -> None:
         assert f"`pmm.{name}(" in text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "block", [one for one in blocks("python") if one.page == PAGE and not one.reason], ids=str
 )

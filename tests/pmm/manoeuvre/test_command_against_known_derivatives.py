@@ -84,6 +84,7 @@ def rows(predicted: tuple[str, Prediction]) -> Rows:
     return {(one["manoeuvre"], one["name"]): one for one in found["quantities"]}
 
 
+@pytest.mark.slow
 def test_the_json_has_every_quantity_with_its_interval_and_criterion(rows: Rows) -> None:
     advance = rows["turning circle 35°, starboard", "advance"]
     assert advance["low"] < advance["value"] < advance["high"]
@@ -93,6 +94,7 @@ def test_the_json_has_every_quantity_with_its_interval_and_criterion(rows: Rows)
     assert rows["turning circle 35°, port", "transfer"]["limit"] is None
 
 
+@pytest.mark.slow
 def test_the_file_of_kcs_turns_as_its_published_numbers() -> None:
     status, output = _run(str(EXAMPLE.with_name("kcs.toml")), "--trials", "0", "--json")
     assert status == 0, output
@@ -109,6 +111,7 @@ def test_the_file_of_kcs_turns_as_its_published_numbers() -> None:
             assert told["value"] == pytest.approx(overshoot / DEGREES, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_the_page_beside_the_free_running_model_says_what_is_computed(rows: Rows) -> None:
     page = (ROOT / "docs" / "manoeuvre.md").read_text(encoding="utf-8")
     row = r"^\| ([^|`]+?) \| ([\d.]+)[^|]+\| [\d.]+[^|]+\| ([\d.]+)[^|]+\| [\d.]+[^|]+\|$"
@@ -123,6 +126,7 @@ def test_the_page_beside_the_free_running_model_says_what_is_computed(rows: Rows
             assert f"{computed:.{len(value.split('.')[1])}f}" == value, what
 
 
+@pytest.mark.slow
 def test_draws_spread_as_the_slope_says() -> None:
     """One uncertain derivative: the spread of the advance against its slope by differences."""
     file, spread = read_ship(EXAMPLE), 0.004
@@ -278,6 +282,7 @@ def test_doubts_stand_before_the_results_of_the_command(tmp_path: Path) -> None:
     assert json.loads(_run(str(SUBMERGED), "--trials", "0", "--json")[1])["doubts"] == []
 
 
+@pytest.mark.slow
 def test_a_report_has_the_manoeuvres_of_the_ship_beside_its_campaign(
     predicted: tuple[str, Prediction], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

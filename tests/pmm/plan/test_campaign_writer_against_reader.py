@@ -38,6 +38,7 @@ VALUES = st.recursive(
 )
 
 
+@pytest.mark.slow
 @given(st.dictionaries(TEXT, VALUES, max_size=4))
 def test_what_is_written_is_read_back(table: dict[str, Any]) -> None:
     assert tomllib.loads(toml_table("a", table)) == {"a": table}

@@ -177,6 +177,7 @@ def test_without_a_raw_log_a_changed_sample_costs_its_batch(run: Path) -> None:
     assert {"journal_changed", "samples_lost", "gap"} <= set(codes(run))
 
 
+@pytest.mark.slow
 def test_a_changed_recording_is_made_again(run: Path) -> None:
     truth = recorded(run)
     with h5py.File(run / "run.nc", "r+") as file:
@@ -233,6 +234,7 @@ def test_an_unharmed_run_is_no_matter(run: Path, command: str) -> None:
     assert pmm(command, run).exit_code == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["recover", "replay"])
 def test_a_run_of_a_version_that_knew_fewer_keys_is_no_matter(tmp_path: Path, command: str) -> None:
     of_today = RunHeader.to_json

@@ -74,6 +74,7 @@ def test_a_folder_that_is_not_there_is_wrong_usage(tmp_path: Path, command: str)
     assert "no such folder" in said.stderr
 
 
+@pytest.mark.slow
 def test_replay_prints_both_and_their_difference(tmp_path: Path) -> None:
     with session() as rig:
         recorder, _ = rig.record(tmp_path / "run", 400, LiveSettings(periods=2))

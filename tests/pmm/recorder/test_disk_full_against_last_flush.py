@@ -70,6 +70,7 @@ def test_a_disk_that_fills_stops_the_run_while_the_recording_still_fits(tmp_path
     )
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="RLIMIT_FSIZE is POSIX's")
 def test_files_that_may_not_grow_keep_what_they_have(tmp_path: Path) -> None:
     command = [sys.executable, "-c", FILLING, str(tmp_path / "run")]
@@ -95,6 +96,7 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
         subprocess.run(["umount", str(place)], check=True)  # noqa: S607
 
 
+@pytest.mark.slow
 def test_a_full_disk_keeps_what_was_flushed(small_disk: Path, tmp_path: Path) -> None:
     assert free_bytes(small_disk / "not" / "there" / "yet") <= 2**20
     folder = small_disk / "run"

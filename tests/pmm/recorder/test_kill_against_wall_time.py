@@ -10,6 +10,7 @@ from benchmarks.kill import kill_once
 MOMENTS = np.random.default_rng(7).uniform(0.6, 2.0, 2).round(3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("after_s", [0.02, *MOMENTS])
 def test_killed_while_it_records(tmp_path: Path, after_s: float) -> None:
     found = kill_once(tmp_path / "run", after_s, "60")

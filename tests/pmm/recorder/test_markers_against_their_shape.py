@@ -27,6 +27,7 @@ def closed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("key", KEYS)
 def test_a_value_of_any_shape_costs_no_sample(closed: Path, tmp_path: Path, key: str) -> None:
     good = json.loads((closed / MARKER).read_text(encoding="utf-8"))

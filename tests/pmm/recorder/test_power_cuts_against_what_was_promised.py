@@ -11,6 +11,7 @@ from tests.pmm.recorder.power_cuts import DISKS, cut, record
 CUTS = range(43, 55)
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("number", range(len(DISKS)))
 def test_a_cut_at_any_step(tmp_path: Path, number: int) -> None:
     run = record(number, tmp_path / "run")

@@ -47,6 +47,7 @@ def whole(run: Path) -> np.ndarray:
     return samples[:, 0 : samples.sample_count]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["closed", "killed"])
 def test_samples_come_back_bit_by_bit(runs: Path, tmp_path: Path, name: str) -> None:
     folder = lost(runs / name, tmp_path, "samples.arrows")
@@ -63,6 +64,7 @@ def test_samples_come_back_bit_by_bit(runs: Path, tmp_path: Path, name: str) -> 
     assert replay(folder, DRIVERS).same
 
 
+@pytest.mark.slow
 def test_doing_it_again_changes_nothing(runs: Path, tmp_path: Path) -> None:
     folder = lost(runs / "closed", tmp_path, "samples.arrows")
     found = recover(folder, DRIVERS)
@@ -72,6 +74,7 @@ def test_doing_it_again_changes_nothing(runs: Path, tmp_path: Path) -> None:
     assert {one.name: one.read_bytes() for one in folder.iterdir()} == before
 
 
+@pytest.mark.slow
 def test_pulses_that_are_lost_too_come_back(runs: Path, tmp_path: Path) -> None:
     folder = lost(runs / "closed", tmp_path, "samples.arrows", "pulses.jsonl")
     recover(folder, DRIVERS)
@@ -81,6 +84,7 @@ def test_pulses_that_are_lost_too_come_back(runs: Path, tmp_path: Path) -> None:
     assert len(told) == 6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("torn", [b"", b"ARROW? no"])
 def test_what_cannot_be_read_keeps_its_bytes(runs: Path, tmp_path: Path, torn: bytes) -> None:
     folder = lost(runs / "killed", tmp_path)
@@ -89,6 +93,7 @@ def test_what_cannot_be_read_keeps_its_bytes(runs: Path, tmp_path: Path, torn: b
     assert (folder / "samples.arrows.damaged-1").read_bytes() == torn
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.2, 0.5, 0.8, 0.95])
 def test_a_log_that_is_cut_as_well_gives_a_beginning(
     runs: Path, tmp_path: Path, share: float
@@ -105,6 +110,7 @@ def test_a_log_that_is_cut_as_well_gives_a_beginning(
     assert values.shape[1] > (share - 0.25) * truth.shape[1]
 
 
+@pytest.mark.slow
 def test_a_rig_whose_photocell_is_on_a_serial_line(tmp_path: Path) -> None:
     with session(serial=("photocell",), photocell={"driver": "timestamper"}) as rig:
         for _ in range(500):  # marks, so that the clock's fit is worth carrying over
@@ -120,6 +126,7 @@ def test_a_rig_whose_photocell_is_on_a_serial_line(tmp_path: Path) -> None:
     assert told.size >= 3
 
 
+@pytest.mark.slow
 def test_without_a_log_or_a_rig_nothing_is_touched(runs: Path, tmp_path: Path) -> None:
     folder = lost(runs / "killed", tmp_path, "samples.arrows", "bus.blf")
     before = sorted(one.name for one in folder.iterdir())

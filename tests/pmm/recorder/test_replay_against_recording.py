@@ -44,6 +44,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [1, 2])
 def test_runs_of_a_rig_that_lives_on(runs: Path, number: int) -> None:
     again = replay(runs / str(number), DRIVERS)
@@ -60,6 +61,7 @@ def test_runs_of_a_rig_that_lives_on(runs: Path, number: int) -> None:
     assert np.max(np.abs(again.samples[1])) > 10.0
 
 
+@pytest.mark.slow
 def test_a_rig_whose_photocell_is_on_a_serial_line(tmp_path: Path) -> None:
     parts = {"photocell": {"driver": "timestamper"}}
     with session(serial=("photocell",), **parts) as rig:
@@ -78,6 +80,7 @@ def test_a_rig_whose_photocell_is_on_a_serial_line(tmp_path: Path) -> None:
     assert json.loads(lines[0])[1] == "photocell"
 
 
+@pytest.mark.slow
 def test_a_log_that_was_changed_does_not_pass(runs: Path, tmp_path: Path) -> None:
     shutil.copytree(runs / "1", tmp_path / "run")
     path = tmp_path / "run" / "bus.blf"
@@ -94,6 +97,7 @@ def test_a_log_that_was_changed_does_not_pass(runs: Path, tmp_path: Path) -> Non
     assert 0.0 < again.difference < 1e-2
 
 
+@pytest.mark.slow
 def test_a_run_that_was_cut_replays_as_far_as_it_goes(runs: Path, tmp_path: Path) -> None:
     shutil.copytree(runs / "2", tmp_path / "run")
     for name in ("bus.blf", "samples.arrows"):
@@ -105,6 +109,7 @@ def test_a_run_that_was_cut_replays_as_far_as_it_goes(runs: Path, tmp_path: Path
     assert both.sum() > 100
 
 
+@pytest.mark.slow
 def test_gates_that_are_armed_anew_resolve_as_they_did(tmp_path: Path) -> None:
     """Run control begins a resolver at each arming, and feeds it in blocks."""
     with session() as rig:
@@ -136,6 +141,7 @@ def _armed_by_hand(recorder, taken, at: int) -> list[dict]:
     return told
 
 
+@pytest.mark.slow
 def test_without_its_rig_or_its_log_a_run_is_refused(runs: Path, tmp_path: Path) -> None:
     shutil.copytree(runs / "1", tmp_path / "run")
     (tmp_path / "run" / "bus.blf").rename(tmp_path / "bus.blf")
@@ -193,6 +199,7 @@ def test_a_device_that_counts_its_own_samples_is_put_where_they_came() -> None:
     assert found == [[1.0, 7.0], [1.0, 8.0], [1.0, 9.0], [1.0, 10.0]]
 
 
+@pytest.mark.slow
 def test_what_devices_carry_over_is_json_and_goes_on() -> None:
     with session() as rig:
         opening = opening_of(rig.rig)

@@ -69,6 +69,7 @@ def _said_where(error: DataError, folder: Path) -> None:
     assert str(folder) in str(error)
 
 
+@pytest.mark.slow
 @given(share=st.floats(0.0, 1.0))
 def test_samples_cut_anywhere(left: Path, share: float) -> None:
     with tempfile.TemporaryDirectory() as place:
@@ -81,6 +82,7 @@ def test_samples_cut_anywhere(left: Path, share: float) -> None:
         assert found >= (share - 0.35) * 400
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(data=st.data())
 def test_every_file_cut_anywhere(left: Path, data: st.DataObject) -> None:
@@ -94,6 +96,7 @@ def test_every_file_cut_anywhere(left: Path, data: st.DataObject) -> None:
         check(folder)
 
 
+@pytest.mark.slow
 @settings(max_examples=20, deadline=None)
 @given(junk=st.binary(max_size=300), name=st.sampled_from(STREAMS))
 def test_junk_behind_what_is_whole(left: Path, junk: bytes, name: str) -> None:

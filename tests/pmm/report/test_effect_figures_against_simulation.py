@@ -82,6 +82,7 @@ def test_grid_holds_theory_and_simulation_over_both() -> None:
     assert ("force_aft", 2) not in grid.simulated
 
 
+@pytest.mark.slow
 def test_figure_has_theory_as_lines_and_simulation_as_circles() -> None:
     effect = build("connecting-rod")
     grid = signature_grid(effect, RIG, HEAVE)

@@ -217,6 +217,7 @@ def test_leakage_is_the_resolver_s_and_a_hann_taper_s_falls_faster() -> None:
     assert all(tapered[k] < 0.1 * plain[k] for k in far if plain[k] > 1e-3)
 
 
+@pytest.mark.slow
 def test_the_spectrum_s_second_axis_counts_harmonics() -> None:
     figure = spectrum_figure(analysed())
     second = figure.axes[0].child_axes[0]

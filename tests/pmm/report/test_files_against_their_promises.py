@@ -24,6 +24,7 @@ def wide() -> Analysis:
     return analysed(run(loads=7, seconds=240.0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", FIGURES)
 def test_drawings_are_well_formed_and_small(wide: Analysis, kind: str) -> None:
     svg = render(FIGURES[kind](wide), "svg", kind)
@@ -33,6 +34,7 @@ def test_drawings_are_well_formed_and_small(wide: Analysis, kind: str) -> None:
     assert b"displacement_aft" in svg  # text stays text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", FIGURES)
 def test_a_file_does_not_depend_on_those_written_before(kind: str) -> None:
     """A figure is laid out once, for whichever file comes first."""
@@ -44,6 +46,7 @@ def test_a_file_does_not_depend_on_those_written_before(kind: str) -> None:
     assert render(alone, "svg", "s") == drawn == render(figure, "svg", "s")
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("kind", FIGURES)
 def test_hostile_names_are_drawn_as_they_are(kind: str) -> None:
     analysis = analysed(run(3, names=HOSTILE, name="a <b> & $c$"))
@@ -56,6 +59,7 @@ def test_hostile_names_are_drawn_as_they_are(kind: str) -> None:
     assert not [part for part in root.iter() if str(part.tag).endswith("script")]
 
 
+@pytest.mark.slow
 def test_the_same_analysis_gives_the_same_bytes(tmp_path: Path) -> None:
     analysis = analysed()
     first = write_figures(figures(analysis), tmp_path / "a" / "b", "run", ("svg", "png"))
@@ -67,6 +71,7 @@ def test_the_same_analysis_gives_the_same_bytes(tmp_path: Path) -> None:
     assert all(a.read_bytes() == b.read_bytes() for a, b in zip(first, second, strict=True))
 
 
+@pytest.mark.slow
 def test_a_channel_of_nothing_is_drawn(tmp_path: Path) -> None:
     recording = run(1)
     values = np.array(recording.samples[:, 0 : recording.sample_count])
@@ -77,6 +82,7 @@ def test_a_channel_of_nothing_is_drawn(tmp_path: Path) -> None:
     assert all(path.read_bytes().startswith(b"%PDF") for path in written)
 
 
+@pytest.mark.slow
 def test_no_setting_and_no_figure_stays_behind(tmp_path: Path) -> None:
     before = dict(mpl.rcParams)
     write_figures(figures(analysed()), tmp_path, "run", ("svg",))

@@ -76,6 +76,7 @@ def read(page: str) -> _Reader:
     return reader
 
 
+@pytest.mark.slow
 def test_nothing_comes_from_elsewhere(page: str, read: _Reader) -> None:
     assert not re.findall(r"https?://|@import|url\((?!#)", page)
     assert all(reference.startswith("#") for reference in read.references)
@@ -83,12 +84,14 @@ def test_nothing_comes_from_elsewhere(page: str, read: _Reader) -> None:
     assert read.tags["style"] == 1  # none of a drawing's, which would reach the whole page
 
 
+@pytest.mark.slow
 def test_ids_are_unique_and_every_reference_has_its_target(read: _Reader) -> None:
     assert [name for name, count in Counter(read.ids).items() if count > 1] == []
     assert {reference[1:] for reference in read.references} <= set(read.ids)
     assert read.tags["svg"] == 6
 
 
+@pytest.mark.slow
 def test_names_are_text(page: str, read: _Reader) -> None:
     assert "<script" not in page
     text = "".join(read.text)
@@ -97,6 +100,7 @@ def test_names_are_text(page: str, read: _Reader) -> None:
     assert "pmm analyse 'a <b>.csv'" in text
 
 
+@pytest.mark.slow
 def test_the_table_has_every_number(read: _Reader) -> None:
     text = "".join(read.text)
     analysis = analysed(run(2), gate_periods=5)
@@ -112,6 +116,7 @@ def test_the_table_has_every_number(read: _Reader) -> None:
     assert "setting, gate_periods" in text
 
 
+@pytest.mark.slow
 def test_flags_are_said(tmp_path: Path) -> None:
     analysis = analysed(opens_s=2.0, periods=1)
     _write([analysis], tmp_path / "one.html", title="t", command="c")
@@ -121,12 +126,14 @@ def test_flags_are_said(tmp_path: Path) -> None:
     assert "nan" not in re.sub(r"<[^>]*>", " ", page).lower().split()
 
 
+@pytest.mark.slow
 def test_a_name_that_is_no_text_does_not_cost_the_page(tmp_path: Path) -> None:
     analysis = analysed(run(1, names=("force\x00\udc80",), name="run\udcff"))
     _write([analysis], tmp_path / "a.html", title="\udcff", command="pmm \udcff")
     assert "force" in (tmp_path / "a.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_the_same_analysis_gives_the_same_page(tmp_path: Path) -> None:
     for name in ("a", "b"):
         _write([analysed(run(1, 8.0))], tmp_path / name, title="t", command="c")
@@ -154,6 +161,7 @@ def test_a_phase_that_may_be_any_is_open() -> None:
     assert not is_open(2.0, 1.0)
 
 
+@pytest.mark.slow
 def test_a_single_period_has_no_intervals_in_good_english(tmp_path: Path) -> None:
     _write([analysed(opens_s=2.0, periods=1)], tmp_path / "a.html", title="t", command="c")
     page = (tmp_path / "a.html").read_text(encoding="utf-8")

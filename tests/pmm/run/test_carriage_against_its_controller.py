@@ -37,6 +37,7 @@ def told(folder, kind: str) -> list[str]:
     return [one["text"] for one in map(json.loads, lines) if one["kind"] == kind]
 
 
+@pytest.mark.slow
 def test_a_run_waits_for_the_speed_and_the_carriage_comes_back(tmp_path) -> None:
     runs = [oscillation(speed_m_s=SPEED_M_S, periods=2, max_periods=2)]
     with towed(tmp_path, runs, ripple=(RIPPLE,)) as one:
@@ -56,6 +57,7 @@ def test_a_run_waits_for_the_speed_and_the_carriage_comes_back(tmp_path) -> None
     assert not again.differing_samples
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "latched", "remedy"),
     [
@@ -102,6 +104,7 @@ def test_nobody_starts_a_carriage_that_is_in_a_persons_hand(tmp_path) -> None:
         assert not one.rig.carriage.enabled
 
 
+@pytest.mark.slow
 def test_a_carriage_that_another_hand_slows_ends_the_run(tmp_path) -> None:
     with towed(tmp_path, [TOW]) as one:
         one.until(State.GATE_OPEN)
@@ -111,6 +114,7 @@ def test_a_carriage_that_another_hand_slows_ends_the_run(tmp_path) -> None:
         assert "0.72 m/s where the run wants 0.8 m/s" in str(one.control.fault)
 
 
+@pytest.mark.slow
 def test_a_track_that_ends_stops_the_carriage_before_its_end(tmp_path) -> None:
     table = {**QUICK, "track_m": [0.0, 2.0], "settle_s": 0.1}
     long = replace(TOW, duration_s=20.0)
@@ -121,6 +125,7 @@ def test_a_track_that_ends_stops_the_carriage_before_its_end(tmp_path) -> None:
         assert 1.5 < one.world.talkers["carriage"].position_m < 2.0
 
 
+@pytest.mark.slow
 def test_a_carriage_that_cannot_go_back_is_brought_back(tmp_path) -> None:
     table = {key: one for key, one in QUICK.items() if key != "track_m"}
     table["registers"] = {k: v for k, v in QUICK["registers"].items() if k != "position"}
@@ -131,6 +136,7 @@ def test_a_carriage_that_cannot_go_back_is_brought_back(tmp_path) -> None:
     assert asked.startswith("carriage: bring it back to its start")
 
 
+@pytest.mark.slow
 def test_a_drift_table_is_set_and_nobody_is_asked(tmp_path) -> None:
     zero = at_rest("zero", RunKind.ZERO, drift_rad=0.1)
     runs = [zero, at_rest("drift", RunKind.STATIC_DRIFT, drift_rad=0.1)]
@@ -142,6 +148,7 @@ def test_a_drift_table_is_set_and_nobody_is_asked(tmp_path) -> None:
         assert not told(tmp_path / "drift", "operator")
 
 
+@pytest.mark.slow
 def test_the_report_tells_how_the_carriage_ran(tmp_path) -> None:
     with towed(tmp_path, [TOW], ripple=(RIPPLE,)) as one:
         one.finish()

@@ -36,6 +36,7 @@ def circling(tmp_path: Path, run: RunPlan = CIRCLE):
     return bench(tmp_path, [run], tables=tables, simulated=horizontal_rig(), serial=("carriage",))
 
 
+@pytest.mark.slow
 def test_the_circle_is_kept_on_the_ramps_and_recorded(tmp_path) -> None:
     with circling(tmp_path) as one:
         plant, radii = one.world.plant, []
@@ -52,6 +53,7 @@ def test_the_circle_is_kept_on_the_ramps_and_recorded(tmp_path) -> None:
     assert np.median(recording.values("turn_rate")) == pytest.approx(RATE_RAD_S, rel=2e-4)
 
 
+@pytest.mark.slow
 def test_a_carriage_that_leaves_the_circle_ends_the_run(tmp_path) -> None:
     with circling(tmp_path, replace(CIRCLE, duration_s=5.0)) as one:
         one.until(State.GATE_OPEN)

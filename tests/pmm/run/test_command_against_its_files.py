@@ -42,6 +42,7 @@ def plan(tmp_path: Path) -> Path:
     return written_plan(tmp_path, PLAN)
 
 
+@pytest.mark.slow
 def test_a_plan_with_piped_readings_is_recorded_analysed_and_resumed(
     plan: Path, tmp_path: Path
 ) -> None:
@@ -95,6 +96,7 @@ def test_an_unknown_run_names_the_nearest(plan: Path, tmp_path: Path) -> None:
     assert "did you mean heave-f0.8-a20" in done.stderr
 
 
+@pytest.mark.slow
 def test_a_full_disk_ends_the_run_and_what_was_flushed_is_there(plan: Path, tmp_path: Path) -> None:
     folder = tmp_path / "campaign"
     words = ("run", plan, "--output", folder, "--real-time")
@@ -108,6 +110,7 @@ def test_a_full_disk_ends_the_run_and_what_was_flushed_is_there(plan: Path, tmp_
     assert samples is not None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_an_interrupt_stops_gently_and_closes_the_recording(
     plan: Path, tmp_path: Path, number: signal.Signals
@@ -123,6 +126,7 @@ def test_an_interrupt_stops_gently_and_closes_the_recording(
     assert read_recording(marker.parent / "run.nc").sample_count > 0
 
 
+@pytest.mark.slow
 def test_a_killed_controller_leaves_what_was_flushed(plan: Path, tmp_path: Path) -> None:
     folder = tmp_path / "campaign"
     with _started(plan, folder) as process:

@@ -55,6 +55,7 @@ def recorded_to(folder: Path) -> float:
     return float(read_recording(folder / "heave" / "run.nc").end_s)
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(("words", "kinds", "said"), FAULTS)
 def test_a_fault_stops_the_axes_keeps_the_data_and_names_its_cause(
     tmp_path: Path, words: str, kinds: str, said: str
@@ -90,6 +91,7 @@ def test_a_lost_bus_leaves_the_stop_to_the_drives(
         assert recorded_to(tmp_path) >= came_s - 0.1
 
 
+@pytest.mark.slow
 def test_nothing_moves_in_a_fault_and_nothing_resumes_after_it(tmp_path: Path) -> None:
     with bench(tmp_path, [oscillation(periods=30, max_periods=30), oscillation("next")]) as one:
         run_into(one, "emergency eccentricity 4210")
@@ -124,6 +126,7 @@ def test_a_missed_or_extra_pulse_voids_the_gate_which_is_measured_anew(
         assert flag.severity == "void"
 
 
+@pytest.mark.slow
 def test_the_third_void_gate_ends_the_run(tmp_path: Path) -> None:
     with bench(tmp_path, [oscillation(periods=6, max_periods=6)]) as one:
         for _ in range(3):
@@ -203,6 +206,7 @@ QUICKLY = (State.SETTING, State.GATE_OPEN, State.STOPPING)
 PHASES = [state for state in State if state not in (State.IDLE, State.FAULT, State.STOPPED)]
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("state", "command"),
     [

@@ -76,6 +76,7 @@ def test_a_model_is_held_let_go_and_held_again() -> None:
     assert not list(around.before(next_run, horizontal_rig().oscillator))
 
 
+@pytest.mark.slow
 def test_the_record_has_the_roll_from_its_release(tmp_path: Path) -> None:
     point = SetPoint(0.0, 0.0, release_rad=0.15)
     run = RunPlan("decay", RunKind.FREE_DECAY, Motion.NONE, point, duration_s=4.0)

@@ -41,6 +41,7 @@ COMMANDS = {
 }
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize("size_bytes", [0, 200])
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_full_disk_is_a_sentence_with_its_file_and_leaves_no_half_of_one(
@@ -70,6 +71,7 @@ def test_a_run_ends_with_the_hint_to_resume(size_bytes: int, tmp_path: Path) -> 
     assert "ake room" in done.stderr
 
 
+@pytest.mark.slow
 def test_recover_says_so_and_keeps_what_there_is(tmp_path: Path) -> None:
     plan, folder = written_plan(tmp_path), tmp_path / "out"
     made = pmm("run", plan, "--output", folder, "--only", SHORT, given=READINGS)

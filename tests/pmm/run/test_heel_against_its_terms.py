@@ -41,6 +41,7 @@ gm_m = 0.03
 """
 
 
+@pytest.mark.slow
 def test_a_heeled_tow_records_its_moment(tmp_path: Path) -> None:
     run = at_rest("tow", RunKind.STRAIGHT_TOW, speed_m_s=1.2)
     point = replace(run.set_point, heel_rad=0.1)

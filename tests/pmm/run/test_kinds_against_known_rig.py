@@ -27,6 +27,7 @@ def weight(channel: str, force_n: float, way: LoadDirection, number: int):
     return at_rest(f"weight-{channel}-{number}", RunKind.CHECK_WEIGHT, 0.5, load=load)
 
 
+@pytest.mark.slow
 def test_check_weights_give_the_scale_that_the_rig_has_wrong(tmp_path: Path) -> None:
     # The aft gauge's scale is 2 % too large.
     steps = [(0.0, "up"), (50.0, "up"), (100.0, "up"), (50.0, "down"), (0.0, "down")]
@@ -78,6 +79,7 @@ def test_a_right_push_names_channel_and_sign(tmp_path: Path, force_n: float) -> 
     assert f"force_fore {force_n:+.2g}"[:14] in events
 
 
+@pytest.mark.slow
 def test_a_known_mass_shows_gain_lag_and_sign_of_each_gauge(tmp_path: Path) -> None:
     runs = [
         oscillation("dry", kind=RunKind.DRY, medium="air", frequency_hz=1.5),
@@ -98,6 +100,7 @@ def test_a_known_mass_shows_gain_lag_and_sign_of_each_gauge(tmp_path: Path) -> N
         assert abs(found.lag_s) < 1e-3
 
 
+@pytest.mark.slow
 def test_a_pluck_test_finds_the_mode_that_rings(tmp_path: Path) -> None:
     frequency_hz, ratio = 11.3, 0.02
     omega = 2.0 * math.pi * frequency_hz
@@ -120,6 +123,7 @@ def test_a_pluck_test_finds_the_mode_that_rings(tmp_path: Path) -> None:
     assert mode.damping_ratio == pytest.approx(ratio, rel=0.05)
 
 
+@pytest.mark.slow
 def test_zeros_are_read_without_the_restoring_force(tmp_path: Path) -> None:
     runs = [at_rest("zero-1", RunKind.ZERO), oscillation(), at_rest("zero-2", RunKind.ZERO)]
     with bench(tmp_path, runs) as one:
@@ -129,6 +133,7 @@ def test_zeros_are_read_without_the_restoring_force(tmp_path: Path) -> None:
         assert drift.largest_change_n < 0.05
 
 
+@pytest.mark.slow
 def test_the_operator_is_asked_for_what_the_rig_cannot_do_itself(tmp_path: Path) -> None:
     asked: list[str] = []
 

@@ -40,6 +40,7 @@ def steps(one, count: int) -> None:
         one.control.step()
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("frequency_hz", [3.0, -3.0])
 @pytest.mark.parametrize("state", STATES)
 def test_overspeed_either_way_is_a_fault(tmp_path, state: State, frequency_hz: float) -> None:
@@ -54,6 +55,7 @@ def test_overspeed_either_way_is_a_fault(tmp_path, state: State, frequency_hz: f
         one.finish()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("frequency_hz", [3.0, -3.0])
 def test_a_drive_that_runs_away_loses_its_power_at_the_deadline(tmp_path, frequency_hz) -> None:
     with bench(tmp_path, [oscillation(**LONG)]) as one:
@@ -70,6 +72,7 @@ def test_a_drive_that_runs_away_loses_its_power_at_the_deadline(tmp_path, freque
         assert abs(one.world.nodes["shaft"].speed) < REST_SPEEDS["shaft"]
 
 
+@pytest.mark.slow
 def test_a_quick_stop_that_a_drive_does_not_obey_takes_its_power_at_the_deadline(tmp_path) -> None:
     with bench(tmp_path, [oscillation(**LONG)]) as one:
         watch = PowerWatch(one.world)
@@ -94,6 +97,7 @@ def test_a_load_beyond_the_safe_one_is_a_fault(tmp_path, state: State) -> None:
         assert len(found) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("turns_hz", [1.9, 0.6, -0.83])
 def test_another_frequency_than_the_runs_ends_the_gate(tmp_path, turns_hz: float) -> None:
     with bench(tmp_path, [oscillation(frequency_hz=0.83, **LONG)]) as one:
@@ -107,6 +111,7 @@ def test_another_frequency_than_the_runs_ends_the_gate(tmp_path, turns_hz: float
         assert one.control.outcomes[0].outcome == "fault"
 
 
+@pytest.mark.slow
 def test_a_shaft_that_turns_while_it_has_to_stand_is_a_fault(tmp_path) -> None:
     short = oscillation(periods=1, max_periods=1)
     with bench(tmp_path, [short, oscillation("next", **LONG)]) as one:
@@ -145,6 +150,7 @@ def test_a_shaft_that_coasts_when_a_plan_is_started_is_braked_and_waited_for(tmp
         assert one.at_rest()
 
 
+@pytest.mark.slow
 def test_a_reset_is_refused_while_the_shaft_turns(tmp_path) -> None:
     with bench(tmp_path, [oscillation(**LONG)]) as one:
         one.until(State.GATE_OPEN)

@@ -41,6 +41,7 @@ def planned(folder: Path, text: str = PLAN) -> RunPlan:
     return run
 
 
+@pytest.mark.slow
 def test_a_recording_has_the_lines_that_were_asked_for(tmp_path: Path) -> None:
     lines = multisine((1, 2, 4), np.array([1.0, 0.5, 0.2]), (0.0, math.pi))
     run = oscillation("lines", 0.5)

@@ -19,6 +19,7 @@ GROUP = "239.74.163.2"
 READINGS = "20.0\n0.0\n20.0\n0.0\n"
 
 
+@pytest.mark.sample(1)
 @pytest.mark.skipif(not multicast_works(), reason="multicast does not come through here")
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
 def test_a_lost_controller_is_stopped_for(tmp_path: Path, number: signal.Signals) -> None:

@@ -21,6 +21,7 @@ def _files(folder: Path) -> dict[str, bytes]:
     return {name: (folder / name).read_bytes() if name.endswith(whole) else b"" for name in names}
 
 
+@pytest.mark.slow
 def test_a_campaign_being_recorded_has_one_writer_and_readers_are_told(tmp_path: Path) -> None:
     plan, folder = written_plan(tmp_path), tmp_path / "out"
     first = pmm("run", plan, "--output", folder, "--only", SHORT, given=READINGS)
@@ -51,6 +52,7 @@ def test_a_campaign_being_recorded_has_one_writer_and_readers_are_told(tmp_path:
     assert not list(folder.glob("*.try*"))
 
 
+@pytest.mark.slow
 def test_a_killed_owner_is_no_owner_and_its_name_in_the_lock_no_obstacle(tmp_path: Path) -> None:
     plan, folder = written_plan(tmp_path), tmp_path / "out"
     with recording(plan, folder) as process:

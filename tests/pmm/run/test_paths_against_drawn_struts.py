@@ -28,6 +28,7 @@ PURE = pure_rotation(HORIZONTAL_1963, HZ, SPEED, AMPLITUDE)
 IMPURE = 2e-3
 
 
+@pytest.mark.slow
 def test_an_exact_yaw_then_many_lines_without_anybody_loading_tables(tmp_path: Path) -> None:
     yaw = oscillation("yaw", HZ, periods=1, max_periods=1, speed_m_s=SPEED)
     point = replace(yaw.set_point, eccentricity_m=AMPLITUDE, strut_phase_rad=0.0, lines=PURE)

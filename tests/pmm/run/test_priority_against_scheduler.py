@@ -18,6 +18,7 @@ def _policy() -> tuple[int, int]:
     return os.sched_getscheduler(0), os.sched_getparam(0).sched_priority
 
 
+@pytest.mark.slow
 @linux
 def test_threads_of_the_loop_go_with_it_and_all_is_as_before_afterwards() -> None:
     before, seen = _policy(), []
@@ -59,6 +60,7 @@ def test_a_user_who_may_not_gets_what_there_is(
     assert asked == ([-10, 0] if nice else [])
 
 
+@pytest.mark.slow
 def test_what_was_there_before_is_not_searched_for_garbage() -> None:
     before = len(gc.get_objects())
     with before_others():

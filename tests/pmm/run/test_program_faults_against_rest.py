@@ -76,6 +76,7 @@ PLACES: dict[str, tuple[Callable[[Bench], None], bool]] = {
 }
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("place", PLACES)
 def test_an_exception_anywhere_ends_at_rest_with_the_recording_closed(
     tmp_path: Path, place: str
@@ -125,6 +126,7 @@ def test_a_view_that_fails_stops_the_run_in_order(tmp_path: Path) -> None:
     assert (tmp_path / "heave" / "complete.json").exists()
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("value", ["nan", "inf", "-inf", "1e999", "1e300"])
 def test_a_serial_line_of_no_number_voids_a_gate_and_no_more(tmp_path: Path, value: str) -> None:
     tables = {**TABLES, "photocell": {"driver": "timestamper"}}

@@ -60,6 +60,7 @@ def hold_back(one: Bench, cycles: Callable[[int], int]) -> None:
     receiver.receive = late
 
 
+@pytest.mark.slow
 def test_of_two_runs_of_a_rig_that_lives_on(tmp_path: Path) -> None:
     with bench(tmp_path, [oscillation("heave"), at_rest("zero", RunKind.ZERO)]) as one:
         one.finish()
@@ -69,6 +70,7 @@ def test_of_two_runs_of_a_rig_that_lives_on(tmp_path: Path) -> None:
         assert written_again(run) == (tmp_path / name / SAMPLES).read_bytes()
 
 
+@pytest.mark.slow
 def test_with_a_photocell_on_a_serial_line(tmp_path: Path) -> None:
     tables = {**TABLES, "photocell": {"driver": "timestamper"}}
     with bench(tmp_path, [oscillation()], tables=tables, serial=("photocell",)) as one:
@@ -77,6 +79,7 @@ def test_with_a_photocell_on_a_serial_line(tmp_path: Path) -> None:
     assert written_again(run) == (tmp_path / "heave" / SAMPLES).read_bytes()
 
 
+@pytest.mark.slow
 def test_where_frames_come_late_and_some_not_in_time(tmp_path: Path) -> None:
     random = np.random.default_rng(31)
     with bench(tmp_path, [oscillation()]) as one:
@@ -91,6 +94,7 @@ def test_where_frames_come_late_and_some_not_in_time(tmp_path: Path) -> None:
     assert written_again(run) == (tmp_path / "heave" / SAMPLES).read_bytes()
 
 
+@pytest.mark.slow
 def test_of_led_struts_angle_and_commands_too(tmp_path: Path) -> None:
     """Two runs of another path each: what the first one left is carried over to the other."""
     lines = multisine((1, 3), np.array([1.0, 0.3]))

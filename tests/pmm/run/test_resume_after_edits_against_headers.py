@@ -104,6 +104,7 @@ def _kept(folder: Path) -> dict[str, bytes]:
     return {str(one): one.read_bytes() for one in out.rglob("*") if one.is_file()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("file", "before", "after", "told"),
     [
@@ -167,6 +168,7 @@ def test_a_value_that_changed_is_refused_by_file_key_and_run(
     assert _kept(part) == as_they_were
 
 
+@pytest.mark.slow
 def test_what_is_kept_is_what_was_read_whatever_was_edited_since(part: Path) -> None:
     plan, rig = read_plan_and_rig(part / "plan.toml")
     _write(part, "plan", PLAN.replace("periods = 3", "periods = 4"))
@@ -179,6 +181,7 @@ def test_what_is_kept_is_what_was_read_whatever_was_edited_since(part: Path) -> 
     assert hashes == {"plan.toml": plan.sha256, "rig.toml": rig.hashes["rig"]}
 
 
+@pytest.mark.slow
 def test_comments_and_runs_that_were_added_change_nothing(part: Path) -> None:
     _edit(part, "rig", "[tank]", "# measured in spring\n[tank]")
     more = PLAN.rpartition("[[runs]]")[2].replace('"fast"', '"faster"').replace("1.2", "1.3")
@@ -189,6 +192,7 @@ def test_comments_and_runs_that_were_added_change_nothing(part: Path) -> None:
     assert "keeps what" not in done.stderr
 
 
+@pytest.mark.slow
 def test_accepted_changes_stand_run_by_run_and_each_run_keeps_its_own(part: Path) -> None:
     _edit(part, "plan", "mass_kg = 5.0", "mass_kg = 6.5")
     _edit(part, "plan", "periods = 3", "periods = 4")
@@ -246,6 +250,7 @@ def _check_water(folder: Path) -> None:
     assert {name for name, own in codes.items() if "recorded_otherwise" in own} == {KNOWN, SLOW}
 
 
+@pytest.mark.slow
 def test_another_rig_of_which_no_copy_is_left_is_said_to_be_another(part: Path) -> None:
     _edit(part, "rig", "mass_kg = 70.0", "mass_kg = 80.0")
     (part / "out" / "made-from" / "rig.toml").unlink()
@@ -256,6 +261,7 @@ def test_another_rig_of_which_no_copy_is_left_is_said_to_be_another(part: Path) 
     assert "made-from has no copy" in said
 
 
+@pytest.mark.slow
 def test_each_run_is_calibrated_by_its_own(part: Path) -> None:
     _edit(part, "calibration", *MATRIX)
     went_on = _run(part, "--resume", "--accept-changes")

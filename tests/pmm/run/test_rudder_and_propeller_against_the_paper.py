@@ -35,6 +35,7 @@ revolutions_hz = 9.0
 """
 
 
+@pytest.mark.slow
 def test_a_tow_with_rudder_records_what_the_paper_says(tmp_path: Path) -> None:
     run = at_rest("tow", RunKind.STRAIGHT_TOW, speed_m_s=paper.U0)
     point = replace(run.set_point, rudder_angle_rad=math.radians(15.0), revolutions_hz=RATE_HZ)

@@ -4,6 +4,8 @@ import json
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
+import pytest
+
 from pmm.evaluation.run_results import read_results
 from pmm.plan.plan import read_plan_and_rig
 from pmm.recorder.campaign_owner import own_campaign
@@ -25,6 +27,7 @@ def _header(folder: Path, name: str) -> dict:
     return json.loads((folder / name / "header.json").read_text(encoding="utf-8"))
 
 
+@pytest.mark.slow
 def test_a_clock_that_is_set_back_changes_no_order(tmp_path: Path) -> None:
     names = ["first", "second", "third"]
     for hours, name in enumerate(names):
@@ -36,6 +39,7 @@ def test_a_clock_that_is_set_back_changes_no_order(tmp_path: Path) -> None:
     assert [(one.number, one.plan.name) for one in found] == list(enumerate(names, 1))
 
 
+@pytest.mark.slow
 def test_runs_without_numbers_are_ordered_by_clock_before_those_that_have_one(
     tmp_path: Path,
 ) -> None:

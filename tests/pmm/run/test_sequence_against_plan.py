@@ -14,6 +14,7 @@ from pmm.run.states import Command, RunStateError, State
 from tests.pmm.run.harness import at_rest, bench, oscillation
 
 
+@pytest.mark.slow
 def test_a_target_that_is_met_ends_the_gate_and_one_that_is_not_ends_at_the_limit(
     tmp_path: Path,
 ) -> None:
@@ -32,6 +33,7 @@ def test_a_target_that_is_met_ends_the_gate_and_one_that_is_not_ends_at_the_limi
             assert row.half_width < 0.05 * row.amplitude
 
 
+@pytest.mark.slow
 def test_a_middling_target_is_met_in_between(tmp_path: Path) -> None:
     with bench(tmp_path, [oscillation(periods=3, max_periods=40)]) as one:
         one.finish()
@@ -44,6 +46,7 @@ def test_a_middling_target_is_met_in_between(tmp_path: Path) -> None:
         assert 3 < one.control.outcomes[0].periods < 40
 
 
+@pytest.mark.slow
 def test_hold_closes_the_gate_at_the_next_pulse_and_reset_measures_anew(tmp_path: Path) -> None:
     with bench(tmp_path, [oscillation(periods=30, max_periods=30)]) as one:
         one.until(State.GATE_OPEN)
@@ -60,6 +63,7 @@ def test_hold_closes_the_gate_at_the_next_pulse_and_reset_measures_anew(tmp_path
         assert (one.control.outcomes[0].outcome, one.control.outcomes[0].periods) == ("complete", 4)
 
 
+@pytest.mark.slow
 def test_next_leaves_a_run_and_goes_on(tmp_path: Path) -> None:
     with bench(tmp_path, [oscillation(periods=30, max_periods=30), oscillation("next")]) as one:
         one.until(State.GATE_OPEN)
@@ -72,6 +76,7 @@ def test_next_leaves_a_run_and_goes_on(tmp_path: Path) -> None:
             one.control.request(Command.START)
 
 
+@pytest.mark.slow
 def test_the_pause_is_counted_from_the_moment_the_shaft_rests(tmp_path: Path) -> None:
     runs = [oscillation("one"), oscillation("two", pause_before_s=3.0)]
     with bench(tmp_path, runs) as one:
@@ -81,6 +86,7 @@ def test_the_pause_is_counted_from_the_moment_the_shaft_rests(tmp_path: Path) ->
         assert one.world.time_s - rested_s == pytest.approx(3.0, abs=0.1)
 
 
+@pytest.mark.slow
 def test_a_record_at_rest_is_as_long_as_planned_and_has_no_gap(tmp_path: Path) -> None:
     with bench(tmp_path, [at_rest("zero", RunKind.ZERO, 2.0)]) as one:
         one.finish()

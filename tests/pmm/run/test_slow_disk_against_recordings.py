@@ -81,6 +81,7 @@ def check_whole(folder: Path) -> None:
     assert steps == {1}, "a SYNC in every cycle"
 
 
+@pytest.mark.slow
 def test_nothing_moves_before_the_recorder_is_open_and_the_loop_goes_on(
     tmp_path: Path, disk: Disk, executor: ThreadPoolExecutor
 ) -> None:
@@ -96,6 +97,7 @@ def test_nothing_moves_before_the_recorder_is_open_and_the_loop_goes_on(
     assert threading.main_thread() not in disk.threads
 
 
+@pytest.mark.slow
 def test_a_disk_that_stalls_while_the_gate_is_open_costs_no_sample(
     tmp_path: Path, disk: Disk, executor: ThreadPoolExecutor
 ) -> None:
@@ -111,6 +113,7 @@ def test_a_disk_that_stalls_while_the_gate_is_open_costs_no_sample(
     assert threading.main_thread() not in disk.threads
 
 
+@pytest.mark.slow
 def test_a_stop_while_the_disk_stalls_ends_the_run_when_it_can(
     tmp_path: Path, disk: Disk, executor: ThreadPoolExecutor
 ) -> None:

@@ -11,6 +11,7 @@ from tests.sim.devices.power_watch import PowerWatch
 FAST = {**TABLES, "phase": {**TABLES["phase"], "speed": 0.8, "acceleration": 2.0}}
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("command", [Command.STOP, Command.QUICK_STOP])
 @pytest.mark.parametrize("state", [State.SETTING, State.STARTING, State.ARMED, State.STOPPING])
 def test_power_goes_at_rest_only(tmp_path, command: Command, state: State) -> None:

@@ -12,6 +12,7 @@ from tests.pmm.run.storms import Storm
 EACH = 10
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("first", range(0, 30, EACH))
 def test_nothing_moves_unwatched(first: int) -> None:
     found = [Storm(seed).run() for seed in range(first, first + EACH)]

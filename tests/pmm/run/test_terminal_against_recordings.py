@@ -96,6 +96,7 @@ def drained(reading: int) -> str:
         return file.read().decode()
 
 
+@pytest.mark.slow
 @linux
 def test_with_a_pipe_that_nobody_reads_the_run_is_made_with_every_sync(tmp_path: Path) -> None:
     out = tmp_path / "out"
@@ -122,6 +123,7 @@ def _filled(reading: int) -> int:
     return writing
 
 
+@pytest.mark.slow
 @linux
 def test_at_a_stopped_terminal_ctrl_c_is_obeyed_and_the_rig_left(tmp_path: Path) -> None:
     out = tmp_path / "out"
@@ -154,6 +156,7 @@ def _taken(master: int) -> bool:
     return True
 
 
+@pytest.mark.slow
 def test_when_the_reader_is_gone_and_ctrl_z_is_pressed_ctrl_c_is_obeyed(tmp_path: Path) -> None:
     out = tmp_path / "out"
     ours, theirs = os.pipe()

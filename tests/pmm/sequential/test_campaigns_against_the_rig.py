@@ -31,6 +31,7 @@ def copied(whole: tuple[Path, Any], tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 def test_it_stops_when_the_targets_are_met_and_the_hull_is_found(whole: tuple[Path, Any]) -> None:
     folder, told = whole[0] / "c", whole[1]
     assert told["ending"] == "all targets are met"
@@ -51,6 +52,7 @@ def test_it_stops_when_the_targets_are_met_and_the_hull_is_found(whole: tuple[Pa
     assert all((folder / run.name / "run.nc").is_file() for run in plan.runs)
 
 
+@pytest.mark.slow
 def test_the_coefficients_of_the_folder_are_those_that_ended_it(whole: tuple[Path, Any]) -> None:
     place, told = whole
     words = ["plan", "design", str(place / "design.toml"), "--after", str(place / "c"), "--json"]
@@ -60,6 +62,7 @@ def test_the_coefficients_of_the_folder_are_those_that_ended_it(whole: tuple[Pat
         assert one["value"] == pytest.approx(known[one["name"]]["value"], rel=1e-12)
 
 
+@pytest.mark.slow
 def test_the_report_tells_what_was_known_after_each_run(whole: tuple[Path, Any]) -> None:
     place, told = whole
     page = place / "page.html"
@@ -71,6 +74,7 @@ def test_the_report_tells_what_was_known_after_each_run(whole: tuple[Path, Any])
     assert "standard uncertainty over what is asked for" in text  # the figure's axis
 
 
+@pytest.mark.slow
 def test_a_campaign_that_was_cut_short_goes_on_to_the_same_runs(
     whole: tuple[Path, Any], copied: Path
 ) -> None:
@@ -101,6 +105,7 @@ def test_nothing_is_made_that_the_operator_does_not_approve(tmp_path: Path) -> N
     assert not list((tmp_path / "c").glob("*/header.json"))
 
 
+@pytest.mark.slow
 def test_the_time_is_kept_to_and_said(tmp_path: Path) -> None:
     design = written(tmp_path, repeat=0.02, more="[limits]\ntime_h = 0.011\n")
     told = made(design, tmp_path / "c")
@@ -109,6 +114,7 @@ def test_the_time_is_kept_to_and_said(tmp_path: Path) -> None:
     assert "too little for any run" in told["decisions"][-1]["remark"]
 
 
+@pytest.mark.slow
 def test_what_no_run_lowers_ends_the_campaign_before_it_begins(tmp_path: Path) -> None:
     design = written(tmp_path, more="[stated]\nforce_gain_relative = 0.05\n")
     told = made(design, tmp_path / "c")
@@ -118,6 +124,7 @@ def test_what_no_run_lowers_ends_the_campaign_before_it_begins(tmp_path: Path) -
     assert all("which no run lowers" in one for one in told["decisions"][-1]["notes"])
 
 
+@pytest.mark.slow
 def test_one_target_beyond_all_runs_leaves_the_others(tmp_path: Path) -> None:
     design = written(tmp_path, more="Z_wdot = 0.2\n[stated]\nmass_kg = 0.5\n")
     told = made(design, tmp_path / "c")
@@ -130,6 +137,7 @@ def test_one_target_beyond_all_runs_leaves_the_others(tmp_path: Path) -> None:
     assert sum(bool(one["added"]) for one in told["decisions"]) == 1
 
 
+@pytest.mark.slow
 def test_a_run_that_cannot_be_used_is_said_and_the_campaign_goes_on(
     whole: tuple[Path, Any], copied: Path
 ) -> None:
@@ -174,6 +182,7 @@ def test_a_design_without_targets_has_no_end(tmp_path: Path) -> None:
     assert "has no [targets]" in str(done.exception) + done.output
 
 
+@pytest.mark.slow
 def test_a_folder_that_holds_a_campaign_is_gone_on_from_only_on_demand(
     whole: tuple[Path, Any],
 ) -> None:
@@ -182,6 +191,7 @@ def test_a_folder_that_holds_a_campaign_is_gone_on_from_only_on_demand(
     assert "--resume goes on with it" in str(done.exception) + done.output
 
 
+@pytest.mark.slow
 def test_an_ended_campaign_goes_on_when_more_is_asked(
     whole: tuple[Path, Any], copied: Path
 ) -> None:
@@ -195,6 +205,7 @@ def test_an_ended_campaign_goes_on_when_more_is_asked(
     assert (folder / "zero-04" / "run.nc").is_file()  # a zero run before and after the new ones
 
 
+@pytest.mark.slow
 def test_a_run_that_fails_stops_the_campaign_at_rest_and_others_take_its_place(
     tmp_path: Path,
 ) -> None:

@@ -36,6 +36,7 @@ def test_the_wave_maker_tells_the_frequency_and_no_balance_is_a_gauge(tmp_path: 
     assert sure["Fy"] == "Fy"
 
 
+@pytest.mark.slow
 def test_the_commands_take_it_or_say_what_is_missing(tmp_path: Path) -> None:
     made = pmm("init", "campaign", "--yes", "--output", tmp_path, *records())
     assert made.exit_code == 0, made.stderr

@@ -25,6 +25,7 @@ def pmm(*words: object, typed: str | None = None) -> Result:
     return CliRunner().invoke(cli, [str(one) for one in words], input=typed)
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("plane", ["vertical", "horizontal"])
 @pytest.mark.parametrize("axes", ["driven", "by-hand", PATHS])
 @pytest.mark.parametrize("interface", ["pmm-simulated", "socketcan"])
@@ -65,6 +66,7 @@ def test_a_new_rig_is_checked_for_blockage_and_clearance(
     assert "tank" not in unchecked
 
 
+@pytest.mark.slow
 def test_a_simulated_rig_runs(tmp_path: Path) -> None:
     pmm("init", "rig", "--yes", "--output", tmp_path)
     done = pmm("run", tmp_path / "plan.toml", "--output", tmp_path / "runs",
@@ -85,6 +87,7 @@ def test_a_campaign_is_simulated_and_analysed(tmp_path: Path, plane: str) -> Non
     assert document["campaigns"] == []
 
 
+@pytest.mark.slow
 def test_recordings_become_a_campaign_with_their_set_points(tmp_path: Path) -> None:
     recordings = sorted((EXAMPLES / "foreign").glob("*.csv.gz"))
     made = pmm("init", "campaign", "--yes", "--output", tmp_path, *recordings)
@@ -131,6 +134,7 @@ def test_propeller_and_rudder_are_those_of_the_answers(tmp_path: Path) -> None:
     assert found == pytest.approx((0.01, 0.15, fujii, -1.5), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_ship_turns(tmp_path: Path) -> None:
     assert pmm("init", "ship", "--yes", "--output", tmp_path).exit_code == 0
     found = pmm("manoeuvre", tmp_path / "ship.toml", "--trials", "0", "--json")
@@ -140,6 +144,7 @@ def test_a_ship_turns(tmp_path: Path) -> None:
     assert 1.0 < advance["value"] < 6.0
 
 
+@pytest.mark.slow
 def test_records_of_a_swing_are_named_from_the_file(tmp_path: Path) -> None:
     records = sorted((EXAMPLES / "inertia").glob("swing-*.csv.gz"))
     made = pmm("init", "swing", "--yes", "--output", tmp_path, *records)

@@ -14,6 +14,7 @@ from tests.sealed.generator.recordings import FOREIGN, write_csv
 SEED = 4711
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("index", [1, 3, 4])  # all sensors, no displacements, no encoder
 def test_roles_and_set_points_are_those_of_the_case(tmp_path: Path, index: int) -> None:
     case = make(SEED, index, null=True)
@@ -39,6 +40,7 @@ def test_roles_and_set_points_are_those_of_the_case(tmp_path: Path, index: int) 
             assert "NOT FOUND" in one.remarks["eccentricity_mm"]
 
 
+@pytest.mark.slow
 def test_the_commands_take_what_was_found_or_name_the_remedy(tmp_path: Path) -> None:
     case = make(SEED, 1, null=True)
     paths = [tmp_path / f"{run.name}.csv.gz" for run in case.campaign.runs]

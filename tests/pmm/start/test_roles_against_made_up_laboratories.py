@@ -53,6 +53,7 @@ def some_laboratory(seed: int, folder: Path) -> tuple[Laboratory, Path, bool]:
     return made, path, bool(bare)
 
 
+@pytest.mark.slow
 def test_what_is_sure_is_right_and_what_the_header_says_is_sure(tmp_path: Path) -> None:
     count: Counter[str] = Counter()
     for seed in range(40):
@@ -70,6 +71,7 @@ def test_what_is_sure_is_right_and_what_the_header_says_is_sure(tmp_path: Path) 
     assert count["found"] == count["had"] > 80
 
 
+@pytest.mark.slow
 def test_the_set_point_is_what_the_struts_did(tmp_path: Path) -> None:
     for seed in range(8):
         rng = np.random.default_rng([7, seed])
@@ -239,6 +241,7 @@ def test_nothing_that_keeps_time_is_said_to_be_so(tmp_path: Path) -> None:
     assert taken(found) == {}
 
 
+@pytest.mark.slow
 @settings(
     deadline=None,
     max_examples=12,
@@ -262,6 +265,7 @@ def test_the_order_of_the_columns_changes_nothing(tmp_path: Path, seed: int, ord
     assert after.sensors == before.sensors
 
 
+@pytest.mark.slow
 @settings(
     deadline=None,
     max_examples=12,

@@ -87,6 +87,7 @@ def changed(folder: Path, place: Path, *changes: tuple[str, str]) -> Path:
     return place
 
 
+@pytest.mark.slow
 def test_the_parameters_are_those_put_in(told: Told) -> None:
     found = told.document
     rows = {one["name"]: one for one in found["parameters"]}
@@ -107,6 +108,7 @@ def test_the_parameters_are_those_put_in(told: Told) -> None:
     assert {one.suffix for one in told.figures.iterdir()} == {".svg", ".png"}
 
 
+@pytest.mark.slow
 def test_the_torque_is_that_of_the_open_water_table(told: Told) -> None:
     """By hand: J of the paper's wake, K_Q between the example's own numbers."""
     made = tomllib.loads((EXAMPLE / "campaign.toml").read_text(encoding="utf-8"))["steering"]
@@ -121,6 +123,7 @@ def test_the_torque_is_that_of_the_open_water_table(told: Told) -> None:
         assert row["torque_u"] < 0.01 * expected
 
 
+@pytest.mark.slow
 def test_what_has_a_speed_has_its_froude_and_reynolds_number(told: Told) -> None:
     rows = [*told.document["self_propulsion"], *told.document["wakes"]]
     assert len(rows) > 3
@@ -131,6 +134,7 @@ def test_what_has_a_speed_has_its_froude_and_reynolds_number(told: Told) -> None
         assert row["reynolds_number"] == pytest.approx(speed * paper.L / 1.1386e-6, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_people_read_names_intervals_and_the_numbers_that_are_known(
     told: Told, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -268,6 +272,7 @@ def test_what_is_wrong_is_said(tows: Path, tmp_path: Path) -> None:
     assert "no such file" in ran.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("before", "after", "said"),
     [

@@ -60,6 +60,7 @@ def _drawn(rng: np.random.Generator, count: int) -> list[tuple[Answer, Truth]]:
     return found
 
 
+@pytest.mark.slow
 def test_sets_hold_what_is_right_as_often_as_promised() -> None:
     """Exchangeable cases, 200 boards of 60: 0.9 within what 200 x 60 draws scatter, each class too.
 

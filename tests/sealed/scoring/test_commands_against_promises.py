@@ -54,6 +54,7 @@ def test_table_names_columns_and_what_is_left_out(board: Path) -> None:
     assert "scored: 12 cases, 1 rows" in said
 
 
+@pytest.mark.slow
 def test_page_needs_nothing_besides_itself(board: Path, tmp_path: Path) -> None:
     target = tmp_path / "pages" / "board.html"
     assert _run(board, "--page", target)[0] == 0

@@ -38,6 +38,7 @@ def test_bootstrap_of_a_mean_is_as_wide_as_its_standard_error() -> None:
     assert found.high - found.low == pytest.approx(2 * 1.96 * (8.25 / 400) ** 0.5, rel=0.1)
 
 
+@pytest.mark.slow
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=20), st.lists(st.floats(0, 1), min_size=1,
        max_size=20))  # fmt: skip
 def test_auroc_turns_round_with_its_classes(one: list[float], two: list[float]) -> None:

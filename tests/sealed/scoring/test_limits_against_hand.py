@@ -9,6 +9,7 @@ from tests.sealed.scoring.board import read_board
 from tests.sealed.scoring.by_world import Held, _excess, by_world, calibration_error
 
 
+@pytest.mark.slow
 def test_figures_of_the_page_s_board(board: Path) -> None:
     found = {one.key: one for one in by_world(read_board(board), "A")}
     expected = {  # from SNR 10 on: cases 7 to 12, and those without a gap
@@ -47,6 +48,7 @@ def test_calibration_error_by_hand() -> None:
     assert calibration_error(said, right) == pytest.approx((0.9 + 0.07) / 4.0)
 
 
+@pytest.mark.slow
 def test_excess_is_nothing_for_answers_as_right_as_they_say() -> None:
     rng = np.random.default_rng(6)
     said = rng.uniform(0.3, 1.0, 300)

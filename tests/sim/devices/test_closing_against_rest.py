@@ -20,6 +20,7 @@ def states(world) -> set[DriveState]:
     return {one.state for one in world.nodes.values() if hasattr(one, "state")}
 
 
+@pytest.mark.slow
 def test_a_turning_shaft_is_stopped_along_its_profile_and_all_power_taken_off() -> None:
     with in_process(WHOLE) as (rig, world):
         turning(rig, 0.02, 0.5, 1.0)
@@ -63,6 +64,7 @@ def test_an_error_in_the_block_stops_the_shaft_too() -> None:
     assert abs(seen[0].plant.speed_rad_s) < 1e-6
 
 
+@pytest.mark.slow
 def test_a_fault_on_the_way_makes_it_a_quick_stop() -> None:
     with in_process(WHOLE) as (rig, world):
         turning(rig, 0.02, 0.5, 1.0)
@@ -76,6 +78,7 @@ def test_a_fault_on_the_way_makes_it_a_quick_stop() -> None:
         assert abs(world.plant.speed_rad_s) < 1e-6
 
 
+@pytest.mark.slow
 def test_a_fault_that_asks_for_a_profile_stop_leaves_it_at_that() -> None:
     with in_process(WHOLE) as (rig, world):
         turning(rig, 0.02, 0.5, 1.0)
@@ -86,6 +89,7 @@ def test_a_fault_that_asks_for_a_profile_stop_leaves_it_at_that() -> None:
         assert states(world) == {DriveState.SWITCH_ON_DISABLED}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "kind"), [("bus-off", BusOffError), ("deaf", DeadReceiveThreadError)]
 )
@@ -102,6 +106,7 @@ def test_a_lost_bus_does_not_hold_the_closing_up(words: str, kind, known: bool) 
         assert rig.number - before <= (0 if known else 1)
 
 
+@pytest.mark.slow
 def test_a_node_that_says_nothing_any_more_bounds_the_closing() -> None:
     with in_process(WHOLE) as (rig, world):
         turning(rig, 0.02, 0.5, 1.0)

@@ -122,6 +122,7 @@ def test_one_controller_after_another_needs_no_reset_of_the_devices(host: Hosted
         time.sleep(PAUSE_S)
 
 
+@pytest.mark.slow
 def test_a_controller_after_one_that_was_killed_needs_no_reset(
     host: Hosted, tmp_path: Path
 ) -> None:

@@ -17,6 +17,7 @@ from tests.hardware.rigs import nobody
 RATE_HZ, SEED, SIGNAL = 256.0, 4, "recorded_inclinometer_angle"
 
 
+@pytest.mark.slow
 def test_the_swing_arrives_as_the_chain_recorded_it() -> None:
     chain = swing_bench(upper_pivot=True, release_rad=0.03).chain()
     _, run = chain.run(chain.start(RATE_HZ, SEED), 1000)

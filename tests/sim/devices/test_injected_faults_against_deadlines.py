@@ -65,6 +65,7 @@ def cycles_to(rig, kind, limit: int) -> int:
     raise AssertionError(f"no {kind.__name__} within {limit} cycles")
 
 
+@pytest.mark.sample(6)
 @pytest.mark.parametrize(
     ("words", "kind", "limit"),
     [
@@ -113,6 +114,7 @@ def test_an_extra_pulse_is_seen_when_it_comes(turned) -> None:
     assert cycles_to(rig, PhotocellExtraError, 1) == 1
 
 
+@pytest.mark.slow
 def test_a_blocked_axis_faults_and_moves_again_after_a_reset() -> None:
     with in_process(TABLES) as (rig, world):
         ready(rig)

@@ -90,6 +90,7 @@ def _speed(bus: UdpMulticastBus) -> int:
     raise AssertionError("the drive does not answer")
 
 
+@pytest.mark.slow
 def test_a_second_process_of_this_machine_is_told_who_has_the_bus(
     host: Hosted, tmp_path: Path
 ) -> None:
@@ -106,6 +107,7 @@ def test_a_second_process_of_this_machine_is_told_who_has_the_bus(
             assert third.stdout.readline() == "turning\n"
 
 
+@pytest.mark.slow
 def test_a_controller_of_another_machine_hears_the_first_and_does_not_start(
     host: Hosted, tmp_path: Path
 ) -> None:

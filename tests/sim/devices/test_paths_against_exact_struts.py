@@ -172,6 +172,7 @@ def test_yaw_without_sway_as_told_and_as_moved(turning: tuple[Rig, World]) -> No
         assert np.delete(spectrum, 1).max() < allowed * spectrum[1]
 
 
+@pytest.mark.slow
 def test_following_under_load_is_that_of_the_loop_integrated(led: tuple[Rig, World]) -> None:
     """From power on: standing, going to the path, running up, running."""
     rig, world = led

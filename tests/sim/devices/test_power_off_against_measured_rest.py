@@ -138,6 +138,7 @@ def test_an_axis_is_moving_until_its_encoder_says_otherwise() -> None:
         assert not watch.while_moving
 
 
+@pytest.mark.slow
 def test_whatever_is_asked_first_closing_takes_no_power_off_a_turning_shaft() -> None:
     with in_process(WHOLE) as (rig, world):
         turning(rig, 0.02, 0.5, 2.0)

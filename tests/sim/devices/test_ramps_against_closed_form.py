@@ -11,6 +11,7 @@ from sim.drive.prescribed_drive import DriveSettings
 from sim.rig import vertical_rig
 
 
+@pytest.mark.slow
 def test_the_corners_of_a_ramp_at_no_eccentricity() -> None:
     """J d'' = -k_p d' - k_i d - J a from each corner on, whatever the sample rate."""
     motor = Servo(current_loop_hz=1e5)

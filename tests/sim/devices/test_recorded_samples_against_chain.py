@@ -47,6 +47,7 @@ def taken(plant: Plant, count: int) -> dict[str, list[float]]:
     return found
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("kind", [vertical_rig, loaded_rig])
 @settings(max_examples=6, deadline=None)
 @given(at=st.lists(st.integers(1, 200), min_size=1, max_size=4), vain=st.booleans())
@@ -97,6 +98,7 @@ def harmonics(values, angle, orders: int = 3):
     return np.linalg.lstsq(np.column_stack(columns), values, rcond=None)[0]
 
 
+@pytest.mark.slow
 def test_samples_and_harmonics_through_the_stack_are_the_chains() -> None:
     tables = {**WHOLE, "shaft": {**WHOLE["shaft"], "counts_per_turn": COUNTS_PER_TURN}}
     start = {"eccentricity_m": 0.019, "strut_phase_rad": 0.45}

@@ -228,6 +228,7 @@ def test_a_wrong_file_is_told_on_the_error_stream(tmp_path: Path, capsys) -> Non
     assert "sead is not a known key; did you mean seed?" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_nothing_else_of_the_simulator_knows_a_bus_a_port_or_the_devices() -> None:
     """The linter keeps this too, but for parts of the hardware layer that reach no bus."""
     for path in (ROOT / "sim").rglob("*.py"):

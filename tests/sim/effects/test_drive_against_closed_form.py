@@ -41,6 +41,7 @@ CASES = [
 ]
 
 
+@pytest.mark.sample(19)
 @pytest.mark.parametrize("rig", [vertical_rig(), horizontal_rig()], ids=["vertical", "horizontal"])
 @pytest.mark.parametrize(("effect", "tolerance"), CASES)
 def test_signature(effect: Effect, tolerance: float, rig: SimulatedRig) -> None:

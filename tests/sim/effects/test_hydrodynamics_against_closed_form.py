@@ -75,6 +75,7 @@ EXACT = [
 THROUGH_WATER = ("H1", "H2", "H4", "H10", "H11")
 
 
+@pytest.mark.sample(10)
 @pytest.mark.parametrize("rig", [VERTICAL, HORIZONTAL, REMEMBERING])
 @pytest.mark.parametrize("effect", EXACT, ids=lambda effect: effect.code)
 def test_signature(effect: Effect, rig: SimulatedRig) -> None:

@@ -41,6 +41,7 @@ def test_small_effects_add_up() -> None:
 
 
 # Where teeth meet is solved sample by sample with the load, which friction in a joint cannot be.
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("groups", "without"), [("D", ""), ("K", ""), ("S", ""), ("DKS", "K6"), ("DKS", "D4")]
 )

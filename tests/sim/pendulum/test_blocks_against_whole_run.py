@@ -43,6 +43,7 @@ def busy_swing() -> PendulumBench:
     )
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=25)
 @given(
     sizes=st.lists(st.integers(0, 150), min_size=1, max_size=10),

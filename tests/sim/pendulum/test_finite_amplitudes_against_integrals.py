@@ -165,6 +165,7 @@ def largest_pitch(line_length_m: float, sway_m: float) -> float:
     return float(np.abs(motion(bench, ("pitch",), 120.0, 50.0)[0]).max())
 
 
+@pytest.mark.slow
 def test_yaw_and_sway_turn_into_pitch_at_the_papers_line_length() -> None:
     # seen in 2014 with lines of 1560 mm, where T_y nears T_1, and with yaw and sway together only
     assert largest_pitch(1.56, 0.1) > 2.0 * largest_pitch(1.0, 0.1)

@@ -120,6 +120,7 @@ def test_every_ladder_is_passive_and_has_no_damping_at_rest(
     assert np.abs(still + still.T).max() < 1e-8 * scale
 
 
+@pytest.mark.slow
 @given(seed=st.integers(0, 10**6), motion=st.integers(0, 10**6))
 def test_no_motion_gets_energy_out_of_the_water(seed: int, motion: int) -> None:
     """Work up to any time exceeds what the states hold, |xi|^2/2: for random piecewise motions."""
