@@ -29,7 +29,7 @@ _AT_START: Final = 0.02  # of the track, in metres: so near the start it stands 
 
 
 class AskedCarriage(AskedDevice):
-    """A :class:`hardware.roles.Carriage`.
+    """A :class:`hardware.roles.Carriage` and a :class:`hardware.roles.SpeedFollower`.
 
     Its channels have a sample in every cycle: what was read last, NaN before and in silence.
     """
@@ -95,11 +95,7 @@ class AskedCarriage(AskedDevice):
         NotReadyError
             If it is not enabled.
         """
-        if not (speed_m_s > 0.0 and speed_m_s in self.speed_m_s):
-            raise LimitError(
-                self.name,
-                f"{speed_m_s:g} m/s is outside 0 to {self.speed_m_s.high:g} m/s (and above 0)",
-            )
+        self._check_speed(speed_m_s)
         if abs(turn_rate_rad_s) > self._settings.highest_turn_rate_rad_s:
             raise LimitError(
                 self.name,
@@ -119,6 +115,22 @@ class AskedCarriage(AskedDevice):
             RAMP_MARGIN * ramp_s + 3.0 * self._settings.settle_s,
             f"{speed_m_s:g} m/s within {self.tolerance_m_s:g} m/s",
         )
+
+    def lead(self, speed_m_s: float) -> None:
+        """Go on at another speed, as the carriage's ramps allow.
+
+        Raises
+        ------
+        LimitError
+            If it is beyond the highest, or not above 0.
+        NotReadyError
+            If it does not run.
+        """
+        if not self._goal_m_s > 0.0:
+            raise NotReadyError(self.name, "does not run; it is led from run_at on")
+        self._check_speed(speed_m_s)
+        self._goal_m_s = speed_m_s
+        self.tell(self._settings.asked.set_speed, speed_m_s)
 
     def go_back(self) -> None:
         """Go back to the start, if its place is known; raises :class:`NotReadyError` as above."""
@@ -195,6 +207,13 @@ class AskedCarriage(AskedDevice):
     def _left_m(self) -> float:
         """Track that is left ahead; infinite where nobody reads the place."""
         return math.inf if math.isnan(self.position_m) else self._track.high - self.position_m
+
+    def _check_speed(self, speed_m_s: float) -> None:
+        if not (speed_m_s > 0.0 and speed_m_s in self.speed_m_s):
+            raise LimitError(
+                self.name,
+                f"{speed_m_s:g} m/s is outside 0 to {self.speed_m_s.high:g} m/s (and above 0)",
+            )
 
     def _go(self, speed_m_s: float, turn_rate_rad_s: float = 0.0) -> None:
         if not self.enabled:

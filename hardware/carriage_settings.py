@@ -1,7 +1,7 @@
 """The keys of a carriage behind a programmable controller, or behind a panel that says lines."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Final
 
 from hardware.analogue_link import AnalogueNumber, AnalogueSettings
 from hardware.asked_link import AskedSettings
@@ -11,6 +11,9 @@ from hardware.line_link import LineSettings, is_told
 from hardware.line_registers import Line, LineCommand, LineNumber, LineStatus
 from hardware.modbus_link import ModbusSettings
 from hardware.modbus_registers import CommandRegister, Register, StatusRegister
+
+_LONGEST_LAG_S: Final = 2.0
+"""Twice a slow drive's. Half refuses some of them; twice lets milliseconds pass for seconds."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +71,8 @@ class CarriageSettings(AskedSettings):
         At which it goes back.
     highest_turn_rate_rad_s
         Of one that drives circles; 0 for one that goes straight.
+    lag_s
+        So late it follows a speed that changes: one that is led is told so much earlier.
     """
 
     highest_speed_m_s: float
@@ -77,6 +82,7 @@ class CarriageSettings(AskedSettings):
     track_m: tuple[float, float] | None = None
     return_speed_m_s: float = 0.5
     highest_turn_rate_rad_s: float = 0.0
+    lag_s: float = 0.0
 
     @property
     def asked(self) -> "CarriageRegisters | CarriageLines | CarriageVoltages":
@@ -91,6 +97,10 @@ class CarriageSettings(AskedSettings):
         ):  # fmt: skip
             if not getattr(self, key) > 0.0:
                 raise ConfigurationError(f"{key} = {getattr(self, key):g} has to be above 0")
+        if not 0.0 <= self.lag_s <= _LONGEST_LAG_S:
+            raise ConfigurationError(
+                f"lag_s = {self.lag_s:g} has to be from 0 to {_LONGEST_LAG_S:g}, in seconds"
+            )
         if self.return_speed_m_s > self.highest_speed_m_s:
             raise ConfigurationError("return_speed_m_s is above highest_speed_m_s; lower it")
         if (self.track_m is None) != (self.asked.position is None):

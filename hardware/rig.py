@@ -53,6 +53,8 @@ class Rig:
         The devices by role, behind the interlock; absent ones are ``None``.
     path
         The shaft as what is told its struts' path; ``None`` where they follow no other.
+    follower
+        The carriage as what is told its speed in every cycle; ``None`` where it cannot be.
     faults
         What is latched: nothing moves before :meth:`reset`.
     prompt
@@ -102,7 +104,7 @@ class Rig:
             raise
         opened = self._devices
         self.shaft, self.eccentricity, self.phase = opened.shaft, opened.eccentricity, opened.phase
-        self.path = opened.path
+        self.path, self.follower = opened.path, opened.follower
         self.photocell, self.inclinometer = opened.photocell, opened.inclinometer
         self.carriage, self.angles = opened.carriage, opened.angles
         self._watch, self.forces = opened.watch, opened.watch.forces

@@ -19,6 +19,7 @@ from hardware.roles import (
     Photocell,
     PositionAxis,
     Shaft,
+    SpeedFollower,
 )
 from hardware.watch import Watch
 
@@ -35,6 +36,8 @@ class RigDevices:
     ----------
     path
         The shaft, where its struts follow a path that it is told.
+    follower
+        The carriage, where its speed can be led.
     opened
         All devices that are open, in the order in which they tick.
     angles
@@ -53,6 +56,7 @@ class RigDevices:
         self.photocell: Photocell | None = None
         self.inclinometer: Inclinometer | None = None
         self.carriage: Carriage | None = None
+        self.follower: SpeedFollower | None = None
         self.angles: dict[str, PositionAxis] = {}
         self.watch = Watch(None, ())
 
@@ -79,6 +83,8 @@ class RigDevices:
         self.photocell = cast("Photocell | None", self._device(one.photocell, services))
         self.inclinometer = cast("Inclinometer | None", self._device(one.inclinometer, services))
         carriage = cast("Carriage | None", self._device(one.carriage, services))
+        towing: object = carriage
+        self.follower = towing if isinstance(towing, SpeedFollower) else None
         angles = {
             name: cast("PositionAxis", self._device(part, services))
             for name, part in one.angles.items()

@@ -219,6 +219,19 @@ class PathFollower(Protocol):
         """Let the struts follow these lines from now on; a single sine without any."""
         ...
 
+    def angle_at(self, number: int) -> float:
+        """Return the master angle at a SYNC, of one to come that of the latest that is known."""
+        ...
+
+
+@runtime_checkable
+class SpeedFollower(Protocol):
+    """A carriage whose speed the program leads while it runs."""
+
+    def lead(self, speed_m_s: float) -> None:
+        """Go on at another speed, told anew in every cycle."""
+        ...
+
 
 @runtime_checkable
 class PositionAxis(Powered, Protocol):

@@ -126,7 +126,7 @@ class SimulatedRig:
         stages: tuple[Stage[Any], ...]
         if self.drive.motor is None and self.drive.gear is None:
             drive = ConstantSpeedDrive(set_point.frequency_hz, self.drive)
-            stages = (drive, carriage, mechanism, hull)
+            stages = (drive, carriage, mechanism, replace(hull, surges=True))
         else:
             loaded = LoadedDrive(
                 set_point.frequency_hz,

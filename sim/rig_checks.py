@@ -104,6 +104,11 @@ def _is_driven(rig: "SimulatedRig") -> bool:
 
 
 def _of_lines(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
+    if set_point.steady_ahead:
+        yield (
+            "steady_ahead: a carriage that is led is simulated behind its driver only; make the "
+            "run with pmm run, on a rig of simulated devices"
+        )
     if set_point.lines and _is_driven(rig):
         yield (
             "lines are followed by struts with drives of their own: leave motor and gear of "

@@ -48,6 +48,7 @@ SHAFT_ANGLE = of_channel(channels.SHAFT_ANGLE)  # unwrapped
 SHAFT_SPEED = Signal("shaft_speed", "rad/s")
 SHAFT_ACCELERATION = Signal("shaft_acceleration", "rad/s2")
 CARRIAGE_SPEED = of_channel(channels.CARRIAGE_SPEED)
+CARRIAGE_ACCELERATION = Signal("carriage_acceleration", "m/s2")  # beside what ripples on its speed
 TURN_RATE = of_channel(channels.TURN_RATE)
 
 # Mechanism: motion of each strut.

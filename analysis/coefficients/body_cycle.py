@@ -58,7 +58,7 @@ class BodyCycle:
     frequency_hz
         Of the fundamental; 0 for a static run, which has order 0 alone.
     speed_m_s
-        Of the carriage.
+        Of the carriage; where that follows the struts' path, of the model along itself.
     phasors
         By order, :data:`analysis.kinematics.body_frame.CHANNELS`: displacement across the tank (m),
         rotation from where the drift sets the model (rad), velocities through the water along and
@@ -91,6 +91,8 @@ class BodyCycle:
         How the model heels, and the heel of the run's set-point, to starboard.
     turn_rate_rad_s
         Steady rate of turn of a run on a circle, bow to starboard; 0 for a straight way.
+    varies_m_s
+        What the carriage's speed is besides at each instant, where it follows the struts' path.
     lines
         Harmonics at which a motion of many frequencies has its lines; empty for a single sine.
     """
@@ -118,6 +120,7 @@ class BodyCycle:
     heel_rad: float = 0.0
     lines: tuple[int, ...] = ()
     turn_rate_rad_s: float = 0.0
+    varies_m_s: FloatArray = field(default_factory=lambda: np.zeros(()))
 
     @property
     def has_roll(self) -> bool:

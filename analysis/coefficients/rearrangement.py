@@ -27,7 +27,7 @@ from analysis.coefficients.hull_cycle import (
 from analysis.coefficients.phasors import interleaved
 from analysis.coefficients.tare import Tare
 from analysis.kinematics.body_frame import CHANNELS, HEEL, HEELED, LOADS
-from analysis.kinematics.cycle import harmonics, waves
+from analysis.kinematics.cycle import harmonics, instants_of, waves
 from analysis.kinematics.geometry import Geometry
 from hardware.description.arrangement import Arrangement, Joint
 from hardware.description.arrays import FloatArray
@@ -123,7 +123,9 @@ def _gross(cycles: Sequence[BodyCycle], way: Arrangement) -> tuple[FloatArray, T
     first = cycles[0]
     rolling = len([name for name in first.channels if name in HEELED[len(CHANNELS) :]])
     heeled = first.heel is not None and first.heel.gauges is HeelGauges.HEELED
-    geometry = Geometry(first.plane, first.half_spacing_m, way, speed, drift, heeled)
+    varies = np.stack([one.varies_m_s * np.ones(instants_of(first.orders + 1)) for one in cycles])
+    half = first.half_spacing_m
+    geometry = Geometry(first.plane, half, way, speed, drift, heeled, varies)
     omega = np.array([2.0 * np.pi * cycle.frequency_hz for cycle in cycles])
     readings = np.stack([cycle.readings for cycle in cycles])
     try:

@@ -17,16 +17,25 @@ from analysis.coefficients.corrections import (
     calibration,
     response_factors,
 )
-from analysis.coefficients.phasors import Phasors, joined
+from analysis.coefficients.phasors import Phasors, interleaved, joined
 from analysis.coefficients.strut_phasors import CHANNELS_INDEPENDENT, MOTION_ASKED, reading_phasors
 from analysis.ideal_rig import strut_displacements
 from analysis.kinematics.body_frame import HEEL
 from analysis.kinematics.body_frame import ROLL_MOMENT as ROLL
+from analysis.kinematics.cycle import waves
 from analysis.kinematics.geometry import Geometry
 from analysis.resolver.analysis import Analysis
-from analysis.resolver.harmonics import IntervalSource
+from analysis.resolver.harmonics import Harmonics, IntervalSource
 from hardware.description.arrays import ComplexArray, FloatArray
-from hardware.description.channels import DISPLACEMENTS, FORCE_X, FORCES, HEEL_ANGLE, ROLL_MOMENT
+from hardware.description.carriage_path import CarriagePath
+from hardware.description.channels import (
+    CARRIAGE_SPEED,
+    DISPLACEMENTS,
+    FORCE_X,
+    FORCES,
+    HEEL_ANGLE,
+    ROLL_MOMENT,
+)
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
 from hardware.description.heel import Heel, HeelGauges, Held
@@ -36,7 +45,13 @@ from hardware.description.setpoint import SetPoint
 
 @dataclass(frozen=True, eq=False)
 class StrutCycle:
-    """All harmonics of the struts of one run as read; phasors as in :class:`BodyCycle`."""
+    """All harmonics of the struts of one run as read; phasors as in :class:`BodyCycle`.
+
+    Attributes
+    ----------
+    carriage
+        Harmonics of the carriage's speed by order, where it follows the struts' path.
+    """
 
     name: str
     oscillator: Oscillator
@@ -47,6 +62,7 @@ class StrutCycle:
     mean_known: bool = False
     flags: tuple[Flag, ...] = ()
     heel: Heel | None = None
+    carriage: ComplexArray | None = None
 
     def calibrated(self, matrix: FloatArray) -> "StrutCycle":
         """Return it with ``force = matrix @ reading`` at every order, aft and fore.
@@ -89,7 +105,11 @@ class StrutCycle:
     def geometry(self) -> Geometry:
         """How the run's rig stands."""
         heeled = self.heel is not None and self.heel.gauges is HeelGauges.HEELED
-        return replace(Geometry.of(self.oscillator, self.set_point), gauges_heel=heeled)
+        own = replace(Geometry.of(self.oscillator, self.set_point), gauges_heel=heeled)
+        if self.carriage is None:
+            return own
+        (speed,) = waves(interleaved(self.carriage), 1)
+        return replace(own, varies_m_s=speed - own.speed_m_s)
 
     def heeled(self, heel: Heel) -> "StrutCycle":
         """Return it with the heel of its model: as it was set, else as it was measured.
@@ -153,6 +173,7 @@ class StrutCycle:
             heel_rad=point.heel_rad,
             lines=point.own_orders,
             turn_rate_rad_s=point.turn_rate_rad_s,
+            varies_m_s=np.asarray(geometry.varies_m_s),
         )
 
 
@@ -167,6 +188,8 @@ def measured_cycle(
     set_point: SetPoint | None = None,
 ) -> StrutCycle:
     """Return all harmonics of one reading; a set-point stands in for displacements not measured.
+
+    Of a carriage that follows the struts' path the speed is read likewise.
 
     Raises
     ------
@@ -190,8 +213,25 @@ def measured_cycle(
         phasors = joined(_asked_motion(oscillator, set_point, count), phasors)
         flags = (*flags, MOTION_ASKED)
     return StrutCycle(
-        reading.run, oscillator, set_point, reading.frequency_hz, phasors, count, flags=flags
+        reading.run,
+        oscillator,
+        set_point,
+        reading.frequency_hz,
+        phasors,
+        count,
+        flags=flags,
+        carriage=_carriage(reading, oscillator, set_point),
     )
+
+
+def _carriage(
+    reading: Harmonics, oscillator: Oscillator, set_point: SetPoint
+) -> ComplexArray | None:
+    """Return harmonics of a carriage's speed that follows a path: measured, else as it was told."""
+    led = CarriagePath.of(oscillator, set_point)
+    if led is None or CARRIAGE_SPEED.name not in reading.channel_names:
+        return None if led is None else led.harmonics(reading.order)
+    return reading_phasors(reading, (CARRIAGE_SPEED.name,), reading.order).values
 
 
 def _asked_motion(oscillator: Oscillator, set_point: SetPoint, orders: int) -> Phasors:

@@ -5,7 +5,7 @@ attitude the same readings are other loads.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -39,7 +39,8 @@ class Tare:
     def of(cls, geometry: Geometry, moved: DrivenDisplacements, gauges: int) -> "Tare":
         """Return that of a rig which moves so, with or without the X gauge (3 or 2)."""
         still = np.zeros((*np.shape(geometry.drift_rad)[:-1], 2, 1))
-        there = motion(geometry, DrivenDisplacements(still, still, still))
+        at_rest = replace(geometry, varies_m_s=0.0)
+        there = motion(at_rest, DrivenDisplacements(still, still, still))
         line = motion(geometry, moved).line_rad
         if gauges < len(ROWS):
             check_surge_spared(geometry)

@@ -23,11 +23,13 @@ class Geometry:
     half_spacing_m
         The distance ``l``.
     speed_m_s
-        Of the carriage.
+        Of the carriage; where its speed follows a path, of the model along itself.
     drift_rad
         Mean heading of the model, bow to starboard (bow up), set as ``arrangement.drift_by`` says.
     gauges_heel
         Whether the struts' gauges heel with the model.
+    varies_m_s
+        What the carriage's speed is besides at each instant.
     """
 
     plane: Plane
@@ -36,6 +38,7 @@ class Geometry:
     speed_m_s: Waves | float = 0.0
     drift_rad: Waves | float = 0.0
     gauges_heel: bool = False
+    varies_m_s: Waves | float = 0.0
 
     @classmethod
     def of(cls, oscillator: Oscillator, set_point: SetPoint) -> "Geometry":

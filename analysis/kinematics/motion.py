@@ -46,7 +46,7 @@ class MotionWaves:
         Of the reference point, across the tank (down) from where it lies without motion or drift.
     velocity, rate
         Through the water, in body axes: ahead, across and turning (u, v, r or u, w, q) and their
-        time derivatives, shape ``(..., 3, instants)``.
+        time derivatives, those with the carriage's speed steady, shape ``(..., 3, instants)``.
     """
 
     line_rad: Waves
@@ -68,8 +68,9 @@ def motion(geometry: Geometry, driven: DrivenDisplacements) -> MotionWaves:
     across, velocity, acceleration = _reference_point(geometry, driven, line, turning, bending)
     rig = geometry.turned(DriftBy.RIG_TURNED)
     on_struts = geometry.turned(DriftBy.MODEL_TURNED)
-    ahead = velocity[0] + geometry.speed_m_s * np.cos(rig)
-    aside = velocity[1] - geometry.speed_m_s * np.sin(rig)
+    speed = geometry.speed_m_s + geometry.varies_m_s
+    ahead = velocity[0] + speed * np.cos(rig)
+    aside = velocity[1] - speed * np.sin(rig)
     cosine, sine = np.cos(line + on_struts), np.sin(line + on_struts)
     u, v = ahead * cosine + aside * sine, aside * cosine - ahead * sine
     u_rate = acceleration[0] * cosine + acceleration[1] * sine + turning * v

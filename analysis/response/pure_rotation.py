@@ -12,10 +12,16 @@ of the strut at the pivot, ``p`` = 1 aft and -1 fore. Hence
 
 with ``gd^-1`` the inverse Gudermannian, and ``sin`` in place of ``tan`` where a strut slides on the
 rig. For small angles both struts are sines with ``tan(phi / 2) = omega l / U`` between them.
+
+With a carriage whose speed follows the path (:mod:`hardware.description.carriage_path`), so that
+``U`` is that of the model along itself, the same two conditions give
+
+    d_held = U integral of sin psi dt - p l sin psi.
 """
 
 import cmath
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -38,12 +44,22 @@ _TURN = 2.0 * math.pi
 
 
 def pure_rotation(
-    oscillator: Oscillator, frequency_hz: float, speed_m_s: float, eccentricity_m: float
+    oscillator: Oscillator,
+    frequency_hz: float,
+    speed_m_s: float,
+    eccentricity_m: float,
+    *,
+    steady_ahead: bool = False,
 ) -> tuple[Line, ...]:
     """Return the lines of a sinusoidal pitch or yaw without any heave or drift velocity.
 
     The first is the motion; the others, marked as corrections, make it pure. Its angle is as large
     as lets the struts move by the eccentricity at most.
+
+    Parameters
+    ----------
+    speed_m_s
+        Of the carriage; of the model along itself with ``steady_ahead``: the carriage then follows.
 
     Raises
     ------
@@ -56,16 +72,20 @@ def pure_rotation(
             "is a sine by itself"
         )
     omega = _TURN * frequency_hz
-    angle = _angle_rad(oscillator, omega, speed_m_s, eccentricity_m)
-    phasors = _phasors(_struts(oscillator, omega, speed_m_s, angle)) / eccentricity_m
+
+    def struts(angle: float) -> FloatArray:
+        return _struts(oscillator, omega, speed_m_s, angle, steady_ahead=steady_ahead)
+
+    angle = _angle_rad(struts, speed_m_s, eccentricity_m)
+    phasors = _phasors(struts(angle)) / eccentricity_m
     return _as_lines(phasors)
 
 
-def _angle_rad(oscillator: Oscillator, omega: float, speed_m_s: float, wanted_m: float) -> float:
+def _angle_rad(struts: Callable[[float], FloatArray], speed_m_s: float, wanted_m: float) -> float:
     from scipy.optimize import brentq
 
     def beyond(angle: float) -> float:
-        return float(np.abs(_struts(oscillator, omega, speed_m_s, angle)).max()) - wanted_m
+        return float(np.abs(struts(angle)).max()) - wanted_m
 
     largest_m = beyond(LARGEST_ANGLE_RAD) + wanted_m
     if largest_m < wanted_m:
@@ -77,19 +97,21 @@ def _angle_rad(oscillator: Oscillator, omega: float, speed_m_s: float, wanted_m:
     return float(brentq(beyond, 0.0, LARGEST_ANGLE_RAD, xtol=1e-14, rtol=1e-14))
 
 
-def _struts(oscillator: Oscillator, omega: float, speed_m_s: float, angle: float) -> FloatArray:
+def _struts(
+    oscillator: Oscillator, omega: float, speed_m_s: float, angle: float, *, steady_ahead: bool
+) -> FloatArray:
     """Return both struts over a turn, aft and fore, of a heading ``angle sin(theta)``."""
     half, aft_held = oscillator.half_spacing_m, oscillator.pivot is Pivot.AFT
     heading = angle * np.sin(_TURN * np.arange(_INSTANTS) / _INSTANTS)
-    tangent = np.tan(heading)
-    spectrum = np.fft.rfft(tangent)
+    sine, tangent = np.sin(heading), np.tan(heading)
+    spectrum = np.fft.rfft(sine if steady_ahead else tangent)
     order = np.arange(len(spectrum))
     spectrum[1:] /= 1j * order[1:] * omega
     spectrum[0] = 0.0
     along = speed_m_s * np.fft.irfft(spectrum, _INSTANTS)
-    turned = half * np.arctanh(np.sin(heading))
+    turned = half * (sine if steady_ahead else np.arctanh(sine))
     on_model = oscillator.joint is Joint.SLIDES_ON_MODEL
-    apart = 2.0 * half * (tangent if on_model else np.sin(heading))
+    apart = 2.0 * half * (tangent if on_model else sine)
     held = along - turned if aft_held else along + turned
     return np.array([held, held + apart] if aft_held else [held - apart, held])
 

@@ -41,7 +41,7 @@ class SetPoint:
         Phase ``phi`` of the fore strut ahead of the aft strut: 0 gives pure heave or sway, pi pure
         pitch or yaw about the midpoint.
     carriage_speed_m_s
-        Forward speed ``U``.
+        Forward speed ``U``; with ``steady_ahead`` that of the model along itself.
     drift_rad
         Steady heading of the model against the carriage's way, positive for the bow to starboard
         (trim: bow up), set as the oscillator's ``drift_by`` says.
@@ -62,6 +62,10 @@ class SetPoint:
     wave_frequency_hz, wave_amplitude_m, wave_heading_rad
         Of the wave maker, 0 in calm water; amplitude is half the height, the heading that of the
         waves' way against the carriage's: 0 from astern, pi from ahead.
+    steady_ahead
+        Whether the carriage's speed follows the struts' path
+        (:mod:`hardware.description.carriage_path`), so that the model's speed along itself is
+        steady at any heading.
     """
 
     frequency_hz: float
@@ -79,6 +83,7 @@ class SetPoint:
     wave_frequency_hz: float = 0.0
     wave_amplitude_m: float = 0.0
     wave_heading_rad: float = math.pi
+    steady_ahead: bool = False
 
     @property
     def every_line(self) -> tuple[Line, ...]:

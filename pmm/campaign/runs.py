@@ -52,6 +52,7 @@ class Asked:
     wave_frequency_hz: float = 0.0
     wave_amplitude_m: float = 0.0
     wave_heading_rad: float = math.pi
+    steady_ahead: bool = False
 
     @property
     def set_point(self) -> SetPoint:
@@ -70,6 +71,7 @@ class Asked:
             wave_frequency_hz=self.wave_frequency_hz,
             wave_amplitude_m=self.wave_amplitude_m,
             wave_heading_rad=self.wave_heading_rad,
+            steady_ahead=self.steady_ahead,
         )
 
 
@@ -83,7 +85,7 @@ class Run(Asked):
         Unique within the campaign; its recording is called so.
     frequency_hz, eccentricity_m, strut_phase_rad, carriage_speed_m_s, medium, drift_rad
     rudder_angle_rad, revolutions_hz, heel_rad, lines, wave_frequency_hz, wave_amplitude_m
-    wave_heading_rad
+    wave_heading_rad, steady_ahead
         As in :class:`hardware.description.setpoint.SetPoint`.
     periods
         Whole periods wanted.

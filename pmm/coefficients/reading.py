@@ -22,6 +22,7 @@ from analysis.resolver.first_harmonics import first_harmonics
 from analysis.response.following import StrutFollowing, led_struts, strut_following
 from analysis.response.waves import in_waves
 from hardware.description.arrangement import Joint
+from hardware.description.carriage_path import CarriagePath
 from hardware.description.channels import (
     CARRIAGE_SPEED,
     DISPLACEMENTS,
@@ -161,6 +162,8 @@ def _at_rest(task: Task, recording: Recording) -> Done:
 
 def _turning(task: Task, recording: Recording) -> Done:
     wanted = (*_USED, *_besides(task, recording))
+    if task.set_point.steady_ahead:
+        wanted = (*wanted, CARRIAGE_SPEED.name)
     channels = tuple(name for name in wanted if name in recording.channel_names)
     if not all(name in channels for name in DISPLACEMENTS):
         channels = tuple(name for name in channels if name not in DISPLACEMENTS)
@@ -176,8 +179,9 @@ def _turning(task: Task, recording: Recording) -> Done:
     following, unknown = _following(task, recording)
     if waves is not None:  # what they add to the mean is no load of calm water
         struts = replace(struts, mean_known=False)
-    flags = (*found, *flags, *_speed_flags(task, recording), *told, *unknown)
     reading = analysis.readings[0]
+    gate = recording.between(reading.opened_s, reading.closed_s)
+    flags = (*found, *flags, *_speed_flags(task, gate), *told, *unknown)
     done = _done(task, recording, _model(task, struts), None, reading.periods, flags)
     lines = reading if task.set_point.lines else None
     return replace(
@@ -303,12 +307,13 @@ def _speed_flags(task: Task, recording: Recording) -> tuple[Flag, ...]:
     """Say where the carriage did not do what the campaign says."""
     if CARRIAGE_SPEED.name not in recording.channel_names:
         return ()
-    asked = task.set_point.carriage_speed_m_s
+    led = CarriagePath.of(task.oscillator, task.set_point)
+    asked = task.set_point.carriage_speed_m_s if led is None else led.mean_m_s
     found = float(recording.values(CARRIAGE_SPEED.name).mean())
     if abs(found - asked) <= _SPEED_OFF * max(abs(asked), 0.1):
         return ()
     text = (
-        f"the carriage ran at {found:.4g} m/s on average, the campaign says {asked:g} m/s (limit "
+        f"the carriage ran at {found:.4g} m/s on average, the campaign says {asked:.4g} m/s (limit "
         f"{100.0 * _SPEED_OFF:g} %); correct carriage_speed_m_s in the campaign file"
     )
     return (Flag("speed_differs", Severity.WARNING, text, CARRIAGE_SPEED.name),)

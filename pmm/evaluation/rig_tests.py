@@ -88,11 +88,16 @@ class TowedSpeed:
 
 
 def towed_speeds(runs: Sequence[RunResult]) -> tuple[TowedSpeed, ...]:
-    """Return how the carriage ran, of each tow that measured it."""
+    """Return how the carriage ran, of each tow at one speed that measured it."""
     found = []
     for run in runs:
-        asked = float(run.plan["set_point"].get("carriage_speed_m_s", 0.0))
-        if not asked or CARRIAGE_SPEED.name not in (one.name for one in run.header.channels):
+        point = run.plan["set_point"]
+        asked = float(point.get("carriage_speed_m_s", 0.0))
+        if (
+            not asked
+            or point.get("steady_ahead")
+            or CARRIAGE_SPEED.name not in (one.name for one in run.header.channels)
+        ):
             continue
         recording, gate = run.gate_samples()
         speed = recording.values(CARRIAGE_SPEED.name)[gate]

@@ -146,6 +146,7 @@ def _set_besides(point: SetPoint) -> dict[str, Any]:
     if point.wave_frequency_hz:
         keys += ["wave_frequency_hz", "wave_amplitude_m", "wave_heading_rad"]
     found: dict[str, Any] = {key: getattr(point, key) for key in keys}
+    found["steady_ahead"] = point.steady_ahead
     found["lines"] = [asdict(line) for line in point.lines]
     return {key: value for key, value in found.items() if value}
 

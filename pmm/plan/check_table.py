@@ -87,6 +87,20 @@ SPEED: Final = Check(
     "tow slower",
     _OWN,
 )
+LED_SPEED: Final = Check(
+    "slowest speed of a carriage that is led [m/s]",
+    "`steady_ahead`: refuse below 0, and without drivers that lead struts and carriage",
+    "the carriage, which does not turn back within a run",
+    "tow faster, or lower the frequency or the amplitude",
+    "nothing: below 0 it would turn back",
+)
+LED_ACCELERATION: Final = Check(
+    "carriage acceleration [m/s^2]",
+    "`steady_ahead`: refuse above the carriage's own `acceleration_m_s2`, or the tank's",
+    _RIG,
+    "lower the frequency or the amplitude",
+    _OWN,
+)
 STATIC_ANGLE: Final = Check(
     "{channel} [rad]",
     "refuse outside the range of the axis that sets it",
@@ -315,10 +329,9 @@ CALIBRATION: Final = Check(
 
 CHECKS: Final = (
     FREQUENCY, AMPLITUDE, STROKE, STRUT_PHASE, VELOCITY, ACCELERATION, STRUT_FORCE, GAUGE_FORCE,
-    LOAD, SPEED, STATIC_ANGLE, WAY, TURN_RATE, RADIUS, TURNS, BUS, ROTATION, ANGLE_TO_FLOW,
-    FROUDE, REYNOLDS, TURNING, REDUCED_SWAY,
-    REDUCED_YAW, REDUCED, WAVE_FREQUENCY, TAU_SWAY, TAU_HEAVE, ECHO, REACH, KEEL, BLOCKAGE,
-    DEPTH, DEPTH_FROUDE, TANK_MODE, STRUCTURE, CYCLES, SETTLING, RIPPLE, SAMPLING,
-    CALIBRATION,
+    LOAD, SPEED, LED_SPEED, LED_ACCELERATION, STATIC_ANGLE, WAY, TURN_RATE, RADIUS, TURNS, BUS,
+    ROTATION, ANGLE_TO_FLOW, FROUDE, REYNOLDS, TURNING, REDUCED_SWAY, REDUCED_YAW, REDUCED,
+    WAVE_FREQUENCY, TAU_SWAY, TAU_HEAVE, ECHO, REACH, KEEL, BLOCKAGE, DEPTH, DEPTH_FROUDE,
+    TANK_MODE, STRUCTURE, CYCLES, SETTLING, RIPPLE, SAMPLING, CALIBRATION,
 )  # fmt: skip
 """In the order of the page."""

@@ -6,6 +6,7 @@ the limit that :mod:`pmm.plan.check_table` has for it.
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from analysis.kinematics.geometry import Geometry
 from analysis.kinematics.motion import DrivenDisplacements, MotionWaves, motion
 from analysis.water import Water, froude_number, reynolds_number
 from hardware.description import kinds
+from hardware.description.carriage_path import CarriagePath
 from hardware.description.lines import struts_over_turn
 from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2
@@ -80,7 +82,11 @@ def motion_of(run: RunPlan, rig: RigFile) -> MotionWaves:
         for times in range(3)
     )
     driven = DrivenDisplacements(place, slope, curvature)
-    return motion(Geometry.of(rig.oscillator, run.set_point), driven)
+    geometry, led = Geometry.of(rig.oscillator, point), CarriagePath.of(rig.oscillator, point)
+    if led is not None:
+        varies = led.over_turn(instants=place.shape[-1]) - point.carriage_speed_m_s
+        geometry = replace(geometry, varies_m_s=varies)
+    return motion(geometry, driven)
 
 
 def _of_motion(run: RunPlan, made: MotionWaves) -> Iterator[_Condition]:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 
+from hardware.description.carriage_path import CarriagePath
 from hardware.description.setpoint import ANGLE_KEYS
 from hardware.rig_configuration import RigPart
 from pmm.plan.rig_file import RigFile
@@ -34,11 +35,14 @@ def tank_length_m(run: RunPlan, rig: RigFile) -> float:
     """Return the way of the carriage from rest to rest: ``U (t + U / a)``.
 
     In ``t`` the carriage's speed settles, then the shaft comes to speed, settles, waits at most a
-    period for its pulse, and turns for all periods asked.
+    period for its pulse, and turns for all periods asked. Of a carriage that is led ``U`` is the
+    mean over a turn.
     """
     settle_s = _setting(rig.hardware.carriage, "settle_s") or 0.0
     at_speed_s = settle_s + run.moving_s + shaft_ramp_s(run, rig)
-    return run.set_point.carriage_speed_m_s * (at_speed_s + carriage_ramp_s(run, rig))
+    led = CarriagePath.of(rig.oscillator, run.set_point)
+    speed = run.set_point.carriage_speed_m_s if led is None else led.mean_m_s
+    return speed * (at_speed_s + carriage_ramp_s(run, rig))
 
 
 def run_s(run: RunPlan, before: RunPlan | None, rig: RigFile) -> float:

@@ -158,7 +158,8 @@ def _run(
     )
     lines = _lines(entry, oscillator, set_point, speed)
     if lines:
-        set_point = replace(set_point, strut_phase_rad=0.0, lines=lines)
+        steady = entry.steady_ahead and motion in _PHASED
+        set_point = replace(set_point, strut_phase_rad=0.0, lines=lines, steady_ahead=steady)
     return RunPlan(
         name=_name(entry, one),
         kind=entry.kind,
@@ -183,7 +184,13 @@ def _lines(
     motion, half = entry.motion or Motion.NONE, oscillator.half_spacing_m
     if entry.exact and motion in _PHASED:
         try:
-            return pure_rotation(oscillator, point.frequency_hz, speed_m_s, point.eccentricity_m)
+            return pure_rotation(
+                oscillator,
+                point.frequency_hz,
+                speed_m_s,
+                point.eccentricity_m,
+                steady_ahead=entry.steady_ahead,
+            )
         except ConfigurationError as error:
             raise ConfigurationError(f"{entry.name or _prefix(entry)}: exact: {error}") from error
     shape = _shape(entry)

@@ -16,6 +16,7 @@ from pmm.plan.check import Check
 from pmm.plan.duration import carriage_track_m, tank_length_m
 from pmm.plan.findings import PlanFinding, PlanVerdict
 from pmm.plan.force_estimate import force_peak_n
+from pmm.plan.led_carriage import led_peaks, not_led
 from pmm.plan.motion_peaks import (
     acceleration_peak_m_s2,
     omega_of,
@@ -52,6 +53,7 @@ def limit_findings(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
                 f"{one.check.reason}"
             )
             yield PlanFinding(PlanVerdict.REFUSE, quantity, one.value, limit, run.name, text)
+    yield from not_led(run, rig)
     yield from _near_full_scale(run, rig)
     yield from _many_turns(run)
 
@@ -128,6 +130,7 @@ def _towing(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
     yield _Bound(table.SPEED, speed, 0.0, high, "the carriage's drive")
     if rig.tank is not None:
         yield _Bound(table.SPEED, speed, 0.0, rig.tank.highest_speed_m_s, "the carriage")
+    yield from (_Bound(*peak) for peak in led_peaks(run, rig))
     if run.set_point.turn_rate_rad_s:
         yield from _circling(run, rig)
         return

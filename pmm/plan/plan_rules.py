@@ -25,7 +25,7 @@ _REST: Final = {"duration_s", "medium"}
 _WAVES: Final = {"wave_frequency_hz", "wave_amplitude_m", "wave_heading_rad"}
 _PATHS: Final = {"lines", "sweep", "recorded", "highest", "exact"}
 _TAKES: Final[dict[RunKind, set[str]]] = {
-    RunKind.OSCILLATION: _MATRIX | _SET | _PATHS | _WAVES,
+    RunKind.OSCILLATION: _MATRIX | _SET | _PATHS | _WAVES | {"steady_ahead"},
     RunKind.DRY: (_MATRIX - {"drifts_rad"}) | _PATHS,
     RunKind.KNOWN_MASS: (_MATRIX - {"drifts_rad"}) | {"known_mass"},
     RunKind.RESTORING: _MATRIX - {"speeds_m_s", "drifts_rad"},
@@ -212,6 +212,10 @@ def path_faults(entry: PlanEntry, oscillator: Oscillator | None, place: Place) -
             yield Fault((*place, "exact"), text)
         if entry.motion in (Motion.PHASE, Motion.YAW_DRIFT) or any(entry.drifts_rad):
             yield Fault((*place, "exact"), "is for heave, pitch, sway and yaw without a drift")
+    if entry.steady_ahead and not entry.exact:
+        yield Fault((*place, "steady_ahead"), "goes with exact = true; say both")
+    elif entry.steady_ahead and not all(speed > 0.0 for speed in entry.speeds_m_s or (0.0,)):
+        yield Fault((*place, "steady_ahead"), "needs speeds_m_s above 0: it keeps that speed")
     key = "exact" if entry.exact else entry.many_lines
     if key and oscillator is not None:
         yield from (Fault((*place, key), f": {text}") for text in struts_faults(oscillator))

@@ -101,6 +101,8 @@ class PlanEntry:
         Harmonic up to which a recorded motion is followed.
     exact
         Whether the struts follow the paths that make the motion pure at any angle.
+    steady_ahead
+        Whether the carriage's speed follows too, so that the model's along itself is steady.
     channels, loads_n
         Gauges and their loads, of check weights and pushes.
     medium
@@ -137,6 +139,7 @@ class PlanEntry:
     recorded: tuple[float, ...] = ()
     highest: int = 20
     exact: bool = False
+    steady_ahead: bool = False
     channels: tuple[str, ...] = ()
     loads_n: tuple[float, ...] = ()
     known_mass: KnownMass | None = None

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from hardware.demand import Demand
+from hardware.description.carriage_path import CarriagePath
 from hardware.description.kinds import RunKind
 from hardware.description.setpoint import ANGLE_KEYS
 from hardware.errors import NotAtRestError
@@ -57,6 +58,10 @@ class Conduct:
         Where each axis was last sent.
     towed
         Whether the carriage has been told the run's speed.
+    speed_path
+        What the carriage's speed follows; ``None`` where it is steady.
+    leads
+        Whether it is led along it, since the shaft has been told to turn.
     restless, astray, off_speed
         For how many cycles the shaft has moved where it has to stand, or turned at a frequency that
         is not the run's, or the carriage has run at another speed.
@@ -85,6 +90,8 @@ class Conduct:
     astray: int = 0
     off_speed: int = 0
     towed: bool = False
+    leads: bool = False
+    speed_path: CarriagePath | None = None
     ending: RunEnd = RunEnd.COMPLETE
     leaves_plan: bool = False
     placed: dict[str, float] = field(default_factory=dict)
@@ -98,7 +105,8 @@ class Conduct:
 
     def take(self, run: RunPlan) -> None:
         """Make a run the present one."""
-        self.run, self.pushed, self.towed = run, 0, False
+        self.run, self.pushed, self.towed, self.leads = run, 0, False, False
+        self.speed_path = CarriagePath.of(self.rig_file.oscillator, run.set_point)
         self.ending, self.leaves_plan = RunEnd.COMPLETE, False
 
     def go(self, state: State) -> None:
@@ -134,6 +142,13 @@ class Conduct:
     def elapsed_s(self) -> float:
         """Time in the present state, counted in cycles."""
         return (self.rig.number - self.since) / self.rate_hz
+
+    def carriage_speed_m_s(self, ahead_s: float = 0.0) -> float:
+        """Return the speed that the carriage is to have so much later, by the master angle."""
+        if self.speed_path is None or self.rig.path is None:
+            return self.present.set_point.carriage_speed_m_s
+        angle = self.rig.path.angle_at(self.rig.number)
+        return self.speed_path.at(angle + self.speed_path.omega_rad_s * ahead_s)
 
     @property
     def moving(self) -> bool:
@@ -218,7 +233,7 @@ def check_speed(c: Conduct) -> None:
     carriage, point = c.rig.carriage, c.present.set_point
     if carriage is None:
         return
-    speed, rate = point.carriage_speed_m_s, point.turn_rate_rad_s
+    speed, rate = c.carriage_speed_m_s(), point.turn_rate_rad_s
     of_speed = CARRIAGE_SHARE * speed + carriage.tolerance_m_s
     kept = [(carriage.measured_speed_m_s, speed, of_speed, "runs", "m/s")]
     if rate:  # as far off as the speed may be where the radius is right
@@ -230,9 +245,16 @@ def check_speed(c: Conduct) -> None:
         measured, wanted, allowed, does, unit = off[0]
         raise CarriageOffSpeedError(
             carriage.name,
-            f"{does} at {measured:.4g} {unit} where the run wants {wanted:g} {unit} (limit "
+            f"{does} at {measured:.4g} {unit} where the run wants {wanted:.4g} {unit} (limit "
             f"{allowed:.2g} {unit} off); look at its drive and rails, then tow again",
         )
+
+
+def lead_carriage(c: Conduct) -> None:
+    """Tell a carriage that follows a path the speed that it is to have by when it is there."""
+    part, follower = c.rig.configuration.carriage, c.rig.follower
+    if c.leads and part is not None and follower is not None:
+        follower.lead(c.carriage_speed_m_s(getattr(part.settings, "lag_s", 0.0)))
 
 
 def check_standing(c: Conduct, ramp_s: float = 0.0) -> None:

@@ -247,10 +247,12 @@ class Measurement:
         speed = np.concatenate([*self._speeds, np.empty(0)])
         speed = speed[np.isfinite(speed)]
         if speed.size:
+            point = self.run.set_point
+            asked = "along the model asked" if point.steady_ahead else "asked"
             self.event(
                 "carriage",
                 f"{speed.mean():.6g} m/s mean, {speed.std():.3g} m/s standard deviation over the "
-                f"gate; {self.run.set_point.carriage_speed_m_s:g} m/s asked",
+                f"gate; {point.carriage_speed_m_s:g} m/s {asked}",
             )
 
     def _tell_spikes(self, resolving: GateResolver) -> None:

@@ -88,8 +88,8 @@ def _enter_starting(c: Conduct) -> None:
 
 def _at_speed(c: Conduct) -> bool:
     """Bring a carriage with a driver to the run's speed; tell whether it keeps it."""
-    carriage, speed = c.rig.carriage, c.present.set_point.carriage_speed_m_s
-    if carriage is None or not speed:
+    carriage, speed = c.rig.carriage, c.carriage_speed_m_s()
+    if carriage is None or not speed or c.leads:  # one that is led lags: check_speed watches it
         return True
     if not c.towed:
         c.towed = True
@@ -108,6 +108,7 @@ def _starting(c: Conduct) -> State | None:
         c.told = True
         c.rested_since = None
         shaft.turn(c.present.set_point.frequency_hz)
+        c.leads = c.speed_path is not None
     if not shaft.at_speed:
         return None
     if c.rig.photocell is not None:

@@ -16,7 +16,7 @@ from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.run_recorder import RunEnd
 from pmm.run.closer import Closer
-from pmm.run.conduct import Begin, Conduct
+from pmm.run.conduct import Begin, Conduct, lead_carriage
 from pmm.run.errors import RecordingError
 from pmm.run.fault_latch import FaultLatch
 from pmm.run.measurement import Measurement
@@ -234,6 +234,8 @@ class RunControl:
 
     def _do(self) -> None:
         """Do what the present state is for; enter the one that follows it."""
+        if self.state in PHASES:
+            lead_carriage(self._conduct)
         doing = self._doing.get(self.state)
         following = doing() if doing is not None else None
         if following is not None:

@@ -11,6 +11,10 @@ from sim.signals import Signals
 from sim.solve.period import Period, Spectra
 from sim.stage import Block
 
+# Speed in m/s and rate of turn in rad/s that it has by now, and mean acceleration of the last step.
+Driven = tuple[float, float, float]
+_SETTLED = 1e-12  # so near what it is told it has that
+
 
 @dataclass(frozen=True)
 class Fluctuation:
@@ -35,11 +39,14 @@ class CarriageSettings:
         Each relative to the mean speed.
     turn_error
         Relative to the rate of turn on a circle.
+    lag_s
+        Time constant with which it follows another speed that it is told.
     """
 
     speed_error: float = 0.0
     fluctuations: tuple[Fluctuation, ...] = ()
     turn_error: float = 0.0
+    lag_s: float = 0.0
 
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
@@ -54,7 +61,7 @@ class Carriage:
 
     name = "carriage"
     reads = ()
-    writes = (signals.CARRIAGE_SPEED, signals.TURN_RATE)
+    writes = (signals.CARRIAGE_SPEED, signals.CARRIAGE_ACCELERATION, signals.TURN_RATE)
 
     @property
     def mean_m_s(self) -> float:
@@ -66,21 +73,40 @@ class Carriage:
         """The rate of turn that it really has."""
         return self.turn_rate_rad_s * (1.0 + self.settings.turn_error)
 
-    def start(self, sample_rate_hz: float, seed: int) -> None:
-        """Return no state: the speed follows from the time alone."""
+    def start(self, sample_rate_hz: float, seed: int) -> Driven:
+        """Return that it has run as it is told for long."""
+        return self.mean_m_s, self.mean_turn_rad_s, 0.0
 
-    def run(self, state: None, block: Block, inputs: Signals) -> tuple[None, Signals]:
-        """Return speed and rate of turn over the block."""
-        speed = np.full(block.count, self.mean_m_s)
+    def run(self, state: Driven, block: Block, inputs: Signals) -> tuple[Driven, Signals]:
+        """Return speed, its derivative and rate of turn over the block.
+
+        Between samples the speed bends where it is told another: what samples hold of its
+        derivative is the mean of the step and of the one before, carried on to the sample.
+        """
+        told = (self.mean_m_s, self.mean_turn_rad_s)
+        left = np.subtract(state[:2], told)
+        if not block.count or np.abs(left).max() < _SETTLED:
+            left = np.zeros(2)
+        lag_s = self.settings.lag_s
+        after_s = np.arange(1, block.count + 1) / block.sample_rate_hz
+        fading = np.exp(-after_s / lag_s) if lag_s else np.zeros(block.count)
+        speed, turn = np.array(told)[:, np.newaxis] + np.outer(left, fading)
+        steps = np.diff(speed, prepend=state[0]) * block.sample_rate_hz * bool(lag_s)
+        gain = 1.5 * steps - 0.5 * np.append(state[2], steps)[:-1]
+        state = (float(speed[-1]), float(turn[-1]), float(steps[-1])) if block.count else state
         for fluctuation in self.settings.fluctuations:
             turned = 2.0 * math.pi * fluctuation.frequency_hz * block.time_s + fluctuation.phase_rad
             speed += self.mean_m_s * fluctuation.relative * np.sin(turned)
-        turn = np.full(block.count, self.mean_turn_rad_s)
-        return state, {signals.CARRIAGE_SPEED.name: speed, signals.TURN_RATE.name: turn}
+        return state, {
+            signals.CARRIAGE_SPEED.name: speed,
+            signals.CARRIAGE_ACCELERATION.name: gain,
+            signals.TURN_RATE.name: turn,
+        }
 
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
         """Return the means; what fluctuates does so beside the period."""
         return period, {
             signals.CARRIAGE_SPEED.name: period.constant(self.mean_m_s),
+            signals.CARRIAGE_ACCELERATION.name: period.constant(0.0),
             signals.TURN_RATE.name: period.constant(self.mean_turn_rad_s),
         }

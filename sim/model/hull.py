@@ -17,7 +17,13 @@ from sim.model.forces import Instants
 from sim.model.heel import Heeling
 from sim.model.hull_steady_state import HullSteady
 from sim.model.model_march import Marching, marching_of
-from sim.model.numbers import moving, numbers_of, turns_with, weight_less_buoyancy
+from sim.model.numbers import (
+    moving,
+    numbers_of,
+    surging_readings,
+    turns_with,
+    weight_less_buoyancy,
+)
 from sim.model.parameters import HullCoefficients, ModelParameters, mass_matrix
 from sim.model.steering_loads import steering_loads
 from sim.model.system import HullSystem
@@ -49,7 +55,8 @@ class Hull(ModelParameters):
 
     with the memory mu of the water, which is linear in the struts' motion, about the mean speed.
     What gauges read at rest where the drift is set, weight among it, is left out: they are tared
-    with the model in place. The carriage's speed is taken as steady within v'.
+    with the model in place. The carriage's acceleration counts within u' and v' where it is told,
+    for inertia and added mass; not for the memory and the laws.
 
     For the mounting and between samples the slopes of all this at small angles are a linear system
     (:mod:`sim.model.system`), solved exactly; what there is beyond them, and the laws, are solved
@@ -59,7 +66,12 @@ class Hull(ModelParameters):
     """
 
     name = "hull"
-    reads = signals.MODEL_MOTION
+
+    @property
+    def reads(self) -> tuple[Signal, ...]:
+        """How struts and carriage move the model."""
+        gain = (signals.CARRIAGE_ACCELERATION,) if self.surges else ()
+        return (*signals.MODEL_MOTION, *gain)
 
     @property
     def writes(self) -> tuple[Signal, ...]:
@@ -100,6 +112,8 @@ class Hull(ModelParameters):
             roll, rolled = self.heeling.rolling(at, rolled, instants.step_s)
             rows = self._heeled(self.heeling, rows, at, roll)
             state = state._replace(roll=rolled)
+        if self.surges and (gain := inputs[signals.CARRIAGE_ACCELERATION.name]).any():
+            rows[:3] += surging_readings(self.system.numbers, struts, flow, gain)
         if self.waves is not None:
             rows = self._in_waves(self.waves, rows, struts, flow, block.time_s)
         return state, self._written(rows)

@@ -59,6 +59,20 @@ def readings(
     return np.stack(readings, axis=1)
 
 
+def surging_readings(
+    numbers: FloatArray, motion: FloatArray, speed_m_s: FloatArray, gain_m_s2: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return what the gauges read of the carriage's acceleration alone: aft, fore and along."""
+    at = moving(numbers, motion, speed_m_s)
+    ahead, across = gain_m_s2 * at.tank_cosine, -gain_m_s2 * at.tank_sine
+    surging = at._replace(
+        ahead=at.ahead + ahead, across=at.across + across, v_rate=at.v_rate + across
+    )
+    with_it, without = body_loads(numbers, surging), body_loads(numbers, at)
+    loads = (one - other for one, other in zip(with_it, without, strict=True))
+    return gauge_readings(numbers, at.cosine, at.sine, *loads)
+
+
 def without_corners(numbers: FloatArray) -> FloatArray:
     """Return the numbers of the same hull without the loads that bend where a velocity turns."""
     smooth = numbers.copy()

@@ -90,6 +90,9 @@ class ModelParameters:
         What the waves of the run do, and what their probe sees.
     heeling
         Of a model that is heeled or free to roll; its loads go by the struts' motion likewise.
+    surges
+        Whether the carriage's acceleration is told, and what it asks of the struts is reckoned, by
+        the struts' motion likewise.
     """
 
     plane: Plane
@@ -110,3 +113,4 @@ class ModelParameters:
     heeling: Heeling | None = None
     turn_rate_rad_s: float = 0.0
     waves: MetWaves | None = None
+    surges: bool = False

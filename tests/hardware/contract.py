@@ -30,6 +30,7 @@ from hardware.roles import (
     SampleBlock,
     Sampled,
     Shaft,
+    SpeedFollower,
 )
 
 _TRIES = 4  # of what a busy machine has spoilt
@@ -241,6 +242,28 @@ class CarriageContract(_SampledContract, _PoweredContract):
         assert not carriage.at_speed
         bench.until(lambda: not carriage.moving, "stop")
         assert carriage.enabled
+
+    def test_it_follows_a_speed_that_is_led(self, bench: Bench) -> None:
+        carriage = self.ready(bench)
+        if not isinstance(bench.rig.follower, SpeedFollower):
+            pytest.skip("its speed is not led")
+        lead, half = bench.rig.follower.lead, 0.5 * carriage.speed_m_s.high
+        with pytest.raises(NotReadyError):
+            lead(half)
+        carriage.run_at(half)
+        bench.until(lambda: carriage.at_speed, "speed")
+        for step in range(20):
+            lead(half * (1.0 - 0.002 * step))
+            bench.cycles(2)
+        bench.cycles(30)
+        assert carriage.measured_speed_m_s == pytest.approx(0.962 * half, rel=0.01)
+        for share in (0.0, -0.1, 2.001, math.nan):
+            with pytest.raises(LimitError):
+                lead(share * half)
+        carriage.stop()
+        with pytest.raises(NotReadyError):
+            lead(half)
+        bench.until(lambda: not carriage.moving, "stop")
 
     def test_it_goes_back_to_its_start(self, bench: Bench) -> None:
         carriage = self.ready(bench)
