@@ -33,7 +33,8 @@ PARTS = {
     "forces": [amplifier(4, "force_aft", "force_fore")],
     "photocell": WHOLE["photocell"],
 }
-ROUNDS = ("in process", "udp_multicast", "slcan")
+ELSEWHERE = ("udp_multicast", "slcan")  # the rig is served by a process of its own
+ROUNDS = ("in process", *(pytest.param(one, marks=pytest.mark.slow) for one in ELSEWHERE))
 
 
 @pytest.fixture(scope="module", params=ROUNDS)
