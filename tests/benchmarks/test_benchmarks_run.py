@@ -17,13 +17,8 @@ _QUICK = [
 ]
 
 
-# These start processes, or solve what no small size makes cheap.
-_SLOW = ("sealed", "sequential", "campaign", "cluster", "gap_cost", "campaign_boards", "questions")
-
-
-@pytest.mark.parametrize(
-    "name", [pytest.param(one, marks=[pytest.mark.slow] * (one in _SLOW)) for one in _QUICK]
-)
+@pytest.mark.sample(2)
+@pytest.mark.parametrize("name", _QUICK)
 def test_quick_run_measures_and_is_kept(name: str, tmp_path: Path) -> None:
     if name == "evidence":
         pytest.importorskip("dynesty", reason="optional dependency bench")

@@ -88,6 +88,7 @@ def test_what_was_edited_is_complete_when_the_plan_is_queued_anew(tmp_path: Path
         assert [run["name"] for run in client.check("four.toml")["runs"]] == [RUNS[1]]
 
 
+@pytest.mark.slow
 def test_plans_change_places_and_a_watcher_changes_nothing(tmp_path: Path) -> None:
     rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
     with console(rig, out) as one, pmm.connect(one.address) as client:

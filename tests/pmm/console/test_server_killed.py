@@ -9,6 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import psutil
+import pytest
 
 from analysis.readers import read_recording
 from analysis.resolver.analysis import analyse
@@ -40,6 +41,7 @@ def _until(condition: Callable[[], bool], what: str) -> None:
         time.sleep(0.05)
 
 
+@pytest.mark.slow
 def test_runs_go_on_to_their_end_and_are_recorded_whole(tmp_path: Path) -> None:
     rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
     folder = out / "alone"

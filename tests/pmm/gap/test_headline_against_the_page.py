@@ -270,6 +270,7 @@ def test_simulated_rigs(tmp_path: Path, kind: str, options: tuple[str, ...], ver
     assert added.exit_code == 0 or added.stderr.count("nothing to add") == 1
 
 
+@pytest.mark.slow
 def test_the_size_of_friction_is_that_of_its_square_wave(tmp_path: Path) -> None:
     """Friction F at each strut has 4 F / pi in the first harmonic of each force."""
     found = shown(with_friction(tmp_path), tmp_path / "gap.html", *FEW).document

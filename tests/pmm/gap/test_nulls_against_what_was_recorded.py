@@ -70,6 +70,7 @@ def speed(recording: Recording) -> float:
     return recording.set_point.carriage_speed_m_s
 
 
+@pytest.mark.slow
 def test_a_channel_that_nobody_mentions_is_no_gap(null: Path, tmp_path: Path) -> None:
     copy = shutil.copytree(null, tmp_path / "unsaid")
     path = copy / "campaign.toml"
@@ -81,6 +82,7 @@ def test_a_channel_that_nobody_mentions_is_no_gap(null: Path, tmp_path: Path) ->
     assert named(examine(copy, NEAR)) == "none"
 
 
+@pytest.mark.slow
 def test_a_carriage_that_is_noisier_at_speed_is_no_gap(null: Path, tmp_path: Path) -> None:
     def noisy(recording: Recording, rng: np.random.Generator, number: int) -> Recording:
         loud = 2e-4 + 2e-3 * speed(recording)
@@ -90,6 +92,7 @@ def test_a_carriage_that_is_noisier_at_speed_is_no_gap(null: Path, tmp_path: Pat
     assert named(examine(changed(null, tmp_path, noisy), NEAR)) == "none"
 
 
+@pytest.mark.slow
 def test_a_carriage_that_stands_at_exactly_nothing_is_no_gap(null: Path, tmp_path: Path) -> None:
     def stepped(recording: Recording, rng: np.random.Generator, number: int) -> Recording:
         noise = 5e-4 * rng.standard_normal(recording.sample_count) if speed(recording) else 0.0
@@ -99,6 +102,7 @@ def test_a_carriage_that_stands_at_exactly_nothing_is_no_gap(null: Path, tmp_pat
     assert named(examine(changed(null, tmp_path, stepped), NEAR)) == "none"
 
 
+@pytest.mark.slow
 def test_a_channel_of_unknown_steps_is_left_out_and_said(null: Path, tmp_path: Path) -> None:
     def constant(recording: Recording, rng: np.random.Generator, number: int) -> Recording:
         return with_carriage(recording, np.full(recording.sample_count, speed(recording)))
@@ -110,6 +114,7 @@ def test_a_channel_of_unknown_steps_is_left_out_and_said(null: Path, tmp_path: P
     assert all("state it as [acquisition] carriage_speed" in one for one in said)
 
 
+@pytest.mark.slow
 def test_forces_that_are_louder_in_some_runs_are_no_gap(null: Path, tmp_path: Path) -> None:
     def louder(recording: Recording, rng: np.random.Generator, number: int) -> Recording:
         samples = np.array(recording.samples)
