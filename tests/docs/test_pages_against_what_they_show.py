@@ -78,7 +78,7 @@ def _commands(block: Block) -> list[list[str]]:
     found = []
     for line in block.text.splitlines():
         bare = line.partition("  #")[0].strip()
-        if bare in SHOWN_ONLY or bare.startswith("dask "):
+        if bare in SHOWN_ONLY or bare.startswith(("dask ", "export ")):
             continue
         words = shlex.split(bare.rpartition("|")[2])
         assert words[0] in ("pmm", ".venv/bin/pmm"), line

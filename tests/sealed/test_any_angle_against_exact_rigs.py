@@ -86,6 +86,7 @@ def _agree(plane: Plane, one: Arrangement, run: Run, drift_rad: float) -> None:
                   ).max() > 0.3  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("one", STRUTS, ids=lambda a: "-".join(vars(a).values()))
 def test_yaw_at_any_drift(one: Arrangement) -> None:
     for drift_rad in (0.0, 0.15):

@@ -26,6 +26,7 @@ def heavier() -> Case:
     return replace(case, content=content)
 
 
+@pytest.mark.slow
 def test_only_a_run_in_air_tells_the_model_s_mass_from_the_water_s(heavier: Case) -> None:
     sizes, last = sizes_of(heavier), heavier.campaign.runs[-1]
     # Fewer runs than it has: the same physics in a third of the time.

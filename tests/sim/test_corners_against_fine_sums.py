@@ -98,6 +98,7 @@ def compiled(
     return balance.answer(h, np.zeros((ORDERS + 1, 3), dtype=np.complex128))
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=15)
 @given(st.sampled_from(CORNERED), st.sampled_from(Point), st.sampled_from(SYSTEMS), parts)
 def test_harmonics_of_what_jumps(

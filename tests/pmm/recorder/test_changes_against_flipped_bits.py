@@ -102,7 +102,7 @@ def test_a_flipped_bit_anywhere_in_the_samples_is_said_or_harmless(run: Path) ->
         is_short = found.whole_bytes < len(whole)
         silent += not found.changes and not is_short
         assert found.changes or is_short or there.shape == truth.shape
-    assert silent < FLIPS / 20  # padding
+    assert silent < FLIPS / 10  # padding: of each of few and small arrays up to the 64th byte
 
 
 @pytest.mark.parametrize("lost", [1, 2, BATCHES // 2, BATCHES - 1])

@@ -39,7 +39,7 @@ MISSING = [
 ]
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("missing", MISSING)
 def test_sensors_and_noise_are_those_of_the_rig(missing: tuple[str, ...], tmp_path: Path) -> None:
     rig = "".join(

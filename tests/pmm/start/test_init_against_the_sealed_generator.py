@@ -14,7 +14,7 @@ from tests.sealed.generator.recordings import FOREIGN, write_csv
 SEED = 4711
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("index", [1, 3, 4])  # all sensors, no displacements, no encoder
 def test_roles_and_set_points_are_those_of_the_case(tmp_path: Path, index: int) -> None:
     case = make(SEED, index, null=True)

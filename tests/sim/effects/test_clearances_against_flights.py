@@ -122,6 +122,7 @@ def test_a_memory_that_fades_slowly_is_settled_beside_a_clearance() -> None:
     assert np.abs(found - steady[:4]).max() < 2e-5 * abs(steady[1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("effect", "fine"), [(GearBacklash(0.003, 0.02, 3e4, 1.0), 20)])
 def test_teeth_that_ring_faster_than_the_samples_follow(effect: Effect, fine: int) -> None:
     """Steps between the samples: else what rings fed itself, and was off by a tenth."""
