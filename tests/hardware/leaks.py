@@ -9,8 +9,8 @@ import pytest
 import serial
 
 _ENDING_S = 2.0
-# Of distributed, one each for the whole process, kept for its next client.
-_SHARED = {"IO loop", "Dask-Offload_0"}
+# Of distributed and fsspec, one each for the whole process, kept for its next client.
+_SHARED = {"fsspecIO", "IO loop", "Dask-Offload_0"}
 # Reads binary files; one is kept for the next file, by design.
 _READER = "analysis.foreign.child"
 
