@@ -1,6 +1,7 @@
 """Numbers behind voltages: an analogue module on the CAN bus (CiA 401), one value each cycle."""
 
 import struct
+from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar, Final
@@ -12,7 +13,7 @@ from hardware.asked_link import (
     AskedLink,
     AskedSettings,
     Following,
-    ModbusRequest,
+    RegisterRequest,
 )
 from hardware.description.errors import ConfigurationError
 from hardware.description.motor import UNKNOWN_KEYS_REFUSED
@@ -98,14 +99,14 @@ class AnalogueSettings(AskedSettings):
     settings: dict[str, int | float] = field(default_factory=dict)
 
     @property
+    @abstractmethod
     def outputs(self) -> tuple[AnalogueNumber, ...]:
         """What is set."""
-        raise AssertionError("an analogue module sets something")
 
     @property
+    @abstractmethod
     def inputs(self) -> tuple[AnalogueNumber, ...]:
         """What is read."""
-        raise AssertionError("an analogue module reads something")
 
     def link(self, name: str, services: Services) -> "AnalogueLink":
         """Return what reads and sets its voltages; raises as :func:`hardware.driver.join`."""
@@ -129,7 +130,7 @@ class AnalogueLink(AskedLink):
         self._objects = present | {entry(at): value for at, value in settings.settings.items()}
 
     def prepare(self) -> None:
-        """Write the module's settings."""
+        """Write the module's settings: what its outputs do when the controller is lost."""
         for at, value in self._objects.items():
             self._node.sdo.write(at, value)
 
@@ -140,7 +141,7 @@ class AnalogueLink(AskedLink):
         if any(stream.last == cycle.number for stream in self._node.streams):
             for one in self._inputs:
                 word = int(self._node.values[entry(one.object)]) & 0xFFFF
-                answers.append((ModbusRequest(READ[one.table], one.address, 1), (word,)))
+                answers.append((RegisterRequest(READ[one.table], one.address, 1), (word,)))
         request = following()
         if request is not None and request.function == WRITE:
             self._node.put(self._outputs[request.address], signed(request.words))

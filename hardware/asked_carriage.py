@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from hardware.asked_device import AskedDevice, raise_worst
-from hardware.carriage_settings import CarriageSettings
+from hardware.carriage_settings import AskedCarriageSettings
 from hardware.description.channels import CARRIAGE_SPEED, TURN_RATE, Channel
 from hardware.description.oscillator import Range
 from hardware.driver import Services
@@ -34,7 +34,7 @@ class AskedCarriage(AskedDevice):
     Its channels have a sample in every cycle: what was read last, NaN before and in silence.
     """
 
-    def __init__(self, name: str, settings: CarriageSettings, services: Services) -> None:
+    def __init__(self, name: str, settings: AskedCarriageSettings, services: Services) -> None:
         registers = settings.asked
         super().__init__(
             name, settings, services, registers.read(), registers.status, registers.command

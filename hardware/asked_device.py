@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
 from hardware.analogue_link import AnalogueNumber
-from hardware.asked_link import READ, WRITE, Answer, AskedSettings, ModbusRequest
+from hardware.asked_link import READ, WRITE, Answer, AskedSettings, RegisterRequest
 from hardware.driver import Services
 from hardware.errors import (
     DriveFaultError,
@@ -87,7 +87,8 @@ class AskedDevice:
         self._link.reset()
 
     def prepare(self) -> None:
-        """Nothing to write: the first answers come with the first cycles."""
+        """Write the device's settings, if it has any; the first answers come with the cycles."""
+        self._link.prepare()
 
     def enable(self) -> None:
         """Ask for power, at rest; a fault follows where a person has it in hand."""
@@ -183,7 +184,7 @@ class AskedDevice:
             self._life = (life, self._now_s)
         return True
 
-    def _following(self) -> ModbusRequest | None:
+    def _following(self) -> RegisterRequest | None:
         """Return what is written where it is due, and what is read in turn with it."""
         self._read_next = not self._read_next
         if not self._read_next and (write := self._due()) is not None:
@@ -192,18 +193,18 @@ class AskedDevice:
             return None
         (function, address), count = self._spans[self._turn % len(self._spans)]
         self._turn += 1
-        return ModbusRequest(function, address, count)
+        return RegisterRequest(function, address, count)
 
-    def _due(self) -> ModbusRequest | None:
+    def _due(self) -> RegisterRequest | None:
         command = self._command
         if command is not None:
             word = command.word(enable=self._wants_power, reset=self._resets, toggle=self._toggle)
             if not self._stands(command.address, (word,)):
                 self._resets, self._toggle = False, not self._toggle
-                return ModbusRequest(WRITE, command.address, 1, (word,))
+                return RegisterRequest(WRITE, command.address, 1, (word,))
         for address, words in self._told.items():
             if not self._stands(address, words):
-                return ModbusRequest(WRITE, address, len(words), words)
+                return RegisterRequest(WRITE, address, len(words), words)
         return None
 
     def _stands(self, address: int, words: tuple[int, ...]) -> bool:

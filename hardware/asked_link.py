@@ -9,7 +9,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Final
+from typing import ClassVar, Final
 
 from hardware.description.errors import ConfigurationError
 from hardware.driver import Services
@@ -23,7 +23,7 @@ _LOOKS_HZ: Final = 100.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class AskedSettings:
+class AskedSettings(ABC):
     """How a device is asked.
 
     Attributes
@@ -47,13 +47,13 @@ class AskedSettings:
                 f"{self.silent_s:g}: a single answer that is lost is asked for again"
             )
 
+    @abstractmethod
     def link(self, name: str, services: Services) -> "AskedLink":
         """Return what asks it; raises as :class:`AskedLink`."""
-        raise AssertionError(f"{name}: no settings of a link")
 
 
 @dataclass(frozen=True)
-class ModbusRequest:
+class RegisterRequest:
     """What is asked: so many registers read, or words written, from an address on."""
 
     function: int
@@ -62,14 +62,22 @@ class ModbusRequest:
     words: tuple[int, ...] = ()
 
 
-Answer = tuple[ModbusRequest, tuple[int, ...]]
+Answer = tuple[RegisterRequest, tuple[int, ...]]
 """What was asked, and the words that were read or written."""
-Following = Callable[[], ModbusRequest | None]
+Following = Callable[[], RegisterRequest | None]
 """Returns what is asked for next."""
 
 
 class AskedLink(ABC):
-    """Asks a device."""
+    """Asks a device.
+
+    Attributes
+    ----------
+    remedy
+        What to look at where it is silent and nothing else is known.
+    """
+
+    remedy: ClassVar[str] = "check its power, the cable and its settings"
 
     def __init__(self, name: str, settings: AskedSettings) -> None:
         self.name = name
@@ -104,6 +112,9 @@ class AskedLink(ABC):
         """Go on where another link stood: whether the device had answered."""
         self._answers = heard
 
+    def prepare(self) -> None:  # noqa: B027
+        """Write the device's settings, if it has any."""
+
     def close(self) -> None:  # noqa: B027
         """Close the port, if it has one."""
 
@@ -126,7 +137,7 @@ class AskedLink(ABC):
         if silent_s <= self._settings.silent_s:
             return
         self._answers = False
-        why = self._trouble or "check its power, the cable and unit_id"
+        why = self._trouble or self.remedy
         yield SilentPortError(
             self.name,
             f"no answer for {silent_s:.2f} s (limit {self._settings.silent_s:g} s); {why}",
@@ -187,7 +198,7 @@ class PortLink(AskedLink):
         """Yield the answers of a line; raise what it shows."""
 
     @abstractmethod
-    def _frame(self, request: ModbusRequest) -> bytes:
+    def _frame(self, request: RegisterRequest) -> bytes:
         """Return what is sent for a request."""
 
 
@@ -203,7 +214,7 @@ def read_once(
     """
     services = Services(time.monotonic, lambda _: None, _LOOKS_HZ)
     link = settings.link(name, services)
-    left = [ModbusRequest(function, address, count) for (function, address), count in places]
+    left = [RegisterRequest(function, address, count) for (function, address), count in places]
     found, began_s = 0, time.monotonic()
     try:
         while left:

@@ -1,5 +1,6 @@
 """The keys of a carriage behind a programmable controller, or behind a panel that says lines."""
 
+from abc import abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar, Final
 
@@ -54,7 +55,7 @@ class CarriageRegisters:
 
 
 @dataclass(frozen=True, kw_only=True)
-class CarriageSettings(AskedSettings):
+class AskedCarriageSettings(AskedSettings):
     """Settings of a carriage, however it is asked.
 
     Attributes
@@ -85,9 +86,9 @@ class CarriageSettings(AskedSettings):
     lag_s: float = 0.0
 
     @property
+    @abstractmethod
     def asked(self) -> "CarriageRegisters | CarriageLines | CarriageVoltages":
         """What it is asked and told."""
-        raise AssertionError("a carriage is asked for its speed")
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -137,7 +138,7 @@ class CarriageSettings(AskedSettings):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ModbusCarriageSettings(CarriageSettings, ModbusSettings):
+class ModbusCarriageSettings(AskedCarriageSettings, ModbusSettings):
     """Settings of a carriage behind a programmable controller."""
 
     registers: CarriageRegisters
@@ -187,7 +188,7 @@ class CarriageLines:
 
 
 @dataclass(frozen=True, kw_only=True)
-class LineCarriageSettings(CarriageSettings, LineSettings):
+class LineCarriageSettings(AskedCarriageSettings, LineSettings):
     """Settings of a carriage behind a drive panel that answers lines of text."""
 
     lines: CarriageLines
@@ -230,7 +231,7 @@ class CarriageVoltages:
 
 
 @dataclass(frozen=True, kw_only=True)
-class AnalogueCarriageSettings(CarriageSettings, AnalogueSettings):
+class AnalogueCarriageSettings(AskedCarriageSettings, AnalogueSettings):
     """Settings of a carriage behind voltages: without power it is told 0 m/s, and nothing more."""
 
     voltages: CarriageVoltages

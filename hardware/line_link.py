@@ -1,10 +1,11 @@
 """A drive panel asked by lines of text, one at a time, without ever waiting."""
 
+from abc import abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from hardware.asked_link import READ, WRITE, Answer, AskedSettings, ModbusRequest, PortLink
+from hardware.asked_link import READ, WRITE, Answer, AskedSettings, PortLink, RegisterRequest
 from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from hardware.driver import Services
 from hardware.errors import LineError
@@ -65,9 +66,9 @@ class LineSettings(AskedSettings):
     port: LinePortSettings
 
     @property
+    @abstractmethod
     def every_line(self) -> tuple[Line, ...]:
         """All that it is asked and told, each with an address of its own."""
-        raise AssertionError("a panel has something to say")
 
     def link(self, name: str, services: Services) -> "LineLink":
         """Return what asks it."""
@@ -80,10 +81,10 @@ class LineLink(PortLink):
     def __init__(self, name: str, settings: LineSettings, services: Services) -> None:
         self._lines = {one.address: one for one in settings.every_line}
         self._ending = settings.port.ending
-        self._sent: dict[str, ModbusRequest] = {}
+        self._sent: dict[str, RegisterRequest] = {}
         super().__init__(name, settings, services.port(name, settings.port))
 
-    def _frame(self, request: ModbusRequest) -> bytes:
+    def _frame(self, request: RegisterRequest) -> bytes:
         text = self._lines[request.address].text(request.words)
         self._sent[text] = request
         return (text + self._ending).encode()
@@ -92,7 +93,7 @@ class LineLink(PortLink):
         asked, _, said = line.decode("ascii", "replace").partition("\t")
         one = next((one for one in self._reads() if one.text(()) == asked), None)
         if one is None:  # what was told: the reply alone counts
-            request = self._sent.get(asked, ModbusRequest(WRITE, _UNKNOWN))
+            request = self._sent.get(asked, RegisterRequest(WRITE, _UNKNOWN))
             told = self._lines.get(request.address)
             if told is not None and told.words(said) is None:
                 raise self._unexpected(asked, said)
@@ -101,7 +102,7 @@ class LineLink(PortLink):
         words = one.words(said)
         if words is None:
             raise self._unexpected(asked, said)
-        yield ModbusRequest(READ[one.table], one.address, one.count), words
+        yield RegisterRequest(READ[one.table], one.address, one.count), words
 
     def _reads(self) -> Iterator[LineNumber | LineStatus]:
         for one in self._lines.values():

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from hardware.asked_link import READ, WRITE, Answer, AskedSettings, ModbusRequest, PortLink
+from hardware.asked_link import READ, WRITE, Answer, AskedSettings, PortLink, RegisterRequest
 from hardware.description.errors import ConfigurationError
 from hardware.driver import Services
 from hardware.errors import HardwareError, LineError, ModbusError
@@ -47,6 +47,8 @@ class ModbusSettings(AskedSettings):
 class ModbusLink(PortLink):
     """Asks a device; raises as its port does where it cannot be opened."""
 
+    remedy = "check its power, the cable and unit_id"
+
     def __init__(self, name: str, settings: ModbusSettings, services: Services) -> None:
         self._framer = framer_of(name, settings.port.framing)  # says what to install
         from pymodbus.pdu import DecodePDU
@@ -65,7 +67,7 @@ class ModbusLink(PortLink):
             raise LineError(self.name, f"{said.hex()} is no answer; check what is at that address")
         if answer.isError():
             raise self._refusal(asked[1], request.address, answer.exception_code)
-        one = ModbusRequest(asked[1], request.address, request.count, tuple(request.registers))
+        one = RegisterRequest(asked[1], request.address, request.count, tuple(request.registers))
         words = one.words or tuple(answer.registers)
         if answer.function_code != one.function or len(words) != (len(one.words) or one.count):
             raise LineError(
@@ -84,7 +86,7 @@ class ModbusLink(PortLink):
             self.name, f"refuses {doing} register {address}: exception {code}, {what}; {remedy}"
         )
 
-    def _frame(self, request: ModbusRequest) -> bytes:
+    def _frame(self, request: RegisterRequest) -> bytes:
         from pymodbus.pdu.register_message import (
             ReadHoldingRegistersRequest,
             ReadInputRegistersRequest,

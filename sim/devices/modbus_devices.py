@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Final
 from hardware.asked_device import Number, Place, Status, spans
 from hardware.asked_link import READ, WRITE
 from hardware.carriage_settings import (
+    AskedCarriageSettings,
     CarriageLines,
     CarriageRegisters,
-    CarriageSettings,
     ModbusCarriageSettings,
 )
 from hardware.modbus_axis import AxisRegisters, ModbusAxisSettings
@@ -193,7 +193,7 @@ class SimulatedCarriage(Controller):
     def __init__(
         self,
         name: str,
-        settings: CarriageSettings,
+        settings: AskedCarriageSettings,
         driven: Callable[[], tuple[float, float]],
         runs: Callable[[float, float], None],
     ) -> None:
@@ -203,7 +203,7 @@ class SimulatedCarriage(Controller):
         self.position_m = settings.track_m[0] if settings.track_m is not None else 0.0
         self.show(settings.asked.position, self.position_m)
 
-    def _open(self, name: str, settings: CarriageSettings) -> None:
+    def _open(self, name: str, settings: AskedCarriageSettings) -> None:
         if not isinstance(settings, ModbusCarriageSettings):
             raise TypeError(f"{name}: a controller has registers")
         Controller.__init__(self, name, settings)

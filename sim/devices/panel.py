@@ -3,7 +3,7 @@
 import re
 import struct
 
-from hardware.carriage_settings import CarriageSettings, LineCarriageSettings
+from hardware.carriage_settings import AskedCarriageSettings, LineCarriageSettings
 from hardware.line_link import is_told
 from hardware.line_registers import Line, LineCommand, LineNumber, LineStatus, pattern_of
 from sim.devices.modbus_devices import SimulatedCarriage
@@ -14,7 +14,7 @@ _VALUE = re.compile(r"\{value(:[^}]*)?\}")
 class SimulatedPanel(SimulatedCarriage):
     """Runs on its ramps at the speed that it was told in a line."""
 
-    def _open(self, name: str, settings: CarriageSettings) -> None:
+    def _open(self, name: str, settings: AskedCarriageSettings) -> None:
         if not isinstance(settings, LineCarriageSettings):
             raise TypeError(f"{name}: a panel has lines")
         self.unit_id = 0
