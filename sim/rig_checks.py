@@ -32,7 +32,7 @@ def check_run(rig: "SimulatedRig", set_point: SetPoint) -> None:
     checks = (_of_joint, _of_circle, _of_waves, _of_steering, _of_lines, _of_attitude, _of_heel)
     faults = [fault for check in checks for fault in check(rig, set_point)]
     if faults:
-        raise ConfigurationError("; ".join(faults))
+        raise ConfigurationError(f"the simulated rig lacks what a run needs: {'; '.join(faults)}")
 
 
 def recorded(acquisition: Acquisition, channels: Collection[str]) -> list[str]:

@@ -319,6 +319,14 @@ SAMPLING: Final = Check(
     "raise bus.sync_rate_hz or lower the frequency",
     "half: a filter has room; twice: harmonics fold onto each other",
 )
+CHANNEL: Final = Check(
+    "channel that a run is analysed by",
+    "warn where no amplifier's channel is `wave_probe` and a run is made in waves, or `heel_angle` "
+    "and a run is a free decay",
+    "the analysis, which takes the wave from the probe and a decay from the heel",
+    "give a channel of an amplifier that name, or record it by another system",
+    "nothing: it is there or not",
+)
 CALIBRATION: Final = Check(
     "calibration [days past expiry]",
     "warn above 0",
@@ -332,6 +340,7 @@ CHECKS: Final = (
     LOAD, SPEED, LED_SPEED, LED_ACCELERATION, STATIC_ANGLE, WAY, TURN_RATE, RADIUS, TURNS, BUS,
     ROTATION, ANGLE_TO_FLOW, FROUDE, REYNOLDS, TURNING, REDUCED_SWAY, REDUCED_YAW, REDUCED,
     WAVE_FREQUENCY, TAU_SWAY, TAU_HEAVE, ECHO, REACH, KEEL, BLOCKAGE, DEPTH, DEPTH_FROUDE,
-    TANK_MODE, STRUCTURE, CYCLES, SETTLING, RIPPLE, SAMPLING, CALIBRATION,
+    TANK_MODE, STRUCTURE, CYCLES, SETTLING, RIPPLE, SAMPLING, CHANNEL,
+    CALIBRATION,
 )  # fmt: skip
 """In the order of the page."""

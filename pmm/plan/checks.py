@@ -4,9 +4,11 @@ import math
 from collections.abc import Iterator
 from datetime import date
 
+from hardware.description.channels import HEEL_ANGLE, WAVE_PROBE
+from hardware.description.kinds import RunKind
 from hardware.path_shaft_settings import PathShaftSettings
 from pmm.campaign.calibrated_recording import expiry_text
-from pmm.plan.check_table import CALIBRATION
+from pmm.plan.check_table import CALIBRATION, CHANNEL
 from pmm.plan.condition_checks import condition_findings
 from pmm.plan.field_checks import field_findings
 from pmm.plan.findings import PlanFinding, PlanRefusedError, PlanVerdict
@@ -30,6 +32,7 @@ def check_plan(plan: Plan, rig: RigFile, today: date | None = None) -> tuple[Pla
         *bus_finding(rig),
         *departure_findings(rig),
         *_expired(rig, today),
+        *_unrecorded(plan, rig),
         *_not_checked(plan, rig),
     ]
     for run in plan.runs:
@@ -66,6 +69,27 @@ def _expired(rig: RigFile, today: date | None) -> Iterator[PlanFinding]:
         late = float((today - one.expires).days)
         text = expiry_text(one, today)
         yield PlanFinding(PlanVerdict.WARN, CALIBRATION.quantity, late, 0.0, "", text)
+
+
+def _unrecorded(plan: Plan, rig: RigFile) -> Iterator[PlanFinding]:
+    """Yield channels that runs of the plan are analysed by, and that no device records."""
+    names = {
+        getattr(one, "name", "")
+        for part in rig.hardware.forces
+        for one in getattr(part.settings, "channels", ())
+    }
+    for channel, runs in (
+        (WAVE_PROBE, [run for run in plan.runs if run.set_point.wave_frequency_hz]),
+        (HEEL_ANGLE, [run for run in plan.runs if run.kind is RunKind.FREE_DECAY]),
+    ):
+        if runs and channel.name not in names:
+            message = (
+                f"no device records {channel.name} [{channel.unit}], by which {runs[0].name} is "
+                "analysed; give a channel of an amplifier that name"
+            )
+            yield PlanFinding(
+                PlanVerdict.WARN, CHANNEL.quantity, math.nan, math.nan, runs[0].name, message
+            )
 
 
 def _leads(rig: RigFile) -> bool:

@@ -9,7 +9,7 @@ from analysis.response.following import StrutFollowing
 from hardware.description.channels import DISPLACEMENTS
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import Column, Figure, Table, data_only, number, word
-from pmm.document.notation import rounded, written
+from pmm.document.notation import written
 from pmm.document.style import PALETTE, drawing
 
 if TYPE_CHECKING:
@@ -19,19 +19,21 @@ _MILLIONTH: Final = 1e6
 _DEGREES: Final = 180.0 / math.pi
 
 
-def _with_u(key: str, factor: float) -> Callable[[StrutFollowing], str]:
-    return lambda row: rounded(factor * getattr(row, key), factor * getattr(row, f"u_{key}"))
+def _in(factor: float, key: str) -> Callable[[StrutFollowing], str]:
+    return lambda row: f"{factor * getattr(row, key):.3g}"
 
 
 _COLUMNS: Final[tuple[Column[StrutFollowing], ...]] = (
     word("run", "run"),
     word("displacement", "channel"),
     number("f", "frequency_hz", written(".4g"), "Hz"),
-    Column("rms", lambda row: f"{_MILLIONTH * row.rms:.3g}", number=True),
-    Column("peak", lambda row: f"{_MILLIONTH * row.peak:.3g}", number=True),
+    Column("rms", _in(_MILLIONTH, "rms"), number=True),
+    Column("peak", _in(_MILLIONTH, "peak"), number=True),
     Column("", lambda row: f"µ{row.unit}"),
-    Column("amplitude error", _with_u("amplitude_relative", 100.0), unit="%", number=True),
-    Column("phase", _with_u("phase_rad", _DEGREES), unit="deg", number=True),
+    Column("amplitude error", _in(100.0, "amplitude_relative"), unit="%", number=True),
+    Column("±", _in(100.0, "u_amplitude_relative"), unit="%", number=True),
+    Column("phase", _in(_DEGREES, "phase_rad"), unit="deg", number=True),
+    Column("±", _in(_DEGREES, "u_phase_rad"), unit="deg", number=True),
     *data_only(
         "unit",
         "rms",

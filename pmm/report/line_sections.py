@@ -27,7 +27,7 @@ def line_sections(outcome: CampaignOutcome) -> Iterator[Section]:
             draw = partial(response_figure, one.lines, motion)
             rows = response_rows(one.lines, motion, (), outcome.result.level)
             figure = Figure(f"response-{one.name}", _CAPTION, draw)
-            yield Section(f"Many frequencies at once: {one.name}", (*response_tables(rows), figure))
+            yield Section(f"Response by lines: {one.name}", (*response_tables(rows), figure))
 
 
 def _moved(reading: "Harmonics") -> str | None:

@@ -70,7 +70,7 @@ def test_a_report_has_responses_and_runs_deliverables(made: Path, tmp_path: Path
     assert done.exit_code == 0, done.output
     text = page.read_text(encoding="utf-8")
     for run in ("sway", "yaw"):
-        section = text.partition(f"Many frequencies at once: {run}</h2>")[2].partition("<h2")[0]
+        section = text.partition(f"Response by lines: {run}</h2>")[2].partition("<h2")[0]
         assert "Response to displacement_aft" in section
         assert section.count("<svg") == 1
         turns = run == "yaw"  # the gauges turn with the model: loads of odd degree in its angle

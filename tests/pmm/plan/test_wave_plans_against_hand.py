@@ -9,6 +9,7 @@ import pytest
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.campaign_file import read_campaign
 from pmm.plan.campaign_writer import FinishedRun, write_campaign
+from pmm.plan.checks import check_plan
 from pmm.plan.plan import read_plan, read_plan_and_rig
 from pmm.run.surroundings import Surroundings
 from tests.pmm.plan.plans import HORIZONTAL_TEXT, write_plan
@@ -53,6 +54,17 @@ def test_an_operator_starts_the_maker_once_and_stops_it(tmp_path: Path) -> None:
     assert not list(around.before(again, rig.oscillator))
     (stop,) = around.before(calm, rig.oscillator)
     assert "stop the wave maker" in stop
+
+
+def test_a_rig_without_a_probe_is_warned_of_once(tmp_path: Path) -> None:
+    probe = '{ name = "wave_probe", unit = "m", object = "9130:1", scale = 1e-6, full_scale = 1.0 }'
+    table = f'[[forces]]\ndriver = "cia404-amplifier"\nnode = 6\nchannels = [{probe}]\n\n'
+    probed = HORIZONTAL_TEXT.replace("[model] ", f"{table}[model] ", 1)
+    texts = {HORIZONTAL_TEXT: ["sway-f0.15-a100-w0.55"], probed: []}
+    for text, warned in texts.items():
+        plan, rig = read_plan_and_rig(write_plan(tmp_path, PLAN, text))
+        found = [one.run for one in check_plan(plan, rig) if "wave_probe [m]" in one.message]
+        assert found == warned
 
 
 @pytest.mark.parametrize(
