@@ -1,7 +1,6 @@
 """One recording becomes one cycle: what a worker does, in whichever process or machine it is."""
 
 import hashlib
-import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -19,7 +18,6 @@ from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static
 from analysis.recording import Recording
 from analysis.resolver.analysis import analyse
 from analysis.resolver.first_harmonics import first_harmonics
-from analysis.response.following import StrutFollowing, led_struts, strut_following
 from analysis.response.waves import in_waves
 from hardware.description.arrangement import Joint
 from hardware.description.carriage_path import CarriagePath
@@ -31,7 +29,6 @@ from hardware.description.channels import (
     HEEL_ANGLE,
     HEELING,
     ROLL_MOMENT,
-    TURN_RATE,
     units_on,
 )
 from hardware.description.errors import DataError, PmmError
@@ -40,6 +37,7 @@ from hardware.description.kinds import RunKind
 from pmm.campaign.calibrated_recording import applied
 from pmm.campaign.recording_source import RAW, open_recording
 from pmm.coefficients.attitude import attitude_of, rest_of
+from pmm.coefficients.followed_runs import as_driven, following_of
 from pmm.coefficients.settings import AmplifierTable
 from pmm.coefficients.tasks import Done, Failed, Task, Zero
 from pmm.coefficients.zeros import utc_s, zeroed
@@ -176,7 +174,7 @@ def _turning(task: Task, recording: Recording) -> Done:
     struts, flags = zeroed(struts, task, recording)
     found = tuple(flag for flag in analysis.flags if flag not in recording.flags)
     attitude, told = attitude_of(task, recording)
-    following, unknown = _following(task, recording)
+    following, unknown = following_of(task, recording)
     if waves is not None:  # what they add to the mean is no load of calm water
         struts = replace(struts, mean_known=False)
     reading = analysis.readings[0]
@@ -194,29 +192,10 @@ def _turning(task: Task, recording: Recording) -> Done:
     )
 
 
-def _following(
-    task: Task, recording: Recording
-) -> tuple[tuple[StrutFollowing, ...], tuple[Flag, ...]]:
-    """Return how each strut followed its set-points, or why that is not told."""
-    both = [name for one in led_struts(recording) for name in one]
-    if not both:
-        return (), ()
-    order = max(task.set_point.every_line, key=lambda line: line.share).order
-    settings = replace(
-        task.settings, channels=tuple(both), harmonics=max(order, task.settings.harmonics)
-    )
-    try:
-        reading = analyse(recording, task.choice, settings).readings[0]
-        return tuple(strut_following(recording, reading, order)), ()
-    except DataError as error:
-        text = f"how the struts followed their set-points is not told: {error}"
-        return (), (Flag("following_unknown", Severity.NOTE, text),)
-
-
 def _towed(task: Task, recording: Recording) -> Done:
     spread = (0.0, 0.0)
     if task.kind is RunKind.CIRCLE:
-        task, spread = _as_driven(task, recording)
+        task, spread = as_driven(task, recording)
     reading = zero_reading(recording, 0.0, (*FORCES, *_besides(task, recording)))
     struts = static_cycle(task.name, reading, task.oscillator, task.set_point)
     struts, flags = zeroed(struts, task, recording)
@@ -233,34 +212,6 @@ def _towed(task: Task, recording: Recording) -> Done:
         cycle = cycle if CARRIAGE_SPEED.name in recording.channel_names else by_radius(cycle)
     done = _done(task, recording, cycle, None, 0, (*flags, *told))
     return replace(done, attitude=attitude, turn=turn)
-
-
-def _as_driven(task: Task, recording: Recording) -> tuple[Task, tuple[float, float]]:
-    """Return a run on a circle as speed and rate of turn were recorded.
-
-    Without a speed it is that of the circle's radius. Beside it the standard uncertainties of
-    radius and rate by the scatter of what was recorded.
-    """
-    point, spread = task.set_point, [0.0, 0.0]
-    means = [point.carriage_speed_m_s, point.turn_rate_rad_s]
-    for k, name in enumerate((CARRIAGE_SPEED.name, TURN_RATE.name)):
-        if name in recording.channel_names:
-            mean = zero_reading(recording, 0.0, (name,)).offsets.real
-            means[k] = float(mean.values[0])
-            spread[k] = float(mean.standard_uncertainty[0])
-    speed, rate = means
-    if not rate * point.turn_rate_rad_s > 0.0:
-        raise DataError(
-            f"{task.name}: the rate of turn is {rate:.4g} rad/s on average where the run asks for "
-            f"{point.turn_rate_rad_s:.4g}; correct the sign of the channel {TURN_RATE.name}, or "
-            "turn_rate_deg_s in the campaign file"
-        )
-    if CARRIAGE_SPEED.name not in recording.channel_names:
-        driven = replace(point, carriage_speed_m_s=speed * rate / point.turn_rate_rad_s)
-        return replace(task, set_point=replace(driven, turn_rate_rad_s=rate)), (0.0, spread[1])
-    u_radius = math.hypot(spread[0] / rate, speed * spread[1] / rate**2)
-    driven = replace(point, carriage_speed_m_s=speed, turn_rate_rad_s=rate)
-    return replace(task, set_point=driven), (u_radius, spread[1])
 
 
 def _model(task: Task, struts: StrutCycle) -> BodyCycle:
