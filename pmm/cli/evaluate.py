@@ -38,7 +38,7 @@ def evaluate(folder: str, valid_days: int, plot: str | None, as_json: bool) -> N
     from hardware.description.errors import ConfigurationError
     from pmm.cli.files import check_folder, tell_writers
     from pmm.cli.screen import error_line, messages, show
-    from pmm.document.style import drawing, write_figure
+    from pmm.document.style import write_figure
     from pmm.evaluation.evaluation import evaluate as evaluated
     from pmm.evaluation.evaluation import keep
     from pmm.report.evaluation_document import evaluation_document, evaluation_figures
@@ -52,9 +52,7 @@ def evaluate(folder: str, valid_days: int, plot: str | None, as_json: bool) -> N
     found = evaluated(place, valid_days)
     files = keep(found, place)
     for one in () if plot is None else evaluation_figures(found):
-        with drawing():
-            figure = one.draw()
-        files += write_figure(figure, Path(str(plot)), one.name)
+        files += write_figure(one.draw(), Path(str(plot)), one.name)
     show(evaluation_document(replace(found, files=tuple(files))), as_json=as_json)
     if not as_json:
         for note in found.notes:

@@ -77,6 +77,18 @@ def drawing() -> Iterator[None]:
         yield
 
 
+@contextmanager
+def drawn(width_in: float, height_in: float, title: str = "") -> "Iterator[Figure]":
+    """Give an empty figure of that size in inches to draw on, with this project's settings."""
+    from matplotlib.figure import Figure
+
+    with drawing():
+        figure = Figure(figsize=(width_in, height_in), layout="constrained")
+        if title:
+            figure.suptitle(title)
+        yield figure
+
+
 def render(figure: "Figure", kind: str, salt: str) -> bytes:
     """Return a figure as a file's bytes, the same each time.
 

@@ -9,7 +9,7 @@ from analysis.gap.judge.description import ForceMap
 from analysis.gap.locate.walk import CHAIN
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import plain
-from pmm.document.style import PALETTE, TRACE, drawing
+from pmm.document.style import PALETTE, TRACE, drawn
 from pmm.gap.cells import HARMONIC, Cell
 from pmm.gap.heat import (
     AFTER,
@@ -71,12 +71,9 @@ def _row_name(row: tuple[str, str, str, int]) -> str:
 
 def walk_figure(report: GapReport) -> "Figure":
     """Draw the gap step by step along the chain, before and after, over the noise's own 1."""
-    from matplotlib.figure import Figure
-
     after = {one.what: one.gap_u for one in report.conclusion.remains}
-    with drawing():
-        count = len(report.conclusion.walk)
-        figure = Figure(figsize=(10.5, 1.6 + 0.42 * count), layout="constrained")
+    count = len(report.conclusion.walk)
+    with drawn(10.5, 1.6 + 0.42 * count) as figure:
         axes = figure.add_subplot()
         for at, one in enumerate(report.conclusion.walk):
             axes.plot(max(one.gap_u, LEAST_U), at, "o", color=BEFORE, markersize=7)
@@ -130,10 +127,7 @@ def withheld_figure(report: GapReport) -> "Figure":
 
 def force_map_figure(maps: Sequence[ForceMap]) -> "Figure":
     """Draw the remainder over the strut's displacement and velocity, no form assumed."""
-    from matplotlib.figure import Figure
-
-    with drawing():
-        figure = Figure(figsize=(10.5, 4.2), layout="constrained")
+    with drawn(10.5, 4.2) as figure:
         places = figure.subplots(1, len(maps), squeeze=False)[0]
         largest = max(float(np.nanmax(np.abs(one.force_n))) for one in maps) or 1.0
         for axes, one in zip(places, maps, strict=True):

@@ -9,7 +9,7 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import plain
-from pmm.document.style import PALETTE, TRACE, drawing
+from pmm.document.style import PALETTE, TRACE, drawn
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -56,12 +56,9 @@ def before_and_after(grid: Grid, maps: Sequence[FloatArray], label: str) -> "Fig
     label
         Of the colours.
     """
-    from matplotlib.figure import Figure
-
-    with drawing():
-        height = 1.6 + 0.17 * len(grid.rows)
-        height += 0.06 * max((len(name) for name in grid.columns), default=0)
-        figure = Figure(figsize=(10.5, max(height, 2.4)), layout="constrained")
+    height = 1.6 + 0.17 * len(grid.rows)
+    height += 0.06 * max((len(name) for name in grid.columns), default=0)
+    with drawn(10.5, max(height, 2.4)) as figure:
         axes = figure.subplots(1, 2, sharey=True)
         for place, title, values in zip(axes, grid.titles, maps, strict=True):
             image = _cells(place, values, grid)
@@ -90,10 +87,7 @@ def _cells(axes: "Axes", values: FloatArray, grid: Grid) -> "QuadMesh":
 
 def probability_bars(shares: Mapping[str, float], alike: Sequence[str], label: str) -> "Figure":
     """Draw probabilities as bars, those of what cannot be told from the first one in its colour."""
-    from matplotlib.figure import Figure
-
-    with drawing():
-        figure = Figure(figsize=(10.5, 1.1 + 0.36 * len(shares)), layout="constrained")
+    with drawn(10.5, 1.1 + 0.36 * len(shares)) as figure:
         axes = figure.add_subplot()
         for at, (name, share) in enumerate(shares.items()):
             axes.barh(at, share, color=AFTER if name in alike else _OTHER, height=0.7)
@@ -117,11 +111,8 @@ class Dots:
 
 def dotted(rows: Sequence[str], series: Sequence[Dots]) -> "Figure":
     """Draw gaps in u without and with some answers, noise taken off, a row for each regime."""
-    from matplotlib.figure import Figure
-
-    with drawing():
-        count = len(rows)
-        figure = Figure(figsize=(10.5, 1.6 + 0.36 * count), layout="constrained")
+    count = len(rows)
+    with drawn(10.5, 1.6 + 0.36 * count) as figure:
         axes = figure.add_subplot()
         for step, one in enumerate(series):
             seen = [(value, at) for at, value in enumerate(one.values) if not math.isnan(value)]

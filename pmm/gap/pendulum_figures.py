@@ -12,7 +12,7 @@ from analysis.gap.pendulum.search import named
 from analysis.gap.pendulum.swings import KINDS
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import plain
-from pmm.document.style import PALETTE, TRACE, drawing
+from pmm.document.style import PALETTE, TRACE, drawn
 from pmm.gap.heat import AFTER, BEFORE, Dots, Grid, before_and_after, dotted, probability_bars
 from pmm.gap.pendulum_conclusion import ranking
 
@@ -89,16 +89,13 @@ def swings_figure(found: PendulumDiagnosis, at: int) -> "Figure":
 
     Both simulations have the release and the tolerances that fit best, as in the diagnosis.
     """
-    from matplotlib.figure import Figure
-
     problem, after = found.problem, found.settled
     trial, nothing = problem.trials[at], np.zeros_like(problem.residual)
     curves = {
         "simulated": (_told(problem, nothing), BEFORE),
         "with causes": (_told(after.problem, after.best.signature), AFTER),
     }
-    with drawing():
-        figure = Figure(figsize=(10.5, 5.0), layout="constrained")
+    with drawn(10.5, 5.0) as figure:
         axes = figure.subplots(2, 1, sharex=True)
         for panel, (kind, label) in zip(axes, _LABELS.items(), strict=True):
             row = KINDS.index(kind)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pmm.archive.trends import Trend
-from pmm.document.style import PALETTE, STEADY_SHADE, TRACE, drawing
+from pmm.document.style import PALETTE, STEADY_SHADE, TRACE, drawn
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -15,15 +15,13 @@ if TYPE_CHECKING:
 def trend_figure(found: Trend) -> "Figure":
     """Draw one trend."""
     from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
-    from matplotlib.figure import Figure
 
     times = np.array([_utc(row["recorded_utc"]) for row in found.rows], "datetime64[s]")
     values = np.array([row["value"] for row in found.rows])
     halves = np.array([row["half_width"] or 0.0 for row in found.rows])
     low, high = np.array([(one.low, one.high) for one in found.chart]).T
     outside = np.array([one.outside for one in found.chart])
-    with drawing():
-        figure = Figure(figsize=(7.5, 3.6), layout="constrained")
+    with drawn(7.5, 3.6) as figure:
         axes = figure.subplots()
         if np.isfinite(low).any():
             axes.vlines(times, low, high, color=STEADY_SHADE, linewidth=12.0,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 from analysis.attitude import AttitudeChannel
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import Figure
-from pmm.document.style import PALETTE, drawing
+from pmm.document.style import PALETTE, drawn
 from pmm.report.attitude import AttitudeRow, attitude_rows
 
 if TYPE_CHECKING:
@@ -37,10 +37,7 @@ def attitude_figures(outcome: CampaignOutcome) -> Iterator[Figure]:
 
 def attitude_figure(rows: Sequence[AttitudeRow]) -> "Drawing":
     """Draw four panels: sinkage above trim, over speed at left and over drift at right."""
-    from matplotlib.figure import Figure as Drawing
-
-    with drawing():
-        figure = Drawing(figsize=(10.0, 5.6), layout="constrained")
+    with drawn(10.0, 5.6) as figure:
         panels = figure.subplots(2, 2)
         for axes_row, (name, factor, told) in zip(panels, _SHOWN, strict=True):
             for axes, (along, place) in zip(axes_row, _OVER, strict=True):

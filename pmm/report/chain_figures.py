@@ -14,7 +14,7 @@ from pmm.campaign.campaign import Campaign
 from pmm.campaign.order import place_in
 from pmm.campaign.runs import Run
 from pmm.document.labels import display, plain
-from pmm.document.style import PALETTE, TRACE, drawing, write_figure
+from pmm.document.style import PALETTE, TRACE, drawn, write_figure
 from sim import signals
 from sim.effects.effect import Effect
 from sim.effects.switching import switch_on
@@ -113,15 +113,13 @@ def chain_figure(
     changed
         The run with effects; ``None`` for the nominal run alone.
     """
-    from matplotlib.figure import Figure
-
     panels = _panels(nominal.values)
     columns = 1 if changed is None else 2
-    with drawing():
-        figure = Figure(
-            figsize=(4.4 + 4.2 * (columns - 1), 0.9 + 1.5 * len(panels)), layout="constrained"
-        )
-        figure.suptitle("\n".join(plain(line) for line in (title, subtitle) if line))
+    with drawn(
+        4.4 + 4.2 * (columns - 1),
+        0.9 + 1.5 * len(panels),
+        "\n".join(plain(line) for line in (title, subtitle) if line),
+    ) as figure:
         grid = figure.subplots(len(panels), columns, squeeze=False, sharex=True)
         inside = (nominal.time_s >= 0.0) & (nominal.time_s <= _SHOWN_PERIODS * period_s)
         time_s = nominal.time_s[inside]

@@ -14,7 +14,7 @@ from analysis.coefficients.term_waves import MOVES, waves_of
 from analysis.coefficients.terms import term_of
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import Figure
-from pmm.document.style import PALETTE, drawing
+from pmm.document.style import PALETTE, drawn
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,14 +40,11 @@ def circle_figures(outcome: CampaignOutcome) -> Iterator[Figure]:
 
 def circle_figure(cycles: Sequence[BodyCycle], found: CampaignCoefficients) -> "Drawing":
     """Draw force and moment, a colour for each drift angle and speed."""
-    from matplotlib.figure import Figure as Drawing
-
     groups: dict[tuple[float, float], list[BodyCycle]] = {}  # by speed and drift
     for one in cycles:
         key = (round(one.speed_m_s, 2), round(math.degrees(one.drift_rad), 2))
         groups.setdefault(key, []).append(one)
-    with drawing():
-        figure = Drawing(figsize=(6.4, 5.6), layout="constrained")
+    with drawn(6.4, 5.6) as figure:
         panels = figure.subplots(2, 1, sharex=True)
         for row, (axes, (load, label)) in enumerate(zip(panels, _LOADS, strict=True)):
             for k, ((speed, drift), mine) in enumerate(

@@ -7,7 +7,6 @@ import numpy as np
 from analysis.coefficients.campaign_records import LINEAR
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.names import PLACES, name_of, place_of
-from pmm.document.style import drawing
 from pmm.report.coefficient_panels import (
     MOST_SERIES,
     axis_label,
@@ -32,9 +31,8 @@ def has_amplitudes(found: CampaignCoefficients, speed_m_s: float) -> bool:
 def amplitude_figure(found: CampaignCoefficients, speed_m_s: float) -> "Figure":
     """Draw a panel for each coefficient that was had at several amplitudes."""
     names = _names(found, speed_m_s)
-    with drawing():
-        title = f"Over amplitude at {speed_m_s:g} m/s; {found.normalisation}"
-        figure, panels = grid(names, title, one_axis=False)
+    title = f"Over amplitude at {speed_m_s:g} m/s; {found.normalisation}"
+    with grid(names, title, one_axis=False) as (figure, panels):
         shown = sorted({f for name in names for f, _ in _series(found, name, speed_m_s)})
         for name, panel in zip(names, panels, strict=True):
             used = []

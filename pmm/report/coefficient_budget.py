@@ -11,7 +11,7 @@ from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.recommendation import recommended
 from pmm.document.labels import plain
 from pmm.document.notation import rounded
-from pmm.document.style import PALETTE, drawing
+from pmm.document.style import PALETTE, drawn
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,14 +38,12 @@ def budget_rows(found: CampaignCoefficients, speed_m_s: float) -> list[int]:
 
 def budget_figure(found: CampaignCoefficients, rows: Sequence[int], speed_m_s: float) -> "Figure":
     """Draw for each value its interval in per cent of it, and what each kind of input adds."""
-    from matplotlib.figure import Figure
-
     budgets = [budget(found, k) for k in rows]
-    with drawing():
-        figure = Figure(figsize=(10.5, 1.5 + 0.27 * len(rows)), layout="constrained")
-        figure.suptitle(
-            plain(f"How well each value is known, {speed_m_s:g} m/s; {found.normalisation}")
-        )
+    with drawn(
+        10.5,
+        1.5 + 0.27 * len(rows),
+        plain(f"How well each value is known, {speed_m_s:g} m/s; {found.normalisation}"),
+    ) as figure:
         sizes, shares = figure.subplots(1, 2, sharey=True, width_ratios=(2, 3))
         _draw_sizes(sizes, budgets)
         _draw_shares(shares, budgets)

@@ -9,7 +9,7 @@ from analysis.coefficients.campaign_nonlinear import STATIC_DRIFT
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.names import PLACES, name_of
 from analysis.coefficients.recommendation import recommended
-from pmm.document.style import PALETTE, TRACE, drawing
+from pmm.document.style import PALETTE, TRACE
 from pmm.report.coefficient_panels import (
     MOST_SERIES,
     axis_label,
@@ -49,8 +49,8 @@ def frequency_figure(
     found: CampaignCoefficients, speed_m_s: float, names: Sequence[str]
 ) -> "Figure":
     """Draw a panel for each coefficient at one speed, of at most four series."""
-    with drawing():
-        figure, panels = grid(names, f"Coefficients at {speed_m_s:g} m/s; {found.normalisation}")
+    title = f"Coefficients at {speed_m_s:g} m/s; {found.normalisation}"
+    with grid(names, title) as (figure, panels):
         series = {name: list(_series(found, name, speed_m_s)) for name in names}
         labels = list(dict.fromkeys(label for own in series.values() for label, _ in own))
         widest = max(found.entries[k].frequency_hz for k in found.rows(speed_m_s=speed_m_s))

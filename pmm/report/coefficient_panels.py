@@ -1,14 +1,15 @@
 """What the panels of coefficients have in common: a grid, names, units, series with intervals."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from pmm.document.labels import plain
-from pmm.document.style import PALETTE
+from pmm.document.style import PALETTE, drawn
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -22,19 +23,17 @@ _WIDTH, _HEIGHT = 10.5, 2.1
 _ASIDE: Final = 0.01
 
 
+@contextmanager
 def grid(
     names: Sequence[str], title: str, *, one_axis: bool = True
-) -> tuple["Figure", list["Axes"]]:
-    """Return a figure with a panel for each name, in two columns."""
-    from matplotlib.figure import Figure
-
+) -> Iterator[tuple["Figure", list["Axes"]]]:
+    """Give a figure to draw on, with a panel for each name, in two columns."""
     rows = math.ceil(len(names) / _COLUMNS)
-    figure = Figure(figsize=(_WIDTH, _HEIGHT * rows + 1.1), layout="constrained")
-    figure.suptitle(plain(title))
-    panels = figure.subplots(rows, _COLUMNS, squeeze=False, sharex=one_axis).ravel().tolist()
-    for panel in panels[len(names) :]:
-        panel.set_visible(False)
-    return figure, panels[: len(names)]
+    with drawn(_WIDTH, _HEIGHT * rows + 1.1, plain(title)) as figure:
+        panels = figure.subplots(rows, _COLUMNS, squeeze=False, sharex=one_axis).ravel().tolist()
+        for panel in panels[len(names) :]:
+            panel.set_visible(False)
+        yield figure, panels[: len(names)]
 
 
 def beside(number: int, count: int) -> float:

@@ -8,7 +8,7 @@ from analysis.comparison.result import ChannelComparison
 from analysis.uncertainty.freedom import student_factor
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import shown_name
-from pmm.document.style import FIT, PALETTE, TRACE, drawing
+from pmm.document.style import FIT, PALETTE, TRACE, drawn
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,12 +30,8 @@ def comparison_figure(found: ChannelComparison, level: float = 0.95) -> "Figure"
     level
         Probability of the intervals.
     """
-    from matplotlib.figure import Figure
-
     factor = float(student_factor(np.array([np.inf]), level)[0])
-    with drawing():
-        figure = Figure(figsize=(10.5, 8.5), layout="constrained")
-        figure.suptitle(f"{shown_name(found.second)} over {shown_name(found.first)}")
+    with drawn(10.5, 8.5, f"{shown_name(found.second)} over {shown_name(found.first)}") as figure:
         grid = figure.add_gridspec(4, 2)
         _enlarged(figure.add_subplot(grid[0, :]), found)
         _left(figure.add_subplot(grid[1, :]), found)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from analysis.design.expectation import ExpectedCoefficient
 from pmm.design.designing import Design
-from pmm.document.style import PALETTE, TRACE, drawing
+from pmm.document.style import PALETTE, TRACE, drawn
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -15,10 +15,7 @@ _STYLES = ("-", "--", ":", "-.")
 
 def design_figure(name: str, design: Design) -> "Figure":
     """Draw a line for each coefficient: uncertainty over what is asked for, run by run."""
-    with drawing():
-        from matplotlib.figure import Figure
-
-        figure = Figure(figsize=(7.2, 4.2), layout="constrained")
+    with drawn(7.2, 4.2) as figure:
         axes = figure.subplots()
         hours = [step.time_s / 3600.0 for step in design.steps]
         for k, last in enumerate(design.known):

@@ -10,7 +10,7 @@ from hardware.description.channels import DISPLACEMENTS
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import Column, Figure, Table, data_only, number, word
 from pmm.document.notation import written
-from pmm.document.style import PALETTE, drawing
+from pmm.document.style import PALETTE, drawn
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
@@ -76,10 +76,7 @@ def following_figures(outcome: CampaignOutcome) -> Iterator[Figure]:
 
 def following_figure(rows: Sequence[StrutFollowing]) -> "Drawing":
     """Draw rms and peak, amplitude error and phase over frequency, a colour for each strut."""
-    from matplotlib.figure import Figure as Drawing
-
-    with drawing():
-        figure = Drawing(figsize=(10.0, 3.2), layout="constrained")
+    with drawn(10.0, 3.2) as figure:
         size, gain, phase = figure.subplots(1, 3)
         for name, colour in zip(DISPLACEMENTS, PALETTE, strict=False):
             own = [row for row in rows if row.channel == name]

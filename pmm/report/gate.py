@@ -9,7 +9,7 @@ from analysis.resolver.analysis import Analysis
 from analysis.resolver.harmonics import Harmonics
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import Display, axis_label, display, loads_first, shown_name
-from pmm.document.style import FIT, GATE_SHADE, PALETTE, RECORD_SHADE, STEADY_SHADE, TRACE, drawing
+from pmm.document.style import FIT, GATE_SHADE, PALETTE, RECORD_SHADE, STEADY_SHADE, TRACE, drawn
 from pmm.harmonics.rows import window_kind
 from pmm.report.envelope import Trace, overview, zigzag
 from pmm.report.gate_fit import WINDOWS, caption, fitted, gate_sums, reading_of
@@ -48,14 +48,12 @@ def gate_figure(analysis: Analysis, reading_index: int = 0) -> "Figure":
     ConfigurationError
         If there is no such reading.
     """
-    from matplotlib.figure import Figure
-
     reading = reading_of(analysis, reading_index)
     order = loads_first(analysis.recording)
     curves = _curves(analysis, reading, max(60, _POINTS // (2 * len(order))))
-    with drawing():
-        figure = Figure(figsize=(10.5, 1.3 + 1.9 * len(order)), layout="constrained")
-        figure.suptitle(f"{shown_name(reading.run)}: {caption(reading)}")
+    with drawn(
+        10.5, 1.3 + 1.9 * len(order), f"{shown_name(reading.run)}: {caption(reading)}"
+    ) as figure:
         heights = (2.2, 1.0) * len(order)
         grid = figure.add_gridspec(len(heights), 2, width_ratios=(2.0, 1.0), height_ratios=heights)
         first: Axes | None = None

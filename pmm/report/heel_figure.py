@@ -10,7 +10,7 @@ from analysis.attitude import AttitudeChannel
 from hardware.description.heel import Held
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import Figure
-from pmm.document.style import PALETTE, drawing
+from pmm.document.style import PALETTE, drawn
 from pmm.report.heel import HeelRow, heel_rows
 
 if TYPE_CHECKING:
@@ -70,13 +70,10 @@ def heel_figures(outcome: CampaignOutcome) -> Iterator[Figure]:
 
 def heel_figure(rows: Sequence[HeelRow]) -> "Drawing":
     """Draw the roll moment where there is a gauge for it, the heel where the model is free."""
-    from matplotlib.figure import Figure as Drawing
-
     measured = any(row.moment is not None for row in rows)
     free = any(row.held == Held.FREE for row in rows)
     several = [*([_OF_MOMENT] if measured else []), *([_OF_HEEL] if free or not measured else [])]
-    with drawing():
-        figure = Drawing(figsize=(10.0, 3.2 * len(several)), layout="constrained")
+    with drawn(10.0, 3.2 * len(several)) as figure:
         panels = figure.subplots(len(several), 2, squeeze=False)
         for axes_row, two in zip(panels, several, strict=True):
             for axes, panel in zip(axes_row, two, strict=True):

@@ -6,7 +6,7 @@ import numpy as np
 
 from analysis.inertia.record import ModeAnalysis, RecordAnalysis
 from pmm.document.labels import display, plain, shown_name
-from pmm.document.style import PALETTE, TRACE, drawing
+from pmm.document.style import PALETTE, TRACE, drawn
 from pmm.inertia.sources import PeriodRuns
 from pmm.report.inertia_record import MOST_RUNS
 
@@ -25,12 +25,8 @@ def amplitude_figure(runs: PeriodRuns) -> "Figure":
     Bars are one standard uncertainty. The laws are drawn down to no amplitude, those of little
     weight left out; the point there is their mean with the uncertainty of fits and choice.
     """
-    from matplotlib.figure import Figure
-
     count = len(runs.records[0].modes)
-    with drawing():
-        figure = Figure(figsize=(10.5, 1.2 + 3.4 * count), layout="constrained")
-        figure.suptitle(f"{plain(runs.where)}: period against amplitude")
+    with drawn(10.5, 1.2 + 3.4 * count, f"{plain(runs.where)}: period against amplitude") as figure:
         for mode in range(count):
             axes = figure.add_subplot(count, 1, mode + 1)
             for number, run in enumerate(runs.records[:MOST_RUNS]):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from analysis.uncertainty.monte_carlo import Assessment
 from pmm.document.labels import plain
 from pmm.document.notation import rounded
-from pmm.document.style import PALETTE, TRACE, drawing
+from pmm.document.style import PALETTE, TRACE, drawn
 from pmm.inertia.outcome import Finding, Outcome
 
 if TYPE_CHECKING:
@@ -20,13 +20,11 @@ _LONGEST = 60  # characters of a result's words over its bars
 
 def budget_figure(outcome: Outcome) -> "Figure":
     """Draw the shares of each result's variance, and its intervals by budget and Monte Carlo."""
-    from matplotlib.figure import Figure
-
     rows = outcome.budgeted
     sizes = [1.2 + 0.28 * len(_lines(assessment)) for _, assessment in rows]
-    with drawing():
-        figure = Figure(figsize=(10.5, 1.0 + sum(sizes)), layout="constrained")
-        figure.suptitle(f"{plain(outcome.name)}: where the uncertainty comes from")
+    with drawn(
+        10.5, 1.0 + sum(sizes), f"{plain(outcome.name)}: where the uncertainty comes from"
+    ) as figure:
         grid = figure.add_gridspec(len(rows), 2, width_ratios=(2.2, 1.0), height_ratios=sizes)
         for place, (one, assessment) in enumerate(rows):
             bars, spans = (figure.add_subplot(grid[place, column]) for column in (0, 1))

@@ -7,7 +7,7 @@ import numpy as np
 
 from analysis.inertia.principal_axes import inertia_ellipse
 from pmm.document.labels import plain
-from pmm.document.style import FIT, PALETTE, TRACE, drawing
+from pmm.document.style import FIT, PALETTE, TRACE, drawn
 from pmm.inertia.outcome import PlaneAxes
 
 if TYPE_CHECKING:
@@ -21,11 +21,7 @@ def ellipse_figure(name: str, axes_found: PlaneAxes) -> "Figure":
     The radius in a direction is the inverse of the gyradius about it; bars on the measured axes
     are one standard uncertainty.
     """
-    from matplotlib.figure import Figure
-
-    with drawing():
-        figure = Figure(figsize=(8.0, 6.2), layout="constrained")
-        figure.suptitle(f"{plain(name)}: inertia ellipse")
+    with drawn(8.0, 6.2, f"{plain(name)}: inertia ellipse") as figure:
         axes = figure.add_subplot()
         points = inertia_ellipse(axes_found.roll_m, axes_found.yaw_m, axes_found.angle_rad, 721)
         axes.plot(points[:, 0], points[:, 1], color=PALETTE[0], lw=1.4, label="1/gyradius")

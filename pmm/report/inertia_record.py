@@ -9,7 +9,7 @@ from analysis.inertia.record import RecordAnalysis
 from analysis.inertia.series import Series
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import display, plain, shown_name
-from pmm.document.style import FIT, STEADY_SHADE, TRACE, drawing
+from pmm.document.style import FIT, STEADY_SHADE, TRACE, drawn
 from pmm.inertia.sources import PeriodRuns
 from pmm.report.envelope import zigzag
 
@@ -27,12 +27,10 @@ _FIT_POINTS_PER_PERIOD = 24
 
 def record_figure(runs: PeriodRuns) -> "Figure":
     """Draw each record with its used part and the fit, and the residual below on its own scale."""
-    from matplotlib.figure import Figure
-
     shown = runs.records[:MOST_RUNS]
-    with drawing():
-        figure = Figure(figsize=(10.5, 1.3 + 2.5 * len(shown)), layout="constrained")
-        figure.suptitle(f"{plain(runs.where)}: fit over record{_and_more(runs)}")
+    with drawn(
+        10.5, 1.3 + 2.5 * len(shown), f"{plain(runs.where)}: fit over record{_and_more(runs)}"
+    ) as figure:
         grid = figure.add_gridspec(2 * len(shown), 1, height_ratios=(2.0, 1.0) * len(shown))
         handles: list[Artist] = []
         for place, run in enumerate(shown):

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from pmm.document.labels import plain
-from pmm.document.style import PALETTE, TRACE, drawing
+from pmm.document.style import PALETTE, TRACE, drawn
 from pmm.inertia.sketch import Sketch
 
 if TYPE_CHECKING:
@@ -17,11 +17,7 @@ _BESIDE: Final = 0.08  # between measures, of the drawing's size
 
 def setup_figure(name: str, sketches: tuple[Sketch, ...]) -> "Figure":
     """Draw each set-up to its scale, with its measures."""
-    from matplotlib.figure import Figure
-
-    with drawing():
-        figure = Figure(figsize=(max(5.0 * len(sketches), 7.0), 5.0), layout="constrained")
-        figure.suptitle(f"{plain(name)}: set-up")
+    with drawn(max(5.0 * len(sketches), 7.0), 5.0, f"{plain(name)}: set-up") as figure:
         for place, one in enumerate(sketches, 1):
             _draw(figure.add_subplot(1, len(sketches), place), one)
     return figure
@@ -62,15 +58,13 @@ def _draw(axes: "Axes", one: Sketch) -> None:
 
 def photo_figure(path: Path) -> "Figure":
     """Show a picture; one that is wide is thinned."""
-    from matplotlib.figure import Figure
     from matplotlib.image import imread
 
     pixels = imread(path)
     step = -(-max(pixels.shape[:2]) // _WIDEST_PX)
     shown = pixels[::step, ::step]
     height, width = shown.shape[:2]
-    with drawing():
-        figure = Figure(figsize=(8.0, 8.0 * height / width), layout="constrained")
+    with drawn(8.0, 8.0 * height / width) as figure:
         axes = figure.add_subplot()
         axes.imshow(shown, cmap="gray" if shown.ndim == 2 else None)
         axes.axis("off")

@@ -9,7 +9,7 @@ from analysis.inertia.record import RecordAnalysis
 from analysis.inertia.spectrum import spectrum
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import display, plain, shown_name
-from pmm.document.style import FIT, PALETTE, TRACE, drawing
+from pmm.document.style import FIT, PALETTE, TRACE, drawn
 from pmm.inertia.sources import PeriodRuns
 from pmm.report.envelope import zigzag
 from pmm.report.inertia_record import MOST_RUNS, residual_on_grid, thin
@@ -29,11 +29,8 @@ def spectrum_figure(runs: PeriodRuns) -> "Figure":
     The envelope of the beats is that of the fit: the sum and the difference of both amplitudes are
     its bounds, and quiet moments are a beat period apart.
     """
-    from matplotlib.figure import Figure
-
     beating = len(runs.records[0].fit.modes) == 2
-    with drawing():
-        figure = Figure(figsize=(10.5, 4.2 + 3.0 * beating), layout="constrained")
+    with drawn(10.5, 4.2 + 3.0 * beating) as figure:
         what = "spectrum and beats" if beating else "spectrum"
         figure.suptitle(f"{plain(runs.where)}: {what}")
         axes = figure.add_subplot(1 + beating, 1, 1)

@@ -7,7 +7,7 @@ import numpy as np
 from analysis.manoeuvring.march import Log
 from analysis.manoeuvring.ship import PSI, X, Y
 from hardware.description.arrays import FloatArray
-from pmm.document.style import PALETTE, drawing
+from pmm.document.style import PALETTE, drawn
 from pmm.manoeuvre.prediction import SIDES, Prediction
 
 if TYPE_CHECKING:
@@ -19,11 +19,8 @@ _FAINT = 0.18
 
 def turning_figure(found: Prediction) -> "Figure":
     """Draw the tracks of both turning circles, advance up and starboard to the right."""
-    from matplotlib.figure import Figure
-
     length = found.ship.hull.length_m
-    with drawing():
-        figure = Figure(figsize=(9.0, 4.6), layout="constrained")
+    with drawn(9.0, 4.6) as figure:
         axes = figure.add_subplot()
         for colour, side in zip(PALETTE, SIDES, strict=False):
             _, states, _ = _histories(found.logs[side])
@@ -44,11 +41,8 @@ def turning_figure(found: Prediction) -> "Figure":
 
 def zigzag_figure(found: Prediction) -> "Figure":
     """Draw heading and rudder of both zig-zags that begin to starboard."""
-    from matplotlib.figure import Figure
-
     unit = found.ship.hull.length_m / found.ship.approach_m_s
-    with drawing():
-        figure = Figure(figsize=(9.0, 6.0), layout="constrained")
+    with drawn(9.0, 6.0) as figure:
         for place, angle in enumerate((10, 20), 1):
             axes = figure.add_subplot(2, 1, place)
             times, states, rudders = _histories(found.logs[f"{angle}"])
@@ -65,12 +59,9 @@ def zigzag_figure(found: Prediction) -> "Figure":
 
 def spiral_figure(found: Prediction) -> "Figure":
     """Draw the spiral: both ways of the rudder, with the interval of each angle."""
-    from matplotlib.figure import Figure
-
     spiral, tail = found.spiral, 0.5 * (1.0 - found.level)
     rudder = np.degrees(spiral.rudder_rad)
-    with drawing():
-        figure = Figure(figsize=(7.0, 4.5), layout="constrained")
+    with drawn(7.0, 4.5) as figure:
         axes = figure.add_subplot()
         ways = (("to port", spiral.down, PALETTE[0], ">-"), ("back", spiral.up, PALETTE[1], "<-"))
         for label, rates, colour, style in ways:

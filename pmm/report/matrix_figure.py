@@ -9,7 +9,7 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.kinds import RunKind
-from pmm.document.style import FIT, PALETTE, TRACE, drawing
+from pmm.document.style import FIT, PALETTE, TRACE, drawn
 from pmm.plan.findings import PlanVerdict
 from pmm.plan.limits import limit_findings
 from pmm.plan.plan import Plan
@@ -39,14 +39,12 @@ def matrix_figure(plan: Plan, rig: RigFile) -> "Figure":
     Amplitudes are those of a strut, half its stroke. Lines are the rig's limits of amplitude,
     velocity and acceleration.
     """
-    with drawing():
-        from matplotlib.figure import Figure
-
-        groups = _groups(plan.runs)
-        across = min(_ACROSS, max(1, len(groups)))
-        down = max(1, math.ceil(len(groups) / across))
-        figure = Figure(figsize=(1.0 + 3.4 * across, 0.9 + 2.7 * down), layout="constrained")
-        figure.suptitle(f"{plan.name}: {len(plan.runs)} runs")
+    groups = _groups(plan.runs)
+    across = min(_ACROSS, max(1, len(groups)))
+    down = max(1, math.ceil(len(groups) / across))
+    with drawn(
+        1.0 + 3.4 * across, 0.9 + 2.7 * down, f"{plan.name}: {len(plan.runs)} runs"
+    ) as figure:
         axes = figure.subplots(down, across, squeeze=False, sharex=True, sharey=True)
         panels = list(axes.flat)
         for (title, runs), panel in zip(groups, panels, strict=False):

@@ -10,7 +10,7 @@ from analysis.resolver.analysis import Analysis
 from analysis.resolver.harmonics import Harmonics
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import Display, display, loads_first, shown_name
-from pmm.document.style import PALETTE, drawing
+from pmm.document.style import PALETTE, drawn
 from pmm.report.gate_fit import caption, reading_of, single_periods
 from pmm.report.region import Ellipse, ellipses
 
@@ -59,17 +59,15 @@ def phasor_figure(analysis: Analysis, reading_index: int = 0) -> "Figure":
     ConfigurationError
         If there is no such reading.
     """
-    from matplotlib.figure import Figure
-
     reading = reading_of(analysis, reading_index)
     phasors = _phasors(analysis, reading)
     blocks = _blocks(analysis, reading)
     abreast = min(reading.order, _PANELS_ABREAST)
-    with drawing():
-        figure = Figure(
-            figsize=(max(7.5, 2.8 * abreast), 0.4 + 5.8 * len(blocks)), layout="constrained"
-        )
-        figure.suptitle(f"{shown_name(reading.run)}: {caption(reading)}")
+    with drawn(
+        max(7.5, 2.8 * abreast),
+        0.4 + 5.8 * len(blocks),
+        f"{shown_name(reading.run)}: {caption(reading)}",
+    ) as figure:
         parts = figure.subfigures(len(blocks), 1, squeeze=False)[:, 0]
         for part, (rows, orders) in zip(parts, blocks, strict=True):
             shown = display(reading.units[rows[0]])
@@ -79,9 +77,9 @@ def phasor_figure(analysis: Analysis, reading_index: int = 0) -> "Figure":
                     grid[0, column].remove()
                     grid[1, column].remove()
                     continue
-                drawn = [phasors[row][orders[column] - 1] for row in rows]
-                _draw_from_origin(grid[0, column], drawn, orders[column])
-                _draw_scatter(grid[1, column], drawn)
+                own = [phasors[row][orders[column] - 1] for row in rows]
+                _draw_from_origin(grid[0, column], own, orders[column])
+                _draw_scatter(grid[1, column], own)
             _label(grid[:, : len(orders)], shown)
             _legend(part, [phasors[row][0] for row in rows], reading)
     return figure

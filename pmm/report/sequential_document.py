@@ -21,7 +21,7 @@ from pmm.document.content import (
     word,
 )
 from pmm.document.notation import clock, counted, written
-from pmm.document.style import PALETTE, TRACE, drawing
+from pmm.document.style import PALETTE, TRACE, drawn
 from pmm.sequential.look import (
     Decision,
     KnownCause,
@@ -147,10 +147,7 @@ def _contents(name: str, decisions: Sequence[Decision]) -> tuple[Content, ...]:
 
 def sequential_figure(name: str, decisions: Sequence[Decision]) -> "Drawing":
     """Draw a line for each target: uncertainty over what is asked for, run by run."""
-    with drawing():
-        from matplotlib.figure import Figure as Blank
-
-        figure = Blank(figsize=(7.2, 4.2), layout="constrained")
+    with drawn(7.2, 4.2) as figure:
         axes = figure.subplots()
         hours = [one.time_s / 3600.0 for one in decisions]
         names = dict.fromkeys(target.name for one in decisions for target in one.known)

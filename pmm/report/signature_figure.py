@@ -11,7 +11,7 @@ from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from hardware.description.setpoint import SetPoint
 from pmm.document.labels import display, shown_name
-from pmm.document.style import PALETTE, drawing, write_figure
+from pmm.document.style import PALETTE, drawn, write_figure
 from sim.effects.agreement import phasor
 from sim.effects.effect import Effect
 from sim.effects.situation import Situation
@@ -115,12 +115,8 @@ def signature_figure(effect: Effect, grid: SignatureGrid, title: str) -> "Figure
     with the shaft has theory alone: what an analysis of its record then finds. What follows the
     displacement, the velocity or the acceleration shows it in how the curves fan out.
     """
-    from matplotlib.figure import Figure
-
     keys = _largest(grid)
-    with drawing():
-        figure = Figure(figsize=(8.4, 1.4 + 1.9 * len(keys)), layout="constrained")
-        figure.suptitle(f"{effect.code} {effect.title}\n{title}")
+    with drawn(8.4, 1.4 + 1.9 * len(keys), f"{effect.code} {effect.title}\n{title}") as figure:
         axes = figure.subplots(len(keys), 2, squeeze=False, sharex=True)
         for row, key in zip(axes, keys, strict=True):
             _draw_row(row, key, grid, circles=effect.repeats)

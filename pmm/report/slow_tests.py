@@ -14,7 +14,7 @@ from analysis.coefficients.terms import VELOCITY_LETTERS, term_of
 from analysis.coefficients.tows import Tow
 from hardware.description.kinds import RunKind
 from pmm.document.notation import rounded
-from pmm.document.style import FIT, PALETTE
+from pmm.document.style import FIT, PALETTE, drawn
 from pmm.evaluation.control_chart import Chart
 
 if TYPE_CHECKING:
@@ -27,16 +27,14 @@ def restoring_figure(found: Sequence[Restoring], tracks: Sequence[Track]) -> "Fi
 
     The turn as it was measured, and dashed the line of hydrostatics where they are given.
     """
-    from matplotlib.figure import Figure
-
     motions = list(dict.fromkeys(one.motion for one in found))
-    figure = Figure(figsize=(1.2 + 3.4 * len(motions), 5.2), layout="constrained")
-    panels = figure.subplots(2, len(motions), squeeze=False, sharex="col")
-    for column, motion in enumerate(motions):
-        mine = [(one, track) for one, track in zip(found, tracks, strict=True)
-                if one.motion == motion]  # fmt: skip
-        _draw_turns(panels[0, column], panels[1, column], mine)
-    figure.suptitle("Restoring: loads of the struts on the model")
+    title = "Restoring: loads of the struts on the model"
+    with drawn(1.2 + 3.4 * len(motions), 5.2, title) as figure:
+        panels = figure.subplots(2, len(motions), squeeze=False, sharex="col")
+        for column, motion in enumerate(motions):
+            mine = [(one, track) for one, track in zip(found, tracks, strict=True)
+                    if one.motion == motion]  # fmt: skip
+            _draw_turns(panels[0, column], panels[1, column], mine)
     return figure
 
 
@@ -67,25 +65,23 @@ def _width(one: tuple[Restoring, Track]) -> float:
 
 def drift_figure(tows: Sequence[Tow], found: CampaignCoefficients) -> "Figure":
     """Return force and moment over the velocity across the model, with the fitted curves."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(6.4, 5.2), layout="constrained")
-    panels = figure.subplots(2, 1, sharex=True)
-    loads = ((0, "force_n", "force"), (1, "moment_n_m", "moment"))
-    static = found.rows(method=STATIC_DRIFT)
-    for k, runs in enumerate(dict.fromkeys(found.entries[row].runs for row in static)):
-        mine = [one for one in tows if one.run in runs]
-        for panel, (load, value, name) in zip(panels, loads, strict=True):
-            rows = [row for row in static if found.entries[row].runs == runs
-                    and term_of(found.entries[row].name, found.plane).row == load]  # fmt: skip
-            _draw_load(panel, mine, found, rows, k, value, name)
-    velocity = VELOCITY_LETTERS[found.plane][0]
-    panels[0].set_ylabel("force [N]")
-    panels[1].set_ylabel("moment [N m]")
-    panels[1].set_xlabel(f"velocity {velocity} across the model [m/s] (squares: straight tow)")
-    for panel in panels:
-        panel.legend(loc="best", fontsize=7.5)
-    figure.suptitle("Static drift: loads of the water on the model, about the midpoint")
+    title = "Static drift: loads of the water on the model, about the midpoint"
+    with drawn(6.4, 5.2, title) as figure:
+        panels = figure.subplots(2, 1, sharex=True)
+        loads = ((0, "force_n", "force"), (1, "moment_n_m", "moment"))
+        static = found.rows(method=STATIC_DRIFT)
+        for k, runs in enumerate(dict.fromkeys(found.entries[row].runs for row in static)):
+            mine = [one for one in tows if one.run in runs]
+            for panel, (load, value, name) in zip(panels, loads, strict=True):
+                rows = [row for row in static if found.entries[row].runs == runs
+                        and term_of(found.entries[row].name, found.plane).row == load]  # fmt: skip
+                _draw_load(panel, mine, found, rows, k, value, name)
+        velocity = VELOCITY_LETTERS[found.plane][0]
+        panels[0].set_ylabel("force [N]")
+        panels[1].set_ylabel("moment [N m]")
+        panels[1].set_xlabel(f"velocity {velocity} across the model [m/s] (squares: straight tow)")
+        for panel in panels:
+            panel.legend(loc="best", fontsize=7.5)
     return figure
 
 
@@ -121,44 +117,41 @@ def _draw_load(
 
 def resistance_figure(tows: Sequence[Tow]) -> "Figure":
     """Return the straight tows over speed: resistance where it was measured, force and moment."""
-    from matplotlib.figure import Figure
-
     rows = [("force_n", "force", "N"), ("moment_n_m", "moment", "N m")]
     if any(not math.isnan(one.resistance_n) for one in tows):
         rows.insert(0, ("resistance_n", "resistance", "N"))
-    figure = Figure(figsize=(6.4, 1.7 * len(rows) + 0.7), layout="constrained")
-    panels = figure.subplots(len(rows), 1, sharex=True)
-    speeds = np.array([one.speed_m_s for one in tows])
-    for panel, (value, name, unit) in zip(panels, rows, strict=True):
-        loads = np.array([getattr(one, value) for one in tows])
-        widths = np.array([getattr(one, f"{name}_half_width") for one in tows])
-        panel.errorbar(speeds, loads, widths, fmt="s", ms=4, color=FIT, capsize=2)
-        panel.axhline(0.0, color="0.5", lw=0.8)
-        panel.set_ylabel(f"{name} [{unit}]")
-    panels[-1].set_xlim(left=0.0)
-    panels[-1].set_xlabel("speed [m/s]")
-    figure.suptitle("Straight tow: mean loads of the water on the model")
+    title = "Straight tow: mean loads of the water on the model"
+    with drawn(6.4, 1.7 * len(rows) + 0.7, title) as figure:
+        panels = figure.subplots(len(rows), 1, sharex=True)
+        speeds = np.array([one.speed_m_s for one in tows])
+        for panel, (value, name, unit) in zip(panels, rows, strict=True):
+            loads = np.array([getattr(one, value) for one in tows])
+            widths = np.array([getattr(one, f"{name}_half_width") for one in tows])
+            panel.errorbar(speeds, loads, widths, fmt="s", ms=4, color=FIT, capsize=2)
+            panel.axhline(0.0, color="0.5", lw=0.8)
+            panel.set_ylabel(f"{name} [{unit}]")
+        panels[-1].set_xlim(left=0.0)
+        panels[-1].set_xlabel("speed [m/s]")
     return figure
 
 
 def chart_figure(charts: Sequence[Chart]) -> "Figure":
     """Return one panel a quantity over the numbers of the repeats."""
-    from matplotlib.figure import Figure
     from matplotlib.ticker import MaxNLocator
 
-    figure = Figure(figsize=(7.0, 1.8 * len(charts) + 0.6), layout="constrained")
-    panels = figure.subplots(len(charts), 1, sharex=True, squeeze=False)[:, 0]
-    for panel, one in zip(panels, charts, strict=True):
-        numbers = range(1, one.values.size + 1)
-        panel.axhline(one.centre, color="0.5", lw=0.8)
-        for limit in (one.low, one.high):
-            panel.axhline(limit, color="tab:red", lw=0.8, ls="--")
-        panel.plot(numbers, one.values, "o-", color="tab:blue", ms=4, lw=0.8)
-        outside = list(one.outside)
-        panel.plot([i + 1 for i in outside], one.values[outside], "o", color="tab:red", ms=6)
-        if one.step_at is not None:
-            panel.axvline(one.step_at[0] + 0.5, color="tab:orange", lw=1.2)
-        panel.set_ylabel(f"{one.quantity}\n[{one.unit}]")
-        panel.xaxis.set_major_locator(MaxNLocator(integer=True))
-    panels[-1].set_xlabel("repeat of the control condition")
+    with drawn(7.0, 1.8 * len(charts) + 0.6) as figure:
+        panels = figure.subplots(len(charts), 1, sharex=True, squeeze=False)[:, 0]
+        for panel, one in zip(panels, charts, strict=True):
+            numbers = range(1, one.values.size + 1)
+            panel.axhline(one.centre, color="0.5", lw=0.8)
+            for limit in (one.low, one.high):
+                panel.axhline(limit, color="tab:red", lw=0.8, ls="--")
+            panel.plot(numbers, one.values, "o-", color="tab:blue", ms=4, lw=0.8)
+            outside = list(one.outside)
+            panel.plot([i + 1 for i in outside], one.values[outside], "o", color="tab:red", ms=6)
+            if one.step_at is not None:
+                panel.axvline(one.step_at[0] + 0.5, color="tab:orange", lw=1.2)
+            panel.set_ylabel(f"{one.quantity}\n[{one.unit}]")
+            panel.xaxis.set_major_locator(MaxNLocator(integer=True))
+        panels[-1].set_xlabel("repeat of the control condition")
     return figure

@@ -12,7 +12,7 @@ from analysis.resolver.weights import gate_weights
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import axis_label, display, loads_first, shown_name
 from pmm.document.notation import counted
-from pmm.document.style import FIT, PALETTE, TRACE, drawing
+from pmm.document.style import FIT, PALETTE, TRACE, drawn
 from pmm.report.envelope import tops
 from pmm.report.gate_fit import caption, fitted, gate_sums, reading_of
 
@@ -42,14 +42,12 @@ def spectrum_figure(analysis: Analysis, reading_index: int = 0) -> "Figure":
     ConfigurationError
         If there is no such reading.
     """
-    from matplotlib.figure import Figure
-
     reading = reading_of(analysis, reading_index)
     order = loads_first(analysis.recording)
     frequency_hz, amplitude, periods = gate_spectrum(analysis, reading)
-    with drawing():
-        figure = Figure(figsize=(10.5, 3.3 + 1.7 * len(order)), layout="constrained")
-        figure.suptitle(f"{shown_name(reading.run)}: {caption(reading)}")
+    with drawn(
+        10.5, 3.3 + 1.7 * len(order), f"{shown_name(reading.run)}: {caption(reading)}"
+    ) as figure:
         grid = figure.add_gridspec(len(order) + 1, 1, height_ratios=[*(1.0 for _ in order), 1.25])
         top: Axes | None = None
         for place, row in enumerate(order):

@@ -8,7 +8,7 @@ import numpy as np
 from analysis.steering.inflow import INFLOW, behind
 from analysis.steering.observations import SteeringRuns
 from hardware.description.arrays import FloatArray
-from pmm.document.style import PALETTE, TRACE, drawing
+from pmm.document.style import PALETTE, TRACE, drawn
 from pmm.steering.workflow import CampaignSteering
 
 if TYPE_CHECKING:
@@ -21,10 +21,7 @@ _MARKS = (("o", "-"), ("s", "--"), ("^", ":"), ("D", "-."))
 
 def steering_figure(found: CampaignSteering) -> "Figure":
     """Draw both panels."""
-    from matplotlib.figure import Figure
-
-    with drawing():
-        figure = Figure(figsize=(10.0, 4.4), layout="constrained")
+    with drawn(10.0, 4.4) as figure:
         left, right = figure.subplots(1, 2)
         _normal_force(left, found)
         _load_variation(right, found)

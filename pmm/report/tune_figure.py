@@ -7,7 +7,7 @@ import numpy as np
 
 from analysis.speed_loop.identification import IdentifiedLoop, SpeedRecord
 from analysis.speed_loop.loop import ShaftLoop
-from pmm.document.style import FIT, PALETTE, TRACE, drawing
+from pmm.document.style import FIT, PALETTE, TRACE, drawn
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,12 +31,9 @@ class Named(Protocol):
 
 def bode_figure(settings: Sequence[Named]) -> "Figure":
     """Draw magnitude and phase of the open loops, and the speed per load torque."""
-    from matplotlib.figure import Figure
-
     frequency_hz = np.logspace(*_DECADES, _POINTS)
     omega = 2.0 * np.pi * frequency_hz
-    with drawing():
-        figure = Figure(figsize=(9.0, 8.0), layout="constrained")
+    with drawn(9.0, 8.0) as figure:
         magnitude, phase, load = figure.subplots(3, 1, sharex=True)
         for one, color in zip(settings, PALETTE, strict=False):
             load.loglog(frequency_hz, np.abs(one.loop.load_response(omega)), color=color)
@@ -61,13 +58,11 @@ def bode_figure(settings: Sequence[Named]) -> "Figure":
 def step_figure(settings: Sequence[Named]) -> "Figure":
     """Draw the speed after a step of the set-point, and after a load of 1 N m."""
     import control  # type: ignore[import-untyped]
-    from matplotlib.figure import Figure
 
     closed = [one for one in settings if one.loop.closed and one.loop.stable]
     slowest = min((one.loop.margins.crossover_hz for one in closed), default=1.0)
     time_s = np.linspace(0.0, _SPANS / slowest, _POINTS)
-    with drawing():
-        figure = Figure(figsize=(9.0, 5.5), layout="constrained")
+    with drawn(9.0, 5.5) as figure:
         setpoint, load = figure.subplots(2, 1, sharex=True)
         for one, color in zip(settings, PALETTE, strict=False):
             if one in closed:
@@ -86,11 +81,8 @@ def step_figure(settings: Sequence[Named]) -> "Figure":
 
 def record_figure(record: SpeedRecord, found: IdentifiedLoop) -> "Figure":
     """Draw by how much the shaft is behind its trapezoid, and what the loop found leaves."""
-    from matplotlib.figure import Figure
-
     since = record.time_s - record.time_s[0]
-    with drawing():
-        figure = Figure(figsize=(9.0, 5.0), layout="constrained")
+    with drawn(9.0, 5.0) as figure:
         lag, left = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
         lag.plot(since, 1e3 * found.lag_rad, color=TRACE, label="measured")
         lag.plot(since, 1e3 * found.fitted_rad, "--", color=FIT, label="loop found")

@@ -15,7 +15,7 @@ from pmm.coefficients.wave_runs import WaveRun
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import Column, Figure, Table, data_only, word
 from pmm.document.notation import NOT_KNOWN, rounded
-from pmm.document.style import PALETTE, drawing
+from pmm.document.style import PALETTE, drawn
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -128,10 +128,7 @@ def wave_figures(outcome: CampaignOutcome) -> Iterator[Figure]:
 
 def wave_figure(runs: Sequence[WaveRun]) -> "Drawing":
     """Draw force and moment over the lines' frequencies, a colour for each run."""
-    from matplotlib.figure import Figure as Drawing
-
-    with drawing():
-        figure = Drawing(figsize=(6.8, 5.2), layout="constrained")
+    with drawn(6.8, 5.2) as figure:
         panels = figure.subplots(2, 1, sharex=True)
         for k, one in enumerate(runs):
             weighed = dict(_weights(one))
