@@ -16,7 +16,7 @@ from pmm.console.link import Link
 from pmm.console.messages import Bus, ChannelInfo, Frame, Hello, LoopOrder, Needles, SignalTrace
 from pmm.console.quick_stop import QuickStop
 from pmm.console.security import Door
-from pmm.console.server import serve
+from pmm.console.session import serve
 from pmm.console.station_view import TICK_S
 from pmm.interface.console import ConsoleClient
 from pmm.interface.console_requests import Message

@@ -13,7 +13,7 @@ from can.interfaces import BACKENDS
 
 from analysis.response.pure_rotation import pure_rotation
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
-from hardware import path_checks
+from hardware import strut_path
 from hardware.description.arrays import FloatArray
 from hardware.description.lines import Line
 from hardware.description.oscillator import HORIZONTAL_1963
@@ -104,7 +104,7 @@ def _by_the_clock(lines: tuple[Line, ...], duration_s: float) -> tuple[FloatArra
     seen: list[tuple[int, FloatArray]] = []
     # The whole histogram, beyond what would stop a run.
     with (
-        patch.object(path_checks, "LATE_PERIODS", math.inf),
+        patch.object(strut_path, "LATE_PERIODS", math.inf),
         _turning(lines, _CLOCK_HZ) as rig,
         before_others(),
     ):

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from pmm.job_queue import WORKER_ENVIRONMENT
+from pmm.cluster import WORKER_ENVIRONMENT
 
 
 @contextmanager

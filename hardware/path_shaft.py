@@ -25,13 +25,12 @@ from hardware.description.oscillator import Range
 from hardware.driver import Driver, NodePlan, Services
 from hardware.errors import HardwareError, NotReadyError, as_fault, worst
 from hardware.path_approach import PathApproach
-from hardware.path_checks import check_clock, check_path
 from hardware.path_record import PathRecord
 from hardware.path_shaft_settings import STRUTS, PathShaftSettings
 from hardware.path_strut import PathStrut
 from hardware.roles import Cycle, Role, SampleBlock
 from hardware.serial_port import PortSettings
-from hardware.strut_path import StrutPath
+from hardware.strut_path import StrutPath, check_clock, check_path
 
 _TURN = 2.0 * math.pi
 _LOOPED: Final = "loop://"  # of pyserial: what is written is read back

@@ -59,7 +59,7 @@ def open_executor(
     ------
     ConfigurationError
         If both are given, the number is below 1, or the extra ``cluster`` is not installed; or as
-        :func:`pmm.job_queue.queued_jobs`.
+        :func:`pmm.cluster.queued_jobs`.
     DataError
         If no scheduler answers there or it has no workers, a worker lacks the module, the workers
         died again and again, or the scheduler ended.

@@ -14,7 +14,6 @@ from functools import cached_property
 import numpy as np
 
 from analysis.coefficients.cycle_numbers import CycleNumbers
-from analysis.coefficients.least_squares import least_squares
 from analysis.coefficients.term_waves import slopes_of, waves_of
 from analysis.coefficients.terms import LOAD_WORDS, Term
 from analysis.kinematics.body_frame import LOADS
@@ -215,3 +214,27 @@ class CycleProblem:
         rows = place[list(self.orders), _LOADS + row].ravel()
         slope[np.arange(len(rows)), rows] = -self.numbers.form.sign
         return slope
+
+
+def least_squares(matrix: FloatArray, target: FloatArray) -> FloatArray:
+    """Return the x that makes ``matrix @ x`` come nearest to ``target``.
+
+    By the normal equations of columns scaled to one size. They double the digits that a fit loses,
+    and whoever fits here has refused columns of which more than two would go; a decomposition of
+    each trial takes several times as long.
+
+    The result has the shape ``(trials, n)``.
+
+    Parameters
+    ----------
+    matrix
+        Shape ``(trials, equations, n)``.
+    target
+        Shape ``(trials, equations)``.
+    """
+    size = np.sqrt((matrix**2).sum(axis=-2, keepdims=True))
+    scale = np.where(size > 0.0, size, 1.0)
+    scaled = matrix / scale
+    turned = scaled.swapaxes(-1, -2)
+    solved = np.linalg.solve(turned @ scaled, turned @ target[..., None])
+    return np.asarray(solved[..., 0] / scale[..., 0, :])

@@ -6,9 +6,8 @@ from typing import Final
 import numpy as np
 
 from analysis.comparison.band import BandTrack
-from analysis.comparison.dead_band import Play, follow
 from analysis.comparison.first_guess import Alignment
-from analysis.comparison.warp import Warped
+from analysis.comparison.warp import Play, Warped, follow
 from hardware.description.arrays import BoolArray, ComplexArray, FloatArray
 
 _TAPER: Final = 0.1  # of the record, both ends together

@@ -22,10 +22,15 @@ from analysis.readers.attributes import (
 from analysis.readers.checksums import BLOCK_SAMPLES, KIND, Summing
 from analysis.readers.conditioning import without_spikes
 from analysis.readers.damage import Damage, find_damage
-from analysis.readers.hdf5_checks import check_declared, check_heaps
 from analysis.readers.missing_values import with_missing_said
 from analysis.readers.reader import Reader
-from analysis.readers.stored_samples import StoredSamples, identity, reading
+from analysis.readers.stored_samples import (
+    StoredSamples,
+    check_declared,
+    check_heaps,
+    identity,
+    reading,
+)
 from analysis.recording import Recording
 from hardware.description import dataset as schema
 from hardware.description.arrays import FloatArray

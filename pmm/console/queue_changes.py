@@ -1,8 +1,14 @@
-"""What is done to the queue: checked by a worker, carried out by the loop, kept on the disk."""
+"""What is done to the queue: checked by a worker, carried out by the loop, kept on the disk.
+
+Whoever changed something waits with the answer until it is on the disk.
+"""
 
 import asyncio
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
+
+from anyio.to_thread import run_sync
 
 from hardware.description.errors import PmmError
 from pmm.console.encoding import EncodedText, encode_answer
@@ -12,7 +18,6 @@ from pmm.console.messages import OrderKind, Reply
 from pmm.console.plans import Plans
 from pmm.console.proposals import Proposals
 from pmm.console.queue_journal import KeptPlan, KeptQueue, QueueJournal
-from pmm.console.queue_keeper import QueueKeeper
 from pmm.console.requests import (
     DropPosted,
     HoldPosted,
@@ -32,7 +37,7 @@ from pmm.console.worker_tasks import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Awaitable, Callable
+    from collections.abc import Awaitable
 
 
 @dataclass(frozen=True)
@@ -214,3 +219,53 @@ class QueueChanges:
 
     def _kept(self) -> KeptQueue:
         return KeptQueue(self.queued.kept(), tuple(self._proposals.waiting.values()))
+
+
+class QueueKeeper:
+    """Keeps the journal up to date from :meth:`begin` on: before it, what is kept is not all known.
+
+    Parameters
+    ----------
+    state
+        Returns what is to be kept.
+    alarm
+        Told why it cannot be written.
+    """
+
+    def __init__(
+        self, journal: QueueJournal, state: Callable[[], KeptQueue], alarm: Callable[[str], None]
+    ) -> None:
+        self._journal, self._state, self._alarm = journal, state, alarm
+        self._begun = self._again = False
+        self._task: asyncio.Task[None] | None = None
+        self._trouble = ""
+
+    def read(self) -> KeptQueue:
+        """Return what is kept; raises ConfigurationError as the journal does."""
+        return self._journal.read()
+
+    def begin(self) -> None:
+        """Keep the present state, and each that follows."""
+        self._begun = True
+        self.changed()
+
+    def changed(self) -> None:
+        """Note that there is something to keep."""
+        self._again = self._begun
+        if self._begun and (self._task is None or self._task.done()):
+            self._task = asyncio.get_running_loop().create_task(self._write())
+
+    async def kept(self) -> str:
+        """Wait until what was changed so far is on the disk; return why it is not, if it is not."""
+        if self._task is not None:
+            await asyncio.wait([self._task])
+        return self._trouble
+
+    async def _write(self) -> None:
+        while self._again:
+            self._again, self._trouble = False, ""
+            try:
+                await run_sync(self._journal.write, self._state())
+            except OSError as error:
+                self._trouble = f"the queue is not kept: {error}"
+                self._alarm(self._trouble)

@@ -1,24 +1,27 @@
-"""The console runs: the rig is open, the web server beside it, and the loop goes round."""
+"""The console runs: the rig is open, the web server in a process beside it, the loop goes round."""
 
+import signal
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
+from functools import partial
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from pathlib import Path
 from socket import socket
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, cast
 
 from hardware.description.version import program
 from hardware.pacing import RealTime
 from pmm.console.answers import BrowserAnswers
+from pmm.console.app_settings import ConsoleSettings
+from pmm.console.limits import LARGEST_HEADERS, LARGEST_MESSAGE
 from pmm.console.link import Link
 from pmm.console.pacing import CountingPacer
 from pmm.console.quick_stop import QuickStop
 from pmm.console.request import ConsoleRequest
-from pmm.console.server import serve
 from pmm.console.station import Station
 from pmm.plan.rig_file import RigFile
 from pmm.real_time import Priority, step_back
@@ -28,7 +31,12 @@ from pmm.run.recorder_factory import utc_now
 from pmm.run.session import keep_time, tapped_rig
 
 if TYPE_CHECKING:
+    import asyncio
+
+    import uvicorn
+
     from pmm.console.messages import LoopOrder
+    from pmm.console.security import Guard
 
 _WINDOW_S: Final = 10.0  # of the statistics of the loop's cycles
 _JOIN_S: Final = 10.0
@@ -140,3 +148,58 @@ def _priority(stack: ExitStack, speed: float, tell: Tell) -> Priority:
     if found.advice:
         tell(found.advice)
     return found.priority
+
+
+def serve(
+    settings: ConsoleSettings,
+    listening: socket,
+    connection: Connection,
+    quick_stop: QuickStop,
+    certificate: Path | None,
+    key: Path | None,
+) -> None:
+    """Serve until the loop's end of the pipe is closed.
+
+    Ctrl-C is the loop's: it stops the rig first.
+    """
+    import asyncio
+
+    import uvicorn
+
+    from pmm.console.app import application
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    class Server(uvicorn.Server):
+        @contextmanager
+        def capture_signals(self) -> Iterator[None]:
+            yield
+
+    def end() -> None:
+        server.should_exit = True
+
+    page = application(settings, connection, quick_stop, end)
+    server = Server(_configuration(page, certificate, key))
+    asyncio.run(server.serve(sockets=[listening]))
+
+
+def _configuration(page: "Guard", certificate: Path | None, key: Path | None) -> "uvicorn.Config":
+    """Return how the page is served: what comes is limited in size, number and time."""
+    import uvicorn
+
+    from pmm.console.connections import Connection, Crowd, PageStream
+
+    return uvicorn.Config(
+        page,
+        ws=PageStream,
+        ws_per_message_deflate=False,
+        ws_max_size=LARGEST_MESSAGE,
+        h11_max_incomplete_event_size=LARGEST_HEADERS,
+        http=cast("type[asyncio.Protocol]", partial(Connection, Crowd())),
+        log_level="warning",
+        access_log=False,
+        server_header=False,
+        timeout_graceful_shutdown=2,
+        ssl_certfile=certificate,
+        ssl_keyfile=key,
+    )

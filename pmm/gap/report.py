@@ -20,10 +20,10 @@ from pmm.gap.coefficients import UNITS, CoefficientRow, coefficient_rows
 from pmm.gap.conclusion import Conclusion
 from pmm.gap.examination import Examined
 from pmm.gap.hull_report import Convention
-from pmm.gap.rows import ControlRow, Ranked, RegimeRow
 from pmm.gap.run_notes import command_notes, noise_notes, odd_note, odd_one, run_notes
 from pmm.gap.sizes import HowLarge, how_large, own_sizes
 from pmm.gap.steps import StepRow, step_row
+from pmm.gap.tables import ControlRow, Ranked, RegimeRow
 from pmm.gap.words import Remedies, joined, sentences
 
 _SHOWN: Final = 8  # hypotheses of the ranking

@@ -16,7 +16,6 @@ from hardware.description.oscillator import Plane
 from pmm.inertia.air import without_air
 from pmm.inertia.bifilar_axes import plane_axes
 from pmm.inertia.bifilar_tables import BifilarTable
-from pmm.inertia.bifilar_workflow import workflow
 from pmm.inertia.experiment import Experiment
 from pmm.inertia.lines import line_share, yaw_off_lines
 from pmm.inertia.outcome import Finding, Outcome, PlaneAxes, assessed
@@ -24,6 +23,7 @@ from pmm.inertia.properties import AXES
 from pmm.inertia.sketch import on_two_lines
 from pmm.inertia.stated_values import given, gravity_of
 from pmm.inertia.suspension import Suspended, hang
+from pmm.inertia.workflow import workflow
 
 _APART = 3.0  # joint standard uncertainties that two methods of one suspension may differ by
 

@@ -1,12 +1,32 @@
-"""The guided workflow of a swing and of a bifilar suspension: tare, test, known weight, tare."""
+"""The guided workflow of swing and bifilar suspension: tare, test, known body, tare again."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
+from analysis.inertia.bifilar import yaw_gyradius
+from analysis.inertia.corrections import yaw_without_lines
+from analysis.inertia.elementary_functions import Value
 from analysis.inertia.workflow import Step, StepResult, assess_workflow, next_step
+from analysis.uncertainty.budget import derived
 from analysis.uncertainty.estimate import Estimate, exactly
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag
+from pmm.inertia.bifilar_tables import BifilarTable
+from pmm.inertia.experiment import Experiment
 from pmm.inertia.outcome import Finding
+from pmm.inertia.stated_values import given, gravity_of
+from pmm.inertia.suspension import Suspended
+
+_TABLES = {
+    Step.TARE: "tare",
+    Step.TEST: "suspensions.yaw",
+    Step.CHECK: "check",
+    Step.TARE_AGAIN: "tare_again",
+}
+_WORDS = {
+    Step.TARE: "empty frame",
+    Step.CHECK: "frame with the known body",
+    Step.TARE_AGAIN: "empty frame again",
+}
 
 
 def guide(
@@ -56,3 +76,47 @@ def guide(
         ),
     ]
     return None
+
+
+def workflow(test: Experiment[BifilarTable], hung: Sequence[Suspended]) -> str | None:
+    """Read the steps beside the test and bring them together; return what is next.
+
+    All steps hang from the lines of the first suspension, so they share its spacing and length, and
+    gravity.
+    """
+    table = test.table
+    if table.tare is None:
+        return None
+    inertias: dict[Step, Estimate] = {}
+    first = hung[0]
+    if first.yaw is not None:
+        inertias[Step.TEST] = _inertia(
+            table, first, first.yaw, given(table.model, "mass_kg", "model")
+        )
+    for step, words in _WORDS.items():
+        source = getattr(table, _TABLES[step])
+        if source is None:
+            continue
+        period = test.period(source.period, f"{_TABLES[step]}.period").period
+        inertias[step] = _inertia(table, first, period, given(source, "mass_kg"))
+        name = f"{_TABLES[step]}_i_yaw_kg_m2"
+        test.findings.append(Finding(name, f"{words}: yaw inertia", inertias[step]))
+    known = None if table.check is None else given(table.check, "known_inertia_kg_m2")
+    return guide(inertias, _TABLES, known, "the vertical axis", test.findings, test.flags)
+
+
+def _inertia(table: BifilarTable, one: Suspended, period: Estimate, mass: Estimate) -> Estimate:
+    """Return the inertia of what hangs."""
+    lines = one.table
+
+    def inertia(
+        period_s: Value, mass_kg: Value, half_spacing_m: Value, line_m: Value, gravity_m_s2: Value
+    ) -> Value:
+        on_lines = yaw_gyradius(period_s, half_spacing_m, line_m, gravity_m_s2)
+        share = lines.line_mass_kg / mass_kg
+        own = yaw_without_lines(on_lines, share, half_spacing_m, by_sway=False)
+        return mass_kg * own**2
+
+    lengths = {key: given(lines, key, lines.name) for key in ("half_spacing_m", "line_m")}
+    inputs = {"period_s": period, "mass_kg": mass, "gravity_m_s2": gravity_of(table)}
+    return derived("I_yaw", inertia, "kg m2", **inputs, **lengths)

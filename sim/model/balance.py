@@ -14,8 +14,7 @@ import numpy as np
 from hardware.description.arrays import ComplexArray, FloatArray
 from sim.model.law_response import respond
 from sim.model.law_table import LawTable
-from sim.solve.anderson_mixing import mix
-from sim.solve.array_loops import copy, largest
+from sim.solve.array_loops import copy, inner, largest, solve
 from sim.solve.compilation import compile_loop
 from sim.solve.corners import gauss
 from sim.solve.period import Period
@@ -245,3 +244,23 @@ def _settle(given: tuple[Any, ...], acts_back: bool, laws_found: FloatArray) -> 
         else:
             copy(answers[0], flat)
     return False
+
+
+@compile_loop
+def mix(answers: FloatArray, changes: FloatArray, count: int, at: FloatArray) -> None:
+    """Fill in the mean of the answers whose changes cancel best (Anderson); newest last."""
+    size = at.size
+    steps = np.empty((count - 1, size))
+    for i in range(count - 1):
+        for j in range(size):
+            steps[i, j] = changes[i + 1, j] - changes[i, j]
+    gram, right = np.zeros((count - 1, count - 1)), np.zeros(count - 1)
+    for i in range(count - 1):
+        right[i] = inner(steps[i], changes[count - 1])
+        for j in range(count - 1):
+            gram[i, j] = inner(steps[i], steps[j])
+    weights = solve(gram, right)
+    copy(answers[count - 1], at)
+    for i in range(count - 1):
+        for j in range(size):
+            at[j] -= weights[i] * (answers[i + 1, j] - answers[i, j])

@@ -16,8 +16,7 @@ from typing import Any
 import numpy as np
 
 from hardware.description.arrays import FloatArray, IntArray
-from sim.pendulum.two_lines import suspended
-from sim.pendulum.vectors import combine, times
+from sim.pendulum.two_lines import combine, suspended, times
 from sim.solve.array_loops import copy, solve
 from sim.solve.compilation import compile_loop
 

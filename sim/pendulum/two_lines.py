@@ -1,4 +1,4 @@
-"""A rigid body on two lines, for the compiled loop.
+"""A rigid body on two lines, for the compiled loop, and the sums of small vectors that it takes.
 
 Import it inside the function that needs it: it loads numba where that is installed.
 """
@@ -6,9 +6,8 @@ Import it inside the function that needs it: it loads numba where that is instal
 import numpy as np
 
 from hardware.description.arrays import FloatArray
-from sim.pendulum.vectors import combine, cross, vector
 from sim.solve.array_loops import copy, inner
-from sim.solve.compilation import compile_loop
+from sim.solve.compilation import available, compile_loop
 
 
 @compile_loop
@@ -117,3 +116,42 @@ def suspended(
     accelerations[0], accelerations[1] = at_beam[0], at_beam[1]
     accelerations[2], accelerations[3] = (up - sr * along) / share, (along - sr * up) / share
     return accelerations
+
+
+def product(matrix: FloatArray, vector: FloatArray) -> FloatArray:
+    """Return a small matrix times a vector."""
+    out = np.zeros(matrix.shape[0])
+    for i in range(matrix.shape[0]):
+        for j in range(vector.size):
+            out[i] += matrix[i, j] * vector[j]
+    return out
+
+
+def total(a: float, one: FloatArray, b: float, other: FloatArray) -> FloatArray:
+    """Return ``a one + b other``."""
+    out = np.empty(one.size)
+    for i in range(one.size):
+        out[i] = a * one[i] + b * other[i]
+    return out
+
+
+def _by_arrays(a: float, one: FloatArray, b: float, other: FloatArray) -> FloatArray:
+    return a * one + b * other
+
+
+times = compile_loop(product) if available() else np.dot
+combine = compile_loop(total) if available() else _by_arrays
+
+
+@compile_loop
+def vector(x: float, y: float, z: float) -> FloatArray:
+    """Return the vector of three components."""
+    out = np.empty(3)
+    out[0], out[1], out[2] = x, y, z
+    return out
+
+
+@compile_loop
+def cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return a x b."""
+    return vector(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])

@@ -13,7 +13,7 @@ import h5py
 import pytest
 
 from analysis.readers import read_recording, write_recording
-from analysis.readers.hdf5_checks import check_heaps
+from analysis.readers.stored_samples import check_heaps
 from hardware.description.errors import DataError
 from tests.analysis.readers.test_netcdf_bad_input import example
 

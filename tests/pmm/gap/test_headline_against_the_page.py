@@ -27,9 +27,9 @@ from pmm.gap.conclusion import Conclusion, Weighing, verdict_of
 from pmm.gap.document import document
 from pmm.gap.hull_report import Convention
 from pmm.gap.report import GapReport
-from pmm.gap.rows import ControlRow, Ranked, RegimeRow
 from pmm.gap.sizes import HowLarge, Size, spoiled
 from pmm.gap.steps import StepRow
+from pmm.gap.tables import ControlRow, Ranked, RegimeRow
 from pmm.gap.words import Remedies, sentences
 from tests.pmm.gap.rigs import FEW, made, rewritten, run, with_friction
 

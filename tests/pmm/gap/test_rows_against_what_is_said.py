@@ -5,8 +5,7 @@ import math
 import pytest
 
 from pmm.document.notation import NOT_KNOWN, percent
-from pmm.gap.rows import ControlRow
-from pmm.gap.tables import interval, parameters, shrinks
+from pmm.gap.tables import ControlRow, interval, parameters, shrinks
 from tests.pmm.gap.rigs import run
 
 

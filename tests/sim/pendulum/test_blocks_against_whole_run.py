@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import sim.solve.compilation
 from sim.chain import join
-from sim.pendulum import kernel, two_lines, vectors
+from sim.pendulum import kernel, two_lines
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.benches import MODEL_HULL_2014, bifilar_bench, swing_bench
 from sim.pendulum.effects import make_effect
@@ -81,7 +81,7 @@ def test_without_numba_the_numbers_are_the_same(make, monkeypatch: pytest.Monkey
     _, compiled = chain.run(chain.start(50.0, 3), 150)
     monkeypatch.setattr(sim.solve.compilation, "compile_loop", lambda function: function)
     monkeypatch.setattr(sim.solve.compilation, "available", lambda: False)
-    for module in (array_loops, vectors, two_lines, kernel):
+    for module in (array_loops, two_lines, kernel):
         monkeypatch.setitem(sys.modules, module.__name__, _again(module))
     plain = sys.modules[kernel.__name__]
     assert not hasattr(plain.run, "py_func")
