@@ -103,6 +103,10 @@ class SimulatedRig:
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def chain(self, set_point: SetPoint) -> Chain:
+        """Return the chain of this rig's :meth:`stages`, set for one run."""
+        return Chain(self.stages(set_point))
+
+    def stages(self, set_point: SetPoint) -> "tuple[Stage[Any], ...]":
         """Return the stages of this rig, set for one run.
 
         Raises
@@ -122,11 +126,12 @@ class SimulatedRig:
             self.linkage_fore,
             set_point.lines,
         )
-        hull = self._hull(set_point, carriage)
+        prescribed = self.drive.motor is None and self.drive.gear is None
+        hull = self._hull(set_point, carriage, prescribed)
         stages: tuple[Stage[Any], ...]
-        if self.drive.motor is None and self.drive.gear is None:
+        if prescribed:
             drive = ConstantSpeedDrive(set_point.frequency_hz, self.drive)
-            stages = (drive, carriage, mechanism, replace(hull, surges=True))
+            stages = (drive, carriage, mechanism, hull)
         else:
             loaded = LoadedDrive(
                 set_point.frequency_hz,
@@ -138,7 +143,7 @@ class SimulatedRig:
         told = self._told(mechanism, set_point.frequency_hz)
         behind = (*told, *self._sensed(hull), self.dynamometers, self.acquisition)
         seen = () if self.photocell is None else (self.photocell,)
-        return Chain((*stages, *behind, *seen))
+        return (*stages, *behind, *seen)
 
     def _told(self, mechanism: Mechanism, frequency_hz: float) -> tuple["Stage[Any]", ...]:
         """Return the stage of the commands, where they are recorded."""
@@ -160,7 +165,7 @@ class SimulatedRig:
         rest, release = set_point.heel_rad, set_point.release_rad
         return Heeling(self.heel, self.body, terms, rest, in_water, release)
 
-    def _hull(self, set_point: SetPoint, carriage: Carriage) -> Hull:
+    def _hull(self, set_point: SetPoint, carriage: Carriage, surges: bool) -> Hull:
         in_water = set_point.medium is Medium.WATER
         return Hull(
             self.oscillator.plane,
@@ -181,6 +186,7 @@ class SimulatedRig:
             self.heeling(set_point),
             carriage.mean_turn_rad_s,
             None if self.waves is None else self.waves.met_in(set_point),
+            surges,
         )
 
     def ideal(self) -> "SimulatedRig":

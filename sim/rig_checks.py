@@ -37,8 +37,7 @@ def check_run(rig: "SimulatedRig", set_point: SetPoint) -> None:
 
 def recorded(acquisition: Acquisition, channels: Collection[str]) -> list[str]:
     """Return the names of the recorded channels that are among some."""
-    names = (line.channel.name for line in acquisition.lines)
-    return [name for name in names if name in channels]
+    return [name for name in acquisition.names if name in channels]
 
 
 def _of_joint(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:

@@ -97,6 +97,11 @@ class Acquisition:
         )
 
     @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Names of the channels that are recorded."""
+        return tuple(line.channel.name for line in self.lines)
+
+    @cached_property
     def reads(self) -> tuple[Signal, ...]:
         """The quantities behind the recorded channels."""
         return tuple(line.source for line in self.lines)

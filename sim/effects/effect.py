@@ -4,6 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from enum import StrEnum
+from functools import cache
 from typing import Any, ClassVar, Self, TypeAlias
 
 from hardware.description.errors import ConfigurationError
@@ -233,10 +234,7 @@ class Effect(ABC):
     @classmethod
     def parameters(cls) -> tuple[Parameter, ...]:
         """Return the parameters, in order."""
-        return tuple(
-            Parameter(name=item.name, typical=float(item.default), **item.metadata)  # type: ignore[arg-type]
-            for item in fields(cls)
-        )
+        return _declared(cls)
 
     @abstractmethod
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
@@ -283,3 +281,11 @@ class Effect(ABC):
         the run's place, so that a run by itself is described by the parameters alone.
         """
         return self
+
+
+@cache
+def _declared(kind: type[Effect]) -> tuple[Parameter, ...]:
+    return tuple(
+        Parameter(name=item.name, typical=float(item.default), **item.metadata)  # type: ignore[arg-type]
+        for item in fields(kind)
+    )

@@ -73,6 +73,11 @@ class Simulator:
         """What the simulation says without any further effect, shape ``(observations,)``."""
         return self.predict(())
 
+    @cached_property
+    def _repeating(self) -> tuple[Effect, ...]:
+        """Of what is always on, without what only luck makes of it: a steady state has none."""
+        return tuple(one for one in self.on if not one.by_chance)
+
     def with_rig(self, rig: SimulatedRig) -> "Simulator":
         """Return the simulator of another rig."""
         return replace(self, rig=rig)
@@ -100,7 +105,7 @@ class Simulator:
 
     def _run(self, number: int, effects: Sequence[Effect]) -> FloatArray:
         run = self.stack.runs[number]
-        steady = self._steady(run, (*self.on, *effects))
+        steady = self._steady(run, (*self._repeating, *effects))
         repeats = run.observed.layout.steady
         return steady if repeats.all() else np.where(repeats, steady, self._usual(number))
 
@@ -109,7 +114,8 @@ class Simulator:
         run = self.stack.runs[number]
         moving = tuple(one for one in effects if not one.repeats)
         sure = tuple(one for one in moving if not one.by_chance)
-        steady = self._steady(run, (*self.on, *(one for one in effects if one.repeats)))
+        repeating = (one for one in effects if one.repeats)
+        steady = self._steady(run, (*self._repeating, *repeating))
         if sure and run.applied is None:  # of what is done to a standing rig, what repeats is told
             steady = steady + self._record(number, sure) - self._record(number)
         repeats = run.observed.layout.steady
@@ -121,7 +127,7 @@ class Simulator:
 
     def steady(self, effects: Sequence[Effect]) -> FloatArray:
         """Return the components that repeat with the shaft; 0 for all others."""
-        on = (*self.on, *effects)
+        on = (*self._repeating, *effects)
         return np.concatenate([self._steady(run, on) for run in self.stack.runs])
 
     def _record(self, number: int, moving: tuple[Effect, ...] = (), draw: int = 0) -> FloatArray:
@@ -145,7 +151,7 @@ class Simulator:
 
     def _state(self, rig: SimulatedRig, set_point: SetPoint) -> SteadyState:
         period = Period(set_point.frequency_hz, ORDERS, POINTS)
-        return self.solved.steady_state(rig.chain(set_point), period)
+        return self.solved.steady_state(rig.stages(set_point), period)
 
     def _steady(self, run: GapRun, effects: Sequence[Effect]) -> FloatArray:
         rig, set_point = self._set(run, effects)
@@ -158,8 +164,9 @@ class Simulator:
         return steady + _drifted(rig, run.observed, middle_s)
 
     def _set(self, run: GapRun, effects: Sequence[Effect]) -> tuple[SimulatedRig, SetPoint]:
-        frequency_hz = run.set_point.frequency_hz * self.frequency_ratio
-        told = replace(run.set_point, frequency_hz=frequency_hz)
+        told = run.set_point
+        if self.frequency_ratio != 1.0:
+            told = replace(told, frequency_hz=told.frequency_hz * self.frequency_ratio)
         return switch_on(*_preloaded(effects, self.rig, run), told, run.place)
 
     def _in_time(self, run: GapRun, effects: Sequence[Effect], seed: int) -> FloatArray:

@@ -4,11 +4,12 @@ A diagnosis asks for the same run some hundred times, and most effects change on
 before it need not be solved again.
 """
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Final
 
-from sim.chain import Chain
 from sim.periodic import SteadyState, steady_of
 from sim.solve.period import Period, Spectra
+from sim.stage import Stage
 
 if TYPE_CHECKING:
     from hardware.description.arrays import ComplexArray
@@ -29,10 +30,10 @@ class Solved:
         """Leave what was solved behind."""
         return Solved, ()
 
-    def steady_state(self, chain: Chain, period: Period) -> SteadyState:
+    def steady_state(self, stages: Iterable[Stage[Any]], period: Period) -> SteadyState:
         """Return the steady state of a chain without inputs; see :mod:`sim.periodic`."""
         spectra: dict[str, ComplexArray] = {}
-        for stage in chain.stages:
+        for stage in stages:
             fed = {one.name: spectra[one.name] for one in stage.reads}
             period, written = self._stage(stage, period, fed)
             spectra |= written

@@ -44,7 +44,7 @@ def test_stages_solved_once_give_the_whole_chain(said: str, rig: SimulatedRig) -
             changed, really = switch_on(effects, rig, point)
             period = Period(really.frequency_hz, 8, 64)
             whole = steady_run(changed, really, orders=8, points=64).spectra
-            found = solved.steady_state(changed.chain(really), period).spectra
+            found = solved.steady_state(changed.stages(really), period).spectra
             assert found.keys() == whole.keys()
             for name, harmonics in whole.items():
                 np.testing.assert_array_equal(found[name], harmonics)
