@@ -151,14 +151,25 @@ class Acquisition:
         Noise, drift, rounding and hum, which are not periodic, are left out.
         """
         factors, added = _responses(self, period)
-        values = np.reshape([inputs[source.name] for source in self.reads], factors.shape)
-        recorded = values * factors + added
-        for row, line in zip(recorded, self.lines, strict=True):
-            limit = line.digitiser.full_scale
-            angle = line.source is signals.SHAFT_ANGLE
-            if not angle and limit is not None and np.abs(row).sum() > limit:
+        recorded = np.empty_like(factors)
+        for row, source in zip(recorded, self.reads, strict=True):
+            row[:] = inputs[source.name]
+        recorded *= factors
+        recorded += added
+        for at, limit in self._limits:
+            row = recorded[at]
+            if np.abs(row).sum() > limit:
                 row[:] = period.harmonics(np.clip(period.values(row), -limit, limit))
         return period, {out.name: row for out, row in zip(self.writes, recorded, strict=True)}
+
+    @cached_property
+    def _limits(self) -> tuple[tuple[int, float], ...]:
+        """Row and converter's range of each channel that has one; an encoder's turns have none."""
+        return tuple(
+            (at, line.digitiser.full_scale)
+            for at, line in enumerate(self.lines)
+            if line.digitiser.full_scale is not None and line.source is not signals.SHAFT_ANGLE
+        )
 
 
 @lru_cache(maxsize=512)

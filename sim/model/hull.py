@@ -1,8 +1,8 @@
 """Model, water and mounting: from the motion of the struts to the forces that they exert."""
 
 import math
-from dataclasses import dataclass, replace
-from functools import lru_cache, partial
+from dataclasses import dataclass, fields, replace
+from functools import cached_property, lru_cache, partial
 from typing import TypeVar
 
 import numpy as np
@@ -38,6 +38,7 @@ from sim.stage import Block
 
 __all__ = ["Hull", "HullCoefficients"]
 
+_FIELDS = tuple(one.name for one in fields(ModelParameters))
 _NO_MEMORY = constant(np.zeros((2, 2)))
 _FORCES = (signals.FORCE_AFT, signals.FORCE_FORE, signals.FORCE_X)
 _HEELING = (signals.ROLL_MOMENT, signals.HEEL_ANGLE)
@@ -66,6 +67,14 @@ class Hull(ModelParameters):
     """
 
     name = "hull"
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash(tuple(getattr(self, name) for name in _FIELDS))
+
+    def __hash__(self) -> int:
+        """Return the hash of all fields, found once: a diagnosis asks for it thousands of times."""
+        return self._hash
 
     @property
     def reads(self) -> tuple[Signal, ...]:

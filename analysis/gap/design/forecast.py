@@ -13,7 +13,7 @@ from analysis.gap.forward.tolerances import Tolerances
 from analysis.gap.observe.components import STEADY_PARTS, GapRun, Observation, Stack
 from analysis.gap.search.fit import Fit, at
 from analysis.gap.search.joint import signature_on
-from hardware.description.arrays import FloatArray
+from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.errors import PmmError
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
@@ -42,10 +42,10 @@ class Forecast:
     own: FloatArray
     form: FloatArray
 
-    @property
-    def whole(self) -> FloatArray:
-        """Root of the covariance of a run that will be made, without the noise."""
-        return np.hstack((self.root, self.own, self.form))
+    def whole(self, rows: BoolArray) -> FloatArray:
+        """Return a root of the covariance of some observations to be made, without the noise."""
+        every = [one[rows] for one in (self.root, self.own, self.form)]
+        return np.hstack([one[:, one.any(axis=0)] for one in every])
 
     def values(self, there: Problem) -> FloatArray:
         """Return the predicted components in their own units."""
@@ -98,7 +98,12 @@ def further(
 
 
 def forecast(
-    problem: Problem, there: Problem, fit: Fit | None, columns_ahead: FloatArray | None = None
+    problem: Problem,
+    there: Problem,
+    fit: Fit | None,
+    columns_ahead: FloatArray | None = None,
+    *,
+    roughly: bool = False,
 ) -> Forecast:
     """Return what an answer predicts at further runs; ``None`` is the answer "no gap".
 
@@ -109,12 +114,15 @@ def forecast(
     ----------
     columns_ahead
         At the further runs, of a fit that has no effects to be simulated.
+    roughly
+        Take the effect's signature on the rig as it is believed to be: as the campaign fits its
+        coefficients, it differs by a few per cent, as the effect's form does anyway.
     """
     count = len(problem.free)
     if fit is not None and columns_ahead is not None:
         ahead = _Ahead(columns_ahead @ fit.units, columns_ahead)
     else:
-        ahead = _Ahead.of(problem, there, fit)
+        ahead = _Ahead.of(problem, there, fit, roughly)
     effect = np.zeros((len(problem.residual), 0)) if fit is None else fit.columns
     shared = np.hstack((problem.nuisances.columns, effect[:, : ahead.columns.shape[1]]))
     # A root of the posterior's covariance by the precision's eigenvectors: no eigenvalue is below
@@ -139,12 +147,13 @@ def forecast(
 
 def _of_form(there: Problem, signature: FloatArray, share: float) -> FloatArray:
     """Return what the effect's own form may change: of each harmonic of a channel some share."""
-    kinds = [(one.channel, one.order) for one in there.simulator.stack.components]
-    own = [
-        share * np.where([one == kind for one in kinds], signature, 0.0)
-        for kind in dict.fromkeys(kinds)
+    number: dict[tuple[str, int], int] = {}
+    kinds = [
+        number.setdefault((one.channel, one.order), len(number))
+        for one in there.simulator.stack.components
     ]
-    return np.column_stack([one for one in own if one.any()] or [np.zeros((len(signature), 0))])
+    own = share * signature[:, None] * np.eye(len(number))[kinds]
+    return np.asarray(own[:, own.any(axis=0)], np.float64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,11 +164,14 @@ class _Ahead:
     columns: FloatArray
 
     @classmethod
-    def of(cls, problem: Problem, there: Problem, fit: Fit | None) -> "_Ahead":
+    def of(cls, problem: Problem, there: Problem, fit: Fit | None, roughly: bool) -> "_Ahead":
         if fit is not None:
             try:
                 found = at(there, fit.candidates, fit.units)
-                return cls(_on_fitted_rig(problem, there, fit, found), found.columns)
+                signature = found.signature
+                if not roughly:
+                    signature = _on_fitted_rig(problem, there, fit, found)
+                return cls(signature, found.columns)
             except PmmError:
                 pass
         count = len(there.nuisances.columns)

@@ -77,8 +77,7 @@ def apart(means: FloatArray, roots: Sequence[FloatArray]) -> FloatArray:
         The root of its covariance without the noise, shape ``(observations, any)``.
     """
     squares = np.zeros((means.shape[1], means.shape[1]))
-    for number, whole in enumerate(roots):
-        root = whole[:, whole.any(axis=0)]  # frequency and noise are each run's own
+    for number, root in enumerate(roots):
         away = means - means[:, number, None]
         towards = np.linalg.solve(np.eye(root.shape[1]) + root.T @ root, root.T @ away)
         squares[number] = np.sum(away * (away - root @ towards), axis=0)

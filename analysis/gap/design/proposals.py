@@ -216,12 +216,12 @@ def _weighed(
     if not some:
         return
     there = further(problem, [one.run for one in some], free, tolerances)
-    told = [forecast(problem, there, fit) for fit, _ in leading]
+    told = [forecast(problem, there, fit, roughly=True) for fit, _ in leading]
     shares = [share for _, share in leading]
     for number, one in enumerate(some):
         rows = there.simulator.stack.run == number
         means = np.column_stack([forecasted.mean[rows] for forecasted in told])
-        odds = apart(means, [forecasted.whole[rows] for forecasted in told])
+        odds = apart(means, [forecasted.whole(rows) for forecasted in told])
         odds = odds + by_itself(problem, one.kind, leading)
         yield one, Worth.of(shares, odds)
 

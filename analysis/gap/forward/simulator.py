@@ -214,18 +214,16 @@ def _preloaded(
     return left, replace(rig, body=heavier, forces=(*rig.forces, weight))
 
 
-def _drifted(rig: SimulatedRig, measured: Observation, later_s: float) -> FloatArray:
+def _drifted(rig: SimulatedRig, measured: Observation, later_s: float) -> FloatArray | float:
     """Return what the forces' zeros drift by in some time, as a change of their means."""
     gauges = zip(FORCES, (rig.dynamometers.aft, rig.dynamometers.fore), strict=True)
     drift = {
         name: (gauge.zero_drift_n_s + _stated_drift(rig, name)) * later_s for name, gauge in gauges
     }
-    found = np.zeros(len(measured.components))
-    if any(drift.values()):
-        for at, one in enumerate(measured.components):
-            if one.part is Part.MEAN:
-                found[at] = drift.get(one.channel, 0.0)
-    return found
+    if not any(drift.values()):
+        return 0.0
+    ones = measured.components
+    return np.array([drift.get(one.channel, 0.0) * (one.part is Part.MEAN) for one in ones])
 
 
 def _stated_drift(rig: SimulatedRig, channel: str) -> float:

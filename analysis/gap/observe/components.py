@@ -100,6 +100,10 @@ class Layout:
             np.array([one in (*STEADY_PARTS, *SETTLING) for one in parts]),
         )
 
+    @cached_property
+    def _recorded(self) -> tuple[str, ...]:
+        return tuple(f"recorded_{name}" for name in self.channels)
+
     def read(
         self, spectra: Mapping[str, ComplexArray], turn: ComplexArray | float = 1.0
     ) -> FloatArray:
@@ -112,7 +116,7 @@ class Layout:
         turn
             By what each order is turned.
         """
-        own = np.stack([spectra[f"recorded_{name}"] for name in self.channels]) * turn
+        own = np.array([spectra[name] for name in self._recorded]) * turn
         found = own[self.row, self.order]
         return np.asarray(self.real * found.real + self.imaginary * found.imag, np.float64)
 
