@@ -27,6 +27,7 @@ from pmm.gap.cut_short import cut_short
 from sim.rig import SimulatedRig
 
 _Read = tuple[Run, Observed, Following]
+_SHORT: Final = 200_000  # values of a recording, 1.6 MB: read whole
 _ABOVE: Final = 1.2  # of the oscillator's largest frequency and eccentricity
 
 
@@ -95,7 +96,7 @@ def load_campaign(
         try:
             check_recorded_alike(run)
             _check_single(run)
-            recording = open_recording(RecordingSource.of(campaign, run, path.parent))
+            recording = _at_once(open_recording(RecordingSource.of(campaign, run, path.parent)))
             damaged |= damage_of(run.name, recording)
             observed = observe(_only(recording, sensors), campaign.reference, campaign.analysis)
             followed, unlike[run.name] = _followed(recording)
@@ -179,6 +180,14 @@ def _usual_reference(found: Sequence[_Read]) -> str | None:
     """Return the reference that most runs have: phases from different ones cannot be compared."""
     references = [one.reference_channel for _, one, _ in found]
     return max(references, key=references.count) if references else None
+
+
+def _at_once(recording: Recording) -> Recording:
+    """Return a short recording with its samples read: else its file is opened for each channel."""
+    count = recording.sample_count
+    if count * len(recording.channels) > _SHORT:
+        return recording
+    return replace(recording, samples=recording.samples[:, 0:count])
 
 
 def _only(recording: Recording, sensors: Sequence[str]) -> Recording:

@@ -270,3 +270,15 @@ def moved(problem: Compared, fit: Fit, units: FloatArray) -> Fit:
     """Return the fit at other parameters, with the slopes that it has."""
     signature = problem.signature(fit.candidates, units)
     return weighed_at(problem, fit.candidates, units, fit.columns, signature)
+
+
+def learned(problem: Compared, fit: Fit, better: Fit) -> Fit:
+    """Return a moved fit with slopes that would have told where it came to (Broyden's update).
+
+    They change by the least, each parameter counted by how well it is known.
+    """
+    way = better.units - fit.units
+    towards = fit.posterior.precision @ way
+    beyond = better.signature - fit.signature - fit.columns @ way
+    columns = fit.columns + np.outer(beyond, towards) / float(way @ towards)
+    return weighed_at(problem, fit.candidates, better.units, columns, better.signature)

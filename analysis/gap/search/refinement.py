@@ -3,7 +3,14 @@
 from typing import Final
 
 from analysis.gap.forward.problem import Compared
-from analysis.gap.search.fit import Fit, linear_cost, most_probable, moved, relinearised
+from analysis.gap.search.fit import (
+    Fit,
+    learned,
+    linear_cost,
+    most_probable,
+    moved,
+    relinearised,
+)
 from hardware.description.errors import PmmError
 
 _STEPS: Final = 24  # at most; a fit that is still on its way then is nowhere near
@@ -17,19 +24,22 @@ _SETTLED: Final = 1e-3
 def refine(problem: Compared, fit: Fit) -> Fit:
     """Improve a fit by damped Gauss-Newton steps through the simulator, to its optimum.
 
-    Slopes are kept as long as a step brings about what they promise: where it brings many times as
-    much, they lead to where only they are level. A fit has arrived when those found where it is
-    promise nothing more; of what does not repeat with the shaft, those it has.
+    Slopes learn from each step what it really brought about; where that is not about what they
+    promised, they are found anew: where it is many times as much, they lead to where only they are
+    level. A fit has arrived when those found where it is promise nothing more; of what does not
+    repeat with the shaft, those it has.
     """
+    if not fit.repeats:
+        return stepped(problem, fit, _STEPS_IN_TIME)
     best, fresh = fit, False
-    for _ in range(_STEPS if fit.repeats else _STEPS_IN_TIME):
+    for _ in range(_STEPS):
         better, fulfilled = _step(problem, best)
-        if better is None and (fresh or not fit.repeats):
+        if better is None and fresh:
             return best
-        best, fresh = best if better is None else better, False
+        best, fresh = best if better is None else learned(problem, best, better), False
         if not _FULFILLED < fulfilled < 1.0 / _FULFILLED:
             best, fresh = _anew(problem, best), True
-    return best if fresh or not fit.repeats else _anew(problem, best)
+    return best if fresh else _anew(problem, best)
 
 
 def _anew(problem: Compared, fit: Fit) -> Fit:
