@@ -1,22 +1,38 @@
-"""``[attitude]`` of a campaign beside its oscillator."""
+"""``[attitude]`` and ``[heel]`` of a campaign beside its oscillator."""
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, Final
 
+from hardware.description.arrangement import Gauges
 from hardware.description.attitude import AttitudeSensors, HeaveAndPitch
+from hardware.description.heel import Heel
 from hardware.description.oscillator import Oscillator, Plane
 from pmm.configuration import Fault, validate
 
 
-def forced_faults(oscillator: Oscillator | None, table: Any) -> Iterator[Fault]:
-    """Refuse a model that is free in what a vertical oscillator forces.
+def attitude_faults(
+    oscillator: Oscillator | None, tables: Mapping[str, Any], *, own: bool = False
+) -> Iterator[Fault]:
+    """Refuse a model that sinks, trims or heels where a rig cannot have it.
 
-    A table that is wrong by itself passes: whoever reads it tells.
+    Parameters
+    ----------
+    own
+        Whether what is wrong with a table by itself is told too; else whoever reads it tells.
     """
-    sensors = validate(AttitudeSensors, table, [])
-    if oscillator is None or sensors is None or oscillator.plane is not Plane.VERTICAL:
-        return
-    if sensors.heave_and_pitch is HeaveAndPitch.FREE:
+    for key, (kind, beside) in _TABLES.items():
+        if tables.get(key) is None:
+            continue
+        faults: list[Fault] = []
+        table = validate(kind, tables[key], faults)
+        if own:
+            yield from (Fault((key, *one.place), one.message) for one in faults)
+        if table is not None and oscillator is not None:
+            yield from beside(oscillator, table)
+
+
+def _forced(oscillator: Oscillator, sensors: AttitudeSensors) -> Iterator[Fault]:
+    if oscillator.plane is Plane.VERTICAL and sensors.heave_and_pitch is HeaveAndPitch.FREE:
         yield Fault(
             ("attitude", "heave_and_pitch"),
             '= "free": a vertical oscillator forces heave and pitch; say "fixed", or correct plane '
@@ -24,9 +40,18 @@ def forced_faults(oscillator: Oscillator | None, table: Any) -> Iterator[Fault]:
         )
 
 
-def attitude_faults(oscillator: Oscillator | None, table: Any) -> Iterator[Fault]:
-    """Yield all that is wrong with the table."""
-    own: list[Fault] = []
-    validate(AttitudeSensors, table, own)
-    yield from (Fault(("attitude", *one.place), one.message) for one in own)
-    yield from forced_faults(oscillator, table)
+def _heeled(oscillator: Oscillator, _: Heel) -> Iterator[Fault]:
+    if oscillator.plane is Plane.VERTICAL:
+        yield Fault(("heel",), "is for the horizontal oscillator; take it out, or correct plane")
+    if oscillator.gauges is Gauges.RIG:
+        yield Fault(
+            ("heel",),
+            'needs gauges = "model" in [oscillator]: gauges that stay with the rig as the model '
+            "yaws read a part of its pitch moment as roll moment",
+        )
+
+
+_TABLES: Final[Mapping[str, tuple[type[Any], Callable[[Oscillator, Any], Iterator[Fault]]]]] = {
+    "attitude": (AttitudeSensors, _forced),
+    "heel": (Heel, _heeled),
+}

@@ -12,11 +12,10 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import check_within
-from pmm.campaign.attitude import forced_faults
+from pmm.campaign.attitude import attitude_faults
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.column_table import take_columns
 from pmm.campaign.file_names import campaign_name_faults, no_file_name
-from pmm.campaign.heel import heel_faults
 from pmm.campaign.model_uncertainty import expand_preset, take_uncertainty
 from pmm.campaign.runs import AtRest, Run
 from pmm.configuration import Fault, Place, as_error, limit_faults, read_toml, validate
@@ -109,8 +108,7 @@ def _none_for_false(table: dict[str, Any]) -> None:
 def _run_faults(table: dict[str, Any]) -> Iterator[Fault]:
     """Yield what is wrong with runs that are right by themselves."""
     oscillator = validate(Oscillator, table.get("oscillator", {}), [])
-    yield from forced_faults(oscillator, table.get("attitude"))
-    yield from heel_faults(oscillator, table.get("heel"))
+    yield from attitude_faults(oscillator, table)
     runs = list(_valid(table, "runs", Run))
     rest = list(_valid(table, "at_rest", AtRest))
     every: list[tuple[Place, Run | AtRest]] = [*runs, *rest]

@@ -2,8 +2,9 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import Any, Final
 
 from analysis.resolver.reference_choice import ReferenceChoice
 from hardware.description.body import Body
@@ -14,6 +15,8 @@ from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.campaign.model_uncertainty import ModelUncertainty
 from sim.model.hull import HullCoefficients
+
+_SET: Final = tuple(field.name for field in fields(SetPoint))
 
 
 @dataclass(frozen=True)
@@ -57,22 +60,7 @@ class Asked:
     @property
     def set_point(self) -> SetPoint:
         """What the run was told to do."""
-        return SetPoint(
-            self.frequency_hz,
-            self.eccentricity_m,
-            self.strut_phase_rad,
-            self.carriage_speed_m_s,
-            self.medium,
-            self.drift_rad,
-            self.rudder_angle_rad,
-            self.revolutions_hz,
-            self.heel_rad,
-            self.lines,
-            wave_frequency_hz=self.wave_frequency_hz,
-            wave_amplitude_m=self.wave_amplitude_m,
-            wave_heading_rad=self.wave_heading_rad,
-            steady_ahead=self.steady_ahead,
-        )
+        return SetPoint(**_told(self))
 
 
 @dataclass(frozen=True)
@@ -165,23 +153,16 @@ class AtRest:
     @property
     def set_point(self) -> SetPoint:
         """What the rig was told to do with its shaft at rest."""
-        return SetPoint(
-            0.0,
-            0.0,
-            0.0,
-            self.carriage_speed_m_s,
-            self.medium,
-            self.drift_rad,
-            self.rudder_angle_rad,
-            self.revolutions_hz,
-            self.heel_rad,
-            turn_rate_rad_s=self.turn_rate_rad_s,
-            release_rad=self.release_rad,
-        )
+        return SetPoint(**{"frequency_hz": 0.0, "eccentricity_m": 0.0, **_told(self)})
 
     def recording_path(self, folder: Path) -> Path:
         """Return where the recording lies, as for a run."""
         return _recording_path(folder, self.name, self.file)
+
+
+def _told(run: "Asked | AtRest") -> dict[str, Any]:
+    """Return what a run says of its set-point, by the keys that they have in common."""
+    return {key: getattr(run, key) for key in _SET if hasattr(run, key)}
 
 
 def _recording_path(folder: Path, name: str, file: str | None) -> Path:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import product
-from typing import Any
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -24,6 +24,28 @@ Combine = Callable[[Lists], Iterator[tuple[Any, ...]]]
 # Of a plan: six weeks of six-minute runs. Each takes some kilobytes, and a line on every page.
 MOST_RUNS = 10_000
 _PHASED = (Motion.PITCH, Motion.YAW, Motion.YAW_DRIFT)
+
+
+class _List(NamedTuple):
+    """A list of an entry: a run's value where it is empty, and its letter in names of runs."""
+
+    key: str
+    absent: float = 0.0
+    letter: str = ""
+
+
+_LISTS: Final = (  # the last one is gone through fastest
+    _List("speeds_m_s", letter="u"),
+    _List("revolutions_hz", letter="n"),
+    _List("heels_rad", letter="h"),
+    _List("drifts_rad", letter="b"),
+    _List("rudder_angles_rad", letter="d"),
+    _List("radii_m", math.inf, "c"),
+    _List("releases_rad", letter="k"),
+    _List("strut_phases_rad", math.nan, "p"),
+    _List("amplitudes_m"),
+    _List("frequencies_hz"),
+)
 
 
 def strut_phase_of(
@@ -80,23 +102,9 @@ def expand(
         return _loads(entry, defaults, channels)
     repeats = range(1, 1 + first_of(entry.repeats, defaults.repeats))
     if entry.kind is RunKind.RESTORING and not entry.frequencies_hz:
-        frequencies: tuple[float, ...] = (oscillator.frequency_hz.low,)
-    else:
-        frequencies = entry.frequencies_hz or (0.0,)
-    lists = (
-        repeats,
-        entry.speeds_m_s or (0.0,),
-        entry.revolutions_hz or (0.0,),
-        entry.heels_rad or (0.0,),
-        entry.drifts_rad or (0.0,),
-        entry.rudder_angles_rad or (0.0,),
-        entry.radii_m or (math.inf,),
-        entry.releases_rad or (0.0,),
-        entry.strut_phases_rad or (math.nan,),
-        entry.amplitudes_m or (0.0,),
-        frequencies,
-    )
-    return [_run(entry, defaults, oscillator, one) for one in combine(lists)]
+        entry = replace(entry, frequencies_hz=(oscillator.frequency_hz.low,))
+    lists = [getattr(entry, one.key) or (one.absent,) for one in _LISTS]
+    return [_run(entry, defaults, oscillator, one) for one in combine([repeats, *lists])]
 
 
 def run_count(entry: PlanEntry, defaults: Defaults, channels: Sequence[str]) -> int:
@@ -104,37 +112,13 @@ def run_count(entry: PlanEntry, defaults: Defaults, channels: Sequence[str]) -> 
     repeats = first_of(entry.repeats, defaults.repeats)
     if entry.kind in (RunKind.CHECK_WEIGHT, RunKind.PUSH):
         return repeats * len(entry.channels or channels) * len(entry.loads_n)
-    lists: Lists = (
-        entry.speeds_m_s,
-        entry.revolutions_hz,
-        entry.heels_rad,
-        entry.drifts_rad,
-        entry.rudder_angles_rad,
-        entry.radii_m,
-        entry.releases_rad,
-        entry.strut_phases_rad,
-        entry.amplitudes_m,
-        entry.frequencies_hz,
-    )
-    return repeats * math.prod(max(1, len(one)) for one in lists)
+    return repeats * math.prod(max(1, len(getattr(entry, one.key))) for one in _LISTS)
 
 
 def _run(
     entry: PlanEntry, defaults: Defaults, oscillator: Oscillator, one: tuple[Any, ...]
 ) -> RunPlan:
-    (
-        repeat,
-        speed,
-        revolutions,
-        heel,
-        drift,
-        rudder,
-        radius,
-        release,
-        phase,
-        amplitude,
-        frequency,
-    ) = one
+    repeat, speed, rate, heel, drift, rudder, radius, release, phase, amplitude, frequency = one
     motion = entry.motion or Motion.NONE
     if motion is not Motion.PHASE:
         phase = strut_phase_of(motion, frequency, speed, oscillator.half_spacing_m)
@@ -148,7 +132,7 @@ def _run(
         Medium.AIR if in_air else entry.medium or Medium.WATER,
         drift,
         rudder,
-        revolutions,
+        rate,
         heel,
         turn_rate_rad_s=speed / radius,
         release_rad=release,
@@ -239,33 +223,16 @@ def _name(entry: PlanEntry, one: tuple[Any, ...]) -> str:
 
     Frequency and amplitude always stand there.
     """
-    (
-        repeat,
-        speed,
-        revolutions,
-        heel,
-        drift,
-        rudder,
-        radius,
-        release,
-        phase,
-        amplitude,
-        frequency,
-    ) = one
+    repeat, *values = one
+    amplitude, frequency = values[-2:]
     parts = [entry.name or _prefix(entry)]
     if frequency and entry.kind is not RunKind.CONTROL:
         parts += [f"f{frequency:g}", f"a{1e3 * amplitude:.6g}"]
-    varied = (
-        ("u", entry.speeds_m_s, speed),
-        ("n", entry.revolutions_hz, revolutions),
-        ("h", entry.heels_rad, math.degrees(heel)),
-        ("b", entry.drifts_rad, math.degrees(drift)),
-        ("d", entry.rudder_angles_rad, math.degrees(rudder)),
-        ("c", entry.radii_m, radius),
-        ("k", entry.releases_rad, math.degrees(release)),
-        ("p", entry.strut_phases_rad, math.degrees(phase)),
-    )
-    parts += [f"{letter}{value:g}" for letter, values, value in varied if len(values) > 1]
+    parts += [
+        f"{its.letter}{math.degrees(value) if its.key.endswith('_rad') else value:g}"
+        for its, value in zip(_LISTS, values, strict=True)
+        if its.letter and len(getattr(entry, its.key)) > 1
+    ]
     if entry.wave_frequency_hz:
         parts.append(f"w{entry.wave_frequency_hz:g}")
     if repeat > 1:

@@ -14,7 +14,6 @@ from hardware.rig_configuration import TABLES, RigConfiguration, read_rig
 from hardware.watch import WatchLimits
 from pmm.campaign.attitude import attitude_faults
 from pmm.campaign.calibration import Calibration, read_calibration
-from pmm.campaign.heel import own_heel_faults
 from pmm.campaign.model_uncertainty import expand_preset
 from pmm.configuration import (
     Fault,
@@ -146,10 +145,8 @@ def examine_rig(path: Path) -> RigFileReading:
     calibration = _calibration(own, hardware, path, faults)
     oscillator = validate(Oscillator, table.get("oscillator", {}), [])
     handed_on = own.campaign if own is not None else {}
-    for key, faults_of in (("attitude", attitude_faults), ("heel", own_heel_faults)):
-        if key in handed_on:
-            found = faults_of(oscillator, handed_on[key])
-            faults += [Fault(("campaign", *one.place), one.message) for one in found]
+    found = attitude_faults(oscillator, handed_on, own=True)
+    faults += [Fault(("campaign", *one.place), one.message) for one in found]
     channels = None if hardware is None else channels_of(hardware)
     if faults or own is None or hardware is None:
         return RigFileReading(None, oscillator, channels, as_error(path, faults, original))

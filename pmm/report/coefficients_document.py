@@ -38,7 +38,7 @@ from pmm.document.content import (
 )
 from pmm.document.flag_lines import flag_lines, flag_notes
 from pmm.document.notation import NOT_KNOWN, counted, joined, rounded, written
-from pmm.report.attitude import attitude_table
+from pmm.report.attitude import attitude_table, heel_table
 from pmm.report.attitude_figure import attitude_figures
 from pmm.report.circle_figure import circle_figures
 from pmm.report.coefficient_plots import figures
@@ -52,8 +52,6 @@ from pmm.report.coefficient_tables import (
 from pmm.report.conditions import conditions_table
 from pmm.report.decays import decay_figures, decay_table
 from pmm.report.following import following_figures, following_table
-from pmm.report.heel import heel_table
-from pmm.report.heel_figure import heel_figures
 from pmm.report.line_sections import line_sections
 from pmm.report.waves import wave_figures, wave_table
 
@@ -106,7 +104,6 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
                     *decay_figures(outcome),
                     *wave_figures(outcome),
                     *attitude_figures(outcome),
-                    *heel_figures(outcome),
                     *following_figures(outcome),
                 ),
             ),

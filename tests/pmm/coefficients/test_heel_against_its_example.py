@@ -14,8 +14,8 @@ from scipy.integrate import solve_ivp
 from analysis.attitude import AttitudeChannel
 from analysis.readers import read_recording, write_recording
 from pmm.cli import cli
-from pmm.report.heel import HeelRow
-from pmm.report.heel_figure import heel_figure
+from pmm.report.attitude import HeelRow
+from pmm.report.attitude_figure import heel_figure
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "roll" / "campaign.toml"
 SPEED_M_S = 1.2
