@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from hardware.description.errors import ConfigurationError
-from hardware.limits import check_quick_stop
+from hardware.limits import check_above_0, check_ends, check_quick_stop
 
 
 @dataclass(frozen=True)
@@ -50,13 +50,9 @@ class PositionAxisSettings:
     eds: str = "cia402-drive.eds"
 
     def __post_init__(self) -> None:
-        keys = ("speed", "acceleration", "quick_stop", "tolerance", "homing_speed")
-        for key in keys:
-            if not getattr(self, key) > 0.0:
-                raise ConfigurationError(f"{key} = {getattr(self, key):g} has to be above 0")
+        check_above_0(self, "speed", "acceleration", "quick_stop", "tolerance", "homing_speed")
         check_quick_stop(self.speed, self.quick_stop, f"{self.unit}/s", "quick_stop")
-        if not self.low < self.high:
-            raise ConfigurationError(f"low = {self.low:g} has to be below high = {self.high:g}")
+        check_ends(self.low, self.high)
         furthest = max(abs(self.low), abs(self.high)) * abs(self.counts_per_unit)
         if not 0.0 < furthest < 2**31:
             raise ConfigurationError(

@@ -8,6 +8,7 @@ from hardware.analogue_link import AnalogueNumber, AnalogueSettings
 from hardware.asked_link import AskedSettings
 from hardware.description.errors import ConfigurationError
 from hardware.description.motor import UNKNOWN_KEYS_REFUSED
+from hardware.limits import check_above_0
 from hardware.line_link import LineSettings, is_told
 from hardware.line_registers import Line, LineCommand, LineNumber, LineStatus
 from hardware.modbus_link import ModbusSettings
@@ -92,12 +93,14 @@ class AskedCarriageSettings(AskedSettings):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for key in (
-            "highest_speed_m_s", "acceleration_m_s2", "tolerance_m_s", "settle_s",
+        check_above_0(
+            self,
+            "highest_speed_m_s",
+            "acceleration_m_s2",
+            "tolerance_m_s",
+            "settle_s",
             "return_speed_m_s",
-        ):  # fmt: skip
-            if not getattr(self, key) > 0.0:
-                raise ConfigurationError(f"{key} = {getattr(self, key):g} has to be above 0")
+        )
         if not 0.0 <= self.lag_s <= _LONGEST_LAG_S:
             raise ConfigurationError(
                 f"lag_s = {self.lag_s:g} has to be from 0 to {_LONGEST_LAG_S:g}, in seconds"

@@ -97,6 +97,31 @@ TRACK_MARGIN: Final = 1.2
 answers that were lost, it is stopped."""
 
 
+def check_above_0(settings: object, *keys: str) -> None:
+    """Refuse settings of which one of these keys is not above zero.
+
+    Raises
+    ------
+    ConfigurationError
+        With the key and its value.
+    """
+    for key in keys:
+        if not getattr(settings, key) > 0.0:
+            raise ConfigurationError(f"{key} = {getattr(settings, key):g} has to be above 0")
+
+
+def check_ends(low: float, high: float) -> None:
+    """Refuse a range whose low end is not below its high end.
+
+    Raises
+    ------
+    ConfigurationError
+        With both ends.
+    """
+    if not low < high:
+        raise ConfigurationError(f"low = {low:g} has to be below high = {high:g}")
+
+
 def check_quick_stop(speed: float, ramp: float, unit: str, key: str) -> None:
     """Refuse a quick stop that could not be over by its deadline.
 

@@ -10,10 +10,10 @@ from typing import Literal
 
 from hardware.command_limits import check_enabled, check_move
 from hardware.demand import Demand
-from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
 from hardware.driver import Driver, Services
 from hardware.errors import DialReadingError
+from hardware.limits import check_above_0, check_ends
 from hardware.roles import Cycle, Reading, Role
 
 
@@ -85,11 +85,8 @@ class ManualAxisSettings:
     unit: Literal["m", "rad"] = "m"
 
     def __post_init__(self) -> None:
-        if not self.low < self.high:
-            raise ConfigurationError(f"low = {self.low:g} has to be below high = {self.high:g}")
-        for key in ("standard_uncertainty", "tolerance", "dial_per_unit"):
-            if not getattr(self, key) > 0.0:
-                raise ConfigurationError(f"{key} = {getattr(self, key):g} has to be above 0")
+        check_ends(self.low, self.high)
+        check_above_0(self, "standard_uncertainty", "tolerance", "dial_per_unit")
 
 
 class ManualAxis:

@@ -5,12 +5,11 @@ from dataclasses import dataclass
 
 from hardware.asked_device import AskedDevice, raise_worst
 from hardware.command_limits import check_move
-from hardware.description.errors import ConfigurationError
 from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from hardware.description.oscillator import Range
 from hardware.driver import Driver, Services
 from hardware.errors import NotReadyError
-from hardware.limits import RAMP_MARGIN, REST_DEADLINE_S
+from hardware.limits import RAMP_MARGIN, REST_DEADLINE_S, check_above_0, check_ends
 from hardware.modbus_link import ModbusSettings
 from hardware.modbus_registers import CommandRegister, Register, StatusRegister
 from hardware.roles import Cycle, Reading, Role
@@ -63,11 +62,8 @@ class ModbusAxisSettings(ModbusSettings):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not self.low < self.high:
-            raise ConfigurationError(f"low = {self.low:g} has to be below high = {self.high:g}")
-        for key in ("speed", "tolerance", "standard_uncertainty", "settle_s"):
-            if not getattr(self, key) > 0.0:
-                raise ConfigurationError(f"{key} = {getattr(self, key):g} has to be above 0")
+        check_ends(self.low, self.high)
+        check_above_0(self, "speed", "tolerance", "standard_uncertainty", "settle_s")
         for position in (self.low, self.high):
             self.registers.set_position.written(position)
 

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 from hardware.command_limits import check_move
-from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
 from hardware.driver import Driver, Services
 from hardware.led_shaft import led_shaft
+from hardware.limits import check_above_0, check_ends
 from hardware.roles import Cycle, Reading, Role
 
 
@@ -27,12 +27,8 @@ class PathSettingSettings:
     unit: Literal["m", "rad"] = "m"
 
     def __post_init__(self) -> None:
-        if not self.low < self.high:
-            raise ConfigurationError(f"low = {self.low:g} has to be below high = {self.high:g}")
-        if not self.standard_uncertainty > 0.0:
-            raise ConfigurationError(
-                f"standard_uncertainty = {self.standard_uncertainty:g} has to be above 0"
-            )
+        check_ends(self.low, self.high)
+        check_above_0(self, "standard_uncertainty")
 
 
 class PathSetting:

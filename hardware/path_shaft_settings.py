@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from hardware.axis_settings import PositionAxisSettings
 from hardware.description.errors import ConfigurationError
+from hardware.limits import check_above_0
 
 STRUTS = ("aft", "fore")
 
@@ -33,9 +34,7 @@ class PathShaftSettings:
     encoders: bool = True
 
     def __post_init__(self) -> None:
-        for key in ("highest_frequency_hz", "acceleration_hz_per_s", "approach_speed"):
-            if not getattr(self, key) > 0.0:
-                raise ConfigurationError(f"{key} = {getattr(self, key):g} has to be above 0")
+        check_above_0(self, "highest_frequency_hz", "acceleration_hz_per_s", "approach_speed")
         for name in STRUTS:
             if getattr(self, name).unit != "m":
                 raise ConfigurationError(f'{name}.unit has to be "m"')

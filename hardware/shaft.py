@@ -24,7 +24,7 @@ from hardware.drive import (
 )
 from hardware.drive_state_machine import Goal
 from hardware.driver import Driver, NodePlan, Services, gap_cycles, join
-from hardware.limits import RAMP_MARGIN, SHAFT_REST_SHARE, check_quick_stop
+from hardware.limits import RAMP_MARGIN, SHAFT_REST_SHARE, check_above_0, check_quick_stop
 from hardware.motion import EncoderMotion
 from hardware.roles import Cycle, Role, Sample, SampleBlock, blocks
 
@@ -67,9 +67,7 @@ class ShaftSettings:
     eds: str = "cia402-drive.eds"
 
     def __post_init__(self) -> None:
-        for key in ("highest_frequency_hz", "acceleration_hz_per_s", "quick_stop_hz_per_s"):
-            if not getattr(self, key) > 0.0:
-                raise ConfigurationError(f"{key} = {getattr(self, key):g} has to be above 0")
+        check_above_0(self, "highest_frequency_hz", "acceleration_hz_per_s", "quick_stop_hz_per_s")
         check_quick_stop(
             self.highest_frequency_hz, self.quick_stop_hz_per_s, "Hz", "quick_stop_hz_per_s"
         )

@@ -106,6 +106,49 @@ def resolve(
     )
 
 
+def gate_sums(sums: PeriodSums, slope: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the normal equations of all periods, a drift about mid-gate taken off."""
+    gram, moment, ramp = (part.sum(axis=0) for part in (sums.gram, sums.moment, sums.ramp))
+    middle = ramp[0] / gram[0, 0]
+    return gram, moment - np.outer(slope, ramp - middle * gram[:, 0])
+
+
+def harmonics_by_bins(
+    recording: Recording,
+    plain: PeriodSums,
+    drift: Drift,
+    coefficients: FloatArray,
+    deviations: FloatArray,
+    degrees_of_freedom: FloatArray,
+    estimator: str,
+) -> Harmonics:
+    """Return harmonics whose uncertainty comes from the bins beside them.
+
+    Parameters
+    ----------
+    plain
+        The periods of the gate.
+    coefficients, deviations, degrees_of_freedom, estimator
+        As in :class:`analysis.resolver.harmonics.Harmonics`.
+    """
+    return Harmonics(
+        run=recording.name,
+        channel_names=recording.channel_names,
+        units=tuple(channel.unit for channel in recording.channels),
+        opened_s=float(plain.opened_s[0]),
+        closed_s=float(plain.closed_s[-1]),
+        periods=plain.period_count,
+        coefficients=coefficients,
+        deviations=deviations,
+        degrees_of_freedom=degrees_of_freedom,
+        widening=np.ones_like(coefficients),
+        drift_per_s=drift.slope,
+        drift_source=drift.source,
+        interval_source=IntervalSource.BINS,
+        estimator=estimator,
+    )
+
+
 def _interval_source(gate: PeriodSums, stretch: PeriodSums) -> IntervalSource:
     if stretch.period_count < 2:
         return IntervalSource.NONE

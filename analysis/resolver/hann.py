@@ -9,8 +9,8 @@ nothing of the harmonics through: noise of any colour that is level across them 
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.estimate import fit_drift, no_drift
-from analysis.resolver.harmonics import Harmonics, IntervalSource
+from analysis.resolver.estimate import fit_drift, gate_sums, harmonics_by_bins, no_drift
+from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.reference import PhaseReference
 from analysis.resolver.sums import period_sums
 from hardware.description.arrays import FloatArray
@@ -52,31 +52,16 @@ def resolve_hann(
 
     plain = period_sums(recording, reference, harmonics, edges_cycles=edges_cycles)
     sums = period_sums(recording, reference, orders, edges_cycles=edges_cycles, taper=taper)
-    moment, gram, ramp = (part.sum(axis=0) for part in (sums.moment, sums.gram, sums.ramp))
-    if not np.isfinite(moment).all():
+    if not np.isfinite(sums.moment).all():
         raise DataError(f"{recording.name}: the gate has missing samples; a taper needs them all")
     drift = fit_drift(plain, plain) if take_out_drift else no_drift(plain)
-    middle = ramp[0] / gram[0, 0]
-    moment = moment - np.outer(drift.slope, ramp - middle * gram[:, 0])
+    gram, moment = gate_sums(sums, drift.slope)
     size = 2 * harmonics + 1
-    coefficients = np.linalg.solve(gram[:size, :size], moment[:, :size].T).T
+    coefficients = np.asarray(np.linalg.solve(gram[:size, :size], moment[:, :size].T).T, np.float64)
     left = 2.0 * (moment - coefficients @ gram[:size]) / gram[0, 0]
     deviations, freedom = _from_bins(left[:, size:], harmonics, len(bins), len(low))
-    return Harmonics(
-        run=recording.name,
-        channel_names=recording.channel_names,
-        units=tuple(channel.unit for channel in recording.channels),
-        opened_s=float(plain.opened_s[0]),
-        closed_s=float(plain.closed_s[-1]),
-        periods=periods,
-        coefficients=coefficients,
-        deviations=deviations,
-        degrees_of_freedom=freedom,
-        widening=np.ones_like(coefficients),
-        drift_per_s=drift.slope,
-        drift_source=drift.source,
-        interval_source=IntervalSource.BINS,
-        estimator="Hann taper",
+    return harmonics_by_bins(
+        recording, plain, drift, coefficients, deviations, freedom, "Hann taper"
     )
 
 

@@ -16,10 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.estimate import fit_drift, no_drift
-from analysis.resolver.harmonics import Harmonics, IntervalSource
+from analysis.resolver.estimate import fit_drift, gate_sums, harmonics_by_bins, no_drift
+from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.reference import PhaseReference
-from analysis.resolver.sums import PeriodSums, period_sums
+from analysis.resolver.sums import period_sums
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.errors import DataError
 
@@ -69,7 +69,7 @@ def resolve_local(
             f"{recording.name}: the gate has missing samples; local polynomials need them all"
         )
     drift = fit_drift(plain, plain) if take_out_drift else no_drift(plain)
-    gram, moment = _summed(plain, drift.slope)
+    gram, moment = gate_sums(plain, drift.slope)
     coefficients: FloatArray = np.linalg.solve(gram, moment.T).T.astype(np.float64)
     local = _beside(recording, reference, edges_cycles, coefficients, drift.slope)
     leak, residuals = _leaks(local)
@@ -77,21 +77,9 @@ def resolve_local(
     coefficients[:, 2::2] -= leak.imag
     spare = len(local.bins) - DEGREE - 1
     freedom = np.full(2 * harmonics + 1, 2.0 * spare)
-    return Harmonics(
-        run=recording.name,
-        channel_names=recording.channel_names,
-        units=tuple(channel.unit for channel in recording.channels),
-        opened_s=float(plain.opened_s[0]),
-        closed_s=float(plain.closed_s[-1]),
-        periods=periods,
-        coefficients=coefficients,
-        deviations=_deviations(residuals, cost(periods), spare),
-        degrees_of_freedom=freedom,
-        widening=np.ones_like(coefficients),
-        drift_per_s=drift.slope,
-        drift_source=drift.source,
-        interval_source=IntervalSource.BINS,
-        estimator="local polynomials",
+    deviations = _deviations(residuals, cost(periods), spare)
+    return harmonics_by_bins(
+        recording, plain, drift, coefficients, deviations, freedom, "local polynomials"
     )
 
 
@@ -115,13 +103,6 @@ def _powers(bins: FloatArray) -> FloatArray:
     return np.asarray((bins / np.abs(bins).max())[:, None] ** np.arange(DEGREE + 1))
 
 
-def _summed(sums: PeriodSums, slope: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the normal equations of all periods, a drift about mid-gate taken off."""
-    gram, moment, ramp = (part.sum(axis=0) for part in (sums.gram, sums.moment, sums.ramp))
-    middle = ramp[0] / gram[0, 0]
-    return gram, moment - np.outer(slope, ramp - middle * gram[:, 0])
-
-
 def _beside(
     recording: Recording,
     reference: PhaseReference,
@@ -138,7 +119,7 @@ def _beside(
         beside = (own[first : first + _AT_ONCE, None] + bins / periods).reshape(-1)
         orders = np.concatenate((own, beside))
         sums = period_sums(recording, reference, orders, edges_cycles=edges_cycles)
-        gram, moment = _summed(sums, slope)
+        gram, moment = gate_sums(sums, slope)
         left = 2.0 * (moment - coefficients @ gram[:size])[:, size:] / gram[0, 0]
         phasors = left[:, 0::2] + 1j * left[:, 1::2]
         found.append(phasors.reshape(len(left), -1, len(bins)) * turned)

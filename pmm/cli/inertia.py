@@ -74,8 +74,12 @@ def _command(job: str) -> Callable[..., None]:
         from pmm.cli.screen import busy, messages, show
         from pmm.inertia.fits import form_fits
         from pmm.inertia.jobs import do_job
-        from pmm.inertia.mass_properties import check_ending, mass_properties
-        from pmm.inertia.model_file import check_output, model_section
+        from pmm.inertia.model_file import (
+            check_ending,
+            check_output,
+            mass_properties,
+            model_section,
+        )
         from pmm.report.inertia_document import document
         from pmm.whole_file import write_whole
 

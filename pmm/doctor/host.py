@@ -25,114 +25,77 @@ def check_host(machine: Machine, folder: Path) -> Iterator[MachineFinding]:
     yield _disk(machine, folder)
 
 
+def _finding(
+    area: str,
+    what: str,
+    fine: bool | None,
+    found: str,
+    cure: str,
+    worse: MachineStatus = MachineStatus.WARNING,
+) -> MachineFinding:
+    """Return a finding; ``None`` is what the system does not tell."""
+    if fine is None or fine:
+        return MachineFinding(area, what, MachineStatus.OK if fine else MachineStatus.NOTE, found)
+    return MachineFinding(area, what, worse, found, cure)
+
+
 def _resolution(machine: Machine) -> MachineFinding:
     found = machine.monotonic_resolution_s()
     told = f"resolves {1e6 * found:.3g} us (limit {1e6 * _RESOLUTION_S:g} us)"
-    if found <= _RESOLUTION_S:
-        return MachineFinding("clock", "monotonic clock", MachineStatus.OK, told)
-    return MachineFinding(
-        "clock",
-        "monotonic clock",
-        MachineStatus.FAULT,
-        told,
-        "run on a system with a high-resolution timer",
-    )
+    cure = "run on a system with a high-resolution timer"
+    fine = found <= _RESOLUTION_S
+    return _finding("clock", "monotonic clock", fine, told, cure, MachineStatus.FAULT)
 
 
 def _lateness(machine: Machine) -> MachineFinding:
     found = machine.worst_lateness_s()
     told = f"a nap of 2 ms ends at worst {1e3 * found:.2g} ms late (limit {1e3 * _LATE_S:g} ms)"
-    if found <= _LATE_S:
-        return MachineFinding("clock", "timer", MachineStatus.OK, told)
-    return MachineFinding(
-        "clock",
-        "timer",
-        MachineStatus.WARNING,
-        told,
-        "end what else runs here, and switch power saving off",
-    )
+    cure = "end what else runs here, and switch power saving off"
+    return _finding("clock", "timer", found <= _LATE_S, told, cure)
 
 
 def _network_time(machine: Machine) -> MachineFinding:
     found = machine.synchronised()
-    if found is None:
-        return MachineFinding(
-            "clock",
-            "time of day",
-            MachineStatus.NOTE,
-            "the system does not tell whether it is synchronised",
-        )
-    if found:
-        return MachineFinding(
-            "clock", "time of day", MachineStatus.OK, "synchronised over the network"
-        )
-    return MachineFinding(
-        "clock",
-        "time of day",
-        MachineStatus.WARNING,
-        "not synchronised: recordings may be dated wrongly (intervals are not touched)",
-        "timedatectl set-ntp true, or start chrony",
-    )
+    told = {
+        None: "the system does not tell whether it is synchronised",
+        True: "synchronised over the network",
+        False: "not synchronised: recordings may be dated wrongly (intervals are not touched)",
+    }
+    cure = "timedatectl set-ntp true, or start chrony"
+    return _finding("clock", "time of day", found, told[found], cure)
 
 
 def _priority(machine: Machine) -> MachineFinding:
     found = machine.highest_priority()
-    if found is None:
-        return MachineFinding(
-            "permissions", "real-time priority", MachineStatus.NOTE, "not known of here"
-        )
-    if found >= _PRIORITY:
-        return MachineFinding(
-            "permissions", "real-time priority", MachineStatus.OK, f"up to {found}"
-        )
-    return MachineFinding(
-        "permissions",
-        "real-time priority",
-        MachineStatus.WARNING,
-        f"up to {found}, wanted are {_PRIORITY}: other programs can make cycles late",
-        f"'* - rtprio {_PRIORITY}' in /etc/security/limits.conf, then log in anew",
-    )
+    fine = None if found is None else found >= _PRIORITY
+    told = {
+        None: "not known of here",
+        True: f"up to {found}",
+        False: f"up to {found}, wanted are {_PRIORITY}: other programs can make cycles late",
+    }
+    cure = f"'* - rtprio {_PRIORITY}' in /etc/security/limits.conf, then log in anew"
+    return _finding("permissions", "real-time priority", fine, told[fine], cure)
 
 
 def _memory(machine: Machine) -> MachineFinding:
     found = machine.may_lock_memory()
-    if found is None:
-        return MachineFinding(
-            "permissions", "locked memory", MachineStatus.NOTE, "not known of here"
-        )
-    if found:
-        return MachineFinding("permissions", "locked memory", MachineStatus.OK, "without a limit")
-    return MachineFinding(
-        "permissions",
-        "locked memory",
-        MachineStatus.WARNING,
-        "limited, wanted is no limit: what is moved out of memory makes cycles late",
-        "'* - memlock unlimited' in /etc/security/limits.conf, then log in anew",
-    )
+    told = {
+        None: "not known of here",
+        True: "without a limit",
+        False: "limited, wanted is no limit: what is moved out of memory makes cycles late",
+    }
+    cure = "'* - memlock unlimited' in /etc/security/limits.conf, then log in anew"
+    return _finding("permissions", "locked memory", found, told[found], cure)
 
 
 def _disk(machine: Machine, folder: Path) -> MachineFinding:
     what = f"disk of {folder}"
     if not machine.may_write(folder):
-        return MachineFinding(
-            "disk",
-            what,
-            MachineStatus.FAULT,
-            "no permission to write",
-            "record to another folder: --output",
-        )
+        told, cure = "no permission to write", "record to another folder: --output"
+        return _finding("disk", what, False, told, cure, MachineStatus.FAULT)
     free = machine.free_bytes(folder)
     told = f"{free / _MEGA:.0f} MB free (limit {_RESERVE / _MEGA:.0f} MB)"
     if free < _RESERVE:
-        return MachineFinding(
-            "disk",
-            what,
-            MachineStatus.FAULT,
-            told,
-            "make room, or record to another disk: --output",
-        )
-    if free < _LITTLE:
-        return MachineFinding(
-            "disk", what, MachineStatus.WARNING, told, "make room before a long campaign"
-        )
-    return MachineFinding("disk", what, MachineStatus.OK, told)
+        cure = "make room, or record to another disk: --output"
+        return _finding("disk", what, False, told, cure, MachineStatus.FAULT)
+    return _finding("disk", what, free >= _LITTLE, told, "make room before a long campaign")

@@ -3,8 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from pmm.archive.control_chart import FEWEST, ChartPoint
-from pmm.archive.trends import Trend
+from pmm.archive.trends import FEWEST, ChartPoint, Trend
 from pmm.document.content import Column, Data, Document, Figure, Note, Notes, Section, Table, Text
 from pmm.document.notation import NOT_KNOWN, rounded
 from pmm.report.archive_document import SCHEMA, day

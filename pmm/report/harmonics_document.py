@@ -12,7 +12,7 @@ from pmm.document.labels import plain
 from pmm.document.notation import counted
 from pmm.harmonics.resolving import Failure
 from pmm.harmonics.rows import RunRows, run_rows, window_kind
-from pmm.report.gate_fit import WINDOWS
+from pmm.report.gate import WINDOWS
 from pmm.report.harmonics_tables import classic_tables, gate_tables, noticed
 from pmm.report.plots import figures
 from pmm.report.response_tables import response_tables

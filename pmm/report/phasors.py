@@ -11,7 +11,7 @@ from analysis.resolver.harmonics import Harmonics
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import Display, display, loads_first, shown_name
 from pmm.document.style import PALETTE, drawn
-from pmm.report.gate_fit import caption, reading_of, single_periods
+from pmm.report.gate import caption, reading_of, single_periods
 from pmm.report.region import Ellipse, ellipses
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from pmm.document.labels import axis_label, display, loads_first, shown_name
 from pmm.document.notation import counted
 from pmm.document.style import FIT, PALETTE, TRACE, drawn
 from pmm.report.envelope import tops
-from pmm.report.gate_fit import caption, fitted, gate_sums, reading_of
+from pmm.report.gate import caption, fitted, gate_sums, reading_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,14 +1,17 @@
 """Common parts of what rubs and damps in one form or another. No effect itself."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Final
 
-from sim.effects.typical import power_share
+from sim.effects.hydrodynamics import with_laws
+from sim.effects.typical import power_share, speed_m_s
 from sim.model.force_law import ForceLaw
 from sim.model.law_point import Acting, Point
 from sim.model.laws import Power
 from sim.rig import SimulatedRig
 
+BOTH_MOTIONS: Final = (Point.THROUGH_WATER, Point.ROTATION)
 UNLIKE: Final = "by which share the aft strut has more than said, and the fore strut less"
 
 
@@ -46,3 +49,27 @@ def power_law(
     """
     as_large = power_share(exponent) / power_share(other)
     return Power(strength * speed**exponent * as_large, speed, other, drift)
+
+
+def with_damping(
+    rig: SimulatedRig,
+    sizes: tuple[float, float],
+    exponent: float,
+    power: float,
+    law: Callable[[float], ForceLaw],
+) -> SimulatedRig:
+    """Return the rig with damping of both motions that goes with a power of their velocities.
+
+    Parameters
+    ----------
+    sizes
+        Of translation and rotation.
+    exponent, law
+        Of the power that the sizes are meant for; another one has as large a first harmonic.
+    """
+    speed = speed_m_s(rig)
+    laws = [
+        law(size) if power == exponent else power_law(size, exponent, power, typical)
+        for size, typical in zip(sizes, (speed, speed / rig.oscillator.half_spacing_m), strict=True)
+    ]
+    return with_laws(rig, *zip(BOTH_MOTIONS, laws, strict=True))

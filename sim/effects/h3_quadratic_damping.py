@@ -6,16 +6,14 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
-from sim.effects.friction import power_law
-from sim.effects.hydrodynamics import of_law, with_laws
+from sim.effects.friction import BOTH_MOTIONS, with_damping
+from sim.effects.hydrodynamics import of_law
 from sim.effects.situation import Situation
-from sim.effects.typical import speed_m_s
 from sim.model.law_point import Point
 from sim.model.laws import Quadratic
 from sim.rig import SimulatedRig
 
 HIGHEST = 5
-POINTS = (Point.THROUGH_WATER, Point.ROTATION)
 
 
 @dataclass(frozen=True)
@@ -56,19 +54,13 @@ class QuadraticDamping(Effect):
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this damping of both motions."""
         sizes = (self.translation_n_s2_m2, self.rotation_n_m_s2)
-        if self.power == 2.0:
-            return with_laws(rig, *zip(POINTS, map(Quadratic, sizes), strict=True))
-        speed = speed_m_s(rig)
-        speeds = (speed, speed / rig.oscillator.half_spacing_m)
-        laws = [
-            power_law(size, 2.0, self.power, typical)
-            for size, typical in zip(sizes, speeds, strict=True)
-        ]
-        return with_laws(rig, *zip(POINTS, laws, strict=True))
+        return with_damping(rig, sizes, 2.0, self.power, Quadratic)
 
     def signature(self, situation: Situation) -> Signature:
         """Return the describing function of ``cos|cos|``, 8/3pi, 8/15pi, -8/105pi."""
-        sizes = dict(zip(POINTS, (self.translation_n_s2_m2, self.rotation_n_m_s2), strict=True))
+        sizes = dict(
+            zip(BOTH_MOTIONS, (self.translation_n_s2_m2, self.rotation_n_m_s2), strict=True)
+        )
 
         def wave(order: int, speed: float, phase: float, point: Point) -> complex:
             if order % 2 == 0:
@@ -78,4 +70,4 @@ class QuadraticDamping(Effect):
             turned = 1j * np.exp(1j * order * (phase - np.pi / 2.0))
             return complex(sizes[point] * speed**2 * share * turned)
 
-        return of_law(situation, POINTS, wave, HIGHEST)
+        return of_law(situation, BOTH_MOTIONS, wave, HIGHEST)

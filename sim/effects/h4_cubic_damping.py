@@ -6,15 +6,13 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
-from sim.effects.friction import power_law
-from sim.effects.hydrodynamics import of_law, with_laws
+from sim.effects.friction import BOTH_MOTIONS, with_damping
+from sim.effects.hydrodynamics import of_law
 from sim.effects.situation import Situation
-from sim.effects.typical import speed_m_s
 from sim.model.law_point import Point
 from sim.model.laws import Cubic
 from sim.rig import SimulatedRig
 
-POINTS = (Point.THROUGH_WATER, Point.ROTATION)
 SHARES = {1: 0.75, 3: 0.25}  # of cos^3
 
 
@@ -55,22 +53,16 @@ class CubicDamping(Effect):
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this damping of both motions."""
         sizes = (self.translation_n_s3_m3, self.rotation_n_m_s3)
-        if self.power == 3.0:
-            return with_laws(rig, *zip(POINTS, map(Cubic, sizes), strict=True))
-        speed = speed_m_s(rig)
-        speeds = (speed, speed / rig.oscillator.half_spacing_m)
-        laws = [
-            power_law(size, 3.0, self.power, typical)
-            for size, typical in zip(sizes, speeds, strict=True)
-        ]
-        return with_laws(rig, *zip(POINTS, laws, strict=True))
+        return with_damping(rig, sizes, 3.0, self.power, Cubic)
 
     def signature(self, situation: Situation) -> Signature:
         """Return the describing function of ``cos^3``."""
-        sizes = dict(zip(POINTS, (self.translation_n_s3_m3, self.rotation_n_m_s3), strict=True))
+        sizes = dict(
+            zip(BOTH_MOTIONS, (self.translation_n_s3_m3, self.rotation_n_m_s3), strict=True)
+        )
 
         def wave(order: int, speed: float, phase: float, point: Point) -> complex:
             turned = 1j * np.exp(1j * order * (phase - np.pi / 2.0))
             return complex(sizes[point] * speed**3 * SHARES.get(order, 0.0) * turned)
 
-        return of_law(situation, POINTS, wave, 3)
+        return of_law(situation, BOTH_MOTIONS, wave, 3)

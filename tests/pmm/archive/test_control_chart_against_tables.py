@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from pmm.archive.control_chart import control_chart
+from pmm.archive.trends import control_chart
 
 T_995_2 = 9.925  # two-sided 99 %, 2 degrees of freedom, as printed in tables
 

@@ -12,7 +12,7 @@ from analysis.recording import Recording
 from analysis.resolver.leakage import boxcar_leakage
 from hardware.description.errors import ConfigurationError
 from pmm.report.envelope import overview, tops, zigzag
-from pmm.report.gate_fit import fitted, reading_of, single_periods
+from pmm.report.gate import fitted, reading_of, single_periods
 from pmm.report.plots import FIGURES, gate_figure, phasor_figure, spectrum_figure
 from pmm.report.region import ellipses, region_factor
 from pmm.report.spectrum import gate_spectrum, leakage
