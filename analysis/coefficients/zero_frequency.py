@@ -61,7 +61,7 @@ def extrapolate(name: str, frequency_hz: Sequence[float], values: UncertainValue
             f"{name} at zero frequency needs runs at two frequencies or more, and there is "
             f"{', '.join(f'{f:g} Hz' for f in frequency_hz)}; add runs at a lower one"
         )
-    variance = _own_variance(values)
+    variance = own_variance(values)
     pace = square / square.max()
     degrees = [k for k in _DEGREES if k < len(np.unique(square))]
     fits = [_at_zero(pace, variance, degree) for degree in degrees]
@@ -83,7 +83,7 @@ def extrapolate(name: str, frequency_hz: Sequence[float], values: UncertainValue
     return Extrapolation(whole, tuple(float(weight) for weight in weights), checked)
 
 
-def _own_variance(values: UncertainValues) -> FloatArray:
+def own_variance(values: UncertainValues) -> FloatArray:
     """Return the scatter that the values do not share; stated uncertainty moves them together."""
     by_input = values.variances()
     own = np.array(

@@ -75,6 +75,11 @@ SHARED = with_options(
 @click.option("--csv", "csv_file", metavar="FILE", help="Write the table there.")
 @click.option("--netcdf", metavar="FILE", help="Write everything there, budgets included.")
 @click.option("--simman", metavar="FOLDER", help="Write each run's SIMMAN deliverables there.")
+@click.option(
+    "--memory",
+    metavar="TOML",
+    help="Write the water's memory there, as [hull] and [radiation] of a campaign file.",
+)
 @click.option("--overwrite", is_flag=True, help="Replace files that are there.")
 @JSON
 def coefficients(as_json: bool, **options: Any) -> None:
@@ -177,7 +182,12 @@ def _check_outputs(options: Mapping[str, Any]) -> None:
     for name, option in (("plot", "--plot"), ("simman", "--simman")):
         if options[name] is not None:
             check_folder(Path(options[name]), option)
-    files = {"--csv": options["csv_file"], "--netcdf": options["netcdf"]}
+    memory = options["memory"]
+    files = {"--csv": options["csv_file"], "--netcdf": options["netcdf"], "--memory": memory}
+    if memory is not None:
+        from pmm.coefficients.memory_file import curves_file
+
+        files["--memory (its curves)"] = str(curves_file(Path(memory)))
     check_files(files, overwrite=options["overwrite"])
 
 
@@ -202,9 +212,16 @@ def _written(outcome: "CampaignOutcome", options: Mapping[str, Any]) -> Iterator
     if options["plot"] is not None:
         from pmm.document.style import write_figures
         from pmm.report.coefficient_plots import figures
+        from pmm.report.memory_figure import memory_figures
 
-        written = write_figures(figures(outcome.result), Path(options["plot"]), "coefficients")
+        drawn = (*figures(outcome.result), *memory_figures(outcome))
+        written = write_figures(drawn, Path(options["plot"]), "coefficients")
         yield f"{len(written)} figures in {options['plot']}"
+    if options["memory"] is not None:
+        from pmm.coefficients.memory_file import write_memory
+
+        write_memory(outcome, Path(options["memory"]))
+        yield f"memory of the water in {options['memory']}"
     if options["simman"] is not None:
         from pmm.coefficients.files import write_deliverables
 

@@ -3,7 +3,9 @@
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_plan import Request
@@ -12,6 +14,7 @@ from analysis.coefficients.roll_decay import NAMES as OF_DECAYS
 from analysis.coefficients.roll_decay import with_decays
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.steady_turns import SteadyTurn
+from analysis.memory.measured import MeasuredMatrix, measured_matrices
 from hardware.description.body import Body
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
@@ -28,6 +31,9 @@ from pmm.coefficients.stated_inputs import largest, with_turns
 from pmm.coefficients.tasks import Done, Failed
 from pmm.coefficients.turn_file import read_turns, turn_cycles
 from pmm.coefficients.wave_runs import WaveRun, wave_runs
+
+if TYPE_CHECKING:
+    from analysis.memory.result import MeasuredMemory
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +56,8 @@ class CampaignOutcome:
         That of the campaigns.
     with_memory
         The campaigns whose simulation has a memory of the water, fitted to a table.
+    at_rest
+        Added mass and damping without carriage speed, where four frequencies or more tell them.
     """
 
     names: tuple[str, ...]
@@ -68,6 +76,14 @@ class CampaignOutcome:
     turns: tuple[SteadyTurn, ...] = ()
     decays: tuple[Decay, ...] = ()
     waves: tuple[WaveRun, ...] = ()
+    at_rest: tuple[MeasuredMatrix, ...] = ()
+
+    @cached_property
+    def memories(self) -> "tuple[MeasuredMemory, ...]":
+        """The water's memory of each of the matrices at rest, in SI units."""
+        from analysis.memory.fit import fit_measured
+
+        return tuple(fit_measured(one) for one in self.at_rest)
 
     @property
     def noticed(self) -> tuple[Flag, ...]:
@@ -175,6 +191,7 @@ def coefficients_of(
             for (_, campaign), part in zip(campaigns, parts, strict=True)
             for one in wave_runs(campaign, part.runs)
         ),
+        measured_matrices(result),
     )
 
 

@@ -56,9 +56,10 @@ class CoefficientsResult(Result):
         from pmm.document.content import Section
         from pmm.report.coefficient_plots import figures
         from pmm.report.coefficients_document import coefficients_document
+        from pmm.report.memory_figure import memory_figures
 
         told = coefficients_document(self.outcome)
-        drawn = Section("Figures", tuple(figures(self.outcome.result)))
+        drawn = Section("Figures", (*figures(self.outcome.result), *memory_figures(self.outcome)))
         return replace(told, sections=(*told.sections, drawn))
 
     def to_dataframe(self) -> "pd.DataFrame":

@@ -53,6 +53,8 @@ from pmm.report.conditions import conditions_table
 from pmm.report.decays import decay_figures, decay_table
 from pmm.report.following import following_figures, following_table
 from pmm.report.line_sections import line_sections
+from pmm.report.memory import memory_contents, memory_data
+from pmm.report.memory_figure import memory_figures
 from pmm.report.waves import wave_figures, wave_table
 
 SCHEMA: Final = "pmm-coefficients-1"
@@ -72,6 +74,7 @@ def coefficients_document(outcome: CampaignOutcome) -> Document:
         (
             Section("", (Text((f"{used}, {found.plane}, {found.form} form",)),)),
             Section("", (*conclusion(found), *_conditions(outcome), noticed)),
+            Section("", (*memory_contents(outcome), memory_data(outcome))),
             Section("", (*_beside(found), *alternatives_tables(found))),
             Section("", tuple(Data(key, value) for key, value in _data(outcome).items())),
         ),
@@ -105,9 +108,11 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
                     *wave_figures(outcome),
                     *attitude_figures(outcome),
                     *following_figures(outcome),
+                    *memory_figures(outcome),
                 ),
             ),
             *line_sections(outcome),
+            Section("Memory of the water", tuple(memory_contents(outcome))),
             Section("What was found", tuple(_findings(found))),
             Section("What was flagged", (Text(("Nothing.",)) if flags.empty else flags,)),
             Section("Uncertainty", (_given(outcome), budget_table(found))),

@@ -7,7 +7,7 @@ the table has it.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -75,8 +75,8 @@ def fit_memory(
     added = np.array(target.table.added_mass[-1] if infinite is None else infinite)
     radiation = constant(added)
     for dofs, fit, _ in fits:
-        radiation = radiation.joined(*target.state_space(dofs, fit))
-        added[np.ix_(dofs, dofs)] = _matrix(fit.infinite) * target.unit[np.ix_(dofs, dofs)]
+        radiation = radiation.joined(*state_space(fit, dofs, target.unit, target.middle))
+        added[np.ix_(dofs, dofs)] = symmetric(fit.infinite) * target.unit[np.ix_(dofs, dofs)]
     radiation = replace(radiation, added_mass_infinite=added)
     loss = max((loss for *_, loss in fits), default=1.0)
     return FittedMemory(radiation, target.table, floor, uncertainty, loss)
@@ -175,26 +175,35 @@ class _Target:
         weights = np.hstack([1.0 / scale_a, omega / scale_b])
         return SampledTable(omega / self.middle, values, weights, known)
 
-    def state_space(
-        self, dofs: tuple[int, ...], fit: PartialFractions
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return state, input and output matrix in SI units, input and output equally large."""
-        state, column = state_matrix(fit.poles), input_column(fit.poles)
-        n, m = len(state), len(dofs)
-        residues = np.array([_matrix(one) for one in fit.residues.T])  # (n, m, m)
-        residues = residues * self.unit[np.ix_(dofs, dofs)] * self.middle
-        inputs, outputs = np.zeros((m * n, 2)), np.zeros((2, m * n))
-        for j, dof in enumerate(dofs):
-            own = slice(j * n, (j + 1) * n)
-            # K = s (M - A_inf), and the residues add up to zero: the output is R A.
-            answers = residues[:, :, j].T @ state * self.middle
-            size = math.sqrt(float(np.linalg.norm(answers) / np.linalg.norm(column))) or 1.0
-            inputs[own, dof] = size * column
-            outputs[list(dofs), own] = answers / size
-        return np.asarray(np.kron(np.eye(m), state * self.middle), np.float64), inputs, outputs
+
+def state_space(
+    fit: PartialFractions, dofs: Sequence[int], unit: FloatArray, middle: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return state, input and output matrix in SI units, input and output equally large.
+
+    Parameters
+    ----------
+    dofs
+        The degrees of freedom that the fit is of: 0, 1 or both.
+    unit, middle
+        What the fit's masses, shape ``(2, 2)``, and its frequencies are divided by.
+    """
+    state, column = state_matrix(fit.poles), input_column(fit.poles)
+    n, m = len(state), len(dofs)
+    residues = np.array([symmetric(one) for one in fit.residues.T])  # (n, m, m)
+    residues = residues * unit[np.ix_(dofs, dofs)] * middle
+    inputs, outputs = np.zeros((m * n, 2)), np.zeros((2, m * n))
+    for j, dof in enumerate(dofs):
+        own = slice(j * n, (j + 1) * n)
+        # K = s (M - A_inf), and the residues add up to zero: the output is R A.
+        answers = residues[:, :, j].T @ state * middle
+        size = math.sqrt(float(np.linalg.norm(answers) / np.linalg.norm(column))) or 1.0
+        inputs[own, dof] = size * column
+        outputs[list(dofs), own] = answers / size
+    return np.asarray(np.kron(np.eye(m), state * middle), np.float64), inputs, outputs
 
 
-def _matrix(elements: FloatArray) -> FloatArray:
+def symmetric(elements: FloatArray) -> FloatArray:
     """Return a symmetric matrix from its 1 or 3 elements."""
     return elements[[[0]]] if elements.size == 1 else elements[[[0, 1], [1, 2]]]
 

@@ -13,6 +13,7 @@ freedom feels the force (our row).
 """
 
 import csv
+import io
 import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -110,6 +111,21 @@ def read_hull_csv(
     values = values.reshape(len(omega), 2, 2, 2) * coupling_signs(rotation_sign)[..., None]
     name = f"{path.name} ({body})"
     return RadiationTable(plane, np.array(omega), values[..., 0], values[..., 1], name=name)
+
+
+def hull_csv(table: RadiationTable, body: str, comment: str) -> str:
+    """Return a table as :func:`read_hull_csv` reads it, every digit kept."""
+    written = io.StringIO()
+    written.write(f"# {comment}\n")
+    lines = csv.writer(written, lineterminator="\n")
+    lines.writerow(_HULL_COLUMNS)
+    dofs = DEGREES_OF_FREEDOM[table.plane]
+    for k, omega in enumerate(table.omega_rad_s.tolist()):
+        for row, force in enumerate(dofs):
+            for column, motion in enumerate(dofs):
+                both = (table.added_mass[k, row, column], table.damping[k, row, column])
+                lines.writerow((body, repr(omega), motion, force, *map(repr, map(float, both))))
+    return written.getvalue()
 
 
 def read_capytaine(path: Path, plane: Plane, rotation_sign: int = 1) -> RadiationTable:

@@ -43,12 +43,15 @@ class SampledTable:
         What deviations of real parts, then of imaginary ones are multiplied with, ``(e, 2 k)``.
     infinite
         Value at infinite frequency, shape ``(e,)``; ``None`` where it is fitted along.
+    steady
+        Whether a damping that is the same at all frequencies is fitted along.
     """
 
     omega: FloatArray
     values: ComplexArray
     weights: FloatArray
     infinite: FloatArray | None
+    steady: bool = False
 
     def weighted(self, element: int, functions: ComplexArray) -> FloatArray:
         """Return real and imaginary parts of ``(k, ...)`` one below the other, weighted."""
@@ -60,10 +63,11 @@ class SampledTable:
         """The values, less the end value where it is known, shape ``(e, k)``."""
         return self.values if self.infinite is None else self.values - self.infinite[:, None]
 
-    def with_end(self, functions: ComplexArray) -> ComplexArray:
-        """Return functions, and a constant beside them where the end value is fitted along."""
+    def with_ends(self, functions: ComplexArray) -> ComplexArray:
+        """Return functions, and beside them those of end value and steady damping fitted along."""
         ones = np.ones((len(functions), int(self.infinite is None)))
-        return np.hstack([functions, ones])
+        falling = (1.0 / (1j * self.omega))[:, None][:, : int(self.steady)]
+        return np.hstack([functions, ones, falling])
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,17 +80,22 @@ class PartialFractions:
         Shape ``(q,)``: real ones, and one of each conjugate pair.
     residues
         Real numbers for the functions of :func:`basis`, shape ``(e, n)``.
-    infinite
-        Shape ``(e,)``.
+    infinite, steady
+        End values, and damping that is the same at all frequencies, each of shape ``(e,)``.
     """
 
     poles: ComplexArray
     residues: FloatArray
     infinite: FloatArray
+    steady: FloatArray
+
+    def ends(self, omega: FloatArray) -> ComplexArray:
+        """Return what end values and steady damping make of the values, shape ``(e, k)``."""
+        return np.asarray(self.infinite[:, None] + self.steady[:, None] / (1j * omega))
 
     def deviations(self, samples: SampledTable) -> FloatArray:
         """Return the weighted deviations from the samples, shape ``(e, 2 k)``."""
-        fitted = self.residues @ basis(self.poles, samples.omega).T + self.infinite[:, None]
+        fitted = self.residues @ basis(self.poles, samples.omega).T + self.ends(samples.omega)
         return np.array([samples.weighted(e, row) for e, row in enumerate(fitted - samples.values)])
 
     def misfit(self, samples: SampledTable) -> float:
@@ -206,8 +215,8 @@ def fitted_residues(
     """
     elements, free = range(len(samples.values)), sum_free(poles)
     cuts = cuts or Cuts(np.zeros(0), np.zeros((0, len(elements))), np.zeros(0))
-    own = samples.with_end(basis(poles, samples.omega) @ free)
-    there = np.zeros((cuts.omega.size, own.shape[1]), np.complex128)  # no end value damps
+    own = samples.with_ends(basis(poles, samples.omega) @ free)
+    there = np.zeros((cuts.omega.size, own.shape[1]), np.complex128)  # the memory's damping alone
     there[:, : free.shape[1]] = basis(poles, cuts.omega) @ free
     system = block_diag(*[samples.weighted(e, own) for e in elements])
     target = np.concatenate([samples.weighted(e, samples.sought[e]) for e in elements])
@@ -224,8 +233,11 @@ def fitted_residues(
     found = least_squares(system, target, conditions, cuts.least)
     numbers, motion = np.split(found, [own.shape[1] * len(elements)])
     numbers = numbers.reshape(len(elements), -1)
-    end = numbers[:, -1] if samples.infinite is None else samples.infinite
-    return PartialFractions(poles, numbers[:, : free.shape[1]] @ free.T, end), motion
+    own_residues, end, steady = np.split(
+        numbers, free.shape[1] + np.array([0, int(samples.infinite is None)]), axis=1
+    )
+    infinite = end[:, 0] if samples.infinite is None else samples.infinite
+    return PartialFractions(poles, own_residues @ free.T, infinite, steady.sum(axis=1)), motion
 
 
 def sum_free(poles: ComplexArray) -> FloatArray:
@@ -255,9 +267,9 @@ def admissible(samples: SampledTable, poles: ComplexArray) -> ComplexArray:
 def _relocated(samples: SampledTable, found: PartialFractions) -> ComplexArray:
     """Return the zeros of the scaling function: one step of relaxed vector fitting."""
     functions = basis(found.poles, samples.omega)
-    own = samples.with_end(functions @ sum_free(found.poles))
+    own = samples.with_ends(functions @ sum_free(found.poles))
     scaling = np.column_stack([functions, np.ones(len(functions))])
-    rows = samples.values - found.infinite[:, None]
+    rows = samples.values - found.ends(samples.omega)
     left = block_diag(*[samples.weighted(e, own) for e in range(len(rows))])
     right = [samples.weighted(e, -row[:, None] * scaling) for e, row in enumerate(rows)]
     size = math.sqrt(sum(float(np.sum(samples.weighted(e, r) ** 2)) for e, r in enumerate(rows)))
