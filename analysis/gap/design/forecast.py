@@ -12,7 +12,7 @@ from analysis.gap.forward.problem import Problem
 from analysis.gap.forward.tolerances import Tolerances
 from analysis.gap.observe.components import STEADY_PARTS, GapRun, Observation, Stack
 from analysis.gap.search.fit import Fit, at
-from analysis.gap.search.joint import signature_on
+from analysis.gap.search.joint import FittedRig
 from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.errors import PmmError
 from hardware.description.setpoint import SetPoint
@@ -183,4 +183,4 @@ def _on_fitted_rig(problem: Problem, there: Problem, fit: Fit, found: Fit) -> Fl
     if not any(one.repeats for one in fit.candidates):
         return found.signature
     shared = problem.nuisances.fitted(problem.residual - fit.signature)[: len(there.numbers)]
-    return signature_on(there, there.numbers, shared, fit, fit.units)
+    return FittedRig.of(there, there.numbers, shared).signature(fit, fit.units)

@@ -36,6 +36,7 @@ from sim.signals import FORCE_AFT, FORCE_FORE
 
 NO_GAP: Final = "no gap"
 OSCILLATION: Final = "oscillation"
+_GENTLER: Final = 3  # one of so many kinds of run is looked at with smaller eccentricities too
 _PRELOADED: Final = 6  # of the oscillations that can be made so, each with a dead weight
 _ABOVE: Final = 1.25  # of a dead weight over the force that would lift it
 _SAID: Final[Mapping[str, str]] = {
@@ -130,7 +131,12 @@ def proposals(
     """Return runs in the order of what they are worth."""
     place = next_place(problem)
     weighed = partial(_weighed, problem, leading, free=free, tolerances=tolerances)
-    found = sorted(weighed(tuple(_oscillations(problem, choices, place))), key=_order)
+    first, gentler = _by_size(tuple(_oscillations(problem, choices, place)))
+    found = sorted(weighed(first), key=_order)
+    # A gentler motion tells more than another kind of run only where the larger one tells much.
+    best = {_kind_of(one) for one, _ in found[: -(-len(found) // _GENTLER)]}
+    found += weighed([one for one in gentler if _kind_of(one) in best])
+    found.sort(key=_order)
     plays = any(one.kind.taken_up for fit, _ in leading if fit for one in fit.candidates)
     if plays and FurtherMeasurement.PRELOAD in choices.special:
         bare = [one for one, _ in found]
@@ -156,6 +162,20 @@ def _oscillations(problem: Problem, choices: Choices, place: CampaignRun) -> Ite
         run = planned(problem, point, number, place)
         if _largest_force_n(problem.simulator, [run]) < choices.force_limit_n:
             yield _Choice(OSCILLATION, point, 0.0, run)
+
+
+def _kind_of(one: _Choice) -> SetPoint | None:
+    """Return what runs of other eccentricities have in common."""
+    return None if one.set_point is None else replace(one.set_point, eccentricity_m=0.0)
+
+
+def _by_size(every: Sequence[_Choice]) -> tuple[list[_Choice], list[_Choice]]:
+    """Return the run of the largest eccentricity of each kind, and the others."""
+    largest: dict[SetPoint | None, _Choice] = {}
+    for one in sorted(every, key=lambda one: one.run.set_point.eccentricity_m):
+        largest[_kind_of(one)] = one
+    first = list(largest.values())
+    return first, [one for one in every if one not in first]
 
 
 def _preloaded(

@@ -134,7 +134,7 @@ def _near(problem: Compared, fit: Fit) -> Fit:
         if straight and expected_evidence(problem, near) > none - _HOPELESS:
             return fit
         near = moved(problem, near, smaller(problem, near, 1.0 / ratio))
-    return fit if near is fit or ratio > _MUCH**2 else at(problem, fit.candidates, near.units)
+    return fit if near is fit or ratio > _MUCH**2 else _anew(problem, near)
 
 
 def _along_any(problem: Compared, fit: Fit, wanted: float) -> Fit:
@@ -162,15 +162,21 @@ def _along(problem: Compared, fit: Fit, wanted: float, axis: int) -> Fit | None:
     low, high = bounds(fit.candidates)[:, axis]
     share = wanted / left_over(fit.signature, problem.nuisances)
     large, small = float(fit.units[axis]), float(low if rises > 0.0 else high)
-    units, ratio = fit.units.copy(), math.inf
+    units, ratio, near = fit.units.copy(), math.inf, fit
     units[axis] = min(max(large + math.log(share) / rises, low), high)
     for _ in range(_HALVINGS):
-        ratio = left_over(moved(problem, fit, units).signature, problem.nuisances) / wanted
+        near = moved(problem, fit, units.copy())
+        ratio = left_over(near.signature, problem.nuisances) / wanted
         large, small = (units[axis], small) if ratio > 1.0 else (large, units[axis])
         if 1.0 / _ALIKE < ratio < _ALIKE or large == small:
             break
         units[axis] = 0.5 * (large + small)
-    return at(problem, fit.candidates, units) if ratio < _MUCH**2 else None
+    return _anew(problem, near) if ratio < _MUCH**2 else None
+
+
+def _anew(problem: Compared, fit: Fit) -> Fit:
+    """Return a moved fit with the slopes that it has where it came to."""
+    return at(problem, fit.candidates, fit.units, signature=fit.signature)
 
 
 def smaller(problem: Compared, fit: Fit, share: float) -> FloatArray:

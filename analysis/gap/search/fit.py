@@ -135,7 +135,12 @@ def most_probable(fit: Fit) -> FloatArray:
 
 
 def at(
-    problem: Compared, parts: tuple[Candidate, ...], units: FloatArray, *, roughly: bool = False
+    problem: Compared,
+    parts: tuple[Candidate, ...],
+    units: FloatArray,
+    *,
+    roughly: bool = False,
+    signature: FloatArray | None = None,
 ) -> Fit:
     """Linearise a hypothesis at some parameters and weigh it.
 
@@ -143,13 +148,16 @@ def at(
     ----------
     roughly
         Take an effect of one size as proportional to it: no further simulation for the slope.
+    signature
+        What it changes there, in sigma, if it has been simulated.
 
     Raises
     ------
     PmmError
         If the simulator cannot run it.
     """
-    signature = problem.signature(parts, units)
+    if signature is None:
+        signature = problem.signature(parts, units)
     slopes = (
         [signature / units[0]]
         if roughly and is_sized(parts, units)

@@ -6,12 +6,16 @@ Left alone, a second effect would take the credit for that.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
 from analysis.gap.forward.free_numbers import Free, with_coefficients
 from analysis.gap.forward.problem import Problem, built
+from analysis.gap.forward.simulator import Simulator
 from analysis.gap.search.fit import Fit, most_probable, weighed_at
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
+from sim.effects.effect import Effect
 
 _ROUNDS = 2
 
@@ -41,37 +45,54 @@ def together(problem: Problem, free: Sequence[Free], fit: Fit) -> Fit:
 
 def _round(problem: Problem, free: Sequence[Free], fit: Fit) -> Fit:
     shared = problem.nuisances.fitted(problem.residual - fit.signature)[: len(free)]
-    units = fit.units
+    units, there = fit.units, FittedRig.of(problem, free, shared)
     for _ in range(2):  # once with the parameters as they are, once with those that then fit
-        signature = signature_on(problem, free, shared, fit, units)
+        signature = there.signature(fit, units)
         found = weighed_at(problem, fit.candidates, units, fit.columns, signature)
         units = most_probable(found)
     return found
 
 
-def signature_on(
-    problem: Problem, free: Sequence[Free], shared: FloatArray, fit: Fit, units: FloatArray
-) -> FloatArray:
-    """Return what the effects change on the rig as its coefficients are fitted, in sigma.
+@dataclass(frozen=True, eq=False)
+class FittedRig:
+    """A rig as its coefficients are fitted.
 
-    What has to be simulated in time is taken from the rig as it is believed to be.
-
-    Parameters
+    Attributes
     ----------
-    shared
-        Coefficients and settings in units of their priors, shape ``(free,)``.
-    units
-        Parameters of the effects, as those of the fit.
+    problem
+        The rig as it is believed to be.
+    simulator, settings
+        The rig with the coefficients, and its settings.
     """
-    effects = built(fit.candidates, units)
-    values = [float(unit) * one.deviation for unit, one in zip(shared, free, strict=True)]
-    settings = tuple(
-        one.effect(value) for one, value in zip(free, values, strict=True) if one.effect
-    )
-    simulator = problem.simulator
-    moving = tuple(one for one in effects if not one.repeats)
-    beside = simulator.predict(moving) - simulator.nominal if moving else 0.0
-    simulator = simulator.with_rig(with_coefficients(simulator.rig, free, list(shared)))
-    steady = tuple(one for one in effects if one.repeats)
-    change = simulator.steady((*settings, *steady)) - simulator.steady(settings)
-    return problem.whitened(change + beside)
+
+    problem: Problem
+    simulator: Simulator
+    settings: tuple[Effect, ...]
+
+    @classmethod
+    def of(cls, problem: Problem, free: Sequence[Free], shared: FloatArray) -> "FittedRig":
+        """Return the rig with coefficients and settings in units of their priors, ``(free,)``."""
+        settings = tuple(
+            one.effect(float(unit) * one.deviation)
+            for unit, one in zip(shared, free, strict=True)
+            if one.effect
+        )
+        rig = with_coefficients(problem.simulator.rig, free, list(shared))
+        return cls(problem, problem.simulator.with_rig(rig), settings)
+
+    @cached_property
+    def _base(self) -> FloatArray:
+        return self.simulator.steady(self.settings)
+
+    def signature(self, fit: Fit, units: FloatArray) -> FloatArray:
+        """Return what effects change at some parameters, in sigma, shape ``(observations,)``.
+
+        What has to be simulated in time is taken from the rig as it is believed to be.
+        """
+        effects = built(fit.candidates, units)
+        moving = tuple(one for one in effects if not one.repeats)
+        steady = tuple(one for one in effects if one.repeats)
+        believed = self.problem.simulator
+        beside = believed.predict(moving) - believed.nominal if moving else 0.0
+        change = self.simulator.steady((*self.settings, *steady)) - self._base
+        return self.problem.whitened(change + beside)
