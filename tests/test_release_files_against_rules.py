@@ -55,13 +55,6 @@ def test_each_reference_of_the_paper_is_there_and_asked_for() -> None:
     assert set(re.findall(r"@(\w+)[\];]", PAPER)) == set(there)
 
 
-def test_the_container_runs_without_rights() -> None:
-    lines = (HOUSE / "Containerfile").read_text(encoding="utf-8").splitlines()
-    users = [one.split()[1] for one in lines if one.startswith("USER ")]
-    assert users
-    assert not users[-1].startswith(("0", "root"))
-
-
 @pytest.mark.parametrize("name", ["CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md"])
 def test_links_lead_somewhere(name: str) -> None:
     targets = re.findall(r"\]\((?!https?:)([^)#]+)\)", (HOUSE / name).read_text(encoding="utf-8"))
