@@ -8,12 +8,7 @@ from enum import Enum
 from typing import Final
 
 from hardware.cia402 import DriveCommand, DriveState, state_of
-from hardware.errors import (
-    DriveFaultError,
-    DriveStateError,
-    NotAtRestError,
-    TransitionTimeoutError,
-)
+from hardware.errors import DriveFaultError, DriveStateError, NotAtRestError, TransitionTimeoutError
 
 
 class Goal(Enum):

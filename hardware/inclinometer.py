@@ -8,9 +8,7 @@ from typing import Any
 from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError
 from hardware.driver import Driver, Services
-from hardware.errors import (
-    SensorInvalidError,
-)
+from hardware.errors import SensorInvalidError
 from hardware.lines import SEQUENCE_MODULUS, LineKind, SerialLine, Unwrapped
 from hardware.roles import Cycle, Role, Sample, SampleBlock, blocks
 from hardware.serial_instrument import SerialInstrument

@@ -7,13 +7,7 @@ from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import (
-    TYPE_CHECKING,
-    Any,
-    Final,
-    NamedTuple,
-    TypeVar,
-)
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
 
 from hardware.description.errors import ConfigurationError
 from hardware.description.toml import is_number, parse_toml

@@ -9,13 +9,7 @@ import numpy as np
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_plan import Request, set_heel_of
 from analysis.coefficients.campaign_records import HIGHER_ORDER, JOINT, FormChoice, Missing
-from analysis.coefficients.cycle_fit import (
-    FIRST,
-    HIGHER,
-    QUASI_STEADY,
-    CycleFit,
-    fit_cycles,
-)
+from analysis.coefficients.cycle_fit import FIRST, HIGHER, QUASI_STEADY, CycleFit, fit_cycles
 from analysis.coefficients.form_choice import (
     DESCRIBES,
     LINEAR_FORM,

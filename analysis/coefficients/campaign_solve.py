@@ -7,11 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.coefficients.body_cycle import BodyCycle
-from analysis.coefficients.campaign_nonlinear import (
-    SINGLE_RUN,
-    GroupFits,
-    nonlinear_fits,
-)
+from analysis.coefficients.campaign_nonlinear import SINGLE_RUN, GroupFits, nonlinear_fits
 from analysis.coefficients.campaign_plan import Group, GroupKind, Request
 from analysis.coefficients.campaign_records import (
     JOINT,

@@ -88,17 +88,7 @@ def on_hull(
     orders = count - 1
     net = HullParts(count, channels)
     whole = net.with_loads(by_parts(slope[:, : len(inputs)], maps, orders))
-    own = np.zeros((len(parts), len(STATED)))
-    known = slope[:, len(inputs) : len(inputs) + len(_TAKEN)]  # what comes after is not uncertain
-    for name, column in zip(_TAKEN, np.moveaxis(known, 1, 0), strict=True):
-        if body is not None or name not in _OF_BODY:
-            own[net.loads, STATED.index(name)] += harmonics(column, orders)
-    own[:, STATED.index("density_relative")] += own[:, STATED.index("restoring_relative")]
-    times = np.array([often for _, often in inputs])
-    faster = (slope[:, : len(inputs)] * (times[:, None] * moved)).sum(axis=1)
-    own[net.loads, STATED.index("frequency_relative")] += harmonics(faster, orders)
-    steadily = turn_rate_rad_s * harmonics(slope[:, turns], orders)
-    own[net.loads, STATED.index("turn_rate_relative")] += steadily
+    own = _by_stated(slope, moved, inputs, net, len(parts), body is not None, turn_rate_rad_s)
     sensitivity = own + whole @ sensitivity
     changes = net.parts(parts, harmonics(values, orders))
     shift, by_pace, by_speed = to_point(count, channels, point_ahead_m, plane, omega, speed_m_s)
@@ -117,6 +107,39 @@ def on_hull(
         ),
         sensitivity,
     )
+
+
+def _by_stated(
+    slope: FloatArray,
+    moved: FloatArray,
+    inputs: tuple[tuple[int, int], ...],
+    net: "HullParts",
+    count: int,
+    has_body: bool,
+    turn_rate_rad_s: float,
+) -> FloatArray:
+    """Return the loads' own slopes by the stated quantities, beside those that the motion has.
+
+    Shape ``(count, len(STATED))``.
+
+    Parameters
+    ----------
+    slope, moved
+        Of the loads at each instant by each input, and the motion's inputs there.
+    """
+    orders = net.orders
+    own = np.zeros((count, len(STATED)))
+    known = slope[:, len(inputs) : len(inputs) + len(_TAKEN)]  # what comes after is not uncertain
+    for name, column in zip(_TAKEN, np.moveaxis(known, 1, 0), strict=True):
+        if has_body or name not in _OF_BODY:
+            own[net.loads, STATED.index(name)] += harmonics(column, orders)
+    own[:, STATED.index("density_relative")] += own[:, STATED.index("restoring_relative")]
+    times = np.array([often for _, often in inputs])
+    faster = (slope[:, : len(inputs)] * (times[:, None] * moved)).sum(axis=1)
+    own[net.loads, STATED.index("frequency_relative")] += harmonics(faster, orders)
+    steadily = turn_rate_rad_s * harmonics(slope[:, inputs.index(TURNS)], orders)
+    own[net.loads, STATED.index("turn_rate_relative")] += steadily
+    return own
 
 
 def inputs_of(channels: tuple[str, ...]) -> tuple[tuple[int, int], ...]:
@@ -158,6 +181,7 @@ class HullParts:
     """Where the loads stand among the parts."""
 
     def __init__(self, count: int, channels: tuple[str, ...]) -> None:
+        self.orders = count - 1
         place = np.arange(2 * count * len(channels)).reshape(count, len(channels), 2)
         own = [k for k, name in enumerate(channels) if name in LOADS]
         self.loads = place[:, own].ravel()

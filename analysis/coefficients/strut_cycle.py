@@ -11,12 +11,7 @@ import numpy as np
 
 from analysis.coefficients.body_axes import at_order, labels, of_struts
 from analysis.coefficients.body_cycle import BodyCycle
-from analysis.coefficients.corrections import (
-    Response,
-    ZeroReading,
-    calibration,
-    response_factors,
-)
+from analysis.coefficients.corrections import Response, ZeroReading, calibration, response_factors
 from analysis.coefficients.phasors import Phasors, interleaved, joined
 from analysis.coefficients.strut_phasors import CHANNELS_INDEPENDENT, MOTION_ASKED, reading_phasors
 from analysis.ideal_rig import strut_displacements

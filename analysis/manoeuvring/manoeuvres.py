@@ -9,14 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.manoeuvring.march import (
-    Log,
-    ShipState,
-    approach,
-    heading_beyond,
-    march,
-    turning_back,
-)
+from analysis.manoeuvring.march import Log, ShipState, approach, heading_beyond, march, turning_back
 from analysis.manoeuvring.ship import PSI, R, Ship, U, V, X, Y
 from hardware.description.arrays import FloatArray
 

@@ -5,16 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.checks import (
-    frequency_flags,
-    gate_flags,
-    reference_flags,
-    saturation_flags,
-)
+from analysis.resolver.checks import frequency_flags, gate_flags, reference_flags, saturation_flags
 from analysis.resolver.estimate import resolve
 from analysis.resolver.hann import resolve_hann
 from analysis.resolver.harmonics import Harmonics
-from analysis.resolver.leakage import measured_leakage
 from analysis.resolver.local_polynomial import resolve_local
 from analysis.resolver.period_values import PeriodValues, solve_periods
 from analysis.resolver.reference import NoReferenceError, PhaseReference, ReferenceSource
@@ -29,7 +23,6 @@ from analysis.resolver.settings import (
 from analysis.resolver.signal_reference import JUMP_CYCLES
 from analysis.resolver.steady_stretch import Stretch, find_steady, limits
 from analysis.resolver.sums import PeriodSums, period_sums, whole_periods
-from analysis.resolver.weights import REACH
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import SHAFT_ANGLE
 from hardware.description.errors import ConfigurationError, DataError
@@ -99,14 +92,7 @@ def analyse(
     values = solve_periods(sums)
     stretch, flags = _stretch(chosen, values, settings)
     steady = sums[stretch.start : stretch.stop]
-    size = settings.gate_periods or steady.period_count
-    if size > steady.period_count:
-        window = "steady stretch" if settings.opens_s is None else "window given"
-        raise ConfigurationError(
-            f"{recording.name}: a gate of {size} periods does not fit the {window} of "
-            f"{steady.period_count} ({steady.opened_s[0]:.3f} s to {steady.closed_s[-1]:.3f} s)"
-        )
-    gates = [steady[k : k + size] for k in range(0, steady.period_count - size + 1, size)]
+    gates = _gates(chosen, steady, settings)
     readings = tuple(
         _reading(chosen, reference, gate, steady, settings, intervals=intervals) for gate in gates
     )
@@ -125,6 +111,20 @@ def analyse(
         + reference_flags(recording, told, steady, settings)
         + saturation_flags(chosen, float(steady.opened_s[0]), float(steady.closed_s[-1])),
     )
+
+
+def _gates(
+    recording: Recording, steady: PeriodSums, settings: ResolverSettings
+) -> list[PeriodSums]:
+    """Return the gates, one after the other; the whole stretch where none is asked for."""
+    size = settings.gate_periods or steady.period_count
+    if size > steady.period_count:
+        window = "steady stretch" if settings.opens_s is None else "window given"
+        raise ConfigurationError(
+            f"{recording.name}: a gate of {size} periods does not fit the {window} of "
+            f"{steady.period_count} ({steady.opened_s[0]:.3f} s to {steady.closed_s[-1]:.3f} s)"
+        )
+    return [steady[k : k + size] for k in range(0, steady.period_count - size + 1, size)]
 
 
 def _default_channels(recording: Recording, reference: PhaseReference) -> tuple[str, ...]:
@@ -239,7 +239,7 @@ def _reading(
     intervals: bool,
 ) -> Harmonics:
     if settings.hann or settings.local_polynomials:
-        result = _by_bins(recording, reference, gate, settings)
+        result = resolve_by_bins(recording, reference, gate, settings)
     else:
         around = steady if steady.period_count > gate.period_count else None
         drifting = settings.take_out_drift
@@ -249,9 +249,10 @@ def _reading(
     return replace(result, flags=gate_flags(gate, result))
 
 
-def _by_bins(
+def resolve_by_bins(
     recording: Recording, reference: PhaseReference, gate: PeriodSums, settings: ResolverSettings
 ) -> Harmonics:
+    """Resolve a gate under a Hann taper or by local polynomials, as the settings say."""
     estimator = resolve_hann if settings.hann else resolve_local
     return estimator(
         recording,
@@ -260,42 +261,3 @@ def _by_bins(
         settings.harmonics,
         take_out_drift=settings.take_out_drift,
     )
-
-
-def let_through(
-    analysis: Analysis, frequencies_hz: FloatArray, reading_index: int = 0
-) -> FloatArray:
-    """Return how much of a vibration that is no harmonic leaks into each harmonic of a reading.
-
-    Found by feeding the very gate with them; see
-    :func:`analysis.resolver.leakage.measured_leakage`.
-
-    It is the part of the vibration's amplitude that appears in each harmonic at the worst phase,
-    shape ``(frequencies, harmonics)``.
-
-    Raises
-    ------
-    ConfigurationError
-        If a frequency is not below half the sample rate.
-    """
-    nyquist_hz = analysis.recording.sample_rate_hz / 2.0
-    if not np.all((frequencies_hz > 0.0) & (frequencies_hz < nyquist_hz)):
-        raise ConfigurationError(
-            f"a vibration's frequency must lie between 0 and {nyquist_hz:g} Hz, half the sample "
-            "rate; faster ones appear at another frequency"
-        )
-    size = analysis.readings[reading_index].periods
-    start = analysis.stretch.start + reading_index * size
-    gate = analysis.sums[start : start + size]
-    reference, settings = analysis.reference, analysis.settings
-
-    def estimator(probe: Recording) -> Harmonics:
-        if settings.hann or settings.local_polynomials:
-            return _by_bins(probe, reference, gate, settings)
-        edges = gate.edges_cycles
-        sums = period_sums(probe, reference, settings.harmonics, edges_cycles=edges)
-        return resolve(probe, sums, take_out_drift=settings.take_out_drift)
-
-    beside_s = 2.0 * REACH / analysis.recording.sample_rate_hz
-    probed = analysis.recording.between(gate.opened_s[0] - beside_s, gate.closed_s[-1] + beside_s)
-    return measured_leakage(probed, estimator, frequencies_hz)

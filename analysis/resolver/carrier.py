@@ -191,12 +191,7 @@ def demodulate(
     recording.check_even("a carrier's low-pass")
     rate_hz = recording.sample_rate_hz
     low_pass = design_low_pass(rate_hz, carrier_hz, bandwidth_hz, output_rate_hz)
-    if low_pass.outputs(recording.sample_count) < 2:
-        raise DataError(
-            f"{recording.name}: {recording.sample_count} samples are too few for the carrier's "
-            f"low-pass; at least {2 * low_pass.half + low_pass.decimation + 1} are needed: "
-            "give a longer record or a wider bandwidth"
-        )
+    _check_length(recording, low_pass)
     rows = [recording.index(name) for name in channels]
     samples, detected = _filtered(recording, rows, carrier_hz, low_pass)
     flags = [_ends_flag(recording, low_pass)]
@@ -215,6 +210,15 @@ def demodulate(
         start_s=recording.start_s + low_pass.half / rate_hz,
         flags=(*recording.flags, *flags),
     )
+
+
+def _check_length(recording: Recording, low_pass: DecimationFilter) -> None:
+    if low_pass.outputs(recording.sample_count) < 2:
+        raise DataError(
+            f"{recording.name}: {recording.sample_count} samples are too few for the carrier's "
+            f"low-pass; at least {2 * low_pass.half + low_pass.decimation + 1} are needed: "
+            "give a longer record or a wider bandwidth"
+        )
 
 
 def _filtered(

@@ -6,9 +6,14 @@ from dataclasses import replace
 import numpy as np
 
 from analysis.recording import Recording
+from analysis.resolver.analysis import Analysis, resolve_by_bins
+from analysis.resolver.estimate import resolve
 from analysis.resolver.harmonics import Harmonics
+from analysis.resolver.sums import period_sums
+from analysis.resolver.weights import REACH
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
+from hardware.description.errors import ConfigurationError
 
 _AT_ONCE = 16  # frequencies tried together
 
@@ -68,3 +73,41 @@ def _respond(
         axis=-2,
     )
     return np.asarray(np.linalg.svd(response, compute_uv=False)[..., 0])
+
+
+def let_through(
+    analysis: Analysis, frequencies_hz: FloatArray, reading_index: int = 0
+) -> FloatArray:
+    """Return how much of a vibration that is no harmonic leaks into each harmonic of a reading.
+
+    Found by feeding the very gate with them; see :func:`measured_leakage`.
+
+    It is the part of the vibration's amplitude that appears in each harmonic at the worst phase,
+    shape ``(frequencies, harmonics)``.
+
+    Raises
+    ------
+    ConfigurationError
+        If a frequency is not below half the sample rate.
+    """
+    nyquist_hz = analysis.recording.sample_rate_hz / 2.0
+    if not np.all((frequencies_hz > 0.0) & (frequencies_hz < nyquist_hz)):
+        raise ConfigurationError(
+            f"a vibration's frequency must lie between 0 and {nyquist_hz:g} Hz, half the sample "
+            "rate; faster ones appear at another frequency"
+        )
+    size = analysis.readings[reading_index].periods
+    start = analysis.stretch.start + reading_index * size
+    gate = analysis.sums[start : start + size]
+    reference, settings = analysis.reference, analysis.settings
+
+    def estimator(probe: Recording) -> Harmonics:
+        if settings.hann or settings.local_polynomials:
+            return resolve_by_bins(probe, reference, gate, settings)
+        edges = gate.edges_cycles
+        sums = period_sums(probe, reference, settings.harmonics, edges_cycles=edges)
+        return resolve(probe, sums, take_out_drift=settings.take_out_drift)
+
+    beside_s = 2.0 * REACH / analysis.recording.sample_rate_hz
+    probed = analysis.recording.between(gate.opened_s[0] - beside_s, gate.closed_s[-1] + beside_s)
+    return measured_leakage(probed, estimator, frequencies_hz)

@@ -1,7 +1,7 @@
 """What a browser may do: each action is checked, carried out, logged and answered."""
 
 from collections.abc import Awaitable, Callable
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
@@ -22,6 +22,7 @@ from pmm.console.plans import Plans
 from pmm.console.proposals import PROPOSED, Proposals
 from pmm.console.queue_changes import ActionReply, QueueChanges, of_reply
 from pmm.console.queue_journal import QueueJournal
+from pmm.console.request_body import Who, body_of, who_asks
 from pmm.console.requests import (
     AnswerPosted,
     CommandPosted,
@@ -31,37 +32,17 @@ from pmm.console.requests import (
     Posted,
     TakePosted,
 )
-from pmm.console.security import VISITOR, Role, Visitor
+from pmm.console.security import Role
 from pmm.console.worker_process import Workers
 from pmm.console.worker_tasks import check_plan_text, keep_note
 from pmm.run.states import Command
 
-SESSION: Final = "x-pmm-session"
 _LOGGED: Final = 400  # bytes of what was posted; plans are kept as files
 _SHOWN: Final = 8  # characters of a session
 # As JSON, in which a line's end takes two.
 _LARGEST: Final[dict[type[Posted], int]] = {PlanPosted: 2 * LARGEST_PLAN}
 _ENDED: Final = {True: "withdrawn", False: "refused"}
 P = TypeVar("P", bound=Posted)
-
-
-@dataclass(frozen=True)
-class Who:
-    """Who asks."""
-
-    session: str
-    address: str
-    visitor: Visitor
-
-
-def who_asks(request: Request) -> Who:
-    """Return who sends a request."""
-    address = request.client.host if request.client is not None else "?"
-    return Who(request.headers.get(SESSION, ""), address, request.scope[VISITOR])
-
-
-class TooLargeError(PmmError):
-    """A request that is larger than any of its kind."""
 
 
 class PageActions:
@@ -281,22 +262,6 @@ class PageActions:
         self._hub.desk.take_over(who.session)
         self._hub.news.set()
         return ActionReply("this browser has control")
-
-
-async def body_of(request: Request, largest: int = LARGEST_REQUEST) -> bytes:
-    """Read a body that is not larger than so many bytes.
-
-    Raises
-    ------
-    TooLargeError
-        If it is.
-    """
-    body = bytearray()
-    async for part in request.stream():
-        body += part
-        if len(body) > largest:
-            raise TooLargeError(f"the request is larger than {largest} bytes")
-    return bytes(body)
 
 
 def _said(error: ValidationError) -> str:

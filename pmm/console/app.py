@@ -22,7 +22,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket
 
 from hardware.description.errors import PmmError
-from pmm.console.actions import PageActions, TooLargeError, body_of, who_asks
+from pmm.console.actions import PageActions
 from pmm.console.app_settings import ConsoleSettings
 from pmm.console.client import Client
 from pmm.console.coefficient_updates import Finished
@@ -37,6 +37,7 @@ from pmm.console.pages import Pages
 from pmm.console.plans import Plans
 from pmm.console.pump import pump
 from pmm.console.quick_stop import QuickStop
+from pmm.console.request_body import TooLargeError, body_of, who_asks
 from pmm.console.requests import TokenPosted
 from pmm.console.security import COOKIE, VISITOR, Guard
 from pmm.console.worker_process import Shared, Workers

@@ -10,7 +10,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Final, TypeVar
 
 from pmm.console.answers import BrowserAnswers
-from pmm.console.messages import CampaignLook, QueuedPlan
+from pmm.console.messages import CampaignLook
+from pmm.console.queued_plan import QueuedPlan
 from pmm.run.states import State
 from pmm.sequential.look import Look
 

@@ -7,7 +7,8 @@ from dataclasses import replace
 from multiprocessing.connection import Connection
 from typing import Any, Final, Generic, TypeVar
 
-from pmm.console.messages import Frame, LoopOrder, PackedPlan, Told, unpack
+from pmm.console.messages import Frame, LoopOrder, Told
+from pmm.console.queued_plan import PackedPlan, unpack
 
 _POLL_S: Final = 0.2
 _FRAMES: Final = 25  # one second's; older ones are dropped

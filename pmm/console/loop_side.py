@@ -8,7 +8,8 @@ from multiprocessing.connection import Connection
 from anyio.to_thread import run_sync
 
 from hardware.description.errors import PmmError
-from pmm.console.messages import LoopOrder, OrderKind, PackedPlan, Reply, Told
+from pmm.console.messages import LoopOrder, OrderKind, Reply, Told
+from pmm.console.queued_plan import PackedPlan
 from pmm.console.quick_stop import PATIENCE_S, QuickStop
 
 

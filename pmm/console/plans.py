@@ -13,7 +13,7 @@ from hardware.description.errors import ConfigurationError, PmmError
 from pmm.configuration import read_toml
 from pmm.console.encoding import number
 from pmm.console.limits import LARGEST_PLAN
-from pmm.console.messages import QueuedPlan
+from pmm.console.queued_plan import QueuedPlan
 from pmm.console.requests import EditPosted, HoldPosted, MovePosted, RunPosted
 from pmm.plan.checks import check_plan, require_possible
 from pmm.plan.duration import duration_rows

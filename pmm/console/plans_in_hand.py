@@ -3,7 +3,7 @@
 from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 
-from pmm.console.messages import QueuedPlan
+from pmm.console.queued_plan import QueuedPlan
 from pmm.run.planned_runs import UNCHANGED
 from pmm.run.states import RunStateError
 

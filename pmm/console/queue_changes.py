@@ -18,14 +18,7 @@ from pmm.console.messages import OrderKind, Reply
 from pmm.console.plans import Plans
 from pmm.console.proposals import Proposals
 from pmm.console.queue_journal import KeptPlan, KeptQueue, QueueJournal
-from pmm.console.requests import (
-    DropPosted,
-    HoldPosted,
-    MovePosted,
-    PlanPosted,
-    Posted,
-    RunPosted,
-)
+from pmm.console.requests import DropPosted, HoldPosted, MovePosted, PlanPosted, Posted, RunPosted
 from pmm.console.worker_process import Workers
 from pmm.console.worker_tasks import (
     Queued,

@@ -15,10 +15,11 @@ from pmm.console.answers import BrowserAnswers
 from pmm.console.choosing import ChoosingCampaign
 from pmm.console.limits import MOST_WAITING
 from pmm.console.link import Link
-from pmm.console.messages import Hello, LoopOrder, OrderKind, QueuedPlan, Reply
+from pmm.console.messages import Hello, LoopOrder, OrderKind, Reply
 from pmm.console.pacing import CountingPacer
 from pmm.console.picture import channels_of, hello_of
 from pmm.console.plans_in_hand import PlansInHand
+from pmm.console.queued_plan import QueuedPlan
 from pmm.console.quick_stop import QuickStop
 from pmm.console.station_view import StationView
 from pmm.console.writing import Writer

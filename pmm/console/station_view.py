@@ -8,14 +8,7 @@ from pmm.console.answers import BrowserAnswers
 from pmm.console.link import Link
 from pmm.console.messages import Frame, LoopOrder, Needles, Notice
 from pmm.console.pacing import CountingPacer
-from pmm.console.picture import (
-    NeedleReader,
-    allowed,
-    axes_of,
-    bus_of,
-    following,
-    present_run,
-)
+from pmm.console.picture import NeedleReader, allowed, axes_of, bus_of, following, present_run
 from pmm.console.plans_in_hand import PlansInHand
 from pmm.console.traces import TraceBuffer
 from pmm.console.writing import Writer

@@ -7,10 +7,10 @@ from pathlib import Path
 from hardware.description.errors import ConfigurationError
 from pmm.archive.notebook import NoteLine, write_note
 from pmm.console.encoding import EncodedText, encode
-from pmm.console.messages import PackedPlan, pack, unpack
 from pmm.console.pages import pages_in
 from pmm.console.plans import CheckedPlan, Plans, plan_picture
 from pmm.console.queue_journal import KeptPlan
+from pmm.console.queued_plan import PackedPlan, pack, unpack
 from pmm.console.requests import NotePosted, RunPosted
 from pmm.recorder.files import is_run
 from pmm.run.campaign_folder import check_names

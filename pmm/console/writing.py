@@ -4,7 +4,8 @@ from collections.abc import Callable
 from concurrent.futures import Executor, Future, wait
 from typing import TYPE_CHECKING
 
-from pmm.console.messages import WRITTEN, Notice, QueuedPlan
+from pmm.console.messages import WRITTEN, Notice
+from pmm.console.queued_plan import QueuedPlan
 from pmm.plan.campaign_writer import write_campaign
 from pmm.plan.rig_file import RigFile
 from pmm.recorder.campaign_owner import own_campaign

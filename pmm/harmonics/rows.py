@@ -205,7 +205,7 @@ def run_rows(
 
 
 def _let_through(analysis: "Analysis", frequencies_hz: Sequence[float]) -> tuple[LetThrough, ...]:
-    from analysis.resolver.analysis import let_through
+    from analysis.resolver.leakage import let_through
 
     if not frequencies_hz:
         return ()

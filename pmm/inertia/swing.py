@@ -8,12 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.inertia.swing import (
-    SwingInertia,
-    SwingState,
-    model_on_swing,
-    swing_inertia,
-)
+from analysis.inertia.swing import SwingInertia, SwingState, model_on_swing, swing_inertia
 from analysis.inertia.swing_static import StaticResult, distance, fit_static
 from analysis.inertia.two_pivots import PivotTest, check_two_pivots
 from analysis.inertia.workflow import Step

@@ -18,12 +18,7 @@ from pmm.plan.check import Check
 from pmm.plan.duration import carriage_track_m, tank_length_m
 from pmm.plan.findings import PlanFinding, PlanVerdict
 from pmm.plan.force_estimate import force_peak_n
-from pmm.plan.motion_peaks import (
-    acceleration_peak_m_s2,
-    omega_of,
-    peak_place,
-    velocity_peak_m_s,
-)
+from pmm.plan.motion_peaks import acceleration_peak_m_s2, omega_of, peak_place, velocity_peak_m_s
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 

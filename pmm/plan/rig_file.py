@@ -32,11 +32,7 @@ from pmm.plan.rig_checks import (
     point_at_simulation,
     table_faults,
 )
-from pmm.plan.rig_tables import (
-    ModesFile,
-    RigTables,
-    StructuralMode,
-)
+from pmm.plan.rig_tables import ModesFile, RigTables, StructuralMode
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,13 +8,7 @@ from typing import Any, Final
 
 from pmm.archive.indexing import AddedFolder
 from pmm.archive.notebook import read_notes
-from pmm.archive.queries import (
-    COEFFICIENT_COLUMNS,
-    HARMONIC_COLUMNS,
-    RUN_COLUMNS,
-    Row,
-    ShownRun,
-)
+from pmm.archive.queries import COEFFICIENT_COLUMNS, HARMONIC_COLUMNS, RUN_COLUMNS, Row, ShownRun
 from pmm.archive.results import LEVEL
 from pmm.document.content import (
     Column,

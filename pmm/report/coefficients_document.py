@@ -1,22 +1,14 @@
 """What a campaign's coefficients say: each table once, for the terminal, the page and programs."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any, Final
 
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_budget import budget
-from analysis.coefficients.campaign_records import (
-    ConsistencyCheck,
-    FormChoice,
-    OtherArrangement,
-    Outlier,
-    ReferenceRow,
-)
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.exchange import to_dict
-from analysis.coefficients.form_choice import BEYOND_DOUBT
 from analysis.coefficients.recommendation import recommended, table
 from analysis.coefficients.stated_uncertainties import STATED
 from analysis.coefficients.steady_turns import SteadyTurn
@@ -41,6 +33,7 @@ from pmm.document.notation import NOT_KNOWN, counted, joined, rounded, written
 from pmm.report.attitude import attitude_table, heel_table
 from pmm.report.attitude_figure import attitude_figures
 from pmm.report.circle_figure import circle_figures
+from pmm.report.coefficient_findings import beside, findings
 from pmm.report.coefficient_plots import figures
 from pmm.report.coefficient_tables import (
     alternatives_tables,
@@ -58,10 +51,6 @@ from pmm.report.memory_figure import memory_figures
 from pmm.report.waves import wave_figures, wave_table
 
 SCHEMA: Final = "pmm-coefficients-1"
-_LIKELIHOOD = (
-    "Evidence ratio: likelihood of the recordings under the other over that under what is stated. "
-    "Moves are in half-widths."
-)
 
 
 def coefficients_document(outcome: CampaignOutcome) -> Document:
@@ -75,7 +64,7 @@ def coefficients_document(outcome: CampaignOutcome) -> Document:
             Section("", (Text((f"{used}, {found.plane}, {found.form} form",)),)),
             Section("", (*conclusion(found), *_conditions(outcome), noticed)),
             Section("", (*memory_contents(outcome), memory_data(outcome))),
-            Section("", (*_beside(found), *alternatives_tables(found))),
+            Section("", (*beside(found), *alternatives_tables(found))),
             Section("", tuple(Data(key, value) for key, value in _data(outcome).items())),
         ),
         SCHEMA,
@@ -113,7 +102,7 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
             ),
             *line_sections(outcome),
             Section("Memory of the water", tuple(memory_contents(outcome))),
-            Section("What was found", tuple(_findings(found))),
+            Section("What was found", tuple(findings(found))),
             Section("What was flagged", (Text(("Nothing.",)) if flags.empty else flags,)),
             Section("Uncertainty", (_given(outcome), budget_table(found))),
             Section(
@@ -214,83 +203,6 @@ def _summary(outcome: CampaignOutcome) -> dict[str, str]:
     if found.references:
         rows["beside tables"] = f"{outside} of {len(found.references)} outside"
     return rows
-
-
-def _ratio(value: float) -> str:
-    """Return an evidence ratio; what is beyond any doubt is not counted out."""
-    return f"over {BEYOND_DOUBT:g}" if value >= BEYOND_DOUBT else written(".3g")(value)
-
-
-_FORMS: Final[tuple[Column[FormChoice], ...]] = (
-    word("load", "load"),
-    word("verdict", "verdict"),
-    word("fitted", "fitted"),
-    number("evidence ratio", "evidence_ratio", _ratio),
-    word("runs", "runs", ", ".join),
-    word("", "message"),
-)
-_OUTLIERS: Final[tuple[Column[Outlier], ...]] = (
-    word("run", "run"),
-    word("load", "load"),
-    number("distance", "ratio", written(".3g"), "u"),
-    number("limit", "limit", written(".3g")),
-    word("", "message"),
-)
-_CHECKS: Final[tuple[Column[ConsistencyCheck], ...]] = (
-    word("coefficient", "name"),
-    word("unit", "unit"),
-    number("first", "first_value", written(".5g")),
-    number("second", "second_value", written(".5g")),
-    Column("difference ± u", lambda one: f"{one.difference:+.2g} ± {one.standard_uncertainty:.2g}",
-           number=True),
-    Column("", lambda one: "agree" if one.agrees else "DIFFER"),
-    Column("of", lambda one: f"{one.first}; {one.second}"),
-)  # fmt: skip
-_ARRANGEMENTS: Final[tuple[Column[OtherArrangement], ...]] = (
-    word("key", "key"),
-    word("stated", "stated"),
-    word("other", "other"),
-    word("the other", "verdict"),
-    number("evidence ratio", "evidence_ratio", _ratio),
-    number("largest move", "largest", written(".3g")),
-    word("moved beyond half-width", "coefficients", lambda names: ", ".join(names) or NOT_KNOWN),
-)
-
-
-_REFERENCES: Final[tuple[Column[ReferenceRow], ...]] = (
-    word("coefficient", "name"),
-    word("unit", "unit"),
-    number("f", "frequency_hz", frequency, "Hz"),
-    number("U", "speed_m_s", written("g"), "m/s"),
-    Column("measured", lambda one: rounded(one.measured, one.half_width), number=True),
-    number("table", "expected", written(".5g")),
-    number("off", "difference", written("+.3g")),
-    Column("", lambda one: "within" if one.within else "OUTSIDE"),
-    word("of", "reference"),
-)
-
-
-def _findings(found: CampaignCoefficients) -> Iterator[Content]:
-    """Yield forms, outliers, what is missing, tables beside and checks, where there are any."""
-    missing = (word("coefficient", "name"), word("why", "message"))
-    yield Table("Which form the data support", _FORMS, found.choices, titled=True)
-    yield Table("Repeats that stand off", _OUTLIERS, found.outliers, titled=True)
-    yield Table("What these runs do not tell", missing, found.missing, titled=True)
-    yield from _beside(found)
-    for kind in dict.fromkeys(check.kind for check in found.checks):
-        rows = [check for check in found.checks if check.kind == kind]
-        agree = sum(row.agrees for row in rows)
-        name = f"Checks in SI units, {kind}: {agree} of {len(rows)} agree"
-        yield Table(name, _CHECKS, rows, titled=True, folded=agree == len(rows))
-
-
-def _beside(found: CampaignCoefficients) -> tuple[Content, ...]:
-    """Return the values beside other arrangements' and tables' from elsewhere."""
-    name = "Other arrangements of the rig"
-    return (
-        Table(name, _ARRANGEMENTS, found.arrangements, titled=True, notes=(_LIKELIHOOD,)),
-        Table("Beside tables from elsewhere", _REFERENCES, found.references, titled=True),
-    )
 
 
 def _runs(outcome: CampaignOutcome) -> Table[Done]:

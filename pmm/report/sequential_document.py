@@ -22,14 +22,7 @@ from pmm.document.content import (
 )
 from pmm.document.notation import clock, counted, written
 from pmm.document.style import PALETTE, TRACE, drawn
-from pmm.sequential.look import (
-    Decision,
-    KnownCause,
-    KnownTarget,
-    Look,
-    in_words,
-    read_decisions,
-)
+from pmm.sequential.look import Decision, KnownCause, KnownTarget, Look, in_words, read_decisions
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing

@@ -8,17 +8,7 @@ from typing import Final
 from analysis.speed_loop.identification import IdentifiedLoop
 from analysis.speed_loop.loop import ShaftLoop
 from analysis.uncertainty.estimate import Estimate
-from pmm.document.content import (
-    Column,
-    Content,
-    Data,
-    Document,
-    Figure,
-    Section,
-    Table,
-    Text,
-    word,
-)
+from pmm.document.content import Column, Content, Data, Document, Figure, Section, Table, Text, word
 from pmm.document.notation import rounded, written
 from pmm.plan.tuning import LoopSetting, RunRipple, Tuning
 from pmm.report.devices_document import SCHEMA

@@ -15,12 +15,7 @@ from pmm.plan.force_estimate import expected_readings
 from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
-from pmm.plan.simulated_rig import (
-    Departure,
-    departure_flag,
-    departures,
-    provenance_of_departures,
-)
+from pmm.plan.simulated_rig import Departure, departure_flag, departures, provenance_of_departures
 from pmm.recorder.campaign_owner import own_campaign
 from pmm.recorder.disk import DiskWatch, bytes_per_s, free_bytes
 from pmm.recorder.header import LiveSettings, RunHeader

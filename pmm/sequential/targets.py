@@ -20,12 +20,7 @@ from pmm.design.measured import Measured, after, measured, repeats_said
 from pmm.document.notation import clock
 from pmm.plan.duration import duration_rows
 from pmm.plan.run_plan import RunPlan
-from pmm.sequential.growing_plan import (
-    GrowingPlan,
-    check_design,
-    planned,
-    read_growing,
-)
+from pmm.sequential.growing_plan import GrowingPlan, check_design, planned, read_growing
 from pmm.sequential.look import Ending, KnownTarget, Look
 from pmm.sequential.remembering import Remembering
 

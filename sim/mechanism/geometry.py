@@ -86,6 +86,28 @@ class BodyMotion(NamedTuple):
     across: Value
 
 
+def struts_line(
+    hull: FloatArray, slope: Value, rate: Value, bend: Value
+) -> tuple[Value, Value, Value, Value]:
+    """Return cosine and sine of the angle of the struts' line, its rate, and that one's rate.
+
+    ``rate`` and ``bend`` are the derivatives of the slope: of the tangent where the gauges stay
+    with the model, else of the sine.
+    """
+    if hull[GEOMETRY, ON_MODEL] > 0.0:
+        square = 1.0 + slope * slope
+        cosine = 1.0 / np.sqrt(square)
+        sine = slope * cosine
+        r = rate / square
+        r_rate = (bend - 2.0 * slope * rate * r) / square
+    else:
+        cosine = np.sqrt(1.0 - slope * slope)
+        sine = slope + 0.0
+        r = rate / cosine
+        r_rate = (bend + slope * r * r) / cosine
+    return cosine, sine, r, r_rate
+
+
 def body_motion(
     hull: FloatArray,
     aft: Value,
@@ -107,17 +129,7 @@ def body_motion(
     slope = (fore - aft) / (2.0 * half) + hull[GEOMETRY, OFFSET]
     rate = (fore_rate - aft_rate) / (2.0 * half)
     bend = (fore_acceleration - aft_acceleration) / (2.0 * half)
-    if hull[GEOMETRY, ON_MODEL] > 0.0:
-        square = 1.0 + slope * slope
-        cosine = 1.0 / np.sqrt(square)
-        sine = slope * cosine
-        r = rate / square
-        r_rate = (bend - 2.0 * slope * rate * r) / square
-    else:
-        cosine = np.sqrt(1.0 - slope * slope)
-        sine = slope + 0.0
-        r = rate / cosine
-        r_rate = (bend + slope * r * r) / cosine
+    cosine, sine, r, r_rate = struts_line(hull, slope, rate, bend)
     reach = pivot * half
     ahead, aside = reach * cosine, reach * sine
     held, held_rate, held_acceleration = aft, aft_rate, aft_acceleration

@@ -19,6 +19,7 @@ def _error_function(x: float) -> float:
     return math.erf(x)
 
 
+callable_when_compiled(geometry.struts_line)
 body_motion = compile_loop(geometry.body_motion)
 body_loads = compile_loop(geometry.body_loads)
 gauge_readings = compile_loop(geometry.gauge_readings)

@@ -17,13 +17,7 @@ from sim.model.forces import Instants
 from sim.model.heel import Heeling
 from sim.model.hull_steady_state import HullSteady
 from sim.model.model_march import Marching, marching_of
-from sim.model.numbers import (
-    moving,
-    numbers_of,
-    surging_readings,
-    turns_with,
-    weight_less_buoyancy,
-)
+from sim.model.numbers import moving, numbers_of, surging_readings, turns_with, weight_less_buoyancy
 from sim.model.parameters import HullCoefficients, ModelParameters, mass_matrix
 from sim.model.steering_loads import steering_loads
 from sim.model.system import HullSystem

@@ -31,6 +31,20 @@ def attitude(p: FloatArray, length: float, q: FloatArray) -> tuple[float, float]
 
 
 @compile_loop
+def attitude_rates(
+    d: float, z: float, roll: float, q: FloatArray, v: FloatArray
+) -> tuple[float, float]:
+    """Return the rates of depth and roll, from the derivative of both constraints."""
+    sp, cp, sr, cr = np.sin(q[2]), np.cos(q[2]), np.sin(roll), np.cos(roll)
+    a11, a12 = z, d * d * cp * sr
+    b1 = -(q[0] * v[0] + q[1] * v[1] + d * d * sp * cr * v[2])
+    a21, a22 = sr, z * cr + (q[0] * sp - q[1] * cp) * sr
+    b2 = v[0] * sp * cr + v[1] * (1.0 - cp * cr) + (q[0] * cp + q[1] * sp) * cr * v[2]
+    det = a11 * a22 - a12 * a21
+    return (b1 * a22 - a12 * b2) / det, (a11 * b2 - a21 * b1) / det
+
+
+@compile_loop
 def tensor(
     moments: tuple[float, float, float, float],
     axes: tuple[FloatArray, FloatArray, FloatArray],
@@ -62,13 +76,7 @@ def suspended(
     d, depth, mass = p[2], p[3], p[4]
     z, roll = attitude(p, length, q)
     sp, cp, sr, cr = np.sin(q[2]), np.cos(q[2]), np.sin(roll), np.cos(roll)
-    # rates of depth and roll, from the derivative of both constraints
-    a11, a12 = z, d * d * cp * sr
-    b1 = -(q[0] * v[0] + q[1] * v[1] + d * d * sp * cr * v[2])
-    a21, a22 = sr, z * cr + (q[0] * sp - q[1] * cp) * sr
-    b2 = v[0] * sp * cr + v[1] * (1.0 - cp * cr) + (q[0] * cp + q[1] * sp) * cr * v[2]
-    det = a11 * a22 - a12 * a21
-    z_rate, roll_rate = (b1 * a22 - a12 * b2) / det, (a11 * b2 - a21 * b1) / det
+    z_rate, roll_rate = attitude_rates(d, z, roll, q, v)
     # unit vectors: vertical, roll axis, beam, and the body's own axes
     ez, e1 = vector(0.0, 0.0, 1.0), vector(cp, sp, 0.0)
     beam, e3 = vector(-sp * cr, cp * cr, sr), vector(sp * sr, -cp * sr, cr)

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from pmm.console.messages import CampaignLook, LoopOrder, OrderKind, QueuedPlan, Reply
+from pmm.console.messages import CampaignLook, LoopOrder, OrderKind, Reply
+from pmm.console.queued_plan import QueuedPlan
 from pmm.plan.plan import Plan
 from pmm.run.states import State
 from pmm.sequential.look import read_decisions

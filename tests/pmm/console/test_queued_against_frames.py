@@ -9,7 +9,7 @@ import pytest
 
 from pmm.console.encoding import EncodedText
 from pmm.console.limits import MOST_WAITING
-from pmm.console.messages import PackedPlan
+from pmm.console.queued_plan import PackedPlan
 from pmm.console.worker_tasks import Queued, ReadyPlan
 from pmm.plan.plan import Plan
 from tests.pmm.console.serving import OWN, SESSION, served

@@ -12,8 +12,9 @@ import numpy as np
 from hardware.pacing import FreeRunning
 from pmm.console.answers import BrowserAnswers
 from pmm.console.limits import MOST_WAITING
-from pmm.console.messages import Frame, LoopOrder, Notice, OrderKind, QueuedPlan, Reply, Told
+from pmm.console.messages import Frame, LoopOrder, Notice, OrderKind, Reply, Told
 from pmm.console.pacing import CountingPacer
+from pmm.console.queued_plan import QueuedPlan
 from pmm.console.quick_stop import QuickStop
 from pmm.console.station import Station
 from pmm.plan.plan import Plan

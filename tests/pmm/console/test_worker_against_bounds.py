@@ -14,8 +14,8 @@ from typing import Any
 import pytest
 
 from pmm.console import worker_process
-from pmm.console.messages import QueuedPlan, pack, unpack
 from pmm.console.plans import Plans
+from pmm.console.queued_plan import QueuedPlan, pack, unpack
 from pmm.console.worker_process import (
     BusyError,
     NotWorkedOutError,

@@ -1,0 +1,47 @@
+"""What of a web request is taken: who sends it, and a body that is not too large."""
+
+from dataclasses import dataclass
+from typing import Final
+
+from starlette.requests import Request
+
+from hardware.description.errors import PmmError
+from pmm.console.limits import LARGEST_REQUEST
+from pmm.console.security import VISITOR, Visitor
+
+SESSION: Final = "x-pmm-session"
+
+
+@dataclass(frozen=True)
+class Who:
+    """Who asks."""
+
+    session: str
+    address: str
+    visitor: Visitor
+
+
+def who_asks(request: Request) -> Who:
+    """Return who sends a request."""
+    address = request.client.host if request.client is not None else "?"
+    return Who(request.headers.get(SESSION, ""), address, request.scope[VISITOR])
+
+
+class TooLargeError(PmmError):
+    """A request that is larger than any of its kind."""
+
+
+async def body_of(request: Request, largest: int = LARGEST_REQUEST) -> bytes:
+    """Read a body that is not larger than so many bytes.
+
+    Raises
+    ------
+    TooLargeError
+        If it is.
+    """
+    body = bytearray()
+    async for part in request.stream():
+        body += part
+        if len(body) > largest:
+            raise TooLargeError(f"the request is larger than {largest} bytes")
+    return bytes(body)
