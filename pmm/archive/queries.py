@@ -4,6 +4,7 @@ import sqlite3
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
+from io import BytesIO
 from pathlib import Path
 from typing import Any, Final
 
@@ -11,7 +12,9 @@ from hardware.description.errors import ConfigurationError
 from pmm.archive.contents import changes
 from pmm.archive.expression import NUMBER, TEXT, KnownColumn, read_condition
 from pmm.archive.indexing import stamps
+from pmm.archive.results import LEVEL
 from pmm.remote import here
+from pmm.whole_file import write_whole
 
 _OF_CAMPAIGN: Final = ("folder", "campaign", "hull")
 _OF_RUN: Final = {
@@ -69,6 +72,7 @@ _HARMONICS: Final = (
 _COEFFICIENTS: Final = f"coefficients {_WITH_CAMPAIGN.format('coefficients')}"
 _IN_ORDER: Final = " ORDER BY campaigns.folder, runs.id"
 Row = Mapping[str, Any]
+_WHOLE = ("repeat", "gate", "order")
 
 
 def rows_of(
@@ -233,3 +237,19 @@ def all_harmonics(connection: sqlite3.Connection) -> list[Row]:
         f"{_select(FILED_HARMONICS)} FROM {_HARMONICS}"
         f"{_IN_ORDER}, harmonics.gate, harmonics.channel, harmonics.ord",
     )
+
+
+def write_parquet(columns: Mapping[str, KnownColumn], rows: Sequence[Row], path: Path) -> None:
+    """Write rows; what is not known is null, the intervals' level is in the metadata."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    def kind(name: str) -> pa.DataType:
+        if name in _WHOLE:
+            return pa.int32()
+        return pa.float64() if columns[name].kind == NUMBER else pa.string()
+
+    schema = pa.schema([(name, kind(name)) for name in columns], {"level": repr(LEVEL)})
+    file = BytesIO()
+    pq.write_table(pa.Table.from_pylist([dict(one) for one in rows], schema), file)
+    write_whole(path, file.getvalue())

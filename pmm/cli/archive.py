@@ -253,12 +253,12 @@ def export(parquet: str, coefficients: bool, overwrite: bool, file: str) -> None
     pmm archive export --parquet coefficients.parquet --coefficients
     """  # noqa: D301
     from pmm.archive.database import open_archive
-    from pmm.archive.parquet import write_parquet
     from pmm.archive.queries import (
         COEFFICIENT_COLUMNS,
         FILED_HARMONICS,
         all_harmonics,
         find_coefficients,
+        write_parquet,
     )
     from pmm.cli.files import check_files
     from pmm.cli.screen import messages

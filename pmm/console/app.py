@@ -26,7 +26,7 @@ from pmm.console.actions import PageActions
 from pmm.console.app_settings import ConsoleSettings
 from pmm.console.client import Client
 from pmm.console.coefficient_updates import Finished
-from pmm.console.hub import Hub
+from pmm.console.hub import Hub, pump
 from pmm.console.limits import MOST_STREAMS
 from pmm.console.live.process import Publishing
 from pmm.console.lockout import Lockout
@@ -35,7 +35,6 @@ from pmm.console.messages import Frame, Hello, Notice, Reply, Told
 from pmm.console.openapi import description
 from pmm.console.pages import Pages
 from pmm.console.plans import Plans
-from pmm.console.pump import pump
 from pmm.console.quick_stop import QuickStop
 from pmm.console.request_body import TooLargeError, body_of, who_asks
 from pmm.console.requests import TokenPosted

@@ -56,7 +56,7 @@ class LawBalance:
         """
         harmonics_given = np.stack([laws.real, laws.imag], axis=1)
         answer = np.empty_like(harmonics_given)
-        _answer(*self._given(y, harmonics_given, answer))
+        _answer(self._given(y), harmonics_given, answer)
         harmonics: ComplexArray = answer[:, 0] + 1j * answer[:, 1]
         return harmonics
 
@@ -66,11 +66,11 @@ class LawBalance:
         Shape ``(orders + 1, 3)``: at the struts and along the model.
         """
         force = np.empty((len(y), 3), dtype=np.complex128)
-        settled = _balance(*self._given(y, self.give is not None, force))
+        settled = _balance(self._given(y), self.give is not None, force)
         return force if settled else None
 
-    def _given(self, y: ComplexArray, *more: Any) -> tuple[Any, ...]:
-        return *self._laws, y, *self._whatever_moves, *more
+    def _given(self, y: ComplexArray) -> tuple[Any, ...]:
+        return *self._laws, y, *self._whatever_moves
 
     @cached_property
     def _laws(self) -> tuple[Any, ...]:
@@ -131,60 +131,36 @@ def _per_law(give: ComplexArray, impedance: ComplexArray, s: ComplexArray) -> Co
 
 
 @compile_loop
-def _answer(
-    laws: FloatArray,
-    arguments: FloatArray,
-    corners: FloatArray,
-    smooth: FloatArray,
-    smooth_hull: FloatArray,
-    parts: FloatArray,
-    moving: bool,
-    y: ComplexArray,
-    give: ComplexArray,
-    impedance: ComplexArray,
-    s: ComplexArray,
-    cosine: FloatArray,
-    sine: FloatArray,
-    nodes: FloatArray,
-    step_s: float,
-    speed_m_s: float,
-    at: FloatArray,
-    answer: FloatArray,
-) -> None:
-    """Fill in the harmonics that the laws ask for where they are ``at``."""
+def _response(given: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Return what :func:`sim.model.law_response.respond` takes, but for its last two arguments.
+
+    Parameters
+    ----------
+    given
+        The laws and whether their corners move, the struts, and the period: see
+        :class:`LawBalance`.
+    """
+    laws, arguments, corners, smooth, smooth_hull, parts, moving, y, give, impedance, s = given[:11]
     free, by_laws = _unladen(y, give, impedance, s), _per_law(give, impedance, s)
     laws_given = (laws, arguments, corners, smooth, smooth_hull, parts, moving)
-    respond(*laws_given, free, by_laws, cosine, sine, nodes, step_s, speed_m_s, at, answer)
+    return (*laws_given, free, by_laws, *given[11:])
 
 
 @compile_loop
-def _balance(
-    laws: FloatArray,
-    arguments: FloatArray,
-    corners: FloatArray,
-    smooth: FloatArray,
-    smooth_hull: FloatArray,
-    parts: FloatArray,
-    moving: bool,
-    y: ComplexArray,
-    give: ComplexArray,
-    impedance: ComplexArray,
-    s: ComplexArray,
-    cosine: FloatArray,
-    sine: FloatArray,
-    nodes: FloatArray,
-    step_s: float,
-    speed_m_s: float,
-    acts_back: bool,
-    force: ComplexArray,
-) -> bool:
+def _answer(given: tuple[Any, ...], at: FloatArray, answer: FloatArray) -> None:
+    """Fill in the harmonics that the laws ask for where they are ``at``."""
+    whole: Any = (*_response(given), at, answer)
+    respond(*whole)
+
+
+@compile_loop
+def _balance(given: tuple[Any, ...], acts_back: bool, force: ComplexArray) -> bool:
     """Fill in the forces under laws that come back unchanged; tell whether there are any."""
-    free, by_laws = _unladen(y, give, impedance, s), _per_law(give, impedance, s)
-    laws_given = (laws, arguments, corners, smooth, smooth_hull, parts, moving)
-    given = (*laws_given, free, by_laws, cosine, sine, nodes, step_s, speed_m_s)
-    found = np.zeros((s.size, 2, 3))
-    settled = _settle(given, acts_back, found)
-    for n in range(s.size):
+    response = _response(given)
+    free, by_laws = response[7], response[8]
+    found = np.zeros((free.shape[0], 2, 3))
+    settled = _settle(response, acts_back, found)
+    for n in range(free.shape[0]):
         for i in range(3):
             force[n, i] = complex(found[n, 0, i], found[n, 1, i])
         first, second = force[n, 0], force[n, 1]

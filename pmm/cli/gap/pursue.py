@@ -82,10 +82,9 @@ def pursue(
     one_thread()  # the matrices are small: threads would wait for each other
     from pmm.cli.screen import messages, show
     from pmm.gap.causes import CauseGoal
-    from pmm.gap.folder_place import FolderPlace
+    from pmm.gap.folder_place import FolderPlace, simulated_by
     from pmm.gap.found_cause import found_of
     from pmm.gap.pursuit import pursued, recorded
-    from pmm.gap.simulated_runs import simulated_by
     from pmm.report.sequential_document import look_lines, sequential_document
     from pmm.run.operator import standard_input
     from pmm.sequential.approval import approval_of

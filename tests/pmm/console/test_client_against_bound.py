@@ -11,9 +11,8 @@ import numpy as np
 
 from pmm.console.client import WAITING, Client
 from pmm.console.desk import Desk, Holder
-from pmm.console.hub import Hub
+from pmm.console.hub import Hub, send_round
 from pmm.console.messages import Bus, ChannelInfo, Frame, Hello, Notice, SignalTrace
-from pmm.console.pump import send_round
 from pmm.console.traces import POINTS
 from pmm.recorder.lateness import CycleStatistics
 from pmm.run.states import State
