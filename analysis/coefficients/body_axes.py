@@ -102,6 +102,8 @@ def of_struts(
     sensitivity = by_struts @ _by_stated(struts.values, channels, omega, roll, asked=asked)
     for k, name in enumerate(_GEOMETRY):
         sensitivity[:, STATED.index(name)] += harmonics(slope[:, gauged + k], orders)
+    speeding = slope[:, gauged + _GEOMETRY.index("speed_m_s")] * _rate(geometry, omega)
+    sensitivity[:, STATED.index("speed_age_s")] += harmonics(speeding, orders)
     sensitivity[2, STATED.index("alignment_rad")] -= 1.0  # the rotation is from the drift
     faster = slope[:, 2:4] * inputs[2:4] + 2.0 * slope[:, 4:6] * inputs[4:6]
     sensitivity[:, STATED.index("frequency_relative")] += harmonics(faster.sum(axis=1), orders)
@@ -142,6 +144,13 @@ def _split(readings: Waves, gauges: int) -> tuple[Waves, Waves | None]:
     """Return the struts' gauges, and roll moment and heel where there are any."""
     behind = readings[..., gauges:, :]
     return readings[..., :gauges, :], behind if behind.shape[-2] else None
+
+
+def _rate(geometry: Geometry, omega: float) -> Waves:
+    """Return the acceleration of a carriage that follows a path, m/s2; 0 of one that does not."""
+    varies = np.atleast_1d(geometry.varies_m_s)
+    order = np.arange(varies.size // 2 + 1)
+    return np.asarray(np.fft.irfft(1j * omega * order * np.fft.rfft(varies), varies.size))
 
 
 def _given(geometry: Geometry) -> tuple[float, ...]:

@@ -44,6 +44,7 @@ _WORDS = {
     "roll_gauge_relative": "calibration, roll gauge",
     "turn_rate_relative": "rate of turn on the circle",
     "turn_radius_m": "radius of the circle",
+    "speed_age_s": "age of the carriage's speed",
 }
 _DIGIT = 0.1
 

@@ -19,6 +19,8 @@ class StatedUncertainties:
         Of the body that is taken off, about the midpoint.
     half_spacing_m, speed_m_s, frequency_relative, restoring_relative
         Of geometry, carriage, frequency (u/f) and the restoring matrix (common factor).
+    speed_age_s
+        Of the age of what was recorded of a carriage's speed that follows a path.
     amplitude_relative
         Of the struts' motion: eccentricity setting, or calibration of the displacement sensors.
     strut_phase_rad
@@ -78,6 +80,7 @@ class StatedUncertainties:
     roll_gauge_relative: float = 0.0
     turn_rate_relative: float = 0.0
     turn_radius_m: float = 0.0
+    speed_age_s: float = 0.0
     inertia_degrees_of_freedom: float = 0.0
 
     @property

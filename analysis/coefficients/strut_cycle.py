@@ -19,8 +19,10 @@ from analysis.kinematics.body_frame import HEEL
 from analysis.kinematics.body_frame import ROLL_MOMENT as ROLL
 from analysis.kinematics.cycle import waves
 from analysis.kinematics.geometry import Geometry
+from analysis.recording import Recording
 from analysis.resolver.analysis import Analysis
 from analysis.resolver.harmonics import Harmonics, IntervalSource
+from analysis.response.following import recorded_age
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.carriage_path import CarriagePath
 from hardware.description.channels import (
@@ -215,18 +217,25 @@ def measured_cycle(
         phasors,
         count,
         flags=flags,
-        carriage=_carriage(reading, oscillator, set_point),
+        carriage=_carriage(analysis.recording, reading, oscillator, set_point),
     )
 
 
 def _carriage(
-    reading: Harmonics, oscillator: Oscillator, set_point: SetPoint
+    recording: Recording, reading: Harmonics, oscillator: Oscillator, set_point: SetPoint
 ) -> ComplexArray | None:
-    """Return harmonics of a carriage's speed that follows a path: measured, else as it was told."""
+    """Return harmonics of a carriage's speed that follows a path: measured, else as it was told.
+
+    What was measured is brought forward by its age.
+    """
     led = CarriagePath.of(oscillator, set_point)
     if led is None or CARRIAGE_SPEED.name not in reading.channel_names:
         return None if led is None else led.harmonics(reading.order)
-    return reading_phasors(reading, (CARRIAGE_SPEED.name,), reading.order).values
+    measured = reading_phasors(reading, (CARRIAGE_SPEED.name,), reading.order).values
+    age_s, _ = recorded_age(recording.between(reading.opened_s, reading.closed_s))
+    order = np.arange(len(measured))
+    turned: ComplexArray = measured * np.exp(2j * np.pi * reading.frequency_hz * age_s * order)
+    return turned
 
 
 def _asked_motion(oscillator: Oscillator, set_point: SetPoint, orders: int) -> Phasors:

@@ -9,7 +9,7 @@ import numpy as np
 from analysis.recording import Recording
 from analysis.resolver.harmonics import Harmonics
 from analysis.response.frequency_response import frequency_response
-from hardware.description.channels import COMMANDS, DISPLACEMENTS
+from hardware.description.channels import CARRIAGE_SPEED, COMMANDS, DISPLACEMENTS
 
 
 @dataclass(frozen=True)
@@ -91,3 +91,15 @@ def strut_following(
             spread,
             spread / abs(gain) if gain else math.nan,
         )
+
+
+def recorded_age(gate: Recording) -> tuple[float, float]:
+    """Return how old the recorded speed of a carriage is on average, and what is not known of it.
+
+    A value is asked for, answered, and stands in the record until the next one: it is as old as the
+    answer took, which is anything up to the time between two values, and on average half of that
+    time, less half a sample, older for standing. In seconds, the second a standard uncertainty.
+    """
+    changes = int(np.count_nonzero(np.diff(gate.values(CARRIAGE_SPEED.name))))
+    stands_s = (gate.sample_count - 1) / gate.sample_rate_hz / max(changes, 1)
+    return stands_s - 0.5 / gate.sample_rate_hz, stands_s / math.sqrt(12.0)

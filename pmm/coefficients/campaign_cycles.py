@@ -117,6 +117,7 @@ def campaign_cycles(
             gauges,
             motion_asked=_asked(cycles),
             following=[one.following for one in done if one.following],
+            speed_age_s=max((one.speed_age_u_s for one in done), default=0.0),
         ),
         body,
     )

@@ -1,4 +1,4 @@
-"""What is read of a run that was led: how its struts followed, and the circle that was driven."""
+"""What is read of a run that was led: its struts, how old its speed is, the circle it went."""
 
 import math
 from dataclasses import replace
@@ -6,7 +6,12 @@ from dataclasses import replace
 from analysis.coefficients.corrections import zero_reading
 from analysis.recording import Recording
 from analysis.resolver.analysis import analyse
-from analysis.response.following import StrutFollowing, led_struts, strut_following
+from analysis.response.following import (
+    StrutFollowing,
+    led_struts,
+    recorded_age,
+    strut_following,
+)
 from hardware.description.channels import CARRIAGE_SPEED, TURN_RATE
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
@@ -30,6 +35,12 @@ def following_of(
     except DataError as error:
         text = f"how the struts followed their set-points is not told: {error}"
         return (), (Flag("following_unknown", Severity.NOTE, text),)
+
+
+def speed_age_u_s(task: Task, gate: Recording) -> float:
+    """Return what is not known of the age of a led carriage's recorded speed; 0 of others."""
+    led = task.set_point.steady_ahead and CARRIAGE_SPEED.name in gate.channel_names
+    return recorded_age(gate)[1] if led else 0.0
 
 
 def as_driven(task: Task, recording: Recording) -> tuple[Task, tuple[float, float]]:

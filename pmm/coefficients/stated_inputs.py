@@ -164,6 +164,7 @@ def stated_of(
     *,
     motion_asked: bool,
     following: Sequence[Sequence[StrutFollowing]] = (),
+    speed_age_s: float = 0.0,
 ) -> StatedUncertainties:
     """Return the standard uncertainties: the settings', else those of inertia, gauges, set-points.
 
@@ -180,11 +181,14 @@ def stated_of(
         displacements is then what the runs state of eccentricity and phase, since no other
         sensor's uncertainty is; and where set-points stand in for the displacements of other runs,
         those are off by as much.
+    speed_age_s
+        What the records leave open of the age of a led carriage's speed.
     """
     led = any(following)
     own_set = motion_asked or led
     set_points = StatedUncertainties(**(_of_set_points(campaign.runs) if own_set else {}))
     known = [
+        StatedUncertainties(speed_age_s=speed_age_s),
         *([of_following(following)] if motion_asked and led else []),
         *map(of_model, models),
         *map(of_gauges, calibrations),

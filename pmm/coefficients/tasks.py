@@ -164,6 +164,8 @@ class Done:
         Of a run of many lines, what was resolved of struts and gauges.
     following
         How each strut followed its set-points; empty where one of both was not recorded.
+    speed_age_u_s
+        Of a carriage that was led: what is not known of the age of its recorded speed.
     turn
         Of a run on a circle, what was recorded.
     waves
@@ -184,6 +186,7 @@ class Done:
     attitude: Attitude | None = None
     lines: Harmonics | None = None
     following: tuple[StrutFollowing, ...] = ()
+    speed_age_u_s: float = 0.0
     turn: SteadyTurn | None = None
     waves: InWaves | None = None
 

@@ -202,7 +202,8 @@ def alike(found: np.ndarray, shown: np.ndarray) -> None:
 def test_all_that_can_be_stated_is_held() -> None:
     of_heel = {"heel_rad", "roll_gauge_relative"}  # test_heel_against_point_masses.py
     of_circles = {"turn_rate_relative", "turn_radius_m"}  # test_steady_turns_against_newton.py
-    assert {*RIGS, *CHAINS, *of_heel, *of_circles} == set(STATED)
+    of_paths = {"speed_age_s"}  # test_age_of_a_speed_against_later_ones.py
+    assert {*RIGS, *CHAINS, *of_heel, *of_circles, *of_paths} == set(STATED)
 
 
 @pytest.mark.sample(5)
