@@ -1,25 +1,37 @@
-"""How a strut follows its set-points in one run: what is left between both, and gain and phase."""
+"""How struts and carriage follow what they are told in one run: what is left, gain and phase."""
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from analysis.recording import Recording
+from analysis.resolver.analysis import analyse
 from analysis.resolver.harmonics import Harmonics
+from analysis.resolver.reference_choice import ReferenceChoice
+from analysis.resolver.settings import ResolverSettings
 from analysis.response.frequency_response import frequency_response
-from hardware.description.channels import CARRIAGE_SPEED, COMMANDS, DISPLACEMENTS
+from hardware.description.carriage_path import CarriagePath
+from hardware.description.channels import (
+    CARRIAGE_SPEED,
+    COMMANDS,
+    DISPLACEMENTS,
+    SHAFT_ANGLE,
+    Channel,
+)
 
 
 @dataclass(frozen=True)
 class StrutFollowing:
-    """The following error of one strut in one run over the gate, in its displacement's unit.
+    """The following error of one strut, or of the carriage, in one run over the gate.
+
+    In the unit of the displacement, or of the speed.
 
     Attributes
     ----------
     channel, unit
-        Of the displacement.
+        Of the displacement or speed.
     frequency_hz
         Of the harmonic that amplitude and phase are told at.
     rms, peak
@@ -72,25 +84,68 @@ def strut_following(
     DataError
         If the set-point does not move at that harmonic, or no sample lies in the gate.
     """
-    gate = recording.between(reading.opened_s, reading.closed_s)
     for command, moved in led_struts(recording):
-        off = gate.values(moved) - gate.values(command)
-        response = frequency_response(reading, command, moved, [order])
-        gain = complex(response.values[0])
-        # Half of the variance lies along the phasor, half across it.
-        spread = math.sqrt(response.variance[0] / 2.0)
-        yield StrutFollowing(
-            reading.run,
-            moved,
-            recording.channels[recording.index(moved)].unit,
-            order * reading.frequency_hz,
-            float(np.sqrt(np.nanmean(off**2))),
-            float(np.nanmax(np.abs(off))),
-            abs(gain) - 1.0,
-            math.atan2(gain.imag, gain.real),
-            spread,
-            spread / abs(gain) if gain else math.nan,
-        )
+        yield _following(recording, reading, command, moved, order)
+
+
+def carriage_following(
+    recording: Recording,
+    path: CarriagePath,
+    age_s: float,
+    reference: ReferenceChoice,
+    settings: ResolverSettings,
+) -> StrutFollowing | None:
+    """Return how the carriage follows its path; ``None`` where no shaft's angle or speed tells it.
+
+    The path is taken at the angles that the record holds, ``age_s`` earlier (that of the recorded
+    speed), and amplitude and phase at its largest line.
+
+    Raises
+    ------
+    DataError
+        If no gate is found.
+    """
+    if not {SHAFT_ANGLE.name, CARRIAGE_SPEED.name} <= set(recording.channel_names):
+        return None
+    order = 1 + int(np.argmax(np.abs(path.parts[1:])))
+    angle = recording.values(SHAFT_ANGLE.name) - path.omega_rad_s * age_s
+    waves = np.exp(1j * np.outer(np.arange(len(path.parts)), angle))
+    told = Channel("command_carriage", CARRIAGE_SPEED.unit)
+    both = replace(
+        recording.select((SHAFT_ANGLE.name, CARRIAGE_SPEED.name)),
+        channels=(SHAFT_ANGLE, CARRIAGE_SPEED, told),
+        samples=np.vstack([
+            recording.values(SHAFT_ANGLE.name),
+            recording.values(CARRIAGE_SPEED.name),
+            (path.parts @ waves).real,
+        ]),
+    )  # fmt: skip
+    wanted = replace(settings, channels=(CARRIAGE_SPEED.name, told.name))
+    reading = analyse(both, reference, replace(wanted, harmonics=max(order, settings.harmonics)))
+    return _following(both, reading.readings[0], told.name, CARRIAGE_SPEED.name, order)
+
+
+def _following(
+    recording: Recording, reading: Harmonics, command: str, moved: str, order: int
+) -> StrutFollowing:
+    gate = recording.between(reading.opened_s, reading.closed_s)
+    off = gate.values(moved) - gate.values(command)
+    response = frequency_response(reading, command, moved, [order])
+    gain = complex(response.values[0])
+    # Half of the variance lies along the phasor, half across it.
+    spread = math.sqrt(response.variance[0] / 2.0)
+    return StrutFollowing(
+        reading.run,
+        moved,
+        recording.channels[recording.index(moved)].unit,
+        order * reading.frequency_hz,
+        float(np.sqrt(np.nanmean(off**2))),
+        float(np.nanmax(np.abs(off))),
+        abs(gain) - 1.0,
+        math.atan2(gain.imag, gain.real),
+        spread,
+        spread / abs(gain) if gain else math.nan,
+    )
 
 
 def recorded_age(gate: Recording) -> tuple[float, float]:

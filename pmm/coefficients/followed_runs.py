@@ -8,10 +8,12 @@ from analysis.recording import Recording
 from analysis.resolver.analysis import analyse
 from analysis.response.following import (
     StrutFollowing,
+    carriage_following,
     led_struts,
     recorded_age,
     strut_following,
 )
+from hardware.description.carriage_path import CarriagePath
 from hardware.description.channels import CARRIAGE_SPEED, TURN_RATE
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
@@ -35,6 +37,19 @@ def following_of(
     except DataError as error:
         text = f"how the struts followed their set-points is not told: {error}"
         return (), (Flag("following_unknown", Severity.NOTE, text),)
+
+
+def carriage_of(task: Task, recording: Recording, gate: Recording) -> tuple[StrutFollowing, ...]:
+    """Return how a led carriage followed its path; nothing of others."""
+    path = CarriagePath.of(task.oscillator, task.set_point)
+    if path is None or CARRIAGE_SPEED.name not in recording.channel_names:
+        return ()
+    age_s, _ = recorded_age(gate)
+    try:
+        found = carriage_following(recording, path, age_s, task.choice, task.settings)
+    except DataError:
+        return ()  # what the struts' gate says of it is flagged there
+    return () if found is None else (found,)
 
 
 def speed_age_u_s(task: Task, gate: Recording) -> float:

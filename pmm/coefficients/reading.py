@@ -37,7 +37,7 @@ from hardware.description.kinds import RunKind
 from pmm.campaign.calibrated_recording import applied
 from pmm.campaign.recording_source import RAW, open_recording
 from pmm.coefficients.attitude import attitude_of, rest_of
-from pmm.coefficients.followed_runs import as_driven, following_of, speed_age_u_s
+from pmm.coefficients.followed_runs import as_driven, carriage_of, following_of, speed_age_u_s
 from pmm.coefficients.settings import AmplifierTable
 from pmm.coefficients.tasks import Done, Failed, Task, Zero
 from pmm.coefficients.zeros import utc_s, zeroed
@@ -188,6 +188,7 @@ def _turning(task: Task, recording: Recording) -> Done:
         attitude=attitude,
         lines=lines,
         following=following,
+        carriage=carriage_of(task, recording, gate),
         speed_age_u_s=speed_age_u_s(task, gate),
         waves=waves,
     )

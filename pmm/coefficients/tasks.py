@@ -164,6 +164,8 @@ class Done:
         Of a run of many lines, what was resolved of struts and gauges.
     following
         How each strut followed its set-points; empty where one of both was not recorded.
+    carriage
+        How a carriage that was led followed its path; empty of others.
     speed_age_u_s
         Of a carriage that was led: what is not known of the age of its recorded speed.
     turn
@@ -186,6 +188,7 @@ class Done:
     attitude: Attitude | None = None
     lines: Harmonics | None = None
     following: tuple[StrutFollowing, ...] = ()
+    carriage: tuple[StrutFollowing, ...] = ()
     speed_age_u_s: float = 0.0
     turn: SteadyTurn | None = None
     waves: InWaves | None = None

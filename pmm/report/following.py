@@ -25,7 +25,7 @@ def _in(factor: float, key: str) -> Callable[[StrutFollowing], str]:
 
 _COLUMNS: Final[tuple[Column[StrutFollowing], ...]] = (
     word("run", "run"),
-    word("displacement", "channel"),
+    word("channel", "channel"),
     number("f", "frequency_hz", written(".4g"), "Hz"),
     Column("rms", _in(_MILLIONTH, "rms"), number=True),
     Column("peak", _in(_MILLIONTH, "peak"), number=True),
@@ -46,8 +46,9 @@ _COLUMNS: Final[tuple[Column[StrutFollowing], ...]] = (
 )
 _NOTE: Final = (
     "Displacement less set-point over the gate; amplitude and phase of the displacement over those "
-    "of the set-point at the run's own frequency, a lag negative, ± standard uncertainty. "
-    "Coefficients are taken from the displacements."
+    "of the set-point at the run's own frequency, a lag negative, ± standard uncertainty. Of a "
+    "carriage that follows a path likewise its speed less the path's, at the path's largest line. "
+    "Coefficients are taken from the displacements and the recorded speed."
 )
 _CAPTION: Final = (
     "Following error of struts that are led by set-points, over frequency: rms (filled) and peak "
@@ -57,20 +58,21 @@ _CAPTION: Final = (
 
 
 def following_rows(outcome: CampaignOutcome) -> list[StrutFollowing]:
-    """Return each strut of each run whose set-points were recorded, by frequency."""
-    rows = [strut for one in outcome.runs for strut in one.following]
+    """Return struts and carriage of each run that were led and recorded, by frequency."""
+    rows = [row for one in outcome.runs for row in (*one.following, *one.carriage)]
     return sorted(rows, key=lambda row: row.frequency_hz)
 
 
 def following_table(outcome: CampaignOutcome) -> Table[StrutFollowing]:
-    """Return how each strut followed its set-points in each run."""
+    """Return how struts and carriage followed what they were told in each run."""
     rows = following_rows(outcome)
     return Table("Following error", _COLUMNS, rows, "following", titled=True, notes=(_NOTE,))
 
 
 def following_figures(outcome: CampaignOutcome) -> Iterator[Figure]:
     """Yield the figure where any run's set-points were recorded."""
-    if rows := following_rows(outcome):
+    rows = [row for row in following_rows(outcome) if row.channel in DISPLACEMENTS]
+    if rows:
         yield Figure("following", _CAPTION, partial(following_figure, rows))
 
 
