@@ -14,9 +14,10 @@ from hardware.pacing import FreeRunning, Pacer, RealTime
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
 from sim.devices.bench_file import DRIVERS
+from sim.devices.parts import Scene
 from sim.devices.plant import PlantConditions
 from sim.devices.registry import running
-from sim.devices.world import Scene, World
+from sim.devices.world import World
 from sim.rig import vertical_rig
 
 if TYPE_CHECKING:

@@ -25,9 +25,10 @@ from pmm.recorder.live_path import LivePath, header_channels
 from pmm.recorder.run_recorder import RunEnd as RunOutcome
 from pmm.recorder.run_recorder import RunRecorder
 from sim.devices.bench_file import DRIVERS
+from sim.devices.parts import Scene
 from sim.devices.plant import PlantConditions
 from sim.devices.registry import running
-from sim.devices.world import Scene, World
+from sim.devices.world import World
 from sim.rig import vertical_rig
 
 if TYPE_CHECKING:

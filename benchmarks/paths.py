@@ -23,9 +23,10 @@ from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
 from pmm.real_time import before_others
 from sim.devices.bench_file import DRIVERS
+from sim.devices.parts import Scene
 from sim.devices.plant import PlantConditions
 from sim.devices.registry import running
-from sim.devices.world import Scene, World
+from sim.devices.world import World
 from sim.rig import horizontal_rig
 
 if TYPE_CHECKING:

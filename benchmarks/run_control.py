@@ -29,9 +29,10 @@ from pmm.run.run_control import RunControl
 from pmm.run.states import Command, State
 from pmm.run.view import View
 from sim.devices.bench_file import DRIVERS
+from sim.devices.parts import Scene
 from sim.devices.plant import PlantConditions
 from sim.devices.registry import running
-from sim.devices.world import Scene, World
+from sim.devices.world import World
 from sim.rig import vertical_rig
 
 _NAME = "run control"

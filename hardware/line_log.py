@@ -1,13 +1,29 @@
 """Serial lines for a raw log, and a log that is read again in place of a port."""
 
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import TypeAlias
 
-from hardware.serial_port import Port
+from hardware.serial_port import Port, Ports, PortSettings
 
 LineObserver: TypeAlias = Callable[[int, str, bytes], None]
 """Takes the number of the cycle, the device's name and the line without its line feed."""
+
+
+def heard_ports(
+    ports: Ports, observers: Sequence[LineObserver], number: Callable[[], int]
+) -> Ports:
+    """Return what opens ports whose lines are told to observers, with the cycle's number."""
+
+    def hear(device: str, line: bytes) -> None:
+        for observe in observers:
+            observe(number(), device, line)
+
+    def opened(name: str, settings: PortSettings) -> Port:
+        port = ports(name, settings)
+        return HeardPort(port, hear, name) if observers else port
+
+    return opened
 
 
 class HeardPort:

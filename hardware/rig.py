@@ -17,7 +17,7 @@ from hardware.errors import (
     as_fault,
     worst,
 )
-from hardware.line_log import HeardPort, LineObserver
+from hardware.line_log import LineObserver, heard_ports
 from hardware.master import Clock, Master, Observer
 from hardware.pacing import Pacer
 from hardware.reconnection import reconnect
@@ -25,7 +25,7 @@ from hardware.rest import come_to_rest
 from hardware.rig_configuration import RigConfiguration, check
 from hardware.rig_devices import RigDevices
 from hardware.roles import Cycle, Device, PositionAxis, Powered
-from hardware.serial_port import Port, Ports, PortSettings, SerialPort
+from hardware.serial_port import Ports, SerialPort
 from hardware.watch import WatchLimits
 
 
@@ -84,8 +84,6 @@ class Rig:
         self.number = 0
         self._prepared = False
         self._pacer = pacer
-        self._line_observers = tuple(line_observers)
-        self._ports = ports
         self._devices = RigDevices(lambda: self.faults)
         self._period_s = 1.0 / configuration.sample_rate_hz
         self.master: Master | None = None
@@ -96,9 +94,9 @@ class Rig:
             prompt = operator(prompt) if operator is not None else prompt
             self.prompt = prompt
             rate_hz = configuration.sample_rate_hz
-            self._devices.open(
-                configuration, Services(clock, prompt, rate_hz, self.master, port=self._port)
-            )
+            heard = heard_ports(ports, line_observers, lambda: self.number)
+            services = Services(clock, prompt, rate_hz, self.master, port=heard)
+            self._devices.open(configuration, services)
         except BaseException:
             self.close()
             raise
@@ -277,14 +275,6 @@ class Rig:
                 stack.callback(self.master.close)
             for device in reversed(devices):
                 stack.callback(device.close)
-
-    def _port(self, name: str, settings: PortSettings) -> Port:
-        port = self._ports(name, settings)
-        return HeardPort(port, self._hear, name) if self._line_observers else port
-
-    def _hear(self, device: str, line: bytes) -> None:
-        for observe in self._line_observers:
-            observe(self.number, device, line)
 
     def _latch(self, error: HardwareError) -> bool:
         """Keep a fault that stops the rig; tell whether it is to be raised."""

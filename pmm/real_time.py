@@ -5,6 +5,7 @@ import gc
 import os
 import sys
 from collections.abc import Iterator
+from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import StrEnum
@@ -123,3 +124,13 @@ def may_lock_memory() -> bool | None:
 def _lock_memory() -> bool:
     """Keep in memory what is and comes there, if there is no limit to it; tell whether it is so."""
     return bool(may_lock_memory() and ctypes.CDLL(None).mlockall(_LOCK_ALL) == 0)
+
+
+@contextmanager
+def thread_beside(name: str, *, keeps_time: bool) -> Iterator[Executor | None]:
+    """Give a thread that steps back for a loop that keeps time; a loop that does not may wait."""
+    if not keeps_time:
+        yield None
+        return
+    with ThreadPoolExecutor(1, thread_name_prefix=name, initializer=step_back) as executor:
+        yield executor

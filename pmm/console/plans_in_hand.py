@@ -3,6 +3,7 @@
 from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 
+from pmm.console.limits import MOST_WAITING
 from pmm.console.queued_plan import QueuedPlan
 from pmm.run.planned_runs import UNCHANGED
 from pmm.run.states import RunStateError
@@ -14,6 +15,11 @@ class PlansInHand:
 
     present: QueuedPlan | None = None
     waiting: list[QueuedPlan] = field(default_factory=list)
+
+    @property
+    def number(self) -> int:
+        """Number of the plan that is carried out; 0 for none."""
+        return 0 if self.present is None else self.present.number
 
     @property
     def ready(self) -> bool:
@@ -51,11 +57,31 @@ class PlansInHand:
             raise RunStateError(f"no plan {number} waits")
         return found[0]
 
+    def require_room(self, plan: QueuedPlan) -> None:
+        """Refuse one more plan where as many wait as may.
+
+        Raises
+        ------
+        RunStateError
+            With the limit.
+        """
+        if len(self.waiting) >= MOST_WAITING:
+            raise RunStateError(
+                f"{MOST_WAITING} plans wait already, which is the limit; take one out, or queue "
+                f"{plan.plan.name} when the next of them has begun"
+            )
+
+    def drop(self, number: int) -> QueuedPlan:
+        """Take a plan that waits out, and return it."""
+        plan = self.waits(number)
+        self.waiting.remove(plan)
+        return plan
+
     def move(self, number: int, by: int) -> QueuedPlan:
         """Let a plan that waits have its turn later by so many places, earlier where negative."""
         plan = self.waits(number)
         place = self.waiting.index(plan)
-        self.waiting.remove(plan)
+        self.drop(number)
         self.waiting.insert(max(0, place + by), plan)
         return plan
 

@@ -13,7 +13,6 @@ from hardware.errors import as_fault
 from hardware.rig import Rig
 from pmm.console.answers import BrowserAnswers
 from pmm.console.choosing import ChoosingCampaign
-from pmm.console.limits import MOST_WAITING
 from pmm.console.link import Link
 from pmm.console.messages import Hello, LoopOrder, OrderKind, Reply
 from pmm.console.pacing import CountingPacer
@@ -28,7 +27,7 @@ from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 from pmm.run.journal import Taps
 from pmm.run.measurement import Measurement
-from pmm.run.recorder_factory import RecorderFactory
+from pmm.run.recorder_factory import RecorderFactory, plan_provenance
 from pmm.run.run_control import RunControl
 from pmm.run.states import Command, RunStateError, State
 
@@ -71,8 +70,7 @@ class Station:
         speed: float = 1.0,
     ) -> None:
         self._rig, self._rig_file, self._link = rig, rig_file, link
-        self._answers, self._taps = answers, taps
-        self._quick_stop = quick_stop
+        self._answers, self._taps, self._quick_stop = answers, taps, quick_stop
         self._clock, self._utc, self._provenance = clock, utc, provenance
         self._executor, self._speed = executor, speed
         self._channels = channels_of(rig, rig_file)
@@ -171,9 +169,7 @@ class Station:
             done, text = True, self._obey(order)
         except (PmmError, ValueError) as error:
             done, text = False, str(error)
-        present = self._plans.present
-        number = 0 if present is None else present.number
-        return Reply(order.number, done, text, number, self._view.next_frame)
+        return Reply(order.number, done, text, self._plans.number, self._view.next_frame)
 
     def _obey(self, order: LoopOrder) -> str:
         if order.quick_stops < self._quick_stop.pressed:
@@ -203,11 +199,7 @@ class Station:
     def _queue(self, plan: QueuedPlan) -> str:
         if not plan.runs and not plan.chooses:
             raise RunStateError(f"{plan.plan.name}: all its runs are complete in {plan.folder}")
-        if len(self._plans.waiting) >= MOST_WAITING:
-            raise RunStateError(
-                f"{MOST_WAITING} plans wait already, which is the limit; take one out, or queue "
-                f"{plan.plan.name} when the next of them has begun"
-            )
+        self._plans.require_room(plan)
         self._writer.begin(plan)
         self._plans.waiting.append(plan)
         what = "runs to be chosen" if plan.chooses else counted(len(plan.runs), "run")
@@ -251,9 +243,7 @@ class Station:
             self._writer.let_go(number)
             self._anew(())
         else:
-            plan = self._plans.waits(number)
-            name = plan.plan.name
-            self._plans.waiting.remove(plan)
+            name = self._plans.drop(number).plan.name
             self._writer.let_go(number)
         self._view.notice("queue", f"{name}: taken out of the queue")
         return f"{name} is taken out"
@@ -299,12 +289,10 @@ class Station:
         return control
 
     def _recorded(self, plan: QueuedPlan) -> RecorderFactory:
-        kept = {**self._provenance, "plan": plan.plan.name}
-        if plan.plan.operator:
-            kept["operator"] = plan.plan.operator
         return RecorderFactory(
-            self._rig, self._rig_file, plan.plan, plan.folder, self._utc, self._taps, kept
-        )
+            self._rig, self._rig_file, plan.plan, plan.folder, self._utc, self._taps,
+            self._provenance | plan_provenance(plan.plan),
+        )  # fmt: skip
 
     def _begin(self, run: RunPlan) -> Measurement:
         if self._recording is None:

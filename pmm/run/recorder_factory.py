@@ -152,6 +152,11 @@ class RecorderFactory:
         return {name: one for name, one in found.items() if one is not None}
 
 
+def plan_provenance(plan: Plan) -> dict[str, str]:
+    """Return what is kept of a plan with every run: its name, and its operator where it has one."""
+    return {"plan": plan.name, **({"operator": plan.operator} if plan.operator else {})}
+
+
 def set_tried_aside(folder: Path) -> None:
     """Move aside what an earlier try of a run left; it is not lost."""
     if not folder.exists():

@@ -23,7 +23,7 @@ from pmm.run.measurement import Measurement
 from pmm.run.phases import PHASES, enter
 from pmm.run.planned_runs import PlannedRuns
 from pmm.run.states import Command, RunStateError, State
-from pmm.run.status import Alarms, RunOutcome, RunStatus
+from pmm.run.status import Alarms, RunOutcome, RunStatus, status_of
 from pmm.run.stopper import Stopper
 from pmm.run.view import View
 
@@ -189,26 +189,7 @@ class RunControl:
 
     def status(self) -> RunStatus:
         """Return a picture of this moment."""
-        c, number = self._conduct, self.rig.number
-        run, measurement = c.run, c.measurement
-        return RunStatus(
-            state=self.state,
-            cycle=number,
-            time_s=number / c.rate_hz,
-            run=run.name if run else "",
-            kind=str(run.kind) if run else "",
-            run_number=self.planned.number(run) if run else 0,
-            run_count=len(self.runs),
-            frequency_hz=run.set_point.frequency_hz if run else 0.0,
-            gate=measurement.gate.state if measurement else RunStatus.gate,
-            periods=measurement.gate.periods if measurement else 0,
-            wanted_periods=measurement.gate.wanted if measurement else 0,
-            harmonics=measurement.rows() if measurement else (),
-            question=c.questions.present,
-            alarms=self.alarms.latest,
-            statistics=measurement.journal.statistics() if measurement else None,
-            free_bytes=self.free_bytes(),
-        )
+        return status_of(self._conduct, self.planned, self.alarms, self.free_bytes())
 
     def _record(self, lateness_s: float) -> None:
         """Record a cycle; in a fault a recorder that fails must not keep the axes from stopping."""

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import Executor, Future
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -20,7 +20,7 @@ from pmm.plan.findings import PlanFinding
 from pmm.plan.plan import Plan, read_plan_and_rig
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
-from pmm.real_time import Standing, before_others, step_back
+from pmm.real_time import Standing, before_others, thread_beside
 from pmm.recorder.campaign_owner import own_campaign
 from pmm.run.campaign_folder import (
     check_names,
@@ -32,7 +32,7 @@ from pmm.run.campaign_folder import (
 )
 from pmm.run.journal import Taps
 from pmm.run.operator import Interrupts, OperatorAnswers
-from pmm.run.recorder_factory import RecorderFactory, utc_now
+from pmm.run.recorder_factory import RecorderFactory, plan_provenance, utc_now
 from pmm.run.rehearsal import rehearse
 from pmm.run.run_control import RunControl
 from pmm.run.run_origin import change_lines
@@ -168,11 +168,10 @@ def carry_out(
         shown = stack.enter_context(view(lambda: answers.question))
         taps = Taps()
         rig = stack.enter_context(tapped_rig(job.rig_file, _pacer(job), answers, taps))
-        executor = stack.enter_context(_executor(job.real_time))
+        executor = stack.enter_context(thread_beside("closing", keeps_time=job.real_time))
+        kept = {"program": program(), **plan_provenance(job.plan)}
         recording = stack.enter_context(
-            RecorderFactory(
-                rig, job.rig_file, job.plan, job.folder, utc_now, taps, _provenance(job)
-            )
+            RecorderFactory(rig, job.rig_file, job.plan, job.folder, utc_now, taps, kept)
         )
         control = RunControl(
             rig, job.rig_file, job.runs, recording.begin, time.monotonic, shown, executor
@@ -278,18 +277,3 @@ def _pacer(job: RunJob) -> Pacer:
     if not job.real_time:
         return FreeRunning()
     return RealTime(1.0 / job.rig_file.sample_rate_hz, time.monotonic, time.sleep)
-
-
-@contextmanager
-def _executor(real_time: bool) -> Iterator[Executor | None]:
-    """Give a thread to complete recordings in; in simulated time the loop may as well wait."""
-    if not real_time:
-        yield None
-        return
-    with ThreadPoolExecutor(1, thread_name_prefix="closing", initializer=step_back) as executor:
-        yield executor
-
-
-def _provenance(job: RunJob) -> dict[str, str]:
-    operator = {"operator": job.plan.operator} if job.plan.operator else {}
-    return {"program": program(), "plan": job.plan.name, **operator}

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import Executor
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -15,7 +15,7 @@ from pmm.design.design_file import DesignFile
 from pmm.plan.campaign_writer import write_campaign
 from pmm.plan.plan import read_plan_and_rig
 from pmm.plan.rig_file import is_simulated
-from pmm.real_time import step_back
+from pmm.real_time import thread_beside
 from pmm.recorder.campaign_owner import own_campaign
 from pmm.run.campaign_folder import finished_runs, keep_sources
 from pmm.run.operator import OperatorAnswers
@@ -100,7 +100,9 @@ def carry_out_campaign(
         If a question is asked that nobody can answer.
     """
     with ExitStack() as stack:
-        executor = stack.enter_context(_executor(file.rig.realtime or asked.real_time))
+        executor = stack.enter_context(
+            thread_beside("looking", keeps_time=file.rig.realtime or asked.real_time)
+        )
         course = stack.enter_context(
             campaign_course(file, goal, asked, answers, screen.show, executor)
         )
@@ -219,13 +221,3 @@ def next_job(
             raise RunFailedError(f"nobody answers: {asked}; the input has ended")
         time.sleep(_POLL_S)
     return None
-
-
-@contextmanager
-def _executor(real_time: bool) -> Iterator[Executor | None]:
-    """Give a thread to look in while the loop keeps time; in simulated time it may wait."""
-    if not real_time:
-        yield None
-        return
-    with ThreadPoolExecutor(1, thread_name_prefix="looking", initializer=step_back) as executor:
-        yield executor

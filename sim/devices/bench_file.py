@@ -26,9 +26,10 @@ from hardware.driver import GROUP, read_settings
 from hardware.rig_configuration import TABLES as DEVICES
 from hardware.rig_configuration import RigConfiguration, read_rig
 from hardware.simulation_identity import SimulatedTables
+from sim.devices.parts import Scene
 from sim.devices.plant import PlantConditions
 from sim.devices.strut_drive import PositionLoop
-from sim.devices.world import Scene, World
+from sim.devices.world import World
 from sim.model.parameters import HullCoefficients
 from sim.model.water.radiation_file import RadiationFile
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig

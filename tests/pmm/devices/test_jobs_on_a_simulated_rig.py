@@ -18,8 +18,9 @@ from pmm.devices.axis_move import NOTHING_MOVED, axis_of, look, move, turn
 from pmm.devices.device_readings import Live
 from pmm.devices.photocell_test import watch
 from pmm.devices.push_session import GaugeReadings, direction, push_each
+from sim.devices.parts import Scene
 from sim.devices.registry import running
-from sim.devices.world import Scene, World
+from sim.devices.world import World
 from sim.rig import vertical_rig
 from tests.hardware.rigs import nobody
 from tests.sim.devices.benches import (

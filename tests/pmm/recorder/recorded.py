@@ -30,9 +30,10 @@ from pmm.recorder.live_path import (
 )
 from pmm.recorder.run_recorder import RunRecorder
 from sim.devices.bench_file import DRIVERS
+from sim.devices.parts import Scene
 from sim.devices.plant import PlantConditions
 from sim.devices.registry import running
-from sim.devices.world import Scene, World
+from sim.devices.world import World
 from sim.rig import vertical_rig
 from tests.hardware.rigs import nobody
 from tests.sim.devices.benches import WHOLE, turning

@@ -24,9 +24,10 @@ from pmm.run.recorder_factory import RecorderFactory
 from pmm.run.run_control import RunControl
 from pmm.run.states import Command, State
 from sim.devices.bench_file import DRIVERS
+from sim.devices.parts import Scene
 from sim.devices.plant import PlantConditions
 from sim.devices.registry import running
-from sim.devices.world import Scene, World
+from sim.devices.world import World
 from sim.rig import SimulatedRig, vertical_rig
 from tests.hardware.rigs import ECCENTRICITY, PHASE, SHAFT
 from tests.sim.devices.benches import amplifier

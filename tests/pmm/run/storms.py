@@ -31,8 +31,9 @@ from pmm.run.states import Command, State
 from sim.devices.bench_file import DRIVERS
 from sim.devices.drive import SimulatedDrive
 from sim.devices.faults import inject
+from sim.devices.parts import Scene
 from sim.devices.registry import running
-from sim.devices.world import Scene, World
+from sim.devices.world import World
 from sim.rig import vertical_rig
 from tests.pmm.run.harness import (
     E_M,

@@ -19,9 +19,10 @@ from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
 from sim.devices.bench_file import DRIVERS
 from sim.devices.faults import inject
+from sim.devices.parts import Scene
 from sim.devices.plant import PlantConditions
 from sim.devices.registry import running
-from sim.devices.world import Scene, World
+from sim.devices.world import World
 from sim.rig import SimulatedRig, vertical_rig
 from tests.hardware.contract import Bench
 from tests.hardware.rigs import ECCENTRICITY, PHASE, SHAFT, nobody

@@ -15,9 +15,10 @@ import pytest
 from hardware.rig_configuration import read_rig
 from sim.devices.bench_file import DRIVERS
 from sim.devices.bus import SimulatedBus
+from sim.devices.parts import Scene
 from sim.devices.plant import PlantConditions
 from sim.devices.registry import running
-from sim.devices.world import Scene, World
+from sim.devices.world import World
 from sim.rig import vertical_rig
 from tests.sim.devices.benches import ROOT, WHOLE, Hosted, multicast_works
 from tests.sim.devices.test_killed_controller_against_time import CONTROLLER

@@ -7,9 +7,10 @@ from hardware.pacing import FreeRunning
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
 from sim.devices.bench_file import DRIVERS
+from sim.devices.parts import Scene
 from sim.devices.registry import running
 from sim.devices.serial_devices import Swinging
-from sim.devices.world import Scene, World
+from sim.devices.world import World
 from sim.pendulum.benches import swing_bench
 from sim.rig import vertical_rig
 from tests.hardware.rigs import nobody

@@ -18,8 +18,9 @@ from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
 from sim.devices.bench_file import DRIVERS
 from sim.devices.faults import inject
+from sim.devices.parts import Scene
 from sim.devices.registry import running
-from sim.devices.world import Scene, World
+from sim.devices.world import World
 from sim.rig import vertical_rig
 from tests.hardware.rigs import nobody
 from tests.sim.devices.modbus_tables import CARRIAGE

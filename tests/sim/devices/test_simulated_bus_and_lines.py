@@ -24,10 +24,11 @@ from hardware.roles import Role
 from sim.devices.__main__ import main
 from sim.devices.bench_file import DRIVERS, read_bench
 from sim.devices.host import Host
+from sim.devices.parts import Scene
 from sim.devices.registry import running
 from sim.devices.slcan import SlcanAdapter
 from sim.devices.terminal import PseudoTerminal
-from sim.devices.world import Scene, World
+from sim.devices.world import World
 from sim.rig import vertical_rig
 from tests.hardware.rigs import nobody
 from tests.sim.devices.benches import ROOT, WHOLE, amplifier, in_process, toml
