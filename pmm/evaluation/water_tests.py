@@ -1,4 +1,4 @@
-"""The slow and steady tests in water: quasi-static restoring, static drift, straight tow.
+"""The tests in water that are looked at on the spot: restoring, drift, tows, circles, free decays.
 
 A quick look while model and rig still hang in the tank; ``pmm coefficients`` makes derivatives of
 whole campaigns. Zeros, calibration and the derivatives of drift are as it has them.
@@ -13,12 +13,14 @@ from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign import campaign_coefficients
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.restoring import Restoring, Track, restoring_of, track_of
+from analysis.coefficients.steady_turns import SteadyTurn
 from analysis.coefficients.tows import Tow, tow_of
 from hardware.description.errors import PmmError
 from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.water import TankWater
+from pmm.coefficients.decays import Decay, decays_of
 from pmm.coefficients.reading import read_cycle, read_zero
 from pmm.coefficients.settings import CoefficientSettings, ShipTable, settings_of
 from pmm.coefficients.stated_inputs import chain_of, oscillator_of, stated_of
@@ -40,6 +42,10 @@ class InWater:
         Static drift and straight tow, in their order.
     derivatives
         Of the loads by the velocity across the model, at each speed; ``None`` where no run drifts.
+    turns
+        Runs on a circle: rate, radius, and the mean loads that held the model.
+    decays
+        Free decays in roll, by speed.
     failed
         Runs that could not be used, and why.
     ship, water
@@ -50,6 +56,8 @@ class InWater:
     tracks: tuple[Track, ...] = field(default=(), repr=False)
     tows: tuple[Tow, ...] = ()
     derivatives: CampaignCoefficients | None = None
+    turns: tuple[SteadyTurn, ...] = ()
+    decays: tuple[Decay, ...] = ()
     failed: tuple[Failed, ...] = ()
     ship: ShipTable = field(default_factory=ShipTable)
     water: TankWater | None = None
@@ -61,16 +69,16 @@ class InWater:
 
 
 def in_water(campaign: Campaign, folder: Path) -> InWater:
-    """Evaluate a campaign's restoring, drift and tow runs; nothing where there are none.
+    """Evaluate a campaign's tests in water but oscillations; nothing where there are none.
 
     Raises
     ------
     ConfigurationError
         If the campaign has such runs and no oscillator, or ``coefficients.toml`` is wrong.
     """
-    kinds = (RunKind.RESTORING, RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW)
+    kinds = (RunKind.RESTORING, RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW, RunKind.CIRCLE)
     planned = {run.kind for run in campaign.runs} | {one.kind for one in campaign.at_rest}
-    if not planned & set(kinds):
+    if not planned & {*kinds, RunKind.FREE_DECAY}:
         return InWater()
     oscillator = oscillator_of(campaign, folder)
     settings, _ = settings_of(folder, None)
@@ -83,12 +91,15 @@ def in_water(campaign: Campaign, folder: Path) -> InWater:
     found = _Found(campaign, oscillator, settings, failed)
     for task in wanted:
         found.take(task.with_zeros(known))
+    decays, torn = decays_of(campaign, folder)
     return InWater(
         tuple(found.restoring),
         tuple(found.tracks),
         tuple(found.tows),
         found.derivatives(),
-        tuple(failed),
+        tuple(found.turns),
+        decays,
+        (*failed, *map(_named, torn)),
         settings.ship.within(campaign.water),
         campaign.water,
     )
@@ -110,6 +121,7 @@ class _Found:
         self.restoring: list[Restoring] = []
         self.tracks: list[Track] = []
         self.tows: list[Tow] = []
+        self.turns: list[SteadyTurn] = []
 
     def take(self, task: Task) -> None:
         """Read a run and evaluate it."""
@@ -135,6 +147,9 @@ class _Found:
         return campaign_coefficients(cycles, wanted)
 
     def _evaluate(self, task: Task, done: Done, cycle: BodyCycle) -> None:
+        if done.turn is not None:
+            self.turns.append(done.turn)
+            return
         if task.kind is not RunKind.RESTORING:
             self._towed.append(done)
             self.tows.append(tow_of(task.kind, cycle))

@@ -1,6 +1,5 @@
 """What a campaign's coefficients say: each table once, for the terminal, the page and programs."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any, Final
@@ -11,7 +10,6 @@ from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.exchange import to_dict
 from analysis.coefficients.recommendation import recommended, table
 from analysis.coefficients.stated_uncertainties import STATED
-from analysis.coefficients.steady_turns import SteadyTurn
 from pmm.coefficients.tasks import Done
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import (
@@ -29,10 +27,11 @@ from pmm.document.content import (
     word,
 )
 from pmm.document.flag_lines import flag_lines, flag_notes
-from pmm.document.notation import NOT_KNOWN, counted, joined, rounded, written
+from pmm.document.notation import NOT_KNOWN, counted, joined, written
 from pmm.report.attitude import attitude_table, heel_table
 from pmm.report.attitude_figure import attitude_figures
 from pmm.report.circle_figure import circle_figures
+from pmm.report.circle_table import circle_table
 from pmm.report.coefficient_findings import beside, findings
 from pmm.report.coefficient_plots import figures
 from pmm.report.coefficient_tables import (
@@ -107,7 +106,7 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
             Section("Uncertainty", (_given(outcome), budget_table(found))),
             Section(
                 "Runs",
-                (_runs(outcome), _circles(outcome), decay_table(outcome)),
+                (_runs(outcome), circle_table(outcome.turns), decay_table(outcome.decays)),
             ),
         ),
         SCHEMA,
@@ -124,29 +123,6 @@ def _conditions(outcome: CampaignOutcome) -> tuple[Content, ...]:
         following_table(outcome),
         wave_table(outcome),
     )
-
-
-def _known(value: float, uncertainty: float) -> str:
-    return rounded(value, uncertainty) if uncertainty else f"{value:.4g}"
-
-
-_CIRCLES: Final[tuple[Column[SteadyTurn], ...]] = (
-    word("run", "run"),
-    Column("radius", lambda one: _known(one.radius_m, one.u_radius_m), unit="m", number=True),
-    Column("r", lambda one: _known(one.turn_rate_rad_s, one.u_turn_rate_rad_s), unit="rad/s",
-           number=True),
-    number("U", "speed_m_s", written(".4g"), "m/s"),
-    Column("drift", lambda one: f"{math.degrees(one.drift_rad):.3g}", unit="deg", number=True),
-    Column("force", lambda one: rounded(one.force_n, one.u_force_n), unit="N", number=True),
-    Column("moment", lambda one: rounded(one.moment_n_m, one.u_moment_n_m), unit="N m",
-           number=True),
-)  # fmt: skip
-
-
-def _circles(outcome: CampaignOutcome) -> Table[SteadyTurn]:
-    """Return the runs on a circle."""
-    title = "Runs on a circle, loads of what holds the model, one standard uncertainty"
-    return Table(title, _CIRCLES, outcome.turns, "steady_turns", titled=True)
 
 
 def conclusion(found: CampaignCoefficients) -> tuple[Content, ...]:

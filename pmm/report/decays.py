@@ -38,13 +38,19 @@ _COLUMNS: Final[tuple[Column[Decay], ...]] = (
     Column("damping ratio", lambda one: rounded(one.ratio.value, one.ratio.uncertainty),
            number=True),
     Column("power of the decay", _power, number=True),
+    Column(None, lambda one: [run.name for run in one.runs], "runs"),
+    Column(None, lambda one: one.speed_m_s, "speed_m_s"),
+    Column(None, lambda one: one.period.value, "period_s"),
+    Column(None, lambda one: one.period.uncertainty, "u_period_s"),
+    Column(None, lambda one: one.ratio.value, "damping_ratio"),
+    Column(None, lambda one: one.ratio.uncertainty, "u_damping_ratio"),
 )  # fmt: skip
 
 
-def decay_table(outcome: CampaignOutcome) -> Table[Decay]:
+def decay_table(decays: Sequence[Decay]) -> Table[Decay]:
     """Return period and damping ratio at each speed; empty without decays."""
     title = "Free decays in roll, one standard uncertainty"
-    return Table(title, _COLUMNS, outcome.decays, "free_decays", titled=True)
+    return Table(title, _COLUMNS, decays, "free_decays", titled=True)
 
 
 def decay_figures(outcome: CampaignOutcome) -> Iterator[Figure]:

@@ -25,8 +25,10 @@ from pmm.document.notation import rounded, written
 from pmm.evaluation.control_chart import Chart
 from pmm.evaluation.evaluation import Evaluation
 from pmm.evaluation.rig_tests import GaugeResponse, GaugeZeros, RungMode, TowedSpeed
+from pmm.report.circle_table import circle_table
 from pmm.report.coefficients_document import conclusion
 from pmm.report.conditions import conditions_table
+from pmm.report.decays import decay_figure, decay_table
 from pmm.report.slow_tests import chart_figure, drift_figure, resistance_figure, restoring_figure
 
 SCHEMA: Final = "pmm-evaluation-1"
@@ -72,6 +74,8 @@ def evaluation_figures(found: Evaluation) -> Iterator[Figure]:
             "Load of the struts for a displacement.",
             lambda: restoring_figure(water.restoring, water.tracks),
         )
+    if water.decays:
+        yield Figure("decays", "Heel after release.", lambda: decay_figure(water.decays))
     if (drift := water.derivatives) is not None:
         yield Figure("static-drift", "Loads over drift.", lambda: drift_figure(water.tows, drift))
     if water.straight:
@@ -101,6 +105,8 @@ def evaluation_document(found: Evaluation) -> Document:
         _tows(water.tows),
         conditions_table((one.speed_m_s for one in water.tows), water.ship, water.water),
         Data("tows", water.tows),
+        circle_table(water.turns),
+        decay_table(water.decays),
         *(() if derivatives is None else conclusion(derivatives)),
         Data("derivatives", derivatives and to_dict(derivatives)),
         Text([_verdict(chart) for chart in found.charts]),
