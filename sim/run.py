@@ -69,14 +69,8 @@ def simulate(
         If the oscillator cannot run the set-point, if a strut would have to carry more than it may,
         or if another argument is out of range.
     """
-    _check_arguments(set_point, periods, settling_periods, sample_rate_hz, seed)
-    samples_per_period = sample_rate_hz / set_point.frequency_hz
-    skipped = math.ceil(settling_periods * samples_per_period)
-    count = math.ceil((periods + 1) * samples_per_period) + 1
-    zeroed = _zeroed(rig, skipped / sample_rate_hz)
-    chain = zeroed.chain(set_point)
-    _, run = chain.run(chain.start(sample_rate_hz, seed), skipped + count)
-    _check_strut_forces(rig, run)
+    timing = periods, settling_periods, sample_rate_hz
+    run, skipped = signals_of_run(rig, set_point, *timing, seed)
     flags = _overloads(rig, run) + _ramp_in_record(rig, skipped / sample_rate_hz)
     attributes: dict[str, str | float] = {
         schema.ATTR_SCHEMA: schema.SCHEMA,
@@ -87,6 +81,29 @@ def simulate(
         schema.ATTR_FLAGS: json.dumps([asdict(flag) for flag in flags]),
     }
     return _dataset(rig, run, skipped, sample_rate_hz, attributes)
+
+
+def signals_of_run(
+    rig: SimulatedRig,
+    set_point: SetPoint,
+    periods: int,
+    settling_periods: int,
+    sample_rate_hz: float,
+    seed: int,
+) -> tuple[Signals, int]:
+    """Return every signal of a run by name, and how many samples pass before the record begins.
+
+    For parameters and errors see :func:`simulate`.
+    """
+    _check_arguments(set_point, periods, settling_periods, sample_rate_hz, seed)
+    samples_per_period = sample_rate_hz / set_point.frequency_hz
+    skipped = math.ceil(settling_periods * samples_per_period)
+    count = math.ceil((periods + 1) * samples_per_period) + 1
+    zeroed = _zeroed(rig, skipped / sample_rate_hz)
+    chain = zeroed.chain(set_point)
+    _, run = chain.run(chain.start(sample_rate_hz, seed), skipped + count)
+    _check_strut_forces(rig, run)
+    return run, skipped
 
 
 def steady_run(
@@ -194,20 +211,28 @@ def _dataset(
     for line in rig.acquisition.lines:
         values = run[signals.recorded(line.channel).name][skipped:]
         units: dict[str, str | float] = {schema.UNITS: line.channel.unit}
-        full_scale = _full_scale(rig, line.channel.name, line.digitiser.full_scale)
-        if full_scale is not None:
-            units[schema.FULL_SCALE] = full_scale
+        limit = full_scale(rig, line.channel.name, line.digitiser.full_scale)
+        if limit is not None:
+            units[schema.FULL_SCALE] = limit
         variables[line.channel.name] = (schema.TIME, values, units)
     count = run[signals.SHAFT_ANGLE.name].size - skipped
-    if rig.photocell is not None:
-        edges = run[signals.PHOTOCELL_EDGE_TIME.name] - skipped / sample_rate_hz
-        inside = (edges >= 0.0) & (edges <= (count - 1) / sample_rate_hz)
-        variables[schema.EDGE_TIME] = (schema.EDGE, edges[inside], {schema.UNITS: "s"})
+    edges_s = edges_of(run, skipped, sample_rate_hz)
+    if edges_s is not None:
+        variables[schema.EDGE_TIME] = (schema.EDGE, edges_s, {schema.UNITS: "s"})
     time_s = (schema.TIME, np.arange(count) / sample_rate_hz, {schema.UNITS: "s"})
     return xr.Dataset(variables, coords={schema.TIME: time_s}, attrs=attributes)
 
 
-def _full_scale(rig: SimulatedRig, channel: str, converter: float | None) -> float | None:
+def edges_of(run: Signals, skipped: int, sample_rate_hz: float) -> FloatArray | None:
+    """Return the times of the photocell's pulses within the record; ``None`` without one."""
+    if signals.PHOTOCELL_EDGE_TIME.name not in run:
+        return None
+    edges_s = run[signals.PHOTOCELL_EDGE_TIME.name] - skipped / sample_rate_hz
+    last_s = (run[signals.SHAFT_ANGLE.name].size - skipped - 1) / sample_rate_hz
+    return np.asarray(edges_s[(edges_s >= 0.0) & (edges_s <= last_s)], np.float64)
+
+
+def full_scale(rig: SimulatedRig, channel: str, converter: float | None) -> float | None:
     """Return the smaller of the limits that dynamometer and converter set for a channel."""
     limits = (_gauge_full_scale(rig, channel), converter)
     return min((limit for limit in limits if limit is not None), default=None)

@@ -19,6 +19,7 @@ from analysis.gap.forward.stages import Solved
 from analysis.gap.observe.at_rest import record_at_rest, steady_at_rest
 from analysis.gap.observe.components import GapRun, Layout, Observation, Part, Stack
 from analysis.gap.observe.observation import observe
+from analysis.recording import Recording
 from analysis.resolver.reference_choice import ReferenceChoice
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.channels import FORCES
@@ -30,6 +31,8 @@ from sim.model.law_point import Acting
 from sim.model.laws import Spring
 from sim.periodic import SteadyState
 from sim.rig import SimulatedRig
+from sim.run import edges_of, full_scale, signals_of_run
+from sim.signals import recorded
 from sim.solve.period import Period
 
 Records = dict[tuple[str, tuple[Effect, ...], int], FloatArray]
@@ -170,9 +173,6 @@ class Simulator:
         return switch_on(*_preloaded(effects, self.rig, run), told, run.place)
 
     def _in_time(self, run: GapRun, effects: Sequence[Effect], seed: int) -> FloatArray:
-        from analysis.readers.dataset import from_dataset
-        from sim.run import simulate
-
         acting, believed = _preloaded(effects, self.rig, run)
         rig, set_point = switch_on(acting, believed, run.set_point, run.place)
         if not run.turns:
@@ -180,20 +180,26 @@ class Simulator:
             return align(seen, run.observed)
         # The run has been made: whatever the strut may carry, it did.
         oscillator = replace(rig.oscillator, force_per_strut_n=float("inf"))
-        dataset = simulate(
-            replace(rig, oscillator=oscillator),
-            set_point,
-            periods=run.periods,
-            settling_periods=_SETTLING,
-            sample_rate_hz=run.sample_rate_hz,
-            seed=seed + run.place.index,
-            name=run.name,
+        record = _recorded(
+            replace(rig, oscillator=oscillator), set_point, run, seed + run.place.index
         )
-        record = replace(from_dataset(dataset), set_point=run.set_point)
         phase = ReferenceChoice(channel=self.reference_channel)
         found = observe(record, phase, wanted={one.part for one in run.observed.components})
         later_s = run.lead_s - found.lead_s
         return align(found.observation, run.observed) + _drifted(rig, run.observed, later_s)
+
+
+def _recorded(rig: SimulatedRig, set_point: SetPoint, run: GapRun, seed: int) -> Recording:
+    """Return a simulated record of a run, as long and as fast as the one that was made."""
+    rate_hz, lines = run.sample_rate_hz, rig.acquisition.lines
+    found, skipped = signals_of_run(rig, set_point, run.periods, _SETTLING, rate_hz, seed)
+    channels = tuple(
+        replace(one.channel, full_scale=full_scale(rig, one.channel.name, one.digitiser.full_scale))
+        for one in lines
+    )
+    samples = np.array([found[recorded(one.channel).name][skipped:] for one in lines])
+    edges_s = edges_of(found, skipped, rate_hz)
+    return Recording(run.name, channels, samples, rate_hz, 0.0, edges_s, run.set_point)
 
 
 def _preloaded(

@@ -88,9 +88,16 @@ class Background:
 
     def alone(self) -> dict[str, FloatArray]:
         """Return that of something unknown, by the kind of observations in which it shows."""
-        return {
-            kind: self._spread(self.tolerances, 1.0, one.rows) for kind, one in self.kinds.items()
-        }
+        return {kind: self._seen(self._within(one.rows)) for kind, one in self.kinds.items()}
+
+    def _within(self, rows: BoolArray) -> list[Reduced]:
+        """Return the residual's products under a deviation of each size in some observations."""
+        if rows.all():
+            return [one.reduced(self._scale(), self._of) for one in self._calm]
+        each = np.eye(len(rows))[:, rows]
+        found = self._bare.reduced(self._scale(), np.hstack((self._of, each)))
+        sizes, at = np.sqrt(self.kernel.values[rows]), range(1, 1 + each.shape[1])
+        return [found.widened(1, at, tau * sizes) for tau in TAUS]
 
     def _spread(self, columns: FloatArray, share: float, rows: BoolArray) -> FloatArray:
         """Return the log evidence of shapes, and of a share of none in some observations.
@@ -215,11 +222,14 @@ class Background:
         return logs
 
     @cached_property
+    def _bare(self) -> Weighted:
+        """Under no deviation."""
+        return Weighted(self._columns, np.ones(len(self.residual)), self.tolerances.shape[1])
+
+    @cached_property
     def _least(self) -> float:
         """Log determinant of tolerances and of a deviation that these runs hardly show."""
-        ones = np.ones(len(self.residual))
-        bare = Weighted(self._columns, ones, self.tolerances.shape[1])
-        return bare.reduced(self._scale(), self._of).log_determinant + 2.0 * VISIBLE
+        return self._bare.reduced(self._scale(), self._of).log_determinant + 2.0 * VISIBLE
 
     def _seen(self, found: Sequence[Reduced]) -> FloatArray:
         """Return log evidences, minus infinity where these runs would hardly show a deviation."""

@@ -5,17 +5,27 @@ look begins where the effect is about as large as what there is to explain.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Final
 
 import numpy as np
 
-from analysis.gap.forward.candidate import Candidate, candidates
+from analysis.gap.forward.candidate import STEP, Candidate, candidates
 from analysis.gap.forward.powers import grown
 from analysis.gap.forward.problem import Compared, Problem
 from analysis.gap.inference.gaussian import left_over, misfit, null_evidence
-from analysis.gap.search.fit import Fit, at, bounds, expected_evidence, inside, most_probable, moved
+from analysis.gap.search.fit import (
+    Fit,
+    at,
+    bounds,
+    expected_evidence,
+    inside,
+    most_probable,
+    moved,
+    weighed_at,
+)
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
@@ -53,19 +63,32 @@ class Looked:
 
 def look(problem: Problem, kind: type[Effect]) -> Looked:
     """Linearise an effect at its typical values, from each of its starts, and keep the best."""
-    return best_look(problem, kind.name, _starts(problem, kind))
+    frequencies = [run.set_point.frequency_hz for run in problem.simulator.stack.turning]
+    ones = list(candidates(kind, sorted(set(frequencies))))
+    if kind.repeats:
+        return best_look(problem, kind.name, [(one, one.start) for one in ones])
+    return _best(problem, kind.name, [partial(_in_time, problem, one) for one in ones])
 
 
 def best_look(
     problem: Compared, name: str, starts: Sequence[tuple[Candidate, FloatArray]]
 ) -> Looked:
     """Linearise an effect at each of some starts, and keep the best."""
+
+    def seen(one: Candidate, start: FloatArray) -> Fit:
+        # elsewhere than where an effect is small it need not be proportional to its size
+        roughly = bool(np.array_equal(start, one.start))
+        return _near(problem, at(problem, (one,), start, roughly=roughly))
+
+    return _best(problem, name, [partial(seen, one, start) for one, start in starts])
+
+
+def _best(problem: Compared, name: str, ways: Sequence[Callable[[], Fit]]) -> Looked:
+    """Return the look that promises most, of several ways to see an effect."""
     best, most, reason = None, -math.inf, ""
-    for one, start in starts:
+    for way in ways:
         try:
-            # elsewhere than where an effect is small it need not be proportional to its size
-            fit = at(problem, (one,), start, roughly=bool(np.array_equal(start, one.start)))
-            fit = _near(problem, fit) if one.repeats else fit
+            fit = way()
         except PmmError as error:
             reason = str(error)
             continue
@@ -79,37 +102,28 @@ def best_look(
     return Looked(name, best, most, visible)
 
 
-def _starts(problem: Problem, kind: type[Effect]) -> list[tuple[Candidate, FloatArray]]:
-    """Return where looks at an effect begin; the most promising one of what is costly."""
-    frequencies = [run.set_point.frequency_hz for run in problem.simulator.stack.turning]
-    ones = list(candidates(kind, sorted(set(frequencies))))
-    if kind.repeats:
-        return [(one, one.start) for one in ones]
-    found = [_sized(problem, one) for one in ones]
-    first = min(range(len(ones)), key=lambda at: found[at][0])
-    return [(ones[first], found[first][1])]
-
-
-def _sized(problem: Problem, one: Candidate) -> tuple[float, FloatArray]:
-    """Return what an effect leaves that has to be simulated in time, at the size that leaves least.
+def _in_time(problem: Problem, one: Candidate) -> Fit:
+    """Return a look at an effect that has to be simulated in time, at the size that leaves least.
 
     Its powers go with the square of its size, and their logarithms are compared: from one record
     follows what any size changes, where a straight line would soon go astray.
     """
     simulator = problem.simulator
-    try:
-        change = simulator.predict((one.effect(one.start),)) - simulator.nominal
-    except PmmError:
-        return math.inf, one.start
-    found = []
+    change = simulator.predict((one.effect(one.start),)) - simulator.nominal
     # What has a sign is linear; tiny steps of it would drown in the digitiser's.
-    powers = one.axes and all(axis.parameter.low >= 0.0 for axis in one.axes)
-    for share in _SIZES if powers else (1.0,):
-        units = inside((one,), share * one.start)
-        left = problem.residual - problem.whitened(grown(simulator.stack.components, change, share))
-        found.append((misfit(left, problem.nuisances) + float(units @ units), share))
-    cost, share = min(found)
-    return cost, inside((one,), share * one.start)
+    if len(one.axes) != 1 or one.axes[0].parameter.low < 0.0:
+        return at(problem, (one,), one.start, signature=problem.whitened(change))
+
+    def signature(units: FloatArray) -> FloatArray:
+        share = float(units[0] / one.start[0])
+        return problem.whitened(grown(simulator.stack.components, change, share))
+
+    found = []
+    for units in (inside((one,), share * one.start) for share in _SIZES):
+        seen = signature(units)
+        slope = (signature((1.0 + STEP) * units) - seen) / (STEP * units[0])
+        found.append(weighed_at(problem, (one,), units, slope[:, None], seen))
+    return min(found, key=lambda fit: fit.cost)
 
 
 def _near(problem: Compared, fit: Fit) -> Fit:

@@ -5,6 +5,7 @@ from typing import Final
 from analysis.gap.forward.problem import Compared
 from analysis.gap.search.fit import (
     Fit,
+    at,
     learned,
     linear_cost,
     most_probable,
@@ -30,7 +31,7 @@ def refine(problem: Compared, fit: Fit) -> Fit:
     repeat with the shaft, those it has.
     """
     if not fit.repeats:
-        return stepped(problem, fit, _STEPS_IN_TIME)
+        return stepped(problem, _simulated(problem, fit), _STEPS_IN_TIME)
     best, fresh = fit, False
     for _ in range(_STEPS):
         better, fulfilled = _step(problem, best)
@@ -40,6 +41,14 @@ def refine(problem: Compared, fit: Fit) -> Fit:
         if not _FULFILLED < fulfilled < 1.0 / _FULFILLED:
             best, fresh = _anew(problem, best), True
     return best if fresh else _anew(problem, best)
+
+
+def _simulated(problem: Compared, fit: Fit) -> Fit:
+    """Return a fit as it is simulated where it is; as it is where that cannot be."""
+    try:
+        return at(problem, fit.candidates, fit.units)
+    except PmmError:
+        return fit
 
 
 def _anew(problem: Compared, fit: Fit) -> Fit:
