@@ -94,7 +94,8 @@ class Background:
         """Return the residual's products under a deviation of each size in some observations."""
         if rows.all():
             return [one.reduced(self._scale(), self._of) for one in self._calm]
-        each = np.eye(len(rows))[:, rows]
+        each = np.zeros((len(rows), int(rows.sum())))
+        each[rows] = np.eye(each.shape[1])
         found = self._bare.reduced(self._scale(), np.hstack((self._of, each)))
         sizes, at = np.sqrt(self.kernel.values[rows]), range(1, 1 + each.shape[1])
         return [found.widened(1, at, tau * sizes) for tau in TAUS]

@@ -103,16 +103,20 @@ def _best(problem: Compared, name: str, ways: Sequence[Callable[[], Fit]]) -> Lo
 
 
 def _in_time(problem: Problem, one: Candidate) -> Fit:
-    """Return a look at an effect that has to be simulated in time, at the size that leaves least.
+    """Return a look at an effect that has to be simulated in time, once for each of its sizes.
 
-    Its powers go with the square of its size, and their logarithms are compared: from one record
-    follows what any size changes, where a straight line would soon go astray.
+    What has a sign is linear; tiny steps of it would drown in the digitiser's. Powers go with the
+    square of a size, and their logarithms are compared: from one record follows what any size
+    changes, where a straight line would soon go astray, and the one that leaves least is taken.
     """
+    if one.axes and all(axis.is_size and axis.parameter.low < 0.0 for axis in one.axes):
+        alone = [problem.signature((one,), units) for units in np.diag(one.start)]
+        columns = np.column_stack(alone) / one.start
+        return weighed_at(problem, (one,), one.start, columns, columns @ one.start)
+    if len(one.axes) != 1:
+        return at(problem, (one,), one.start)
     simulator = problem.simulator
     change = simulator.predict((one.effect(one.start),)) - simulator.nominal
-    # What has a sign is linear; tiny steps of it would drown in the digitiser's.
-    if len(one.axes) != 1 or one.axes[0].parameter.low < 0.0:
-        return at(problem, (one,), one.start, signature=problem.whitened(change))
 
     def signature(units: FloatArray) -> FloatArray:
         share = float(units[0] / one.start[0])
