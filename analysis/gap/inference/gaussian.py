@@ -87,22 +87,37 @@ class Posterior:
 
     Attributes
     ----------
-    mean, covariance
-        Of the parameters in units of their prior, shapes ``(p,)`` and ``(p, p)``.
+    mean, precision
+        Of the parameters in units of their prior, shapes ``(p,)`` and ``(p, p)``; the prior's
+        precision is in it.
     """
 
     mean: FloatArray
-    covariance: FloatArray
+    precision: FloatArray
+
+    @classmethod
+    def of(cls, told: FloatArray, pull: FloatArray) -> "Posterior":
+        """Return it under a unit normal prior.
+
+        Parameters
+        ----------
+        told
+            Precision by the data alone, shape ``(p, p)``.
+        pull
+            That times what the data alone ask for, shape ``(p,)``.
+        """
+        precision = np.eye(len(told)) + told
+        return cls(np.asarray(np.linalg.solve(precision, pull), np.float64), precision)
 
     @cached_property
-    def precision(self) -> FloatArray:
-        """Inverse of the covariance, that of the prior in it."""
-        return np.asarray(np.linalg.inv(self.covariance), np.float64)
+    def covariance(self) -> FloatArray:
+        """Inverse of the precision."""
+        return np.asarray(np.linalg.inv(self.precision), np.float64)
 
     @property
     def log_volume(self) -> float:
         """Half the log of the covariance's determinant: what is left of the prior's volume."""
-        return 0.5 * float(np.linalg.slogdet(self.covariance)[1])
+        return -0.5 * float(np.linalg.slogdet(self.precision)[1])
 
 
 def any_size(found: Posterior, groups: Sequence[BoolArray], reaches: Sequence[float]) -> float:
@@ -172,9 +187,7 @@ def posterior(residual: FloatArray, columns: FloatArray, nuisances: Nuisances) -
         Change of the simulation per prior unit of each parameter, shape ``(observations, p)``.
     """
     weighted = nuisances.whiten(columns)
-    precision = np.eye(columns.shape[1]) + columns.T @ weighted
-    covariance = np.asarray(np.linalg.inv(precision), np.float64)
-    return Posterior(covariance @ (weighted.T @ residual), covariance)
+    return Posterior.of(columns.T @ weighted, weighted.T @ residual)
 
 
 def null_evidence(residual: FloatArray, nuisances: Nuisances) -> float:

@@ -58,8 +58,7 @@ def weighed(one: Hypothesis, found: Reduced) -> Evidence:
         Products of the target and the columns, in this order.
     """
     square, pull, told = found.gram[0, 0], found.gram[1:, 0], found.gram[1:, 1:]
-    covariance = np.asarray(np.linalg.inv(np.eye(len(told)) + told), np.float64)
-    about = Posterior(covariance @ pull, covariance)
+    about = Posterior.of(told, pull)
     units = within(about, one.bounds)
     cost = square - 2.0 * units @ pull + units @ told @ units + units @ units
     volume = about.log_volume + any_size(about, one.sizes, one.reaches)
@@ -82,4 +81,5 @@ def within(found: Posterior, bounds: FloatArray) -> FloatArray:
     # (u - m)^T P (u - m) as a sum of squares, least within the ranges
     root = np.linalg.cholesky(found.precision).T
     least = lsq_linear(root, root @ found.mean, (low, high), method="bvls")
-    return np.asarray(np.clip(least.x, low, high), np.float64)
+    held = np.where(least.active_mask > 0, high, low)  # to the last digit
+    return np.where(least.active_mask == 0, np.clip(least.x, low, high), held)

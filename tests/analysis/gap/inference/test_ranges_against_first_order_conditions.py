@@ -17,7 +17,7 @@ def test_what_is_inside_is_level_and_what_is_held_is_held_back(
     precision = np.eye(count) + root @ root.T
     mean = spread * rng.standard_normal(count)
     low, high = -rng.uniform(0.01, 1.0, count), rng.uniform(0.01, 1.0, count)
-    found = within(Posterior(mean, np.linalg.inv(precision)), np.array((low, high)))
+    found = within(Posterior(mean, precision), np.array((low, high)))
     assert ((low <= found) & (found <= high)).all()
     falls = precision @ (mean - found)  # where the density rises to
     near = 1e-6 * (1.0 + np.abs(precision).max() * np.abs(mean).max())
