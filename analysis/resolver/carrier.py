@@ -191,20 +191,17 @@ def demodulate(
     recording.check_even("a carrier's low-pass")
     rate_hz = recording.sample_rate_hz
     low_pass = design_low_pass(rate_hz, carrier_hz, bandwidth_hz, output_rate_hz)
-    _check_length(recording, low_pass)
     rows = [recording.index(name) for name in channels]
     samples, detected = _filtered(recording, rows, carrier_hz, low_pass)
-    flags = [_ends_flag(recording, low_pass)]
+    flags, rescaled = [_ends_flag(recording, low_pass)], list(recording.channels)
     for row, signal in zip(rows, detected, strict=True):
         phase, said = _phase(recording.channels[row].name, signal, carrier_phase_rad)
         samples[row] = (signal * np.exp(-1j * phase)).real / carrier_amplitude
+        rescaled[row] = _rescaled(recording.channels[row], carrier_amplitude)
         flags += said
     return replace(
         recording,
-        channels=tuple(
-            _rescaled(channel, carrier_amplitude) if row in rows else channel
-            for row, channel in enumerate(recording.channels)
-        ),
+        channels=tuple(rescaled),
         samples=samples,
         sample_rate_hz=rate_hz / low_pass.decimation,
         start_s=recording.start_s + low_pass.half / rate_hz,
@@ -225,6 +222,7 @@ def _filtered(
     recording: Recording, rows: list[int], carrier_hz: float, low_pass: DecimationFilter
 ) -> tuple[FloatArray, ComplexArray]:
     """All channels low-passed, and those in ``rows`` detected as ``E e_c exp(i phi)``."""
+    _check_length(recording, low_pass)
     count, step = low_pass.outputs(recording.sample_count), low_pass.decimation
     samples = np.empty((len(recording.channels), count))
     detected = np.empty((len(rows), count), dtype=np.complex128)

@@ -159,18 +159,7 @@ def body_motion(
     tank_sine = body_sine * rig_cosine + body_cosine * rig_sine
     tank_cosine = body_cosine * rig_cosine - body_sine * rig_sine
     return BodyMotion(
-        cosine,
-        sine,
-        place,
-        tank_cosine,
-        tank_sine,
-        u,
-        v,
-        r,
-        across - r * u,
-        r_rate,
-        along,
-        across,
+        cosine, sine, place, tank_cosine, tank_sine, u, v, r, across - r * u, r_rate, along, across
     )
 
 

@@ -1,6 +1,5 @@
 """Model, water and mounting: from the motion of the struts to the forces that they exert."""
 
-import math
 from dataclasses import dataclass, fields, replace
 from functools import cached_property, lru_cache, partial
 from typing import TypeVar
@@ -9,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hardware.description.arrays import FloatArray
-from hardware.description.struts import to_motion
 from sim import signals
 from sim.mechanism.geometry import BodyMotion, gauge_readings
 from sim.model.block_forces import BlockForces, HullState
@@ -17,11 +15,10 @@ from sim.model.forces import Instants
 from sim.model.heel import Heeling
 from sim.model.hull_steady_state import HullSteady
 from sim.model.model_march import Marching, marching_of
-from sim.model.numbers import moving, numbers_of, surging_readings, turns_with, weight_less_buoyancy
-from sim.model.parameters import HullCoefficients, ModelParameters, mass_matrix
+from sim.model.numbers import moving, surging_readings, turns_with
+from sim.model.parameters import HullCoefficients, ModelParameters
 from sim.model.steering_loads import steering_loads
-from sim.model.system import HullSystem
-from sim.model.water.radiation import constant
+from sim.model.system import HullSystem, system_of
 from sim.model.waves import MetWaves
 from sim.signals import Signal, Signals
 from sim.solve.linear_system import Hold
@@ -33,7 +30,6 @@ from sim.stage import Block
 __all__ = ["Hull", "HullCoefficients"]
 
 _FIELDS = tuple(one.name for one in fields(ModelParameters))
-_NO_MEMORY = constant(np.zeros((2, 2)))
 _FORCES = (signals.FORCE_AFT, signals.FORCE_FORE, signals.FORCE_X)
 _HEELING = (signals.ROLL_MOMENT, signals.HEEL_ANGLE)
 ValueT = TypeVar("ValueT", np.float64, np.complex128)
@@ -86,7 +82,7 @@ class Hull(ModelParameters):
     @property
     def system(self) -> HullSystem:
         """The linear part at the mean carriage speed."""
-        return _system(self)
+        return system_of(self)
 
     def start(self, sample_rate_hz: float, seed: int) -> HullState:
         """Return the state before the first sample: calm water, a mounting that is at rest."""
@@ -247,36 +243,6 @@ class Hull(ModelParameters):
         settled = partial(_settled_memory, self.system, 1.0 / fine.frequency_hz)
         period_of_signals = last_period(run, HullState(), names, settled)
         return {name: fine.harmonics(period_of_signals[name]) for name in names}
-
-
-@lru_cache(maxsize=256)
-def _system(hull: Hull) -> HullSystem:
-    to = np.array(
-        [to_motion(a, f, hull.half_spacing_m, hull.plane) for a, f in ((1.0, 0.0), (0.0, 1.0))]
-    ).T
-    radiation = _NO_MEMORY if hull.radiation is None else hull.radiation
-    added = np.array(hull.water.added_mass) + radiation.added_mass_infinite
-    water_damping = np.array(hull.water.damping)
-    restoring = np.array(hull.water.restoring)
-    restoring[1, 1] += weight_less_buoyancy(hull)[2]
-    turn = np.zeros((2, 2))
-    turn[0] = -turns_with(hull.plane) * math.cos(hull.drift_rad) * to[1]
-    incidence = hull.carriage_speed_m_s * turn
-    mass = to.T @ (np.array(mass_matrix(hull.body, hull.plane)) + added) @ to
-    damping = to.T @ (water_damping @ to + added @ incidence)
-    stiffness = to.T @ (restoring @ to + water_damping @ incidence)
-    return HullSystem(
-        mass=mass,
-        damping=damping,
-        stiffness=stiffness,
-        speed_m_s=hull.carriage_speed_m_s,
-        turn=turn,
-        numbers=numbers_of(hull, added, np.hstack([stiffness, damping, mass])),
-        to_motion=to,
-        radiation=radiation,
-        elastic=hull.mounting.elastic,
-        joint=hull.mounting.joint,
-    )
 
 
 @lru_cache(maxsize=256)

@@ -13,17 +13,28 @@ carriage adds which is not at its mean speed. Where the gauges' joints have a cl
 their springs then have too much, on the right of the last line. The states are (p, p', xi).
 """
 
+import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from hardware.description.arrays import ComplexArray, FloatArray
+from hardware.description.struts import to_motion
 from sim.model.mounting import Elastic, StrutJoint
-from sim.model.numbers import corners_only, geometry_only, without_corners
-from sim.model.water.radiation import Radiation
+from sim.model.numbers import (
+    corners_only,
+    geometry_only,
+    numbers_of,
+    turns_with,
+    weight_less_buoyancy,
+    without_corners,
+)
+from sim.model.parameters import ModelParameters, mass_matrix
+from sim.model.water.radiation import Radiation, constant
 from sim.solve.linear_system import Hold, LinearSystem, causal_hold, hermite_hold
 
+_NO_MEMORY = constant(np.zeros((2, 2)))
 LOAD_DEGREE = 3  # of the polynomial by which f and g go on between samples
 
 
@@ -209,3 +220,34 @@ class HullSystem:
             elastic.mass * column**2 + elastic.damping * column + elastic.stiffness
         )
         return impedance
+
+
+@lru_cache(maxsize=256)
+def system_of(hull: ModelParameters) -> HullSystem:
+    """Return the linear system of a model, kept."""
+    to = np.array(
+        [to_motion(a, f, hull.half_spacing_m, hull.plane) for a, f in ((1.0, 0.0), (0.0, 1.0))]
+    ).T
+    radiation = _NO_MEMORY if hull.radiation is None else hull.radiation
+    added = np.array(hull.water.added_mass) + radiation.added_mass_infinite
+    water_damping = np.array(hull.water.damping)
+    restoring = np.array(hull.water.restoring)
+    restoring[1, 1] += weight_less_buoyancy(hull)[2]
+    turn = np.zeros((2, 2))
+    turn[0] = -turns_with(hull.plane) * math.cos(hull.drift_rad) * to[1]
+    incidence = hull.carriage_speed_m_s * turn
+    mass = to.T @ (np.array(mass_matrix(hull.body, hull.plane)) + added) @ to
+    damping = to.T @ (water_damping @ to + added @ incidence)
+    stiffness = to.T @ (restoring @ to + water_damping @ incidence)
+    return HullSystem(
+        mass=mass,
+        damping=damping,
+        stiffness=stiffness,
+        speed_m_s=hull.carriage_speed_m_s,
+        turn=turn,
+        numbers=numbers_of(hull, added, np.hstack([stiffness, damping, mass])),
+        to_motion=to,
+        radiation=radiation,
+        elastic=hull.mounting.elastic,
+        joint=hull.mounting.joint,
+    )

@@ -45,6 +45,13 @@ def attitude_rates(
 
 
 @compile_loop
+def solved(a: float, b: float, c: float, right: FloatArray) -> tuple[float, float]:
+    """Return the solution of ``a x + b y = right[0]``, ``b x + c y = right[1]``."""
+    det = a * c - b * b
+    return (right[0] * c - b * right[1]) / det, (a * right[1] - b * right[0]) / det
+
+
+@compile_loop
 def tensor(
     moments: tuple[float, float, float, float],
     axes: tuple[FloatArray, FloatArray, FloatArray],
@@ -59,6 +66,15 @@ def tensor(
     x, z = inner(ahead, along), inner(down, along)
     flat = combine(xx * x + xz * z, ahead, xz * x + zz * z, down)
     return combine(1.0, flat, yy * inner(beam, along), beam)
+
+
+@compile_loop
+def inverse_moments(
+    xx: float, yy: float, zz: float, xz: float
+) -> tuple[float, float, float, float]:
+    """Return the moments of the inverse tensor, in the same order."""
+    square = xx * zz - xz * xz
+    return zz / square, 1.0 / yy, xx / square, -xz / square
 
 
 @compile_loop
@@ -84,8 +100,7 @@ def suspended(
     axes = (combine(ct, e1, -st, e3), beam, combine(st, e1, ct, e3))
     rolled = combine(v[2], ez, roll_rate, e1)
     spin = combine(1.0, rolled, v[3], beam)
-    square = p[6] * p[8] - p[9] * p[9]
-    eases = (p[8] / square, 1.0 / p[7], p[6] / square, -p[9] / square)
+    eases = inverse_moments(p[6], p[7], p[8], p[9])
     # loads: a force at the beam's middle, a couple about it that works on yaw and pitch only
     middle = combine(-depth, axes[2], 0.0, ez)
     share = 1.0 - sr * sr
@@ -110,8 +125,7 @@ def suspended(
     m00 = inner(line[0], line[0]) / mass + inner(lever[0], eased[0])
     m01 = inner(line[0], line[1]) / mass + inner(lever[0], eased[1])
     m11 = inner(line[1], line[1]) / mass + inner(lever[1], eased[1])
-    det = m00 * m11 - m01 * m01
-    pull0, pull1 = (right[0] * m11 - m01 * right[1]) / det, (m00 * right[1] - m01 * right[0]) / det
+    pull0, pull1 = solved(m00, m01, m11, right)
     pulled = combine(pull0, line[0], pull1, line[1])
     centre = combine(1.0, c0, -1.0 / mass, pulled)
     turning = combine(1.0, w0, -1.0, combine(pull0, eased[0], pull1, eased[1]))
