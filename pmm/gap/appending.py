@@ -7,6 +7,7 @@ from pathlib import Path
 
 from hardware.description.errors import ConfigurationError
 from pmm.recorder.campaign_owner import own_campaign
+from pmm.recorder.files import free_name
 from sim.effects.effect import Effect
 
 
@@ -73,7 +74,7 @@ def append_tables(path: Path, tables: Sequence[str], read: Callable[[Path], obje
         except ConfigurationError:
             written.unlink()
             raise
-        kept = _free_name(path)
+        kept = free_name(path, "")
         kept.write_text(old, encoding="utf-8")
         written.replace(path)
     return kept
@@ -93,10 +94,3 @@ def refuse_twice(path: Path, there: Collection[str], names: Collection[str]) -> 
             f"{path}: {', '.join(twice)} is in [[effects]] already; take it out first, so that its "
             "parameters are fitted whole"
         )
-
-
-def _free_name(path: Path) -> Path:
-    number = 1
-    while (kept := path.with_name(f"{path.name}.{number}")).exists():
-        number += 1
-    return kept

@@ -49,14 +49,18 @@ def check_empty(folder: Path) -> None:
         )
 
 
-def set_aside(path: Path) -> None:
-    """Give a file that cannot be read another name, if it is there: its bytes are kept."""
-    if not path.exists():
-        return
+def free_name(path: Path, mark: str) -> Path:
+    """Return the first name beside a path's that nothing has: the mark and a number behind it."""
     number = 1
-    while (other := path.with_name(f"{path.name}.damaged-{number}")).exists():
+    while (free := path.with_name(f"{path.name}.{mark}{number}")).exists():
         number += 1
-    path.rename(other)
+    return free
+
+
+def set_aside(path: Path, mark: str = "damaged-") -> None:
+    """Give another name to what is there and must not be there any more: nothing is lost."""
+    if path.exists():
+        path.rename(free_name(path, mark))
 
 
 def sync_data(handle: int) -> None:

@@ -18,6 +18,7 @@ from pmm.plan.run_plan import RunPlan
 from pmm.plan.simulated_rig import Departure, departure_flag, departures, provenance_of_departures
 from pmm.recorder.campaign_owner import own_campaign
 from pmm.recorder.disk import DiskWatch, bytes_per_s, free_bytes
+from pmm.recorder.files import set_aside
 from pmm.recorder.header import LiveSettings, RunHeader
 from pmm.recorder.live_path import header_channels, sampled_devices
 from pmm.recorder.run_recorder import RunRecorder
@@ -91,7 +92,7 @@ class RecorderFactory:
         watch.check_before(run.moving_s)
         with own_campaign(self.folder, patience_s=0.0) as owned:
             number = owned.next_number()
-        set_tried_aside(self.folder / run.name)
+        set_aside(self.folder / run.name, "try")
         return replace(header, number=number)
 
     @cached_property
@@ -155,13 +156,3 @@ class RecorderFactory:
 def plan_provenance(plan: Plan) -> dict[str, str]:
     """Return what is kept of a plan with every run: its name, and its operator where it has one."""
     return {"plan": plan.name, **({"operator": plan.operator} if plan.operator else {})}
-
-
-def set_tried_aside(folder: Path) -> None:
-    """Move aside what an earlier try of a run left; it is not lost."""
-    if not folder.exists():
-        return
-    number = 1
-    while (aside := folder.with_name(f"{folder.name}.try{number}")).exists():
-        number += 1
-    folder.rename(aside)

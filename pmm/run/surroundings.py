@@ -5,6 +5,7 @@ import math
 from collections import deque
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import asdict, dataclass
+from functools import partial
 from typing import Final
 
 from analysis.kinematics.geometry import Geometry
@@ -236,18 +237,9 @@ def drift_prompt(geometry: Geometry) -> str:
             return f"set the struts' mean positions apart: {_apart(geometry)}, for {angle}"
 
 
-def _rudder(angle_rad: float) -> str:
-    if not angle_rad:
-        return "lay it amidships; press Enter when it is so"
+def _turned(straight: str, turned: str, angle_rad: float) -> str:
     to, by = _side_and_size(angle_rad)
-    return f"lay it to turn to {to} by {by}; press Enter when it is so"
-
-
-def _heel(angle_rad: float) -> str:
-    if not angle_rad:
-        return "set the model upright; press Enter when it is so"
-    to, by = _side_and_size(angle_rad)
-    return f"heel the model to {to} by {by}; press Enter when it is so"
+    return f"{f'{turned} {to} by {by}' if angle_rad else straight}; press Enter when it is so"
 
 
 def _circle(speed_m_s: float, turn_rate_rad_s: float) -> str:
@@ -275,8 +267,8 @@ def _propeller(rate_hz: float) -> str:
 
 # What people set, the set-point's key for it, and what they are asked.
 _SETTINGS: Final[tuple[tuple[str, str, Callable[[float], str]], ...]] = (
-    ("heel", "heel_rad", _heel),
-    ("rudder", "rudder_angle_rad", _rudder),
+    ("heel", "heel_rad", partial(_turned, "set the model upright", "heel the model to")),
+    ("rudder", "rudder_angle_rad", partial(_turned, "lay it amidships", "lay it to turn to")),
     ("propeller", "revolutions_hz", _propeller),
 )
 
