@@ -1,8 +1,10 @@
 """What the system says of a disk that takes nothing more, in a sentence."""
 
 import errno
-from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 _FULL: Final = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 
@@ -12,7 +14,7 @@ def is_full(error: OSError) -> bool:
     return error.errno in _FULL
 
 
-def said(error: OSError, path: Path | str | None = None) -> str:
+def said(error: OSError, path: "Path | str | None" = None) -> str:
     """Return what went wrong with a file, and the remedy where there is no room for it.
 
     Parameters

@@ -10,11 +10,30 @@ from hardware.description.errors import DataError, PmmError
 from hardware.description.room import said
 from pmm.cli.group import CommandGroup
 
-_NAMES = (
-    "analyse", "archive", "coefficients", "compare", "completion", "console", "demo", "devices",
-    "doctor", "effects", "evaluate", "gap", "inertia", "init", "manoeuvre", "plan", "recover",
-    "replay", "report", "run", "simulate", "steering",
-)  # fmt: skip
+_LINES = {
+    "analyse": "Resolve recordings into mean and harmonics, with uncertainty.",
+    "archive": "Keep many campaigns in one file: list, find, show, note, trend, export.",
+    "coefficients": "Find a campaign's coefficients, each with its interval and budget.",
+    "compare": "Compare two channels that show the same quantity.",
+    "completion": "Print the lines that let a shell complete commands and options with Tab.",
+    "console": "Show a rig in the browser and command it from there.",
+    "demo": "Run a small campaign on the simulated rig and write a report.",
+    "devices": "Scan a bus or a port, read values live, move an axis, test photocell and gauges.",
+    "doctor": "Check installation, buses, ports, devices, permissions, clock and disk.",
+    "effects": "List the effects, or show one with the signature that theory predicts.",
+    "evaluate": "Evaluate the tests of a recorded campaign.",
+    "gap": "Find out why rig and simulation differ.",
+    "inertia": "Find mass, centre of gravity, inertia and gyradii, with a budget.",
+    "init": "Write first files: commented, and tried by the very commands that read them.",
+    "manoeuvre": "Predict turning circles, zig-zags, spiral and stability of a ship.",
+    "plan": "Design, check and show a plan of runs, before the rig moves.",
+    "recover": "Make recordings of runs that were not closed.",
+    "replay": "Run a run's raw log through the live path again, and compare.",
+    "report": "Write a campaign's report: one HTML page, offline, ready to print.",
+    "run": "Carry out a plan on its rig and record every run.",
+    "simulate": "Simulate the runs of a campaign and write its recordings.",
+    "steering": "Identify propeller and rudder of a campaign's tows by the MMG method.",
+}  # of the help
 _INTERRUPTED = 130  # what a shell reports of a command that Ctrl-C ended
 
 
@@ -69,7 +88,7 @@ def _set_memory(ctx: click.Context, parameter: click.Parameter, gigabytes: float
 @click.group(
     cls=Commands,
     package="pmm.cli",
-    names=_NAMES,
+    names=_LINES,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 @click.option("--debug", is_flag=True, help="Show the traceback of an error.")

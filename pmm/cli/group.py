@@ -1,10 +1,12 @@
 """A group of commands, each imported when it is asked for, that names the one meant by a slip."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib import import_module
-from typing import Any
+from typing import Any, Final
 
 import click
+
+_LONGEST: Final = 200  # characters of a command's line in the help, which is then not cut
 
 
 class CommandGroup(click.Group):
@@ -19,8 +21,9 @@ class CommandGroup(click.Group):
     package
         Where the modules of the commands lie.
     names
-        The commands that lie there, in the order in which the help lists them; those that are
-        declared where the group is come after them.
+        The commands that lie there, in the order in which the help lists them, each with its line
+        there, so that the help imports none; those that are declared where the group is come after
+        them.
     kind
         What one of them is called in messages: ``"command"``, ``"job"``, ``"action"``.
     """
@@ -29,12 +32,12 @@ class CommandGroup(click.Group):
         self,
         *arguments: Any,
         package: str = "",
-        names: Sequence[str] = (),
+        names: Mapping[str, str] | None = None,
         kind: str = "command",
         **attributes: Any,
     ) -> None:
         super().__init__(*arguments, **attributes)
-        self.package, self.names, self.kind = package, names, kind
+        self.package, self.names, self.kind = package, names or {}, kind
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the commands' names."""
@@ -47,6 +50,12 @@ class CommandGroup(click.Group):
         word = cmd_name.replace("-", "_")
         command: click.Command = getattr(import_module(f"{self.package}.{word}"), word)
         return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the commands, each with its line."""
+        own = {name: one.get_short_help_str(_LONGEST) for name, one in self.commands.items()}
+        with formatter.section("Commands"):
+            formatter.write_dl([*self.names.items(), *own.items()])
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]

@@ -3,16 +3,18 @@
 Commands are named as a shell takes them.
 """
 
+import os
 import shlex
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sized
 from contextlib import contextmanager
-from pathlib import Path
 from typing import IO, TYPE_CHECKING, TypeVar
 
 import click
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rich.console import Console
 
     from pmm.document.content import Document
@@ -107,9 +109,11 @@ def show(document: "Document", *, as_json: bool) -> None:
 def program() -> str:
     """Return the program as it was called, ``pmm`` where that cannot be told."""
     called = sys.argv[0] if sys.argv else ""
-    return called if Path(called).stem == "pmm" else "pmm"
+    # Start-up does without pathlib.
+    own = os.path.splitext(os.path.basename(called))[0] == "pmm"  # noqa: PTH119, PTH122
+    return called if own else "pmm"
 
 
-def pasted(*words: str | Path) -> str:
+def pasted(*words: "str | Path") -> str:
     """Return a command of this program that a shell takes as it is, blanks and all."""
     return shlex.join([program(), *map(str, words)])

@@ -9,6 +9,7 @@ import click
 import pytest
 
 from pmm.cli import cli
+from pmm.cli.group import CommandGroup
 
 HOUSE = Path(__file__).parents[2]
 HELP = "import sys; sys.argv = ['pmm', *{words}, '--help']; from pmm.cli import main; main()"
@@ -26,31 +27,48 @@ def _run(code: str) -> "subprocess.CompletedProcess[str]":
     )
 
 
-def _loaded(words: list[str]) -> set[str]:
-    code = (
-        f"import atexit, sys; atexit.register(lambda: print(*sys.modules, file=sys.stderr)); {HELP}"
-    )
-    return set(_run(code.format(words=words)).stderr.split())
+def _loaded(code: str) -> set[str]:
+    told = "import atexit, sys; atexit.register(lambda: print(*sys.modules, file=sys.stderr))"
+    return set(_run(f"{told}; {code}").stderr.split())
 
 
-def _groups() -> list[list[str]]:
-    context = click.Context(cli)
-    commands = {name: cli.get_command(context, name) for name in cli.list_commands(context)}
-    return [[name] for name, one in commands.items() if isinstance(one, click.Group)]
+def _commands(group: click.Group) -> dict[str, click.Command]:
+    context = click.Context(group)
+    found = {name: group.get_command(context, name) for name in group.list_commands(context)}
+    return {name: one for name, one in found.items() if one is not None}
 
 
-def test_help_imports_nothing_heavy() -> None:
-    loaded = _loaded([])
+GROUPS = {name: one for name, one in _commands(cli).items() if isinstance(one, CommandGroup)}
+
+
+def test_help_imports_no_command() -> None:
+    loaded = _loaded(HELP.format(words=[]))
+    assert "pmm.cli.group" in loaded
+    assert not loaded & {*HEAVY, *SPARED, "pathlib", *(f"pmm.cli.{name}" for name in cli.names)}
+
+
+def test_no_command_imports_anything_heavy() -> None:
+    loaded = _loaded("from pmm.cli import cli; [cli.get_command(None, one) for one in cli.names]")
     assert "pmm.cli.analyse" in loaded
     assert not (HEAVY | SPARED) & loaded
 
 
-@pytest.mark.parametrize("words", _groups(), ids=" ".join)
-def test_help_of_a_group_imports_nothing_heavy(words: list[str]) -> None:
-    """Nor does the help of any command in it: the group's help has imported each of them."""
-    loaded = _loaded(words)
-    assert f"pmm.cli.{words[0]}" in loaded
+def test_no_command_of_a_group_imports_anything_heavy() -> None:
+    every = "[[one.get_command(None, name) for name in one.names] for one in groups]"
+    groups = f"groups = [cli.get_command(None, one) for one in {[*GROUPS]}]"
+    loaded = _loaded(f"from pmm.cli import cli; {groups}; {every}")
+    assert {"pmm.cli.gap.diagnose", "pmm.cli.devices.scan"} <= loaded
     assert not HEAVY & loaded
+
+
+@pytest.mark.parametrize("group", [cli, *GROUPS.values()], ids=["pmm", *GROUPS])
+def test_a_line_of_the_help_is_the_beginning_of_what_the_command_says(group: CommandGroup) -> None:
+    said = {name: one.help or "" for name, one in _commands(group).items() if name in group.names}
+    assert group.names == {
+        name: line
+        for name, line in group.names.items()
+        if " ".join(said[name].split()).startswith(line.removesuffix("."))
+    }
 
 
 MOTOR = """

@@ -23,10 +23,21 @@ if TYPE_CHECKING:
     from pmm.devices.device_source import DeviceTables
 
 
+_LINES = {
+    "scan": "List who answers: identity, state, heartbeat, mapping.",
+    "read": "Show what the devices read, live.",
+    "move": "Move an axis by hand: eccentricity, phase, drift, heel or rudder.",
+    "photocell": "Test the photocell: pulses, intervals, missing and extra ones.",
+    "gauges": "Push test: push each gauge as you are asked to.",
+    "tune": "Find the shaft's speed loop, and propose gains for it.",
+    "ports": "List this machine's serial ports.",
+}  # of the help
+
+
 @click.group(
     cls=CommandGroup,
     package="pmm.cli.devices",
-    names=("scan", "read", "move", "photocell", "gauges", "tune", "ports"),
+    names=_LINES,
     kind="job",
 )
 def devices() -> None:

@@ -37,10 +37,20 @@ class Jobs(CommandGroup):
         self.format_commands(ctx, formatter)
 
 
+_LINES = {
+    "add": "Write an effect with its fitted parameters into the campaign file.",
+    "answer": "Diagnose every case in BOARD/cases and write one answer each (docs/sealed.md).",
+    "pursue": "Propose runs, take in their recordings and diagnose again.",
+    "pendulum": "Find what separates a free decay, a swing or a bifilar test from its simulation.",
+    "add-pendulum": "Write effects with their fitted parameters into the file of a pendulum.",
+    "diagnose": "Say where rig and simulation differ.",
+}  # of the help
+
+
 @click.group(
     cls=Jobs,
     package="pmm.cli.gap",
-    names=("add", "answer", "pursue", "pendulum", "add-pendulum", "diagnose"),
+    names=_LINES,
     options_metavar="",
     subcommand_metavar="CAMPAIGN|COMMAND [OPTIONS]",
 )
