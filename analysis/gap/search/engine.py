@@ -4,6 +4,7 @@ The first look is linear. Only what could still win is fitted in full: it costs 
 much as a look, and a campaign without a gap has nothing that promises to beat "no gap".
 """
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -141,12 +142,15 @@ def alone_again(problem: Problem, singles: Sequence[Fit], pairs: Sequence[Fit]) 
     best = {one.names[0]: one for one in singles}
     for pair in pairs[:_LED]:
         for number, candidate in enumerate(pair.candidates):
+            other = best.get(candidate.name)
             try:
                 start = at(problem, (candidate,), pair.units[pair.whose == number])
+                least = -math.inf if other is None else other.log_evidence - _WORSE
+                if expected_evidence(problem, start) < least:
+                    continue
                 found = refine(problem, start)
             except PmmError:
                 continue
-            other = best.get(candidate.name)
             if other is None or found.log_evidence > other.log_evidence:
                 best[candidate.name] = found
     return sorted(best.values(), key=lambda one: -one.log_evidence)
