@@ -8,16 +8,19 @@ Left alone, a second effect would take the credit for that.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Final
 
 from analysis.gap.forward.free_numbers import Free, with_coefficients
 from analysis.gap.forward.problem import Problem, built
 from analysis.gap.forward.simulator import Simulator
+from analysis.gap.inference.gaussian import left_over
 from analysis.gap.search.fit import Fit, most_probable, weighed_at
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
 
 _ROUNDS = 2
+_LEVEL: Final = 0.1  # sigma of all observations together, below which a change is none
 
 
 def together(problem: Problem, free: Sequence[Free], fit: Fit) -> Fit:
@@ -39,7 +42,9 @@ def together(problem: Problem, free: Sequence[Free], fit: Fit) -> Fit:
             moved = _round(problem, free, best)
         except PmmError:
             break
-        best = moved
+        change, best = moved.signature - best.signature, moved
+        if left_over(change, problem.nuisances) < _LEVEL:
+            break
     return best if best.log_evidence > fit.log_evidence else fit
 
 
@@ -49,7 +54,9 @@ def _round(problem: Problem, free: Sequence[Free], fit: Fit) -> Fit:
     for _ in range(2):  # once with the parameters as they are, once with those that then fit
         signature = there.signature(fit, units)
         found = weighed_at(problem, fit.candidates, units, fit.columns, signature)
-        units = most_probable(found)
+        way, units = most_probable(found) - units, most_probable(found)
+        if left_over(fit.columns @ way, problem.nuisances) < _LEVEL:
+            break
     return found
 
 
