@@ -30,7 +30,7 @@ def check_plan(plan: Plan, rig: RigFile, today: date | None = None) -> tuple[Pla
     """
     found = [
         *bus_finding(rig),
-        *departure_findings(rig),
+        *departure_findings(plan, rig),
         *_expired(rig, today),
         *_unrecorded(plan, rig),
         *_not_checked(plan, rig),

@@ -5,6 +5,7 @@ not; so it is said before a run, and kept with every recording.
 """
 
 import json
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +17,7 @@ from hardware.description.simulation_tables import simulation_tables, with_prese
 from hardware.simulation_identity import SimulatedTables, simulated_behind
 from pmm.configuration import read_toml
 from pmm.plan.findings import PlanFinding, PlanVerdict
+from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
 
 CODE: Final = "simulated_differs"
@@ -59,26 +61,42 @@ def departures(rig: RigFile) -> tuple[Departure, ...]:
         If the simulated rig's file is wrong.
     """
     simulated = simulated_behind(rig.hardware.bus)
-    if simulated is None:
-        return ()
+    return () if simulated is None else _departing(rig, simulated)
+
+
+def _departing(rig: RigFile, simulated: SimulatedTables) -> tuple[Departure, ...]:
     stated = simulation_tables(read_toml(rig.path))
     return tuple(_departures(stated, simulated, rig.path.name))
 
 
-def departure_findings(rig: RigFile) -> Iterator[PlanFinding]:
-    """Yield what a plan's check says of it; a simulated rig that cannot be made is refused."""
+def departure_findings(plan: Plan, rig: RigFile) -> Iterator[PlanFinding]:
+    """Yield what a plan's check says of it.
+
+    A simulated rig that cannot be made is refused, and one without waves that are asked of it.
+    """
     try:
-        found = departures(rig)
+        simulated = simulated_behind(rig.hardware.bus)
     except ConfigurationError as error:
-        nan = float("nan")
-        yield PlanFinding(
-            PlanVerdict.REFUSE, _QUANTITY, nan, nan, "", f"the simulated rig: {error}"
-        )
+        yield _refused(f"the simulated rig: {error}")
         return
-    for one in found:
+    if simulated is None:
+        return
+    rough = [one.name for one in plan.runs if one.set_point.wave_frequency_hz]
+    if rough and not simulated.rig.get("waves"):
+        file = Path(simulated.file).name
+        yield _refused(
+            f"no waves are simulated, and {rough[0]} asks for some; say in [campaign.waves] of "
+            f"{rig.path.name}, or in [waves] of {file}, what they do to the model",
+            rough[0],
+        )
+    for one in _departing(rig, simulated):
         verdict = PlanVerdict.WARN if one.contradicts else PlanVerdict.NOTE
         yield PlanFinding(verdict, _QUANTITY, _number(one.simulated), _number(one.stated), "",
                           one.message)  # fmt: skip
+
+
+def _refused(text: str, run: str = "") -> PlanFinding:
+    return PlanFinding(PlanVerdict.REFUSE, _QUANTITY, math.nan, math.nan, run, text)
 
 
 def departure_flag(found: tuple[Departure, ...]) -> Iterator[Flag]:

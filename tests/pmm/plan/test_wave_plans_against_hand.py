@@ -10,6 +10,7 @@ from hardware.description.errors import ConfigurationError
 from pmm.campaign.campaign_file import read_campaign
 from pmm.plan.campaign_writer import FinishedRun, write_campaign
 from pmm.plan.checks import check_plan
+from pmm.plan.findings import PlanVerdict
 from pmm.plan.plan import read_plan, read_plan_and_rig
 from pmm.run.surroundings import Surroundings
 from tests.pmm.plan.plans import HORIZONTAL_TEXT, write_plan
@@ -81,3 +82,23 @@ def test_what_makes_no_waves_is_told(tmp_path: Path, old: str, new: str, told: s
     with pytest.raises(ConfigurationError) as caught:
         read_plan(write_plan(tmp_path, text, HORIZONTAL_TEXT))
     assert told in str(caught.value)
+
+
+def test_a_simulated_rig_without_waves_is_refused_before_anything_moves(tmp_path: Path) -> None:
+    own = 'rig = "rig.toml"\nseed = 1\n'
+    (tmp_path / "simulated.toml").write_text(own, encoding="utf-8")
+    path = write_plan(tmp_path, PLAN, HORIZONTAL_TEXT)
+    (text,) = waves_refused(path)
+    assert "no waves are simulated, and sway-f0.15-a100-w0.55 asks for some" in text
+    loads = "\n[waves.across]\nfirst = 300.0\n"
+    (tmp_path / "simulated.toml").write_text(own + loads, encoding="utf-8")
+    assert waves_refused(path) == []
+    (tmp_path / "simulated.toml").write_text(own, encoding="utf-8")
+    calm = PLAN[: PLAN.rindex("[[runs]]")]
+    assert waves_refused(write_plan(tmp_path, calm, HORIZONTAL_TEXT)) == []
+
+
+def waves_refused(path: Path) -> list[str]:
+    found = check_plan(*read_plan_and_rig(path))
+    refused = [one.message for one in found if one.verdict is PlanVerdict.REFUSE]
+    return [one for one in refused if "waves" in one]
