@@ -45,6 +45,52 @@ def test_nothing_that_the_build_reads_is_left_out() -> None:
     assert not (names | {"README.md", "LICENSE", "lock", ".git"}) & set(IGNORED)
 
 
+def test_its_base_is_a_python_that_the_tests_run_on() -> None:
+    image, version = _lines("FROM")[-1].removesuffix("-slim").split(":")
+    tried = (HOUSE / ".github/workflows/ci.yml").read_text(encoding="utf-8")
+    assert image == "python"
+    assert f'"{version}"' in tried
+
+
+def test_it_installs_as_make_does() -> None:
+    """Locked packages by their checksums, then the project alone, built by what the lock has."""
+    make = (HOUSE / "Makefile").read_text(encoding="utf-8")
+    locked, own = (
+        one.partition(" pip install ")[2].replace("--no-cache-dir ", "").strip()
+        for one in _lines("RUN")[1].split("&&")[1:]
+    )
+    assert locked.replace("user.txt", "$(@:$(VENV)/.%=%).txt") in make.replace("--quiet ", "")
+    assert own.replace(" .", " --editable .") in make.replace("--quiet ", "")
+
+
+def test_what_the_last_stage_takes_was_made_in_the_first_and_is_found() -> None:
+    _, taken = _lines("COPY")
+    stage, made, place = taken.split()
+    assert stage == f"--from={_lines('FROM')[0].split()[-1]}"
+    assert f"python -m venv {made} " in _lines("RUN")[1]
+    assert made == place  # scripts of an environment hold its path
+    assert f"PATH={place}/bin:$PATH" in _lines("ENV")[0].split()
+
+
+def test_the_last_stage_only_adds_the_user_that_it_ends_as_with_a_place_to_compile() -> None:
+    words = [first for first, _, _ in LINES]
+    (last,) = (rest for first, _, rest in LINES[words.index("FROM", 1) :] if first == "RUN")
+    user = re.fullmatch(r"useradd --create-home --uid (\d+) (\w+)", last)
+    assert user
+    assert _lines("USER")[-1].split(":")[0] == user[1]
+    assert f"NUMBA_CACHE_DIR=/home/{user[2]}/" in _lines("ENV")[0]
+
+
+def test_it_starts_without_a_shell_and_fetches_nothing_unchecked() -> None:
+    """A shell in between would keep the signals that end a run (hadolint DL3025, DL4006)."""
+    assert all(re.fullmatch(r'\["[^"]+"\]', _lines(one)[-1]) for one in ("ENTRYPOINT", "CMD"))
+    assert {first for first, _, _ in LINES} <= {
+        "FROM", "RUN", "WORKDIR", "COPY", "USER", "ENV", "EXPOSE", "ENTRYPOINT", "CMD",
+    }  # fmt: skip
+    assert _lines("RUN")[0].startswith("apt-get update && apt-get install --yes --no-install-")
+    assert not re.search(r"curl|wget|sudo|\|", " ".join(_lines("RUN")))
+
+
 @pytest.mark.slow
 @pytest.mark.timeout(1800)
 def test_its_lines_carried_out_here_make_a_program_that_runs(tmp_path: Path) -> None:
