@@ -60,6 +60,7 @@ def test_a_message_on_the_stream_is_refused_with_a_sentence(
         assert '"type":"snapshot"' in str(stream.recv(timeout=60.0))
 
 
+@pytest.mark.slow
 def test_half_sent_requests_are_few_and_end_and_a_quick_stop_passes_them(address: Address) -> None:
     with ExitStack() as held:
         whole = address.post("/api/command", STOP)

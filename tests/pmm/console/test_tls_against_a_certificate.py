@@ -115,6 +115,7 @@ def test_whoever_does_not_know_the_certificate_or_speaks_plainly_gets_nothing(
         plain.close()
 
 
+@pytest.mark.slow
 def test_handshakes_that_stand_still_are_few_and_end_and_a_quick_stop_passes_them(
     remote: Remote,
 ) -> None:

@@ -56,13 +56,19 @@ def pmm(*words: str | Path, given: str = "", env: Mapping[str, str] | None = Non
 
 @contextmanager
 def full_disk(size_bytes: int) -> Iterator[None]:
-    """Let no file of this process grow beyond a size: what is written fails as on a full disk."""
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    """Let no file of this process grow beyond a size: what is written fails as on a full disk.
+
+    Python before 3.13.1 keeps half of what it compiled, and reads it next time: nothing is compiled
+    to files meanwhile.
+    """
+    before, compiles = resource.getrlimit(resource.RLIMIT_FSIZE), sys.dont_write_bytecode
+    sys.dont_write_bytecode = True
     resource.setrlimit(resource.RLIMIT_FSIZE, (size_bytes, before[1]))
     try:
         yield
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        sys.dont_write_bytecode = compiles
 
 
 @contextmanager

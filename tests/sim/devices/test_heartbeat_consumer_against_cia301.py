@@ -112,6 +112,7 @@ def host(tmp_path_factory) -> Iterator[Hosted]:
     one.close()
 
 
+@pytest.mark.slow
 def test_one_controller_after_another_needs_no_reset_of_the_devices(host: Hosted) -> None:
     for number in range(3):
         with host.rig("shaft", reset=number == 0) as rig:

@@ -96,7 +96,7 @@ LINES = {
 }
 
 
-@pytest.fixture(scope="module", params=["sim", "pty"])
+@pytest.fixture(scope="module", params=["sim", pytest.param("pty", marks=pytest.mark.slow)])
 def far_end(request, tmp_path_factory) -> Iterator[Hosted | None]:
     """``None`` where the serial lines are ``sim://``; else the process behind their terminals."""
     if request.param == "sim":
