@@ -137,9 +137,10 @@ def proposals(
     best = {_kind_of(one) for one, _ in found[: -(-len(found) // _GENTLER)]}
     found += weighed([one for one in gentler if _kind_of(one) in best])
     found.sort(key=_order)
+    others = [one for one in gentler if _kind_of(one) not in best]
     plays = any(one.kind.taken_up for fit, _ in leading if fit for one in fit.candidates)
     if plays and FurtherMeasurement.PRELOAD in choices.special:
-        bare = [one for one, _ in found]
+        bare = [*(one for one, _ in found), *others]  # the larger ones may throw a weight off
         pressed = _preloaded(problem.simulator, bare, choices)
         found += weighed(tuple(islice(pressed, _PRELOADED)))
     found += weighed(tuple(_measurements(problem, choices, place)))
