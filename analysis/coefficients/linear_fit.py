@@ -7,6 +7,7 @@ refused, with the run it takes.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -30,7 +31,8 @@ from hardware.description.flags import Flag, Severity
 _FACTORS = (("v", "vdot"), ("r", "rdot"))
 _NOTICED = 1e-3
 _DIGIT = 0.1
-_DISAGREE = 3.0
+DISAGREE: Final = 3.0
+"""How much more than their scatter values differ, root mean square, where they are doubted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,9 +133,9 @@ def _flags(
                 "as large in it"
             )
             flags.append(Flag("digits_lost", Severity.WARNING, text, name, own))
-    if misfit > _DISAGREE:
+    if misfit > DISAGREE:
         text = (
-            f"the runs differ {misfit:.2g} times as much as their scatter (limit {_DISAGREE:g}): "
+            f"the runs differ {misfit:.2g} times as much as their scatter (limit {DISAGREE:g}): "
             "amplitude, alignment or a force that is not linear; solve them apart"
         )
         flags.append(Flag("runs_disagree", Severity.WARNING, text, None, own))

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from scipy.linalg import block_diag
 
+from analysis.coefficients.linear_fit import DISAGREE
 from analysis.coefficients.zero_frequency import own_variance
 from analysis.memory.measured import MeasuredMatrix
 from analysis.uncertainty.values import Contribution, UncertainValues
@@ -165,6 +166,11 @@ class MeasuredMemory:
     def misfit(self) -> float:
         """What is left over, over what scatter explains, root mean square."""
         return math.sqrt(self.chosen.chi_square / self.chosen.freedom)
+
+    @property
+    def misfits(self) -> bool:
+        """Whether more is left than values without faults of their own would leave."""
+        return self.misfit > DISAGREE
 
     @property
     def _units(self) -> FloatArray:

@@ -23,7 +23,7 @@ from hardware.description.channels import (
 
 
 @dataclass(frozen=True)
-class StrutFollowing:
+class Following:
     """The following error of one strut, or of the carriage, in one run over the gate.
 
     In the unit of the displacement, or of the speed.
@@ -67,9 +67,7 @@ def led_struts(recording: Recording) -> tuple[tuple[str, str], ...]:
     )
 
 
-def strut_following(
-    recording: Recording, reading: Harmonics, order: int
-) -> Iterator[StrutFollowing]:
+def strut_following(recording: Recording, reading: Harmonics, order: int) -> Iterator[Following]:
     """Yield how each strut follows.
 
     Parameters
@@ -94,7 +92,7 @@ def carriage_following(
     age_s: float,
     reference: ReferenceChoice,
     settings: ResolverSettings,
-) -> StrutFollowing | None:
+) -> Following | None:
     """Return how the carriage follows its path; ``None`` where no shaft's angle or speed tells it.
 
     The path is taken at the angles that the record holds, ``age_s`` earlier (that of the recorded
@@ -127,14 +125,14 @@ def carriage_following(
 
 def _following(
     recording: Recording, reading: Harmonics, command: str, moved: str, order: int
-) -> StrutFollowing:
+) -> Following:
     gate = recording.between(reading.opened_s, reading.closed_s)
     off = gate.values(moved) - gate.values(command)
     response = frequency_response(reading, command, moved, [order])
     gain = complex(response.values[0])
     # Half of the variance lies along the phasor, half across it.
     spread = math.sqrt(response.variance[0] / 2.0)
-    return StrutFollowing(
+    return Following(
         reading.run,
         moved,
         recording.channels[recording.index(moved)].unit,

@@ -7,7 +7,7 @@ from analysis.coefficients.corrections import zero_reading
 from analysis.recording import Recording
 from analysis.resolver.analysis import analyse
 from analysis.response.following import (
-    StrutFollowing,
+    Following,
     carriage_following,
     led_struts,
     recorded_age,
@@ -22,7 +22,7 @@ from pmm.coefficients.tasks import Task
 
 def following_of(
     task: Task, recording: Recording
-) -> tuple[tuple[StrutFollowing, ...], tuple[Flag, ...]]:
+) -> tuple[tuple[Following, ...], tuple[Flag, ...]]:
     """Return how each strut followed its set-points, or why that is not told."""
     both = [name for one in led_struts(recording) for name in one]
     if not both:
@@ -39,7 +39,7 @@ def following_of(
         return (), (Flag("following_unknown", Severity.NOTE, text),)
 
 
-def carriage_of(task: Task, recording: Recording, gate: Recording) -> tuple[StrutFollowing, ...]:
+def carriage_of(task: Task, recording: Recording, gate: Recording) -> tuple[Following, ...]:
     """Return how a led carriage followed its path; nothing of others."""
     path = CarriagePath.of(task.oscillator, task.set_point)
     if path is None or CARRIAGE_SPEED.name not in recording.channel_names:

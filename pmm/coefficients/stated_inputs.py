@@ -11,7 +11,7 @@ from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_plan import OWN_MODEL
 from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainties
 from analysis.coefficients.steady_turns import SteadyTurn, of_turns
-from analysis.response.following import StrutFollowing
+from analysis.response.following import Following
 from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
 from hardware.description.channels import FORCES
@@ -163,7 +163,7 @@ def stated_of(
     calibrations: Sequence[Calibration],
     *,
     motion_asked: bool,
-    following: Sequence[Sequence[StrutFollowing]] = (),
+    following: Sequence[Sequence[Following]] = (),
     speed_age_s: float = 0.0,
 ) -> StatedUncertainties:
     """Return the standard uncertainties: the settings', else those of inertia, gauges, set-points.
@@ -233,7 +233,7 @@ def _of_set_points(runs: Sequence[Run]) -> dict[str, float]:
     }
 
 
-def of_following(runs: Sequence[Sequence[StrutFollowing]]) -> StatedUncertainties:
+def of_following(runs: Sequence[Sequence[Following]]) -> StatedUncertainties:
     """Return by how much set-points are off that stand in for struts like these."""
     every = [one for run in runs for one in run]
     return StatedUncertainties(

@@ -14,7 +14,7 @@ from analysis.plausibility import RunHarmonics
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.reference_choice import ReferenceChoice
 from analysis.resolver.settings import ResolverSettings
-from analysis.response.following import StrutFollowing
+from analysis.response.following import Following
 from analysis.response.waves import InWaves
 from hardware.description.arrays import FloatArray
 from hardware.description.attitude import AttitudeSensors
@@ -187,8 +187,8 @@ class Done:
     seen: RunHarmonics | None = None
     attitude: Attitude | None = None
     lines: Harmonics | None = None
-    following: tuple[StrutFollowing, ...] = ()
-    carriage: tuple[StrutFollowing, ...] = ()
+    following: tuple[Following, ...] = ()
+    carriage: tuple[Following, ...] = ()
     speed_age_u_s: float = 0.0
     turn: SteadyTurn | None = None
     waves: InWaves | None = None

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from analysis.response.following import StrutFollowing
+from analysis.response.following import Following
 from hardware.description.channels import DISPLACEMENTS
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import Column, Figure, Table, data_only, number, word
@@ -19,11 +19,11 @@ _MILLIONTH: Final = 1e6
 _DEGREES: Final = 180.0 / math.pi
 
 
-def _in(factor: float, key: str) -> Callable[[StrutFollowing], str]:
+def _in(factor: float, key: str) -> Callable[[Following], str]:
     return lambda row: f"{factor * getattr(row, key):.3g}"
 
 
-_COLUMNS: Final[tuple[Column[StrutFollowing], ...]] = (
+_COLUMNS: Final[tuple[Column[Following], ...]] = (
     word("run", "run"),
     word("channel", "channel"),
     number("f", "frequency_hz", written(".4g"), "Hz"),
@@ -57,13 +57,13 @@ _CAPTION: Final = (
 )
 
 
-def following_rows(outcome: CampaignOutcome) -> list[StrutFollowing]:
+def following_rows(outcome: CampaignOutcome) -> list[Following]:
     """Return struts and carriage of each run that were led and recorded, by frequency."""
     rows = [row for one in outcome.runs for row in (*one.following, *one.carriage)]
     return sorted(rows, key=lambda row: row.frequency_hz)
 
 
-def following_table(outcome: CampaignOutcome) -> Table[StrutFollowing]:
+def following_table(outcome: CampaignOutcome) -> Table[Following]:
     """Return how struts and carriage followed what they were told in each run."""
     rows = following_rows(outcome)
     return Table("Following error", _COLUMNS, rows, "following", titled=True, notes=(_NOTE,))
@@ -76,7 +76,7 @@ def following_figures(outcome: CampaignOutcome) -> Iterator[Figure]:
         yield Figure("following", _CAPTION, partial(following_figure, rows))
 
 
-def following_figure(rows: Sequence[StrutFollowing]) -> "Drawing":
+def following_figure(rows: Sequence[Following]) -> "Drawing":
     """Draw rms and peak, amplitude error and phase over frequency, a colour for each strut."""
     with drawn(10.0, 3.2) as figure:
         size, gain, phase = figure.subplots(1, 3)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from analysis.coefficients.linear_fit import DISAGREE
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import Column, Content, Data, Note, Notes, Table, Text, number
 from pmm.document.notation import NOT_KNOWN, rounded, written
@@ -14,7 +15,6 @@ from pmm.document.notation import NOT_KNOWN, rounded, written
 if TYPE_CHECKING:
     from analysis.memory.result import MeasuredMemory, Order
 
-_MISFIT: Final = 3.0  # as of the forms of the loads
 _CHOICE: Final = (
     "The least criterion is taken; a dash where more squares are left over already without the "
     "condition that no energy comes from the water."
@@ -81,11 +81,11 @@ def _skew(one: "MeasuredMemory", level: float) -> tuple[str, ...]:
 
 
 def _doubts(one: "MeasuredMemory") -> Iterator[str]:
-    if one.misfit > _MISFIT:
+    if one.misfits:
         yield (
             f"memory of {one.measured.motions}: what is left is {one.misfit:.2g} times what "
-            f"scatter explains (limit {_MISFIT:g}), and intervals are wider by it: the values have "
-            "faults of their own, or the hull is not linear"
+            f"scatter explains (limit {DISAGREE:g}), and intervals are wider by it: the values "
+            "have faults of their own, or the hull is not linear"
         )
     if one.contradicted:
         yield (
