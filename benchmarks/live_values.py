@@ -3,7 +3,9 @@
 Real time is ``pmm console`` on the simulated rig during a run. The day goes through the same
 process as fast as ticks arrive, 2.16 million of them, with no more than 20 s of them on their way.
 For an hour of it the broker reads nothing, for another it is away; then ticks come as fast as
-frames are made. The broker is a real one, and a client of its own counts what it hands on.
+frames are made. The broker is a real one, and a client of its own counts what it hands on. The
+broker keeps that client's session while it is away: what it takes before the client is back is
+handed on then, so that whatever does not come was lost.
 """
 
 import json
@@ -12,8 +14,10 @@ import statistics
 import tempfile
 import time
 from collections import deque
-from contextlib import ExitStack
+from collections.abc import Callable
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, replace
+from getpass import getuser
 from pathlib import Path
 from typing import Any, Final
 
@@ -33,6 +37,8 @@ _ON_THE_WAY: Final = 500  # frames: two thirds of what may wait in front of the 
 _HOURS: Final = 24
 _STUCK, _AWAY = 8, 16  # hours in which the broker reads nothing, and is away
 _PATIENCE_S: Final = 120.0
+_LAST_S: Final = 10.0  # for what was made up in silence, which nobody promises
+_DURABLE: Final = ("allow_anonymous true", "persistence true", "max_queued_messages 0")
 _MEGA: Final = 1e6
 
 
@@ -58,7 +64,7 @@ class _Counted:
 
 
 @dataclass
-class _Day:
+class Day:
     """What became of a day's ticks."""
 
     offered: int
@@ -78,25 +84,29 @@ def _run(quick: bool, report: Report) -> Outcome:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         report("a day as fast as it goes")
-        day = _day(folder, share, report)
+        whole_day = day(folder, share, report)
         report("real time")
         real = _real(folder, seconds)
-    half = len(day.sizes_mb) // 2
-    growth_mb = statistics.median(day.sizes_mb[half:]) - statistics.median(day.sizes_mb[:half])
+    half = len(whole_day.sizes_mb) // 2
+    growth_mb = statistics.median(whole_day.sizes_mb[half:]) - statistics.median(
+        whole_day.sizes_mb[:half]
+    )
     measured = {
         "lost_in_real_time": float(real["lost"]),
         "dropped_in_real_time": float(real["dropped"]),
-        "unaccounted": max(day.offered - day.counted.once - day.status.dropped, 0),
-        "arrived": day.counted.once / day.reached,
+        "unaccounted": max(
+            whole_day.offered - whole_day.counted.once - whole_day.status.dropped, 0
+        ),
+        "arrived": whole_day.counted.once / whole_day.reached,
         "growth_mb": growth_mb,
-        "day_s": day.took_s,
+        "day_s": whole_day.took_s,
     }
     row: Row = {
-        "ticks": day.offered, "while it reads": day.reached,
-        "received": day.counted.once, "twice": day.counted.again,
-        "dropped, counted": day.status.dropped, "took [s]": round(day.took_s),
-        "memory at first [MB]": round(day.sizes_mb[0], 1),
-        "memory at last [MB]": round(day.sizes_mb[-1], 1),
+        "ticks": whole_day.offered, "while it reads": whole_day.reached,
+        "received": whole_day.counted.once, "twice": whole_day.counted.again,
+        "dropped, counted": whole_day.status.dropped, "took [s]": round(whole_day.took_s),
+        "memory at first [MB]": round(whole_day.sizes_mb[0], 1),
+        "memory at last [MB]": round(whole_day.sizes_mb[-1], 1),
     }  # fmt: skip
     tables = {
         f"{seconds:g} s in real time, a run of the simulated rig": [real],
@@ -167,29 +177,35 @@ class _Feed:
                 time.sleep(1e-3)
         self.reached += ticks * reads
 
-    def settle(self) -> None:
-        """Wait until none waits any more; one that was made up in silence is carried as well."""
+    def wait_until_carried(self) -> None:
+        """Wait until none waits to be carried; one that was made up in silence is carried too."""
 
-        def still() -> bool:
+        def is_still() -> bool:
             told = self.one.statuses()
             self.status = told[0] if told else self.status
             return self.status.carried + self.status.dropped >= self.number
 
-        _wait(still)
-        _wait(lambda: self.on_the_way <= 0, patient=False)
+        _wait(is_still)
+
+    def settle(self) -> None:
+        """Wait until none is on its way any more."""
+        self.wait_until_carried()
+        with suppress(TimeoutError):
+            _wait(lambda: self.on_the_way <= 0, _LAST_S)
 
 
-def _day(folder: Path, share: float, report: Report) -> _Day:
+def day(folder: Path, share: float, report: Report) -> Day:
     """A day of 24 hours: in one the broker reads nothing, in another it is away."""
     from tests.pmm.console.live_rig import Reader, broker, free_port
 
     hour, port, counted = round(share * _DAY_S * _RATE_HZ / _HOURS), free_port(), _Counted()
     one, sizes = Publishing(_settings(port)), list[float]()
+    durable = (*_DURABLE, f"user {getuser()}", f"persistence_location {folder}/")
     started = time.monotonic()
     with ExitStack() as stack:
         stack.callback(one.close)
         there = stack.enter_context(ExitStack())
-        running = there.enter_context(broker(port, folder))
+        running = there.enter_context(broker(port, folder, *durable))
         there.enter_context(Reader(port, counted))
         feed, process = _Feed(one, counted), psutil.Process(one.pid)
         for number in range(1, _HOURS + 1):
@@ -199,29 +215,41 @@ def _day(folder: Path, share: float, report: Report) -> _Day:
             if number == _STUCK:
                 running.send_signal(signal.SIGSTOP)
             if number == _AWAY:
+                running.terminate()  # it writes its sessions down
+                running.wait(_PATIENCE_S)
                 there.close()
             feed.give(hour, reads=number not in (_STUCK, _AWAY))
             if number == _STUCK:
                 running.send_signal(signal.SIGCONT)
             if number == _AWAY:
-                there.enter_context(broker(port, folder))
+                there.enter_context(broker(port, folder, *durable))
+                feed.wait_until_carried()  # nobody reads yet: the broker has to keep them
                 there.enter_context(Reader(port, counted))
             if number in (_STUCK, _AWAY):
                 feed.settle()
             sizes.append(process.memory_info().rss / _MEGA)
         feed.settle()
     took_s = time.monotonic() - started
-    return _Day(feed.number, counted, feed.reached, feed.status, sizes, took_s)
+    return Day(feed.number, counted, feed.reached, feed.status, sizes, took_s)
 
 
 def _settings(port: int) -> Any:
     return live_settings("tank", f"mqtt://127.0.0.1:{port}/t", None, None, None)
 
 
-def _wait(condition: Any, *, patient: bool = True) -> None:
-    end_s = time.monotonic() + (_PATIENCE_S if patient else 10.0)
-    while not condition() and time.monotonic() < end_s:
-        time.sleep(0.05)
+def _wait(condition: Callable[[], bool], patience_s: float = _PATIENCE_S) -> None:
+    """Wait for a condition.
+
+    Raises
+    ------
+    TimeoutError
+        If it does not come about in time: whatever is waited for is lost or stuck.
+    """
+    end_s = time.monotonic() + patience_s
+    while not condition():
+        if time.monotonic() > end_s:
+            raise TimeoutError(f"not within {patience_s:g} s")
+        time.sleep(0.02)
 
 
 BENCHMARK = Benchmark("live_values", "Live values over MQTT", _run)
