@@ -6,16 +6,19 @@ here their lines are counted and held to the limits of ``tests/sealed/worlds.tom
 
 from collections.abc import Iterator, Sequence
 
+from benchmarks.boards.beside import CASES as FEW
+from benchmarks.boards.beside import figures_beside
 from benchmarks.boards.rows import Line, kept
 from benchmarks.boards.worlds import CASES, WORLDS, marks_in
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from tests.sealed.scoring.by_world import Held, figures_of, held_to
 
 
-def _rows(lines: Sequence[Line]) -> Iterator[Row]:
+def _rows(lines: Sequence[Line], beside: Sequence[Line]) -> Iterator[Row]:
     for world in WORLDS:
-        marks = marks_in(lines, world)
-        yield from (_row(world, one) for one in held_to(figures_of(marks), world) if one.count)
+        figures = figures_of(marks_in(lines, world))
+        figures |= figures_beside([one for one in beside if one["campaign"] == world])
+        yield from (_row(world, one) for one in held_to(figures, world) if one.count)
 
 
 def _row(world: str, one: Held) -> Row:
@@ -32,19 +35,25 @@ def _row(world: str, one: Held) -> Row:
     }
 
 
-def counted(lines: Sequence[Line]) -> Outcome:
-    """Hold the figures of all lines to the limits of their worlds."""
+def counted(lines: Sequence[Line], beside: Sequence[Line] = ()) -> Outcome:
+    """Hold the figures of all lines to the limits of their worlds.
+
+    Parameters
+    ----------
+    beside
+        Lines of the first cases with the oracle's answers, other rows' and those to other records.
+    """
     there = {world: sum(one["campaign"] == world for one in lines) for world in WORLDS}
     notes = [
         f"Cases in each world: {CASES} with something wrong and as many nulls, mixed by the seed, "
         "case 1 of every world before case 2 of any; figures are of nulls and of SNR from 10 on. "
         "Close: the interval's better end meets the limit. `python -m benchmarks.boards worlds` "
         "goes on with what is missing.",
-        "Figures beside the oracle's, beside other rows, and of invariance take more answers than "
-        "these: python -m tests.sealed oracle, rows, vary.",
+        f"Figures beside the oracle's, beside other rows, and of invariance are of the first {FEW} "
+        "cases of each world: `python -m benchmarks.boards beside` goes on with them.",
         *(f"Frozen at commit {one}, whose hash is the seed." for one in _frozen(lines)),
     ]
-    rows = list(_rows(lines))
+    rows = list(_rows(lines, beside))
     measured = {f"cases_{world.lower()}": float(count) for world, count in there.items() if count}
     return Outcome({"Figures by world": rows} if rows else {}, measured, tuple(notes))
 
@@ -56,7 +65,8 @@ def _frozen(lines: Sequence[Line]) -> list[str]:
 def run(quick: bool, report: Report) -> Outcome:
     """Count what is there; with ``quick`` a few of it."""
     report("counting")
-    return counted(kept("worlds")[: 40 if quick else None])
+    few = 40 if quick else None
+    return counted(kept("worlds")[:few], kept("beside")[:few])
 
 
 BENCHMARK = Benchmark("gap_worlds", "Diagnosis of sealed cases, world by world", run)

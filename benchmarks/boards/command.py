@@ -10,6 +10,7 @@ from benchmarks.boards.rows import (
     EVERY,
     RESULTS,
     SEALED,
+    SEEDED_BY,
     Job,
     jobs_of,
     keep,
@@ -32,7 +33,7 @@ def main(arguments: Sequence[str]) -> int:
     rows = kept(request.board, request.output)
     jobs = jobs_of(request.board, request.campaign, request.seeds)
     if request.board in SEALED:
-        commit_measured = frozen(rows)
+        commit_measured = frozen(rows or kept(SEEDED_BY.get(request.board, ""), request.output))
         jobs = [replace(job, frozen=commit_measured) for job in jobs]
     todo = list(missing(jobs, rows, now if request.again else None))
     print(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from benchmarks.boards import friction, loops
+from benchmarks.boards import beside, friction, loops
 from benchmarks.boards.campaigns import NULLS
 from benchmarks.boards.worlds import CASES, WORLDS
 from benchmarks.machine import ROOT
@@ -15,8 +15,9 @@ RESULTS: Final = ROOT / "benchmarks" / "results" / "boards"
 FOLDERS: Final = 10_000  # mutated folders that go through the door
 TYPED: Final = 300  # of them through whole commands
 _SLICES: Final[Mapping[str, tuple[int, int]]] = {"mutations": (FOLDERS, 50), "commands": (TYPED, 5)}
-_WORLDS, _LOOPS = "worlds", "loops"
-SEALED: Final = (_WORLDS, _LOOPS)
+_WORLDS, _BESIDE, _LOOPS = "worlds", "beside", "loops"
+SEALED: Final = (_WORLDS, _BESIDE, _LOOPS)
+SEEDED_BY: Final = {_BESIDE: _WORLDS}  # the board whose cases these are
 BOARDS: Final = ("nulls", "friction", *_SLICES)
 EVERY: Final = (*BOARDS, *SEALED)
 
@@ -75,6 +76,8 @@ def _counts(board: str) -> Mapping[str, int]:
     """Return how many seeds of each campaign, or cases of each world, are asked for."""
     if board == _WORLDS:
         return dict.fromkeys(WORLDS, 2 * CASES)
+    if board == _BESIDE:
+        return dict.fromkeys(WORLDS, beside.CASES)
     if board == _LOOPS:
         return dict.fromkeys(loops.WORLDS, loops.CASES)
     return friction.SEEDS if board == "friction" else {n: one.seeds for n, one in NULLS.items()}
@@ -90,6 +93,8 @@ def measured(job: Job) -> Line:
         from benchmarks.boards.worlds import marked
 
         return marked(job.campaign, job.first, job.frozen)
+    if job.board == _BESIDE:
+        return beside.compared(job.campaign, job.first, job.frozen, CASES)
     if job.board == _LOOPS:
         return loops.pursued(job.campaign, job.first, job.frozen)
     from benchmarks.boards.judged import null, planted

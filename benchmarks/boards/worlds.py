@@ -67,13 +67,14 @@ def marked(world: str, index: int, commit: str, size: int = CASES) -> Line:
         answer_case(Asked(folder, name, (DIAGNOSIS,)))
         taken_s = time.process_time() - began
         truth = read_truth(folder / "keys" / name / "truth.json")
-        answer = read_answer(folder / "answers" / f"{name}.json", _known(), truth)
+        answer = read_answer(folder / "answers" / f"{name}.json", known_effects(), truth)
         marks = marks_of(entry_of(answer, truth))
     line = {"campaign": world, "seed": index, "frozen": commit, **asdict(marks)}
     return {**line, "cpu_s": round(taken_s, 2)}
 
 
-def _known() -> frozenset[str]:
+def known_effects() -> frozenset[str]:
+    """Return the names that an answer may say."""
     from sim.effects.catalogue import catalogue
 
     return frozenset(catalogue())

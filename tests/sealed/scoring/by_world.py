@@ -33,7 +33,7 @@ _OWN: Final = {
     "stage": "stage",
     "shrinkage_covered": "shrinkage_covered",
 }
-_PAIRED: Final = {
+PAIRED: Final = {
     "class_below_oracle": "top_1_by_class",
     "stage_below_oracle": "stage",
     "unknown_below_oracle": "unknown",
@@ -138,7 +138,7 @@ class Marks:
 
 def marks_of(entry: Entry) -> Marks:
     """Return the marks of an answer beside its key."""
-    columns = sorted({*_OWN.values(), *_PAIRED.values()})
+    columns = sorted({*_OWN.values(), *PAIRED.values()})
     answer = entry.answer
     right = float(answer.said in by_class(entry.truth))
     return Marks(
@@ -151,13 +151,13 @@ def marks_of(entry: Entry) -> Marks:
 def figures_of(rows: Mapping[str, Sequence[Marks]]) -> dict[str, Figure]:
     """Return the figures of the diagnosis, and those beside the oracle where it answered too."""
     ours = rows[DIAGNOSIS]
-    out = {key: _mean(_values(ours, column)) for key, column in _OWN.items()}
+    out = {key: mean_figure(_values(ours, column)) for key, column in _OWN.items()}
     if ORACLE in rows:
-        for key, column in _PAIRED.items():
+        for key, column in PAIRED.items():
             theirs, own = (_values(row, column) for row in (rows[ORACLE], ours))
-            out[key] = _mean(theirs - own)
+            out[key] = mean_figure(theirs - own)
     said = np.array([one.stated for one in ours if one.is_clear and one.stated]).reshape(-1, 2)
-    out["sure_and_wrong"] = _mean(1.0 - said[said[:, 0] >= SURE, 1])
+    out["sure_and_wrong"] = mean_figure(1.0 - said[said[:, 0] >= SURE, 1])
     out["calibration_excess"] = _boot(said, _excess, len(said))
     return out
 
@@ -188,7 +188,8 @@ def _excess(rows: FloatArray) -> float:
     return calibration_error(said, rows[:, 1]) - float(perfect)
 
 
-def _mean(values: FloatArray) -> Figure:
+def mean_figure(values: FloatArray) -> Figure:
+    """Return a mean with its 95 % interval by the bootstrap, and n."""
     return _boot(values, lambda drawn: float(drawn.mean()), len(values))
 
 

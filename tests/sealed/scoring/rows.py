@@ -1,6 +1,6 @@
 """One answerer's figures, by what there is to see."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -127,13 +127,18 @@ def row_score(
         Columns that some row of the board has a figure for.
     """
     seen = [e for e in entries if BINS[-1].holds(e.truth)]
-    figures = bins[-1].figures
-    # What a row leaves out counts as nothing reached; what no case shows counts for nobody.
-    parts = [
-        _MEAN[key](figures[key].value) if key in figures else 0.0 for key in _MEAN if key in shown
-    ]
+    mean = mean_of({key: figure.value for key, figure in bins[-1].figures.items()}, shown)
     sure = reliability([(e.answer, e.truth) for e in seen])
-    return RowScore(name, bins, tuple(_angles(seen)), sure, sum(parts) / max(len(parts), 1))
+    return RowScore(name, bins, tuple(_angles(seen)), sure, mean)
+
+
+def mean_of(figures: Mapping[str, float], shown: Collection[str]) -> float:
+    """Return the mean of a row's columns, of those that some row of the board shows.
+
+    What a row leaves out counts as nothing reached; what no case shows counts for nobody.
+    """
+    parts = [_MEAN[key](figures[key]) if key in figures else 0.0 for key in _MEAN if key in shown]
+    return sum(parts) / max(len(parts), 1)
 
 
 def _angles(entries: Sequence[Entry]) -> list[Angle]:
