@@ -54,13 +54,16 @@ class MqttOutlet(Outlet):
             will=will,
             timeout=_PATIENCE_S,
             keepalive=round(2 * _PATIENCE_S),
+            max_inflight_messages=0,  # else 20; those on their way are bounded here
         )
         client.pending_calls_threshold = 2 * _TOGETHER  # below it nothing is unusual
         try:
             async with client:
                 self._open()
                 self._units = {}
-                work = [self._publish(client), self._say(client), self._watch(client)]
+                turn, sent = asyncio.Lock(), dict[int, Tick]()
+                senders = (self._publish(client, turn, sent) for _ in range(_TOGETHER))
+                work = [self._say(client), self._watch(client), *senders]
                 tasks = [asyncio.ensure_future(one) for one in work]
                 try:
                     await asyncio.gather(*tasks)
@@ -68,6 +71,7 @@ class MqttOutlet(Outlet):
                     for task in tasks:
                         task.cancel()
                     await asyncio.gather(*tasks, return_exceptions=True)
+                    self._put_back(list(sent.values()))
                     with suppress(MqttError):
                         await self._send(client, "status", gone, retain=True)
         except (MqttError, OSError, ValueError) as error:
@@ -78,22 +82,20 @@ class MqttOutlet(Outlet):
                 "itself"
             ) from error
 
-    async def _publish(self, client: "Client") -> None:
-        while True:
-            ticks = await self._next(_TOGETHER)
-            left = dict(enumerate(ticks))
-            try:
-                await self._tell_units(client, ticks[-1])
-                await asyncio.gather(
-                    *(self._send_tick(client, left, place) for place in list(left))
-                )
-            finally:  # a broker that takes some before it fails has taken them
-                self._put_back(list(left.values()))
-                self._done(len(ticks) - len(left))
+    async def _publish(self, client: "Client", turn: asyncio.Lock, sent: dict[int, Tick]) -> None:
+        """Send a tick, wait until it is confirmed, send the next; several do, and take turns.
 
-    async def _send_tick(self, client: "Client", left: dict[int, Tick], place: int) -> None:
-        await self._send(client, "live", message(left[place]))
-        left.pop(place, None)
+        Each confirmation lets a tick go, and so the network has something to carry back at once:
+        where many wait for the last of them, a broker's confirmations wait for us as well.
+        """
+        while True:
+            async with turn:  # ticks go in their order, and units before them
+                tick = await self._next()
+                sent[id(tick)] = tick
+                await self._tell_units(client, tick)
+            await self._send(client, "live", message(tick))
+            del sent[id(tick)]
+            self._done()
 
     async def _tell_units(self, client: "Client", tick: Tick) -> None:
         units = {name: value.unit for name, value in tick.values.items()}

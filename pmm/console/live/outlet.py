@@ -96,16 +96,17 @@ class Outlet(ABC):
         """Note that it is connected."""
         self._connected, self._trouble = True, ""
 
-    async def _next(self, most: int = 1) -> list[Tick]:
-        """Wait for ticks, and take the oldest of them."""
+    async def _next(self) -> Tick:
+        """Wait for a tick, and take the oldest."""
         while not self._waiting:
             await asyncio.sleep(_LOOK_S)
         with self._lock:
-            return [self._waiting.popleft() for _ in range(min(most, len(self._waiting)))]
+            return self._waiting.popleft()
 
-    def _done(self, ticks: int) -> None:
+    def _done(self) -> None:
+        """Count a tick that was carried."""
         with self._lock:
-            self._carried += ticks
+            self._carried += 1
 
     def _put_back(self, ticks: list[Tick]) -> None:
         """Let ticks that were not carried wait again, before all others."""

@@ -3,11 +3,12 @@
 import json
 import socket
 import threading
+from collections import deque
 from types import TracebackType
 from typing import Any
 
 _CONNECT, _PUBLISH, _PING = 1, 3, 12
-_CONNACK, _PONG = b"\x20\x02\x00\x00", b"\xd0\x00"
+_CONNACK, _PONG, _ACKNOWLEDGED = b"\x20\x02\x00\x00", b"\xd0\x00", b"\x40\x02"
 
 
 class HandBroker:
@@ -15,23 +16,28 @@ class HandBroker:
 
     Attributes
     ----------
-    numbers
-        Of the ticks that it has acknowledged, in their order.
+    numbers, came
+        Of the ticks that it has acknowledged, in their order; of those that reached it.
     told
         The latest message of each topic.
     reading
         Cleared: it takes no byte more until it is set.
     wait_s
         Before each acknowledgement.
+    behind
+        Ticks that it has not acknowledged when it acknowledges the one before them.
     """
 
     def __init__(self) -> None:
         self.numbers: list[int] = []
+        self.came: list[int] = []
         self.told: dict[str, dict[str, Any]] = {}
         self.connections = 0
         self.reading = threading.Event()
         self.reading.set()
         self.wait_s = 0.0
+        self.behind = 0
+        self._waiting = deque[tuple[bytes, int]]()
         self._end = threading.Event()
         self._server = socket.create_server(("127.0.0.1", 0))
         self._server.settimeout(0.02)
@@ -57,6 +63,7 @@ class HandBroker:
             except TimeoutError:
                 continue
             self.connections += 1
+            self._waiting.clear()
             one.settimeout(0.02)
             with one:
                 try:
@@ -83,11 +90,17 @@ class HandBroker:
     def _take(self, one: socket.socket, body: bytes) -> None:
         end = 2 + int.from_bytes(body[:2], "big")
         self._end.wait(self.wait_s)
-        one.sendall(b"\x40\x02" + body[end : end + 2])
         topic, content = body[2:end].decode(), json.loads(body[end + 2 :])
         self.told[topic] = content
-        if topic.endswith("/live"):
-            self.numbers.append(content["n"])
+        if not topic.endswith("/live"):
+            one.sendall(_ACKNOWLEDGED + body[end : end + 2])
+            return
+        self.came.append(content["n"])
+        self._waiting.append((body[end : end + 2], content["n"]))
+        while len(self._waiting) > self.behind:
+            name, number = self._waiting.popleft()
+            one.sendall(_ACKNOWLEDGED + name)
+            self.numbers.append(number)
 
     def _length(self, one: socket.socket) -> int:
         length, shift = 0, 0

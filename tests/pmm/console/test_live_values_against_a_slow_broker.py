@@ -1,8 +1,14 @@
 """A broker that is slow, or reads no more: nothing waits for it or grows, drops are counted."""
 
 import asyncio
+import sys
 from collections.abc import Callable
+from pathlib import Path
+from types import FrameType
+from typing import Any
 
+import aiomqtt
+import paho.mqtt
 import pytest
 
 from pmm.console.live import mqtt
@@ -14,6 +20,7 @@ from tests.pmm.console.live_rig import HELLO, WITHIN_S, frame
 
 TABLE = LiveTable(HELLO)
 MOST = 40
+TOGETHER = 50  # on their way at a time
 
 
 @pytest.fixture(autouse=True)
@@ -96,3 +103,81 @@ def test_one_that_is_slow_gets_all_in_the_end() -> None:
         asyncio.run(run(broker))
         assert set(broker.numbers) == set(range(1, 61))
         assert broker.connections > 1
+
+
+def test_one_that_confirms_a_tick_when_another_comes_gets_each_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As a network does that carries confirmations back only with what comes next."""
+    monkeypatch.setattr(mqtt, "_PATIENCE_S", 5.0)
+
+    async def run(broker: HandBroker) -> None:
+        outlet = _outlet(broker, 200)
+        broker.behind = TOGETHER - 1
+        _offer(outlet, 1, 200)
+        running = asyncio.create_task(outlet.run())
+        await _until(lambda: len(broker.came) >= 200 or broker.connections > 1)
+        assert broker.connections == 1
+        assert broker.came == list(range(1, 201))
+        await _until(lambda: outlet.status().carried == 201 - TOGETHER)
+        running.cancel()
+
+    with HandBroker() as broker:
+        asyncio.run(run(broker))
+
+
+def test_one_that_comes_back_gets_again_only_what_was_on_its_way() -> None:
+    """However many wait meanwhile."""
+
+    async def run(broker: HandBroker) -> None:
+        outlet = _outlet(broker, 1000)
+        broker.behind = TOGETHER  # it never confirms one
+        _offer(outlet, 1, 1000)
+        running = asyncio.create_task(outlet.run())
+        await _until(lambda: broker.connections > 1 and len(broker.came) >= 2 * TOGETHER)
+        broker.behind = 0
+        await _until(lambda: outlet.status().carried == 1000)
+        running.cancel()
+        assert outlet.status().dropped == 0
+
+    with HandBroker() as broker:
+        asyncio.run(run(broker))
+        assert sorted(set(broker.came)) == list(range(1, 1001))
+        assert len(broker.came) - 1000 <= TOGETHER * (broker.connections - 1)
+
+
+def test_lines_run_for_a_tick_do_not_grow_with_those_that_wait(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(mqtt, "_PATIENCE_S", 60.0)  # a traced line takes longer
+    few, many = _lines_a_tick(150), _lines_a_tick(1500)
+    assert many <= 1.1 * few
+
+
+def _lines_a_tick(ticks: int) -> float:
+    """Return how many lines of ours and of the client's library run for each tick that waits."""
+    ours = tuple(
+        str(Path(one).parent) for one in (mqtt.__file__, aiomqtt.__file__, paho.mqtt.__file__)
+    )
+    lines = 0
+
+    def trace(frame: FrameType, event: str, _: Any) -> Any:
+        nonlocal lines
+        lines += event == "line"
+        return trace if frame.f_code.co_filename.startswith(ours) else None
+
+    async def run(broker: HandBroker) -> None:
+        outlet = _outlet(broker, ticks)
+        _offer(outlet, 1, ticks)
+        before = sys.gettrace()
+        sys.settrace(trace)
+        running = asyncio.create_task(outlet.run())
+        try:
+            await _until(lambda: outlet.status().carried == ticks)
+        finally:
+            sys.settrace(before)
+        running.cancel()
+
+    with HandBroker() as broker:
+        asyncio.run(run(broker))
+    return lines / ticks
