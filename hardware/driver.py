@@ -4,12 +4,13 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cache
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import EntryPoint
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 from hardware.description.errors import ConfigurationError
 from hardware.description.toml import dotted, not_finite
 from hardware.dictionary import Entry, PdoLayout, layout, load
+from hardware.installed import installed
 from hardware.roles import Device, Role
 from hardware.serial_port import Ports, SerialPort
 
@@ -144,7 +145,7 @@ def find_driver(name: str, where: str, among: Iterable[EntryPoint] | None = None
     """
     found = {
         entry_point.name: entry_point
-        for entry_point in (entry_points(group=GROUP) if among is None else among)
+        for entry_point in (installed(GROUP) if among is None else among)
     }
     if name not in found:
         near = get_close_matches(name, found, n=1, cutoff=0.5)

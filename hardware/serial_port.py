@@ -4,7 +4,6 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
-from importlib.metadata import entry_points
 from typing import TYPE_CHECKING, Final, Literal, Protocol, TypeAlias
 
 import serial
@@ -12,6 +11,7 @@ from serial.tools import list_ports
 
 from hardware.bus_owner import own_port
 from hardware.errors import LineError, PortOpenError, UnpluggedError
+from hardware.installed import installed
 
 if TYPE_CHECKING:
     from hardware.ownership import Ownership
@@ -145,7 +145,7 @@ def know(scheme: str) -> None:
     OSError
         If a package cannot be loaded.
     """
-    for entry_point in entry_points(group=URL_GROUP, name=scheme):
+    for entry_point in installed(URL_GROUP, scheme):
         try:
             entry_point.load()
         except Exception as error:  # a foreign package may raise anything while it is imported

@@ -6,10 +6,10 @@ that whoever drives a rig knows no simulator.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib.metadata import entry_points
 from typing import Any
 
 from hardware.bus import BusConfiguration
+from hardware.installed import installed
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ def simulated_behind(bus: BusConfiguration | None) -> SimulatedTables | None:
     """
     if bus is None:
         return None
-    for point in entry_points(group="can.interface", name=bus.interface):
+    for point in installed("can.interface", bus.interface):
         tell = getattr(point.load(), "tables", None)
         if tell is not None:
             found = tell(bus.channel)

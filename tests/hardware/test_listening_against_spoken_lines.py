@@ -86,12 +86,12 @@ def test_other_text_and_silence_are_told(heard) -> None:
 def test_a_package_brings_urls_by_its_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = []
 
-    def installed(group: str, name: str):
+    def entry_points(group: str, name: str):
         asked.append((group, name))
         value = {"good": "tests.hardware.protocol_double", "bad": "no.such.module"}.get(name)
         return [EntryPoint(name, value, group)] if value else []
 
-    monkeypatch.setattr(serial_port, "entry_points", installed)
+    monkeypatch.setattr(serial_port, "installed", entry_points)
     serial_port.know.cache_clear()
     with pytest.raises(PortOpenError, match=r"no\.such\.module, which bad:// needs, cannot be"):
         SerialPort("port", PortSettings("bad://x"))
