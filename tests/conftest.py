@@ -1,5 +1,6 @@
 """What holds for every test: the same examples each time, and nothing is left behind."""
 
+import gc
 import os
 from collections import defaultdict
 from collections.abc import Iterator
@@ -21,6 +22,17 @@ settings.register_profile(
 )
 settings.register_profile("full", settings.get_profile("seeded"), max_examples=200)
 settings.load_profile("seeded")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Iterator[None]:
+    """Let no later look for garbage go over the modules and tests: all of them stay to the end."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.hookimpl(tryfirst=True)
