@@ -9,6 +9,7 @@ import can
 import pytest
 from hypothesis import HealthCheck, settings
 
+from tests.compiled_loops import compile_loops
 from tests.hardware.leaks import Leaks
 
 # No clock decides a test: a slow machine is no fault of the code. A few examples of each in every
@@ -22,6 +23,12 @@ settings.register_profile(
 )
 settings.register_profile("full", settings.get_profile("seeded"), max_examples=200)
 settings.load_profile("seeded")
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Compile what takes long before workers begin."""
+    if getattr(session.config.option, "numprocesses", None):
+        compile_loops()
 
 
 @pytest.hookimpl(wrapper=True)

@@ -34,7 +34,7 @@ def compile_loop(function: FunctionT) -> FunctionT:
     any_order = {"reassoc", "contract", "nsz"}
     config: Any = numba.config
     before = config.CACHE_DIR
-    config.CACHE_DIR = str(_cache_folder(before))
+    config.CACHE_DIR = str(cache_folder(before))
     try:
         compiled = numba.njit(cache=True, nogil=True, fastmath=any_order)(function)
     finally:
@@ -59,7 +59,7 @@ def callable_when_compiled(*functions: Callable[..., Any], by: Any = None) -> No
 
 
 @cache
-def _cache_folder(chosen: str) -> Path:
+def cache_folder(chosen: str) -> Path:
     """Return where the compiled loops are kept: another folder for every change of their sources.
 
     numba looks at the file of a function only, not at those of the functions that it calls.

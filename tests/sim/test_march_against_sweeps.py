@@ -182,7 +182,7 @@ def test_compiled_loops_are_kept_apart_for_every_change_of_their_sources(
     for called, other in (("1.0", "a"), ("2.0", "a"), ("2.0", "b")):
         (package / "law.py").write_text(f"@compile_loop\ndef law(): return {called}\n")
         (package / "other.py").write_text(f"name = {other!r}\n")
-        folders.append(compilation._cache_folder.__wrapped__(""))
+        folders.append(compilation.cache_folder.__wrapped__(""))
     assert folders[0].parent == package / "__pycache__"
     assert folders[0] != folders[1] == folders[2]
-    assert compilation._cache_folder.__wrapped__(str(tmp_path)).parent == tmp_path
+    assert compilation.cache_folder.__wrapped__(str(tmp_path)).parent == tmp_path
