@@ -48,6 +48,11 @@ class Link(Generic[T]):
             thread.start()
 
     @property
+    def waiting(self) -> int:
+        """Frames that wait to be fetched."""
+        return len(self._frames)
+
+    @property
     def lost(self) -> bool:
         """Whether the other side is gone."""
         return self._closed.is_set()

@@ -50,6 +50,11 @@ class Publishing:
         """The process that carries out."""
         return self._process.pid or 0
 
+    @property
+    def waiting(self) -> int:
+        """Ticks that its process has not fetched yet."""
+        return self._link.waiting
+
     def statuses(self) -> tuple[OutletStatus, ...]:
         """Return how the outlets are, if there is something new since the last call."""
         told = self._link.orders()
