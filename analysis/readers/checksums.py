@@ -14,6 +14,7 @@ from zlib import crc32
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.readers.netcdf_group import NetcdfGroup, describe
 from hardware.description import dataset as schema
 from hardware.description.arrays import BoolArray, FloatArray
 
@@ -25,7 +26,7 @@ _BYTES: Final = 8  # of a value
 _VARIABLE, _BLOCK, _EDGE_BLOCK = "variable", "block", "edge_block"
 _SUMS, _EDGE_SUMS = "block_crc32", "edge_block_crc32"
 _NAMES, _COUNTS, _ATTRIBUTES = "variables", "counts", "attributes"
-# What NetCDF keeps its dimensions in: h5netcdf hides them, h5py does not.
+# What NetCDF keeps its dimensions in.
 _DIMENSIONS: Final = ("CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST", "_Netcdf4Dimid")
 _HIDDEN: Final = (*_DIMENSIONS, "_Netcdf4Coordinates", "_nc3_strict", "_NCProperties")
 
@@ -103,22 +104,20 @@ class Summing:
         self._counts[name] = self._counts.get(name, 0) + len(values)
         self._attributes[name] = attribute_sums(variable.attrs)
 
-    def finish(self, file: Any) -> None:
-        """Write the checksums into the file, which is open as :class:`h5netcdf.File`."""
+    def finish(self, file: NetcdfGroup) -> None:
+        """Write the checksums into the file."""
         blocks = {name: np.concatenate(sums) for name, sums in self._blocks.items()}
         edges = blocks.pop(schema.EDGE_TIME, None)
-        attributes = {RUN: attribute_sums(file.attrs), **self._attributes}
-        group = file.create_group(schema.CHECKSUMS)
-        group.dimensions = {_VARIABLE: len(blocks), _BLOCK: blocks[schema.TIME].size}
-        group.attrs[_NAMES] = json.dumps(list(blocks))
-        group.attrs[_COUNTS] = json.dumps(self._counts)
-        group.attrs[_ATTRIBUTES] = json.dumps(attributes)
-        group.create_variable(_SUMS, (_VARIABLE, _BLOCK), data=np.array(list(blocks.values())))
+        attributes = {RUN: attribute_sums(file.store.attrs), **self._attributes}
+        group = file.group(schema.CHECKSUMS)
+        group.dimension(_VARIABLE, len(blocks))
+        group.dimension(_BLOCK, blocks[schema.TIME].size)
+        texts = {_NAMES: list(blocks), _COUNTS: self._counts, _ATTRIBUTES: attributes}
+        describe(group.store, {name: json.dumps(one) for name, one in texts.items()})
+        group.variable(_SUMS, (_VARIABLE, _BLOCK), np.uint32)[:] = np.array(list(blocks.values()))
         if edges is not None:
-            group.dimensions[_EDGE_BLOCK] = edges.size
-            stored = group.create_variable(_EDGE_SUMS, (_EDGE_BLOCK,), np.uint32)
-            if edges.size:
-                stored[:] = edges
+            group.dimension(_EDGE_BLOCK, edges.size)
+            group.variable(_EDGE_SUMS, (_EDGE_BLOCK,), np.uint32)[:] = edges
 
 
 def read_sums(file: Any) -> Sums | None:

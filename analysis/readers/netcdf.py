@@ -23,6 +23,7 @@ from analysis.readers.checksums import BLOCK_SAMPLES, KIND, Summing
 from analysis.readers.conditioning import without_spikes
 from analysis.readers.damage import Damage, find_damage
 from analysis.readers.missing_values import with_missing_said
+from analysis.readers.netcdf_group import NetcdfGroup, describe
 from analysis.readers.reader import Reader
 from analysis.readers.stored_samples import (
     StoredSamples,
@@ -178,18 +179,20 @@ def _refuse_existing(path: Path, overwrite: bool) -> None:
 
 
 def _write(recording: Recording, path: Path) -> None:
-    import h5netcdf
+    import h5py
 
     count, edges = recording.sample_count, recording.photocell_edges_s
-    most = _most_bytes(recording)
-    with reserved(path, most) as room, h5netcdf.File(room.file, "w") as file:
+    most, chunk = _most_bytes(recording), min(recording.sample_count, CHUNK_SAMPLES)
+    with reserved(path, most) as room, h5py.File(room.file, "w", track_order=True) as file:
         room.take()
-        file.dimensions[schema.TIME] = count
-        file.attrs.update(run_attributes(recording) | {schema.ATTR_CHECKSUMS: KIND})
-        variables = [_variable(file, schema.TIME, {schema.UNITS: "s"}, count)] + [
-            _variable(file, channel.name, channel_attributes(channel), count)
-            for channel in recording.channels
-        ]
+        group = NetcdfGroup(file)
+        describe(file, run_attributes(recording) | {schema.ATTR_CHECKSUMS: KIND})
+        variables = [group.coordinate(schema.TIME, count, chunk)]
+        describe(variables[0], {schema.UNITS: "s"})
+        for channel in recording.channels:
+            made = group.variable(channel.name, (schema.TIME,), np.float64, chunk)
+            describe(made, channel_attributes(channel))
+            variables.append(made)
         sums = Summing()
         for start, stop in _stretches(0, count):
             values = np.vstack([recording.time_s(start, stop), recording.samples[:, start:stop]])
@@ -197,13 +200,12 @@ def _write(recording: Recording, path: Path) -> None:
                 variable[start:stop] = row
                 sums.take(variable, row)
         if edges is not None:
-            file.dimensions[schema.EDGE] = len(edges)
-            stored = file.create_variable(schema.EDGE_TIME, (schema.EDGE,), np.float64)
-            stored.attrs[schema.UNITS] = "s"
-            if len(edges):
-                stored[:] = edges
+            group.dimension(schema.EDGE, len(edges))
+            stored = group.variable(schema.EDGE_TIME, (schema.EDGE,), np.float64)
+            describe(stored, {schema.UNITS: "s"})
+            stored[:] = edges
             sums.take(stored, edges)
-        sums.finish(file)
+        sums.finish(group)
 
 
 def _most_bytes(recording: Recording) -> int:
@@ -215,14 +217,6 @@ def _most_bytes(recording: Recording) -> int:
     values = rows * -(-count // chunk) * chunk + sums + (0 if edges is None else 2 * len(edges))
     texts = sum(len(str(value).encode()) for value in run_attributes(recording).values())
     return 8 * values + 2 * texts + 2 * (rows + 2) * _BOOKS_BYTES
-
-
-def _variable(file: Any, name: str, attributes: dict[str, str | float], count: int) -> Any:
-    variable = file.create_variable(
-        name, (schema.TIME,), np.float64, chunks=(min(count, CHUNK_SAMPLES),)
-    )
-    variable.attrs.update(attributes)
-    return variable
 
 
 def _stretches(first: int, end: int) -> Iterator[tuple[int, int]]:
