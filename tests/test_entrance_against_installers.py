@@ -125,6 +125,7 @@ def test_a_file_that_nobody_owns_up_to_is_named(ours: Environment) -> None:
     assert "install anew" in said
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", ["analysis", "sim", "hardware"])
 @pytest.mark.parametrize("kind", ["{}.py", "{}/__init__.py"])
 def test_a_users_own_module_is_named(name: str, kind: str, tmp_path: Path) -> None:

@@ -65,6 +65,7 @@ def campaign(table: RadiationTable) -> list[BodyCycle]:
     return found
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("name", "plane"),
     [

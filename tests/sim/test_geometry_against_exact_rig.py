@@ -35,6 +35,7 @@ EVERY = pytest.mark.parametrize(
 )
 
 
+@pytest.mark.sample(25)
 @EVERY
 @pytest.mark.parametrize("plane", Plane)
 @pytest.mark.parametrize("medium", Medium)

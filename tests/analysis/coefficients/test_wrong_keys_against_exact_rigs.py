@@ -132,7 +132,7 @@ def test_a_wrong_key_that_moves_a_coefficient_is_told(
     assert not doubted, "the recordings doubt the true arrangement"
 
 
-@pytest.mark.sample(10)
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("plane", Plane)
 @EVERY
 def test_what_the_recordings_do_not_tell_is_named_as_resting_on_the_key(

@@ -74,6 +74,7 @@ def _refined(made: Made, one: Candidate, start: FloatArray) -> Fit:
     return refine(made, at(made, (one,), start))
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", THERE)
 def test_where_it_ends_the_cost_is_level(calm: Problem, name: str) -> None:
     made, one = _made(calm, name)
@@ -91,6 +92,7 @@ def test_where_it_ends_the_cost_is_level(calm: Problem, name: str) -> None:
             assert abs(up - down) / 0.2 / curved < LEVEL
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", THERE)
 def test_it_ends_there_from_wherever_it_began(calm: Problem, name: str) -> None:
     made, one = _made(calm, name)
@@ -103,6 +105,7 @@ def test_it_ends_there_from_wherever_it_began(calm: Problem, name: str) -> None:
         assert (np.abs(again.units - found.units) < LEVEL * deviation).all()
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", THERE)
 def test_the_last_digits_of_the_recordings_move_nothing(calm: Problem, name: str) -> None:
     (made, one), (other, _) = _made(calm, name), _made(calm, name, last_digit=1e-12)

@@ -69,6 +69,7 @@ SHAPES: dict[str, Shape] = {
 }
 
 
+@pytest.mark.sample(6)
 @pytest.mark.parametrize("name", SHAPES)
 def test_shapes(name: str) -> None:
     """In any sampling, phase, noise and quantisation."""
@@ -86,7 +87,7 @@ def test_shapes(name: str) -> None:
         assert find_spikes(np.round(values / step)[None] * step) == ((),), (rate, frequency, step)
 
 
-@pytest.mark.sample(37)
+@pytest.mark.sample(12)
 @pytest.mark.parametrize("kind", catalogue().values(), ids=lambda kind: kind.code)
 @pytest.mark.parametrize("rate_hz", [40.0, 200.0])
 def test_every_effect_of_the_catalogue(kind: type[Effect], rate_hz: float) -> None:

@@ -37,6 +37,7 @@ def test_a_good_gate_has_no_flag(periods: int, size: float) -> None:
     assert codes(MOTION + noise(size), periods) == []
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("periods", [3, 5, 6, 10, 30])
 def test_channels_of_noise_or_of_nothing_have_no_flag(periods: int) -> None:
     """400 channels of noise beside a motion and two constants: as good as no false alarm."""

@@ -60,6 +60,7 @@ def test_filter_is_exact_for_a_product_that_is_a_ramp() -> None:
     assert needles.in_phase[0, 0] == pytest.approx(expected, abs=1e-12)
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(("order", "x"), [(1, 0), (2, 0), (1, 2), (2, 1), (3, 3), (1, 1.37)])
 def test_ripple_is_the_closed_form(order: int, x: float) -> None:
     seconds = 120.0 if x % 1 else 40.0

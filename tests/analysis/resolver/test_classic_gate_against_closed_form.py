@@ -95,6 +95,7 @@ def test_drift_bias_turns_with_the_angle_at_which_the_gate_opens() -> None:
     assert (reading.in_phase[0, 1], reading.quadrature[0, 1]) == pytest.approx(bias, abs=1e-3)
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("periods", [1, 3])
 @pytest.mark.parametrize("x", [0.37, 1.37, 5.37, 2.5])
 def test_interference_leaks_as_the_boxcar(periods: int, x: float) -> None:

@@ -65,6 +65,7 @@ def test_intervals_hold_where_the_noise_remembers(kind: str, part: int, periods:
     assert held[:, part].mean() >= 0.95 - THREE_SIGMA
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("periods", [10, 20, 40])
 def test_white_noise_costs_little(periods: int) -> None:
     held, factor = intervals(resolved(noise("white", periods)))

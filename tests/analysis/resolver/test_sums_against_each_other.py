@@ -85,6 +85,7 @@ def plainly(
     return gram, moment, ramp / run.sample_rate_hz
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("harmonics", [1, 3, 12])
 @pytest.mark.parametrize("times", [1, 30])
 @pytest.mark.parametrize("channels", [1, 4])

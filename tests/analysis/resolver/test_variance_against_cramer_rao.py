@@ -43,6 +43,7 @@ def variance(periods: int, *, drift: bool, opening: float = 1.0, hann: bool = Fa
     return np.asarray((result.coefficients**2).sum(axis=0) / limit)
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("periods", [1, 3, 10])
 @pytest.mark.parametrize("opening", [1.0, 1.21, 1.68])
 def test_without_drift_the_bound_is_reached(periods: int, opening: float) -> None:
@@ -50,6 +51,7 @@ def test_without_drift_the_bound_is_reached(periods: int, opening: float) -> Non
     assert ratio == pytest.approx(np.ones(2 * HARMONICS + 1), rel=0.05)
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("periods", [2, 3, 5, 10])
 def test_drift_costs_what_the_closed_form_says(periods: int) -> None:
     """Gate opened at theta = 0, s^2 = 1, P samples a period.

@@ -40,7 +40,7 @@ def steps(one, count: int) -> None:
         one.control.step()
 
 
-@pytest.mark.sample(4)
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("frequency_hz", [3.0, -3.0])
 @pytest.mark.parametrize("state", STATES)
 def test_overspeed_either_way_is_a_fault(tmp_path, state: State, frequency_hz: float) -> None:
@@ -85,6 +85,7 @@ def test_a_quick_stop_that_a_drive_does_not_obey_takes_its_power_at_the_deadline
         assert lost.time_s - came_s == pytest.approx(5.0, abs=0.05)
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("state", STATES)
 def test_a_load_beyond_the_safe_one_is_a_fault(tmp_path, state: State) -> None:
     runs = [oscillation(**LONG)]

@@ -28,6 +28,7 @@ SET_POINTS = [
 ]
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("effect", "tolerance"),
     [

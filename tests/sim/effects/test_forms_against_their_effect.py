@@ -90,6 +90,7 @@ def test_form_is_as_large(effect: Effect, form: Effect) -> None:
     assert another != (effect.name in OVER_A_CAMPAIGN)
 
 
+@pytest.mark.sample(18)
 @pytest.mark.parametrize(("effect", "form"), REPEATING, ids=name_of)
 def test_form_runs_in_time_as_in_the_steady_state(effect: Effect, form: Effect) -> None:
     """Within 3 % of the effect, or of rounding: what 200 samples a period see of corners."""

@@ -83,6 +83,7 @@ def test_signature(effect: Effect, rig: SimulatedRig) -> None:
     assert compare(effect, rig, SET_POINTS) < 1e-9
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("rig", [VERTICAL, HORIZONTAL])
 @pytest.mark.parametrize(
     "effect",
@@ -101,6 +102,7 @@ def test_signature_of_squares(effect: Effect, rig: SimulatedRig) -> None:
 LINEAR = ("H1", "H2", "H6", "H7", "H10", "H11")
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     "effect", [one for one in EXACT if one.code in LINEAR], ids=lambda one: one.code
 )
@@ -128,6 +130,7 @@ def test_the_bottom_is_not_touched() -> None:
         GroundSuction(5.0, 0.02).change(VERTICAL, SetPoint(1.0, 0.03))
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize("rig", [VERTICAL, HORIZONTAL, REMEMBERING])
 @pytest.mark.parametrize("motion", [MOTIONS[1], MOTIONS[5], MOTIONS[8], MOTIONS[10]])
 @pytest.mark.parametrize("fluctuation", [0.23, 1.7])

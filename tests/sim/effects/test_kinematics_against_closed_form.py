@@ -82,7 +82,7 @@ DRIFTING = [SetPoint(0.9, 1e-4, p, 1.2, drift_rad=1e-7) for p in PHASES]
 DRIFTING += [SetPoint(0.7, 1e-4, p, 0.0, Medium.AIR, -1e-7) for p in PHASES]
 
 
-@pytest.mark.sample(74)
+@pytest.mark.sample(25)
 @pytest.mark.parametrize("rig", [vertical_rig(), horizontal_rig()], ids=["vertical", "horizontal"])
 @pytest.mark.parametrize("joint", [Joint.SLIDES_ON_MODEL, Joint.SLIDES_ON_RIG])
 @pytest.mark.parametrize("pivot", Pivot)

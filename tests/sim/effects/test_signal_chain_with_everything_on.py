@@ -33,6 +33,7 @@ def test_every_row_of_the_tables_has_an_effect() -> None:
     assert sorted(kind.code for kind in KINDS) == sorted(CODES)
 
 
+@pytest.mark.sample(12)
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.code)
 def test_ends_of_the_ranges(kind: type[Effect]) -> None:
     """Every parameter at either end of its range still gives a run, and a signature, of numbers."""
@@ -114,6 +115,7 @@ IN_TIME = [kind() for kind in KINDS if kind.repeats and kind.code not in ("A3", 
 IN_TIME += [Saturation(3.0, 5.0), VortexShedding(lift_n_s2_m2=0.0, step_n=0.3)]
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize("effect", IN_TIME, ids=lambda effect: effect.code)
 def test_the_time_domain_has_the_same_signature(effect: Effect) -> None:
     """The last cycle of a hundred, when what the water remembers of the start has died out.

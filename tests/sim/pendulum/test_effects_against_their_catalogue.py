@@ -86,6 +86,7 @@ _SMALL = (
 )
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", _SMALL)
 def test_an_effect_adds_to_what_the_test_has_already(name: str) -> None:
     effect = make_effect(name)

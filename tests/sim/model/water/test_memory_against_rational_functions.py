@@ -94,6 +94,7 @@ def slow_tail() -> RadiationTable:
     return heave(OMEGA, wave + tail)
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("states", [None, *range(2, 13)])
 def test_a_slow_tail_is_never_refused(states: int | None) -> None:
     fit = fit_memory(slow_tail(), states)
@@ -131,6 +132,7 @@ def test_a_table_that_is_not_passive_is_followed_as_far_as_water_can_and_said() 
     assert "coefficients carry the misfit" in str(fit)
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("seed", range(8))
 def test_coupled_waters_come_back_with_their_coupling(seed: int) -> None:
     """Two coupled degrees of freedom of a water that is passive by its form."""
