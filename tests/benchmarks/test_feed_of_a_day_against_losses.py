@@ -88,6 +88,19 @@ def test_what_was_dropped_while_it_reads_holds_up_none_of_those_that_follow(
     assert (feed.counted.once, feed.status.dropped, feed.lost) == (3500, 1500, 0)
 
 
+def test_what_came_though_it_was_told_as_dropped_hides_nothing_that_was_lost(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    feed, process = _feed(monkeypatch, lost=range(2001, 2031))
+    feed.give(1000, reads=True)
+    process.drops += 50  # it had sent them, and nobody confirmed it
+    feed.settle()
+    assert (feed.lost, feed.both) == (0, 50)
+    feed.give(2000, reads=True)
+    feed.settle()
+    assert (feed.lost, feed.both) == (30, 50)
+
+
 def test_ticks_that_do_not_come_while_it_reads_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
     feed, _ = _feed(monkeypatch, lost=range(1001, 2000))
     with pytest.raises(TimeoutError, match=r"600 ticks on their way at tick 1600"):

@@ -2,7 +2,6 @@
 
 import asyncio
 import json
-import math
 import ssl
 from contextlib import suppress
 from dataclasses import asdict
@@ -138,9 +137,7 @@ def message(tick: Tick) -> str:
 
 
 def _plain(value: float | int | str) -> Any:
-    if not isinstance(value, float):
-        return value
-    return number(value) if math.isfinite(value) else None
+    return number(value) if isinstance(value, float) else value
 
 
 def _secure(broker: BrokerSettings) -> ssl.SSLContext:
