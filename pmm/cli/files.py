@@ -35,7 +35,9 @@ def check_folder(folder: Path, option: str) -> None:
     if not place.is_dir():
         raise ConfigurationError(f"{option} {folder}: {place} is a file, not a folder")
     if not os.access(place, os.W_OK | os.X_OK):
-        raise ConfigurationError(f"{option} {folder}: no permission to write in {place}")
+        raise ConfigurationError(
+            f"{option} {folder}: no permission to write in {place}; name another"
+        )
 
 
 def check_file(path: Path, option: str, *, overwrite: bool = True) -> None:

@@ -23,8 +23,19 @@ if TYPE_CHECKING:
 
 
 def curves_file(path: Path) -> Path:
-    """Return the file of the curves, beside that of the tables."""
-    return path.with_suffix(".csv")
+    """Return the file of the curves, beside that of the tables.
+
+    Raises
+    ------
+    ConfigurationError
+        If that of the tables ends in ``.csv`` itself: both would be one file.
+    """
+    if path.suffix.lower() == ".csv":
+        raise ConfigurationError(
+            f"--memory {path}: the curves go into that CSV; name the file of the tables, which "
+            f"lies beside it: {path.with_suffix('.toml')}"
+        )
+    return path.parent / f"{path.stem}.csv"
 
 
 def write_memory(outcome: CampaignOutcome, path: Path) -> None:
@@ -49,7 +60,8 @@ def write_memory(outcome: CampaignOutcome, path: Path) -> None:
         motions = " or ".join(motions_of(outcome.result.plane))
         raise DataError(
             f"--memory: added mass and damping of {motions} are not known at four frequencies or "
-            "more without carriage speed; add runs, single sines or many lines"
+            "more without carriage speed; add runs at carriage_speed_m_s = 0, single sines or "
+            "many lines"
         )
     path.parent.mkdir(parents=True, exist_ok=True)
     curves = curves_file(path)

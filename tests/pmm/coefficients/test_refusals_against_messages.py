@@ -205,3 +205,44 @@ def test_nothing_stated_is_said(heave: Path, tmp_path: Path) -> None:
     (tmp_path / "campaign.toml").write_text(text[:cut] + text[text.index("[[runs]]") :])
     assert "nothing_stated" in run(tmp_path).output
     assert "nothing_stated" not in run(heave).output
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("x.csv", "the curves go into that CSV; name the file of the tables, which lies beside it"),
+        ("X.CSV", "the curves go into that CSV"),
+        ("", "a folder; name a file"),
+        (".", "a folder; name a file"),
+        ("/", "a folder; name a file"),
+        ("file/hull.toml", "is a file, not a folder"),
+    ],
+)
+def test_a_memory_that_cannot_be_written(
+    heave: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, words: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").touch()
+    assert words in refused(2, heave, "--memory", name)
+    assert [one.name for one in tmp_path.iterdir()] == ["file"]
+
+
+def test_a_memory_that_no_permission_allows(
+    heave: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("os.access", lambda *_, **__: False)
+    said = refused(2, heave, "--memory", tmp_path / "hull.toml")
+    assert said.endswith(f"no permission to write in {tmp_path}; name another")
+
+
+def test_a_memory_that_the_frequencies_do_not_tell(heave: Path, tmp_path: Path) -> None:
+    said = refused(1, heave, "--memory", tmp_path / "hull")  # a name without an ending
+    assert "not known at four frequencies or more without carriage speed; add runs at" in said
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_memory_of_a_campaign_without_runs(heave: Path, tmp_path: Path) -> None:
+    text = (heave / "campaign.toml").read_text()
+    (tmp_path / "campaign.toml").write_text(text[: text.index("[[runs]]")])
+    said = refused(1, tmp_path, "--memory", tmp_path / "hull.toml")
+    assert "no runs in water; add a table [[runs]]" in said
