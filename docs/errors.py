@@ -38,7 +38,7 @@ def sources() -> Iterator[Path]:
 @cache
 def error_types() -> dict[str, ErrorType]:
     """Return all classes that come from :class:`PmmError`, by name, in the order of the rooms."""
-    classes = {one.name: one for path in sources() for one in _classes(path)}
+    classes, _ = _read()
     found = {BASE: classes[BASE]}
     while more := {
         name: one
@@ -49,9 +49,20 @@ def error_types() -> dict[str, ErrorType]:
     return {name: one for name, one in classes.items() if name in found}
 
 
-def _classes(path: Path) -> Iterator[ErrorType]:
+@cache
+def _read() -> tuple[dict[str, ErrorType], set[str]]:
+    """Return all classes by name and all texts of the code, each source parsed once."""
+    classes, texts = {}, set()
+    for path in sources():
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        classes |= {one.name: one for one in _classes(path, tree)}
+        texts |= _texts(tree)
+    return classes, texts
+
+
+def _classes(path: Path, tree: ast.Module) -> Iterator[ErrorType]:
     module = ".".join(path.relative_to(HERE.parent).with_suffix("").parts)
-    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+    for node in tree.body:
         if isinstance(node, ast.ClassDef):
             bases = tuple(base.id for base in node.bases if isinstance(base, ast.Name))
             text = " ".join((ast.get_docstring(node) or "").split("\n\n")[0].split())
@@ -77,18 +88,19 @@ def reaction(name: str, types: dict[str, ErrorType]) -> str:
     return next((found for base in one.bases if (found := reaction(base, types))), "")
 
 
-@cache
 def templates() -> set[str]:
     """Return all texts of the code, with ``...`` where a value is put in."""
+    return _read()[1]
+
+
+def _texts(tree: ast.Module) -> set[str]:
     found = set()
-    for path in sources():
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.JoinedStr):
-                parts = [one.value if isinstance(one, ast.Constant) else "..."
-                         for one in node.values]  # fmt: skip
-                found.add("".join(map(str, parts)))
-            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
-                found.add(node.value)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.JoinedStr):
+            parts = [one.value if isinstance(one, ast.Constant) else "..." for one in node.values]
+            found.add("".join(map(str, parts)))
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            found.add(node.value)
     return found
 
 

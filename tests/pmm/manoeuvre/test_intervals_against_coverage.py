@@ -35,7 +35,7 @@ def found() -> dict[str, tuple[np.ndarray, float]]:
         values[name] = truth[name] * (1.0 + own.ravel())
     small = math.radians(10.0)
     many, one = (
-        zigzag(each, small, small, 1, step=0.15) for each in (kvlcc2.ship(values), kvlcc2.ship())
+        zigzag(each, small, small, 1, step=0.3) for each in (kvlcc2.ship(values), kvlcc2.ship())
     )
     return {
         "initial turning": (many.initial_turning, float(one.initial_turning[0])),
