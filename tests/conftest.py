@@ -16,7 +16,7 @@ from tests.hardware.leaks import Leaks
 # run of the tests; `make bench` asks for many.
 settings.register_profile(
     "seeded",
-    max_examples=25,
+    max_examples=12,
     derandomize=True,
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow],
