@@ -32,7 +32,7 @@ _LINES = {
     "report": "Write a campaign's report: one HTML page, offline, ready to print.",
     "run": "Carry out a plan on its rig and record every run.",
     "simulate": "Simulate the runs of a campaign and write its recordings.",
-    "steering": "Identify propeller and rudder of a campaign's tows by the MMG method.",
+    "steering": "Identify propeller and rudder of tows and oscillations by the MMG method.",
 }  # of the help
 _INTERRUPTED = 130  # what a shell reports of a command that Ctrl-C ended
 

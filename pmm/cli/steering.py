@@ -1,4 +1,4 @@
-"""``pmm steering``: parameters of propeller and rudder from a campaign's tows."""
+"""``pmm steering``: parameters of propeller and rudder from tows and yaw oscillations."""
 
 from pathlib import Path
 
@@ -18,15 +18,15 @@ from pmm.cli.options import JSON, LEVEL, PLOT
 def steering(
     folder: str, settings: str | None, plot: str | None, level: float, as_json: bool
 ) -> None:
-    """Identify propeller and rudder of a campaign's tows by the MMG method.
+    """Identify propeller and rudder of tows and oscillations by the MMG method.
 
     Static rudder, oblique tow with rudder and load variation, each with its rudder angle and
     revolutions, give thrust deduction, wake, rudder interaction and inflow with their intervals,
     and the self-propulsion point. FOLDER has campaign.toml and steering.toml (docs/steering.md).
 
     \b
-    pmm simulate examples/steering/campaign.toml --output tows
-    pmm steering tows --settings examples/steering/steering.toml --plot plots
+    pmm simulate examples/steering/campaign.toml --output kvlcc2
+    pmm steering kvlcc2 --settings examples/steering/steering.toml --plot plots
 
     Exit status: 0 done; 1 the runs do not tell the parameters, or one could not be used; 2 the
     request was wrong.
