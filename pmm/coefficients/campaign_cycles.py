@@ -9,11 +9,13 @@ from typing import Final
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.line_cycles import by_lines
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
+from analysis.coefficients.steady_turns import SteadyTurn
 from analysis.coefficients.strut_phasors import MOTION_ASKED
 from hardware.description.body import Body
 from hardware.description.flags import Flag, Severity
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.plausibility import implausible
+from pmm.coefficients.decays import Decay, decays_of
 from pmm.coefficients.reading import read_cycle, read_zero
 from pmm.coefficients.settings import CoefficientSettings
 from pmm.coefficients.solving import Progress
@@ -25,7 +27,9 @@ from pmm.coefficients.stated_inputs import (
     with_own_body,
     without_dry,
 )
-from pmm.coefficients.tasks import Done, Failed, Task, Work, work_of
+from pmm.coefficients.tasks import Done, Failed, Task
+from pmm.coefficients.wave_runs import WaveRun, wave_runs
+from pmm.coefficients.work import Work, work_of
 
 NO_ROLL_GAUGE: Final = (
     "a missing roll gauge: the channel roll_moment is not recorded, so that no term of K is told; "
@@ -52,6 +56,17 @@ class CampaignCycles:
     work: Work
     stated: StatedUncertainties
     body: Body | None
+    decays: tuple[Decay, ...]
+
+    @property
+    def turns(self) -> tuple[SteadyTurn, ...]:
+        """Its runs on a circle."""
+        return tuple(one.turn for one in self.runs if one.turn is not None)
+
+    @property
+    def waves(self) -> tuple[WaveRun, ...]:
+        """Its runs in waves."""
+        return tuple(wave_runs(self.campaign, self.runs))
 
     @property
     def doubts(self) -> tuple[Flag, ...]:
@@ -94,6 +109,7 @@ def campaign_cycles(
         hashed=hashed,
     )
     body, models = body_of(campaign, settings.inertia, has_dry=bool(work.dry))
+    decays, torn = decays_of(campaign, folder, settings.leave_out)
     found = _recordings(work, executor, progress, with_dry=body is None)
     wet, dry = _sorted(found, {task.name for task in work.dry})
     wet = [with_own_body(one, campaign, settings, body) for one in wet]
@@ -108,7 +124,7 @@ def campaign_cycles(
         campaign,
         tuple(cycles),
         tuple(done),
-        tuple(one for one in found if isinstance(one, Failed)),
+        (*(one for one in found if isinstance(one, Failed)), *torn),
         work,
         stated_of(
             campaign,
@@ -120,6 +136,7 @@ def campaign_cycles(
             speed_age_s=max((one.speed_age_u_s for one in done), default=0.0),
         ),
         body,
+        decays,
     )
 
 

@@ -44,7 +44,6 @@ from pmm.coefficients.zeros import utc_s, zeroed
 
 _USED = (*DISPLACEMENTS, *FORCES)
 _SPEED_OFF = 0.01
-_BLOCK = 1 << 20
 
 
 def read_zero(task: Task) -> Done | Failed:
@@ -289,15 +288,11 @@ def _done(
         recording.sample_rate_hz,
         recording.end_s - recording.start_s,
         tuple(flag.of(task.name) for flag in (*recording.flags, *flags)),
-        sha256_of(task.source.path) if task.hashed else "",
+        _sha256(task.source.path) if task.hashed else "",
         applied(recording),
     )
 
 
-def sha256_of(path: Path) -> str:
-    """Return the hash of a file, read a stretch at a time."""
-    found = hashlib.sha256()
+def _sha256(path: Path) -> str:
     with path.open("rb") as file:
-        while block := file.read(_BLOCK):
-            found.update(block)
-    return found.hexdigest()
+        return hashlib.file_digest(file, "sha256").hexdigest()

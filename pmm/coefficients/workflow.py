@@ -1,11 +1,12 @@
 """From folders of recordings to a campaign's coefficients, on any executor."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_plan import Request
@@ -23,17 +24,19 @@ from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.campaign.water import TankWater, common_water
 from pmm.coefficients.campaign_cycles import campaign_cycles
-from pmm.coefficients.decays import Decay, decays_of, with_recorded
+from pmm.coefficients.decays import Decay, with_recorded
 from pmm.coefficients.run_names import check_left_out, check_names
 from pmm.coefficients.settings import CoefficientSettings
 from pmm.coefficients.solving import Progress, solve_campaign
 from pmm.coefficients.stated_inputs import largest, with_turns
 from pmm.coefficients.tasks import Done, Failed
 from pmm.coefficients.turn_file import read_turns, turn_cycles
-from pmm.coefficients.wave_runs import WaveRun, wave_runs
+from pmm.coefficients.wave_runs import WaveRun
 
 if TYPE_CHECKING:
     from analysis.memory.result import MeasuredMemory
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,29 +145,26 @@ def coefficients_of(
         campaign_cycles(folder, campaign, settings, executor, progress, hashed=hashed)
         for folder, campaign in campaigns
     ]
-    read = [decays_of(campaign, folder, settings.leave_out) for folder, campaign in campaigns]
-    decays = tuple(one for found, _ in read for one in found)
-    settings, alone = with_recorded(settings, decays, campaigns[0][1].heel)
+    first, body = parts[0].campaign, parts[0].body
+    decays = _joined(part.decays for part in parts)
+    settings, alone = with_recorded(settings, decays, first.heel)
     turns = () if settings.steady_turns is None else read_turns(Path(settings.steady_turns))
-    circles = turn_cycles(turns, campaigns[0][1].oscillator, parts[0].body)
+    circles = turn_cycles(turns, first.oscillator, body)
     cycles = (
-        *(cycle for part in parts for cycle in part.cycles),
+        *_joined(part.cycles for part in parts),
         *(cycle.about(settings.point_ahead_m) for cycle in circles),
     )
-    failed = (
-        *(one for part in parts for one in part.failed),
-        *(one for _, some in read for one in some),
-    )
-    missing = tuple(name for part in parts for name in part.work.not_recorded)
+    failed = _joined(part.failed for part in parts)
+    missing = _joined(part.work.not_recorded for part in parts)
     if not cycles:
         raise DataError(_nothing(folders, failed, missing))
-    turns = (*(one.turn for part in parts for one in part.runs if one.turn is not None), *turns)
+    turns = (*_joined(part.turns for part in parts), *turns)
     stated = largest([part.stated for part in parts])
     nothing = () if stated.vector.any() else (_NOTHING_STATED,)
     stated = with_turns(stated, turns)
     result = solve_campaign(cycles, request_of(settings, stated), executor, progress)
-    result = with_decays(result, settings.roll_decays, campaigns[0][1].heel, parts[0].body)
-    runs = tuple(one for part in parts for one in part.runs)
+    result = with_decays(result, settings.roll_decays, first.heel, body)
+    runs = _joined(part.runs for part in parts)
     return CampaignOutcome(
         tuple(campaign.name for _, campaign in campaigns),
         result,
@@ -174,25 +174,25 @@ def coefficients_of(
         missing,
         {one.name: one.flags for one in runs if one.flags},
         (
-            *(flag for part in parts for flag in (*part.work.left_out, *part.doubts)),
+            *_joined((*part.work.left_out, *part.doubts) for part in parts),
             *nothing,
             *alone,
-            *(flag for one in decays for flag in one.flags),
+            *_joined(one.flags for one in decays),
         ),
         stated,
-        parts[0].body,
+        body,
         settings,
         water,
         tuple(one for _, one in campaigns if one.radiation is not None),
         turns,
         decays,
-        tuple(
-            one
-            for (_, campaign), part in zip(campaigns, parts, strict=True)
-            for one in wave_runs(campaign, part.runs)
-        ),
+        _joined(part.waves for part in parts),
         measured_matrices(result),
     )
+
+
+def _joined(parts: Iterable[tuple[T, ...]]) -> tuple[T, ...]:
+    return tuple(chain.from_iterable(parts))
 
 
 def request_of(settings: CoefficientSettings, stated: StatedUncertainties) -> Request:

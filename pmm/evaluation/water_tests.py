@@ -24,7 +24,8 @@ from pmm.coefficients.decays import Decay, decays_of
 from pmm.coefficients.reading import read_cycle, read_zero
 from pmm.coefficients.settings import CoefficientSettings, ShipTable, settings_of
 from pmm.coefficients.stated_inputs import chain_of, oscillator_of, stated_of
-from pmm.coefficients.tasks import Done, Failed, Task, work_of
+from pmm.coefficients.tasks import Done, Failed, Task
+from pmm.coefficients.work import work_of
 from pmm.coefficients.workflow import request_of
 
 _HARMONICS = 3

@@ -15,59 +15,56 @@ from pmm.plan.echoes import echo_limit
 _RIG = "the rig's file"
 _OURS = "this project"
 _ITTC = "ITTC 7.5-02-06-02"
-_NONE = "no limit stated"
-_ONLY_STATED = "nothing: it is stated, not judged"
-_OWN = "twice: what the rig allows is allowed twice as far, at the rig's risk; half: fewer runs"
 
 
-FREQUENCY: Final = Check(
+def _own(quantity: str, rule: str, reason: str) -> Check:
+    """Return a check by a limit that the rig's file states."""
+    moved = (
+        "twice: what the rig allows is allowed twice as far, at the rig's risk; half: fewer runs"
+    )
+    return Check(quantity, rule, _RIG, reason, moved)
+
+
+def _stated(quantity: str, reason: str, which: str = "", source: str = _ITTC) -> Check:
+    """Return a check of what is stated and not judged, of the motions that ``which`` names."""
+    moved = "nothing: it is stated, not judged"
+    return Check(quantity, f"{which}note; no limit stated", source, reason, moved)
+
+
+FREQUENCY: Final = _own(
     "frequency [Hz]",
     "refuse outside `oscillator.frequency_hz` or the shaft drive's range",
-    _RIG,
     "choose another frequency",
-    _OWN,
 )
-AMPLITUDE: Final = Check(
+AMPLITUDE: Final = _own(
     "amplitude [m]",
     "refuse outside `oscillator.eccentricity_m` or the eccentricity axis's range",
-    _RIG,
     "choose another amplitude; it is half the stroke",
-    _OWN,
 )
-STROKE: Final = Check(
+STROKE: Final = _own(
     "stroke [m]",
     "refuse above `limits.stroke_m`",
-    _RIG,
     "choose another amplitude; it is half the stroke",
-    _OWN,
 )
-STRUT_PHASE: Final = Check(
+STRUT_PHASE: Final = _own(
     "strut phase [rad]",
     "refuse outside the phase axis's range",
-    _RIG,
     "choose another phase, or another speed or frequency",
-    _OWN,
 )
-VELOCITY: Final = Check(
+VELOCITY: Final = _own(
     "strut velocity [m/s]",
     "refuse above `limits.velocity_m_s`",
-    _RIG,
     "lower the frequency or the amplitude",
-    _OWN,
 )
-ACCELERATION: Final = Check(
+ACCELERATION: Final = _own(
     "strut acceleration [m/s^2]",
     "refuse above `limits.acceleration_m_s2`",
-    _RIG,
     "lower the frequency or the amplitude",
-    _OWN,
 )
-STRUT_FORCE: Final = Check(
+STRUT_FORCE: Final = _own(
     "strut force, estimate [N]",
     "refuse above `oscillator.force_per_strut_n`",
-    _RIG,
     "lower the frequency or the amplitude",
-    _OWN,
 )
 GAUGE_FORCE: Final = Check(
     "gauge force, estimate [N]",
@@ -77,15 +74,11 @@ GAUGE_FORCE: Final = Check(
     "half: warned of from 40 % on; twice: never warned of",
     (0.8,),
 )
-LOAD: Final = Check(
-    "load on {channel} [N]", "refuse above the gauge's full scale", _RIG, "load it less", _OWN
-)
-SPEED: Final = Check(
+LOAD: Final = _own("load on {channel} [N]", "refuse above the gauge's full scale", "load it less")
+SPEED: Final = _own(
     "speed [m/s]",
     "refuse above `tank.highest_speed_m_s`, or the carriage's own `highest_speed_m_s`",
-    _RIG,
     "tow slower",
-    _OWN,
 )
 LED_SPEED: Final = Check(
     "slowest speed of a carriage that is led [m/s]",
@@ -94,41 +87,29 @@ LED_SPEED: Final = Check(
     "tow faster, or lower the frequency or the amplitude",
     "nothing: below 0 it would turn back",
 )
-LED_ACCELERATION: Final = Check(
+LED_ACCELERATION: Final = _own(
     "carriage acceleration [m/s^2]",
     "`steady_ahead`: refuse above the carriage's own `acceleration_m_s2`, or the tank's",
-    _RIG,
     "lower the frequency or the amplitude",
-    _OWN,
 )
-STATIC_ANGLE: Final = Check(
+STATIC_ANGLE: Final = _own(
     "{channel} [rad]",
     "refuse outside the range of the axis that sets it",
-    _RIG,
     "choose another angle, or have it set by hand: leave the axis's table out",
-    _OWN,
 )
-WAY: Final = Check(
+WAY: Final = _own(
     "tank length [m]",
     "refuse above `tank.length_m` or the carriage's `track_m`, from rest to rest",
-    _RIG,
     "tow slower, or ask for fewer periods or less settling",
-    _OWN,
 )
-TURN_RATE: Final = Check(
+TURN_RATE: Final = _own(
     "rate of turn [rad/s]",
     "refuse above the carriage's own `highest_turn_rate_rad_s`",
-    _RIG,
     "tow slower, choose a larger radius, or have the circle driven by hand: leave the carriage's "
     "table out",
-    _OWN,
 )
-RADIUS: Final = Check(
-    "radius of the circle [m]",
-    "refuse outside `tank.radius_m`",
-    _RIG,
-    "choose another radius",
-    _OWN,
+RADIUS: Final = _own(
+    "radius of the circle [m]", "refuse outside `tank.radius_m`", "choose another radius"
 )
 TURNS: Final = Check(
     "turns of the circle",
@@ -148,40 +129,24 @@ BUS: Final = Check(
     (LARGEST_LOAD,),
 )
 
-ROTATION: Final = Check(
+ROTATION: Final = _stated(
     "largest {rotation} [deg]",
-    f"note; {_NONE}",
-    _ITTC,
     "drift is part of it; of the exact motion, by the joint's sine or tangent",
-    _ONLY_STATED,
 )
-ANGLE_TO_FLOW: Final = Check(
+ANGLE_TO_FLOW: Final = _stated(
     "largest angle to the flow [deg]",
-    f"note; {_NONE}",
-    _ITTC,
     "the drift angle beta, or the angle of attack; coefficients hold within it",
-    _ONLY_STATED,
 )
-FROUDE: Final = Check(
-    "Froude number Fn = U / sqrt(g L)",
-    f"note; {_NONE}",
-    _ITTC,
-    "waves are those of the ship at the same number",
-    _ONLY_STATED,
+FROUDE: Final = _stated(
+    "Froude number Fn = U / sqrt(g L)", "waves are those of the ship at the same number"
 )
-REYNOLDS: Final = Check(
+REYNOLDS: Final = _stated(
     "Reynolds number Re = U L / nu",
-    f"note; {_NONE}",
-    f"{_ITTC}; nu by ITTC 7.5-02-01-03",
     "friction is that of the ship at the same number only",
-    _ONLY_STATED,
+    source=f"{_ITTC}; nu by ITTC 7.5-02-01-03",
 )
-TURNING: Final = Check(
-    "{rate}' = {rate} L / U",
-    f"note; {_NONE}",
-    _ITTC,
-    "the turns of the ship that it spans; coefficients hold within it",
-    _ONLY_STATED,
+TURNING: Final = _stated(
+    "{rate}' = {rate} L / U", "the turns of the ship that it spans; coefficients hold within it"
 )
 REDUCED_SWAY: Final = Check(
     "w' = w L / U",
@@ -199,16 +164,8 @@ REDUCED_YAW: Final = Check(
     REDUCED_SWAY.moved,
     (2.0, 3.0),
 )
-REDUCED: Final = Check(
-    REDUCED_SWAY.quantity, f"other motions: note; {_NONE}", _ITTC, "it is asked for", _ONLY_STATED
-)
-WAVE_FREQUENCY: Final = Check(
-    "w sqrt(L / g)",
-    f"note; {_NONE}",
-    _ITTC,
-    "the smaller, the less waves the motion makes",
-    _ONLY_STATED,
-)
+REDUCED: Final = _stated(REDUCED_SWAY.quantity, "it is asked for", "other motions: ")
+WAVE_FREQUENCY: Final = _stated("w sqrt(L / g)", "the smaller, the less waves the motion makes")
 TAU_SWAY: Final = Check(
     "w U / g",
     "sway and yaw: warn from {0:g} less a clearance of {1:g}, which is ours; note below",
@@ -335,12 +292,5 @@ CALIBRATION: Final = Check(
     "nothing: the date is the laboratory's",
 )
 
-CHECKS: Final = (
-    FREQUENCY, AMPLITUDE, STROKE, STRUT_PHASE, VELOCITY, ACCELERATION, STRUT_FORCE, GAUGE_FORCE,
-    LOAD, SPEED, LED_SPEED, LED_ACCELERATION, STATIC_ANGLE, WAY, TURN_RATE, RADIUS, TURNS, BUS,
-    ROTATION, ANGLE_TO_FLOW, FROUDE, REYNOLDS, TURNING, REDUCED_SWAY, REDUCED_YAW, REDUCED,
-    WAVE_FREQUENCY, TAU_SWAY, TAU_HEAVE, ECHO, REACH, KEEL, BLOCKAGE, DEPTH, DEPTH_FROUDE,
-    TANK_MODE, STRUCTURE, CYCLES, SETTLING, RIPPLE, SAMPLING, CHANNEL,
-    CALIBRATION,
-)  # fmt: skip
+CHECKS: Final = tuple(one for one in tuple(vars().values()) if isinstance(one, Check))
 """In the order of the page."""

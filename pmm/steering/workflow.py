@@ -20,7 +20,8 @@ from pmm.campaign.water import TankWater
 from pmm.coefficients.reading import read_zero
 from pmm.coefficients.settings import settings_of
 from pmm.coefficients.stated_inputs import chain_of, oscillator_of
-from pmm.coefficients.tasks import Failed, Task, Work, work_of
+from pmm.coefficients.tasks import Failed, Task
+from pmm.coefficients.work import Work, work_of
 from pmm.steering.instants import HARMONICS, only_sways
 from pmm.steering.reading import GAUGES, SteeredRun, read_gauge_zeros, read_steered, zeroed_names
 from pmm.steering.settings import SETTINGS_FILE, SteeringSettings, read_steering_settings

@@ -61,16 +61,7 @@ def read_wamit(
     DataError
         If a row is none of such a file or there twice, or the body moves in no mode of the plane.
     """
-    values: Values = {}
-    for number, line in enumerate(path.read_text(encoding="utf-8-sig").splitlines(), 1):
-        if line.strip():
-            key, pair = _row(path, number, line, first_column)
-            if key in values:
-                raise DataError(
-                    f"{path}, line {number}: modes {key[1]} and {key[2]} at {key[0]:g} rad/s are "
-                    "there twice"
-                )
-            values[key] = pair
+    values = _values(path, first_column)
     modes = [mode + _PER_BODY * (body - 1) for mode in MODES[plane]]
     if not any(key[1] in modes and key[2] in modes for key in values):
         there = ", ".join(str(one) for one in sorted({key[1] for key in values}))
@@ -97,6 +88,21 @@ def read_wamit(
         None if finite.all() else added[~finite][0],
         name=path.name,
     )
+
+
+def _values(path: Path, first: FirstColumn) -> Values:
+    """Return added mass and damping by frequency and both modes, as the file has them."""
+    values: Values = {}
+    for number, line in enumerate(path.read_text(encoding="utf-8-sig").splitlines(), 1):
+        if line.strip():
+            key, pair = _row(path, number, line, first)
+            if key in values:
+                raise DataError(
+                    f"{path}, line {number}: modes {key[1]} and {key[2]} at {key[0]:g} rad/s are "
+                    "there twice"
+                )
+            values[key] = pair
+    return values
 
 
 def _row(
