@@ -28,7 +28,7 @@ class Priority(StrEnum):
 
 
 @dataclass(frozen=True)
-class Standing:
+class LoopScheduling:
     """What the operating system has granted to the loop.
 
     Attributes
@@ -59,7 +59,7 @@ class Standing:
 
 
 @contextmanager
-def before_others() -> Iterator[Standing]:
+def before_others() -> Iterator[LoopScheduling]:
     """Let this thread, and those that it starts, go before everything else.
 
     Threads of one process share an interpreter: one that is held up while it has the interpreter's
@@ -73,7 +73,7 @@ def before_others() -> Iterator[Standing]:
     gc.freeze()
     priority, locked = _raise(), _lock_memory()
     try:
-        yield Standing(priority, locked)
+        yield LoopScheduling(priority, locked)
     finally:
         gc.unfreeze()
         sys.setswitchinterval(before_s)

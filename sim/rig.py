@@ -16,11 +16,11 @@ from sim.acquisition.channels import Acquisition, Digitiser
 from sim.acquisition.photocell import PhotocellStage
 from sim.chain import Chain
 from sim.coupled.stage import Coupled, reflected_inertia
-from sim.drive.carriage import Carriage, CarriageSettings
+from sim.drive.carriage import CarriageMotion, CarriageSettings
 from sim.drive.loaded_drive import LoadedDrive
 from sim.drive.prescribed_drive import ConstantSpeedDrive, DriveSettings
 from sim.gauges.dynamometer import Dynamometer, Dynamometers
-from sim.mechanism.command import Command
+from sim.mechanism.command import StrutCommand
 from sim.mechanism.linkage import Mechanism, Setting
 from sim.model.attitude import PositionSensors, Squat
 from sim.model.heel import Heeling
@@ -117,7 +117,9 @@ class SimulatedRig:
         """
         check_run(self, set_point)
         check_within(self.oscillator, set_point)
-        carriage = Carriage(set_point.carriage_speed_m_s, self.carriage, set_point.turn_rate_rad_s)
+        carriage = CarriageMotion(
+            set_point.carriage_speed_m_s, self.carriage, set_point.turn_rate_rad_s
+        )
         mechanism = Mechanism(
             set_point.eccentricity_m,
             set_point.strut_phase_rad,
@@ -148,7 +150,7 @@ class SimulatedRig:
     def _told(self, mechanism: Mechanism, frequency_hz: float) -> tuple["Stage[Any]", ...]:
         """Return the stage of the commands, where they are recorded."""
         told = recorded(self.acquisition, COMMANDS)
-        return (Command(mechanism, self.drive, frequency_hz),) if told else ()
+        return (StrutCommand(mechanism, self.drive, frequency_hz),) if told else ()
 
     def _sensed(self, hull: Hull) -> tuple["Stage[Any]", ...]:
         """Return the stage of sinkage and trim, where they are recorded."""
@@ -165,7 +167,7 @@ class SimulatedRig:
         rest, release = set_point.heel_rad, set_point.release_rad
         return Heeling(self.heel, self.body, terms, rest, in_water, release)
 
-    def _hull(self, set_point: SetPoint, carriage: Carriage, surges: bool) -> Hull:
+    def _hull(self, set_point: SetPoint, carriage: CarriageMotion, surges: bool) -> Hull:
         in_water = set_point.medium is Medium.WATER
         return Hull(
             self.oscillator.plane,

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from analysis.coefficients.body_cycle import BodyCycle, at_order
-from analysis.coefficients.names import Form, Place
+from analysis.coefficients.names import Form, MatrixElement
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.oscillator import Plane
 
@@ -72,7 +72,7 @@ def _phase_for(column: int, run: BodyCycle, form: Form) -> float:
 
 
 def missing_run(
-    name: str, place: Place, runs: Sequence[BodyCycle], form: Form, moved: ComplexArray
+    name: str, place: MatrixElement, runs: Sequence[BodyCycle], form: Form, moved: ComplexArray
 ) -> str:
     """Return why a coefficient is not determined, and which run would do it."""
     words = motion_words(runs[0].plane, form)

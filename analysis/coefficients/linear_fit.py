@@ -21,7 +21,7 @@ from analysis.coefficients.identifiability import (
     mixture_run,
     motion_words,
 )
-from analysis.coefficients.names import PLACES, Form, Place, name_of
+from analysis.coefficients.names import PLACES, Form, MatrixElement, name_of
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.terms import Term
 from hardware.description.arrays import FloatArray
@@ -49,7 +49,7 @@ class LinearFit:
     """
 
     fit: CycleFit
-    places: tuple[Place, ...]
+    places: tuple[MatrixElement, ...]
     retained: FloatArray
     misfit: float
     flags: tuple[Flag, ...]
@@ -81,7 +81,7 @@ def linear_fit(cycles: Sequence[BodyCycle], form: Form, stated: StatedUncertaint
     return LinearFit(fit, places, retained, misfit, flags)
 
 
-def term_at(place: Place) -> Term:
+def term_at(place: MatrixElement) -> Term:
     """Return the term whose coefficient stands at a place."""
     return Term(place.row, (_FACTORS[place.column][place.inertial],))
 
@@ -104,7 +104,10 @@ def lacking_places(cycles: Sequence[BodyCycle], form: Form) -> list[tuple[str, s
 
 
 def _retained(
-    cycles: Sequence[BodyCycle], moved: np.ndarray, places: Sequence[Place], values: FloatArray
+    cycles: Sequence[BodyCycle],
+    moved: np.ndarray,
+    places: Sequence[MatrixElement],
+    values: FloatArray,
 ) -> FloatArray:
     """Return each coefficient's part of the load over the largest it is left from, ``(n,)``."""
     ratios = []
@@ -120,7 +123,7 @@ def _retained(
 
 
 def _flags(
-    fit: CycleFit, places: Sequence[Place], retained: FloatArray, misfit: float
+    fit: CycleFit, places: Sequence[MatrixElement], retained: FloatArray, misfit: float
 ) -> list[Flag]:
     flags = []
     own = tuple(cycle.name for cycle in fit.problem.numbers.cycles)

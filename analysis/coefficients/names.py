@@ -30,8 +30,8 @@ class Form(StrEnum):
 
 
 @dataclass(frozen=True)
-class Place:
-    """Where a coefficient stands.
+class MatrixElement:
+    """The element of added mass A or damping B that is a linear coefficient.
 
     Attributes
     ----------
@@ -60,14 +60,14 @@ _VELOCITIES = {Plane.VERTICAL: "wq", Plane.HORIZONTAL: "vr"}
 
 # Column by column: all that one pure motion tells stands together.
 PLACES = tuple(
-    Place(row, column, inertial)
+    MatrixElement(row, column, inertial)
     for column in (0, 1)
     for row in (0, 1)
     for inertial in (True, False)
 )
 
 
-def name_of(place: Place, plane: Plane, form: Form) -> str:
+def name_of(place: MatrixElement, plane: Plane, form: Form) -> str:
     """Return what a coefficient is called, for example ``a35`` or ``N_vdot``."""
     if form is Form.SEAKEEPING:
         kind = "a" if place.inertial else "b"
@@ -76,7 +76,7 @@ def name_of(place: Place, plane: Plane, form: Form) -> str:
     return f"{_LOADS[plane][place.row]}_{_VELOCITIES[plane][place.column]}{dot}"
 
 
-def place_of(name: str, plane: Plane, form: Form) -> Place:
+def place_of(name: str, plane: Plane, form: Form) -> MatrixElement:
     """Return where the coefficient of that name stands.
 
     Raises

@@ -17,7 +17,7 @@ Seakeeping and Norrbin's bis system are the same where the model's own mass is r
 import math
 from dataclasses import dataclass
 
-from analysis.coefficients.names import Place
+from analysis.coefficients.names import MatrixElement
 from analysis.coefficients.terms import Term
 from hardware.description.errors import ConfigurationError
 from hardware.description.units import STANDARD_GRAVITY_M_S2
@@ -62,7 +62,7 @@ class Normalisation:
         lengths = term.lengths + term.rates
         return float(force * self.length_m**lengths / self.velocity ** (term.degree + term.rates))
 
-    def place_factor(self, place: Place) -> float:
+    def place_factor(self, place: MatrixElement) -> float:
         """Return what the linear coefficient at a place is divided by, in either form."""
         unit = self.mass_kg if place.inertial else self.mass_per_second
         return float(unit * self.length_m ** (place.row + place.column))

@@ -15,7 +15,7 @@ from hardware.description.oscillator import Plane
 
 
 @dataclass(frozen=True)
-class InertiaResult:
+class MassProperties:
     """Mass properties of a model.
 
     Attributes
@@ -125,7 +125,7 @@ def finite_or_none(value: float | str) -> float | str | None:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def model_toml(result: InertiaResult, plane: Plane) -> str:
+def model_toml(result: MassProperties, plane: Plane) -> str:
     """Return the ``[model]`` table of a campaign, and its uncertainties beside it.
 
     ``[model]`` has the keys of :class:`hardware.description.body.Body`; ``[model_uncertainty]`` has

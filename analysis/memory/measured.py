@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.names import PLACES, Form, Place, name_of
+from analysis.coefficients.names import PLACES, Form, MatrixElement, name_of
 from analysis.coefficients.zero_frequency import own_variance
 from analysis.uncertainty.values import UncertainValues
 from hardware.description.arrays import FloatArray
@@ -20,7 +20,7 @@ _UNLIKE: Final = 3.0  # standard uncertainties, root mean square: coupling of bo
 # Rows and columns of the elements, by the number of degrees of freedom: of a symmetric matrix.
 _PAIRS: Final = {1: ((0, 0),), 2: ((0, 0), (0, 1), (1, 1))}
 
-_Rows = Mapping[Place, Mapping[float, int]]
+_Rows = Mapping[MatrixElement, Mapping[float, int]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,8 +61,8 @@ class MeasuredMatrix:
         """What added mass and damping of each element are called: ``("a33", "b33")`` ..."""
         return tuple(
             (
-                name_of(Place(row, column, True), self.plane, Form.SEAKEEPING),
-                name_of(Place(row, column, False), self.plane, Form.SEAKEEPING),
+                name_of(MatrixElement(row, column, True), self.plane, Form.SEAKEEPING),
+                name_of(MatrixElement(row, column, False), self.plane, Form.SEAKEEPING),
             )
             for row, column in self.elements
         )
@@ -124,7 +124,7 @@ def _matrix(
     pairs = [(dofs[i], dofs[j]) for i, j in _PAIRS[len(dofs)]]
     ways = [[(i, j), (j, i)] if i != j else [(i, j)] for i, j in pairs]
     told = [
-        [[rows[Place(*way, inertial)] for way in both] for inertial in (True, False)]
+        [[rows[MatrixElement(*way, inertial)] for way in both] for inertial in (True, False)]
         for both in ways
     ]
     at = [

@@ -47,15 +47,21 @@ class Body:
 
 
 @dataclass(frozen=True)
-class Ship(Body):
-    """The model as a body, and its dimensions for numbers without any and room in the tank."""
+class ShipModel(Body):
+    """The model as a body, and its dimensions for numbers without any and room in the tank.
+
+    Attributes
+    ----------
+    length_m, beam_m, draught_m
+        ``None`` where they are not stated: what needs them is not told then.
+    """
 
     length_m: float | None = None
     beam_m: float | None = None
     draught_m: float | None = None
 
 
-DIMENSIONS: Final = frozenset(field.name for field in fields(Ship)) - {
+DIMENSIONS: Final = frozenset(field.name for field in fields(ShipModel)) - {
     field.name for field in fields(Body)
 }
 """Keys of ``[model]`` that a campaign's has not."""

@@ -32,7 +32,7 @@ from pmm.console.requests import (
     Posted,
     TakePosted,
 )
-from pmm.console.security import Role
+from pmm.console.security import VisitorRole
 from pmm.console.worker_process import Workers
 from pmm.console.worker_tasks import check_plan_text, keep_note
 from pmm.run.states import Command
@@ -186,7 +186,7 @@ class PageActions:
         """Change the queue, or keep the wish where the token is for proposing."""
 
         async def act(posted: Posted, who: Who) -> ActionReply:
-            if who.visitor.role is Role.PROPOSE:
+            if who.visitor.role is VisitorRole.PROPOSE:
                 return await self._propose(action, posted, who)
             self._require_control(who)
             return await self.changes.kept(await self.changes.carry_out(action, posted))
@@ -240,7 +240,7 @@ class PageActions:
         return ActionReply("", found)
 
     async def _note(self, posted: NotePosted, who: Who) -> ActionReply:
-        who.visitor.require(Role.PROPOSE)
+        who.visitor.require(VisitorRole.PROPOSE)
         worker = self._workers.for_whom(in_control=self._hub.desk.holder == who.session)
         plan = self.changes.queued.plan(posted.number)
         await worker.run(keep_note, plan, posted, self._utc())
@@ -254,11 +254,11 @@ class PageActions:
         return Response(encode_answer({"audit": found}), media_type="application/json")
 
     def _require_control(self, who: Who) -> None:
-        who.visitor.require(Role.OPERATE)
+        who.visitor.require(VisitorRole.OPERATE)
         self._hub.desk.require(who.session)
 
     async def _take(self, posted: TakePosted, who: Who) -> ActionReply:
-        who.visitor.require(Role.OPERATE)
+        who.visitor.require(VisitorRole.OPERATE)
         self._hub.desk.take_over(who.session)
         self._hub.news.set()
         return ActionReply("this browser has control")

@@ -8,7 +8,7 @@ from typing import Final
 
 from starlette.websockets import WebSocketDisconnect
 
-from pmm.console.security import Role
+from pmm.console.security import VisitorRole
 
 REPLACED: Final = 4001  # of RFC 6455's private codes; the page knows it
 WAITING: Final = 64  # messages that are no pictures: alarms, states, plans, runs that ended
@@ -46,7 +46,7 @@ class Client:
         session: str,
         send: Callable[[str], Awaitable[None]],
         close: Callable[[int, str], Awaitable[None]],
-        role: Role = Role.OPERATE,
+        role: VisitorRole = VisitorRole.OPERATE,
     ) -> None:
         self.role = role
         self.session, self._send, self._close = session, send, close

@@ -27,7 +27,7 @@ from pmm.console.encoding import (
 from pmm.console.live.outlet import OutletStatus
 from pmm.console.messages import WRITTEN, CampaignLook, Frame, Hello, Needles, Notice, Reply, Told
 from pmm.console.pictures import Pictures
-from pmm.console.security import Role
+from pmm.console.security import VisitorRole
 
 _NOTICES: Final = 200
 _LOG: Final = logging.getLogger(__name__)
@@ -141,7 +141,7 @@ class Hub:
         if before is not None:
             before.replace()
         self.clients[client.session] = client
-        if client.role is Role.OPERATE:
+        if client.role is VisitorRole.OPERATE:
             self.desk.arrive(client.session)
         self.news.set()
 

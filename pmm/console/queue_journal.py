@@ -13,7 +13,7 @@ from typing import Any, Final
 from hardware.description.errors import ConfigurationError
 from pmm.console.proposals import PROPOSED, ProposedChange
 from pmm.console.requests import RunPosted
-from pmm.console.security import Role, Visitor
+from pmm.console.security import Visitor, VisitorRole
 from pmm.whole_file import write_whole
 
 _SCHEMA: Final = "pmm-console-queue-1"
@@ -115,7 +115,7 @@ def _change(record: dict[str, Any]) -> RunPosted:
 
 def _proposal(record: dict[str, Any]) -> ProposedChange:
     posted = _posted(record["action"], record["posted"])
-    visitor = Visitor(Role.PROPOSE, record["name"])
+    visitor = Visitor(VisitorRole.PROPOSE, record["name"])
     return ProposedChange(
         record["number"], record["action"], posted, record["plan"], visitor, record["utc"]
     )

@@ -34,7 +34,7 @@ _HEADERS: Final = (
 )
 
 
-class Role(StrEnum):
+class VisitorRole(StrEnum):
     """What a token lets its holder do."""
 
     WATCH = "watch"  # and stop quickly, as everybody may
@@ -42,7 +42,7 @@ class Role(StrEnum):
     OPERATE = "operate"  # and take control
 
 
-_MAY: Final = {Role.WATCH: "watching", Role.PROPOSE: "proposing"}
+_MAY: Final = {VisitorRole.WATCH: "watching", VisitorRole.PROPOSE: "proposing"}
 
 
 @dataclass(frozen=True)
@@ -55,10 +55,10 @@ class Visitor:
         As given at the login; empty without.
     """
 
-    role: Role = Role.OPERATE
+    role: VisitorRole = VisitorRole.OPERATE
     name: str = ""
 
-    def require(self, least: Role) -> None:
+    def require(self, least: VisitorRole) -> None:
         """Refuse who may do less.
 
         Raises
@@ -66,7 +66,7 @@ class Visitor:
         NotInControlError
             If the token is for less.
         """
-        roles = list(Role)
+        roles = list(VisitorRole)
         if roles.index(self.role) < roles.index(least):
             raise NotInControlError(
                 f"this token is for {_MAY[self.role]}; log in with the operators' (quick stop is "
@@ -75,7 +75,7 @@ class Visitor:
 
 
 VISITOR: Final = "pmm.visitor"  # key of the scope
-_STRANGER: Final = Visitor(Role.WATCH)
+_STRANGER: Final = Visitor(VisitorRole.WATCH)
 
 
 @dataclass
@@ -105,9 +105,9 @@ class Door:
     def log_in(self, token: str, name: str = "") -> tuple[str, Visitor] | None:
         """Return a cookie's value and who has it, for a right token."""
         known = (
-            (self.token, Role.OPERATE),
-            (self.propose_token, Role.PROPOSE),
-            (self.watch_token, Role.WATCH),
+            (self.token, VisitorRole.OPERATE),
+            (self.propose_token, VisitorRole.PROPOSE),
+            (self.watch_token, VisitorRole.WATCH),
         )
         fit = [role for one, role in known if one and _same(token, one)]
         if not fit:

@@ -52,8 +52,8 @@ class Source:
 
 
 @dataclass(frozen=True)
-class Found:
-    """The recordings that are meant.
+class SourceList:
+    """The recordings that a command's arguments name.
 
     Attributes
     ----------
@@ -64,12 +64,12 @@ class Found:
     sources: tuple[Source, ...] = ()
     not_recorded: tuple[Path, ...] = ()
 
-    def __add__(self, other: "Found") -> "Found":
+    def __add__(self, other: "SourceList") -> "SourceList":
         """Return both."""
-        return Found(self.sources + other.sources, self.not_recorded + other.not_recorded)
+        return SourceList(self.sources + other.sources, self.not_recorded + other.not_recorded)
 
 
-def find_sources(paths: Sequence[str]) -> Found:
+def find_sources(paths: Sequence[str]) -> SourceList:
     """Return the recordings that are meant; a campaign stands for those of all its runs.
 
     Raises
@@ -79,10 +79,10 @@ def find_sources(paths: Sequence[str]) -> Found:
     ConfigurationError
         If a campaign file is wrong, or a folder has none; or as :func:`pmm.remote.here`.
     """
-    return sum((_find(here(path)) for path in paths), Found())
+    return sum((_find(here(path)) for path in paths), SourceList())
 
 
-def _find(path: Path) -> Found:
+def _find(path: Path) -> SourceList:
     if path.is_dir():
         if not (path / CAMPAIGN_FILE).exists():
             raise ConfigurationError(
@@ -91,11 +91,11 @@ def _find(path: Path) -> Found:
             )
         path = path / CAMPAIGN_FILE
     if path.suffix != ".toml":
-        return Found((Source(RecordingSource(path)),))
+        return SourceList((Source(RecordingSource(path)),))
     return _find_in_campaign(path)
 
 
-def _find_in_campaign(path: Path) -> Found:
+def _find_in_campaign(path: Path) -> SourceList:
     campaign = read_campaign(path)
     if not campaign.runs:
         raise ConfigurationError(f"{path}: the campaign has no runs; add a table [[runs]] for each")
@@ -112,7 +112,7 @@ def _find_in_campaign(path: Path) -> Found:
             f"{path}: none of its {len(campaign.runs)} runs is recorded yet; the first would be "
             f"{not_recorded[0]}"
         )
-    return Found(tuple(sources), tuple(not_recorded))
+    return SourceList(tuple(sources), tuple(not_recorded))
 
 
 def read_source(

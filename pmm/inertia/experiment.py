@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, Final, Generic, TypeVar
 
 from analysis.inertia.hanging import HangingCentre
-from analysis.inertia.result import InertiaResult
+from analysis.inertia.result import MassProperties
 from analysis.uncertainty.budget import Budget
 from analysis.uncertainty.estimate import Estimate
 from analysis.uncertainty.redundancy import Redundancy
@@ -49,7 +49,7 @@ class Experiment(Generic[TableT]):
     statics: list[StaticTest] = field(default_factory=list)
     sketches: list[Sketch] = field(default_factory=list)
     centre: HangingCentre | None = None
-    body: InertiaResult | None = None
+    body: MassProperties | None = None
     missing: tuple[str, ...] = ()
 
     @classmethod

@@ -6,7 +6,7 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from analysis.inertia.parts import BodyPart
-from analysis.inertia.result import Comparison, InertiaResult, compare_with_target
+from analysis.inertia.result import Comparison, MassProperties, compare_with_target
 from analysis.inertia.swing_static import LeverSeries, StaticResult
 from analysis.uncertainty.estimate import Estimate
 from analysis.uncertainty.monte_carlo import Assessment
@@ -111,7 +111,7 @@ class Outcome:
     findings: tuple[Finding, ...]
     flags: tuple[Flag, ...] = ()
     periods: tuple[PeriodRuns, ...] = ()
-    body: InertiaResult | None = None
+    body: MassProperties | None = None
     missing: tuple[str, ...] = ()
     plane: Plane | None = None
     comparisons: tuple[Comparison, ...] = ()

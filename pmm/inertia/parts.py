@@ -8,7 +8,7 @@ from typing import Any
 from analysis.inertia.ballast import BallastTarget, Weight, place_ballast
 from analysis.inertia.parts import PRODUCTS, BodyPart, combine, part
 from analysis.inertia.plane_inertia import inertias_at
-from analysis.inertia.result import InertiaResult
+from analysis.inertia.result import MassProperties
 from analysis.inertia.second_moments import impossible
 from analysis.uncertainty.estimate import Estimate, exactly
 from analysis.uncertainty.monte_carlo import Assessment
@@ -255,7 +255,7 @@ def _findings(whole: BodyPart) -> tuple[Finding, ...]:
     return tuple(rows)
 
 
-def _body(name: str, whole: BodyPart, flags: tuple[Flag, ...]) -> InertiaResult:
+def _body(name: str, whole: BodyPart, flags: tuple[Flag, ...]) -> MassProperties:
     """Return the mass properties; what has no gyradius there was given none."""
     x, y, z = whole.centre_of_gravity
     gyradii: dict[str, Estimate] = {
@@ -270,4 +270,4 @@ def _body(name: str, whole: BodyPart, flags: tuple[Flag, ...]) -> InertiaResult:
         f"the centre of gravity lies {1e3 * y.value:.3g} mm off the centre plane; a campaign's "
         "model lies in it",
     )
-    return InertiaResult(name, whole.mass, x, z, gyradii, (), (*flags, *((flag,) if side else ())))
+    return MassProperties(name, whole.mass, x, z, gyradii, (), (*flags, *((flag,) if side else ())))

@@ -11,7 +11,7 @@ from analysis.inertia.corrections import square_frame
 from analysis.inertia.elementary_functions import Value, sqrt
 from analysis.inertia.hanging import HangingCentre
 from analysis.inertia.parts import MADE_OF, BodyPart, combine, part
-from analysis.inertia.result import InertiaResult
+from analysis.inertia.result import MassProperties
 from analysis.inertia.second_moments import impossible
 from analysis.uncertainty.budget import Budget, derived
 from analysis.uncertainty.estimate import Estimate, exactly, fresh_label
@@ -186,7 +186,7 @@ def properties(
     flags: Sequence[Flag] = (),
     centre: HangingCentre | None = None,
     cg_z: Estimate | None = None,
-) -> tuple[InertiaResult | None, tuple[str, ...]]:
+) -> tuple[MassProperties | None, tuple[str, ...]]:
     """Return the mass properties, or the keys that are missing for them.
 
     Parameters
@@ -212,7 +212,7 @@ def properties(
         roll, pitch, yaw = (gyradii[axis] for axis in AXES)
         nothing = exactly(0.0, "m")
         flags = (*flags, *impossible(part(name, mass, (x, nothing, z), (roll, pitch, yaw))))
-    return InertiaResult(name, mass, x, z, dict(gyradii), tuple(budgets), tuple(flags)), ()
+    return MassProperties(name, mass, x, z, dict(gyradii), tuple(budgets), tuple(flags)), ()
 
 
 def _without(

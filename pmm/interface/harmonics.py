@@ -12,7 +12,7 @@ from pmm.document.content import Document
 from pmm.harmonics.request import HarmonicsRequest
 from pmm.harmonics.resolving import Failure, Resolved, doubts, resolve
 from pmm.harmonics.rows import ChannelRows, GateRows, RunRows
-from pmm.harmonics.sources import Found, Source
+from pmm.harmonics.sources import Source, SourceList
 from pmm.interface.result import CONVENTIONS, Drawn, Result, Variable, dataset_of
 
 if TYPE_CHECKING:
@@ -177,7 +177,7 @@ class HarmonicsResult(Result):
         return Drawn(drawn[0].axes)
 
 
-def harmonics_of(found: Found, request: HarmonicsRequest) -> HarmonicsResult:
+def harmonics_of(found: SourceList, request: HarmonicsRequest) -> HarmonicsResult:
     """Resolve recordings as ``pmm analyse`` does.
 
     Raises

@@ -13,7 +13,7 @@ import numpy as np
 
 from analysis.ideal_rig import incidence, mass_matrix, weight_matrix
 from hardware.description.arrays import ComplexArray, FloatArray
-from hardware.description.body import Body, Ship
+from hardware.description.body import Body, ShipModel
 from hardware.description.channels import FORCES
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import Medium
@@ -157,7 +157,7 @@ def _at_struts(load: ComplexArray, oscillator: Oscillator) -> ComplexArray:
 
 
 def _reactions(
-    run: RunPlan, rig: RigFile, model: Ship, motion: ComplexArray
+    run: RunPlan, rig: RigFile, model: ShipModel, motion: ComplexArray
 ) -> Iterator[tuple[FloatArray, ComplexArray, float]]:
     """Yield matrices, the phasors that they act on, and their relative standard uncertainties."""
     plane, iw = rig.oscillator.plane, 1j * omega_of(run)

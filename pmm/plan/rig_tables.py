@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from hardware.description.body import Ship
+from hardware.description.body import ShipModel
 from hardware.description.oscillator import Oscillator
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from pmm.configuration import STRICT_TABLE
@@ -145,7 +145,7 @@ class RigTables:
     oscillator: Oscillator
     name: str = "rig"
     realtime: bool | None = None
-    model: Ship | None = None
+    model: ShipModel | None = None
     hull: HullEstimate | None = None
     tank: TankTable | None = None
     limits: Limits = field(default_factory=Limits)

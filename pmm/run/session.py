@@ -20,7 +20,7 @@ from pmm.plan.findings import PlanFinding
 from pmm.plan.plan import Plan, read_plan_and_rig
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
-from pmm.real_time import Standing, before_others, thread_beside
+from pmm.real_time import LoopScheduling, before_others, thread_beside
 from pmm.recorder.campaign_owner import own_campaign
 from pmm.run.campaign_folder import (
     check_names,
@@ -128,7 +128,7 @@ def run_job(
         yield RunJob(plan, rig_file, folder, runs, findings, real_time, changes)
 
 
-def keep_time(stack: ExitStack) -> Standing:
+def keep_time(stack: ExitStack) -> LoopScheduling:
     """Put the loop, and what it starts from here on, before all that could make its cycles late."""
     rehearse()
     return stack.enter_context(before_others())

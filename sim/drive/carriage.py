@@ -52,7 +52,7 @@ class CarriageSettings:
 
 
 @dataclass(frozen=True)
-class Carriage:
+class CarriageMotion:
     """A carriage, told to run at ``speed_m_s``; on a circle it turns at ``turn_rate_rad_s``."""
 
     speed_m_s: float

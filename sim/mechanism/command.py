@@ -12,7 +12,7 @@ from sim.stage import Block
 
 
 @dataclass(frozen=True)
-class Command:
+class StrutCommand:
     """The struts' displacements by a shaft without ripple at the set frequency, linkages as set.
 
     Over a period the drive keeps the period's frequency: by what the set one is off does not repeat

@@ -12,7 +12,7 @@ from sim.acquisition.amplifier import BridgeCarrier, FilterKind, LowPass
 from sim.acquisition.channels import Acquisition, Digitiser
 from sim.acquisition.photocell import PhotocellStage
 from sim.chain import Chain
-from sim.drive.carriage import Carriage, CarriageSettings, Fluctuation
+from sim.drive.carriage import CarriageMotion, CarriageSettings, Fluctuation
 from sim.drive.prescribed_drive import ConstantSpeedDrive, DriveSettings
 from sim.gauges.dynamometer import Dynamometer, Dynamometers
 from sim.mechanism.linkage import Mechanism, Setting
@@ -154,7 +154,7 @@ def test_photocell_misses_and_doubles() -> None:
 
 
 def test_carriage_and_stop_ramp() -> None:
-    chain = Chain((Carriage(2.0, CarriageSettings(0.01, (Fluctuation(0.1, 0.5),))),))
+    chain = Chain((CarriageMotion(2.0, CarriageSettings(0.01, (Fluctuation(0.1, 0.5),))),))
     speed = chain.run(chain.start(10.0, 0), 40)[1]["carriage_speed"]
     time = np.arange(40) / 10.0
     np.testing.assert_allclose(speed, 2.02 * (1.0 + 0.1 * np.sin(math.pi * time)))

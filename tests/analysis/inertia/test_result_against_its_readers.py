@@ -6,7 +6,7 @@ import tomllib
 
 import pytest
 
-from analysis.inertia.result import InertiaResult, compare_with_target, model_toml
+from analysis.inertia.result import MassProperties, compare_with_target, model_toml
 from analysis.inertia.workflow import Step, StepResult, assess_workflow, next_step
 from analysis.uncertainty.budget import linear_budget
 from analysis.uncertainty.estimate import Estimate, exactly
@@ -15,7 +15,7 @@ from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import Plane
 
 BUDGET = linear_budget("k", lambda k: k, {"k": Estimate.of(0.62, 0.002, "m", 5.0)}, unit="m")
-RESULT = InertiaResult(
+RESULT = MassProperties(
     "hull 7",
     Estimate.of(70.0, 0.02, "kg"),
     Estimate.of(-0.02, 0.001, "m"),

@@ -11,7 +11,7 @@ from pmm.console.limits import MOST_PROPOSALS
 from pmm.console.messages import OrderKind
 from pmm.console.proposals import Proposals
 from pmm.console.requests import DropPosted
-from pmm.console.security import Role, Visitor
+from pmm.console.security import Visitor, VisitorRole
 from tests.pmm.console.serving import SESSION, Served, served
 
 TOKENS = {one: f"{one}-0123456789abcdef" for one in ("token", "propose_token", "watch_token")}
@@ -90,7 +90,7 @@ def test_what_is_proposed_reaches_the_loop_when_it_is_approved(tmp_path: Path) -
 
 
 def test_so_many_may_wait_and_no_more() -> None:
-    proposals, ann = Proposals(), Visitor(Role.PROPOSE, "Ann")
+    proposals, ann = Proposals(), Visitor(VisitorRole.PROPOSE, "Ann")
     for number in range(1, MOST_PROPOSALS + 1):
         assert proposals.add("drop", DropPosted(number=1), "p", ann, "utc").number == number
     with pytest.raises(ConfigurationError, match=f"{MOST_PROPOSALS} proposals wait"):

@@ -15,7 +15,7 @@ from hardware.description.errors import ConfigurationError
 from pmm.console.proposals import ProposedChange
 from pmm.console.queue_journal import KeptPlan, KeptQueue, QueueJournal
 from pmm.console.requests import EditPosted, HoldPosted, MovePosted, PlanPosted
-from pmm.console.security import Role, Visitor
+from pmm.console.security import Visitor, VisitorRole
 from tests.pmm.console.chromium import console, plan, rig_in
 
 WITHIN_S = 120.0
@@ -29,7 +29,7 @@ KEPT = KeptQueue(
     ),
     (
         ProposedChange(
-            7, "queue", PlanPosted(name="c.toml"), "c", Visitor(Role.PROPOSE, "Ann"), "utc"
+            7, "queue", PlanPosted(name="c.toml"), "c", Visitor(VisitorRole.PROPOSE, "Ann"), "utc"
         ),
     ),
 )  # fmt: skip

@@ -5,7 +5,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from hardware.description.body import Ship
+from hardware.description.body import ShipModel
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.oscillator import VERTICAL_1963, Oscillator
 from hardware.description.setpoint import SetPoint
@@ -57,7 +57,7 @@ def rig_file(oscillator: Oscillator = VERTICAL_1963, **changes: Any) -> RigFile:
         sha256="0",
         oscillator=oscillator,
         hardware=devices(),
-        model=Ship(70.0, 27.5, length_m=2.5),
+        model=ShipModel(70.0, 27.5, length_m=2.5),
         hull=HullEstimate(((75.0, 3.0), (3.0, 22.0)), ((190.0, 12.0), (12.0, 55.0))),
         tank=TankTable(100.0, 4.0, 0.5, 4.0),
         limits=Limits(stroke_m=0.12, velocity_m_s=0.8, acceleration_m_s2=10.0),

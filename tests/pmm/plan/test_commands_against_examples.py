@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from click.testing import CliRunner, Result
 
-from hardware.description.body import Ship
+from hardware.description.body import ShipModel
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.known_loads import KnownMass
 from hardware.rig_configuration import TABLES
@@ -184,7 +184,7 @@ def _in_code(page: str) -> set[str]:
         (
             "rig-file.md",
             (
-                RigTables, Ship, HullEstimate, TankTable, Limits, Gauge, StructuralMode,
+                RigTables, ShipModel, HullEstimate, TankTable, Limits, Gauge, StructuralMode,
                 PhotocellOffset, RecorderSettings,
             ),
         ),

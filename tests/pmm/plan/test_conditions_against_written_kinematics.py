@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hardware.description.body import Ship
+from hardware.description.body import ShipModel
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963
 from hardware.description.setpoint import SetPoint
@@ -16,7 +16,7 @@ from pmm.plan.rig_tables import TankTable
 from tests.pmm.plan.plans import rig_file, run
 
 G, L, HALF = 9.80665, 2.5, 0.5
-SHIP = Ship(70.0, 27.5, length_m=L)
+SHIP = ShipModel(70.0, 27.5, length_m=L)
 TANK = TankTable(100.0, 4.0, 0.5, 4.0, depth_m=2.0)
 
 

@@ -10,7 +10,7 @@ from datetime import date
 import numpy as np
 import pytest
 
-from hardware.description.body import Ship
+from hardware.description.body import ShipModel
 from hardware.description.known_loads import KnownMass
 from hardware.description.oscillator import VERTICAL_1963
 from hardware.description.setpoint import Medium, SetPoint
@@ -26,7 +26,7 @@ def _estimate(rig: SimulatedRig, point: SetPoint, mass: KnownMass | None = None)
     body, water = rig.body, rig.water
     file = rig_file(
         rig.oscillator,
-        model=Ship(body.mass_kg, body.inertia_kg_m2, body.cg_x_m, body.cg_z_m),
+        model=ShipModel(body.mass_kg, body.inertia_kg_m2, body.cg_x_m, body.cg_z_m),
         hull=HullEstimate(water.added_mass, water.damping, water.restoring),
     )
     one = replace(run(known_mass=mass), set_point=point)
@@ -63,7 +63,7 @@ def test_a_model_below_the_surface_is_borne_at_its_centre_of_buoyancy(
 ) -> None:
     """Slow pitch: of the forces nothing but weight and buoyancy is left."""
     centre = -0.05 if displaced_kg else 0.0
-    model = Ship(78.0, 14.0, 0.0, 0.02, displaced_kg, 0.0, centre)
+    model = ShipModel(78.0, 14.0, 0.0, 0.02, displaced_kg, 0.0, centre)
     half = VERTICAL_1963.half_spacing_m
     slow = replace(run(), set_point=SetPoint(1e-5, 0.02, math.pi))
     moment = 9.80665 * (78.0 * 0.02 - (displaced_kg or 0.0) * centre) * 0.02 / half
@@ -77,7 +77,7 @@ def _half(mass_kg: float, hz: float, e: float) -> float:
 
 
 AIR = replace(run(), set_point=SetPoint(0.8, 0.02, medium=Medium.AIR))
-BARE = {"model": Ship(70.0, 27.5), "hull": HullEstimate()}
+BARE = {"model": ShipModel(70.0, 27.5), "hull": HullEstimate()}
 
 
 def test_in_air_a_gauge_is_expected_to_read_half_the_mass() -> None:
@@ -95,7 +95,8 @@ def test_in_water_hull_and_restoring_widen_it_and_do_not_cancel() -> None:
     omega2 = (2.0 * math.pi * 0.8) ** 2
     hull = HullEstimate(((75.0, 0.0), (0.0, 22.0)), restoring=((145.0 * omega2, 0.0), (0.0, 0.0)))
     one = expected_readings(
-        replace(run(), set_point=SetPoint(0.8, 0.02)), rig_file(model=Ship(70.0, 27.5), hull=hull)
+        replace(run(), set_point=SetPoint(0.8, 0.02)),
+        rig_file(model=ShipModel(70.0, 27.5), hull=hull),
     )["force_aft"]
     assert one.amplitude_n == pytest.approx(0.0, abs=1e-9)
     parts = (0.02 * 70.0, 0.2 * 75.0, 0.05 * 145.0)

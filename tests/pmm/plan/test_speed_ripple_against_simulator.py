@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from analysis.speed_loop.loop import ShaftLoop
-from hardware.description.body import Ship
+from hardware.description.body import ShipModel
 from hardware.description.errors import ConfigurationError
 from hardware.description.motor import Cogging, Guides, Servo
 from hardware.description.setpoint import Medium, SetPoint
@@ -32,7 +32,7 @@ def _file(rig: SimulatedRig, motor: dict[str, object]):
     body, water = rig.body, rig.water
     return rig_file(
         rig.oscillator,
-        model=Ship(body.mass_kg, body.inertia_kg_m2, body.cg_x_m, body.cg_z_m),
+        model=ShipModel(body.mass_kg, body.inertia_kg_m2, body.cg_x_m, body.cg_z_m),
         hull=HullEstimate(water.added_mass, water.damping, water.restoring),
         campaign={"drive": {"motor": motor}} if motor else {},
     )

@@ -8,7 +8,7 @@ import threading
 
 import pytest
 
-from pmm.real_time import Priority, Standing, before_others, step_back
+from pmm.real_time import LoopScheduling, Priority, before_others, step_back
 from tests.sim.devices.benches import ROOT
 
 linux = pytest.mark.skipif(not hasattr(os, "sched_getscheduler"), reason="needs Linux's scheduler")
@@ -80,7 +80,7 @@ def test_what_was_there_before_is_not_searched_for_garbage() -> None:
 def test_what_is_not_allowed_is_said_in_a_line(
     priority: Priority, locked: bool, said: list[str]
 ) -> None:
-    advice = Standing(priority, locked).advice
+    advice = LoopScheduling(priority, locked).advice
     assert bool(advice) == bool(said)
     assert all(one in advice for one in said)
     assert "\n" not in advice
