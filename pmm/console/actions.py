@@ -244,7 +244,7 @@ class PageActions:
         worker = self._workers.for_whom(in_control=self._hub.desk.holder == who.session)
         plan = self.changes.queued.plan(posted.number)
         await worker.run(keep_note, plan, posted, self._utc())
-        about = posted.run or plan.plan.name
+        about = posted.run or plan.bare.plan.name
         self._hub.say("note", f"{about}: {posted.text} ({posted.author})")
         return ActionReply(f"noted on {about}", present=posted.number)
 

@@ -107,13 +107,13 @@ class QueueChanges:
         worker = self._workers.for_whom(in_control=False)
         if isinstance(posted, PlanPosted):
             found = await worker.run(possible_plan, self._plans, posted.name, posted.text)
-            return found.packed.plan.name, found.picture
+            return found.packed.bare.plan.name, found.picture
         number: int = getattr(posted, "number", 0)
         plan = self.queued.plan(number)
         picture = self.queued.pictures()[str(number)]
         if isinstance(posted, RunPosted) and (posted.run or isinstance(posted, HoldPosted)):
             picture = (await worker.run(changed_plan, self._plans, plan, posted)).picture
-        return plan.plan.name, picture
+        return plan.bare.plan.name, picture
 
     async def _queue(self, posted: PlanPosted) -> ActionReply:
         worker = self._workers.for_whom(in_control=True)

@@ -46,14 +46,14 @@ class QueuedPlan:
 
 @dataclass(frozen=True)
 class PackedPlan:
-    """A queued plan on its way: ``plan`` without its runs, which are in the pieces."""
+    """A queued plan on its way: ``bare`` has none of its runs, which are in the pieces."""
 
-    number: int
-    plan: Plan
-    folder: Path
+    bare: QueuedPlan
     pieces: tuple[bytes, ...]
-    chooses: bool = False
-    held: frozenset[str] = frozenset()
+
+    def numbered(self, number: int) -> "PackedPlan":
+        """Return it with a number of the queue's."""
+        return replace(self, bare=replace(self.bare, number=number))
 
 
 def pack(plan: QueuedPlan) -> PackedPlan:
@@ -61,8 +61,7 @@ def pack(plan: QueuedPlan) -> PackedPlan:
     wanted = {run.name for run in plan.runs}
     runs = [(run, run.name in wanted) for run in plan.plan.runs]
     pieces = tuple(pickle.dumps(runs[k : k + _PIECE]) for k in range(0, len(runs), _PIECE))
-    bare = replace(plan.plan, runs=())
-    return PackedPlan(plan.number, bare, plan.folder, pieces, plan.chooses, plan.held)
+    return PackedPlan(replace(plan, plan=replace(plan.plan, runs=()), runs=()), pieces)
 
 
 def unpack(packed: PackedPlan) -> QueuedPlan:
@@ -71,6 +70,5 @@ def unpack(packed: PackedPlan) -> QueuedPlan:
     for piece in packed.pieces:
         runs += pickle.loads(piece)  # noqa: S301 - from the console's own process
         time.sleep(_PAUSE_S)
-    plan = replace(packed.plan, runs=tuple(one for one, _ in runs))
-    chosen = tuple(one for one, wanted in runs if wanted)
-    return QueuedPlan(packed.number, plan, packed.folder, chosen, packed.chooses, packed.held)
+    plan = replace(packed.bare.plan, runs=tuple(run for run, _ in runs))
+    return replace(packed.bare, plan=plan, runs=tuple(run for run, wanted in runs if wanted))

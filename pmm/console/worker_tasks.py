@@ -83,9 +83,9 @@ def keep_note(packed: PackedPlan, posted: NotePosted, utc: str) -> None:
     ConfigurationError
         If there is no such run, or the text is none of one line.
     """
-    if posted.run and not is_run(packed.folder / posted.run):
+    if posted.run and not is_run(packed.bare.folder / posted.run):
         check_names(unpack(packed).plan, [posted.run])
-    write_note(packed.folder, NoteLine(utc, posted.run, posted.author, posted.text))
+    write_note(packed.bare.folder, NoteLine(utc, posted.run, posted.author, posted.text))
 
 
 def look_around(plans: Plans, folders: tuple[Path, ...]) -> tuple[list[str], dict[Path, list[str]]]:
@@ -121,16 +121,16 @@ class Queued:
             Of its file, as they were made before.
         """
         self._count += 1
-        self._plans[self._count] = replace(plan, packed=replace(plan.packed, number=self._count))
+        self._plans[self._count] = replace(plan, packed=plan.packed.numbered(self._count))
         self._changes[self._count] = changes
-        self._folders[plan.packed.folder] = None
+        self._folders[plan.packed.bare.folder] = None
         return self._count
 
     def kept(self) -> tuple[KeptPlan, ...]:
         """Return what is to be queued again after a restart, in the order of the queue."""
         later = [one for one in self._plans if one not in self._order]
         return tuple(
-            KeptPlan(one, self._plans[one].packed.plan.path.name, self._changes[one])
+            KeptPlan(one, self._plans[one].packed.bare.plan.path.name, self._changes[one])
             for one in (*self._order, *later)
             if one in self._plans
         )
@@ -155,7 +155,7 @@ class Queued:
 
     def change(self, plan: ReadyPlan, posted: RunPosted) -> None:
         """Keep a plan as it is from now on, if it is still at hand."""
-        number = plan.packed.number
+        number = plan.packed.bare.number
         if number in self._plans:
             self._plans[number] = plan
             self._changes[number] += (posted,)
@@ -173,7 +173,7 @@ class Queued:
     def folder(self, number: int) -> Path | None:
         """Return the folder of a plan that is at hand."""
         found = self._plans.get(number)
-        return None if found is None else found.packed.folder
+        return None if found is None else found.packed.bare.folder
 
     def folders(self) -> list[Path]:
         """Return the folders of all campaigns that were queued, each once."""

@@ -9,7 +9,7 @@ import pytest
 
 from pmm.console.encoding import EncodedText
 from pmm.console.limits import MOST_WAITING
-from pmm.console.queued_plan import PackedPlan
+from pmm.console.queued_plan import PackedPlan, QueuedPlan
 from pmm.console.worker_tasks import Queued, ReadyPlan
 from pmm.plan.plan import Plan
 from tests.pmm.console.serving import OWN, SESSION, served
@@ -18,7 +18,9 @@ _PLAN = Plan("plan", Path(), Path(), (), "", "")
 
 
 def _ready(folder: str) -> ReadyPlan:
-    return ReadyPlan(PackedPlan(0, _PLAN, Path(folder), (b"runs",)), EncodedText("{}"))
+    return ReadyPlan(
+        PackedPlan(QueuedPlan(0, _PLAN, Path(folder), ()), (b"runs",)), EncodedText("{}")
+    )
 
 
 @pytest.mark.parametrize("seed", range(20))
