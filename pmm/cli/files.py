@@ -1,15 +1,16 @@
 """Folders and files of a command: looked at before any work, and what is said of them after."""
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hardware.description.errors import ConfigurationError, DataError
-from pmm.cli.screen import error_line, messages
+from pmm.cli.screen import error_line, messages, pasted
 
 if TYPE_CHECKING:
     from hardware.description.flags import Flag
+    from pmm.document.content import Document
 
 
 def check_folder(folder: Path, option: str) -> None:
@@ -97,6 +98,25 @@ def check_files(
         if found in writers:
             raise ConfigurationError(f"{writers[found]} and {here}: the same file; name two")
         writers[found] = here
+
+
+def write_asked_page(
+    content: "Document", page: str | None, command: Sequence[str], read: Sequence[Path] = ()
+) -> None:
+    """Write a document as the page that ``--page`` names, if it was given.
+
+    Parameters
+    ----------
+    command
+        Words that make the page again, without ``--page``.
+    read
+        Files that the page quotes.
+    """
+    from pmm.document.page import write_page
+
+    if page is not None:
+        write_page(content, Path(page), command=pasted(*command, "--page", page), read=read)
+        messages().print(f"page: {page}")
 
 
 def tell_damaged(found: "Iterable[tuple[str, Iterable[Flag]]]") -> list[int]:

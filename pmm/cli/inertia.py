@@ -111,16 +111,14 @@ def _draw(
     told: "Document", read: Path, plot: str | None, page: str | None, command: tuple[str, ...]
 ) -> None:
     """Write the figures into a folder, and all that was found as a page."""
-    from pmm.cli.screen import messages, pasted
-    from pmm.document.page import write_page
+    from pmm.cli.files import write_asked_page
+    from pmm.cli.screen import messages
     from pmm.document.style import write_figures
 
     if plot is not None:
         written = write_figures(told.figures, Path(plot), read.stem)
         messages().print(f"written: {len(written)} figures in {plot}")
-    if page is not None:
-        write_page(told, Path(page), command=pasted(*command, "--page", page), read=[read])
-        messages().print(f"page: {page}")
+    write_asked_page(told, page, command, [read])
 
 
 for _job, (_own, _help) in _JOBS.items():

@@ -23,7 +23,7 @@ from pmm.campaign.campaign import Campaign
 from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.campaign.water import TankWater, common_water
-from pmm.coefficients.campaign_cycles import campaign_cycles
+from pmm.coefficients.campaign_cycles import CampaignCycles, campaign_cycles
 from pmm.coefficients.decays import Decay, with_recorded
 from pmm.coefficients.run_names import check_left_out, check_names
 from pmm.coefficients.settings import CoefficientSettings
@@ -45,41 +45,76 @@ class CampaignOutcome:
 
     Attributes
     ----------
+    parts
+        What was read, of each of the campaigns that are taken as one.
     result
         In SI units; :mod:`pmm.coefficients.systems` takes the dimensions off.
     cycles
         Of the runs that were used, with what was taken off.
-    runs
-        What was read, zeros and dry runs included.
-    flags
-        About runs, by the run's name.
+    left_out
+        About the campaign: what was not used, and what is missing or looks wrong.
     settings
         As they were given, with the density of the campaigns' water where they state none.
     water
         That of the campaigns.
-    with_memory
-        The campaigns whose simulation has a memory of the water, fitted to a table.
     at_rest
         Added mass and damping without carriage speed, where four frequencies or more tell them.
     """
 
-    names: tuple[str, ...]
+    parts: tuple[CampaignCycles, ...]
     result: CampaignCoefficients
     cycles: tuple[BodyCycle, ...]
-    runs: tuple[Done, ...]
-    failed: tuple[Failed, ...]
-    not_recorded: tuple[str, ...]
-    flags: Mapping[str, tuple[Flag, ...]]
     left_out: tuple[Flag, ...]
     stated: StatedUncertainties
-    body: Body | None
     settings: CoefficientSettings
-    water: TankWater | None
-    with_memory: tuple[Campaign, ...] = ()
+    water: TankWater | None = None
     turns: tuple[SteadyTurn, ...] = ()
-    decays: tuple[Decay, ...] = ()
-    waves: tuple[WaveRun, ...] = ()
     at_rest: tuple[MeasuredMatrix, ...] = ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The campaigns' names."""
+        return tuple(part.campaign.name for part in self.parts)
+
+    @property
+    def body(self) -> Body | None:
+        """The model, one for all campaigns; ``None`` where dry runs are taken off."""
+        return self.parts[0].body if self.parts else None
+
+    @property
+    def runs(self) -> tuple[Done, ...]:
+        """What was read, zeros and dry runs included."""
+        return _joined(part.runs for part in self.parts)
+
+    @property
+    def failed(self) -> tuple[Failed, ...]:
+        """What could not be used."""
+        return _joined(part.failed for part in self.parts)
+
+    @property
+    def not_recorded(self) -> tuple[str, ...]:
+        """Names of runs whose recordings are not there yet."""
+        return _joined(part.work.not_recorded for part in self.parts)
+
+    @property
+    def decays(self) -> tuple[Decay, ...]:
+        """The free decays, by campaign and speed."""
+        return _joined(part.decays for part in self.parts)
+
+    @property
+    def waves(self) -> tuple[WaveRun, ...]:
+        """The runs in waves."""
+        return _joined(part.waves for part in self.parts)
+
+    @property
+    def with_memory(self) -> tuple[Campaign, ...]:
+        """The campaigns whose simulation has a memory of the water, fitted to a table."""
+        return tuple(one.campaign for one in self.parts if one.campaign.radiation is not None)
+
+    @property
+    def flags(self) -> Mapping[str, tuple[Flag, ...]]:
+        """About runs, by the run's name."""
+        return {one.name: one.flags for one in self.runs if one.flags}
 
     @cached_property
     def memories(self) -> "tuple[MeasuredMemory, ...]":
@@ -141,10 +176,10 @@ def coefficients_of(
     check_left_out(settings.leave_out, [campaign for _, campaign in campaigns])
     water = common_water([campaign.water for _, campaign in campaigns])
     settings = replace(settings, ship=settings.ship.within(water))
-    parts = [
+    parts = tuple(
         campaign_cycles(folder, campaign, settings, executor, progress, hashed=hashed)
         for folder, campaign in campaigns
-    ]
+    )
     first, body = parts[0].campaign, parts[0].body
     decays = _joined(part.decays for part in parts)
     settings, alone = with_recorded(settings, decays, first.heel)
@@ -154,41 +189,21 @@ def coefficients_of(
         *_joined(part.cycles for part in parts),
         *(cycle.about(settings.point_ahead_m) for cycle in circles),
     )
-    failed = _joined(part.failed for part in parts)
-    missing = _joined(part.work.not_recorded for part in parts)
     if not cycles:
-        raise DataError(_nothing(folders, failed, missing))
+        raise DataError(_nothing(folders, parts))
     turns = (*_joined(part.turns for part in parts), *turns)
     stated = largest([part.stated for part in parts])
-    nothing = () if stated.vector.any() else (_NOTHING_STATED,)
+    doubts = (
+        *_joined((*part.work.left_out, *part.doubts) for part in parts),
+        *(() if stated.vector.any() else (_NOTHING_STATED,)),
+        *alone,
+        *_joined(one.flags for one in decays),
+    )
     stated = with_turns(stated, turns)
     result = solve_campaign(cycles, request_of(settings, stated), executor, progress)
     result = with_decays(result, settings.roll_decays, first.heel, body)
-    runs = _joined(part.runs for part in parts)
-    return CampaignOutcome(
-        tuple(campaign.name for _, campaign in campaigns),
-        result,
-        cycles,
-        runs,
-        failed,
-        missing,
-        {one.name: one.flags for one in runs if one.flags},
-        (
-            *_joined((*part.work.left_out, *part.doubts) for part in parts),
-            *nothing,
-            *alone,
-            *_joined(one.flags for one in decays),
-        ),
-        stated,
-        body,
-        settings,
-        water,
-        tuple(one for _, one in campaigns if one.radiation is not None),
-        turns,
-        decays,
-        _joined(part.waves for part in parts),
-        measured_matrices(result),
-    )
+    rest = measured_matrices(result)
+    return CampaignOutcome(parts, result, cycles, doubts, stated, settings, water, turns, rest)
 
 
 def _joined(parts: Iterable[tuple[T, ...]]) -> tuple[T, ...]:
@@ -209,9 +224,10 @@ def request_of(settings: CoefficientSettings, stated: StatedUncertainties) -> Re
     )
 
 
-def _nothing(folders: Sequence[Path], failed: Sequence[Failed], missing: Sequence[str]) -> str:
+def _nothing(folders: Sequence[Path], parts: Sequence[CampaignCycles]) -> str:
     where = ", ".join(map(str, folders))
-    if failed:
+    missing = _joined(part.work.not_recorded for part in parts)
+    if failed := _joined(part.failed for part in parts):
         return f"{where}: none of the runs can be used; the first: {failed[0].message}"
     if missing:
         return f"{where}: none of the runs is recorded yet ({', '.join(missing[:5])})"

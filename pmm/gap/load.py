@@ -1,7 +1,7 @@
 """A campaign's folder as the gap diagnosis wants it."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
@@ -114,15 +114,17 @@ def load_campaign(
     cut = {run.name: said for run, one, _ in kept if (said := cut_short(one.analysis))}
     rig = as_recorded(rig, (*runs, *at_rest), reference)
     known, still = resolved(rig, (*runs, *at_rest))
-    every = {
-        name: "; ".join(filter(None, (cut.get(name), still.get(name), unlike.get(name))))
-        for name in (*cut, *still, *unlike)
-    }
-    notes = {name: said for name, said in every.items() if said}
     usable, usable_at_rest = known[: len(runs)], known[len(runs) :]
     return Loaded(
-        campaign, rig, usable, left_out | unused, reference, usable_at_rest, notes, damaged | harmed
-    )
+        campaign, rig, usable, left_out | unused, reference, usable_at_rest,
+        _by_name(cut, still, unlike), damaged | harmed,
+    )  # fmt: skip
+
+
+def _by_name(*notes: Mapping[str, str]) -> dict[str, str]:
+    """Return what some notes on runs say of each, in one text."""
+    names = dict.fromkeys(name for some in notes for name, said in some.items() if said)
+    return {name: "; ".join(filter(None, (one.get(name) for one in notes))) for name in names}
 
 
 def _check_single(run: Run) -> None:

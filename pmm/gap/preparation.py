@@ -108,12 +108,7 @@ def prepare(
     loaded = replace(loaded, rig=told.rig)
     case = replace(case, tolerances=told.tolerances)
     there, fitted, withheld, left_out = _sorted(loaded, case, on, held_out, file)
-    if len(fitted) < _FEWEST:
-        why = "".join(f"; {name}: {reason}" for name, reason in left_out.items())
-        raise DataError(
-            f"{file}: {len(fitted)} runs to fit, a diagnosis needs {_FEWEST}: record "
-            f"more set-points, or withhold fewer{why}"
-        )
+    _check_enough(file, fitted, left_out)
     settings = Settings(
         known,
         case.tolerances,
@@ -131,6 +126,15 @@ def prepare(
         campaign, case, left_out, there, *used, settings, cut, reporting, loaded.damaged,
         told.told,
     )  # fmt: skip
+
+
+def _check_enough(file: Path, fitted: Sequence[GapRun], left_out: Mapping[str, str]) -> None:
+    if len(fitted) < _FEWEST:
+        why = "".join(f"; {name}: {reason}" for name, reason in left_out.items())
+        raise DataError(
+            f"{file}: {len(fitted)} runs to fit, a diagnosis needs {_FEWEST}: record "
+            f"more set-points, or withhold fewer{why}"
+        )
 
 
 def _reporting(folder: Path, water: Water | None) -> CoefficientSettings:

@@ -54,9 +54,8 @@ def diagnose(
     from pmm.parallel import one_thread
 
     one_thread()  # the matrices are small: threads would wait for each other
-    from pmm.cli.files import check_files, tell_damaged, tell_unchecked, tell_writers
-    from pmm.cli.screen import doing, messages, pasted, say, show
-    from pmm.document.page import write_page
+    from pmm.cli import files
+    from pmm.cli.screen import doing, pasted, say, show
     from pmm.gap.case import CASE_FILE
     from pmm.gap.document import document
     from pmm.gap.examination import examine
@@ -68,8 +67,8 @@ def diagnose(
     looks, path = Looks(**chosen), here(campaign)
     file = campaign_file(path)
     read = [("CAMPAIGN", file), ("CAMPAIGN", file.parent / CASE_FILE), *looks.read]
-    check_files({"--page": page, "--plan": plan}, read)
-    tell_writers([path])
+    files.check_files({"--page": page, "--plan": plan}, read)
+    files.tell_writers([path])
     if tolerances:
         show(tolerance_document(path, looks.options), as_json=as_json)
         return
@@ -77,17 +76,14 @@ def diagnose(
         found = examine(path, looks.options, executor, told)
     report = gap_report(found)
     content = document(report)
-    if page is not None:
-        command = pasted("gap", campaign, *looks.words(), "--page", page)
-        write_page(content, Path(page), command=command)
-        messages().print(f"page: {page}")
+    files.write_asked_page(content, page, ("gap", campaign, *looks.words()))
     if plan is not None:
         _write_plan(found, Path(plan))
     show(content, as_json=as_json)
     if report.conclusion.adds and not as_json:
         say(pasted("gap", "add", campaign, *looks.words()))
-    tell_unchecked(_read_files(found, file.parent))
-    if tell_damaged(found.ready.damaged.items()):
+    files.tell_unchecked(_read_files(found, file.parent))
+    if files.tell_damaged(found.ready.damaged.items()):
         click.get_current_context().exit(1)
 
 

@@ -39,9 +39,8 @@ def pendulum(
 
     Exit status: 0 diagnosed; 1 the data say no; 2 the request was wrong.
     """  # noqa: D301
-    from pmm.cli.files import check_files, check_folder
-    from pmm.cli.screen import doing, messages, pasted, say, show
-    from pmm.document.page import write_page
+    from pmm.cli.files import check_files, check_folder, write_asked_page
+    from pmm.cli.screen import doing, pasted, say, show
     from pmm.gap.pendulum_conclusion import conclusion_of
     from pmm.gap.pendulum_document import document
     from pmm.gap.pendulum_examination import PendulumOptions, examine_pendulum
@@ -60,10 +59,7 @@ def pendulum(
         say("", pasted("gap", "add-pendulum", file, *words))
     if plot is not None:
         _draw(told, Path(plot))
-    if page is not None:
-        command = pasted("gap", "pendulum", file, *words, "--page", page)
-        write_page(told, Path(page), command=command)
-        messages().print(f"page: {page}")
+    write_asked_page(told, page, ("gap", "pendulum", file, *words))
 
 
 def _draw(told: "Document", folder: Path) -> None:

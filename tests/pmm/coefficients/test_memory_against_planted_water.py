@@ -41,8 +41,8 @@ def outcome(remembers: bool = True) -> CampaignOutcome:
     cycles = planted.single_sines(2, remembers=remembers)
     result = campaign_coefficients(cycles, Request(nonlinear=False))
     return CampaignOutcome(
-        ("water",), result, tuple(cycles), (), (), (), {}, (), StatedUncertainties(), None,
-        CoefficientSettings(), None, at_rest=measured_matrices(result),
+        (), result, tuple(cycles), (), StatedUncertainties(), CoefficientSettings(),
+        at_rest=measured_matrices(result),
     )  # fmt: skip
 
 
