@@ -79,7 +79,7 @@ class ClusterWorkers(Executor):
         return results
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Let go of the cluster."""
+        """Close the connection to the cluster, as :meth:`Executor.shutdown` does."""
         self._executor.shutdown(wait=wait, cancel_futures=cancel_futures)
 
 

@@ -35,7 +35,7 @@ class PlainView:
         self._alarms = self._outcomes = 0
 
     def show(self, control: RunControl) -> None:
-        """Say what is new."""
+        """Print what changed since the last call: question, state, alarms, runs that ended."""
         if self._asked() != self._question:
             self._question = self._asked()
             if self._question:

@@ -44,7 +44,7 @@ def messages(file: IO[str] | None = None) -> "Console":
 
 
 def error_line(message: str) -> None:
-    """Print an error."""
+    """Print an error on the standard error, ``error:`` before it."""
     from rich.text import Text
 
     messages().print(Text.assemble(("error: ", "bold red"), message))

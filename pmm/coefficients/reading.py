@@ -1,9 +1,7 @@
 """One recording becomes one cycle: what a worker does, in whichever process or machine it is."""
 
-import hashlib
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.corrections import (
@@ -41,6 +39,7 @@ from pmm.coefficients.followed_runs import as_driven, carriage_of, following_of,
 from pmm.coefficients.settings import AmplifierTable
 from pmm.coefficients.tasks import Done, Failed, Task, Zero
 from pmm.coefficients.zeros import utc_s, zeroed
+from pmm.recorder.files import sha256
 
 _USED = (*DISPLACEMENTS, *FORCES)
 _SPEED_OFF = 0.01
@@ -288,11 +287,6 @@ def _done(
         recording.sample_rate_hz,
         recording.end_s - recording.start_s,
         tuple(flag.of(task.name) for flag in (*recording.flags, *flags)),
-        _sha256(task.source.path) if task.hashed else "",
+        sha256(task.source.path) if task.hashed else "",
         applied(recording),
     )
-
-
-def _sha256(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

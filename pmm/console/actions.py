@@ -80,11 +80,11 @@ class PageActions:
         return await self._do(request, CommandPosted, "command", self._command)
 
     async def answer(self, request: Request) -> Response:
-        """Answer the rig's question."""
+        """Take the operator's answer to the rig's question, and reply what came of it."""
         return await self._do(request, AnswerPosted, "answer", self._answer)
 
     async def queue(self, request: Request) -> Response:
-        """Queue a plan."""
+        """Queue the posted plan, or keep the wish of whoever may only propose."""
         return await self._alter(request, "queue")
 
     async def drop(self, request: Request) -> Response:
@@ -116,7 +116,7 @@ class PageActions:
         return await self._do(request, NotePosted, "note", self._note)
 
     async def take(self, request: Request) -> Response:
-        """Take control."""
+        """Give control to the session that asks for it."""
         return await self._do(request, TakePosted, "take control", self._take)
 
     async def check(self, request: Request) -> Response:

@@ -168,7 +168,7 @@ class Console:
             return JSONResponse({"error": str(error)}, 409)
 
     async def leave(self) -> None:
-        """Let go of what was started."""
+        """Stop sending, publishing and calculating, and end the workers."""
         self._pump.cancel()
         self.finished.close()
         self.workers.close()

@@ -102,7 +102,7 @@ class Client:
         self._sending = asyncio.ensure_future(self._end())
 
     def stop(self) -> None:
-        """Send nothing more."""
+        """Send nothing more to this browser; what is being sent is cancelled."""
         if self._sending is not None:
             self._sending.cancel()
 

@@ -36,7 +36,7 @@ class Finished:
             self._task = asyncio.get_running_loop().create_task(self._work())
 
     def close(self) -> None:
-        """End the calculation."""
+        """Cancel the calculation of coefficients, if one is under way."""
         if self._task is not None:
             self._task.cancel()
 

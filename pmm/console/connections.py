@@ -41,7 +41,7 @@ class Crowd:
             next(iter(self._open)).give_way()
 
     def gone(self, one: "Connection") -> None:
-        """Forget one."""
+        """Forget a connection that ended, or became a page's stream."""
         self._open.pop(one, None)
         self._whole(one)
 
@@ -75,7 +75,7 @@ class Connection(H11Protocol):
         self._crowd.heard(self, complete=False)
 
     def data_received(self, data: bytes) -> None:
-        """Take what comes."""
+        """Take bytes of a request, and tell the crowd whether it is whole."""
         super().data_received(data)
         if self.transport.is_closing() or self.transport.get_protocol() is not self:
             self._crowd.gone(self)
@@ -90,7 +90,7 @@ class Connection(H11Protocol):
             self._crowd.heard(self, complete=self.conn.their_state not in _COMING)
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """End."""
+        """Leave the crowd; the browser or the network closed the connection."""
         self._crowd.gone(self)
         super().connection_lost(exc)
 
@@ -112,7 +112,7 @@ class Connection(H11Protocol):
             self.transport.abort()
 
     def give_way(self) -> None:
-        """End at once."""
+        """Close the connection at once, so that another has its place."""
         self._crowd.gone(self)
         if self.transport is not None:
             self.transport.abort()
@@ -141,7 +141,7 @@ class PageStream(WebSocketsSansIOProtocol):
         self._taken()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """End."""
+        """Give its place up; the browser or the network closed the connection."""
         self._taken()
         super().connection_lost(exc)
 

@@ -33,7 +33,7 @@ class Desk:
         return self._holder
 
     def seen_from(self, session: str) -> Holder:
-        """Return who has control."""
+        """Return who has control, as a session sees it: itself, another, nobody."""
         if not self._holder:
             return Holder.NOBODY
         return Holder.YOU if session == self._holder else Holder.OTHER

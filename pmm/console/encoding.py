@@ -40,7 +40,7 @@ def number(value: float) -> float | None:
 
 
 def table(values: FloatArray) -> list[list[float | None]]:
-    """Return the rows of a table."""
+    """Return the rows of a table of numbers for JSON, ``None`` for what is not finite."""
     return [[number(value) for value in row] for row in values.tolist()]
 
 
@@ -136,7 +136,7 @@ def notice_picture(notice: Notice, number_of_notice: int, at: str) -> dict[str, 
 def outcome_picture(
     outcome: RunOutcome, needles: Needles | None, folder: str, at: str
 ) -> dict[str, Any]:
-    """Return how a run ended."""
+    """Return how a run ended as the page shows it, ``at`` being its time."""
     return {
         "run": outcome.run,
         "kind": outcome.kind,

@@ -81,7 +81,7 @@ class Hub:
         self._common = ""
 
     def take(self, message: Told) -> None:
-        """Take what the loop tells."""
+        """Take a message of the loop: a frame, a notice, a reply or a look at a campaign."""
         if isinstance(message, Frame):
             self.last = message
             self._needles = message.needles or self._needles
@@ -146,7 +146,7 @@ class Hub:
         self.news.set()
 
     def part(self, client: Client) -> None:
-        """Let a browser go."""
+        """Send a browser nothing more, and forget it."""
         client.stop()
         if self.clients.get(client.session) is client:
             del self.clients[client.session]
@@ -240,7 +240,7 @@ class Hub:
 
 
 async def pump(hub: Hub) -> None:
-    """Send for ever."""
+    """Send every browser its pictures whenever there is news, until it is cancelled."""
     while True:
         await hub.news.wait()
         hub.news.clear()

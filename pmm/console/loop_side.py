@@ -94,7 +94,7 @@ class LoopSide:
         return "quick stop taken"
 
     def replied(self, reply: Reply) -> None:
-        """Take a reply."""
+        """Hand a reply of the loop to whoever waits for it."""
         future = self._open.get(reply.number)
         if future is not None and not future.done():
             future.set_result(reply)

@@ -53,7 +53,7 @@ def hello_of(rig: Rig, rig_file: RigFile, channels: tuple[ChannelInfo, ...], spe
 
 
 def bus_of(rig: Rig) -> Bus:
-    """Return how the bus is."""
+    """Return whether the bus is healthy, its nodes and error frames, and the rig's faults."""
     master = rig.master
     faults = tuple(str(fault) for fault in rig.faults)
     if master is None:

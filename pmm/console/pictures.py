@@ -35,7 +35,7 @@ class Pictures:
         self._made: dict[int, str] = {}
 
     def take(self, frame: Frame) -> None:
-        """Take the next frame."""
+        """Take the next frame; pictures of the frame before are dropped."""
         self.number, self._frame = frame.number, frame
         self._made.clear()
         self._keep(frame.trace)

@@ -62,12 +62,12 @@ class ProposedChange:
         return f"{'take out' if isinstance(posted, DropPosted) else self.action} {about}"
 
     def picture(self) -> dict[str, Any]:
-        """Return it for the page."""
+        """Return what the page shows of the proposal."""
         named = {"number": self.number, "name": self.visitor.name, "utc": self.utc}
         return {**named, "action": self.action, "text": self.text}
 
     def record(self) -> dict[str, Any]:
-        """Return it for the disk."""
+        """Return the proposal as the journal of the queue keeps it."""
         return {**self.picture(), "plan": self.plan, "posted": self.posted.model_dump()}
 
 
@@ -95,7 +95,7 @@ class Proposals:
     def add(
         self, action: str, posted: Posted, plan: str, visitor: Visitor, utc: str
     ) -> ProposedChange:
-        """Keep one more."""
+        """Keep one more change that waits for approval; raises if there is no room."""
         self.require_room()
         self.count += 1
         found = ProposedChange(self.count, action, posted, plan, visitor, utc)
@@ -134,5 +134,5 @@ class Proposals:
         self.count = max((self.count, *self.waiting))
 
     def pictures(self) -> list[dict[str, Any]]:
-        """Return them for the page."""
+        """Return what the page shows of the proposals that wait, the oldest first."""
         return [one.picture() for one in self.waiting.values()]

@@ -50,7 +50,7 @@ class ActionReply:
     present: int | None = None
 
     def answer(self) -> dict[str, Any]:
-        """Return what the page gets."""
+        """Return the fields that the page gets, without those that say nothing."""
         parts = {"said": self.said or None, "plan": self.plan}
         return {key: one for key, one in parts.items() if one is not None}
 

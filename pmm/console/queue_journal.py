@@ -34,7 +34,7 @@ class KeptPlan:
     changes: tuple[RunPosted, ...] = ()
 
     def record(self) -> dict[str, Any]:
-        """Return it for the disk."""
+        """Return the plan, and what was changed in it, as the journal keeps it."""
         changes = [{"action": _action(one), **one.model_dump()} for one in self.changes]
         return {"number": self.number, "plan": self.name, "changes": changes}
 

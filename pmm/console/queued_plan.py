@@ -57,7 +57,7 @@ class PackedPlan:
 
 
 def pack(plan: QueuedPlan) -> PackedPlan:
-    """Return a plan in pieces."""
+    """Return a plan with its runs pickled apart, so many that the loop never waits long."""
     wanted = {run.name for run in plan.runs}
     runs = [(run, run.name in wanted) for run in plan.plan.runs]
     pieces = tuple(pickle.dumps(runs[k : k + _PIECE]) for k in range(0, len(runs), _PIECE))

@@ -31,7 +31,7 @@ class QuickStop:
 
     @property
     def pressed(self) -> int:
-        """How many there were so far."""
+        """How many quick stops there were since the start."""
         return int(self._pressed.value)
 
     def press(self) -> int:

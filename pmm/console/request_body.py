@@ -14,7 +14,7 @@ SESSION: Final = "x-pmm-session"
 
 @dataclass(frozen=True)
 class Who:
-    """Who asks."""
+    """The session, address and rights of whoever sends a request."""
 
     session: str
     address: str
@@ -22,7 +22,7 @@ class Who:
 
 
 def who_asks(request: Request) -> Who:
-    """Return who sends a request."""
+    """Return session, address and rights of a request; the address ``?`` if not known."""
     address = request.client.host if request.client is not None else "?"
     return Who(request.headers.get(SESSION, ""), address, request.scope[VISITOR])
 

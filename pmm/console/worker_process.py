@@ -250,7 +250,7 @@ class Workers:
         return self._control if in_control else self._watchers
 
     def close(self) -> None:
-        """End all."""
+        """End all worker processes."""
         for one in (self._control, self._watchers, self.around, self.figures):
             one.close()
 

@@ -109,7 +109,7 @@ class Queued:
 
     @property
     def count(self) -> int:
-        """The latest number."""
+        """The number that was given last."""
         return self._count
 
     def add(self, plan: ReadyPlan, changes: tuple[RunPosted, ...] = ()) -> int:

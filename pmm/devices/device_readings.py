@@ -56,7 +56,7 @@ class Live:
         self._take()
 
     def rows(self) -> tuple[DeviceRow, ...]:
-        """Return what is known now."""
+        """Return a row for each device, with its latest reading."""
         return tuple(self._rows())
 
     def _take(self) -> None:

@@ -58,7 +58,7 @@ class GaugeReadings:
         self.begin()
 
     def begin(self) -> None:
-        """Forget what was read."""
+        """Forget all readings, before a push."""
         self._kept = {channel.name: deque() for channel in self.channels}
 
     def run(self, seconds: float, prompt: str = "") -> None:

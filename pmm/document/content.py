@@ -52,7 +52,7 @@ class Column(Generic[Row]):
 
     @property
     def title(self) -> str:
-        """Heading and unit."""
+        """Heading, and the unit in brackets where there is one."""
         return f"{self.heading} [{self.unit}]".lstrip() if self.unit else str(self.heading)
 
 

@@ -20,7 +20,7 @@ def as_data(document: Document) -> dict[str, Any]:
 
 
 def as_json(document: Document) -> str:
-    """Return the same as JSON."""
+    """Return :func:`as_data` of a document as JSON, without NaN."""
     return json.dumps(as_data(document), indent=1, allow_nan=False)
 
 

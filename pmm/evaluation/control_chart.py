@@ -50,7 +50,7 @@ class Chart:
 
     @property
     def in_control(self) -> bool:
-        """Whether nothing changed."""
+        """Whether no point is outside the limits and no step is seen."""
         return not self.outside and self.step_at is None
 
 

@@ -44,7 +44,7 @@ class FolderPlace:
         )
 
     def offered(self, worth: Sequence[Suggestion]) -> Sequence[tuple[Suggestion, RunPlan]]:
-        """Return all of them."""
+        """Return all suggestions, each with its run: nothing limits a folder."""
         self._offered = {one.set_point: one for one in worth}
         return [(one, _proposed(one.set_point)) for one in worth]
 

@@ -48,7 +48,7 @@ class Size:
 
     @property
     def said(self) -> str:
-        """The size for people."""
+        """The size in a sentence: quantity, largest value with unit, share, run."""
         first = f"{self.per_cent:.2g} % of its first harmonic, "
         part = "" if math.isnan(self.per_cent) else first
         return f"{self.what} by up to {self.value:.2g} {self.unit} ({part}run {self.run})"
@@ -63,7 +63,7 @@ class Spoiled:
 
     @property
     def said(self) -> str:
-        """By how much, for people."""
+        """By how much it is off, in per cent with its sign."""
         return f"{self.per_cent:+.2g} %"
 
 

@@ -69,7 +69,7 @@ def step_row(one: Gap) -> StepRow:
 
 
 def walk_rows(walk: Walk) -> tuple[StepRow, ...]:
-    """Return the steps of a walk."""
+    """Return a row for each step of a walk."""
     return tuple(step_row(one) for one in walk.steps)
 
 

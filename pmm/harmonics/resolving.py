@@ -59,7 +59,7 @@ class Failure:
 
 
 def untold(_part: float) -> None:
-    """Tell nobody how far it is."""
+    """Take how much is done, from 0 to 1, and show nothing."""
 
 
 def resolve(

@@ -40,7 +40,7 @@ class BeatsTable:
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-        """Counted, or to be counted."""
+        """Refuse counted beats beside records, neither of both, and beats without oscillations."""
         yield from one_of(table, "beats", "records")
         if "records" in table:
             yield from one_of(table, "records", "counting_error", needed=False)

@@ -112,7 +112,7 @@ class HangingTable:
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-        """Two lines or more."""
+        """Refuse fewer than two lines, and one angle in two units."""
         yield from one_of(table, "u_common_angle_deg", "u_common_angle_rad", needed=False)
         lines = table.get("lines")
         if isinstance(lines, list) and len(lines) < 2:

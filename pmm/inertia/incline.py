@@ -29,7 +29,7 @@ class TiltTable:
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-        """The tilt in one unit."""
+        """Refuse a tilt in no unit, or in both."""
         yield from one_of(table, "tilt_deg", "tilt_rad")
 
 
@@ -42,7 +42,7 @@ class OneEnd(TiltTable):
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-        """The lever is needed."""
+        """Refuse a table without the lever, besides those of its tilt."""
         yield from TiltTable.rules(table)
         if "lever_m" not in table:
             yield "lever_m", "is missing"
@@ -76,7 +76,7 @@ class InclineJob:
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-        """One end, or both."""
+        """Refuse a file of neither one end nor both ends, or of both tables."""
         yield from one_of(table, "one_end", "both_ends")
 
 

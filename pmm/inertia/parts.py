@@ -39,7 +39,7 @@ class CombineJob:
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-        """Something to combine."""
+        """Refuse an empty list of parts."""
         if table.get("parts") == []:
             yield "parts", "is empty; add a table [[parts]]"
 
@@ -85,7 +85,7 @@ class WantedTable:
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-        """Something has to be wanted."""
+        """Refuse a target that states tolerances alone."""
         if not set(table) - {"tolerance_kg", "tolerance_m"}:
             yield "", "asks for nothing; give mass_kg, cg_x_m ... or k_yaw_m"
 

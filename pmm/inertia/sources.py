@@ -104,7 +104,7 @@ class AngledPeriod(PeriodSource):
 
     @property
     def angle(self) -> Estimate:
-        """The angle in radians."""
+        """The angle in radians, in whichever unit it was stated."""
         return given(self, "angle_deg" if self.angle_deg is not None else "angle_rad")
 
 
@@ -144,7 +144,7 @@ class PeriodRuns:
 
     @property
     def period(self) -> Estimate:
-        """The longest period."""
+        """The longest of the periods, s."""
         return self.periods[0]
 
 

@@ -22,7 +22,7 @@ Job: TypeAlias = Literal["swing", "bifilar", "pendulum", "incline", "combine", "
 
 
 class RecordKind(StrEnum):
-    """What a path is."""
+    """What lies at a path: a recording, a campaign, or a file of one of several kinds."""
 
     RECORDING = "a recording"
     CAMPAIGN = "a campaign"

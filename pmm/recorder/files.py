@@ -21,7 +21,6 @@ RECOVERED: Final = "recovered.json"
 TEXTS: Final = (PULSES, EVENTS, HARMONICS, LINES, CYCLES)
 STREAMS: Final = (SAMPLES, BUS, *TEXTS)
 _OURS: Final = (HEADER, *STREAMS, MARKER, RECORDING, RECOVERED)
-_CHUNK: Final = 2**20
 
 
 class RunExistsError(DataError):
@@ -74,9 +73,6 @@ def contents_of(path: Path) -> dict[str, int | str]:
 
 
 def sha256(path: Path) -> str:
-    """Return a file's hash."""
-    found = hashlib.sha256()
+    """Return a file's SHA-256, 64 hexadecimal digits; raises OSError if it cannot be read."""
     with path.open("rb") as file:
-        while piece := file.read(_CHUNK):
-            found.update(piece)
-    return found.hexdigest()
+        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -90,7 +90,7 @@ class Journal:
 
     @property
     def size(self) -> int:
-        """Bytes that are written."""
+        """Bytes written so far, of all streams."""
         return sum(stream.size for stream in tuple(self._streams.values()))
 
     @property

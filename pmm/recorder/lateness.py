@@ -47,7 +47,7 @@ class Lateness:
         self._worst_s = 0.0
 
     def add(self, lateness_s: float) -> None:
-        """Take a cycle."""
+        """Count a cycle that was ``lateness_s`` late."""
         self._cycles += 1
         if lateness_s <= _LOWEST_S:
             self._counts[0] += 1

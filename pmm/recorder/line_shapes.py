@@ -118,7 +118,7 @@ _SHAPES: Final[Mapping[str, Shape]] = {
 
 
 def as_line(value: Any) -> bytes:
-    """Return a value as a line."""
+    """Return a value as compact JSON, a line with its end."""
     return json.dumps(value, separators=(",", ":")).encode() + b"\n"
 
 

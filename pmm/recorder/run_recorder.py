@@ -50,7 +50,7 @@ class RecordingStalledError(DataError):
 
 
 class RunEnd(StrEnum):
-    """How a run ended."""
+    """How a recorded run ended, as its file says."""
 
     COMPLETE = "complete"
     STOPPED = "stopped"  # by the operator

@@ -109,7 +109,7 @@ def _warnings(rows: list[Row]) -> Iterator[Note]:
 
 
 def day(time_utc: str | None) -> str:
-    """Return the day of a time."""
+    """Return the date of a time in ISO 8601, or that it is not known."""
     return NOT_KNOWN if time_utc is None else time_utc[:10]
 
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def trend_figure(found: Trend) -> "Figure":
-    """Draw one trend."""
+    """Draw a coefficient over time with intervals and limits."""
     from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
 
     times = np.array([_utc(row["recorded_utc"]) for row in found.rows], "datetime64[s]")

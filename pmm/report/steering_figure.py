@@ -20,7 +20,7 @@ _MARKS = (("o", "-"), ("s", "--"), ("^", ":"), ("D", "-."))
 
 
 def steering_figure(found: CampaignSteering) -> "Figure":
-    """Draw both panels."""
+    """Draw normal force over rudder angle, and force ahead over thrust."""
     with drawn(10.0, 4.4) as figure:
         left, right = figure.subplots(1, 2)
         _normal_force(left, found)

@@ -41,11 +41,11 @@ class Closing:
         self._file = "" if executor else self._work()
 
     def done(self) -> bool:
-        """Whether it is complete."""
+        """Whether the recording is closed and the outcome can be taken."""
         return self._future is None or self._future.done()
 
     def result(self) -> RunOutcome:
-        """Return how the run ended."""
+        """Return how the run ended; waits until the recording is closed."""
         one, run = self._measurement, self._run
         file = self._file if self._future is None else self._future.result()
         return RunOutcome(

@@ -104,7 +104,7 @@ class Conduct:
         self.path = LivePath(self.rig)
 
     def take(self, run: RunPlan) -> None:
-        """Make a run the present one."""
+        """Make a run the present one; nothing of the run before is left."""
         self.run, self.pushed, self.towed, self.leads = run, 0, False, False
         self.speed_path = CarriagePath.of(self.rig_file.oscillator, run.set_point)
         self.ending, self.leaves_plan = RunEnd.COMPLETE, False

@@ -34,7 +34,7 @@ class Gate:
         self.reset()
 
     def reset(self) -> None:
-        """Forget what was measured."""
+        """Close the gate and forget its periods and times."""
         self.state = GateState.CLOSED
         self.periods = 0
         self.opened_s = self.closed_s = self.last_s = math.nan
@@ -54,7 +54,7 @@ class Gate:
         self.state, self.closed_s = GateState.HELD, self.last_s
 
     def pulse(self, time_s: float) -> None:
-        """Take a pulse."""
+        """Take a pulse of the photocell at ``time_s``: it opens, counts or closes."""
         self.last_s = time_s
         if self.state is GateState.ARMED:
             self.state, self.opened_s = GateState.OPEN, time_s

@@ -33,7 +33,7 @@ class RunJournal(Protocol):
         ...
 
     def event(self, cycle: int, time_s: float, kind: str, text: str) -> None:
-        """Keep what happened."""
+        """Keep an event of the run: its cycle, time in seconds, kind and text."""
         ...
 
     def harmonic(self, reading: Mapping[str, Any]) -> None:

@@ -119,7 +119,7 @@ class Measurement:
         self.gate.pulse(self._rig.number / self._rate_hz)
 
     def close_by_time(self) -> None:
-        """Close the gate now."""
+        """Close the gate at the present cycle, without a pulse."""
         self.gate.hold()
         self.gate.pulse(self._rig.number / self._rate_hz)
 
@@ -183,7 +183,7 @@ class Measurement:
         self.arm()
 
     def finish(self) -> None:
-        """Make the last reading."""
+        """Make the last reading, and flag a gate that lacks samples."""
         self._tell_speed()
         if self._resolving is None:
             return

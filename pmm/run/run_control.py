@@ -125,7 +125,7 @@ class RunControl:
 
     @property
     def outcomes(self) -> list[RunOutcome]:
-        """Of the runs that ended."""
+        """How each run ended, in the order in which they did."""
         return self._closer.outcomes
 
     @property

@@ -31,7 +31,7 @@ class Alarms:
         self._latest: deque[str] = deque(maxlen=_ALARMS)
 
     def add(self, text: str) -> None:
-        """Add one."""
+        """Count an alarm and keep its text among the latest."""
         self.count += 1
         self._latest.append(text)
 
@@ -71,7 +71,7 @@ class ChannelReading:
 
     @property
     def amplitude(self) -> float:
-        """Of the first harmonic."""
+        """Amplitude of the first harmonic, in the channel's unit."""
         return math.hypot(self.in_phase, self.quadrature)
 
 

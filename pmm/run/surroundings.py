@@ -206,11 +206,11 @@ class Questions:
         return str(self._open[0]) if self._open else ""
 
     def ask(self, demands: Iterator[Demand]) -> None:
-        """Add questions."""
+        """Add demands on the operator, to be asked in turn."""
         self._open.extend(demands)
 
     def withdraw(self) -> None:
-        """Ask no more."""
+        """Drop all demands that are not answered yet."""
         self._open.clear()
 
     def done(self) -> bool:

@@ -67,7 +67,7 @@ class Looks(Chosen):
 
     @property
     def options(self) -> "Options":
-        """What the diagnosis is told."""
+        """Return these options as the diagnosis takes them, the sensors' names apart."""
         from pmm.gap.examination import Options
 
         names = tuple(one.strip() for one in (self.sensors or "").split(",") if one.strip())

@@ -55,7 +55,7 @@ class OutletSettings:
 
     @property
     def any(self) -> bool:
-        """Whether they go anywhere."""
+        """Whether live values go to a broker or to EPICS."""
         return self.broker is not None or bool(self.epics_prefix)
 
 

@@ -67,7 +67,7 @@ class Outlet(ABC):
             self._drop_oldest()
 
     def status(self) -> OutletStatus:
-        """Return how it is."""
+        """Return whether it is connected, its counts of ticks, and its last trouble."""
         with self._lock:
             return OutletStatus(
                 self.name, self._connected, self._carried, self._dropped, self._trouble

@@ -77,7 +77,7 @@ class LiveTable:
         self._names = [_names(one, hello.harmonics) for one in hello.channels]
 
     def tick(self, frame: Frame, utc_s: float) -> Tick:
-        """Return a frame's values."""
+        """Return all live values of a frame, measured at ``utc_s``, seconds since 1970."""
         if frame.trace.values.size:
             self._samples = frame.trace.values[:, -1].tolist()
         values = {**_of_the_run(frame), **_of_the_rig(frame)}
