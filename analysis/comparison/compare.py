@@ -9,13 +9,13 @@ import numpy as np
 
 from analysis.comparison.ambiguity import least_lag
 from analysis.comparison.band import Band, find_band, track, without_line
+from analysis.comparison.estimates import ComparedSignal, FittedComparison, told
 from analysis.comparison.even_grid import on_even_grid
 from analysis.comparison.first_guess import Alignment, first_guess
 from analysis.comparison.fit import ComparisonFit, fit
 from analysis.comparison.linear import ComparisonProblem, Model, NothingInCommonError
 from analysis.comparison.result import ChannelComparison
 from analysis.comparison.settings import ComparisonSettings
-from analysis.comparison.told import ComparedSignal, FittedComparison, told
 from analysis.comparison.warp import Warped
 from analysis.recording import Recording
 from hardware.description.arrays import FloatArray

@@ -20,7 +20,7 @@ from typing import Final
 import numpy as np
 
 from analysis.coefficients.zero_frequency import own_variance
-from analysis.memory.measured import MeasuredMatrix
+from analysis.memory.measured_matrices import MeasuredMatrix
 from analysis.memory.result import DOUBTED, MeasuredMemory, Order
 from hardware.description.arrays import FloatArray
 from sim.model.water.memory import symmetric

@@ -10,7 +10,7 @@ from scipy.linalg import block_diag
 
 from analysis.coefficients.linear_fit import DISAGREE
 from analysis.coefficients.zero_frequency import own_variance
-from analysis.memory.measured import MeasuredMatrix
+from analysis.memory.measured_matrices import MeasuredMatrix
 from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.arrays import ComplexArray, FloatArray
 from sim.model.water.memory import state_space, symmetric

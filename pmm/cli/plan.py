@@ -102,8 +102,8 @@ def design(
     from pmm.cli.screen import doing, pasted, say
     from pmm.cli.screen import show as tell
     from pmm.design.design_file import read_design
-    from pmm.design.designing import design as designed
     from pmm.design.plan_writer import plan_text
+    from pmm.design.run_selection import design as designed
     from pmm.document.style import write_figures
     from pmm.report.design_document import design_document
     from pmm.whole_file import write_whole
@@ -114,8 +114,8 @@ def design(
     read = read_design(Path(file))
     if after:
         from pmm.coefficients.request import campaign_folder
-        from pmm.design.measured import after as going_on
-        from pmm.design.measured import measured
+        from pmm.design.measured_runs import after as going_on
+        from pmm.design.measured_runs import measured
         from pmm.parallel import open_executor
 
         folders = [campaign_folder(one) for one in after]

@@ -246,7 +246,7 @@ def carried_out_until(
     from pmm.gap.rig_pursuit import goal_of
     from pmm.report.sequential_document import look_lines, sequential_document
     from pmm.run.operator import standard_input
-    from pmm.sequential.carrying_out import CampaignRequest, Screen, carry_out_campaign
+    from pmm.sequential.execution import CampaignRequest, Screen, carry_out_campaign
     from pmm.sequential.look import read_decisions
 
     file = read_design(Path(design))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analysis.memory.measured import motions_of
+from analysis.memory.measured_matrices import motions_of
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.toml_text import toml_table

@@ -15,7 +15,7 @@ from analysis.coefficients.roll_decay import NAMES as OF_DECAYS
 from analysis.coefficients.roll_decay import with_decays
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.steady_turns import SteadyTurn
-from analysis.memory.measured import MeasuredMatrix, measured_matrices
+from analysis.memory.measured_matrices import MeasuredMatrix, measured_matrices
 from hardware.description.body import Body
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity

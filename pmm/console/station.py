@@ -12,7 +12,6 @@ from hardware.description.errors import PmmError
 from hardware.errors import as_fault
 from hardware.rig import Rig
 from pmm.console.answers import BrowserAnswers
-from pmm.console.choosing import ChoosingCampaign
 from pmm.console.link import Link
 from pmm.console.messages import Hello, LoopOrder, OrderKind, Reply
 from pmm.console.pacing import CountingPacer
@@ -20,6 +19,7 @@ from pmm.console.picture import channels_of, hello_of
 from pmm.console.plans_in_hand import PlansInHand
 from pmm.console.queued_plan import QueuedPlan
 from pmm.console.quick_stop import QuickStop
+from pmm.console.sequential_course import ChoosingCampaign
 from pmm.console.station_view import StationView
 from pmm.console.writing import Writer
 from pmm.document.notation import counted

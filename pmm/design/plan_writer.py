@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from hardware.description.kinds import Motion
 from pmm.design.design_file import DesignFile
-from pmm.design.designing import Design
+from pmm.design.run_selection import Design
 from pmm.document.notation import clock
 from pmm.plan.run_plan import RunPlan
 from pmm.toml_text import toml_table, toml_value

@@ -24,7 +24,7 @@ from analysis.inertia.series import UsablePart, series_from_recording, usable_pa
 from analysis.readers import read_recording
 from analysis.readers.damage import check_whole
 from hardware.description.errors import ConfigurationError, DataError
-from pmm.gap.forced import forced_problem
+from pmm.gap.forced_runs import forced_problem
 from pmm.gap.pendulum_file import GateTable, PendulumCase, Record, read_case
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.benches import bifilar_bench, compound_bench, decay_bench

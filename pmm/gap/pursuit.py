@@ -19,7 +19,7 @@ from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.campaign.recording_source import RecordingSource, open_recording
 from pmm.campaign.runs import AtRest, Run
 from pmm.configuration import Fault, as_error, read_toml, validate
-from pmm.gap.appending import append_tables
+from pmm.gap.appended_tables import append_tables
 from pmm.gap.next_plan import plan_text
 from pmm.plan.ordering import runs_of
 from pmm.plan.plan_tables import PlanTables

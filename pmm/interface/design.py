@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Final
 
 from pmm.coefficients.request import campaign_folder
 from pmm.design.design_file import DesignFile, read_design
-from pmm.design.designing import Design, design
-from pmm.design.measured import after, measured
+from pmm.design.measured_runs import after, measured
+from pmm.design.run_selection import Design, design
 from pmm.document.content import Document
 from pmm.interface.result import Drawn, Result, Variable, dataset_of
 from pmm.parallel import open_executor

@@ -265,7 +265,7 @@ class Records:
         ------
         ConfigurationError, DataError
             As :func:`pmm.design.design_file.read_design` and
-            :func:`pmm.design.designing.design` do.
+            :func:`pmm.design.run_selection.design` do.
         """
         from pmm.interface.design import designed
 

@@ -26,8 +26,8 @@ from pmm.recorder.files import (
     is_run,
     set_aside,
 )
+from pmm.recorder.journal_reconstruction import rebuild
 from pmm.recorder.line_shapes import read_recovered
-from pmm.recorder.rebuilding import rebuild
 from pmm.recorder.recording import RunData, convert, read_run
 from pmm.recorder.samples import SampleWriter, counts
 from pmm.whole_file import write_whole

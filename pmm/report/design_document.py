@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from analysis.design.expectation import ExpectedCoefficient
 from pmm.design.design_file import DesignFile
-from pmm.design.designing import Design, DesignStep
+from pmm.design.run_selection import Design, DesignStep
 from pmm.document.content import (
     Column,
     Data,

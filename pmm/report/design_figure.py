@@ -4,7 +4,7 @@ import math
 from typing import TYPE_CHECKING
 
 from analysis.design.expectation import ExpectedCoefficient
-from pmm.design.designing import Design
+from pmm.design.run_selection import Design
 from pmm.document.style import PALETTE, TRACE, drawn
 
 if TYPE_CHECKING:

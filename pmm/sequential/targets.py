@@ -14,15 +14,15 @@ from analysis.design.candidate import CandidateRun
 from analysis.design.expectation import ExpectedCoefficient
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.design.design_file import DesignFile
-from pmm.design.designing import Design, beyond_runs, design, foreseen
 from pmm.design.grid import costs_s
-from pmm.design.measured import Measured, after, measured, repeats_said
+from pmm.design.measured_runs import Measured, after, measured, repeats_said
+from pmm.design.run_selection import Design, beyond_runs, design, foreseen
 from pmm.document.notation import clock
 from pmm.plan.duration import duration_rows
 from pmm.plan.run_plan import RunPlan
 from pmm.sequential.growing_plan import GrowingPlan, check_design, planned, read_growing
 from pmm.sequential.look import Ending, KnownTarget, Look
-from pmm.sequential.remembering import Remembering
+from pmm.sequential.reading_cache import Remembering
 
 _WORSE: Final = 0.05  # of a natural logarithm, summed over the targets: a plan stays within
 _LONGER: Final = 1.1  # times the new plan's time

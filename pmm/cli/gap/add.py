@@ -12,7 +12,7 @@ from pmm.cli.options import JSON, jobs_option
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from pmm.gap.appending import Added
+    from pmm.gap.appended_tables import Added
     from pmm.gap.examination import Examined
     from sim.effects.effect import Effect
 
@@ -44,7 +44,7 @@ def add(campaign: str, effect: str | None, jobs: int | None, as_json: bool, **ch
     from hardware.description.errors import ConfigurationError
     from pmm.campaign.file_names import CAMPAIGN_FILE
     from pmm.cli.screen import pasted
-    from pmm.gap.appending import Added, stated
+    from pmm.gap.appended_tables import Added, stated
     from pmm.gap.load import campaign_of
 
     looks, folder = Looks(**chosen), Path(campaign)
@@ -96,7 +96,7 @@ def _effects(examined: "Examined", effect: str | None) -> "Sequence[Effect]":
 
 
 def _refuse_twice(path: Path, names: "Sequence[str]") -> None:
-    from pmm.gap.appending import refuse_twice
+    from pmm.gap.appended_tables import refuse_twice
     from pmm.gap.load import campaign_of
 
     refuse_twice(path, [one.name for one in campaign_of(path).effects], names)
@@ -138,7 +138,7 @@ def add_and_say(
     """
     from pmm.cli.screen import show
     from pmm.document.content import Data, Document, Section, Text
-    from pmm.gap.appending import append_tables
+    from pmm.gap.appended_tables import append_tables
 
     kept = append_tables(path, [one.table for one in added], read)
     told = (

@@ -36,7 +36,7 @@ def add_pendulum(
     Exit status: 0 added; 1 no cause is found; 2 the request was wrong.
     """
     from pmm.cli.screen import pasted
-    from pmm.gap.appending import Added, refuse_twice
+    from pmm.gap.appended_tables import Added, refuse_twice
     from pmm.gap.pendulum_examination import PendulumOptions
     from pmm.gap.pendulum_file import read_case
 

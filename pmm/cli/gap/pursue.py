@@ -88,8 +88,8 @@ def pursue(
     from pmm.report.sequential_document import look_lines, sequential_document
     from pmm.run.operator import standard_input
     from pmm.sequential.approval import approval_of
-    from pmm.sequential.carrying_out import next_job
     from pmm.sequential.course import CampaignCourse
+    from pmm.sequential.execution import next_job
     from pmm.sequential.look import read_decisions
 
     looks, path = Looks(**chosen), Path(folder)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analysis.memory.fit import fit_measured
-from analysis.memory.measured import FEWEST, MeasuredMatrix
+from analysis.memory.measured_matrices import FEWEST, MeasuredMatrix
 from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.arrays import FloatArray
 from hardware.description.oscillator import Plane

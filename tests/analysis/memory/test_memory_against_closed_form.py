@@ -18,7 +18,7 @@ from analysis.coefficients.campaign import campaign_coefficients
 from analysis.coefficients.campaign_plan import Request
 from analysis.coefficients.names import Form
 from analysis.memory.fit import fit_measured
-from analysis.memory.measured import measured_matrices
+from analysis.memory.measured_matrices import measured_matrices
 from analysis.memory.result import MeasuredMemory
 from tests.analysis.memory import planted
 

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from analysis.coefficients.campaign import campaign_coefficients
 from analysis.coefficients.campaign_plan import Request
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
-from analysis.memory.measured import measured_matrices
+from analysis.memory.measured_matrices import measured_matrices
 from analysis.readers import read_recording
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import Plane

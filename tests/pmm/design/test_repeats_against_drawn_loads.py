@@ -14,7 +14,7 @@ from analysis.design.noise import Noise
 from benchmarks.coefficients_campaigns import BODY, HORIZONTAL
 from hardware.description.oscillator import HORIZONTAL_1963
 from hardware.description.setpoint import SetPoint
-from pmm.design.measured import repeating, repeats_said
+from pmm.design.measured_runs import repeating, repeats_said
 
 TRUE, STATED = 0.01, 0.05
 

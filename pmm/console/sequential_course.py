@@ -99,7 +99,7 @@ class ChoosingCampaign:
     def _begun(self) -> "CampaignCourse[RunJob]":
         from pmm.design.design_file import read_design
         from pmm.gap.rig_pursuit import goal_of
-        from pmm.sequential.carrying_out import CampaignRequest, campaign_course
+        from pmm.sequential.execution import CampaignRequest, campaign_course
 
         file = read_design(self.plan.plan.path)
         asked = CampaignRequest(
