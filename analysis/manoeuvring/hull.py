@@ -11,7 +11,6 @@ from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Plane
 
-ACCELERATIONS = ("X_udot", "Y_vdot", "Y_rdot", "N_vdot", "N_rdot")
 NEEDED = ("X_0", "X_udot", "Y_vdot", "N_rdot", "Y_v", "Y_r", "N_v", "N_r")
 
 

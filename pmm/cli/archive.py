@@ -222,22 +222,18 @@ def trend(
     """  # noqa: D301
     from pmm.archive.database import open_archive
     from pmm.archive.trends import coefficient_trends, repeat_trends
-    from pmm.cli.files import check_folder
-    from pmm.cli.screen import messages, show
-    from pmm.document.style import write_figures
+    from pmm.cli.files import check_folder, write_asked_figures
+    from pmm.cli.screen import show
     from pmm.report.archive_trend_document import trend_document, trend_figures
 
-    if plot is not None:
-        check_folder(Path(plot), "--plot")
+    check_folder(plot, "--plot")
     with open_archive(Path(file)) as connection:
         if run is None:
             found = coefficient_trends(connection, name, level)
         else:
             found = repeat_trends(connection, run, campaign, name, order, level)
     show(trend_document(found, level), as_json=as_json)
-    if plot is not None:
-        files = write_figures(trend_figures(found), Path(plot), "archive")
-        messages().print(f"written: {len(files)} figures in {plot}")
+    write_asked_figures(trend_figures(found), plot, "archive")
 
 
 @archive.command()

@@ -180,8 +180,7 @@ def _check_outputs(options: Mapping[str, Any]) -> None:
     from pmm.cli.files import check_files, check_folder
 
     for name, option in (("plot", "--plot"), ("simman", "--simman")):
-        if options[name] is not None:
-            check_folder(Path(options[name]), option)
+        check_folder(options[name], option)
     memory = options["memory"]
     files = {"--csv": options["csv_file"], "--netcdf": options["netcdf"], "--memory": memory}
     if memory is not None:

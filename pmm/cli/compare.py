@@ -67,8 +67,7 @@ def compare(
     from pmm.harmonics.pairs import read_pair
     from pmm.report.comparison_document import comparison_document
 
-    if plot is not None:
-        check_folder(Path(plot), "--plot")
+    check_folder(plot, "--plot")
     given = {key: value for key, value in options.items() if value is not None}
     settings = ComparisonSettings(**given)
     settings.check()

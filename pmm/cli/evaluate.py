@@ -46,8 +46,7 @@ def evaluate(folder: str, valid_days: int, plot: str | None, as_json: bool) -> N
     place = Path(folder)
     if not place.is_dir():
         raise ConfigurationError(f"{place}: no such folder")
-    if plot is not None:
-        check_folder(Path(plot), "--plot")
+    check_folder(plot, "--plot")
     tell_writers([place])
     found = evaluated(place, valid_days)
     files = keep(found, place)

@@ -10,14 +10,16 @@ from pmm.cli.screen import error_line, messages, pasted
 
 if TYPE_CHECKING:
     from hardware.description.flags import Flag
-    from pmm.document.content import Document
+    from pmm.document.content import Document, Figure
 
 
-def check_folder(folder: Path, option: str) -> None:
+def check_folder(named: Path | str | None, option: str) -> None:
     """Refuse a folder that cannot be made or written to; nothing is made yet.
 
     Parameters
     ----------
+    named
+        The folder; ``None`` where the option is not given.
     option
         What named the folder, for the message.
 
@@ -28,6 +30,9 @@ def check_folder(folder: Path, option: str) -> None:
     """
     from pmm.remote import url_of
 
+    if named is None:
+        return
+    folder = Path(named)
     if url_of(folder):
         raise ConfigurationError(f"{option} {folder}: only a folder of this computer is written to")
     place = folder
@@ -117,6 +122,15 @@ def write_asked_page(
     if page is not None:
         write_page(content, Path(page), command=pasted(*command, "--page", page), read=read)
         messages().print(f"page: {page}")
+
+
+def write_asked_figures(figures: "Iterable[Figure]", plot: str | None, stem: str) -> None:
+    """Write figures of a document into the folder that ``--plot`` names, if it was given."""
+    from pmm.document.style import write_figures
+
+    if plot is not None:
+        written = write_figures(figures, Path(plot), stem)
+        messages().print(f"written: {len(written)} figures in {plot}")
 
 
 def tell_damaged(found: "Iterable[tuple[str, Iterable[Flag]]]") -> list[int]:

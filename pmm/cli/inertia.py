@@ -2,15 +2,12 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import click
 
 from pmm.cli.group import CommandGroup
 from pmm.cli.options import JSON, PLOT, with_options
-
-if TYPE_CHECKING:
-    from pmm.document.content import Document
 
 
 @click.group(cls=CommandGroup, kind="job")
@@ -70,7 +67,7 @@ def _command(job: str) -> Callable[..., None]:
         with_fits: bool = False,
         properties: str | None = None,
     ) -> None:
-        from pmm.cli.files import check_files
+        from pmm.cli.files import check_files, write_asked_figures, write_asked_page
         from pmm.cli.screen import busy, messages, show
         from pmm.inertia.fits import form_fits
         from pmm.inertia.jobs import do_job
@@ -94,7 +91,8 @@ def _command(job: str) -> Callable[..., None]:
         told = document(outcome, fits)
         show(told, as_json=as_json)
         options = ("--fits",) if with_fits else ()
-        _draw(told, Path(file), plot, page, ("inertia", job, file, *options))
+        write_asked_figures(told.figures, plot, Path(file).stem)
+        write_asked_page(told, page, ("inertia", job, file, *options), [Path(file)])
         if output is not None:
             write_whole(Path(output), model_section(outcome))
             messages().print(f"written: {output}")
@@ -105,20 +103,6 @@ def _command(job: str) -> Callable[..., None]:
             click.get_current_context().exit(1)
 
     return command
-
-
-def _draw(
-    told: "Document", read: Path, plot: str | None, page: str | None, command: tuple[str, ...]
-) -> None:
-    """Write the figures into a folder, and all that was found as a page."""
-    from pmm.cli.files import write_asked_page
-    from pmm.cli.screen import messages
-    from pmm.document.style import write_figures
-
-    if plot is not None:
-        written = write_figures(told.figures, Path(plot), read.stem)
-        messages().print(f"written: {len(written)} figures in {plot}")
-    write_asked_page(told, page, command, [read])
 
 
 for _job, (_own, _help) in _JOBS.items():

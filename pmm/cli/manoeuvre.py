@@ -42,16 +42,14 @@ def manoeuvre(
     request was wrong (a derivative missing, no revolutions that keep the speed).
     """  # noqa: D301
     from hardware.description.errors import ConfigurationError
-    from pmm.cli.files import check_folder
+    from pmm.cli.files import check_folder, write_asked_figures
     from pmm.cli.screen import messages, show
-    from pmm.document.style import write_figures
     from pmm.manoeuvre.prediction import predict
     from pmm.manoeuvre.ship_file import SubmergedFile, read_ship
     from pmm.manoeuvre.submerged import depth_keeping
     from pmm.report.manoeuvre_document import depth_document, figures, manoeuvre_document
 
-    if plot is not None:
-        check_folder(Path(plot), "--plot")
+    check_folder(plot, "--plot")
     console, read = messages(), read_ship(Path(file))
     if isinstance(read, SubmergedFile):
         if plot is not None:
@@ -61,6 +59,4 @@ def manoeuvre(
     with console.status("reading") as status:
         found = predict(read, trials, seed, level, status.update)
     show(manoeuvre_document(found), as_json=as_json)
-    if plot is not None:
-        written = write_figures(figures(found), Path(plot), "manoeuvre")
-        console.print(f"written: {len(written)} figures in {plot}")
+    write_asked_figures(figures(found), plot, "manoeuvre")

@@ -57,8 +57,7 @@ def show(file: str, plot: str | None, as_json: bool) -> None:
     from pmm.report.plan_document import show_document
 
     read, rig = read_plan_and_rig(file)
-    if plot is not None:
-        check_folder(Path(plot), "--plot")
+    check_folder(plot, "--plot")
     tell(show_document(read, rig), as_json=as_json)
     figures: list[Path] = []
     if plot is not None:
@@ -109,8 +108,7 @@ def design(
     from pmm.whole_file import write_whole
 
     check_files({"--output": output}, [("the design", Path(file))], overwrite=overwrite)
-    if plot is not None:
-        check_folder(Path(plot), "--plot")
+    check_folder(plot, "--plot")
     read = read_design(Path(file))
     if after:
         from pmm.coefficients.request import campaign_folder

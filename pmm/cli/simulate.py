@@ -56,8 +56,7 @@ def simulate(
         overwrite=overwrite,
     )
     check_folder(planned.folder, "--output")
-    if plot is not None:
-        check_folder(Path(plot), "--plot")
+    check_folder(plot, "--plot")
     done = planned.carry_out(lambda these: show_progress(these, "simulating"))
     figures: list[Path] = []
     if plot is not None:

@@ -32,23 +32,19 @@ def steering(
     request was wrong.
     """  # noqa: D301
     from hardware.description.errors import ConfigurationError
-    from pmm.cli.files import check_folder, tell_writers
-    from pmm.cli.screen import error_line, messages, show
-    from pmm.document.style import write_figures
+    from pmm.cli.files import check_folder, tell_writers, write_asked_figures
+    from pmm.cli.screen import error_line, show
     from pmm.report.steering_document import steering_document, steering_figures
     from pmm.steering.workflow import steering_of
 
     place = Path(folder)
     if not place.is_dir():
         raise ConfigurationError(f"{place}: no such folder")
-    if plot is not None:
-        check_folder(Path(plot), "--plot")
+    check_folder(plot, "--plot")
     tell_writers([place])
     found = steering_of(place, None if settings is None else Path(settings))
     show(steering_document(found, level), as_json=as_json)
-    if plot is not None:
-        files = write_figures(steering_figures(found), Path(plot), "steering")
-        messages().print(f"written: {len(files)} figures in {plot}")
+    write_asked_figures(steering_figures(found), plot, "steering")
     for one in found.failed:
         error_line(one.message)
     if found.failed:

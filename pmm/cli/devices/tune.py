@@ -64,8 +64,7 @@ def tune(
     from pmm.plan.tuning import stated_loop, tuned
     from pmm.report.tune_document import tune_document
 
-    if plot is not None:
-        check_folder(Path(plot), "--plot")
+    check_folder(plot, "--plot")
     file = read_rig_file(rig)
     runs = read_plan(plan).runs if plan is not None else ()
     loop, record = stated_loop(file, delay_s), None

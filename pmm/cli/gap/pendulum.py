@@ -47,8 +47,7 @@ def pendulum(
 
     given, path = Chosen(**chosen), Path(file)
     check_files({"--page": page}, [("FILE.toml", path), *given.read])
-    if plot is not None:
-        check_folder(Path(plot), "--plot")
+    check_folder(plot, "--plot")
     options = PendulumOptions(given.effects, given.without, most)
     with doing("reading") as shown:
         examined = examine_pendulum(path, options, shown)
