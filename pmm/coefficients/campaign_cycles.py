@@ -27,7 +27,7 @@ from pmm.coefficients.stated_inputs import (
     with_own_body,
     without_dry,
 )
-from pmm.coefficients.tasks import Done, Failed, Task
+from pmm.coefficients.tasks import Failed, ReadRecording, Task
 from pmm.coefficients.wave_runs import WaveRun, wave_runs
 from pmm.coefficients.work import Work, work_of
 
@@ -51,7 +51,7 @@ class CampaignCycles:
 
     campaign: Campaign
     cycles: tuple[BodyCycle, ...]
-    runs: tuple[Done, ...]
+    runs: tuple[ReadRecording, ...]
     failed: tuple[Failed, ...]
     work: Work
     stated: StatedUncertainties
@@ -118,7 +118,7 @@ def campaign_cycles(
     cycles = [one.about(settings.point_ahead_m) for one in wet]
     if body is None:
         cycles = [without_dry(one, dry, campaign) if one.frequency_hz else one for one in cycles]
-    done = [one for one in found if isinstance(one, Done)]
+    done = [one for one in found if isinstance(one, ReadRecording)]
     gauges = [one.calibration for one in done if one.calibration is not None]
     return CampaignCycles(
         campaign,
@@ -142,10 +142,10 @@ def campaign_cycles(
 
 def _recordings(
     work: Work, executor: Executor, progress: Progress, *, with_dry: bool
-) -> list[Done | Failed]:
+) -> list[ReadRecording | Failed]:
     """Read the zero runs, and then all that they are taken off."""
     zeros = _all(read_zero, work.zeros, "reading zero runs", executor, progress)
-    by_name = {one.name: one.zero for one in zeros if isinstance(one, Done) and one.zero}
+    by_name = {one.name: one.zero for one in zeros if isinstance(one, ReadRecording) and one.zero}
     tasks = (*work.runs, *(work.dry if with_dry else ()))
     found = _all(
         read_cycle, [task.with_zeros(by_name) for task in tasks], "reading runs", executor, progress
@@ -159,12 +159,12 @@ def _asked(cycles: Sequence[BodyCycle]) -> bool:
 
 
 def _all(
-    read: Callable[[Task], Done | Failed],
+    read: Callable[[Task], ReadRecording | Failed],
     tasks: Sequence[Task],
     what: str,
     executor: Executor,
     progress: Progress,
-) -> list[Done | Failed]:
+) -> list[ReadRecording | Failed]:
     found = []
     for one in executor.map(read, tasks):
         found.append(one)
@@ -173,8 +173,10 @@ def _all(
 
 
 def _sorted(
-    found: Sequence[Done | Failed], dry: set[str]
+    found: Sequence[ReadRecording | Failed], dry: set[str]
 ) -> tuple[list[BodyCycle], list[BodyCycle]]:
-    cycles = [one.cycle for one in found if isinstance(one, Done) and one.cycle is not None]
+    cycles = [
+        one.cycle for one in found if isinstance(one, ReadRecording) and one.cycle is not None
+    ]
     wet = [one for one in cycles if one.name not in dry]
     return wet, [one for one in cycles if one.name in dry]

@@ -37,7 +37,7 @@ from pmm.campaign.recording_source import RAW, open_recording
 from pmm.coefficients.attitude import attitude_of, rest_of
 from pmm.coefficients.followed_runs import as_driven, carriage_of, following_of, speed_age_u_s
 from pmm.coefficients.settings import AmplifierTable
-from pmm.coefficients.tasks import Done, Failed, Task, Zero
+from pmm.coefficients.tasks import Failed, ReadRecording, Task, Zero
 from pmm.coefficients.zeros import utc_s, zeroed
 from pmm.recorder.files import sha256
 
@@ -45,17 +45,17 @@ _USED = (*DISPLACEMENTS, *FORCES)
 _SPEED_OFF = 0.01
 
 
-def read_zero(task: Task) -> Done | Failed:
+def read_zero(task: Task) -> ReadRecording | Failed:
     """Read what the gauges show at rest."""
     return _tried(task, _at_rest)
 
 
-def read_cycle(task: Task) -> Done | Failed:
+def read_cycle(task: Task) -> ReadRecording | Failed:
     """Read a run and return motion and loads of the model, zeros taken off."""
     return _tried(task, _turning if task.kind.oscillates else _towed)
 
 
-def _tried(task: Task, work: Callable[[Task, Recording], Done]) -> Done | Failed:
+def _tried(task: Task, work: Callable[[Task, Recording], ReadRecording]) -> ReadRecording | Failed:
     """Read a recording and do the work; if that fails, what is damaged of the file is named."""
     damaged: list[str] = []
     try:
@@ -140,7 +140,7 @@ def _check_units(recording: Recording, joint: Joint) -> None:
         )
 
 
-def _at_rest(task: Task, recording: Recording) -> Done:
+def _at_rest(task: Task, recording: Recording) -> ReadRecording:
     reading = zero_reading(recording, 0.0, (*FORCES, *_besides(task, recording)))
     point = task.set_point
     position, flags = rest_of(task, recording)
@@ -156,7 +156,7 @@ def _at_rest(task: Task, recording: Recording) -> Done:
     return _done(task, recording, None, zero, flags=flags)
 
 
-def _turning(task: Task, recording: Recording) -> Done:
+def _turning(task: Task, recording: Recording) -> ReadRecording:
     wanted = (*_USED, *_besides(task, recording))
     if task.set_point.steady_ahead:
         wanted = (*wanted, CARRIAGE_SPEED.name)
@@ -192,7 +192,7 @@ def _turning(task: Task, recording: Recording) -> Done:
     )
 
 
-def _towed(task: Task, recording: Recording) -> Done:
+def _towed(task: Task, recording: Recording) -> ReadRecording:
     spread = (0.0, 0.0)
     if task.kind is RunKind.CIRCLE:
         task, spread = as_driven(task, recording)
@@ -277,8 +277,8 @@ def _done(
     zero: Zero | None,
     periods: int = 0,
     flags: tuple[Flag, ...] = (),
-) -> Done:
-    return Done(
+) -> ReadRecording:
+    return ReadRecording(
         task.name,
         str(task.source.path),
         cycle,

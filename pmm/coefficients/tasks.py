@@ -121,7 +121,7 @@ class Task:
 
 
 @dataclass(frozen=True, eq=False)
-class Done:
+class ReadRecording:
     """A recording that was read.
 
     Attributes

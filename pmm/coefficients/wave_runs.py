@@ -7,7 +7,7 @@ from analysis.coefficients.body_cycle import BodyCycle
 from analysis.response.waves import InWaves
 from hardware.description.setpoint import SetPoint
 from pmm.campaign.campaign import Campaign
-from pmm.coefficients.tasks import Done
+from pmm.coefficients.tasks import ReadRecording
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,12 +22,12 @@ class WaveRun:
         That of the same set-point in calm water; ``None`` where it was not made.
     """
 
-    found: InWaves
+    waves: InWaves
     cycle: BodyCycle
     calm: BodyCycle | None
 
 
-def wave_runs(campaign: Campaign, done: Sequence[Done]) -> Iterator[WaveRun]:
+def wave_runs(campaign: Campaign, done: Sequence[ReadRecording]) -> Iterator[WaveRun]:
     """Yield the runs in waves that were read."""
     points = {one.name: one.set_point for one in campaign.runs}
     cycles = {one.name: one.cycle for one in done if one.cycle is not None}

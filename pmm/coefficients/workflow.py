@@ -29,7 +29,7 @@ from pmm.coefficients.run_names import check_left_out, check_names
 from pmm.coefficients.settings import CoefficientSettings
 from pmm.coefficients.solving import Progress, solve_campaign
 from pmm.coefficients.stated_inputs import largest, with_turns
-from pmm.coefficients.tasks import Done, Failed
+from pmm.coefficients.tasks import Failed, ReadRecording
 from pmm.coefficients.turn_file import read_turns, turn_cycles
 from pmm.coefficients.wave_runs import WaveRun
 
@@ -82,7 +82,7 @@ class CampaignOutcome:
         return self.parts[0].body if self.parts else None
 
     @property
-    def runs(self) -> tuple[Done, ...]:
+    def runs(self) -> tuple[ReadRecording, ...]:
         """What was read, zeros and dry runs included."""
         return _joined(part.runs for part in self.parts)
 

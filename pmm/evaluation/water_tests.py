@@ -24,7 +24,7 @@ from pmm.coefficients.decays import Decay, decays_of
 from pmm.coefficients.reading import read_cycle, read_zero
 from pmm.coefficients.settings import CoefficientSettings, ShipTable, settings_of
 from pmm.coefficients.stated_inputs import chain_of, oscillator_of, stated_of
-from pmm.coefficients.tasks import Done, Failed, Task
+from pmm.coefficients.tasks import Failed, ReadRecording, Task
 from pmm.coefficients.work import work_of
 from pmm.coefficients.workflow import request_of
 
@@ -118,7 +118,7 @@ class _Found:
     ) -> None:
         self._campaign, self._oscillator, self._failed = campaign, oscillator, failed
         self._settings = settings
-        self._towed: list[Done] = []
+        self._towed: list[ReadRecording] = []
         self.restoring: list[Restoring] = []
         self.tracks: list[Track] = []
         self.tows: list[Tow] = []
@@ -147,7 +147,7 @@ class _Found:
         wanted = replace(request_of(self._settings, stated), wanted=())
         return campaign_coefficients(cycles, wanted)
 
-    def _evaluate(self, task: Task, done: Done, cycle: BodyCycle) -> None:
+    def _evaluate(self, task: Task, done: ReadRecording, cycle: BodyCycle) -> None:
         if done.turn is not None:
             self.turns.append(done.turn)
             return

@@ -10,7 +10,7 @@ from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.exchange import to_dict
 from analysis.coefficients.recommendation import recommended, table
 from analysis.coefficients.stated_uncertainties import STATED
-from pmm.coefficients.tasks import Done
+from pmm.coefficients.tasks import ReadRecording
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import (
     Column,
@@ -181,23 +181,23 @@ def _summary(outcome: CampaignOutcome) -> dict[str, str]:
     return rows
 
 
-def _runs(outcome: CampaignOutcome) -> Table[Done]:
+def _runs(outcome: CampaignOutcome) -> Table[ReadRecording]:
     """Return the runs that were used, with the hash of each recording."""
     used = {cycle.name: cycle for cycle in outcome.cycles}
 
-    def cycle(one: Done) -> BodyCycle | None:
+    def cycle(one: ReadRecording) -> BodyCycle | None:
         return used.get(one.name) or one.cycle
 
-    def medium(one: Done) -> str:
+    def medium(one: ReadRecording) -> str:
         known = cycle(one)
         return "zero" if known is None else str(known.medium) if one.name in used else "dry"
 
-    def motion(one: Done) -> str:
+    def motion(one: ReadRecording) -> str:
         known = cycle(one)
         moved = known is not None and known.frequency_hz > 0.0
         return amplitudes(*known.amplitude.tolist()) if moved else NOT_KNOWN  # type: ignore[union-attr]
 
-    columns: tuple[Column[Done], ...] = (
+    columns: tuple[Column[ReadRecording], ...] = (
         word("run", "name"),
         Column("medium", medium),
         Column("f", lambda one: cycle(one), unit="Hz", number=True,

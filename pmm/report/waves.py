@@ -63,7 +63,7 @@ def wave_rows(outcome: CampaignOutcome) -> tuple[WaveRow, ...]:
 
 
 def _rows(one: WaveRun) -> Iterator[WaveRow]:
-    found = one.found
+    found = one.waves
     head = (found.run, found.frequency_hz, found.expected_hz, abs(found.wave))
     for load, weights in _weights(one):
         for line in found.lines:
@@ -84,8 +84,8 @@ def _weights(one: WaveRun) -> Iterator[tuple[str, list[float]]]:
         "surge": {FORCE_X.name: -1.0},
     }
     for load, own in shares.items():
-        if set(own) <= set(one.found.channels):
-            yield load, [own.get(name, 0.0) for name in one.found.channels[1:]]
+        if set(own) <= set(one.waves.channels):
+            yield load, [own.get(name, 0.0) for name in one.waves.channels[1:]]
 
 
 def _mean(one: WaveRun, load: str) -> tuple[float, float]:
@@ -93,7 +93,7 @@ def _mean(one: WaveRun, load: str) -> tuple[float, float]:
     assert one.calm is not None  # noqa: S101 - the caller looks
     name = at_order(_ROWS[load], 0)
     both = [cycle.phasors.select([name]).real for cycle in (one.cycle, one.calm)]
-    square = abs(one.found.wave) ** 2
+    square = abs(one.waves.wave) ** 2
     spread = math.hypot(*(float(part.standard_uncertainty[0]) for part in both))
     return float(both[1].values[0] - both[0].values[0]) / square, spread / square
 
@@ -133,7 +133,7 @@ def wave_figure(runs: Sequence[WaveRun]) -> "Drawing":
         for k, one in enumerate(runs):
             weighed = dict(_weights(one))
             for axes, load in zip(panels, ("force", "moment"), strict=True):
-                _draw(axes, one.found, weighed[load], PALETTE[k % len(PALETTE)])
+                _draw(axes, one.waves, weighed[load], PALETTE[k % len(PALETTE)])
                 axes.set_ylabel(f"{load} amplitude ({_UNITS[load]})")
         panels[0].legend(loc="best", fontsize=7.5)
         panels[1].set_xlabel("frequency (Hz)")
