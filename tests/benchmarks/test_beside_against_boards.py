@@ -62,6 +62,7 @@ def test_the_first_cases_of_all_worlds_take_turns() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(3000)
 def test_a_line_is_what_the_steps_of_a_board_give(tmp_path: Path) -> None:
     """Oracle: the same case as a board of its own, answered and scored by the board's commands."""
     line = json.loads(json.dumps(compared("C", 0, _COMMIT, 1)))

@@ -183,4 +183,4 @@ def _on_fitted_rig(problem: Problem, there: Problem, fit: Fit, found: Fit) -> Fl
     if not any(one.repeats for one in fit.candidates):
         return found.signature
     shared = problem.nuisances.fitted(problem.residual - fit.signature)[: len(there.numbers)]
-    return FittedRig.of(there, there.numbers, shared).signature(fit, fit.units)
+    return FittedRig.of(there, there.numbers, shared).signature(fit.candidates, fit.units)

@@ -36,6 +36,8 @@ class Axis:
         Where a fit begins, in prior units.
     sign
         Of the values, where their logarithm is what is fitted; they rise with the unit either way.
+    is_form
+        Whether it tells in which form of its family an effect is, and not how large it is.
     """
 
     parameter: Parameter
@@ -44,11 +46,13 @@ class Axis:
     is_log: bool
     start: float = 0.0
     sign: float = 1.0
+    is_form: bool = False
 
     @property
     def is_size(self) -> bool:
         """Whether the effect is gone where this is zero."""
-        return not self.is_log and self.centre == 0.0 and not is_phase(self.parameter)
+        absent = not self.is_log and self.centre == 0.0 and not self.is_form
+        return absent and not is_phase(self.parameter)
 
     def value(self, unit: float) -> float:
         """Return the parameter's value, kept within its plausible range."""
@@ -104,6 +108,11 @@ class Candidate:
     def start(self) -> FloatArray:
         """Where a fit begins, shape ``(p,)``, in prior units."""
         return np.array([one.start for one in self.axes])
+
+    def freed(self, axis: Axis) -> "Candidate":
+        """Return it with a parameter free that it holds."""
+        held = {key: value for key, value in self.held.items() if key != axis.parameter.name}
+        return replace(self, axes=(*self.axes, axis), held=held)
 
     def effect(self, units: FloatArray) -> Any:
         """Return the effect with its parameters at ``units`` prior deviations."""

@@ -85,6 +85,11 @@ class Problem:
         return found
 
     @cached_property
+    def steady(self) -> FloatArray:
+        """What the simulation says of what repeats with the shaft, without any effect."""
+        return self.simulator.steady(())
+
+    @cached_property
     def stated(self) -> FloatArray:
         """Measured minus the rig as it is stated, in sigma, to first order about the moved one."""
         moved = np.array([self.moved.get(name, 0.0) for name in self.free])

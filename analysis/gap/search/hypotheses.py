@@ -1,5 +1,6 @@
 """Search what could explain a gap, and weigh it: nothing, each effect, pairs, or something else."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ from analysis.gap.search.engine import LEADERS, Engine, alone_again, fitted, loo
 from analysis.gap.search.first_look import HIDDEN, Looked
 from analysis.gap.search.fit import Fit
 from analysis.gap.search.joint import together
-from analysis.gap.search.linear_hypothesis import hypothesis, settled, with_forms
+from analysis.gap.search.linear_hypothesis import hypothesis, in_form, settled, with_forms
 from sim.effects.effect import Effect
 
 # What these change are the coefficients, and those are free in every hypothesis.
@@ -87,7 +88,8 @@ def weigh(
     seen = [one for one in looked if one.fit and one.visible >= HIDDEN]
     singles = fitted(problem, seen, none, engine)
     pairs = _completed(problem, free, paired(problem, singles, seen, none, engine))
-    singles = _completed(problem, free, alone_again(problem, singles, pairs))
+    least = min((one.cost for one in pairs), default=math.inf)
+    singles = _completed(problem, free, alone_again(problem, singles, pairs), least)
     singles += _unfitted(seen, singles)
     progress("weighing")
     sought = np.array([one.is_sought for one in free], dtype=bool)
@@ -109,9 +111,15 @@ def weigh(
     return Weighed(problem, tuple(singles), tuple(pairs), tuple(looked), skipped, found)
 
 
-def _completed(problem: Problem, free: Sequence[Free], fits: Sequence[Fit]) -> list[Fit]:
-    """Let the leading fits move together with the coefficients, and give each its other forms."""
-    moved = [together(problem, free, one) for one in fits[:LEADERS]]
+def _completed(
+    problem: Problem, free: Sequence[Free], fits: Sequence[Fit], least: float = math.inf
+) -> list[Fit]:
+    """Give each fit its other forms; fit the leading ones in them, and with the coefficients."""
+    formed = [with_forms(problem, one) for one in fits]
+    moved: list[Fit] = []
+    for one in formed[:LEADERS]:
+        moved.append(together(problem, free, in_form(problem, one, least), least))
+        least = min(least, moved[-1].cost)
     ones = [with_forms(problem, one) for one in (*moved, *fits[LEADERS:])]
     return sorted(ones, key=lambda one: -one.log_evidence)
 

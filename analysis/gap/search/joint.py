@@ -5,59 +5,95 @@ added mass that is 20 % off changes, and a phase of 0.03 rad turns it: some sigm
 Left alone, a second effect would take the credit for that.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
+import numpy as np
+
+from analysis.gap.forward.candidate import Axis, Candidate
 from analysis.gap.forward.free_numbers import Free, with_coefficients
 from analysis.gap.forward.problem import Problem, built
 from analysis.gap.forward.simulator import Simulator
-from analysis.gap.inference.gaussian import left_over
-from analysis.gap.search.fit import Fit, most_probable, weighed_at
+from analysis.gap.inference.gaussian import Nuisances, left_over
+from analysis.gap.search.fit import Fit, in_reach, weighed_at
+from analysis.gap.search.refinement import anew, follow
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
-from sim.effects.effect import Effect
+from sim.effects.effect import Effect, Parameter
 
-_ROUNDS = 2
-_LEVEL: Final = 0.1  # sigma of all observations together, below which a change is none
+_LEVEL: Final = 1.0  # sigma of all observations together, below which slopes are as they were
+_STEPS: Final = 6
 
 
-def together(problem: Problem, free: Sequence[Free], fit: Fit) -> Fit:
+def together(problem: Problem, free: Sequence[Free], fit: Fit, least: float = math.inf) -> Fit:
     """Return a fit whose signature holds what effect and coefficients do together.
 
-    A pair with an effect that is costly to simulate is left as it is.
+    All of them are fitted at once, each step simulated on the rig as its coefficients then are. A
+    pair with an effect that is costly to simulate is left as it is.
 
     Parameters
     ----------
     free
         The nuisances' first columns; without any the fit is returned as it is.
+    least
+        Cost of a rival. What the coefficients cannot bring down to it is simulated once.
     """
     dear = len(fit.candidates) > 1 and fit.is_costly
     if dear or not free or not any(one.repeats for one in fit.candidates):
         return fit
-    best = fit
-    for _ in range(_ROUNDS):
-        try:
-            moved = _round(problem, free, best)
-        except PmmError:
-            break
-        change, best = moved.signature - best.signature, moved
-        if left_over(change, problem.nuisances) < _LEVEL:
-            break
-    return best if best.log_evidence > fit.log_evidence else fit
+    whole, count = _Whole(problem, free), len(free)
+    columns = problem.nuisances.columns[:, :count]
+    shared = problem.nuisances.fitted(problem.residual - fit.signature)[:count]
+    parts, units = (*fit.candidates, whole.numbers), np.concatenate((fit.units, shared))
+    try:
+        signature = whole.signature(parts, units)
+    except PmmError:
+        return fit
+    found = weighed_at(whole, parts, units, np.hstack((fit.columns, columns)), signature)
+    beyond = left_over(signature - fit.signature - columns @ shared, problem.nuisances)
+    if beyond > _LEVEL and in_reach(found, beyond, least):
+        found = follow(whole, anew(whole, found), _STEPS)
+    own, shared = found.units[:-count], found.units[-count:]
+    signature = found.signature - columns @ shared
+    return weighed_at(problem, fit.candidates, own, found.columns[:, :-count], signature)
 
 
-def _round(problem: Problem, free: Sequence[Free], fit: Fit) -> Fit:
-    shared = problem.nuisances.fitted(problem.residual - fit.signature)[: len(free)]
-    units, there = fit.units, FittedRig.of(problem, free, shared)
-    for _ in range(2):  # once with the parameters as they are, once with those that then fit
-        signature = there.signature(fit, units)
-        found = weighed_at(problem, fit.candidates, units, fit.columns, signature)
-        way, units = most_probable(found) - units, most_probable(found)
-        if left_over(fit.columns @ way, problem.nuisances) < _LEVEL:
-            break
-    return found
+@dataclass(frozen=True, eq=False)
+class _Whole:
+    """A problem whose free numbers are fitted as an effect's parameters are."""
+
+    problem: Problem
+    free: Sequence[Free]
+
+    @property
+    def residual(self) -> FloatArray:
+        return self.problem.residual
+
+    @property
+    def stated(self) -> FloatArray:
+        return self.problem.stated
+
+    @cached_property
+    def nuisances(self) -> Nuisances:
+        every, count = self.problem.nuisances, len(self.free)
+        return Nuisances(every.columns[:, count:], every.names[count:], every.always_on)
+
+    @cached_property
+    def numbers(self) -> Candidate:
+        """The free numbers, in units of their priors, as what stands beside the effects."""
+        whole = (-math.inf, math.inf)
+        each = (Parameter(one.name, "1", 0.0, *whole, one.name) for one in self.free)
+        axes = tuple(Axis(one, 0.0, 1.0, is_log=False) for one in each)
+        return Candidate(Free, axes, {}, "")
+
+    def signature(self, parts: Sequence[Candidate], units: FloatArray) -> FloatArray:
+        """Return what the effects and the free numbers change together."""
+        own, shared = units[: -len(self.free)], units[-len(self.free) :]
+        there = FittedRig.of(self.problem, self.free, shared)
+        return there.change(built(parts[:-1], own))
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,19 +123,18 @@ class FittedRig:
         rig = with_coefficients(problem.simulator.rig, free, list(shared))
         return cls(problem, problem.simulator.with_rig(rig), settings)
 
-    @cached_property
-    def _base(self) -> FloatArray:
-        return self.simulator.steady(self.settings)
+    def signature(self, parts: Sequence[Candidate], units: FloatArray) -> FloatArray:
+        """Return what effects change there at some parameters, in sigma, ``(observations,)``."""
+        return self.change(built(parts, units)) - self.change(())
 
-    def signature(self, fit: Fit, units: FloatArray) -> FloatArray:
-        """Return what effects change at some parameters, in sigma, shape ``(observations,)``.
+    def change(self, effects: Sequence[Effect]) -> FloatArray:
+        """Return what all of it changes of the rig as it is believed to be, with effects on, too.
 
         What has to be simulated in time is taken from the rig as it is believed to be.
         """
-        effects = built(fit.candidates, units)
         moving = tuple(one for one in effects if not one.repeats)
         steady = tuple(one for one in effects if one.repeats)
         believed = self.problem.simulator
         beside = believed.predict(moving) - believed.nominal if moving else 0.0
-        change = self.simulator.steady((*self.settings, *steady)) - self._base
+        change = self.simulator.steady((*self.settings, *steady)) - self.problem.steady
         return self.problem.whitened(change + beside)

@@ -1,27 +1,102 @@
 """A fit as one equation weighs it: linear about where it is, with its families' other forms."""
 
+import math
+from collections.abc import Iterator
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
+from analysis.gap.forward.candidate import Axis
 from analysis.gap.forward.problem import Compared, Problem
+from analysis.gap.inference.gaussian import left_over
 from analysis.gap.inference.hypothesis import Evidence, Hypothesis
-from analysis.gap.search.fit import Fit, bounds
+from analysis.gap.search.fit import Fit, bounds, expected_evidence, in_reach, weighed_at
+from analysis.gap.search.refinement import follow, refine
+from sim.effects.effect import Effect
+
+_BETTER: Final = 3.0  # log evidence that fitting the form has to promise: it is seldom needed
 
 
 def with_forms(problem: Problem, fit: Fit) -> Fit:
     """Return a fit with what the other forms of its effects change, where they repeat."""
-    if not fit.repeats or fit.is_costly:
-        return fit
     simulator, effects = problem.simulator, fit.effects
-    base = simulator.predict(effects)
+    others = list(_other_forms(fit))
+    base = simulator.predict(effects) if others else fit.signature
     found = [np.zeros((len(base), 0))]
-    for number, one in enumerate(effects):
-        rest = [other for at_, other in enumerate(effects) if at_ != number]
-        for form in one.forms():
-            changed = simulator.predict((*rest, form))
-            found.append(problem.whitened(changed - base)[:, None])
+    for number, form in others:
+        rest = [other for at, other in enumerate(effects) if at != number]
+        changed = simulator.predict((*rest, form))
+        found.append(problem.whitened(changed - base)[:, None])
     return replace(fit, forms=np.hstack(found))
+
+
+def _other_forms(fit: Fit) -> Iterator[tuple[int, Effect]]:
+    """Yield other forms of a fit's effects, each with its effect's number, but for those fitted.
+
+    What has to be simulated in time has none.
+    """
+    if not fit.repeats or fit.is_costly:
+        return
+    for number, (candidate, effect) in enumerate(zip(fit.candidates, fit.effects, strict=True)):
+        fitted = {one.parameter.name for one in candidate.axes}
+        for form in effect.forms():
+            if not set(_changed(effect, form)) <= fitted:
+                yield number, form
+
+
+def _changed(effect: Effect, form: Effect) -> list[str]:
+    names = [one.name for one in effect.parameters()]
+    return [name for name in names if getattr(form, name) != getattr(effect, name)]
+
+
+def in_form(problem: Problem, fit: Fit, least: float = math.inf) -> Fit:
+    """Return a fit in the form of its family that suits it, where that is much better.
+
+    Where a rig shows an effect well, its other forms are no small change about the one that is
+    held. What tells of the form is fitted then, as the other parameters are, with one deviation for
+    its other form: one parameter after the other, since forms may exclude each other.
+
+    Parameters
+    ----------
+    fit
+        With its :func:`with_forms`, as is what is returned.
+    least
+        Cost of a rival; what no form can bring down to it stays as it is.
+    """
+    best = fit
+    while freed := [
+        one
+        for column, one in zip(best.forms.T, _freed(problem, best), strict=True)
+        if one is not None and in_reach(best, left_over(column, problem.nuisances), least)
+    ]:
+        start = max(freed, key=lambda one: expected_evidence(problem, one))
+        if expected_evidence(problem, start) < best.log_evidence + _BETTER:
+            break
+        found = refine(problem, follow(problem, start))
+        if found.log_evidence < best.log_evidence + _BETTER:
+            break
+        best = with_forms(problem, found)
+    return best
+
+
+def _freed(problem: Problem, fit: Fit) -> Iterator[Fit | None]:
+    """Yield for each form the fit with its parameter free; ``None`` if it is more than one."""
+    for column, (number, form) in zip(fit.forms.T, _other_forms(fit), strict=True):
+        effect = fit.effects[number]
+        names = _changed(effect, form)
+        declared = {one.name: one for one in effect.parameters() if one.forms}
+        if len(names) != 1 or names[0] not in declared:
+            yield None
+        else:
+            held, other = getattr(effect, names[0]), getattr(form, names[0])
+            axis = Axis(declared[names[0]], held, abs(other - held), is_log=False, is_form=True)
+            parts = list(fit.candidates)
+            parts[number] = parts[number].freed(axis)
+            behind = int(np.sum(fit.whose <= number))
+            units = np.insert(fit.units, behind, 0.0)
+            columns = np.insert(fit.columns, behind, np.sign(other - held) * column, axis=1)
+            yield weighed_at(problem, tuple(parts), units, columns, fit.signature)
 
 
 def hypothesis(problem: Compared, fit: Fit) -> Hypothesis:

@@ -32,15 +32,32 @@ def refine(problem: Compared, fit: Fit) -> Fit:
     """
     if not fit.repeats:
         return stepped(problem, _simulated(problem, fit), _STEPS_IN_TIME)
-    best, fresh = fit, False
+    best, fresh = _followed(problem, fit)
     for _ in range(_STEPS):
+        if fresh:
+            break
+        start = anew(problem, best)
+        best, fresh = _followed(problem, start)
+        fresh = fresh or best is start
+    return best
+
+
+def follow(problem: Compared, fit: Fit, steps: int = _STEPS) -> Fit:
+    """Improve a fit until the slopes that it has and learns promise nothing more."""
+    return _followed(problem, fit, steps)[0]
+
+
+def _followed(problem: Compared, fit: Fit, steps: int = _STEPS) -> tuple[Fit, bool]:
+    """Return the fit where its slopes lead, and whether these were found there."""
+    best, fresh = fit, False
+    for _ in range(steps):
         better, fulfilled = _step(problem, best)
-        if better is None and fresh:
-            return best
-        best, fresh = best if better is None else learned(problem, best, better), False
+        if better is None:
+            break
+        best, fresh = learned(problem, best, better), False
         if not _FULFILLED < fulfilled < 1.0 / _FULFILLED:
-            best, fresh = _anew(problem, best), True
-    return best if fresh else _anew(problem, best)
+            best, fresh = anew(problem, best), True
+    return best, fresh
 
 
 def _simulated(problem: Compared, fit: Fit) -> Fit:
@@ -51,7 +68,7 @@ def _simulated(problem: Compared, fit: Fit) -> Fit:
         return fit
 
 
-def _anew(problem: Compared, fit: Fit) -> Fit:
+def anew(problem: Compared, fit: Fit) -> Fit:
     """Return a fit with slopes found where it is; as it is where nothing can be simulated aside."""
     try:
         return relinearised(problem, fit)
