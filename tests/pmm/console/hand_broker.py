@@ -74,11 +74,8 @@ class HandBroker:
 
     def _answer(self, one: socket.socket) -> bool:
         """Answer a packet; return whether another may come."""
-        head = self._bytes(one, 1)
-        if not head:
-            return False
+        kind = self._bytes(one, 1)[0] >> 4
         body = self._bytes(one, self._length(one))
-        kind = head[0] >> 4
         if kind == _CONNECT:
             one.sendall(_CONNACK)
         elif kind == _PING:
@@ -112,7 +109,13 @@ class HandBroker:
                 return length
 
     def _bytes(self, one: socket.socket, count: int) -> bytes:
-        """Return so many bytes, or none at the end."""
+        """Return so many bytes.
+
+        Raises
+        ------
+        ConnectionError
+            If the other side, or the test, ends before.
+        """
         got = b""
         while len(got) < count and not self._end.is_set():
             self.reading.wait()
@@ -123,4 +126,6 @@ class HandBroker:
             if not part:
                 break
             got += part
-        return got if len(got) == count else b""
+        if len(got) < count:
+            raise ConnectionError
+        return got
