@@ -99,5 +99,5 @@ def froude_number(
 
 
 def reynolds_number(speed_m_s: float, length_m: float, water: Water) -> float:
-    """Return Re = U L / nu."""
+    """Return the Reynolds number U L / nu."""
     return speed_m_s * length_m / water.kinematic_viscosity_m2_s

@@ -76,7 +76,7 @@ class AmplifierSettings:
 
 
 class Amplifier:
-    """A :class:`hardware.roles.ForceChannels`."""
+    """A CANopen amplifier of strain gauges, as :class:`hardware.roles.ForceChannels`."""
 
     def __init__(self, name: str, settings: AmplifierSettings, services: Services) -> None:
         self.name = name

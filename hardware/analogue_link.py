@@ -62,7 +62,7 @@ class AnalogueNumber(Addressed):
                 raise ConfigurationError(f"{key} = 0; nothing could be told from the voltage")
 
     def value(self, words: Sequence[int]) -> float:
-        """Return the number in SI units."""
+        """Return the number in SI units that words of the converter stand for."""
         return self.per_volt * (signed(words) * self.volt_per_count - self.offset_v)
 
     def written(self, value: float) -> tuple[int, ...]:
@@ -101,12 +101,12 @@ class AnalogueSettings(AskedSettings):
     @property
     @abstractmethod
     def outputs(self) -> tuple[AnalogueNumber, ...]:
-        """What is set."""
+        """The numbers that the program sets as voltages."""
 
     @property
     @abstractmethod
     def inputs(self) -> tuple[AnalogueNumber, ...]:
-        """What is read."""
+        """The numbers that the program reads as voltages."""
 
     def link(self, name: str, services: Services) -> "AnalogueLink":
         """Return what reads and sets its voltages; raises as :func:`hardware.driver.join`."""

@@ -195,7 +195,7 @@ class AskedCarriage(AskedDevice):
         return blocks(taken)
 
     def carried(self) -> dict[str, Any]:
-        """Return what it read last; see :mod:`hardware.carry_over`."""
+        """Return the numbers read last, ``None`` for none; see :mod:`hardware.carry_over`."""
         return {name: None if math.isnan(one) else one for name, one in self.values.items()}
 
     def carry_on(self, carried: Mapping[str, Any]) -> None:

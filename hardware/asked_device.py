@@ -120,7 +120,7 @@ class AskedDevice:
         self._deadline_s, self._waiting_for = self._now_s + seconds, what
 
     def done(self) -> None:
-        """Take the deadline back."""
+        """Cancel the deadline: what was commanded has been reached."""
         self._deadline_s = math.inf
 
     def tell(self, register: Number, value: float) -> None:

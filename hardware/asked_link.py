@@ -94,7 +94,7 @@ class AskedLink(ABC):
 
     @property
     def heard(self) -> bool:
-        """Whether it answers."""
+        """Whether the device answers and refuses nothing."""
         return self._answers
 
     def reset(self) -> None:
@@ -104,7 +104,7 @@ class AskedLink(ABC):
         self.forget()
 
     def forget(self) -> None:
-        """Tell again what was told once."""
+        """Report faults anew that were reported before."""
         self._trouble = ""
         self._told.clear()
 

@@ -18,11 +18,11 @@ class Carrying(Protocol):
     name: str
 
     def carried(self) -> dict[str, Any]:
-        """Return it, in what JSON can hold."""
+        """Return the state that its samples depend on, in what JSON can hold."""
         ...
 
     def carry_on(self, carried: Mapping[str, Any]) -> None:
-        """Take it, before the first cycle."""
+        """Take up the state of the last recording, before the first cycle."""
         ...
 
 

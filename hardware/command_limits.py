@@ -52,7 +52,7 @@ def check_move(axis: PositionAxis, position: float) -> None:
 
 
 def check_speed(shaft: Shaft, frequency_hz: float, *, told: str = "") -> None:
-    """Refuse a shaft speed in the same way; raises as :func:`check_position`."""
+    """Refuse a shaft speed outside its limits, or not above 0; raises LimitError."""
     low, high = shaft.frequency_hz.low, shaft.frequency_hz.high
     if not (frequency_hz > 0.0 and frequency_hz in shaft.frequency_hz):
         raise LimitError(

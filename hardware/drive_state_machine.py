@@ -12,7 +12,7 @@ from hardware.errors import DriveFaultError, DriveStateError, NotAtRestError, Tr
 
 
 class Goal(Enum):
-    """Where a drive is to be."""
+    """The CiA 402 state to which a drive is to be brought."""
 
     DISABLED = "disabled"  # no torque: SWITCH ON DISABLED
     ENABLED = "enabled"  # OPERATION ENABLED

@@ -26,7 +26,7 @@ Prompt = Callable[[str], str | None]
 
 @dataclass(frozen=True)
 class NodePlan:
-    """What a driver wants of the bus: a node id, an EDS and the objects of its PDOs."""
+    """What a driver wants of the bus: a node id, an EDS, and the objects of each PDO."""
 
     name: str
     node_id: int

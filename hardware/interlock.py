@@ -83,12 +83,12 @@ class _GuardedAxis(_Guarded):
 
 
 def guard_shaft(shaft: Shaft, axes: Sequence[PositionAxis], faults: Faults) -> Shaft:
-    """Return the shaft behind the interlock."""
+    """Return a shaft that refuses to turn while an axis moves or a fault is latched."""
     return cast("Shaft", _GuardedShaft(shaft, axes, faults))
 
 
 def guard_carriage(carriage: Carriage, axes: Sequence[PositionAxis], faults: Faults) -> Carriage:
-    """Return the carriage behind the interlock."""
+    """Return a carriage that refuses to run while an axis moves or a fault is latched."""
     return cast("Carriage", _GuardedCarriage(carriage, axes, faults))
 
 

@@ -76,7 +76,7 @@ class LineSettings(AskedSettings):
 
 
 class LineLink(PortLink):
-    """Registers that are lines."""
+    """A link to a panel that is asked and told in lines of text."""
 
     def __init__(self, name: str, settings: LineSettings, services: Services) -> None:
         self._lines = {one.address: one for one in settings.every_line}
@@ -116,5 +116,5 @@ class LineLink(PortLink):
 
 
 def is_told(one: Line) -> bool:
-    """Whether a line sets something."""
+    """Whether a line of text sets something, and does not ask."""
     return isinstance(one, LineCommand) or "{value" in getattr(one, "line", "")

@@ -28,7 +28,7 @@ class Addressed:
     address: int = field(default=0, init=False)
 
     def at(self, number: int) -> None:
-        """Take a place."""
+        """Set the address from the line's number among the others."""
         object.__setattr__(self, "address", number * _APART)
 
 
@@ -82,7 +82,7 @@ class LineNumber(Addressed):
             ) from error
 
     def value(self, words: Sequence[int]) -> float:
-        """Return the number in SI units."""
+        """Return the number in SI units that its four words of 16 bits hold."""
         (raw,) = struct.unpack(">d", struct.pack(">4H", *words))
         return float(raw) * self.scale * UNITS[self.unit]
 
@@ -135,7 +135,7 @@ class LineStatus(Addressed):
         return bool(word >> _STATES.index(name) & 1)
 
     def text(self, _words: Sequence[int]) -> str:
-        """Return the line that asks."""
+        """Return the line of text that asks for the status."""
         return self.line
 
     def words(self, said: str) -> tuple[int, ...] | None:
@@ -171,11 +171,11 @@ class LineCommand(Addressed):
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def word(self, *, enable: bool, reset: bool, toggle: bool) -> int:
-        """Return the word that commands it."""
+        """Return the command word: power in bit 0, clearing an alarm in bit 1."""
         return int(enable) | int(reset and bool(self.clear)) << self.reset
 
     def text(self, words: Sequence[int]) -> str:
-        """Return the line of a word."""
+        """Return the line of text that a command word stands for."""
         if words[0] >> self.reset & 1:
             return self.clear
         return self.on if words[0] & 1 else self.off

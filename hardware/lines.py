@@ -36,7 +36,7 @@ class LineKind(StrEnum):
 
 @dataclass(frozen=True)
 class SerialLine:
-    """One line."""
+    """One line: its kind, its count, the device's clock in microseconds, and what it measured."""
 
     kind: LineKind
     sequence: int

@@ -86,7 +86,7 @@ class Master:
         tpdos: tuple[PdoLayout, ...] = (),
         rpdos: tuple[PdoLayout, ...] = (),
     ) -> Node:
-        """Add a node; it is configured and started by :meth:`start`."""
+        """Add a node with its PDOs; :meth:`start` configures and starts it."""
         node = Node(name, node_id, dictionary, tpdos, rpdos, self)
         self.nodes.append(node)
         self._streams |= {stream.layout.cob_id: stream for stream in node.streams}

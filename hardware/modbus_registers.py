@@ -155,19 +155,19 @@ class CommandRegister:
         check_bits(self.enable, self.reset, self.toggle)
 
     def word(self, *, enable: bool, reset: bool, toggle: bool) -> int:
-        """Return the word that commands it."""
+        """Return the word with its bits of power, reset and life sign set."""
         bits = ((self.enable, enable), (self.reset, reset), (self.toggle, toggle))
         return sum(1 << bit for bit, on in bits if bit is not None and on)
 
 
 def check_address(address: int) -> None:
-    """Refuse an address that no register has."""
+    """Refuse an address outside 0 to 65535; raises ConfigurationError."""
     if not 0 <= address <= _LAST:
         raise ConfigurationError(f"address = {address}; addresses are 0 to {_LAST}, from 0")
 
 
 def check_bits(*bits: int | None) -> None:
-    """Refuse bits that a word has not, and one that is given twice."""
+    """Refuse bits outside 0 to 15, and one given twice; raises ConfigurationError."""
     known = [bit for bit in bits if bit is not None]
     if any(not 0 <= bit <= 15 for bit in known) or len(set(known)) < len(known):
         raise ConfigurationError(f"bits {known}; each is 0 to 15 and stands once")

@@ -31,7 +31,7 @@ class Ramp:
 
     @property
     def arrived(self) -> bool:
-        """Whether all of the way is done."""
+        """Whether the whole way is covered."""
         return self.position >= self._way
 
     @property
@@ -40,11 +40,11 @@ class Ramp:
         return self.arrived or (self._stopping and self._speed == 0.0)
 
     def stop(self) -> None:
-        """Come to rest on the way."""
+        """Decelerate to rest before the end of the way."""
         self._stopping = True
 
     def step(self, period_s: float) -> None:
-        """Go on for a cycle."""
+        """Move on by one cycle of ``period_s``, within speed and acceleration."""
         left, more = self._way - self.position, self._slope * period_s
         if self._stopping:
             self._speed = max(self._speed - more, 0.0)

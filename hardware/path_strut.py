@@ -32,7 +32,7 @@ class PathStrut(DriveAxis):
         return self.settings.tolerance
 
     def lead(self, position: float) -> None:
-        """Give the set-point of this cycle."""
+        """Send this cycle's set-point of the strut, in metres."""
         if self.drive.motion.at_rest:
             self.drive.extra = ControlWord(0)  # of a homing that was stopped
         self.drive.mode = Mode.CYCLIC_SYNCHRONOUS_POSITION

@@ -66,7 +66,7 @@ class FramePacker:
         self._full: list[bytes] = []
 
     def take(self, frame: Frame) -> None:
-        """Take a frame."""
+        """Pack a frame into the container that is being filled."""
         stamp_ns = int(frame.timestamp * 1e9)
         if stamp_ns > self._stamp_ns:
             self._stamp_ns = stamp_ns

@@ -33,7 +33,7 @@ class Role(StrEnum):
 
 @runtime_checkable
 class Device(Protocol):
-    """Whatever a rig is made of."""
+    """What a rig is made of: it is prepared, then ticked once a cycle, and closed."""
 
     name: str
 
@@ -56,7 +56,7 @@ class Device(Protocol):
 
 @runtime_checkable
 class Sampled(Device, Protocol):
-    """A device with channels."""
+    """A device that delivers samples of its channels at a fixed rate."""
 
     channels: tuple[Channel, ...]
     sample_rate_hz: float
@@ -72,7 +72,7 @@ class Reconnecting(Device, Protocol):
 
     @property
     def heard(self) -> bool:
-        """Whether it answers."""
+        """Whether the device at the port answers."""
         ...
 
     def reconnect(self) -> None:
@@ -82,7 +82,7 @@ class Reconnecting(Device, Protocol):
 
 @runtime_checkable
 class Powered(Device, Protocol):
-    """A device that moves."""
+    """A device with a motor: it holds or moves under power."""
 
     @property
     def enabled(self) -> bool:
@@ -243,7 +243,7 @@ class ForceChannels(Sampled, Protocol):
 
 @runtime_checkable
 class Photocell(Device, Protocol):
-    """The photocell at the shaft."""
+    """The photocell at the shaft: one pulse a turn, with its time."""
 
     def expect(self, frequency_hz: float | None) -> None:
         """Say how fast the shaft turns, so that missing pulses are noticed; ``None``: at rest."""

@@ -22,7 +22,7 @@ class InstrumentSettings(Protocol):
 
     @property
     def port(self) -> PortSettings:
-        """Where it is plugged in."""
+        """The serial port and its settings."""
         ...
 
     @property

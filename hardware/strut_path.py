@@ -38,7 +38,7 @@ class StrutPath:
         self._phasors = np.array([line.phasors for line in self._lines])
 
     def at(self, angle_rad: float) -> FloatArray:
-        """Return both struts' places, shape ``(2,)``."""
+        """Return both struts' displacements at a master angle, in metres, shape ``(2,)``."""
         return np.asarray((np.exp(self._orders * angle_rad) @ self._phasors).imag)
 
     def peaks(self, times: int) -> Iterator[tuple[float, float]]:

@@ -91,7 +91,7 @@ class Supervisor:
         self._told.clear()
 
     def heartbeat(self, node_id: int, data: bytes | bytearray, number: int) -> None:
-        """Take a heartbeat or boot-up message."""
+        """Note a node's heartbeat in cycle ``number``; report a state other than operational."""
         node = self._nodes[node_id]
         node.last_beat = number
         state = data[0] & 0x7F if data else -1
@@ -112,7 +112,7 @@ class Supervisor:
             self._tell(EmergencyError(name, code, register, vendor))
 
     def other_master(self, said: str) -> None:
-        """Take in words what another master commanded."""
+        """Report a command that came from another master, ``said`` in words."""
         self._tell(
             OtherMasterError(
                 "bus", f"another controller sent {said}; end it, see to the axes, then reset"

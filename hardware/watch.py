@@ -82,7 +82,7 @@ class Watch:
         self.limit(WatchLimits())
 
     def limit(self, limits: WatchLimits) -> None:
-        """Set the limits."""
+        """Set the limits of shaft speed (Hz) and loads (in each channel's unit)."""
         own = self._shaft.frequency_hz.high if self._shaft is not None else math.inf
         self._highest_hz = OVERSPEED * min(own, limits.frequency_hz)
         self._loads = [

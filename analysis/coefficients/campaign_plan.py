@@ -51,7 +51,7 @@ class Request:
 
 
 class GroupKind(StrEnum):
-    """How a group is solved."""
+    """The form of the equations by which a group of runs is solved."""
 
     LINEAR = "linear"
     NONLINEAR = "nonlinear"
@@ -60,7 +60,7 @@ class GroupKind(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """Runs that are solved together."""
+    """Runs of one speed or frequency that are solved together."""
 
     kind: GroupKind
     cycles: tuple[BodyCycle, ...]

@@ -101,7 +101,7 @@ class CycleProblem:
 
     @property
     def rows(self) -> list[tuple[int, list[int]]]:
-        """Each load that has terms, and which."""
+        """The loads that have terms: the load's row and the numbers of its terms."""
         return [
             (row, [k for k, term in enumerate(self.terms) if term.row == row])
             for row in sorted({term.row for term in self.terms})

@@ -18,7 +18,7 @@ from hardware.description.oscillator import Plane
 
 
 class Form(StrEnum):
-    """How the load is written."""
+    """How loads are written: by added mass and damping, or by derivatives of opposite sign."""
 
     SEAKEEPING = "seakeeping"
     MANOEUVRING = "manoeuvring"

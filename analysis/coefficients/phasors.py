@@ -138,7 +138,7 @@ class Phasors:
 
 
 def joined(first: Phasors, second: Phasors) -> Phasors:
-    """Put phasors side by side."""
+    """Return the phasors of both, those of the first first."""
     return Phasors(
         first.names + second.names,
         first.units + second.units,

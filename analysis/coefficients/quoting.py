@@ -27,7 +27,7 @@ from hardware.description.oscillator import Plane
 
 
 class Names(StrEnum):
-    """Whose names and factors."""
+    """The convention of a coefficient's name and numerical factor."""
 
     PLAIN = "plain"
     ABKOWITZ = "abkowitz"

@@ -74,7 +74,7 @@ class SteadyTurn:
 
     @property
     def speed_m_s(self) -> float:
-        """Of the midpoint."""
+        """Speed of the midpoint between the struts along its circle."""
         return abs(self.turn_rate_rad_s) * self.radius_m
 
 

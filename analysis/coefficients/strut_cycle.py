@@ -100,7 +100,7 @@ class StrutCycle:
 
     @property
     def geometry(self) -> Geometry:
-        """How the run's rig stands."""
+        """Pivot, joint, gauges, drift, heel and speed of the rig in this run."""
         heeled = self.heel is not None and self.heel.gauges is HeelGauges.HEELED
         own = replace(Geometry.of(self.oscillator, self.set_point), gauges_heel=heeled)
         if self.carriage is None:

@@ -57,7 +57,7 @@ class Parts:
 
     @property
     def gain_excess(self) -> float:
-        """That of the gain."""
+        """By how much the gains scatter more than their intervals, as :meth:`excess`."""
         return self.excess(self.gain - 1.0, self.gain_uncertainty, 1)
 
 

@@ -38,7 +38,7 @@ class AmplitudeLaw:
     weight: float
 
     def at(self, amplitude: FloatArray) -> FloatArray:
-        """Return the period at some amplitudes."""
+        """Return the period, s, at some amplitudes."""
         return np.asarray(self.period_s / (1.0 - self.slope * amplitude**self.power))
 
 

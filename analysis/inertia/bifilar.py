@@ -22,14 +22,14 @@ def sway_period(line_m: Value, gravity_m_s2: Value) -> Value:
 def yaw_period(
     gyradius_m: Value, half_spacing_m: Value, line_m: Value, gravity_m_s2: Value
 ) -> Value:
-    """Period of yaw at small angles (eq 5)."""
+    """Period of yaw at small angles, s (eq 5)."""
     return gyradius_m / half_spacing_m * sway_period(line_m, gravity_m_s2)
 
 
 def yaw_gyradius(
     period_s: Value, half_spacing_m: Value, line_m: Value, gravity_m_s2: Value
 ) -> Value:
-    """Gyradius from the period and the lines (eq 6)."""
+    """Gyradius in yaw, m, from the period at small angles and the lines (eq 6)."""
     return period_s * half_spacing_m / (2.0 * math.pi) * sqrt(gravity_m_s2 / line_m)
 
 

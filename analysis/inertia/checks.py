@@ -31,7 +31,7 @@ def check_record(part: UsablePart) -> tuple[Flag, ...]:
 
 
 def check_swings(part: UsablePart) -> tuple[Flag, ...]:
-    """Refuse a stretch of under three swings; flag one of under ten."""
+    """Refuse under three swings (raises DataError); flag under ten."""
     series = part.series
     swings = series.values.size / series.sample_rate_hz / part.period_s
     if swings < FEWEST_SWINGS:

@@ -27,7 +27,7 @@ def lamboley_depth(
 def lamboley_gyradius(
     first_period_s: Value, second_period_s: Value, apart_m: Value, gravity_m_s2: Value
 ) -> Value:
-    """Gyradius from periods about two axes."""
+    """Gyradius about the centre of gravity, m, from periods about two axes ``apart_m`` apart."""
     depth = lamboley_depth(first_period_s, second_period_s, apart_m, gravity_m_s2)
     return pendulum_gyradius(first_period_s, depth, gravity_m_s2)
 

@@ -54,7 +54,7 @@ class DampedMode:
 
     @property
     def damping_ratio(self) -> float:
-        """Share of critical damping."""
+        """Damping over critical damping."""
         omega = 2.0 * math.pi / self.period_s
         return self.decay_1_s / math.hypot(self.decay_1_s, omega)
 

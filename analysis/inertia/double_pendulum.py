@@ -41,7 +41,7 @@ def mode_periods(
 def depth_from_periods(
     slow_period_s: Value, fast_period_s: Value, sway_period_s: Value, gravity_m_s2: Value
 ) -> Value:
-    """Depth ``l_2`` from three periods (eq 18)."""
+    """Depth ``l_2`` of the CG below the suspension points, m, from three periods (eq 18)."""
     line = gravity_m_s2 * sway_period_s * sway_period_s / (4.0 * math.pi**2)
     slow, fast = slow_period_s / sway_period_s, fast_period_s / sway_period_s
     return line * (slow * slow - 1.0) * (1.0 - fast * fast)
@@ -50,7 +50,7 @@ def depth_from_periods(
 def gyradius_from_periods(
     slow_period_s: Value, fast_period_s: Value, sway_period_s: Value, gravity_m_s2: Value
 ) -> Value:
-    """Gyradius from three periods (eq 18)."""
+    """Gyradius in pitch, m, from three periods (eq 18)."""
     line = gravity_m_s2 * sway_period_s * sway_period_s / (4.0 * math.pi**2)
     slow, fast = slow_period_s / sway_period_s, fast_period_s / sway_period_s
     return line * slow * fast * sqrt((slow * slow - 1.0) * (1.0 - fast * fast))
@@ -101,7 +101,7 @@ def pitch_from_periods(
 
 
 class LineLengthReading(StrEnum):
-    """How "best line length" is read."""
+    """How "best line length" is read: for a known depth ``l_2``, or one that is fitted too."""
 
     FIXED = "fixed"  # l_1 and l_2 known: the paper's figures 16 and 17
     JOINT = "joint"  # k and l_2 both from the two periods

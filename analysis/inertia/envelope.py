@@ -9,7 +9,7 @@ _SEEN = 0.5  # of a period's samples; a quarter of them may lie where the motion
 
 
 def end_amplitudes(envelope: FloatArray, first: int, last: int, size: int) -> tuple[float, float]:
-    """Return the amplitude half a period within either end."""
+    """Return the envelope half a period (``size // 2`` samples) within either end."""
     ends = np.clip([first + size // 2, last - size // 2], 0, envelope.size - 1)
     return float(envelope[ends[0]]), float(envelope[ends[1]])
 

@@ -148,7 +148,7 @@ class UsablePart:
     because: str
 
     def cut(self, start_s: float, stop_s: float, because: str) -> "UsablePart":
-        """Return less of it, and why."""
+        """Return the stretch from ``start_s`` to ``stop_s``, and in words why."""
         chosen = cut(self.series, start_s, stop_s)
         size = max(round(self.period_s * chosen.sample_rate_hz), 4)
         envelope = envelope_of(chosen.roughly_even().values, size)

@@ -43,7 +43,7 @@ class Log:
 
 
 def approach(ship: Ship) -> ShipState:
-    """Return straight course at the approach speed."""
+    """Return the state of straight course at the approach speed, all rudders amidships."""
     state = np.zeros((6, ship.count))
     state[U] = ship.approach_m_s
     return ShipState(np.zeros(ship.count), state, np.zeros(ship.count))

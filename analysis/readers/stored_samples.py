@@ -101,7 +101,7 @@ def identity(path: Path) -> tuple[int, int]:
 
 @contextmanager
 def reading(path: Path) -> Iterator[None]:
-    """Turn what the libraries say of a bad file into one clear word."""
+    """Turn what the libraries say of a damaged file into a DataError of one sentence."""
     try:
         yield
     except (OSError, KeyError, RuntimeError, TypeError, ValueError) as error:

@@ -105,7 +105,7 @@ def find_layout(source: TextSource, layout: TextLayout) -> FoundLayout:
 
 
 def layout_of(head: str, layout: TextLayout, where: str) -> FoundLayout:
-    """Find header and data in the first lines of a table, as :func:`find_layout` does.
+    """Find header and data in a table's first lines, as :func:`find_layout`; raises DataError.
 
     Parameters
     ----------

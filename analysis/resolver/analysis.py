@@ -53,7 +53,7 @@ class Analysis:
 
     @property
     def steady_sums(self) -> PeriodSums:
-        """The periods of the stretch."""
+        """The sums of the periods that the steady stretch has."""
         return self.sums[self.stretch.start : self.stretch.stop]
 
 

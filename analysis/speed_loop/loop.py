@@ -92,7 +92,7 @@ class ShaftLoop:
 
     @cached_property
     def stable(self) -> bool:
-        """Whether the closed loop comes to rest."""
+        """Whether all poles of the closed loop lie in the left half plane."""
         return bool(np.all(self.speed_per_setpoint.poles().real < 0.0))
 
     @property

@@ -67,7 +67,7 @@ class LowPass:
         return _low_pass_hold(self, step_s)
 
     def settled(self, value: float) -> FloatArray:
-        """Return the states after a constant input."""
+        """Return the filter's states after a long constant input."""
         return np.linalg.solve(self.system.A, -value * self.system.B[:, 0]).astype(np.float64)
 
 
@@ -119,7 +119,7 @@ class BridgeCarrier:
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def modulation(self, time_s: FloatArray) -> FloatArray | float:
-        """Return what the signal is multiplied by."""
+        """Return the factor by which the carrier multiplies the signal."""
         if self.demodulated:
             return math.cos(self.phase_error_rad)
         phase = 2.0 * math.pi * self.frequency_hz * time_s + self.phase_error_rad

@@ -58,7 +58,7 @@ class Coupled:
         return (*SHAFT, *inner, signals.LOAD_TORQUE)
 
     def start(self, sample_rate_hz: float, seed: int) -> tuple[Any, Any, Any]:
-        """Return the states of the three parts."""
+        """Return the first states of drive, mechanism and hull."""
         return (
             self.drive.start(sample_rate_hz, seed),
             self.mechanism.start(sample_rate_hz, seed),

@@ -71,12 +71,12 @@ class SimulatedDrive(SimulatedNode):
 
     @property
     def speed(self) -> float:
-        """How fast the axis really moves: in Hz, m/s or rad/s."""
+        """The axis's true speed, in Hz, m/s or rad/s."""
         raise AssertionError("a drive knows how fast it moves")
 
     @property
     def torque(self) -> bool:
-        """Whether the drive makes torque."""
+        """Whether the drive's state lets it make torque."""
         return self.state in _WITH_TORQUE
 
     def move(self) -> None:
@@ -92,7 +92,7 @@ class SimulatedDrive(SimulatedNode):
         """Make no torque: inertia and friction alone decide."""
 
     def boot(self) -> None:
-        """Lose power for a moment."""
+        """Restart as after a loss of power: the axis coasts meanwhile."""
         super().boot()
         self.coast()
         self._begin()
@@ -146,7 +146,7 @@ class SimulatedDrive(SimulatedNode):
         self._show()
 
     def cut_torque(self) -> None:
-        """Have the emergency stop pressed."""
+        """Switch the torque off as the emergency stop does, until it is released."""
         self.safe_torque_off = True
         if self.torque or self.state in (DriveState.READY_TO_SWITCH_ON, DriveState.SWITCHED_ON):
             self._enter_state(DriveState.SWITCH_ON_DISABLED)

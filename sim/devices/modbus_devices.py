@@ -86,7 +86,7 @@ class Controller:
                 self._answer(unit, number, request)
 
     def move(self, step_s: float) -> None:
-        """Let the motor go on."""
+        """Advance the motor by ``step_s``; each kind of controller does it its own way."""
         raise AssertionError("a controller has something to move")
 
     @property
@@ -101,7 +101,7 @@ class Controller:
         return register.value([self._words.get((_HOLDING, at), 0) for at in places])
 
     def show(self, register: Number | None, value: float) -> None:
-        """Let a number stand in a register."""
+        """Write a number into a register that is read."""
         if register is None:
             return
         for i, word in enumerate(register.written(value)):

@@ -175,7 +175,7 @@ class Plant:
 
     @property
     def around(self) -> PlantConditions:
-        """The conditions as they are set."""
+        """The conditions outside the rig that hold now."""
         return self._around
 
     def surround(self, **given: Any) -> None:

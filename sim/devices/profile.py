@@ -29,7 +29,7 @@ class SpeedProfile:
 
     @property
     def ramp_s(self) -> float:
-        """How long the ramp takes."""
+        """Duration of the ramp."""
         return abs(self.target_rad_s - self.speed_rad_s) / self.acceleration_rad_s2
 
     def at(self, time_s: FloatArray) -> ShaftMotion:
@@ -92,7 +92,7 @@ class Coasting(SpeedProfile):
 
     @property
     def ramp_s(self) -> float:
-        """How long it coasts."""
+        """Time from the loss of torque to rest."""
         return self.friction.stops_after_s(self.speed_rad_s)
 
     def at(self, time_s: FloatArray) -> ShaftMotion:

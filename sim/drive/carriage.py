@@ -65,7 +65,7 @@ class CarriageMotion:
 
     @property
     def mean_m_s(self) -> float:
-        """The mean speed that it really has."""
+        """The mean speed, the speed's error included."""
         return self.speed_m_s * (1.0 + self.settings.speed_error)
 
     @property

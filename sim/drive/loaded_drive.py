@@ -191,7 +191,7 @@ class LoadedDrive:
 
     @property
     def cogging(self) -> tuple[Cogging, ...]:
-        """Torques that vary with the angle."""
+        """The motor's torques that vary with the shaft's angle."""
         return () if self.motor is None else self.motor.cogging
 
     @property

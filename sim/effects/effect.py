@@ -27,7 +27,7 @@ Lines: TypeAlias = Mapping[tuple[str, float], complex]
 
 
 class StageName(StrEnum):
-    """Where in the chain an effect acts."""
+    """The link of the chain in which an effect acts."""
 
     DRIVE = "drive"
     MECHANISM = "mechanism"
@@ -54,7 +54,7 @@ class DeviationTrace(StrEnum):
 
 
 class FurtherMeasurement(StrEnum):
-    """Measurements other than plain oscillations."""
+    """Measurements besides oscillations that tell effects apart."""
 
     REST = "rest"
     CHECK_WEIGHT = "check-weight"

@@ -79,7 +79,7 @@ class PowerLoop:
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def lag(self, force: FloatArray, branch: Branch) -> FloatArray:
-        """Return what the reading lags by."""
+        """Return by how much the reading lags behind the force, N."""
         half = (branch.highest - branch.lowest) / 2.0
         inside = np.maximum((branch.highest - force) * (force - branch.lowest), 0.0)
         size = self.half_width_n * np.abs(half / self.reference_n) ** self.power
@@ -110,7 +110,7 @@ class SaturatingLoop:
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def lag(self, force: FloatArray, branch: Branch) -> FloatArray:
-        """Return what the reading lags by."""
+        """Return by how much the reading lags behind the force, N."""
         behind = np.where(branch.direction > 0.0, force - branch.lowest, branch.highest - force)
         span = np.exp(-(branch.highest - branch.lowest) / self.distance_n)
         turned = 2.0 * np.exp(-np.maximum(behind, 0.0) / self.distance_n) / (1.0 + span)
@@ -141,7 +141,7 @@ class Curve:
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def added(self, force: FloatArray) -> FloatArray:
-        """Return what is added to the force."""
+        """Return by how much the reading exceeds the force, N."""
         size = self.relative * self.reference_n * np.abs(force / self.reference_n) ** self.power
         return np.sign(force) * size if self.odd else size
 

@@ -68,7 +68,7 @@ class Hull(ModelParameters):
 
     @property
     def reads(self) -> tuple[Signal, ...]:
-        """How struts and carriage move the model."""
+        """Motion of the struts' ends, and the carriage's acceleration where the model surges."""
         gain = (signals.CARRIAGE_ACCELERATION,) if self.surges else ()
         return (*signals.MODEL_MOTION, *gain)
 

@@ -55,7 +55,7 @@ class RollCourse:
 
 
 def rolled(factors: tuple[str, ...], phi: Any, p: Any) -> Any:
-    """Return the product of factors ``phi`` and ``p``."""
+    """Return the product of a term's factors, of heel ``phi`` (rad) and its rate ``p`` (rad/s)."""
     product: Any = 1.0
     for one in factors:
         value = phi if "phi" in one else p

@@ -68,7 +68,7 @@ class Waves:
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def met_in(self, point: SetPoint) -> "MetWaves":
-        """Return those of a run."""
+        """Return the regular waves that the model meets in a run."""
         asked = (point.wave_frequency_hz, point.wave_amplitude_m, point.wave_heading_rad)
         return MetWaves(self, *asked)
 

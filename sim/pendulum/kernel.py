@@ -71,7 +71,7 @@ def rubbing(sign: FloatArray, loads: FloatArray) -> FloatArray:
 
 @compile_loop
 def holding(sign: FloatArray, loads: FloatArray) -> IntArray:
-    """Return the coordinates that friction holds."""
+    """Return the numbers of the coordinates that dry friction holds at rest."""
     stuck, count = np.empty(sign.size, dtype=np.int64), 0
     for i in range(sign.size):
         if loads[i, COULOMB] > 0.0 and sign[i] == 0.0:

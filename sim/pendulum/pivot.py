@@ -114,13 +114,13 @@ class Pendulum:
 
     @property
     def restoring_n_m(self) -> float:
-        """G, with the air's buoyancy taken off."""
+        """G, N m: weight times depth below the pivot, the air's buoyancy taken off."""
         buoyed = 1.0 - self.air.buoyancy_ratio
         return buoyed * self.gravity_m_s2 * self.total_mass_kg * self.lever_m
 
     @property
     def tilting_n_m(self) -> float:
-        """H."""
+        """H, N m: the moment that tilts it at rest."""
         hanging = sum(weight.mass_kg * weight.lever_m for weight in self.weights)
         return self.gravity_m_s2 * hanging + self.restoring_n_m * math.tan(self.offset_rad)
 
