@@ -177,6 +177,7 @@ def _show_steps() -> "Iterator[Progress]":
 
 
 def _check_outputs(options: Mapping[str, Any]) -> None:
+    from pmm.campaign.file_names import CAMPAIGN_FILE
     from pmm.cli.files import check_files, check_folder
 
     for name, option in (("plot", "--plot"), ("simman", "--simman")):
@@ -187,7 +188,10 @@ def _check_outputs(options: Mapping[str, Any]) -> None:
         from pmm.coefficients.memory_file import curves_file
 
         files["--memory (its curves)"] = str(curves_file(Path(memory)))
-    check_files(files, overwrite=options["overwrite"])
+    named = [Path(name) for name in options["campaigns"]]
+    own = [one if one.name == CAMPAIGN_FILE else one / CAMPAIGN_FILE for one in named]
+    read = [("the campaign", one) for one in own]
+    check_files(files, read, overwrite=options["overwrite"])
 
 
 def _written(outcome: "CampaignOutcome", options: Mapping[str, Any]) -> Iterator[str]:

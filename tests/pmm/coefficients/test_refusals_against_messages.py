@@ -235,6 +235,14 @@ def test_a_memory_that_no_permission_allows(
     assert said.endswith(f"no permission to write in {tmp_path}; name another")
 
 
+@pytest.mark.parametrize("option", ["--csv", "--netcdf", "--memory"])
+def test_nothing_is_written_over_the_campaigns_own_file(heave: Path, option: str) -> None:
+    file = heave / "campaign.toml"
+    for named in (heave, file):
+        said = refused(2, named, option, file, "--overwrite")
+        assert said.endswith("the campaign is read from it; name another file")
+
+
 def test_a_memory_that_the_frequencies_do_not_tell(heave: Path, tmp_path: Path) -> None:
     said = refused(1, heave, "--memory", tmp_path / "hull")  # a name without an ending
     assert "not known at four frequencies or more without carriage speed; add runs at" in said
