@@ -11,9 +11,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from benchmarks.boards.worlds import known_effects
+from benchmarks.boards.worlds import known_effects, made
 from tests.sealed.answering import DIAGNOSIS, Asked, answer_case
-from tests.sealed.board import make_one, nulls_of
 from tests.sealed.oracle import answered_as, told
 from tests.sealed.rows import known_rows
 from tests.sealed.scoring.answers import UNKNOWN, Answer, read_answer
@@ -55,9 +54,9 @@ def compared(world: str, index: int, commit: str, size: int) -> Line:
     """
     from benchmarks.boards.judged import scratch
 
-    seed, began = int(commit, 16), time.process_time()
+    began = time.process_time()
     with scratch() as folder:
-        name = make_one((seed, index + 1, nulls_of(seed, size, size)[index], folder, world))
+        name = made(world, index, commit, size, folder)
         _answer(folder, name, (DIAGNOSIS, *known_rows()))
         _answer(told(folder), name, (DIAGNOSIS,))
         answered_as(folder, folder / ORACLE)

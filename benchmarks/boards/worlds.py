@@ -8,6 +8,7 @@ import subprocess
 import time
 from collections.abc import Sequence
 from dataclasses import asdict
+from pathlib import Path
 from typing import Any, Final
 
 from benchmarks.machine import ROOT
@@ -59,9 +60,8 @@ def marked(world: str, index: int, commit: str, size: int = CASES) -> Line:
     """
     from benchmarks.boards.judged import scratch
 
-    seed = int(commit, 16)
     with scratch() as folder:
-        name = make_one((seed, index + 1, nulls_of(seed, size, size)[index], folder, world))
+        name = made(world, index, commit, size, folder)
         (folder / "answers").mkdir()
         began = time.process_time()
         answer_case(Asked(folder, name, (DIAGNOSIS,)))
@@ -71,6 +71,12 @@ def marked(world: str, index: int, commit: str, size: int = CASES) -> Line:
         marks = marks_of(entry_of(answer, truth))
     line = {"campaign": world, "seed": index, "frozen": commit, **asdict(marks)}
     return {**line, "cpu_s": round(taken_s, 2)}
+
+
+def made(world: str, index: int, commit: str, size: int, board: Path) -> str:
+    """Make a case as :func:`marked` names it, with its key, on a board; return its name."""
+    seed = int(commit, 16)
+    return make_one((seed, index + 1, nulls_of(seed, size, size)[index], board, world))
 
 
 def known_effects() -> frozenset[str]:

@@ -1,6 +1,5 @@
 """Fit hypotheses through the simulator: effects where they physically act, coefficients free."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,7 +18,6 @@ from hardware.description.arrays import BoolArray, FloatArray
 # Of a posterior deviation, by which slopes are found: over the whole of one they change by up to
 # 0.8 of themselves, over this by 0.01, and rounding is a millionth of it.
 FINE: Final = 0.01
-FURTHER: Final = 3.0  # times as far as a first look at a change, it leads at most
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,19 +183,6 @@ def relinearised(problem: Compared, fit: Fit) -> Fit:
     slopes = _slopes(problem, fit.candidates, fit.units, fit.signature, steps)
     columns = np.column_stack([fit.columns[:, :0], *slopes])
     return weighed_at(problem, fit.candidates, fit.units, columns, fit.signature)
-
-
-def in_reach(fit: Fit, change: float, least: float) -> bool:
-    """Tell whether a change of a fit, and twice as much again, could bring it down to a rival.
-
-    Parameters
-    ----------
-    change
-        Its size in sigma, of all observations together.
-    least
-        Cost of the rival.
-    """
-    return math.sqrt(fit.cost) - FURTHER * change < math.sqrt(least)
 
 
 def is_sized(parts: tuple[Candidate, ...], units: FloatArray) -> bool:

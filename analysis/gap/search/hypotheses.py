@@ -120,7 +120,7 @@ def _completed(
     for one in formed[:LEADERS]:
         moved.append(together(problem, free, in_form(problem, one, least), least))
         least = min(least, moved[-1].cost)
-    ones = [with_forms(problem, one) for one in (*moved, *fits[LEADERS:])]
+    ones = [*(with_forms(problem, one) for one in moved), *formed[LEADERS:]]
     return sorted(ones, key=lambda one: -one.log_evidence)
 
 

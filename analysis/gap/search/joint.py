@@ -18,8 +18,8 @@ from analysis.gap.forward.free_numbers import Free, with_coefficients
 from analysis.gap.forward.problem import Problem, built
 from analysis.gap.forward.simulator import Simulator
 from analysis.gap.inference.gaussian import Nuisances, left_over
-from analysis.gap.search.fit import Fit, in_reach, weighed_at
-from analysis.gap.search.refinement import anew, follow
+from analysis.gap.search.fit import Fit, weighed_at
+from analysis.gap.search.refinement import anew, follow, in_reach
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect, Parameter

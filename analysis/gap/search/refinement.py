@@ -1,5 +1,6 @@
 """Improve a fit through the simulator, by damped Gauss-Newton steps."""
 
+import math
 from typing import Final
 
 from analysis.gap.forward.problem import Compared
@@ -20,6 +21,7 @@ _FULFILLED: Final = 0.5  # share of a step's promise within which, and its inver
 # Chi-square that a further step promises at which a fit has arrived: the parameters are then within
 # 0.03 of their uncertainty of where they belong.
 _SETTLED: Final = 1e-3
+_FURTHER: Final = 3.0  # times as far as a first look at a change, it leads at most
 
 
 def refine(problem: Compared, fit: Fit) -> Fit:
@@ -85,6 +87,19 @@ def stepped(problem: Compared, fit: Fit, steps: int) -> Fit:
             break
         best = better
     return best
+
+
+def in_reach(fit: Fit, change: float, least: float) -> bool:
+    """Tell whether a change of a fit, and twice as much again, could bring it down to a rival.
+
+    Parameters
+    ----------
+    change
+        Its size in sigma, of all observations together.
+    least
+        Cost of the rival.
+    """
+    return math.sqrt(fit.cost) - _FURTHER * change < math.sqrt(least)
 
 
 def _step(problem: Compared, fit: Fit) -> tuple[Fit | None, float]:
