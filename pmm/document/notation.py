@@ -9,12 +9,18 @@ _NEGLIGIBLE: Final = 1e-8  # of a value: its digits would run on without saying 
 _SIGNIFICANT: Final = 4  # digits where no interval says how many
 _NAMED: Final = 12  # names in one line; JSON holds all
 _PLACES: Final = 6  # before and behind the point; others are written with a power of ten
+_ANGLE_PLACES: Final = 9  # of degrees: no encoder tells a millionth
 _OPEN_DEG: Final = 90.0  # half-width of a phase that is not known
 
 
 def written(form: str, unit: str = "") -> Callable[[float], str]:
     """Return how a number is written by a format; one that is not known is a dash."""
     return lambda value: f"{value:{form}}{unit}" if math.isfinite(value) else NOT_KNOWN
+
+
+def degrees(angle_rad: float) -> str:
+    """Return an angle in degrees, in four digits; what only rounding makes of none is 0."""
+    return f"{round(math.degrees(angle_rad), _ANGLE_PLACES):z.{_SIGNIFICANT}g}"
 
 
 def percent(form: str) -> Callable[[float], str]:

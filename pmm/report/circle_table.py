@@ -1,12 +1,11 @@
 """The runs on a circle: how each was driven, and what held the model."""
 
-import math
 from collections.abc import Sequence
 from typing import Final
 
 from analysis.coefficients.steady_turns import SteadyTurn
 from pmm.document.content import Column, Table, data_only, number, word
-from pmm.document.notation import rounded, written
+from pmm.document.notation import degrees, rounded, written
 
 
 def _known(value: float, uncertainty: float) -> str:
@@ -19,7 +18,7 @@ _CIRCLES: Final[tuple[Column[SteadyTurn], ...]] = (
     Column("r", lambda one: _known(one.turn_rate_rad_s, one.u_turn_rate_rad_s), unit="rad/s",
            number=True),
     number("U", "speed_m_s", written(".4g"), "m/s"),
-    Column("drift", lambda one: f"{math.degrees(one.drift_rad):.3g}", unit="deg", number=True),
+    Column("drift", lambda one: degrees(one.drift_rad), unit="deg", number=True),
     Column("force", lambda one: rounded(one.force_n, one.u_force_n), unit="N", number=True),
     Column("moment", lambda one: rounded(one.moment_n_m, one.u_moment_n_m), unit="N m",
            number=True),

@@ -21,7 +21,7 @@ from pmm.document.content import (
     number,
     word,
 )
-from pmm.document.notation import rounded, written
+from pmm.document.notation import degrees, rounded, written
 from pmm.evaluation.control_chart import Chart
 from pmm.evaluation.evaluation import Evaluation
 from pmm.evaluation.rig_tests import GaugeResponse, GaugeZeros, RungMode, TowedSpeed
@@ -146,7 +146,7 @@ def _tows(found: Sequence[Tow]) -> Table[Tow]:
     columns = (
         word("run", "run"),
         number("U", "speed_m_s", written("g"), "m/s"),
-        Column[Tow]("drift", lambda one: f"{math.degrees(one.drift_rad):.3g}", unit="deg",
+        Column[Tow]("drift", lambda one: degrees(one.drift_rad), unit="deg",
                     number=True),
         load("force", "force_n", "N"),
         load("moment", "moment_n_m", "N m"),

@@ -27,7 +27,7 @@ from pmm.document.content import (
     word,
 )
 from pmm.document.flag_lines import flag_notes
-from pmm.document.notation import between, rounded, written
+from pmm.document.notation import between, degrees, rounded, written
 from pmm.report.conditions import NOTE, condition_columns
 from pmm.report.steering_figure import steering_figure
 from pmm.steering.plausibility import doubts
@@ -196,7 +196,7 @@ def _wakes(found: CampaignSteering, factor: float) -> Table[_Wake]:
     ]
     columns: tuple[Column[_Wake], ...] = (
         number("U", "speed_m_s", written(".4g"), "m/s"),
-        number("drift", "drift_deg", written(".3g"), "deg"),
+        number("drift", "drift_deg", written("z.3g"), "deg"),
         number("r", "turning_rad_s", written(".3g"), "rad/s"),
         Column("w_P", lambda one: rounded(one.wake, factor * one.standard_uncertainty),
                number=True),
@@ -221,10 +221,10 @@ def _tows(found: CampaignSteering, factor: float) -> Table[SteeredRun]:
 
     columns: tuple[Column[SteeredRun], ...] = (
         word("run", "run"),
-        Column("drift", lambda one: f"{math.degrees(one.drift_rad):.3g}", unit="deg",
+        Column("drift", lambda one: degrees(one.drift_rad), unit="deg",
                number=True),
         Column("r", lambda one: f"{one.motion[2]:.3g}", unit="rad/s", number=True),
-        Column("rudder", lambda one: f"{math.degrees(one.rudder_rad):.4g}", unit="deg",
+        Column("rudder", lambda one: degrees(one.rudder_rad), unit="deg",
                number=True),
         number("n", "rate_hz", written(".4g"), "1/s"),
         load("X", 0, "N"),

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pmm.document.notation import between, is_open, rounded
+from pmm.document.notation import between, degrees, is_open, rounded
 from pmm.harmonics.rows import floored
 
 
@@ -73,6 +73,15 @@ def test_what_is_printed_is_the_value_within_its_interval(value: float, half_wid
 )
 def test_what_rounding_leaves_is_floored(value: float, half_width: float, text: str) -> None:
     assert rounded(*floored(value, half_width, 20.0)) == text
+
+
+@pytest.mark.parametrize(
+    ("angle_rad", "text"),
+    [(8.8e-17, "0"), (-8.8e-17, "0"), (-0.0, "0"), (math.radians(-8.0), "-8"),
+     (math.radians(12.3456), "12.35"), (math.radians(1e-4), "0.0001")],
+)  # fmt: skip
+def test_an_angle_of_rounding_is_none(angle_rad: float, text: str) -> None:
+    assert degrees(angle_rad) == text
 
 
 def test_a_phase_is_open_beyond_a_right_angle_or_without_an_amplitude() -> None:
