@@ -64,7 +64,7 @@ class Spoiled:
     @property
     def said(self) -> str:
         """By how much it is off, in per cent with its sign."""
-        return f"{self.per_cent:+.2g} %"
+        return f"{float(f'{self.per_cent:.2g}'):+g} %"
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import numpy as np
 from analysis.steering.inflow import INFLOW, behind
 from analysis.steering.observations import SteeringRuns
 from hardware.description.arrays import FloatArray
+from pmm.document.notation import degrees
 from pmm.document.style import PALETTE, TRACE, drawn
 from pmm.steering.workflow import CampaignSteering
 
@@ -35,12 +36,12 @@ def _normal_force(axes: "Axes", found: CampaignSteering) -> None:
         _looks(), drawn.items(), strict=False
     ):
         u, v, r = runs.motions[:, condition]
-        drift, turning = np.degrees(np.arctan2(-v, u)), r * found.known.length_m / np.hypot(u, v)
+        drift, turning = degrees(np.arctan2(-v, u)), r * found.known.length_m / np.hypot(u, v)
         angles = np.degrees(runs.rudder_rad[rows])
         axes.errorbar(
             angles, runs.values[4, rows], 2.0 * runs.uncertainty[4, rows], fmt=mark, color=colour,
             markersize=3.5,
-            label=f"{round(drift, 6):.3g}°, {round(turning, 6):.2g}, {rate:.3g} 1/s",
+            label=f"{drift}°, {round(turning, 6):z.2g}, {rate:.3g} 1/s",
         )  # fmt: skip
         if (curve := _fitted(found, condition, rate, angles)) is not None:
             axes.plot(*curve, line, color=colour)

@@ -220,7 +220,7 @@ def gap_of(
     size = np.where(rows, np.abs(left), 0.0)
     worst = int(np.argmax(size))
     run = stack.runs[stack.run[worst]].name
-    said = f"{run}: {stack.components[worst]} {left[worst]:+.1f} u"
+    said = f"{run}: {stack.components[worst]} {left[worst]:+z.1f} u"
     stated = math.nan if whole is None else _rms(whole[rows])
     return Gap(what, _rms(left[rows]), int(rows.sum()), said, stated)
 
