@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from analysis.gap.forward.free_numbers import tolerated
+from analysis.gap.search.joint import with_numbers
 from hardware.description.arrays import FloatArray
 from pmm.gap.examination import Examined
 from pmm.gap.hull_report import HULL, Convention, Reported, reported
@@ -170,7 +171,7 @@ def _fits(examined: Examined) -> tuple[_Fit, _Fit | None]:
     """Return the fit without and with the effect that is named; ``None`` where none is.
 
     Of coefficients that are the same in all runs, on a rig that only its settings are off of: so
-    they are what ``pmm coefficients`` finds.
+    they are what ``pmm coefficients`` finds. With an effect they do what they do where it acts.
     """
     problem, cause = examined.diagnosis.problem, examined.cause
     same = replace(examined.ready.case.tolerances, **dict.fromkeys(_CHANGING, 0.0))
@@ -178,8 +179,10 @@ def _fits(examined: Examined) -> tuple[_Fit, _Fit | None]:
     plain = _fitted(examined, problem.residual, held)
     if cause is None:
         return plain, None
-    both = np.hstack((held, cause.columns))
-    return plain, _fitted(examined, cause.linearised(problem.residual), both)
+    whole, count = with_numbers(problem, examined.free, cause), len(examined.free)
+    own, numbers = whole.columns[:, :-count], whole.columns[:, -count:]
+    both = np.hstack((numbers, held[:, count:], own))
+    return plain, _fitted(examined, whole.linearised(problem.residual), both)
 
 
 def _fitted(examined: Examined, residual: FloatArray, columns: FloatArray) -> _Fit:

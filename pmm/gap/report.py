@@ -124,7 +124,7 @@ def _notes(examined: Examined, odd: str) -> Iterator[str]:
     if examined.cause is not None:
         yield from _of_cause(examined, examined.cause)
         return
-    pulled = coefficient_shift(examined.diagnosis.problem, None)
+    pulled = coefficient_shift(examined.diagnosis.problem)
     beyond = [f"{name} {units:+.1f}" for name, units in pulled.items() if abs(units) > FAR]
     if beyond:
         yield f"off by so many tolerances, if no effect is there: {', '.join(beyond)}"

@@ -133,7 +133,7 @@ def _shown(problem: Problem) -> dict[str, dict[str, float]]:
     columns = problem.nuisances.columns
     covariance = np.linalg.inv(np.eye(columns.shape[1]) + columns.T @ columns)
     spread = np.sqrt(np.diagonal(covariance))
-    pairs = zip(coefficient_shift(problem, None).items(), spread.tolist(), strict=False)
+    pairs = zip(coefficient_shift(problem).items(), spread.tolist(), strict=False)
     return {name: {"tolerances": off, "u": own} for (name, off), own in pairs if own < _LEARNT}
 
 

@@ -12,7 +12,7 @@ from analysis.gap.forward.simulator import Simulator
 from analysis.gap.forward.tolerances import Tolerances
 from analysis.gap.inference.answers import COEFFICIENTS, NONE, Answers, effects_in
 from analysis.gap.judge.leading import leading
-from analysis.gap.judge.verdict import coefficient_shift, equivalents, stage_probabilities
+from analysis.gap.judge.verdict import equivalents, stage_probabilities
 from analysis.gap.judge.withheld import Predicted, Shrinkage, predict_withheld, shrinkage
 from analysis.gap.locate.walk import Walk, walk
 from analysis.gap.observe.components import GapRun, Part, Stack
@@ -68,8 +68,6 @@ class Diagnosis:
     classes
         What these runs cannot tell from each effect of ``best``, beside the other if there are two,
         with sigma left.
-    shift
-        Prior deviations by which each coefficient and setting moves.
     before, after
         Withheld runs predicted without and with the best hypothesis.
     """
@@ -81,7 +79,6 @@ class Diagnosis:
     best: Fit | None
     rival: Fit | None
     classes: Mapping[str, tuple[tuple[str, float], ...]]
-    shift: Mapping[str, float]
     before: tuple[Predicted, ...]
     after: tuple[Predicted, ...]
     shrinkage: Shrinkage | None
@@ -178,7 +175,6 @@ def _concluded(
         best,
         rival,
         classes,
-        coefficient_shift(problem, best),
         before,
         after,
         shrinkage(before, after) if named else None,

@@ -109,7 +109,7 @@ def stage_probabilities(found: Answers, catalogue: Mapping[str, type[Effect]]) -
     return {name: value / total for name, value in shares.items()} if total > 0.0 else {}
 
 
-def coefficient_shift(problem: Problem, fit: Fit | None) -> dict[str, float]:
-    """Return by how many tolerances each free number moves from what is stated, beside a fit."""
-    fitted = problem.nuisances.fitted(problem.stated - (0.0 if fit is None else fit.signature))
+def coefficient_shift(problem: Problem) -> dict[str, float]:
+    """Return by how many tolerances each free number moves from what is stated, without effects."""
+    fitted = problem.nuisances.fitted(problem.stated)
     return {name: float(value) for name, value in zip(problem.free, fitted, strict=False)}

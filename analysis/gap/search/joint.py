@@ -41,24 +41,44 @@ def together(problem: Problem, free: Sequence[Free], fit: Fit, least: float = ma
     least
         Cost of a rival. What the coefficients cannot bring down to it is simulated once.
     """
-    dear = len(fit.candidates) > 1 and fit.is_costly
-    if dear or not free or not any(one.repeats for one in fit.candidates):
+    if _is_dear(fit) or not free or not any(one.repeats for one in fit.candidates):
         return fit
     whole, count = _Whole(problem, free), len(free)
     columns = problem.nuisances.columns[:, :count]
     shared = problem.nuisances.fitted(problem.residual - fit.signature)[:count]
-    parts, units = (*fit.candidates, whole.numbers), np.concatenate((fit.units, shared))
     try:
-        signature = whole.signature(parts, units)
+        found = whole.begun(fit, shared)
     except PmmError:
         return fit
-    found = weighed_at(whole, parts, units, np.hstack((fit.columns, columns)), signature)
-    beyond = left_over(signature - fit.signature - columns @ shared, problem.nuisances)
+    beyond = left_over(found.signature - fit.signature - columns @ shared, problem.nuisances)
     if beyond > _LEVEL and in_reach(found, beyond, least):
         found = follow(whole, anew(whole, found), _STEPS)
     own, shared = found.units[:-count], found.units[-count:]
     signature = found.signature - columns @ shared
     return weighed_at(problem, fit.candidates, own, found.columns[:, :-count], signature)
+
+
+def with_numbers(problem: Problem, free: Sequence[Free], fit: Fit) -> Fit:
+    """Return a fit with the free numbers as parameters behind its own, linearised where they are.
+
+    Of a pair with an effect that is costly to simulate the slopes stay as they were.
+
+    Parameters
+    ----------
+    free
+        The nuisances' first columns.
+    """
+    whole = _Whole(problem, free)
+    shared = problem.nuisances.fitted(problem.residual - fit.signature)[: len(free)]
+    try:
+        found = whole.begun(fit, shared)
+    except PmmError:  # beyond what a rig can be; as it is believed to be it has been simulated
+        found = whole.begun(fit, np.zeros(len(free)))
+    return found if _is_dear(fit) else anew(whole, found)
+
+
+def _is_dear(fit: Fit) -> bool:
+    return len(fit.candidates) > 1 and fit.is_costly
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +114,19 @@ class _Whole:
         own, shared = units[: -len(self.free)], units[-len(self.free) :]
         there = FittedRig.of(self.problem, self.free, shared)
         return there.change(built(parts[:-1], own))
+
+    def begun(self, fit: Fit, shared: FloatArray) -> Fit:
+        """Return a fit with the free numbers at some units, each with the slopes that it has.
+
+        Raises
+        ------
+        PmmError
+            If they cannot be simulated together.
+        """
+        parts, units = (*fit.candidates, self.numbers), np.concatenate((fit.units, shared))
+        columns = self.problem.nuisances.columns[:, : len(shared)]
+        signature = self.signature(parts, units)
+        return weighed_at(self, parts, units, np.hstack((fit.columns, columns)), signature)
 
 
 @dataclass(frozen=True, eq=False)
