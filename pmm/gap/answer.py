@@ -48,19 +48,19 @@ def answer(
     named = named_answer(diagnosis)
     best = named.best
     foretold = _Foretold(diagnosis.problem, named, held_out, free, tolerances)
-    found: dict[str, Any] = {
+    table: dict[str, Any] = {
         "schema": SCHEMA,
         "case": name,
         "probabilities": _summing_to_one(diagnosis.answers.by_answer),
         "stages": _summing_to_one(diagnosis.stages) if best is not None else {},
         "classes": [
-            sorted([own, *(other for other, _ in alike)])
-            for own, alike in diagnosis.classes.items()
+            sorted([effect, *(twin for twin, _ in alike)])
+            for effect, alike in diagnosis.classes.items()
         ],
         "effects": [] if best is None else list(effect_rows(best)),
         "next_run": None if not diagnosis.proposals else next_run(diagnosis.proposals[0]),
     }
-    return found | foretold.as_dict()
+    return table | foretold.as_dict()
 
 
 def _summing_to_one(shares: Mapping[str, float]) -> dict[str, float]:
@@ -74,7 +74,7 @@ def effect_rows(fit: Fit) -> Iterator[dict[str, Any]]:
     spread = np.sqrt(np.diagonal(fit.posterior.covariance))
     at = 0
     for candidate in fit.candidates:
-        forms = {one.name for one in candidate.kind.parameters() if one.forms}
+        forms = {parameter.name for parameter in candidate.kind.parameters() if parameter.forms}
         held = {name: value for name, value in candidate.held.items() if name not in forms}
         parameters = {name: _fixed(value) for name, value in held.items()}
         for axis in candidate.axes:
@@ -91,27 +91,27 @@ def _fixed(value: float) -> dict[str, float]:
     return {"value": value, "low": value, "high": value}
 
 
-def next_run(one: Proposal) -> dict[str, Any]:
+def next_run(proposal: Proposal) -> dict[str, Any]:
     """Return a proposed run as the plan and the sealed rig take it."""
-    if one.set_point is None:
-        return {"kind": str(one.kind), **_besides(one)}
+    if proposal.set_point is None:
+        return {"kind": str(proposal.kind), **_besides(proposal)}
     return {
-        "kind": one.kind,
-        "frequency_hz": one.set_point.frequency_hz,
-        "eccentricity_m": one.set_point.eccentricity_m,
-        "strut_phase_rad": one.set_point.strut_phase_rad,
-        "carriage_speed_m_s": one.set_point.carriage_speed_m_s,
-        "medium": one.set_point.medium.value,
-        "drift_rad": one.set_point.drift_rad,
-        "preload_n": one.force_n,
+        "kind": proposal.kind,
+        "frequency_hz": proposal.set_point.frequency_hz,
+        "eccentricity_m": proposal.set_point.eccentricity_m,
+        "strut_phase_rad": proposal.set_point.strut_phase_rad,
+        "carriage_speed_m_s": proposal.set_point.carriage_speed_m_s,
+        "medium": proposal.set_point.medium.value,
+        "drift_rad": proposal.set_point.drift_rad,
+        "preload_n": proposal.force_n,
     }
 
 
-def _besides(one: Proposal) -> dict[str, Any]:
-    if one.kind == FurtherMeasurement.CHECK_WEIGHT:
-        return {"weight_n": one.force_n, "strut": one.strut}
-    if one.kind == FurtherMeasurement.INJECTION:
-        return {"frequency_hz": INJECTED_HZ, "force_n": one.force_n}
+def _besides(proposal: Proposal) -> dict[str, Any]:
+    if proposal.kind == FurtherMeasurement.CHECK_WEIGHT:
+        return {"weight_n": proposal.force_n, "strut": proposal.strut}
+    if proposal.kind == FurtherMeasurement.INJECTION:
+        return {"frequency_hz": INJECTED_HZ, "force_n": proposal.force_n}
     return {}
 
 
@@ -126,8 +126,8 @@ class _Foretold:
         free: Sequence[Free],
         tolerances: Tolerances,
     ) -> None:
-        self._names = [one.name for one in held_out]
-        runs = [planned(problem, one.set_point, at) for at, one in enumerate(held_out)]
+        self._names = [run.name for run in held_out]
+        runs = [planned(problem, run.set_point, at) for at, run in enumerate(held_out)]
         self._there = further(problem, runs, free, tolerances) if runs else None
         self._problem, self._named = problem, named
 
@@ -147,15 +147,20 @@ class _Foretold:
             "shrinkage": {"value": middle, "low": low, "high": high},
         }
 
-    def _controls(self, there: Problem) -> dict[str, Any]:
+    def _controls(self, further_problem: Problem) -> dict[str, Any]:
         """Return what the second best answer and a free polynomial foretell."""
-        problem, stack = self._problem, there.simulator.stack
-        free = forecast(problem, there, polynomial(problem), polynomial_ahead(problem, there))
-        found = {"after_polynomial": self._runs(stack, free.values(there))}
+        problem, stack = self._problem, further_problem.simulator.stack
+        free = forecast(
+            problem,
+            further_problem,
+            polynomial(problem),
+            polynomial_ahead(problem, further_problem),
+        )
+        controls = {"after_polynomial": self._runs(stack, free.values(further_problem))}
         if self._named.rival is not None:
-            second = forecast(problem, there, self._named.rival)
-            found["after_rival"] = self._runs(stack, second.values(there))
-        return found
+            second = forecast(problem, further_problem, self._named.rival)
+            controls["after_rival"] = self._runs(stack, second.values(further_problem))
+        return controls
 
     def _runs(self, stack: Stack, values: FloatArray) -> dict[str, Any]:
         return {name: harmonics(stack, values, number) for number, name in enumerate(self._names)}
@@ -163,16 +168,18 @@ class _Foretold:
 
 def harmonics(stack: Stack, values: FloatArray, run: int) -> dict[str, Any]:
     """Return a run's components by channel: mean, in-phase and quadrature parts by order."""
-    found: dict[str, dict[str, Any]] = {}
+    channels: dict[str, dict[str, Any]] = {}
     for at in np.flatnonzero(stack.run == run):
-        one = stack.components[at]
-        if not one.channel:
+        component = stack.components[at]
+        if not component.channel:
             continue
-        channel = found.setdefault(one.channel, {"mean": 0.0, "in_phase": [], "quadrature": []})
-        if one.part is Part.MEAN:
+        channel = channels.setdefault(
+            component.channel, {"mean": 0.0, "in_phase": [], "quadrature": []}
+        )
+        if component.part is Part.MEAN:
             channel["mean"] = float(values[at])
         else:
-            channel["in_phase" if one.part is Part.IN_PHASE else "quadrature"].append(
+            channel["in_phase" if component.part is Part.IN_PHASE else "quadrature"].append(
                 float(values[at])
             )
-    return found
+    return channels

@@ -40,7 +40,9 @@ class Added:
 
 def stated(effect: Effect) -> dict[str, float]:
     """Return an effect's parameters, without those of forms that it does not have."""
-    forms = {one.name: one.typical for one in effect.parameters() if one.forms}
+    forms = {
+        parameter.name: parameter.typical for parameter in effect.parameters() if parameter.forms
+    }
     return {key: value for key, value in asdict(effect).items() if forms.get(key) != value}
 
 
@@ -74,13 +76,13 @@ def append_tables(path: Path, tables: Sequence[str], read: Callable[[Path], obje
         except ConfigurationError:
             written.unlink()
             raise
-        kept = free_name(path, "")
-        kept.write_text(old, encoding="utf-8")
+        old_path = free_name(path, "")
+        old_path.write_text(old, encoding="utf-8")
         written.replace(path)
-    return kept
+    return old_path
 
 
-def refuse_twice(path: Path, there: Collection[str], names: Collection[str]) -> None:
+def refuse_twice(path: Path, present_names: Collection[str], names: Collection[str]) -> None:
     """Refuse effects that a file has already.
 
     Raises
@@ -88,7 +90,7 @@ def refuse_twice(path: Path, there: Collection[str], names: Collection[str]) -> 
     ConfigurationError
         Naming them.
     """
-    twice = sorted(set(there) & set(names))
+    twice = sorted(set(present_names) & set(names))
     if twice:
         raise ConfigurationError(
             f"{path}: {', '.join(twice)} is in [[effects]] already; take it out first, so that its "

@@ -32,20 +32,20 @@ def records_at_rest(
     sensors
         Channels to use; all if empty.
     """
-    found: list[GapRun] = []
+    runs: list[GapRun] = []
     left_out: dict[str, str] = {}
     damaged: dict[str, tuple[Flag, ...]] = {}
-    for one in campaign.at_rest:
-        if one.kind is not RunKind.ZERO:
+    for record in campaign.at_rest:
+        if record.kind is not RunKind.ZERO:
             continue
         try:
-            check_recorded_alike(one)
-            recording = open_recording(RecordingSource.of(campaign, one, folder))
-            damaged |= damage_of(one.name, recording)
-            found.append(_observed(campaign, one, recording, sensors))
+            check_recorded_alike(record)
+            recording = open_recording(RecordingSource.of(campaign, record, folder))
+            damaged |= damage_of(record.name, recording)
+            runs.append(_observed(campaign, record, recording, sensors))
         except (PmmError, OSError) as error:
-            left_out[one.name] = str(error).removeprefix(f"{one.name}: ")
-    return tuple(found), left_out, damaged
+            left_out[record.name] = str(error).removeprefix(f"{record.name}: ")
+    return tuple(runs), left_out, damaged
 
 
 def check_recorded_alike(run: Run | AtRest) -> None:
@@ -67,19 +67,19 @@ def damage_of(name: str, recording: Recording) -> dict[str, tuple[Flag, ...]]:
 
 
 def _observed(
-    campaign: Campaign, one: AtRest, recording: Recording, sensors: Sequence[str]
+    campaign: Campaign, record: AtRest, recording: Recording, sensors: Sequence[str]
 ) -> GapRun:
     names = [name for name in recording.channel_names if not sensors or name in sensors]
     recording = recording.select(names)
-    if not _place_matters_not(campaign, one, recording):
+    if not _place_matters_not(campaign, record, recording):
         raise DataError(
             f"no channel {' and '.join(DISPLACEMENTS)} tells where its struts stand, and the "
             "water pushes them back"
         )
-    return run_at_rest(recording, place_in(campaign, one), one.set_point)
+    return run_at_rest(recording, place_in(campaign, record), record.set_point)
 
 
-def _place_matters_not(campaign: Campaign, one: AtRest, recording: Recording) -> bool:
+def _place_matters_not(campaign: Campaign, record: AtRest, recording: Recording) -> bool:
     """Tell whether it is known where the struts stand, or makes no difference."""
-    restored = one.medium is Medium.WATER and any(map(any, campaign.hull.restoring))
+    restored = record.medium is Medium.WATER and any(map(any, campaign.hull.restoring))
     return not restored or {*DISPLACEMENTS} <= {*recording.channel_names}

@@ -107,8 +107,8 @@ def read_case(file: Path) -> Case:
     case = validate(Case, table, faults)
     if case is None or faults:
         raise as_error(path, faults, table)
-    given = {name: value for name, (value, _) in stated_tolerances(file).items()}
-    return replace(case, tolerances=Tolerances(**given))
+    tolerances = {name: value for name, (value, _) in stated_tolerances(file).items()}
+    return replace(case, tolerances=Tolerances(**tolerances))
 
 
 def stated_tolerances(file: Path) -> dict[str, tuple[float, str]]:
@@ -124,19 +124,19 @@ def stated_tolerances(file: Path) -> dict[str, tuple[float, str]]:
     ConfigurationError
         If both state a key, with other values.
     """
-    own, beside = file.parent / CASE_FILE, (file, file.parent / CASE_FILE)
+    case_file, beside = file.parent / CASE_FILE, (file, file.parent / CASE_FILE)
     tables = {path.name: _tolerances_of(path) for path in beside if path.exists()}
-    found: dict[str, tuple[float, str]] = {}
+    tolerances: dict[str, tuple[float, str]] = {}
     for name, table in tables.items():
         for key, value in table.items():
-            before, where = found.get(key, (value, name))
+            before, where = tolerances.get(key, (value, name))
             if before != value:
                 raise ConfigurationError(
-                    f"{own}: tolerances.{key} = {value:g}, and {before:g} in {where}; state it in "
-                    "one of the two"
+                    f"{case_file}: tolerances.{key} = {value:g}, and {before:g} in {where}; "
+                    "state it in one of the two"
                 )
-            found[key] = value, name
-    return found
+            tolerances[key] = value, name
+    return tolerances
 
 
 def _tolerances_of(path: Path) -> dict[str, float]:

@@ -136,39 +136,41 @@ class CauseGoal:
         DataError
             If the campaign cannot be diagnosed, or no runs can be proposed for it.
         """
-        there = self.place.standing()
-        look = Look(there.runs, there.time_s, (), notes=there.notes)
-        if there.given:
-            return self._kept(look, (*there.given, *there.left))
-        found = self.found()
-        look = replace(look, causes=found.causes, notes=(*there.notes, *found.said))
-        if found.sure > SURE:
-            return replace(look, ending=Ending.KNOWN, remark=found.known)
-        if there.left:
-            return self._kept(look, there.left)
-        if not found.suggestions and not found.outside:
+        standing = self.place.standing()
+        look = Look(standing.runs, standing.time_s, (), notes=standing.notes)
+        if standing.given:
+            return self._kept(look, (*standing.given, *standing.left))
+        diagnosis = self.found()
+        look = replace(look, causes=diagnosis.causes, notes=(*standing.notes, *diagnosis.said))
+        if diagnosis.sure > SURE:
+            return replace(look, ending=Ending.KNOWN, remark=diagnosis.known)
+        if standing.left:
+            return self._kept(look, standing.left)
+        if not diagnosis.suggestions and not diagnosis.outside:
             raise DataError(
                 "no runs can be proposed; [oscillator] in the campaign file, or [rig] in a "
                 "case.toml beside it, says what the rig can do"
             )
-        return self._next(look, there, found)
+        return self._next(look, standing, diagnosis)
 
     def _kept(self, look: Look, runs: Sequence[RunPlan]) -> Look:
         return replace(look, kept=tuple(runs), left_s=math.fsum(self.place.costs_s(runs)))
 
-    def _next(self, look: Look, there: Standing, found: Found) -> Look:
+    def _next(self, look: Look, standing: Standing, diagnosis: Found) -> Look:
         """Return the look with the runs that are proposed, or why there are none."""
-        worth = (one for one in found.suggestions if one.gain >= self.least)
+        worth = (
+            suggestion for suggestion in diagnosis.suggestions if suggestion.gain >= self.least
+        )
         offered = self.place.offered(
-            [one for one in worth if one.set_point not in there.set_points]
+            [suggestion for suggestion in worth if suggestion.set_point not in standing.set_points]
         )
         if not offered:
-            return replace(look, ending=Ending.EXHAUSTED, remark=_exhausted(self.least, found))
+            return replace(look, ending=Ending.EXHAUSTED, remark=_exhausted(self.least, diagnosis))
         chosen: list[tuple[Suggestion, RunPlan]] = []
-        for one in offered:
-            more_s = self.place.costs_s([run for _, run in (*chosen, one)])
-            if len(chosen) < self.batch and math.fsum(more_s) <= there.time_left_s:
-                chosen.append(one)
+        for pair in offered:
+            more_s = self.place.costs_s([run for _, run in (*chosen, pair)])
+            if len(chosen) < self.batch and math.fsum(more_s) <= standing.time_left_s:
+                chosen.append(pair)
         if not chosen:
             return replace(look, ending=Ending.TIME, remark="too little for any run that tells")
         runs = tuple(run for _, run in chosen)
@@ -177,18 +179,18 @@ class CauseGoal:
             look,
             proposed=runs,
             costs_s=costs_s,
-            reasons=tuple(_reason(one) for one, _ in chosen),
+            reasons=tuple(_reason(suggestion) for suggestion, _ in chosen),
             left_s=math.fsum(costs_s),
             remark="what is expected to tell the causes apart",
         )
 
 
-def _reason(one: Suggestion) -> str:
-    return f"{one.gain:.1f} log odds between {', '.join(one.between)}"
+def _reason(suggestion: Suggestion) -> str:
+    return f"{suggestion.gain:.1f} log odds between {', '.join(suggestion.between)}"
 
 
-def _exhausted(least: float, found: Found) -> str:
-    left = f"no run that the rig can make by itself is worth {least:g} log odds"
-    if not found.outside:
-        return f"{left}, and no measurement outside it is known that would tell"
-    return f"{left}; what would tell: {'; or '.join(found.outside)}"
+def _exhausted(least: float, diagnosis: Found) -> str:
+    statement = f"no run that the rig can make by itself is worth {least:g} log odds"
+    if not diagnosis.outside:
+        return f"{statement}, and no measurement outside it is known that would tell"
+    return f"{statement}; what would tell: {'; or '.join(diagnosis.outside)}"

@@ -35,27 +35,29 @@ class Cell:
     after: float
 
 
-def heat_cells(problem: Problem, left: FloatArray) -> Iterator[Cell]:
+def heat_cells(problem: Problem, residual: FloatArray) -> Iterator[Cell]:
     """Yield both parts of a harmonic as one number, and so all trends or bands of a channel.
 
     Parameters
     ----------
-    left
+    residual
         What the answer leaves of the whitened difference, shape ``(observations,)``.
     """
     stack = problem.simulator.stack
     sizes: dict[tuple[str, str, str, int, str], list[int]] = {}
-    for at, (one, run) in enumerate(zip(stack.components, stack.run, strict=True)):
-        key = (step_of(one), one.channel, *_kind(one), stack.runs[run].name)
+    for at, (component, run) in enumerate(zip(stack.components, stack.run, strict=True)):
+        key = (step_of(component), component.channel, *_kind(component), stack.runs[run].name)
         sizes.setdefault(key, []).append(at)
-    first, second = (left_by_step(problem, one) for one in (problem.residual, left))
+    first, second = (
+        left_by_step(problem, difference) for difference in (problem.residual, residual)
+    )
     for key, rows in sizes.items():
         old, new = (float(np.sqrt(np.mean(part[rows] ** 2))) for part in (first, second))
         yield Cell(*key, old, new)
 
 
-def _kind(one: Component) -> tuple[str, int]:
+def _kind(component: Component) -> tuple[str, int]:
     """Return what a component is one number of, and its harmonic."""
-    if one.part in (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE):
-        return HARMONIC, one.order
-    return (str(Part.TREND) if one.part in TRENDS else str(one.part)), 0
+    if component.part in (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE):
+        return HARMONIC, component.order
+    return (str(Part.TREND) if component.part in TRENDS else str(component.part)), 0

@@ -104,8 +104,8 @@ class CoefficientRow:
     def where(self) -> str:
         """Its name, and the frequency and speed that it holds at."""
         pairs = ((self.frequency_hz, "Hz"), (self.speed_m_s, "m/s"))
-        told = [f"{value:g} {unit}" for value, unit in pairs if not math.isnan(value)]
-        return f"{self.name} at {', '.join(told)}" if told else self.name
+        conditions = [f"{value:g} {unit}" for value, unit in pairs if not math.isnan(value)]
+        return f"{self.name} at {', '.join(conditions)}" if conditions else self.name
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,29 +141,41 @@ def coefficient_rows(examined: Examined) -> tuple[Convention, tuple[CoefficientR
         examined.ready.reporting, simulator.rig, points, examined.campaign.memory
     )
     plain, cured = _fits(examined)
-    others = [Reported(name, UNITS[name], {name: 1.0}) for name in plain.names if name not in HULL]
-    kept = [one for one in (*derivatives, *others) if one.weights.keys() & set(plain.names)]
-    return convention, tuple(_row(one, examined, plain, cured) for one in kept)
+    numbers = [Reported(name, UNITS[name], {name: 1.0}) for name in plain.names if name not in HULL]
+    coefficients = [
+        coefficient
+        for coefficient in (*derivatives, *numbers)
+        if coefficient.weights.keys() & set(plain.names)
+    ]
+    return convention, tuple(
+        _row(coefficient, examined, plain, cured) for coefficient in coefficients
+    )
 
 
-def _row(one: Reported, examined: Examined, plain: _Fit, cured: _Fit | None) -> CoefficientRow:
+def _row(
+    coefficient: Reported, examined: Examined, plain: _Fit, cured: _Fit | None
+) -> CoefficientRow:
     moved, rig = examined.recentred.moved, examined.diagnosis.problem.simulator.rig
-    here = one.memory + sum(part * _stated(rig, name) for name, part in one.weights.items())
-    stated = here - sum(part * moved.get(name, 0.0) for name, part in one.weights.items())
-    off, u_without = plain.of(one.weights)
-    left, u_with = (math.nan, math.nan) if cured is None else cured.of(one.weights)
+    simulated = coefficient.memory + sum(
+        part * _stated(rig, name) for name, part in coefficient.weights.items()
+    )
+    stated = simulated - sum(
+        part * moved.get(name, 0.0) for name, part in coefficient.weights.items()
+    )
+    off, u_without = plain.of(coefficient.weights)
+    off_with, u_with = (math.nan, math.nan) if cured is None else cured.of(coefficient.weights)
     return CoefficientRow(
-        one.name,
-        one.unit,
+        coefficient.name,
+        coefficient.unit,
         stated,
-        one.memory_u,
-        here + off,
+        coefficient.memory_u,
+        simulated + off,
         u_without,
-        here + left,
+        simulated + off_with,
         u_with,
-        (off - left) / u_with,
-        one.speed_m_s,
-        one.frequency_hz,
+        (off - off_with) / u_with,
+        coefficient.speed_m_s,
+        coefficient.frequency_hz,
     )
 
 
@@ -179,21 +191,21 @@ def _fits(examined: Examined) -> tuple[_Fit, _Fit | None]:
     plain = _fitted(examined, problem.residual, held)
     if cause is None:
         return plain, None
-    whole, count = with_numbers(problem, examined.free, cause), len(examined.free)
-    own, numbers = whole.columns[:, :-count], whole.columns[:, -count:]
-    both = np.hstack((numbers, held[:, count:], own))
-    return plain, _fitted(examined, whole.linearised(problem.residual), both)
+    joint, count = with_numbers(problem, examined.free, cause), len(examined.free)
+    effect_columns, numbers = joint.columns[:, :-count], joint.columns[:, -count:]
+    columns = np.hstack((numbers, held[:, count:], effect_columns))
+    return plain, _fitted(examined, joint.linearised(problem.residual), columns)
 
 
 def _fitted(examined: Examined, residual: FloatArray, columns: FloatArray) -> _Fit:
     """Return the most probable coefficients; each column is one deviation of its prior."""
     covariance = np.linalg.inv(np.eye(columns.shape[1]) + columns.T @ columns)
     mean = covariance @ (columns.T @ residual)
-    own = [number for number, one in enumerate(examined.free) if one.is_coefficient]
-    scale = np.array([examined.free[number].deviation for number in own])
-    names = tuple(examined.free[number].name for number in own)
-    spread = np.asarray(covariance[np.ix_(own, own)] * np.outer(scale, scale))
-    return _Fit(names, mean[own] * scale, spread)
+    places = [number for number, free in enumerate(examined.free) if free.is_coefficient]
+    scale = np.array([examined.free[number].deviation for number in places])
+    names = tuple(examined.free[number].name for number in places)
+    spread = np.asarray(covariance[np.ix_(places, places)] * np.outer(scale, scale))
+    return _Fit(names, mean[places] * scale, spread)
 
 
 def _stated(rig: SimulatedRig, name: str) -> float:

@@ -85,18 +85,18 @@ class Conclusion:
     @property
     def fitted(self) -> bool:
         """Whether the coefficients had to be fitted for the steps to be without a gap."""
-        return any(one.stated_u > _FITS for one in self.walk)
+        return any(step.stated_u > _FITS for step in self.walk)
 
     @property
     def gap(self) -> bool:
         """Whether any step of the walk shows one."""
-        return any(one.gap for one in self.walk)
+        return any(step.gap for step in self.walk)
 
     @property
     def unexplained(self) -> tuple[StepRow, ...]:
         """The steps that what is named does not explain; where that is unknown, all with a gap."""
         unknown = self.verdict == UNKNOWN
-        return tuple(one for one in self.remains if one.beyond or (unknown and one.gap))
+        return tuple(step for step in self.remains if step.beyond or (unknown and step.gap))
 
     @property
     def probability(self) -> float:
@@ -112,7 +112,7 @@ def class_probability(
 ) -> float:
     """Return the probability of an answer, each of its effects or one alike."""
     groups = [[name, *alike.get(name, ())] for name in answer.split("+")]
-    answers = {"+".join(sorted(one)) for one in product(*groups)}
+    answers = {"+".join(sorted(combination)) for combination in product(*groups)}
     return min(sum(shares.get(name, 0.0) for name in answers), 1.0)
 
 

@@ -16,9 +16,9 @@ def cut_short(analysis: Analysis) -> str:
     Empty where nothing but the usual settling is left out: less than half of the periods, with no
     sample missing.
     """
-    used, whole = usable(analysis.steady_sums).period_count, _whole_periods(analysis)
-    missing = [*_missing(analysis)] if used < whole else []
-    if used == whole or (not missing and 2 * used > whole):
+    used, count = usable(analysis.steady_sums).period_count, _whole_periods(analysis)
+    missing = [*_missing(analysis)] if used < count else []
+    if used == count or (not missing and 2 * used > count):
         return ""
     percent = f"{100.0 * analysis.settings.steady_tolerance:g} %"
     why = (
@@ -26,7 +26,7 @@ def cut_short(analysis: Analysis) -> str:
         or [*_strays(analysis, percent)]
         or [f"nowhere longer do its first harmonics keep within {percent} of their usual amplitude"]
     )
-    return f"{used} of its {whole} whole periods used: {'; '.join(why)}"
+    return f"{used} of its {count} whole periods used: {'; '.join(why)}"
 
 
 def _whole_periods(analysis: Analysis) -> int:
@@ -39,7 +39,7 @@ def _whole_periods(analysis: Analysis) -> int:
 
 
 def _reference_gap(analysis: Analysis) -> bool:
-    return any(one.code == "reference_gap" for one in analysis.reference.flags)
+    return any(flag.code == "reference_gap" for flag in analysis.reference.flags)
 
 
 def _missing(analysis: Analysis) -> Iterator[str]:
@@ -54,8 +54,8 @@ def _missing(analysis: Analysis) -> Iterator[str]:
             where.setdefault(gaps.tobytes(), []).append(name)
     for names in where.values():
         at_s = inside.time_s()[np.isnan(inside.values(names[0]))]
-        every = len(names) == len(inside.channel_names) > 1
-        channels = "all channels" if every else ", ".join(names)
+        all_channels = len(names) == len(inside.channel_names) > 1
+        channels = "all channels" if all_channels else ", ".join(names)
         if len(at_s) == 1:
             yield f"one sample is missing in {channels}, at {at_s[0]:.2f} s"
         else:
@@ -73,7 +73,7 @@ def _strays(analysis: Analysis, percent: str) -> Iterator[str]:
     """Yield which channel alone ends the periods that are used."""
     stretch, names = analysis.stretch, analysis.recording.channel_names
     values = solve_periods(analysis.sums)
-    for one in limits(values, stretch, analysis.settings.steady_tolerance):
-        side = "before" if one.period < stretch.start else "after"
-        strays = f"strays by {100.0 * one.spread:.3g} % in the period {side} them"
-        yield f"{names[one.channel]} {strays} (limit {percent} of its usual amplitude)"
+    for limit in limits(values, stretch, analysis.settings.steady_tolerance):
+        side = "before" if limit.period < stretch.start else "after"
+        strays = f"strays by {100.0 * limit.spread:.3g} % in the period {side} them"
+        yield f"{names[limit.channel]} {strays} (limit {percent} of its usual amplitude)"

@@ -65,14 +65,14 @@ def _sections(report: GapReport) -> Iterator[Section]:
 
 
 def _answer(report: GapReport) -> Section:
-    found, held = report.conclusion, len(report.held_out)
+    conclusion, held = report.conclusion, len(report.held_out)
     withheld = f", {held} withheld" if held else ""
     used = (
         f"{len(report.runs)} runs used{withheld}, {len(report.left_out)} left out. Below, u is the "
         "standard uncertainty of a number: a difference of 1 u is noise."
     )
     left_out = [Note("left out", f"{name}: {why}") for name, why in report.left_out.items()]
-    told = ("campaign", "runs", "held_out", "left_out", "how_large", "stages", "hidden",
+    keys = ("campaign", "runs", "held_out", "left_out", "how_large", "stages", "hidden",
             "convention", "description")  # fmt: skip
     return Section(
         "",
@@ -80,11 +80,11 @@ def _answer(report: GapReport) -> Section:
             Text(report.said, "said", strong=True),
             Text((used,)),
             Notes(left_out),
-            Notes([Note("note", one) for one in report.notes], "notes"),
-            *(Data(key, getattr(report, key)) for key in told),
-            Data("verdict", found.verdict),
-            Data("class_probability", found.probability),
-            Data("takes", found.weighing.takes),
+            Notes([Note("note", note) for note in report.notes], "notes"),
+            *(Data(key, getattr(report, key)) for key in keys),
+            Data("verdict", conclusion.verdict),
+            Data("class_probability", conclusion.probability),
+            Data("takes", conclusion.weighing.takes),
         ),
     )
 
@@ -92,14 +92,14 @@ def _answer(report: GapReport) -> Section:
 def _where(report: GapReport) -> Section:
     shares = [f"{name} {share:.2f}" for name, share in report.stages.items() if share > 0.005]
     stage = f"Stage, by the answers' probabilities: {', '.join(shares)}."
-    found = report.conclusion
+    conclusion = report.conclusion
     return Section(
         "Where",
         (
-            Text((_E, stage) if found.gap and shares else (_E,)),
+            Text((_E, stage) if conclusion.gap and shares else (_E,)),
             Figure("walk", _WALK, partial(figures.walk_figure, report)),
             Figure("heat", _HEAT, partial(figures.heat_map, report), "cells", report.cells),
-            steps("Walk", "along the chain", found.walk, "walk"),
+            steps("Walk", "along the chain", conclusion.walk, "walk"),
             steps("Contrasts", "forces, by kind of run", report.contrasts, "contrasts"),
         ),
     )
@@ -108,9 +108,9 @@ def _where(report: GapReport) -> Section:
 def _which(report: GapReport) -> Section:
     lines = [_ANSWERS]
     lines += [
-        f"What would tell {joined(row.answer)} from what looks the same: {one}."
+        f"What would tell {joined(row.answer)} from what looks the same: {measure}."
         for row in report.ranking
-        for one in row.measure
+        for measure in row.measure
     ]
     if report.hidden:
         lines.append(f"Cannot be seen in these runs: {', '.join(report.hidden)}.")
@@ -131,12 +131,12 @@ def _how_far(report: GapReport) -> Section:
         if report.held_out
         else "Each regime, predicted from all other runs"
     )
-    told = Text((f"{said}: the gap in u, noise taken off.",))
+    text = Text((f"{said}: the gap in u, noise taken off.",))
     drawn = Figure("withheld", _WITHHELD, partial(figures.withheld_figure, report))
     return Section(
         "How far",
         (
-            *((told, drawn) if report.regimes else ()),
+            *((text, drawn) if report.regimes else ()),
             Table("Controls", CONTROLS, report.controls, "controls"),
             Table("Regimes", REGIMES, report.regimes, "regimes"),
         ),
@@ -148,17 +148,17 @@ def _coefficients(report: GapReport) -> Section:
     lines = [*unexplained(report.conclusion), *lines]
     if report.conclusion.verdict == EFFECT:
         lines.append(_BIAS)
-    columns = coefficient_columns(compared=any(one.compared for one in report.coefficients))
+    columns = coefficient_columns(compared=any(row.compared for row in report.coefficients))
     table = Table("Coefficients", columns, report.coefficients, "coefficients")
     return Section("Coefficients", (Text(lines), table))
 
 
-def unexplained(found: Conclusion) -> Iterator[str]:
+def unexplained(conclusion: Conclusion) -> Iterator[str]:
     """Yield what the head of a table of coefficients has to say of a gap that nothing explains."""
-    if found.unexplained:
-        left = ", ".join(f"{one.what} {one.gap_u:.1f} u" for one in found.unexplained)
+    if conclusion.unexplained:
+        gaps = ", ".join(f"{step.what} {step.gap_u:.1f} u" for step in conclusion.unexplained)
         yield (
-            f"CAUTION: much is left unexplained ({left}). What it does to these values is not in "
+            f"CAUTION: much is left unexplained ({gaps}). What it does to these values is not in "
             "their ±."
         )
 
@@ -166,36 +166,42 @@ def unexplained(found: Conclusion) -> Iterator[str]:
 def _remains(report: GapReport) -> Section:
     form = report.description
     maps = () if form is None else form.maps
-    known = any(not math.isnan(x) for one in maps for x in one.force_n.flat)
-    drawn = [Figure("map", _MAP, partial(figures.force_map_figure, maps))] if known else []
+    has_values = any(not math.isnan(x) for force_map in maps for x in force_map.force_n.flat)
+    drawn = [Figure("map", _MAP, partial(figures.force_map_figure, maps))] if has_values else []
     lines = [f"{line[0].upper()}{line[1:]}." for line in described(form)]
     table = steps("Remainder", "step", report.conclusion.remains, "remains")
     return Section("What remains", (Text(lines), *drawn, table))
 
 
 def _next(report: GapReport) -> Section:
-    lines = [_ODDS.format(", ".join(one["between"])) for one in report.next_runs[:1]]
+    lines = [_ODDS.format(", ".join(run["between"])) for run in report.next_runs[:1]]
     return Section("Next", (Text(lines), Table("Next", NEXT, report.next_runs, "next_runs")))
 
 
-def described(one: Description | None) -> Sequence[str]:
+def described(description: Description | None) -> Sequence[str]:
     """Return the description of a remainder, a sentence each; it names no cause."""
-    if one is None:
+    if description is None:
         return ()
-    orders = sorted(one.orders.items(), key=lambda pair: -pair[1])[:3]
+    orders = sorted(description.orders.items(), key=lambda pair: -pair[1])[:3]
     lines = [
         "its form, not its cause: harmonics "
         + ", ".join(f"{n} ({100.0 * share:.0f} %)" for n, share in orders),
         "a curve over one quantity carries "
-        + ", ".join(f"{100.0 * share:z.0f} % ({name})" for name, share in one.follows.items()),
+        + ", ".join(
+            f"{100.0 * share:z.0f} % ({name})" for name, share in description.follows.items()
+        ),
     ]
-    laws = [("frequency", one.frequency_power), ("amplitude", one.amplitude_power)]
+    laws = [("frequency", description.frequency_power), ("amplitude", description.amplitude_power)]
     powers = [f"{name}^{power:z.1f}" for name, power in laws if math.isfinite(power)]
     if powers:
         lines.append(f"it grows as {', '.join(powers)}")
-    if math.isfinite(one.air_over_water):
-        lines.append(f"in air it is {one.air_over_water:.2f} times as large as in water")
-    if one.law.terms:
-        terms = ", ".join(f"{channel}: {n:+.3g} N {term}" for channel, term, n in one.law.terms)
-        lines.append(f"few terms that carry {100.0 * one.law.explained:.0f} % of it: {terms}")
+    if math.isfinite(description.air_over_water):
+        lines.append(f"in air it is {description.air_over_water:.2f} times as large as in water")
+    if description.law.terms:
+        terms = ", ".join(
+            f"{channel}: {n:+.3g} N {term}" for channel, term, n in description.law.terms
+        )
+        lines.append(
+            f"few terms that carry {100.0 * description.law.explained:.0f} % of it: {terms}"
+        )
     return lines

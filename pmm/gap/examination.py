@@ -133,8 +133,8 @@ class Examined:
         """What all of it comes to: whoever says something of this campaign says it from here."""
         problem, weighing = self.diagnosis.problem, self._weighing()
         steps, verdict = walk_rows(self.diagnosis.walk), verdict_of(weighing)
-        left = problem.residual - self._explained(verdict)
-        return Conclusion(verdict, weighing, steps, tuple(remains(problem, left)))
+        residual = problem.residual - self._explained(verdict)
+        return Conclusion(verdict, weighing, steps, tuple(remains(problem, residual)))
 
     @property
     def cause(self) -> Fit | None:
@@ -158,16 +158,19 @@ class Examined:
         return best.signature
 
     def _weighing(self) -> Weighing:
-        found, judged = self.diagnosis, self.judged
-        best = "" if found.best is None else found.best.answer
-        told, odd = bool(judged.plain and judged.cured), found.answers.odd_runs
+        diagnosis, judged = self.diagnosis, self.judged
+        best = "" if diagnosis.best is None else diagnosis.best.answer
+        is_foretold, odd = bool(judged.plain and judged.cured), diagnosis.answers.odd_runs
         return Weighing(
             self.shares,
             best,
-            {own: tuple(sorted(name for name, _ in one)) for own, one in found.classes.items()},
-            {one.name: one.title for one in self.catalogue.values()},
-            shrinkage(judged.plain, judged.cured).share if told else math.nan,
-            max(found.stages, key=lambda name: found.stages[name], default=""),
+            {
+                effect: tuple(sorted(name for name, _ in twins))
+                for effect, twins in diagnosis.classes.items()
+            },
+            {kind.name: kind.title for kind in self.catalogue.values()},
+            shrinkage(judged.plain, judged.cured).share if is_foretold else math.nan,
+            max(diagnosis.stages, key=lambda name: diagnosis.stages[name], default=""),
             max(odd, key=lambda name: odd[name], default=""),
             None if catalogue().keys() <= self.catalogue.keys() else len(self.catalogue),
         )
@@ -188,49 +191,53 @@ def examine(
     DataError
         If fewer than three runs can be used, or a channel is in other units in all of them.
     """
-    known, more = chosen_effects(options.effects, options.without)
-    ready = prepare(folder, known, more, options.sensors, options.hold_out, progress)
+    kinds, more = chosen_effects(options.effects, options.without)
+    ready = prepare(folder, kinds, more, options.sensors, options.hold_out, progress)
     if options.runs and ready.settings.choices is not None:
         choices = replace(ready.settings.choices, runs=options.runs)
         ready = replace(ready, settings=replace(ready.settings, choices=choices))
-    there, tolerances = ready.there, ready.case.tolerances
-    try_own(more, there.rig, ready.fitted)
-    found = diagnose(there.rig, ready.fitted, ready.settings, executor, progress)
+    recentred, tolerances = ready.there, ready.case.tolerances
+    try_own(more, recentred.rig, ready.fitted)
+    diagnosis = diagnose(recentred.rig, ready.fitted, ready.settings, executor, progress)
     progress("predicting withheld runs")
-    free = there.free
-    judgement = _judged(found, ready.fitted, ready.withheld, free, tolerances)
-    return Examined(ready, free, found, judgement, marginals(found), known)
+    free = recentred.free
+    judgement = _judged(diagnosis, ready.fitted, ready.withheld, free, tolerances)
+    return Examined(ready, free, diagnosis, judgement, marginals(diagnosis), kinds)
 
 
 def _judged(
-    found: Diagnosis,
+    diagnosis: Diagnosis,
     fitted: Sequence[GapRun],
     withheld: Sequence[GapRun],
     free: Sequence[Free],
     tolerances: Tolerances,
 ) -> Judged:
-    asked: dict[str, Fit | None] = {NONE: None, **_likeliest(found)}
+    asked: dict[str, Fit | None] = {NONE: None, **_likeliest(diagnosis)}
     if not withheld:
-        problem = found.problem
-        every = regimes(problem.simulator.stack.runs)
-        return _foretold(found, problem, asked, every, polynomial(problem), chosen=False)
-    joint = _joint(found.problem, fitted, withheld, free, tolerances)
+        problem = diagnosis.problem
+        all_regimes = regimes(problem.simulator.stack.runs)
+        return _foretold(diagnosis, problem, asked, all_regimes, polynomial(problem), chosen=False)
+    joint = _joint(diagnosis.problem, fitted, withheld, free, tolerances)
     regime = chosen_regime(joint.simulator.stack.runs, [run.name for run in withheld])
-    ones = [Regime("run", joint.simulator.stack.runs[at_].name, (at_,)) for at_ in regime.runs]
-    kept = ~np.isin(joint.simulator.stack.run, regime.runs)
-    there = {
-        name: None if one is None else at(joint, one.candidates, one.units)
-        for name, one in asked.items()
+    run_regimes = [
+        Regime("run", joint.simulator.stack.runs[at_].name, (at_,)) for at_ in regime.runs
+    ]
+    fitted_rows = ~np.isin(joint.simulator.stack.run, regime.runs)
+    fits = {
+        name: None if fit is None else at(joint, fit.candidates, fit.units)
+        for name, fit in asked.items()
     }
-    whole = _foretold(found, joint, there, [regime], polynomial(joint, kept), chosen=True)
-    return _by_run(whole, joint, ones)
+    judgement = _foretold(
+        diagnosis, joint, fits, [regime], polynomial(joint, fitted_rows), chosen=True
+    )
+    return _by_run(judgement, joint, run_regimes)
 
 
-def _likeliest(found: Diagnosis) -> dict[str, Fit]:
+def _likeliest(diagnosis: Diagnosis) -> dict[str, Fit]:
     """Return the likeliest named answers, and the control."""
-    likeliest = found.weighed.ranked[:_LIKELIEST]
-    ones = (*likeliest, *(one for one in (found.best, found.rival) if one is not None))
-    return {one.answer: one for one in ones}
+    likeliest = diagnosis.weighed.ranked[:_LIKELIEST]
+    fits = (*likeliest, *(fit for fit in (diagnosis.best, diagnosis.rival) if fit is not None))
+    return {fit.answer: fit for fit in fits}
 
 
 def _joint(
@@ -251,7 +258,7 @@ def _joint(
 
 
 def _foretold(
-    found: Diagnosis,
+    diagnosis: Diagnosis,
     problem: Problem,
     asked: Mapping[str, Fit | None],
     withheld: Sequence[Regime],
@@ -260,35 +267,37 @@ def _foretold(
     chosen: bool,
 ) -> Judged:
     """Ask answers, by name, for what is withheld."""
-    told = {name: predict_withheld(problem, fit, withheld) for name, fit in asked.items()}
-    best, rival = (() if one is None else told[one.answer] for one in (found.best, found.rival))
+    predictions = {name: predict_withheld(problem, fit, withheld) for name, fit in asked.items()}
+    best, rival = (
+        () if fit is None else predictions[fit.answer] for fit in (diagnosis.best, diagnosis.rival)
+    )
     free_form = predict_withheld(problem, control, withheld)
-    by_answer = {name: _gap(one) for name, one in told.items()}
-    return Judged(told[NONE], best, rival, free_form, by_answer, chosen)
+    by_answer = {name: _gap(predicted) for name, predicted in predictions.items()}
+    return Judged(predictions[NONE], best, rival, free_form, by_answer, chosen)
 
 
 def _gap(predicted: Sequence[Predicted]) -> float:
     """Return the gap over all that was foretold; NaN where nothing was."""
-    left = [one.left for one in predicted]
-    return gap_of(np.concatenate(left)) if left else math.nan
+    residuals = [prediction.left for prediction in predicted]
+    return gap_of(np.concatenate(residuals)) if residuals else math.nan
 
 
-def _by_run(whole: Judged, problem: Problem, runs: Sequence[Regime]) -> Judged:
+def _by_run(judged: Judged, problem: Problem, runs: Sequence[Regime]) -> Judged:
     """Take the withheld runs apart, each with what the fitting runs predict of it."""
 
-    def apart(found: tuple[Predicted, ...]) -> tuple[Predicted, ...]:
+    def apart(predictions: tuple[Predicted, ...]) -> tuple[Predicted, ...]:
         return tuple(
-            replace(one, regime=run, rows=own, left=one.left[own[one.rows]])
-            for one in found
+            replace(prediction, regime=run, rows=rows, left=prediction.left[rows[prediction.rows]])
+            for prediction in predictions
             for run in runs
-            for own in [one.rows & np.isin(problem.simulator.stack.run, run.runs)]
+            for rows in [prediction.rows & np.isin(problem.simulator.stack.run, run.runs)]
         )
 
     return Judged(
-        apart(whole.plain),
-        apart(whole.cured),
-        apart(whole.rival),
-        apart(whole.free_form),
-        whole.by_answer,
-        whole.chosen,
+        apart(judged.plain),
+        apart(judged.cured),
+        apart(judged.rival),
+        apart(judged.free_form),
+        judged.by_answer,
+        judged.chosen,
     )

@@ -31,21 +31,21 @@ if TYPE_CHECKING:
 
 def heat_map(report: GapReport) -> "Figure":
     """Draw E/u of each channel's harmonics over the runs, before and after the answer."""
-    rows = sorted(dict.fromkeys(_row(one) for one in report.cells), key=_downstream)
-    runs = list(dict.fromkeys(one.run for one in report.cells))
+    rows = sorted(dict.fromkeys(_row(cell) for cell in report.cells), key=_downstream)
+    runs = list(dict.fromkeys(cell.run for cell in report.cells))
     breaks = [at for at in range(1, len(rows)) if rows[at][:2] != rows[at - 1][:2]]
     maps = [_matrix(report.cells, rows, runs, after=after) for after in (False, True)]
-    grid = Grid([_row_name(one) for one in rows], runs, breaks)
+    grid = Grid([_row_name(row) for row in rows], runs, breaks)
     return before_and_after(grid, maps, "E/u, root mean square of all parts")
 
 
 def _downstream(row: tuple[str, str, str, int]) -> tuple[int, str, bool, int]:
-    stage, channel, what, order = row
-    return CHAIN.index(stage), channel, what != HARMONIC, order
+    stage, channel, kind, order = row
+    return CHAIN.index(stage), channel, kind != HARMONIC, order
 
 
-def _row(one: Cell) -> tuple[str, str, str, int]:
-    return one.stage, one.channel, one.what, one.order
+def _row(cell: Cell) -> tuple[str, str, str, int]:
+    return cell.stage, cell.channel, cell.what, cell.order
 
 
 def _matrix(
@@ -55,37 +55,37 @@ def _matrix(
     *,
     after: bool,
 ) -> FloatArray:
-    found = np.full((len(rows), len(runs)), np.nan)
+    values = np.full((len(rows), len(runs)), np.nan)
     down = {key: at for at, key in enumerate(rows)}
     across = {name: at for at, name in enumerate(runs)}
-    for one in cells:
-        place = down[_row(one)], across[one.run]
-        found[place] = one.after if after else one.before
-    return found
+    for cell in cells:
+        place = down[_row(cell)], across[cell.run]
+        values[place] = cell.after if after else cell.before
+    return values
 
 
 def _row_name(row: tuple[str, str, str, int]) -> str:
-    _, channel, what, order = row
-    return f"{plain(channel)}  {f'n = {order}' if what == HARMONIC else what}".lstrip()
+    _, channel, kind, order = row
+    return f"{plain(channel)}  {f'n = {order}' if kind == HARMONIC else kind}".lstrip()
 
 
 def walk_figure(report: GapReport) -> "Figure":
     """Draw the gap step by step along the chain, before and after, over the noise's own 1."""
-    after = {one.what: one.gap_u for one in report.conclusion.remains}
+    after = {step.what: step.gap_u for step in report.conclusion.remains}
     count = len(report.conclusion.walk)
     with drawn(10.5, 1.6 + 0.42 * count) as figure:
         axes = figure.add_subplot()
-        for at, one in enumerate(report.conclusion.walk):
-            axes.plot(max(one.gap_u, LEAST_U), at, "o", color=BEFORE, markersize=7)
-            if one.what in after:
-                axes.plot(max(after[one.what], LEAST_U), at, "s", color=AFTER, markersize=5)
+        for at, step in enumerate(report.conclusion.walk):
+            axes.plot(max(step.gap_u, LEAST_U), at, "o", color=BEFORE, markersize=7)
+            if step.what in after:
+                axes.plot(max(after[step.what], LEAST_U), at, "s", color=AFTER, markersize=5)
         axes.axvline(1.0, color=TRACE, linestyle="--")
         axes.annotate(
             "noise alone", (1.0, -0.75), xytext=(4, 0), textcoords="offset points", fontsize=8
         )
         logarithmic(axes)
         axes.set_ylim(count - 0.5, -1.0)
-        axes.set_yticks(range(count), [one.what for one in report.conclusion.walk])
+        axes.set_yticks(range(count), [step.what for step in report.conclusion.walk])
         axes.set_xlabel(
             "E/u after the free coefficients, root mean square; "
             f"{LEAST_U:g} and less are drawn at the left"
@@ -101,8 +101,8 @@ def ranking_figure(report: GapReport) -> "Figure":
     shown = report.ranking
     alike = set(shown[0].alike) | {shown[0].answer} if shown else set[str]()
     return probability_bars(
-        {joined(one.answer): one.probability for one in shown},
-        [joined(one) for one in alike],
+        {joined(row.answer): row.probability for row in shown},
+        [joined(name) for name in alike],
         "probability; in blue what these runs cannot tell from the first",
     )
 
@@ -117,9 +117,9 @@ def withheld_figure(report: GapReport) -> "Figure":
         "free polynomial": ("polynomial", "D", PALETTE[4]),
     }
     return dotted(
-        [one.regime for one in report.regimes],
+        [row.regime for row in report.regimes],
         [
-            Dots(label, mark, colour, [float(getattr(one, name)) for one in report.regimes])
+            Dots(label, mark, colour, [float(getattr(row, name)) for row in report.regimes])
             for label, (name, mark, colour) in marks.items()
         ],
     )
@@ -129,14 +129,14 @@ def force_map_figure(maps: Sequence[ForceMap]) -> "Figure":
     """Draw the remainder over the strut's displacement and velocity, no form assumed."""
     with drawn(10.5, 4.2) as figure:
         places = figure.subplots(1, len(maps), squeeze=False)[0]
-        largest = max(float(np.nanmax(np.abs(one.force_n))) for one in maps) or 1.0
-        for axes, one in zip(places, maps, strict=True):
+        largest = max(float(np.nanmax(np.abs(force_map.force_n))) for force_map in maps) or 1.0
+        for axes, force_map in zip(places, maps, strict=True):
             image = axes.pcolormesh(
-                one.displacement, one.velocity, one.force_n, cmap="PuOr", vmin=-largest,
-                vmax=largest, shading="nearest",
+                force_map.displacement, force_map.velocity, force_map.force_n, cmap="PuOr",
+                vmin=-largest, vmax=largest, shading="nearest",
             )  # fmt: skip
             axes.grid(visible=False)
-            axes.set_title(plain(one.channel), loc="left")
+            axes.set_title(plain(force_map.channel), loc="left")
             axes.set_xlabel("displacement over the largest")
             axes.set_ylabel("velocity over the largest")
         figure.colorbar(image, ax=places, shrink=0.8).set_label("remaining force (N)")

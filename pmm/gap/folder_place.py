@@ -32,39 +32,42 @@ class FolderPlace:
     def standing(self) -> Standing:
         """Return what is there, recordings that have appeared taken in."""
         missing = take_in(pursued(self.folder))
-        there = pursued(self.folder)
-        made = there.campaign.runs
+        pursuit = pursued(self.folder)
+        made = pursuit.campaign.runs
         return Standing(
-            tuple(one.name for one in made),
-            math.fsum(one.periods / one.frequency_hz for one in made),
-            there.open,
+            tuple(run.name for run in made),
+            math.fsum(run.periods / run.frequency_hz for run in made),
+            pursuit.open,
             (),
-            there.set_points,
+            pursuit.set_points,
             tuple(f"{name} is not there yet ({why})" for name, why in missing.items()),
         )
 
     def offered(self, worth: Sequence[Suggestion]) -> Sequence[tuple[Suggestion, RunPlan]]:
         """Return all suggestions, each with its run: nothing limits a folder."""
-        self._offered = {one.set_point: one for one in worth}
-        return [(one, _proposed(one.set_point)) for one in worth]
+        self._offered = {suggestion.set_point: suggestion for suggestion in worth}
+        return [(suggestion, _proposed(suggestion.set_point)) for suggestion in worth]
 
     def costs_s(self, runs: Sequence[RunPlan]) -> tuple[float, ...]:
         """Return how long the shaft turns in each."""
-        return tuple(one.moving_s for one in runs)
+        return tuple(run.moving_s for run in runs)
 
     def plan(self, look: Look) -> tuple[str, ...]:
         """Write the plan of a round; return the names of the runs that are to be recorded."""
         if look.ending is not None:
             return ()
-        there = pursued(self.folder)
+        pursuit = pursued(self.folder)
         if look.proposed:
-            chosen = (self._offered[one.set_point] for one in look.proposed)
-            own = (
-                Proposal(OSCILLATION, one.set_point, 0.0, one.gain, one.between) for one in chosen
+            chosen = (self._offered[run.set_point] for run in look.proposed)
+            proposals = (
+                Proposal(
+                    OSCILLATION, suggestion.set_point, 0.0, suggestion.gain, suggestion.between
+                )
+                for suggestion in chosen
             )
-            write_round(there, list(own))
-            there = pursued(self.folder)
-        return tuple(one.name for one in there.open)
+            write_round(pursuit, list(proposals))
+            pursuit = pursued(self.folder)
+        return tuple(run.name for run in pursuit.open)
 
 
 def _proposed(point: SetPoint) -> RunPlan:
@@ -108,8 +111,8 @@ class _Simulated:
     effects: tuple[Effect, ...]
 
     def __call__(self, folder: Path, campaign: Campaign, runs: Sequence[Run]) -> None:
-        whole = replace(self.truth, runs=(*campaign.runs, *runs), at_rest=campaign.at_rest)
-        missing = [one for one in runs if recording_of(folder, one) is None]
+        truth = replace(self.truth, runs=(*campaign.runs, *runs), at_rest=campaign.at_rest)
+        missing = [run for run in runs if recording_of(folder, run) is None]
         seed = self.truth.simulation.seed
         with own_campaign(folder):
-            list(simulate_runs(whole, missing, folder, seed, overwrite=False, effects=self.effects))
+            list(simulate_runs(truth, missing, folder, seed, overwrite=False, effects=self.effects))

@@ -45,7 +45,7 @@ class _Gate:
 
 
 def forced_problem(
-    case: PendulumCase, folder: Path, known: tuple[Tolerance, ...]
+    case: PendulumCase, folder: Path, tolerances: tuple[Tolerance, ...]
 ) -> PendulumProblem:
     """Read the runs of a file.
 
@@ -61,71 +61,71 @@ def forced_problem(
     read = cache(lambda name: check_whole(read_recording(folder / name)))
     trials = [
         trial
-        for one in case.forced
-        for trial in _run(case.floating, case.over_frequency, one, read)
+        for run in case.forced
+        for trial in _run(case.floating, case.over_frequency, run, read)
     ]
-    kinds = tuple(one for one in KINDS if one != "mean")
-    return PendulumProblem(tuple(trials), known, kinds=kinds)
+    kinds = tuple(kind for kind in KINDS if kind != "mean")
+    return PendulumProblem(tuple(trials), tolerances, kinds=kinds)
 
 
 def _run(
-    floating: Floating, over: OverFrequency | None, one: ForcedTable, read: Read
+    floating: Floating, over: OverFrequency | None, run: ForcedTable, read: Read
 ) -> Iterator[DrivenTrial]:
     """Yield what each sensor saw of a run."""
-    pushed = _gate(one, one.force, read)
+    pushed = _gate(run, run.force, read)
     rate_hz = (pushed.time_s.size - 1) / float(np.ptp(pushed.time_s))
     period_s = rough_period(pushed.name, pushed.values - np.nanmean(pushed.values), rate_hz)
     force = KnownForce.of(pushed.name, pushed.time_s, pushed.values, period_s)
     if force.changes > _UNSTEADY:
         raise DataError(
             f"{pushed.name}: its amplitude changes by more than {100 * _UNSTEADY:.0f} % within the "
-            f"gate of run {one.name!r}; state from_s and to_s where it is steady"
+            f"gate of run {run.name!r}; state from_s and to_s where it is steady"
         )
     body = floating
     if over is not None:
         body, transfer = over.at(floating, 1.0 / period_s)
         force = force.by(transfer) if transfer is not None else force
-    for sensor in one.measured:
-        yield _seen(one, body, force, _gate(one, sensor, read))
+    for sensor in run.measured:
+        yield _seen(run, body, force, _gate(run, sensor, read))
 
 
-def _gate(one: ForcedTable, channel: Record, read: Read) -> _Gate:
-    whole = read(channel.record)
-    part = whole.between(
-        whole.start_s if one.from_s is None else one.from_s,
-        whole.end_s if one.to_s is None else one.to_s,
+def _gate(run: ForcedTable, channel: Record, read: Read) -> _Gate:
+    recording = read(channel.record)
+    part = recording.between(
+        recording.start_s if run.from_s is None else run.from_s,
+        recording.end_s if run.to_s is None else run.to_s,
     )
-    unit = whole.channels[whole.index(channel.channel)].unit
+    unit = recording.channels[recording.index(channel.channel)].unit
     return _Gate(channel.channel, unit, part.time_s(), part.values(channel.channel))
 
 
-def _seen(one: ForcedTable, body: Floating, force: KnownForce, seen: _Gate) -> DrivenTrial:
+def _seen(run: ForcedTable, body: Floating, force: KnownForce, gate: _Gate) -> DrivenTrial:
     """Return what a sensor saw: of a displacement, a rate or an acceleration by its unit."""
-    length, _, per = seen.unit.partition("/")
+    length, _, per = gate.unit.partition("/")
     coordinate = ROLL if length == "rad" else HEAVE
     signals = {"": coordinate.displacement, "s": coordinate.rate, "s2": coordinate.acceleration}
     if length not in ("m", "rad", "") or per not in signals:
         raise DataError(
-            f"run {one.name!r}: channel {seen.name!r} is in {seen.unit}; a motion is a "
+            f"run {run.name!r}: channel {gate.name!r} is in {gate.unit}; a motion is a "
             "displacement, a rate or an acceleration, in m or rad: choose another channel"
         )
     driven = DrivenBody(
         body.inertia, body.added_inertia, body.restoring, body.resistance, coordinate,
         force.harmonics,
     )  # fmt: skip
-    sensor = Sensor(Channel(seen.name, seen.unit), ((signals[per], 1.0),))
+    sensor = Sensor(Channel(gate.name, gate.unit), ((signals[per], 1.0),))
     bench = PendulumBench(driven, Release((coordinate,), (0.0,)), (sensor,), (Digitiser(),))
-    found = force.response(seen.time_s, seen.values)
-    name = one.name if len(one.measured) == 1 else f"{one.name}, {seen.name}"
-    rate_hz = (seen.time_s.size - 1) / float(np.ptp(seen.time_s))
+    response = force.response(gate.time_s, gate.values)
+    name = run.name if len(run.measured) == 1 else f"{run.name}, {gate.name}"
+    rate_hz = (gate.time_s.size - 1) / float(np.ptp(gate.time_s))
     samples = round(rate_hz * force.windows.length_s / force.windows.swings)
     trial = DrivenTrial(
-        name, bench, coordinate.name, force.windows, found, scatter(found), run=one.name,
+        name, bench, coordinate.name, force.windows, response, scatter(response), run=run.name,
         samples=samples, grows_rad_s=force.grows_rad_s,
     )  # fmt: skip
-    if not np.isfinite(found[0]).any():
+    if not np.isfinite(response[0]).any():
         raise DataError(
-            f"{name}: {seen.name} has fewer than 18 samples in each window of "
+            f"{name}: {gate.name} has fewer than 18 samples in each window of "
             f"{force.windows.length_s:.3g} s; state from_s and to_s where it was recorded, or "
             "sample it faster"
         )

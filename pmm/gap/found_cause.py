@@ -26,21 +26,21 @@ def found_of(examined: Examined, least: float = LEAST) -> Found:
     """Return what an examination comes to."""
     report, concluded = gap_report(examined), examined.conclusion
     possible = [name for name, share in examined.shares.items() if share > _POSSIBLE]
-    effects = sorted({one for name in possible for one in effects_in(name)})
+    effects = sorted({effect for name in possible for effect in effects_in(name)})
     outside = [
-        str(one)
-        for one in examined.diagnosis.proposals
-        if (one.set_point is None or one.force_n) and one.gain >= least
+        str(proposal)
+        for proposal in examined.diagnosis.proposals
+        if (proposal.set_point is None or proposal.force_n) and proposal.gain >= least
     ]
-    alike = tuple(dict.fromkeys(how for one in report.ranking for how in one.measure))
-    every = tuple(dict.fromkeys([*alike, *separating_measurements(effects), *outside[:1]]))
+    alike = tuple(dict.fromkeys(how for row in report.ranking for how in row.measure))
+    measurements = tuple(dict.fromkeys([*alike, *separating_measurements(effects), *outside[:1]]))
     return Found(
         report.said,
         concluded.probability,
         _known(examined, alike),
         tuple(_causes(examined)),
         suggestions(examined.diagnosis.proposals),
-        every,
+        measurements,
     )
 
 
@@ -49,7 +49,7 @@ def _causes(examined: Examined) -> Iterator[KnownCause]:
     concluded, answers = examined.conclusion, list(examined.shares.items())
     first = answers[0][0]
     alike = concluded.weighing.alike
-    same = tuple(name for own in effects_in(first) for name in alike.get(own, ()))
+    same = tuple(name for effect in effects_in(first) for name in alike.get(effect, ()))
     yield KnownCause(first, concluded.probability, SURE, same)
     for name, share in answers[1:]:
         if share > _POSSIBLE and name not in same:
@@ -59,14 +59,14 @@ def _causes(examined: Examined) -> Iterator[KnownCause]:
 def suggestions(proposals: Sequence[Proposal]) -> tuple[Suggestion, ...]:
     """Return those of some proposals that a rig can make by itself: no weights, no records."""
     return tuple(
-        Suggestion(one.set_point, one.gain, one.between)
-        for one in proposals
-        if one.set_point is not None and not one.force_n
+        Suggestion(proposal.set_point, proposal.gain, proposal.between)
+        for proposal in proposals
+        if proposal.set_point is not None and not proposal.force_n
     )
 
 
 def _known(examined: Examined, alike: Sequence[str]) -> str:
     first, concluded = next(iter(examined.shares)), examined.conclusion
-    what = joined(first) if concluded.verdict == EFFECT else f"the answer {first!r}"
+    answer = joined(first) if concluded.verdict == EFFECT else f"the answer {first!r}"
     also = f"; within its class tells: {'; or '.join(alike)}" if alike else ""
-    return f"the class of {what} has probability {concluded.probability:.3f}{also}"
+    return f"the class of {answer} has probability {concluded.probability:.3f}{also}"

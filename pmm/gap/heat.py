@@ -73,12 +73,12 @@ def _cells(axes: "Axes", values: FloatArray, grid: Grid) -> "QuadMesh":
 
     colours = mpl.colormaps["Blues"]
     norm = BoundaryNorm(_LEVELS, colours.N, extend="max")
-    down, across = (np.arange(len(one) + 1) - 0.5 for one in (grid.rows, grid.columns))
+    down, across = (np.arange(len(names) + 1) - 0.5 for names in (grid.rows, grid.columns))
     image = axes.pcolormesh(across, down, values, norm=norm, cmap=colours)
     axes.grid(visible=False)
     axes.set_ylim(len(grid.rows) - 0.5, -0.5)
-    axes.set_xticks(range(len(grid.columns)), [plain(one) for one in grid.columns], rotation=90)
-    axes.set_yticks(range(len(grid.rows)), [plain(one) for one in grid.rows], fontsize=7.0)
+    axes.set_xticks(range(len(grid.columns)), [plain(name) for name in grid.columns], rotation=90)
+    axes.set_yticks(range(len(grid.rows)), [plain(name) for name in grid.rows], fontsize=7.0)
     axes.set_xlabel(grid.across)
     for at in grid.breaks:
         axes.axhline(at - 0.5, color=TRACE, linewidth=0.8)
@@ -114,16 +114,16 @@ def dotted(rows: Sequence[str], series: Sequence[Dots]) -> "Figure":
     count = len(rows)
     with drawn(10.5, 1.6 + 0.36 * count) as figure:
         axes = figure.add_subplot()
-        for step, one in enumerate(series):
-            seen = [(value, at) for at, value in enumerate(one.values) if not math.isnan(value)]
-            if seen:
-                x = [max(value, LEAST_U) for value, _ in seen]
-                y = [at + 0.12 * (step - 1.5) for _, at in seen]
-                axes.plot(x, y, one.mark, color=one.colour, label=one.label, markersize=6)
+        for step, dots in enumerate(series):
+            points = [(value, at) for at, value in enumerate(dots.values) if not math.isnan(value)]
+            if points:
+                x = [max(value, LEAST_U) for value, _ in points]
+                y = [at + 0.12 * (step - 1.5) for _, at in points]
+                axes.plot(x, y, dots.mark, color=dots.colour, label=dots.label, markersize=6)
         axes.axvline(1.0, color=TRACE, linestyle="--")
         logarithmic(axes)
         axes.set_xlim(left=0.8 * LEAST_U)
-        axes.set_yticks(range(count), [plain(one) for one in rows])
+        axes.set_yticks(range(count), [plain(row) for row in rows])
         axes.set_ylim(count - 0.5, -0.5)
         axes.set_xlabel(f"gap in u, noise taken off; {LEAST_U:g} and less are drawn at the left")
         figure.legend(loc="outside upper center", ncols=4)

@@ -35,36 +35,36 @@ def held_out_runs(campaign: Campaign, said: Sequence[str]) -> tuple[str, ...]:
     ConfigurationError
         If nothing is called so, or no run is like that.
     """
-    chosen = {name for one in said for name in _meant(campaign, one)}
-    return tuple(one.name for one in _records(campaign) if one.name in chosen)
+    chosen = {name for criterion in said for name in _meant(campaign, criterion)}
+    return tuple(run.name for run in _records(campaign) if run.name in chosen)
 
 
 def _records(campaign: Campaign) -> tuple[Run | AtRest, ...]:
     """Return what a diagnosis compares: the runs, and of the records at rest the zero runs."""
-    return (*campaign.runs, *(one for one in campaign.at_rest if one.kind is RunKind.ZERO))
+    return (*campaign.runs, *(record for record in campaign.at_rest if record.kind is RunKind.ZERO))
 
 
 def _meant(campaign: Campaign, said: str) -> list[str]:
-    if said in {one.name for one in _records(campaign)}:
+    if said in {run.name for run in _records(campaign)}:
         return [said]
-    for one in campaign.at_rest:
-        if one.name == said:
+    for record in campaign.at_rest:
+        if record.name == said:
             raise ConfigurationError(
                 f"--hold-out {said}: of the records at rest zero runs alone are compared, and this "
-                f"is of kind {one.kind.value!r}"
+                f"is of kind {record.kind.value!r}"
             )
     key, equals, value = said.partition("=")
     if not equals:
         return [campaign.run(said).name]  # says which names there are
-    found = [one.name for one in _records(campaign) if _is_so(one, key.strip(), value.strip())]
-    if not found:
+    names = [run.name for run in _records(campaign) if _is_so(run, key.strip(), value.strip())]
+    if not names:
         raise ConfigurationError(f"--hold-out {said}: no run of {campaign.name!r} is like that")
-    return found
+    return names
 
 
-def _is_so(one: Run | AtRest, key: str, value: str) -> bool:
+def _is_so(run: Run | AtRest, key: str, value: str) -> bool:
     if key == "medium":
-        return value == (_REST if isinstance(one, AtRest) else one.medium.value)
+        return value == (_REST if isinstance(run, AtRest) else run.medium.value)
     if key not in KEYS:
         near = get_close_matches(key, [*KEYS, "medium"], n=1, cutoff=0.4)
         hint = f"did you mean {near[0]!r}?" if near else f"keys: {', '.join([*KEYS, 'medium'])}"
@@ -74,4 +74,4 @@ def _is_so(one: Run | AtRest, key: str, value: str) -> bool:
     except ValueError:
         raise ConfigurationError(f"--hold-out {key}={value}: {value!r} is no number") from None
     # A zero run has no frequency and no amplitude, and its speed is no regime of the runs'.
-    return isinstance(one, Run) and math.isclose(KEYS[key](one), wanted, rel_tol=1e-3, abs_tol=1e-6)
+    return isinstance(run, Run) and math.isclose(KEYS[key](run), wanted, rel_tol=1e-3, abs_tol=1e-6)

@@ -101,21 +101,21 @@ def reported(
     ConfigurationError
         If a dimension of the model is missing.
     """
-    wet = [one for one in set_points if one.medium is Medium.WATER] or set_points
-    states = sorted({(one.carriage_speed_m_s, one.frequency_hz) for one in wet})
+    wet = [point for point in set_points if point.medium is Medium.WATER] or set_points
+    states = sorted({(point.carriage_speed_m_s, point.frequency_hz) for point in wet})
     systems: dict[State, Normalisation] = {}
     if settings.system is not System.DIMENSIONAL:
         by_speed = system_of(settings.system, settings.ship, rig.body)
         by_gravity = settings.system in BY_GRAVITY
-        systems = {one: by_speed(one[0]) for one in states if by_gravity or one[0] > 0.0}
+        systems = {state: by_speed(state[0]) for state in states if by_gravity or state[0] > 0.0}
     name = common_name(tuple(systems.values())) if systems else DIMENSIONAL
-    found = {
+    coefficients = {
         state: list(_of_state(settings, rig, state, systems.get(state), memory))
         for state in systems or states
     }
     plane = str(rig.oscillator.plane)
     convention = Convention(str(settings.form), plane, name, settings.point_ahead_m)
-    return convention, tuple(_merged(found))
+    return convention, tuple(_merged(coefficients))
 
 
 def _of_state(
@@ -128,10 +128,10 @@ def _of_state(
     """Yield each coefficient at one speed and frequency."""
     form, plane, (speed, frequency) = settings.form, rig.oscillator.plane, state
     added_mass, damping = _memory(rig, frequency)
-    left = np.zeros((2, 2, 2))
+    uncertainties = np.zeros((2, 2, 2))
     if fitted is not None:
-        left = np.array(fitted.standard_uncertainties(2.0 * math.pi * frequency))
-    found = as_reported(
+        uncertainties = np.array(fitted.standard_uncertainties(2.0 * math.pi * frequency))
+    columns = as_reported(
         np.stack((*_UNITS[:, 0], added_mass)),
         np.stack((*_UNITS[:, 1], damping)),
         plane,
@@ -140,13 +140,13 @@ def _of_state(
         speed_m_s=speed,
         frequency_hz=frequency,
     )
-    for name, column in found.items():
+    for name, column in columns.items():
         place = place_of(name, plane, form)
         factor = 1.0 if system is None else system.place_factor(place)
         *parts, memory = (column / factor).tolist()
-        weights = {one: part for one, part in zip(HULL, parts, strict=True) if part}
+        weights = {hull_name: part for hull_name, part in zip(HULL, parts, strict=True) if part}
         unit = place.unit if system is None else "1"
-        memory_u = float(np.linalg.norm(parts * left.ravel()))
+        memory_u = float(np.linalg.norm(parts * uncertainties.ravel()))
         yield Reported(name, unit, weights, memory, memory_u, speed, frequency)
 
 
@@ -158,20 +158,27 @@ def _memory(rig: SimulatedRig, frequency_hz: float) -> tuple[FloatArray, FloatAr
     return rig.radiation.added_mass(omega), rig.radiation.damping(omega)
 
 
-def _merged(found: Mapping[State, Sequence[Reported]]) -> Iterator[Reported]:
+def _merged(coefficients: Mapping[State, Sequence[Reported]]) -> Iterator[Reported]:
     """Yield each coefficient once where it is the same at all states, with what it depends on."""
-    for several in zip(*found.values(), strict=True):
+    for several in zip(*coefficients.values(), strict=True):
         kinds: dict[object, list[Reported]] = {}
-        for one in several:
-            kinds.setdefault((one.memory, *one.weights.items()), []).append(one)
+        for coefficient in several:
+            kinds.setdefault((coefficient.memory, *coefficient.weights.items()), []).append(
+                coefficient
+            )
         for alike in kinds.values():
             speed, frequency = (
-                _its_own(*([getattr(one, key) for one in part] for part in (alike, several)))
+                _its_own(
+                    *(
+                        [getattr(coefficient, key) for coefficient in part]
+                        for part in (alike, several)
+                    )
+                )
                 for key in ("speed_m_s", "frequency_hz")
             )
             yield replace(alike[0], speed_m_s=speed, frequency_hz=frequency)
 
 
-def _its_own(values: Sequence[float], every: Sequence[float]) -> float:
+def _its_own(values: Sequence[float], all_values: Sequence[float]) -> float:
     """Return what tells some states from the others; NaN where nothing does."""
-    return values[0] if len(set(values)) == 1 < len(set(every)) else math.nan
+    return values[0] if len(set(values)) == 1 < len(set(all_values)) else math.nan

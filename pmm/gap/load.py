@@ -87,7 +87,7 @@ def load_campaign(
     rig = unlimited(campaign.rig())
     left_out: dict[str, str] = {}
     damaged: dict[str, tuple[Flag, ...]] = {}
-    found: list[_Read] = []
+    readings: list[_Read] = []
     unlike: dict[str, str] = {}
     for run in campaign.runs:
         if run.name in withheld or not run.frequency_hz > 0.0:
@@ -100,21 +100,25 @@ def load_campaign(
             damaged |= damage_of(run.name, recording)
             observed = observe(_only(recording, sensors), campaign.reference, campaign.analysis)
             followed, unlike[run.name] = _followed(recording)
-            found.append((run, observed, followed))
+            readings.append((run, observed, followed))
         except (PmmError, OSError) as error:
             left_out[run.name] = str(error).removeprefix(f"{run.name}: ")
-    reference = _usual_reference(found)
-    for run, one, _ in found:
-        if one.reference_channel != reference:
-            own = one.reference_channel or "the photocell"
-            left_out[run.name] = f"its phase comes from {own}, not as in most runs"
-    kept = [three for three in found if three[0].name not in left_out]
-    runs = tuple(_gap_runs(campaign, kept))
+    reference = _usual_reference(readings)
+    for run, observed_run, _ in readings:
+        if observed_run.reference_channel != reference:
+            channel = observed_run.reference_channel or "the photocell"
+            left_out[run.name] = f"its phase comes from {channel}, not as in most runs"
+    used_readings = [reading for reading in readings if reading[0].name not in left_out]
+    runs = tuple(_gap_runs(campaign, used_readings))
     at_rest, unused, harmed = records_at_rest(campaign, path.parent, sensors)
-    cut = {run.name: said for run, one, _ in kept if (said := cut_short(one.analysis))}
+    cut = {
+        run.name: said
+        for run, observed_run, _ in used_readings
+        if (said := cut_short(observed_run.analysis))
+    }
     rig = as_recorded(rig, (*runs, *at_rest), reference)
-    known, still = resolved(rig, (*runs, *at_rest))
-    usable, usable_at_rest = known[: len(runs)], known[len(runs) :]
+    resolved_runs, still = resolved(rig, (*runs, *at_rest))
+    usable, usable_at_rest = resolved_runs[: len(runs)], resolved_runs[len(runs) :]
     return Loaded(
         campaign, rig, usable, left_out | unused, reference, usable_at_rest,
         _by_name(cut, still, unlike), damaged | harmed,
@@ -123,8 +127,8 @@ def load_campaign(
 
 def _by_name(*notes: Mapping[str, str]) -> dict[str, str]:
     """Return what some notes on runs say of each, in one text."""
-    names = dict.fromkeys(name for some in notes for name, said in some.items() if said)
-    return {name: "; ".join(filter(None, (one.get(name) for one in notes))) for name in names}
+    names = dict.fromkeys(name for note in notes for name, said in note.items() if said)
+    return {name: "; ".join(filter(None, (note.get(name) for note in notes))) for name in names}
 
 
 def _check_single(run: Run) -> None:
@@ -157,12 +161,13 @@ def unlimited(rig: SimulatedRig) -> SimulatedRig:
 
     A run at the oscillator's highest frequency has to be simulated a little above it too.
     """
-    own = rig.oscillator
+    oscillator = rig.oscillator
     frequency_hz, eccentricity_m = (
-        Range(0.0, _ABOVE * one.high) for one in (own.frequency_hz, own.eccentricity_m)
+        Range(0.0, _ABOVE * span.high)
+        for span in (oscillator.frequency_hz, oscillator.eccentricity_m)
     )
     free = replace(
-        own,
+        oscillator,
         frequency_hz=frequency_hz,
         eccentricity_m=eccentricity_m,
         force_per_strut_n=math.inf,
@@ -174,13 +179,13 @@ def _followed(recording: Recording) -> tuple[Following, str]:
     """Compare struts with their commands; say what needs samples on a grid and is left out."""
     if recording.stamps_s is None:
         return following(recording)
-    told = ", no commands with positions" if {*COMMANDS} & {*recording.channel_names} else ""
-    return {}, f"uneven time stamps: only means and harmonics are compared{told}"
+    note = ", no commands with positions" if {*COMMANDS} & {*recording.channel_names} else ""
+    return {}, f"uneven time stamps: only means and harmonics are compared{note}"
 
 
-def _usual_reference(found: Sequence[_Read]) -> str | None:
+def _usual_reference(readings: Sequence[_Read]) -> str | None:
     """Return the reference that most runs have: phases from different ones cannot be compared."""
-    references = [one.reference_channel for _, one, _ in found]
+    references = [observed.reference_channel for _, observed, _ in readings]
     return max(references, key=references.count) if references else None
 
 
@@ -196,19 +201,19 @@ def _only(recording: Recording, sensors: Sequence[str]) -> Recording:
     if not sensors:
         return recording
     edges = recording.photocell_edges_s if "photocell" in sensors else None
-    names = [one for one in recording.channel_names if one in sensors]
+    names = [name for name in recording.channel_names if name in sensors]
     return replace(recording.select(names), photocell_edges_s=edges)
 
 
-def _gap_runs(campaign: Campaign, found: Sequence[_Read]) -> Iterator[GapRun]:
-    for run, one, followed in found:
+def _gap_runs(campaign: Campaign, readings: Sequence[_Read]) -> Iterator[GapRun]:
+    for run, observed, followed in readings:
         yield GapRun(
             run.name,
             run.set_point,
             place_in(campaign, run),
-            one.observation,
-            one.analysis.stretch.period_count,
-            one.analysis.recording.sample_rate_hz,
-            one.lead_s,
+            observed.observation,
+            observed.analysis.stretch.period_count,
+            observed.analysis.recording.sample_rate_hz,
+            observed.lead_s,
             following=followed,
         )

@@ -30,19 +30,19 @@ def plan_text(name: str, proposals: Sequence[Proposal], prefix: str = "next") ->
         "# What pmm gap proposes next. The rig's file is named here; docs/plans.md has every key.\n"
         f"name = {toml_value(name)}\nrig = {toml_value(RIG_FILE)}\n"
     ]
-    for number, one in enumerate(proposals, 1):
-        table = _entry(one, f"{prefix}-{number}")
-        worth = f"# {one.gain:.1f} expected log odds between the leading answers\n"
-        done = f"# by hand: {one}\n"
-        parts.append(worth + (toml_table("runs", table, array=True) if table else done))
+    for number, proposal in enumerate(proposals, 1):
+        table = _entry(proposal, f"{prefix}-{number}")
+        worth = f"# {proposal.gain:.1f} expected log odds between the leading answers\n"
+        comment = f"# by hand: {proposal}\n"
+        parts.append(worth + (toml_table("runs", table, array=True) if table else comment))
     return "\n".join(parts)
 
 
-def _entry(one: Proposal, name: str) -> dict[str, Any]:
+def _entry(proposal: Proposal, name: str) -> dict[str, Any]:
     """Return a proposal as an entry of a plan; empty where a plan has no such run."""
-    if one.set_point is None:
-        return _special(one, name)
-    point = one.set_point
+    if proposal.set_point is None:
+        return _special(proposal, name)
+    point = proposal.set_point
     dry = point.medium is Medium.AIR
     return {
         "kind": str(RunKind.DRY if dry else RunKind.OSCILLATION),
@@ -53,19 +53,19 @@ def _entry(one: Proposal, name: str) -> dict[str, Any]:
         "strut_phases_rad": point.strut_phase_rad,
         "speeds_m_s": point.carriage_speed_m_s or None,
         "drifts_rad": point.drift_rad or None,
-        "prompt": f"Put {dead_weight(one.force_n)}" if one.force_n else None,
+        "prompt": f"Put {dead_weight(proposal.force_n)}" if proposal.force_n else None,
     }
 
 
-def _special(one: Proposal, name: str) -> dict[str, Any]:
-    if one.kind == FurtherMeasurement.REST:
+def _special(proposal: Proposal, name: str) -> dict[str, Any]:
+    if proposal.kind == FurtherMeasurement.REST:
         return {"kind": str(RunKind.ZERO), "name": name, "duration_s": REST_S}
-    if one.kind == FurtherMeasurement.CHECK_WEIGHT:
-        loads_n = [0.0, 0.5 * one.force_n, one.force_n]
+    if proposal.kind == FurtherMeasurement.CHECK_WEIGHT:
+        loads_n = [0.0, 0.5 * proposal.force_n, proposal.force_n]
         return {
             "kind": str(RunKind.CHECK_WEIGHT),
             "name": name,
-            "channels": [f"force_{one.strut}"],
+            "channels": [f"force_{proposal.strut}"],
             "loads_n": loads_n,
         }
     return {}

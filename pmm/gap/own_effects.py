@@ -21,7 +21,7 @@ Kind = TypeVar("Kind")
 
 def files_among(effects: Sequence[str]) -> tuple[str, ...]:
     """Return which of the named effects are files with effects of the user's own."""
-    return tuple(one for one in effects if one.endswith(".py"))
+    return tuple(name for name in effects if name.endswith(".py"))
 
 
 def chosen_effects(
@@ -59,29 +59,29 @@ class Known(Generic[Kind]):
 
 
 def _chosen(
-    effects: Sequence[str], without: Sequence[str], known: Known[Kind]
+    effects: Sequence[str], without: Sequence[str], known_effects: Known[Kind]
 ) -> tuple[dict[str, Kind], dict[str, Kind]]:
     more: dict[str, Kind] = {}
     files = files_among(effects)
-    for one in files:
-        more |= known.read(one)
-    names = [one for one in effects if one not in files]
-    every = known.every | more
-    chosen = {name: known.find(name, more) for name in names} | more if names else every
+    for file in files:
+        more |= known_effects.read(file)
+    names = [name for name in effects if name not in files]
+    all_kinds = known_effects.every | more
+    chosen = {name: known_effects.find(name, more) for name in names} | more if names else all_kinds
     for name in without:
-        known.find(name, more)
-    left = {name: kind for name, kind in chosen.items() if name not in without}
-    if not left:
+        known_effects.find(name, more)
+    kinds = {name: kind for name, kind in chosen.items() if name not in without}
+    if not kinds:
         raise ConfigurationError("--effects and --without leave no effect to consider")
-    return left, more
+    return kinds, more
 
 
-def tried(name: str, what: str, does: Callable[[], FloatArray]) -> None:
+def tried(name: str, subject: str, does: Callable[[], FloatArray]) -> None:
     """Try an effect of the user's own, so that a fault in it is said by its name.
 
     Parameters
     ----------
-    what
+    subject
         What it acts on.
     does
         Returns what the effect makes of that.
@@ -92,15 +92,15 @@ def tried(name: str, what: str, does: Callable[[], FloatArray]) -> None:
         If it raises, or what it does is no number. One that refuses the test or rig does not.
     """
     try:
-        found = does()
+        values = does()
     except PmmError:
         return
     except Exception as error:  # a user's own code may raise anything
         said = f"{type(error).__name__}: {error}"
         raise ConfigurationError(f"effect {name}, of your own: {said}") from error
-    if not np.isfinite(found).all():
+    if not np.isfinite(values).all():
         raise ConfigurationError(
-            f"effect {name}, of your own: what it does to {what} is not a number"
+            f"effect {name}, of your own: what it does to {subject} is not a number"
         )
 
 

@@ -68,31 +68,32 @@ def problem_of(
         Effects of the user's own, by name; the file may have one on.
     """
     scaled = bool(case.suspensions)
-    own = _OWN if scaled else _OWN_DRIVEN
-    known = tuple(
-        tolerance(name, deviation, own=name in own) for name, deviation in case.tolerances.items()
+    own_names = _OWN if scaled else _OWN_DRIVEN
+    tolerances = tuple(
+        tolerance(name, deviation, own=name in own_names)
+        for name, deviation in case.tolerances.items()
     )
     if scaled:
-        trials = tuple(_suspended(case, one, path.parent) for one in case.suspensions)
-        problem = PendulumProblem(trials, known, kinds=("period",))
+        trials = tuple(_suspended(case, suspension, path.parent) for suspension in case.suspensions)
+        problem = PendulumProblem(trials, tolerances, kinds=("period",))
     elif case.forced:
-        problem = forced_problem(case, path.parent, known)
+        problem = forced_problem(case, path.parent, tolerances)
     else:
-        problem = _decay(case, path.parent, known)
-    on = [make_effect(one.name, more, **one.parameters) for one in case.effects]
-    seen = {sensor.channel.name for one in problem.trials for sensor in one.bench.sensors}
-    for one in on:
-        if getattr(one, "channel", "") not in ("", *seen):
+        problem = _decay(case, path.parent, tolerances)
+    on = [make_effect(effect.name, more, **effect.parameters) for effect in case.effects]
+    channels = {sensor.channel.name for trial in problem.trials for sensor in trial.bench.sensors}
+    for effect in on:
+        if getattr(effect, "channel", "") not in ("", *channels):
             raise ConfigurationError(
-                f"{path}: {one.name} is on for a channel that no record has (channels: "
-                f"{', '.join(sorted(seen))})"
+                f"{path}: {effect.name} is on for a channel that no record has (channels: "
+                f"{', '.join(sorted(channels))})"
             )
     return _checked(path, replace(problem, trials=_with(problem.trials, on)))
 
 
 def _with(trials: Sequence[Trial], effects: Sequence[PendulumEffect]) -> tuple[Trial, ...]:
     """Return trials whose simulation has effects on."""
-    return tuple(replace(one, effects=tuple(effects)) for one in trials)
+    return tuple(replace(trial, effects=tuple(effects)) for trial in trials)
 
 
 def _checked(path: Path, problem: PendulumProblem) -> PendulumProblem:
@@ -105,7 +106,7 @@ def _checked(path: Path, problem: PendulumProblem) -> PendulumProblem:
     return problem
 
 
-def _decay(case: PendulumCase, folder: Path, known: tuple[Any, ...]) -> PendulumProblem:
+def _decay(case: PendulumCase, folder: Path, tolerances: tuple[Any, ...]) -> PendulumProblem:
     if case.measured is None:
         raise ConfigurationError(f"{case.name}: no [measured] record")
     part = _part(case.measured, folder)
@@ -113,7 +114,7 @@ def _decay(case: PendulumCase, folder: Path, known: tuple[Any, ...]) -> Pendulum
     if body is not None:
         trial = _sampled(part, body, part.period_s)
         _check_period(trial, part.period_s)
-        return PendulumProblem((trial,), known)
+        return PendulumProblem((trial,), tolerances)
     if case.simulated is None:
         raise ConfigurationError(f"{case.name}: no [simulated] record, [floating] or [pivot]")
     theirs = _part(case.simulated, folder)
@@ -123,7 +124,7 @@ def _decay(case: PendulumCase, folder: Path, known: tuple[Any, ...]) -> Pendulum
     trial = replace(
         _sampled(part, unit, theirs.period_s), bench=model.bench, variants=model.variants
     ).released()
-    return PendulumProblem((trial,), known, model_error=model.rms)
+    return PendulumProblem((trial,), tolerances, model_error=model.rms)
 
 
 def _check_period(trial: Trial, period_s: float) -> None:
@@ -136,14 +137,14 @@ def _check_period(trial: Trial, period_s: float) -> None:
         )
 
 
-def _part(one: Record, folder: Path) -> UsablePart:
-    path = folder / one.record
-    part = usable_part(series_from_recording(check_whole(read_recording(path)), one.channel))
+def _part(record: Record, folder: Path) -> UsablePart:
+    path = folder / record.record
+    part = usable_part(series_from_recording(check_whole(read_recording(path)), record.channel))
     if part.series.unit in ("rad", "") and part.first_amplitude > _LARGEST_RAD:
         raise DataError(
-            f"{path}: the first swing of {one.channel} is "
+            f"{path}: the first swing of {record.channel} is "
             f"{part.first_amplitude:.3g}, taken as rad: "
-            f'in degrees? Then write the unit in its heading: "{one.channel} [deg]"'
+            f'in degrees? Then write the unit in its heading: "{record.channel} [deg]"'
         )
     return part
 
@@ -152,10 +153,10 @@ def _sampled(part: UsablePart, body: Floating | Pendulum, period_s: float) -> Tr
     series = part.series
     stop_s, rate_hz = float(series.time_s[-1]), series.sample_rate_hz
     windows = cut_into_windows(series.start_s, stop_s, period_s, rate_hz)
-    found = swings_of_samples(series.time_s, series.values, windows)
+    swings = swings_of_samples(series.time_s, series.values, windows)
     bench = _bench(body, part.first_amplitude)
     name = body.coordinates[0].name
-    return Trial(series.name, bench, name, windows, found, scatter(found)).released()
+    return Trial(series.name, bench, name, windows, swings, scatter(swings)).released()
 
 
 def _bench(body: Floating | Pendulum, release: float) -> PendulumBench:
@@ -164,28 +165,33 @@ def _bench(body: Floating | Pendulum, release: float) -> PendulumBench:
     return compound_bench(body, release_rad=release)
 
 
-def _suspended(case: PendulumCase, one: GateTable, folder: Path) -> Trial:
-    seen = passages(read_gate_events(folder / one.gates))
-    early = seen.number <= seen.number[0] + 2 * case.swings
-    seen = replace(
-        seen, number=seen.number[early], time_s=seen.time_s[early], speed=seen.speed[early]
+def _suspended(case: PendulumCase, suspension: GateTable, folder: Path) -> Trial:
+    gate_passages = passages(read_gate_events(folder / suspension.gates))
+    early = gate_passages.number <= gate_passages.number[0] + 2 * case.swings
+    gate_passages = replace(
+        gate_passages,
+        number=gate_passages.number[early],
+        time_s=gate_passages.time_s[early],
+        speed=gate_passages.speed[early],
     )
-    period = 2.0 * float(np.ptp(seen.time_s)) / float(np.ptp(seen.number))
-    count = int(np.ptp(seen.time_s) / (_GATE_SWINGS * period))
-    windows = Windows(float(seen.time_s[0]), 2.0 * math.pi / period, _GATE_SWINGS, count)
-    found = swings_of_passages(seen, windows, _GATE_AMPLITUDE_RAD)
-    bench = _yaw_bench(case, one)
-    trial = Trial(one.name, bench, "yaw", windows, found, scatter(found), scaled=True).released()
+    period = 2.0 * float(np.ptp(gate_passages.time_s)) / float(np.ptp(gate_passages.number))
+    count = int(np.ptp(gate_passages.time_s) / (_GATE_SWINGS * period))
+    windows = Windows(float(gate_passages.time_s[0]), 2.0 * math.pi / period, _GATE_SWINGS, count)
+    swings = swings_of_passages(gate_passages, windows, _GATE_AMPLITUDE_RAD)
+    bench = _yaw_bench(case, suspension)
+    trial = Trial(
+        suspension.name, bench, "yaw", windows, swings, scatter(swings), scaled=True
+    ).released()
     # how it decays is not asked here: each record gets its own damping
     return replace(trial, bench=surrogate(trial, restoring=False).bench)
 
 
-def _yaw_bench(case: PendulumCase, one: GateTable) -> PendulumBench:
+def _yaw_bench(case: PendulumCase, suspension: GateTable) -> PendulumBench:
     k = case.gyradius_m
     body = Suspension(
         mass_kg=1.0,  # drops out of the yaw's period, as depth and the other gyradii do
-        line_length_m=one.line_m,
-        half_spacing_m=one.half_spacing_m,
+        line_length_m=suspension.line_m,
+        half_spacing_m=suspension.half_spacing_m,
         depth_m=0.1 * k,
         yaw_gyradius_m=k,
         pitch_gyradius_m=k,

@@ -55,17 +55,17 @@ class PendulumConclusion:
         return self.verdict == UNTOLD and self.unknown > 0.5
 
 
-def conclusion_of(found: PendulumDiagnosis) -> PendulumConclusion:
+def conclusion_of(diagnosis: PendulumDiagnosis) -> PendulumConclusion:
     """Return what a diagnosis comes to."""
-    answers, verdict = found.weighed.answers, found.verdict
+    answers, verdict = diagnosis.weighed.answers, diagnosis.verdict
     odd = max(answers.odd_runs, key=lambda run: answers.odd_runs[run], default="")
     return PendulumConclusion(
         verdict.said,
         named(verdict.best),
         answers.by_answer[UNKNOWN],
         odd if verdict.said == ODD_RUN else "",
-        open_causes(found.weighed, verdict),
-        turned_runs(found.problem, found.settled),
+        open_causes(diagnosis.weighed, verdict),
+        turned_runs(diagnosis.problem, diagnosis.settled),
     )
 
 
@@ -87,10 +87,10 @@ def classes(verdict: Verdict) -> Iterator[tuple[str, float]]:
 def parameters(best: Fit) -> dict[str, dict[str, dict[str, float]]]:
     """Return each cause's parameters: value and standard uncertainty."""
     spread = best.posterior.covariance.diagonal() ** 0.5
-    found: dict[str, dict[str, dict[str, float]]] = {}
+    causes: dict[str, dict[str, dict[str, float]]] = {}
     for at, axis in enumerate(best.axes):
-        rows = found.setdefault(best.names[best.whose[at]], {})
+        rows = causes.setdefault(best.names[best.whose[at]], {})
         value = axis.value(float(best.units[at]))
         each = axis.deviation * (abs(value) if axis.is_log else 1.0)
         rows[axis.parameter.name] = {"value": value, "uncertainty": each * float(spread[at])}
-    return found
+    return causes

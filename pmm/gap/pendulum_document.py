@@ -76,8 +76,13 @@ ALTERNATIVES: Final = (
     number("ln ratio", "log_ratio", _ONE),
 )
 NEXT: Final[tuple[Column[Any], ...]] = (
-    Column("next run", lambda one: one.what, "what"),
-    Column("would tell them apart", lambda one: one.gain, "gain_ln_evidence", lambda ln: _odds(ln)),
+    Column("next run", lambda proposal: proposal.what, "what"),
+    Column(
+        "would tell them apart",
+        lambda proposal: proposal.gain,
+        "gain_ln_evidence",
+        lambda ln: _odds(ln),
+    ),
 )
 
 
@@ -94,33 +99,33 @@ def document(name: str, examined: ExaminedPendulum) -> Document:
 
 def _sections(name: str, examined: ExaminedPendulum) -> Iterator[Section]:
     """Yield what there is to show, in the order in which it is read."""
-    found = examined.diagnosis
+    diagnosis = examined.diagnosis
     yield Section(
         "",
         (
-            Text(sentences(found), "said", strong=True),
+            Text(sentences(diagnosis), "said", strong=True),
             Text((_U,)),
-            Notes([Note("note", one) for one in examined.notes], "notes"),
+            Notes([Note("note", note) for note in examined.notes], "notes"),
             Data("name", name),
-            *_numbers(found),
+            *_numbers(diagnosis),
         ),
     )
-    heat = Figure("heat", _HEAT, partial(figures.heat_map, found))
-    yield Section("Where", (Text((_E,)), heat, Table("Where", WHERE, found.where, "where")))
-    yield Section("Which", tuple(_which(found)))
-    laws = Table("Laws of damping", _law_columns(found), found.laws, "laws")
-    yield Section("Laws of damping", (Text((_LAWS,) if found.laws else ()), laws))
-    yield Section("How far", tuple(_how_far(found)))
-    yield Section("Records", tuple(_records(found)))
-    yield _remains(found)
-    yield _next(found)
+    heat = Figure("heat", _HEAT, partial(figures.heat_map, diagnosis))
+    yield Section("Where", (Text((_E,)), heat, Table("Where", WHERE, diagnosis.where, "where")))
+    yield Section("Which", tuple(_which(diagnosis)))
+    laws = Table("Laws of damping", _law_columns(diagnosis), diagnosis.laws, "laws")
+    yield Section("Laws of damping", (Text((_LAWS,) if diagnosis.laws else ()), laws))
+    yield Section("How far", tuple(_how_far(diagnosis)))
+    yield Section("Records", tuple(_records(diagnosis)))
+    yield _remains(diagnosis)
+    yield _next(diagnosis)
 
 
-def _numbers(found: PendulumDiagnosis) -> Iterator[Data]:
+def _numbers(diagnosis: PendulumDiagnosis) -> Iterator[Data]:
     """Yield what programs alone get."""
-    verdict, answers = found.verdict, found.weighed.answers
+    verdict, answers = diagnosis.verdict, diagnosis.weighed.answers
     yield Data("verdict", verdict.said)
-    yield Data("best", _best(found))
+    yield Data("best", _best(diagnosis))
     yield Data(
         "probabilities", {key: share for key, share in answers.by_answer.items() if share > 1e-9}
     )
@@ -128,49 +133,49 @@ def _numbers(found: PendulumDiagnosis) -> Iterator[Data]:
     yield Data("unknown_stages", answers.unknown_stages)
     yield Data("classes", verdict.by_class)
     yield Data("causes", verdict.by_cause)
-    yield Data("parameters", parameters(found.settled.best))
-    yield Data("withheld", found.regimes)
-    yield Data("rivals", [named(one) for one in found.rivals or ()])
+    yield Data("parameters", parameters(diagnosis.settled.best))
+    yield Data("withheld", diagnosis.regimes)
+    yield Data("rivals", [named(rival) for rival in diagnosis.rivals or ()])
 
 
-def _best(found: PendulumDiagnosis) -> tuple[str, ...]:
+def _best(diagnosis: PendulumDiagnosis) -> tuple[str, ...]:
     """Return the most probable answer: causes, none, or what it is besides."""
-    best = found.weighed.answers.best
+    best = diagnosis.weighed.answers.best
     calm = best in (NONE, COEFFICIENTS)
     return () if calm else effects_in(best) or (best,)
 
 
-def _which(found: PendulumDiagnosis) -> Iterator[Content]:
-    sets = {" and ".join(named(one)): one for one in found.weighed.sets.values()}
-    sets[" and ".join(named(found.best))] = found.settled.best
+def _which(diagnosis: PendulumDiagnosis) -> Iterator[Content]:
+    sets = {" and ".join(named(fit)): fit for fit in diagnosis.weighed.sets.values()}
+    sets[" and ".join(named(diagnosis.best))] = diagnosis.settled.best
     answers: tuple[Column[tuple[str, float]], ...] = (
-        Column("answer", lambda one: one[0]),
-        Column("parameters (u)", lambda one: fitted(sets[one[0]]) if sets.get(one[0]) else ""),
-        Column("probability", lambda one: one[1], written=_SHARE, number=True),
+        Column("answer", lambda row: row[0]),
+        Column("parameters (u)", lambda row: fitted(sets[row[0]]) if sets.get(row[0]) else ""),
+        Column("probability", lambda row: row[1], written=_SHARE, number=True),
     )
     shares: tuple[Column[tuple[str, float]], ...] = (
-        Column("class, or cause in any set", lambda one: one[0]),
+        Column("class, or cause in any set", lambda row: row[0]),
         answers[-1],
     )
     yield Text(("Answers by their probability.",))
-    yield Figure("ranking", _RANKING, partial(figures.ranking_figure, found))
-    yield Table("Answers", answers, tuple(ranking(found.weighed.answers)))
-    yield Table("Classes and causes", shares, tuple(classes(found.verdict)))
-    yield Table("Alternatives", ALTERNATIVES, found.alternatives, "alternatives")
+    yield Figure("ranking", _RANKING, partial(figures.ranking_figure, diagnosis))
+    yield Table("Answers", answers, tuple(ranking(diagnosis.weighed.answers)))
+    yield Table("Classes and causes", shares, tuple(classes(diagnosis.verdict)))
+    yield Table("Alternatives", ALTERNATIVES, diagnosis.alternatives, "alternatives")
 
 
-def fitted(one: Fit) -> str:
+def fitted(fit: Fit) -> str:
     """Return a set's parameters with their standard uncertainties."""
     return "; ".join(
         f"{name}: {key} = {value['value']:.4g} ± {value['uncertainty']:.2g}"
-        for name, rows in parameters(one).items()
+        for name, rows in parameters(fit).items()
         for key, value in rows.items()
     )
 
 
-def _law_columns(found: PendulumDiagnosis) -> tuple[Column[DampingLaw], ...]:
+def _law_columns(diagnosis: PendulumDiagnosis) -> tuple[Column[DampingLaw], ...]:
     def said(law: DampingLaw) -> str:
-        return "" if law is found.laws[0] else "yes" if law.told_apart else "no"
+        return "" if law is diagnosis.laws[0] else "yes" if law.told_apart else "no"
 
     def gaps(withheld: list[float]) -> str:
         return ", ".join(map(_ONE, withheld))
@@ -184,41 +189,45 @@ def _law_columns(found: PendulumDiagnosis) -> tuple[Column[DampingLaw], ...]:
     )
 
 
-def _how_far(found: PendulumDiagnosis) -> Iterator[Content]:
+def _how_far(diagnosis: PendulumDiagnosis) -> Iterator[Content]:
     """Yield, for each withheld regime, what each set of causes leaves of its gap."""
-    if found.regimes:
+    if diagnosis.regimes:
         yield Text((_REGIMES,))
-        yield Figure("withheld", _WITHHELD, partial(figures.withheld_figure, found))
-    for regime in found.regimes:
+        yield Figure("withheld", _WITHHELD, partial(figures.withheld_figure, diagnosis))
+    for regime in diagnosis.regimes:
         title = f"withheld: {regime.name}"
         columns: tuple[Column[Foretold], ...] = (
-            Column(title, lambda one: _asked(one, found)),
-            Column("gap", lambda one: one.gap, written=_ONE, unit="u", number=True),
-            Column("shrinks by", lambda one: one.shrinkage, written=_SHARE, number=True),
-            Column("95 %", lambda one: f"{_SHARE(one.low)} to {_SHARE(one.high)}", number=True),
+            Column(title, lambda foretold: _asked(foretold, diagnosis)),
+            Column("gap", lambda foretold: foretold.gap, written=_ONE, unit="u", number=True),
+            Column("shrinks by", lambda foretold: foretold.shrinkage, written=_SHARE, number=True),
+            Column(
+                "95 %",
+                lambda foretold: f"{_SHARE(foretold.low)} to {_SHARE(foretold.high)}",
+                number=True,
+            ),
         )
         yield Table(title, columns, (regime.before, *regime.foretold))
 
 
-def _asked(one: Foretold, found: PendulumDiagnosis) -> str:
-    control = "wrong cause: " if one.causes == found.control and one.causes else ""
-    return control + (", ".join(one.causes) or "no cause")
+def _asked(foretold: Foretold, diagnosis: PendulumDiagnosis) -> str:
+    control = "wrong cause: " if foretold.causes == diagnosis.control and foretold.causes else ""
+    return control + (", ".join(foretold.causes) or "no cause")
 
 
-def _records(found: PendulumDiagnosis) -> Iterator[Figure]:
-    for at, trial in enumerate(found.problem.trials):
-        draw = partial(figures.swings_figure, found, at)
+def _records(diagnosis: PendulumDiagnosis) -> Iterator[Figure]:
+    for at, trial in enumerate(diagnosis.problem.trials):
+        draw = partial(figures.swings_figure, diagnosis, at)
         yield Figure(f"{RECORD}{at + 1}", f"{trial.name}. {_SWINGS}", draw)
 
 
-def _remains(found: PendulumDiagnosis) -> Section:
+def _remains(diagnosis: PendulumDiagnosis) -> Section:
     columns: tuple[Column[Any], ...] = (
         word("where", "kind"),
-        Column("verdict", lambda one: "gap" if one.beyond else "no gap"),
+        Column("verdict", lambda row: "gap" if row.beyond else "no gap"),
         number("E/u", "after", _TWO),
     )
-    left = Table("Remainder", columns, found.where)
-    return Section("What remains", (left,))
+    table = Table("Remainder", columns, diagnosis.where)
+    return Section("What remains", (table,))
 
 
 def _odds(ln_evidence: float) -> str:
@@ -230,13 +239,13 @@ def _odds(ln_evidence: float) -> str:
     return f"at odds of {math.exp(ln_evidence):.2g} to 1"
 
 
-def _next(found: PendulumDiagnosis) -> Section:
+def _next(diagnosis: PendulumDiagnosis) -> Section:
     lines: tuple[str, ...] = ()
-    if found.proposals and found.rivals is not None:
-        one, other = (" + ".join(named(rival)) for rival in found.rivals)
+    if diagnosis.proposals and diagnosis.rivals is not None:
+        first, second = (" + ".join(named(rival)) for rival in diagnosis.rivals)
         lines = (
             "Records that a further test can make, by the odds at which the right one of two "
-            f"answers would then stand at least, whichever is right: {one}, or {other}.",
+            f"answers would then stand at least, whichever is right: {first}, or {second}.",
         )
-    runs = Table("Next", NEXT, found.proposals, "next", most=_PROPOSED)
+    runs = Table("Next", NEXT, diagnosis.proposals, "next", most=_PROPOSED)
     return Section("Next", (Text(lines), runs))

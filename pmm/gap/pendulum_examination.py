@@ -49,7 +49,7 @@ class ExaminedPendulum:
     @property
     def notes(self) -> tuple[str, ...]:
         """What has to be known besides."""
-        on = [one.name for one in self.diagnosis.problem.trials[0].effects]
+        on = [effect.name for effect in self.diagnosis.problem.trials[0].effects]
         said = [f"the simulation has {', '.join(on)} on"] if on else []
         if self.hidden:
             said.append(f"these records cannot show {', '.join(self.hidden)}")
@@ -71,12 +71,14 @@ def examine_pendulum(
     case = read_case(path)
     problem, kinds = _prepared(case, path, options)
     causes = causes_for(problem.trials, kinds.values())
-    shown = {one.kind.name for one in causes}
+    shown = {candidate.kind.name for candidate in causes}
     hidden = tuple(name for name in kinds if name not in shown) if options.effects else ()
     if not causes:
         raise ConfigurationError(f"--effects: these records cannot show {', '.join(hidden)}")
-    found = diagnose_trials(problem, causes, most=options.most, reach=case.reach, progress=progress)
-    return ExaminedPendulum(found, hidden)
+    diagnosis = diagnose_trials(
+        problem, causes, most=options.most, reach=case.reach, progress=progress
+    )
+    return ExaminedPendulum(diagnosis, hidden)
 
 
 def fitted_causes(path: Path, names: Sequence[str], options: PendulumOptions) -> Settled:
@@ -89,7 +91,7 @@ def fitted_causes(path: Path, names: Sequence[str], options: PendulumOptions) ->
     """
     wanted = (*names, *files_among(options.effects))
     problem, kinds = _prepared(read_case(path), path, replace(options, effects=wanted))
-    causes = {one.name: one for one in causes_for(problem.trials, kinds.values())}
+    causes = {candidate.name: candidate for candidate in causes_for(problem.trials, kinds.values())}
     missing = [name for name in names if name not in causes]
     if missing:
         raise DataError(f"{path.stem}: these records cannot show {', '.join(missing)}")
@@ -108,5 +110,5 @@ def _prepared(
     return problem, kinds
 
 
-def _typical(trial: Trial, one: Candidate) -> FloatArray:
-    return trial.simulate([one.effect(one.start)])
+def _typical(trial: Trial, candidate: Candidate) -> FloatArray:
+    return trial.simulate([candidate.effect(candidate.start)])

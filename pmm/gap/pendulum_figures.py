@@ -23,59 +23,70 @@ _LABELS: Final = {"decay": "ln amplitude", "period": "phase to reference (rad)"}
 _EACH: Final = 5  # windows from one number on the map to the next
 
 
-def heat_map(found: PendulumDiagnosis) -> "Figure":
+def heat_map(diagnosis: PendulumDiagnosis) -> "Figure":
     """Draw E/u of each kind of observable and record over its windows, as stated and after."""
-    problem = found.problem
+    problem = diagnosis.problem
     pairs = sorted(set(zip(problem.trial.tolist(), problem.kind.tolist(), strict=True)))
     names = [f"{problem.trials[trial].name}: {problem.names[kind]}" for trial, kind in pairs]
-    count = max(one.windows.count for one in problem.trials)
+    count = max(trial.windows.count for trial in problem.trials)
     columns = [str(at + 1) if at % _EACH == 0 else "" for at in range(count)]
     breaks = [at for at in range(1, len(pairs)) if pairs[at][0] != pairs[at - 1][0]]
-    maps = [_map(problem, pairs, left) for left in (as_stated(problem), _after(found))]
+    maps = [_map(problem, pairs, residual) for residual in (as_stated(problem), _after(diagnosis))]
     titles = ("as stated", "with the best answer")
     grid = Grid(names, columns, breaks, titles, "window of the record")
     return before_and_after(grid, maps, "E/u")
 
 
-def _after(found: PendulumDiagnosis) -> FloatArray:
-    return remainder(found.settled.problem, found.settled.best)
+def _after(diagnosis: PendulumDiagnosis) -> FloatArray:
+    return remainder(diagnosis.settled.problem, diagnosis.settled.best)
 
 
-def _map(problem: PendulumProblem, pairs: list[tuple[int, int]], left: FloatArray) -> FloatArray:
+def _map(
+    problem: PendulumProblem, pairs: list[tuple[int, int]], residual: FloatArray
+) -> FloatArray:
     """Return sizes by trial and kind over the windows; NaN where a record has none."""
-    count = max(one.windows.count for one in problem.trials)
+    count = max(trial.windows.count for trial in problem.trials)
     values = np.full((len(pairs), count), np.nan)
     for row, (trial, kind) in enumerate(pairs):
         rows = (problem.trial == trial) & (problem.kind == kind)
         windows = problem.centre_s[rows] / problem.trials[trial].windows.length_s
-        values[row, windows.astype(int)] = np.abs(left[rows])
+        values[row, windows.astype(int)] = np.abs(residual[rows])
     return values
 
 
-def ranking_figure(found: PendulumDiagnosis) -> "Figure":
+def ranking_figure(diagnosis: PendulumDiagnosis) -> "Figure":
     """Draw the answers' probabilities, the best one in its colour."""
-    shown = dict(ranking(found.weighed.answers))
+    shown = dict(ranking(diagnosis.weighed.answers))
     return probability_bars(shown, list(shown)[:1], "probability; in blue the most probable")
 
 
-def withheld_figure(found: PendulumDiagnosis) -> "Figure":
+def withheld_figure(diagnosis: PendulumDiagnosis) -> "Figure":
     """Draw the gap of each withheld regime without a cause, with the best set and the control."""
-    rows = [regime.name for regime in found.regimes]
-    best, control = named(found.best), found.control
+    rows = [regime.name for regime in diagnosis.regimes]
+    best, control = named(diagnosis.best), diagnosis.control
     series = [
-        Dots("without a cause", "o", BEFORE, [_clear(one.before.gap) for one in found.regimes]),
-        Dots("best answer", "s", AFTER, _gaps(found, best)),
+        Dots(
+            "without a cause",
+            "o",
+            BEFORE,
+            [_clear(regime.before.gap) for regime in diagnosis.regimes],
+        ),
+        Dots("best answer", "s", AFTER, _gaps(diagnosis, best)),
     ]
     if control:
-        series.append(Dots(f"wrong cause: {control[0]}", "^", PALETTE[3], _gaps(found, control)))
+        series.append(
+            Dots(f"wrong cause: {control[0]}", "^", PALETTE[3], _gaps(diagnosis, control))
+        )
     return dotted(rows, series)
 
 
-def _gaps(found: PendulumDiagnosis, names: tuple[str, ...]) -> list[float]:
+def _gaps(diagnosis: PendulumDiagnosis, names: tuple[str, ...]) -> list[float]:
     gaps = []
-    for regime in found.regimes:
-        own = [_clear(one.gap) for one in regime.foretold if one.causes == names]
-        gaps.append(own[0] if own else math.nan)
+    for regime in diagnosis.regimes:
+        regime_gaps = [
+            _clear(foretold.gap) for foretold in regime.foretold if foretold.causes == names
+        ]
+        gaps.append(regime_gaps[0] if regime_gaps else math.nan)
     return gaps
 
 
@@ -84,12 +95,12 @@ def _clear(gap: float) -> float:
     return math.sqrt(max(gap**2 - 1.0, 0.0))
 
 
-def swings_figure(found: PendulumDiagnosis, at: int) -> "Figure":
+def swings_figure(diagnosis: PendulumDiagnosis, at: int) -> "Figure":
     """Draw one record's amplitude and phase over time: measured, simulated, and with the causes.
 
     Both simulations have the release and the tolerances that fit best, as in the diagnosis.
     """
-    problem, after = found.problem, found.settled
+    problem, after = diagnosis.problem, diagnosis.settled
     trial, nothing = problem.trials[at], np.zeros_like(problem.residual)
     curves = {
         "simulated": (_told(problem, nothing), BEFORE),
@@ -99,11 +110,11 @@ def swings_figure(found: PendulumDiagnosis, at: int) -> "Figure":
         axes = figure.subplots(2, 1, sharex=True)
         for panel, (kind, label) in zip(axes, _LABELS.items(), strict=True):
             row = KINDS.index(kind)
-            seen = trial.windows.centres_s, trial.observed[row]
-            panel.plot(*seen, "o", color=TRACE, markersize=3, label="measured")
+            points = trial.windows.centres_s, trial.observed[row]
+            panel.plot(*points, "o", color=TRACE, markersize=3, label="measured")
             rows = (problem.trial == at) & (problem.kind == row)
-            for name, (told, colour) in curves.items() if rows.any() else ():
-                panel.plot(problem.centre_s[rows], told[rows], color=colour, label=name)
+            for name, (values, colour) in curves.items() if rows.any() else ():
+                panel.plot(problem.centre_s[rows], values[rows], color=colour, label=name)
             panel.set_ylabel(label)
         axes[1].legend()
         axes[0].set_title(plain(trial.name), loc="left")

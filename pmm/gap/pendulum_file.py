@@ -87,7 +87,7 @@ class OverFrequency:
     __pydantic_config__ = STRICT_TABLE
 
     def __post_init__(self) -> None:
-        counts = {len(getattr(self, one.name)) for one in fields(self)} - {0}
+        counts = {len(getattr(self, key.name)) for key in fields(self)} - {0}
         rising = all(a < b for a, b in pairwise(self.frequency_hz))
         if len(counts) != 1 or not self.frequency_hz or not rising:
             raise ConfigurationError(
@@ -112,8 +112,8 @@ class OverFrequency:
                 f"{frequency_hz:.4g} Hz; state more, or leave the run out"
             )
         added, damping, force, phase = (
-            float(np.interp(frequency_hz, self.frequency_hz, one)) if one else None
-            for one in (self.added_inertia, self.damping, self.force, self.force_phase_rad)
+            float(np.interp(frequency_hz, self.frequency_hz, values)) if values else None
+            for values in (self.added_inertia, self.damping, self.force, self.force_phase_rad)
         )
         if added is not None:
             body = replace(body, added_inertia=added)
@@ -192,12 +192,12 @@ def read_case(path: Path) -> PendulumCase:
     faults: list[Fault] = []
     case = validate(PendulumCase, table, faults)
     if case is not None:
-        given = (case.measured is not None, bool(case.suspensions), bool(case.forced))
-        if sum(given) != 1:
+        kinds = (case.measured is not None, bool(case.suspensions), bool(case.forced))
+        if sum(kinds) != 1:
             said = "or [[suspensions]], or [[forced]]: give exactly one of them"
             faults.append(Fault(("measured",), said))
-        told = (case.simulated, case.floating, case.pivot)
-        if case.measured and sum(one is not None for one in told) != 1:
+        models = (case.simulated, case.floating, case.pivot)
+        if case.measured and sum(model is not None for model in models) != 1:
             said = "or [floating], or [pivot]: give exactly one of them"
             faults.append(Fault(("simulated",), said))
     if case is None or faults:

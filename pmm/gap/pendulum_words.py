@@ -20,25 +20,29 @@ from pmm.gap.pendulum_conclusion import PendulumConclusion, conclusion_of, param
 from pmm.gap.words import OUTSIDE
 
 FASTER: Final = "damping that grows faster than linearly"
-_DECAY, _PERIOD = (KINDS.index(one) for one in ("decay", "period"))
+_DECAY, _PERIOD = (KINDS.index(kind) for kind in ("decay", "period"))
 
 
-def sentences(found: PendulumDiagnosis) -> tuple[str, str, str]:
+def sentences(diagnosis: PendulumDiagnosis) -> tuple[str, str, str]:
     """Return the three sentences."""
-    concluded = conclusion_of(found)
-    return what_is_wrong(found, concluded), how_large_it_is(found), what_to_do(found, concluded)
+    concluded = conclusion_of(diagnosis)
+    return (
+        what_is_wrong(diagnosis, concluded),
+        how_large_it_is(diagnosis),
+        what_to_do(diagnosis, concluded),
+    )
 
 
-def what_is_wrong(found: PendulumDiagnosis, concluded: PendulumConclusion) -> str:
+def what_is_wrong(diagnosis: PendulumDiagnosis, concluded: PendulumConclusion) -> str:
     """Return what separates the record from its simulation, and what of it is open."""
     if concluded.turned:
         return f"{_turned(concluded.turned)}."
-    return f"{'; '.join(_wrong(found, concluded))}."
+    return f"{'; '.join(_wrong(diagnosis, concluded))}."
 
 
-def _wrong(found: PendulumDiagnosis, concluded: PendulumConclusion) -> Iterator[str]:
+def _wrong(diagnosis: PendulumDiagnosis, concluded: PendulumConclusion) -> Iterator[str]:
     if concluded.verdict == NONE:
-        yield _no_gap(found)
+        yield _no_gap(diagnosis)
         return
     if concluded.verdict == ODD_RUN:
         yield f"Record {concluded.odd} alone is off, by a gain, a period or a zero of its own"
@@ -49,45 +53,47 @@ def _wrong(found: PendulumDiagnosis, concluded: PendulumConclusion) -> Iterator[
     if not concluded.names:
         yield f"The cause cannot be told; {_strange(concluded)}"
         return
-    rivals = open_laws(found.laws)
-    others = [" or ".join(_first(concluded, one)) for one in concluded.names if one not in DAMPING]
-    damped = len(others) < len(concluded.names)
-    damping = [_damping(found.laws, rivals, concluded.names)] if damped else []
-    what = " and ".join([*damping, *others])
-    said = _named(found, concluded, what)
+    rivals = open_laws(diagnosis.laws)
+    causes = [
+        " or ".join(_first(concluded, name)) for name in concluded.names if name not in DAMPING
+    ]
+    damped = len(causes) < len(concluded.names)
+    damping = [_damping(diagnosis.laws, rivals, concluded.names)] if damped else []
+    cause = " and ".join([*damping, *causes])
+    said = _named(diagnosis, concluded, cause)
     yield f"{said[0].upper()}{said[1:]}"
     if concluded.strange:
         yield _strange(concluded)
-    for one in concluded.apart.values():
-        yield _alike(one)
+    for shares in concluded.apart.values():
+        yield _alike(shares)
     if rivals:
-        yield _undecided(found.laws[0], rivals)
+        yield _undecided(diagnosis.laws[0], rivals)
 
 
-def _named(found: PendulumDiagnosis, concluded: PendulumConclusion, what: str) -> str:
-    if math.isfinite(found.foretells):
-        return cause_statement(what, found.foretells, told=concluded.adds)
-    told = "the cause" if concluded.adds else "the cause cannot be told; likeliest cause"
-    return f"{told}: {what}"
+def _named(diagnosis: PendulumDiagnosis, concluded: PendulumConclusion, cause: str) -> str:
+    if math.isfinite(diagnosis.foretells):
+        return cause_statement(cause, diagnosis.foretells, told=concluded.adds)
+    heading = "the cause" if concluded.adds else "the cause cannot be told; likeliest cause"
+    return f"{heading}: {cause}"
 
 
 def _strange(concluded: PendulumConclusion) -> str:
     return f"that it is {OUTSIDE} has probability {concluded.unknown:.2f}"
 
 
-def _no_gap(found: PendulumDiagnosis) -> str:
-    left = [one.kind for one in found.where if one.out_of_tolerance]
-    if left:
-        return f"Nothing that was considered explains the difference in {' and '.join(left)}"
-    fitted = any(one.gap for one in found.where)
+def _no_gap(diagnosis: PendulumDiagnosis) -> str:
+    kinds = [row.kind for row in diagnosis.where if row.out_of_tolerance]
+    if kinds:
+        return f"Nothing that was considered explains the difference in {' and '.join(kinds)}"
+    fitted = any(row.gap for row in diagnosis.where)
     once = " once what is known within tolerances is fitted," if fitted else ""
     return f"No gap: the record and its simulation agree{once} within what the record can tell"
 
 
 def _turned(runs: Sequence[str]) -> str:
-    what, are = ("Records", "are") if len(runs) > 1 else ("Record", "is")
+    subject, verb = ("Records", "are") if len(runs) > 1 else ("Record", "is")
     sign = "half a turn off: the force or the reading has the other sign there"
-    return f"{what} {' and '.join(runs)} {are} {sign}"
+    return f"{subject} {' and '.join(runs)} {verb} {sign}"
 
 
 def _first(concluded: PendulumConclusion, name: str) -> tuple[str, ...]:
@@ -103,9 +109,9 @@ def _alike(shares: Mapping[str, float]) -> str:
 def _damping(laws: Sequence[DampingLaw], rivals: Sequence[DampingLaw], names: Sequence[str]) -> str:
     """Return the law, or only that it is damping, as far as the laws can be told apart."""
     if not rivals:
-        return " and ".join(one for one in names if one in DAMPING)
+        return " and ".join(name for name in names if name in DAMPING)
     possible = [law.hypothesis.names for law in (laws[0], *rivals)]
-    return FASTER if all(set(one) & set(BEYOND_LINEAR) for one in possible) else "damping"
+    return FASTER if all(set(causes) & set(BEYOND_LINEAR) for causes in possible) else "damping"
 
 
 def _undecided(first: DampingLaw, rivals: Sequence[DampingLaw]) -> str:
@@ -115,32 +121,34 @@ def _undecided(first: DampingLaw, rivals: Sequence[DampingLaw]) -> str:
     )
 
 
-def how_large_it_is(found: PendulumDiagnosis) -> str:
+def how_large_it_is(diagnosis: PendulumDiagnosis) -> str:
     """Return by how much the simulation as it is stated is off, and the cause's own size."""
-    sizes = [*_largest(found, _DECAY, _amplitude), *_largest(found, _PERIOD, _phase)]
-    own = [
-        f"{name}: {key} = {one['value']:.4g} ± {2.0 * one['uncertainty']:.2g}"
-        for name, values in parameters(found.settled.best).items()
-        for key, one in values.items()
+    sizes = [*_largest(diagnosis, _DECAY, _amplitude), *_largest(diagnosis, _PERIOD, _phase)]
+    estimates = [
+        f"{name}: {key} = {estimate['value']:.4g} ± {2.0 * estimate['uncertainty']:.2g}"
+        for name, values in parameters(diagnosis.settled.best).items()
+        for key, estimate in values.items()
     ]
-    named = own if conclusion_of(found).adds else []
+    named = estimates if conclusion_of(diagnosis).adds else []
     off = f"As it is stated, the simulation is off {' and '.join(sizes)}"
     return f"{'; '.join([off, *named])}."
 
 
-def _largest(found: PendulumDiagnosis, kind: int, said: Callable[[float], str]) -> Iterator[str]:
+def _largest(
+    diagnosis: PendulumDiagnosis, kind: int, said: Callable[[float], str]
+) -> Iterator[str]:
     """Yield the largest difference of a kind in its own unit, and where; nothing of no data."""
-    problem, left = found.problem, _stated(found)
+    problem, difference = diagnosis.problem, _stated(diagnosis)
     rows = np.flatnonzero(problem.kind == kind)
     if rows.size:
-        at = int(rows[np.argmax(np.abs(left[rows]))])
+        at = int(rows[np.argmax(np.abs(difference[rows]))])
         trial = problem.trials[problem.trial[at]]
-        yield f"{said(float(left[at]))} ({trial.name}, {problem.centre_s[at]:.3g} s)"
+        yield f"{said(float(difference[at]))} ({trial.name}, {problem.centre_s[at]:.3g} s)"
 
 
-def _stated(found: PendulumDiagnosis) -> FloatArray:
+def _stated(diagnosis: PendulumDiagnosis) -> FloatArray:
     """Return measured less simulated as it is stated: logarithms of amplitudes, rad of phases."""
-    return as_stated(found.problem) * found.problem.uncertainty
+    return as_stated(diagnosis.problem) * diagnosis.problem.uncertainty
 
 
 def _amplitude(log_ratio: float) -> str:
@@ -151,16 +159,16 @@ def _phase(size_rad: float) -> str:
     return f"by up to {abs(math.degrees(size_rad)):.2g} degrees of a swing in phase"
 
 
-def what_to_do(found: PendulumDiagnosis, concluded: PendulumConclusion) -> str:
+def what_to_do(diagnosis: PendulumDiagnosis, concluded: PendulumConclusion) -> str:
     """Return what to do next."""
-    tell = _told_by(concluded) or _would_tell(found)
+    tell = _told_by(concluded) or _would_tell(diagnosis)
     if concluded.adds:
         put = 'put it into the simulation with "pmm gap add-pendulum", and look again'
         return f"{tell}; or {put}." if tell else f"{put[0].upper()}{put[1:]}."
     odd = " and ".join(concluded.turned) or concluded.odd
     if odd:
         return f"Correct {odd}, or leave it out of the file, and look again."
-    if concluded.verdict == NONE and not any(one.out_of_tolerance for one in found.where):
+    if concluded.verdict == NONE and not any(row.out_of_tolerance for row in diagnosis.where):
         return "Nothing has to be done."
     return f"{tell or 'Look at what remains, below, and record longer or from another release'}."
 
@@ -168,18 +176,18 @@ def what_to_do(found: PendulumDiagnosis, concluded: PendulumConclusion) -> str:
 def _told_by(concluded: PendulumConclusion) -> str:
     """Return the measurements that tell apart what these records cannot; empty if none is known."""
     how = {
-        one: " and ".join(names)
+        measurement: " and ".join(names)
         for names in concluded.apart.values()
-        for one in separating_measurements([name.partition(" of ")[0] for name in names])
+        for measurement in separating_measurements([name.partition(" of ")[0] for name in names])
     }
-    return "; ".join(f"Tell {names} apart by {one}" for one, names in how.items())
+    return "; ".join(f"Tell {names} apart by {measurement}" for measurement, names in how.items())
 
 
-def _would_tell(found: PendulumDiagnosis) -> str:
+def _would_tell(diagnosis: PendulumDiagnosis) -> str:
     """Return the record that would tell the leading answers apart; empty where all is told."""
-    if not (found.rivals and found.proposals):
+    if not (diagnosis.rivals and diagnosis.proposals):
         return ""
-    first = found.proposals[0]
+    first = diagnosis.proposals[0]
     if first.gain > math.log(TOLD_APART):
         return f"Make the record that would tell it: {first.what}"
     return f"No further record within reach would tell it: {first.what} comes nearest"

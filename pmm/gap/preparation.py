@@ -69,7 +69,7 @@ class Prepared:
 
 def prepare(
     folder: Path,
-    known: Mapping[str, type[Effect]],
+    kinds: Mapping[str, type[Effect]],
     more: Mapping[str, type[Effect]] | None = None,
     sensors: Sequence[str] = (),
     hold_out: Sequence[str] = (),
@@ -79,7 +79,7 @@ def prepare(
 
     Parameters
     ----------
-    known
+    kinds
         Effects to consider, by name.
     more
         Effects of the user's own, which the campaign may have switched on.
@@ -101,30 +101,30 @@ def prepare(
     loaded = load_campaign(file, (), lambda name: progress(f"reading {name}"), sensors)
     progress("looking for recordings that cannot be right")
     known_of = [run for run in loaded.runs if run.name not in held_out]
-    told = commanded(
+    commands = commanded(
         loaded.rig, known_of, case.tolerances, on, campaign.reference.channel,
         stated_tolerances(file).keys(),
     )  # fmt: skip
-    loaded = replace(loaded, rig=told.rig)
-    case = replace(case, tolerances=told.tolerances)
-    there, fitted, withheld, left_out = _sorted(loaded, case, on, held_out, file)
+    loaded = replace(loaded, rig=commands.rig)
+    case = replace(case, tolerances=commands.tolerances)
+    recentred, fitted, withheld, left_out = _sorted(loaded, case, on, held_out, file)
     _check_enough(file, fitted, left_out)
     settings = Settings(
-        known,
+        kinds,
         case.tolerances,
         on=tuple(on),
         choices=case.choices(campaign),
         reference_channel=loaded.reference_channel,
-        moved=there.units,
-        free=there.free,
+        moved=recentred.units,
+        free=recentred.free,
     )
-    for one in loaded.at_rest:
-        (withheld if one.name in held_out else fitted).append(one)
+    for record in loaded.at_rest:
+        (withheld if record.name in held_out else fitted).append(record)
     cut = {name: said for name, said in loaded.cut_short.items() if name not in left_out}
     used = tuple(fitted), tuple(withheld)
     return Prepared(
-        campaign, case, left_out, there, *used, settings, cut, reporting, loaded.damaged,
-        told.told,
+        campaign, case, left_out, recentred, *used, settings, cut, reporting, loaded.damaged,
+        commands.told,
     )  # fmt: skip
 
 
@@ -138,10 +138,10 @@ def _check_enough(file: Path, fitted: Sequence[GapRun], left_out: Mapping[str, s
 
 
 def _reporting(folder: Path, water: Water | None) -> CoefficientSettings:
-    found, _ = settings_of(folder, None)
-    found = replace(found, ship=found.ship.within(water))
-    check_dimensions(found.system, found.ship)
-    return found
+    settings, _ = settings_of(folder, None)
+    settings = replace(settings, ship=settings.ship.within(water))
+    check_dimensions(settings.system, settings.ship)
+    return settings
 
 
 def campaign_file(folder: Path) -> Path:
@@ -183,20 +183,22 @@ def _sorted(
     fitted = [run for run in loaded.runs if run.name not in held_out]
     withheld = [run for run in loaded.runs if run.name in held_out]
     reference = loaded.reference_channel
-    there, found = judged(loaded.rig, fitted, case.tolerances, on, reference)
+    recentred, findings = judged(loaded.rig, fitted, case.tolerances, on, reference)
     if withheld:
         names = {run.name for run in withheld}
-        every = doubts(there.rig, loaded.runs, on, reference)
-        found = (*found, *(one for one in every if one.run in names))
-    for one in found:
-        if not one.run:
-            raise DataError(f"{file}: {one.channel}: {one.reason}{_without_hull(loaded.campaign)}")
+        all_doubts = doubts(recentred.rig, loaded.runs, on, reference)
+        findings = (*findings, *(doubt for doubt in all_doubts if doubt.run in names))
+    for doubt in findings:
+        if not doubt.run:
+            raise DataError(
+                f"{file}: {doubt.channel}: {doubt.reason}{_without_hull(loaded.campaign)}"
+            )
     bad: dict[str, str] = {}
-    for one in found:
-        said = f"{one.channel}: {one.reason}".removeprefix(": ")
-        bad[one.run] = f"{bad[one.run]}; {said}" if one.run in bad else said
+    for doubt in findings:
+        said = f"{doubt.channel}: {doubt.reason}".removeprefix(": ")
+        bad[doubt.run] = f"{bad[doubt.run]}; {said}" if doubt.run in bad else said
     return (
-        there,
+        recentred,
         [run for run in fitted if run.name not in bad],
         [run for run in withheld if run.name not in bad],
         {**loaded.left_out, **bad},

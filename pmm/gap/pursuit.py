@@ -55,8 +55,8 @@ class Pursued:
     @property
     def set_points(self) -> frozenset[SetPoint]:
         """What was made or is planned."""
-        made = {one.set_point for one in self.campaign.runs}
-        return frozenset(made | {one.set_point for one in self.open})
+        made = {run.set_point for run in self.campaign.runs}
+        return frozenset(made | {run.set_point for run in self.open})
 
 
 def pursued(folder: Path) -> Pursued:
@@ -100,30 +100,30 @@ def _planned(path: Path, campaign: Campaign) -> list[RunPlan]:
         raise ConfigurationError(
             f"{path.parent / CAMPAIGN_FILE}: no table [oscillator]; proposed runs need it"
         )
-    return [one for one in runs_of(tables, campaign.oscillator, ()) if one.oscillates]
+    return [run for run in runs_of(tables, campaign.oscillator, ()) if run.oscillates]
 
 
-def _run(one: RunPlan) -> Run:
-    point = one.set_point
+def _run(plan: RunPlan) -> Run:
+    point = plan.set_point
     return Run(
-        one.name,
+        plan.name,
         point.frequency_hz,
         point.eccentricity_m,
         point.strut_phase_rad,
         point.carriage_speed_m_s,
         point.medium,
-        one.periods,
+        plan.periods,
         point.drift_rad,
-        kind=one.kind,
-        motion=one.motion,
+        kind=plan.kind,
+        motion=plan.motion,
     )
 
 
-def write_round(there: Pursued, proposals: Sequence[Proposal]) -> Path:
+def write_round(pursuit: Pursued, proposals: Sequence[Proposal]) -> Path:
     """Write the plan of the next round, whole or not at all, and return where it is."""
-    name = f"{_PREFIX}{_number(there.plans[-1]) + 1 if there.plans else 1}"
-    path = there.folder / f"{name}.toml"
-    write_whole(path, plan_text(f"{there.campaign.name}-{name}", proposals, name))
+    name = f"{_PREFIX}{_number(pursuit.plans[-1]) + 1 if pursuit.plans else 1}"
+    path = pursuit.folder / f"{name}.toml"
+    write_whole(path, plan_text(f"{pursuit.campaign.name}-{name}", proposals, name))
     return path
 
 
@@ -138,15 +138,15 @@ def recorded(folder: Path, make: Maker | None, appear: Callable[[], bool]) -> di
         Waits until recordings may have appeared; returns whether to look again.
     """
     while True:
-        there = pursued(folder)
-        if there.open and make is not None:
-            make(folder, there.campaign, [_run(one) for one in there.open])
-        missing = take_in(there)
+        pursuit = pursued(folder)
+        if pursuit.open and make is not None:
+            make(folder, pursuit.campaign, [_run(plan) for plan in pursuit.open])
+        missing = take_in(pursuit)
         if not missing or not appear():
             return missing
 
 
-def take_in(there: Pursued) -> dict[str, str]:
+def take_in(pursuit: Pursued) -> dict[str, str]:
     """Append the open runs whose recordings have appeared; return the others with the reason.
 
     A recording that cannot be read has not appeared yet: it may still be copied.
@@ -158,20 +158,20 @@ def take_in(there: Pursued) -> dict[str, str]:
     """
     missing: dict[str, str] = {}
     tables: list[str] = []
-    for run in map(_run, there.open):
-        file = recording_of(there.folder, run)
+    for run in map(_run, pursuit.open):
+        file = recording_of(pursuit.folder, run)
         try:
             if file is None:
                 missing[run.name] = f"no {run.name}.nc"
                 continue
             recorded = replace(run, file=file)
-            open_recording(RecordingSource.of(there.campaign, recorded, there.folder))
+            open_recording(RecordingSource.of(pursuit.campaign, recorded, pursuit.folder))
         except (PmmError, OSError) as error:
             missing[run.name] = str(error)
             continue
-        tables.append("\n" + toml_table("runs", _keys(recorded, there, len(tables)), array=True))
+        tables.append("\n" + toml_table("runs", _keys(recorded, pursuit, len(tables)), array=True))
     if tables:
-        append_tables(there.folder / CAMPAIGN_FILE, tables, read_campaign)
+        append_tables(pursuit.folder / CAMPAIGN_FILE, tables, read_campaign)
     return missing
 
 
@@ -181,10 +181,10 @@ def recording_of(folder: Path, run: Run) -> str | None:
     return next((name for name in names if (folder / name).is_file()), None)
 
 
-def _keys(run: Run, there: Pursued, before: int) -> dict[str, Any]:
+def _keys(run: Run, pursuit: Pursued, before: int) -> dict[str, Any]:
     """Return a run as the campaign file has it, ``before`` others having been appended with it."""
-    every: tuple[Run | AtRest, ...] = (*there.campaign.runs, *there.campaign.at_rest)
-    known = [one.number for one in every if one.number]
+    records: tuple[Run | AtRest, ...] = (*pursuit.campaign.runs, *pursuit.campaign.at_rest)
+    numbers = [record.number for record in records if record.number]
     return {
         "name": run.name,
         "frequency_hz": run.frequency_hz,
@@ -197,5 +197,5 @@ def _keys(run: Run, there: Pursued, before: int) -> dict[str, Any]:
         "kind": run.kind,
         "motion": run.motion,
         "file": None if run.file == f"{run.name}.nc" else run.file,
-        "number": max(known) + 1 + before if known else None,
+        "number": max(numbers) + 1 + before if numbers else None,
     }

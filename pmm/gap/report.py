@@ -71,14 +71,14 @@ class GapReport:
 
 def gap_report(examined: Examined) -> GapReport:
     """Put an examined campaign in rows."""
-    found, concluded = examined.diagnosis, examined.conclusion
-    stack = found.problem.simulator.stack
+    diagnosis, concluded = examined.diagnosis, examined.conclusion
+    stack = diagnosis.problem.simulator.stack
     convention, rows = coefficient_rows(examined)
     ranking, odd = tuple(_ranking(examined)), odd_one(examined)
     large = how_large(stack, _difference(examined), concluded.walk, rows)
-    own = () if examined.cause is None else tuple(own_sizes(examined.cause))
-    next_runs = tuple(_next(one) for one in found.proposals[:PROPOSED])
-    measures = tuple(how for one in ranking for how in one.measure)
+    sizes = () if examined.cause is None else tuple(own_sizes(examined.cause))
+    next_runs = tuple(_next(proposal) for proposal in diagnosis.proposals[:PROPOSED])
+    measures = tuple(how for row in ranking for how in row.measure)
     run = next_runs[0]["said"] if next_runs else ""
     todo = Remedies(odd, measures, run)
     return GapReport(
@@ -87,19 +87,19 @@ def gap_report(examined: Examined) -> GapReport:
         examined.held_out,
         dict(examined.left_out),
         concluded,
-        sentences(concluded, large, own, todo),
+        sentences(concluded, large, sizes, todo),
         large,
         tuple(_notes(examined, odd)),
-        tuple(step_row(one) for one in found.walk.contrasts),
-        dict(sorted(found.stages.items(), key=lambda one: -one[1])),
+        tuple(step_row(contrast) for contrast in diagnosis.walk.contrasts),
+        dict(sorted(diagnosis.stages.items(), key=lambda pair: -pair[1])),
         ranking,
         examined.effects,
-        tuple(sorted(found.weighed.hidden)),
+        tuple(sorted(diagnosis.weighed.hidden)),
         tuple(_controls(examined)),
         tuple(_regimes(examined)),
         convention,
         rows,
-        tuple(heat_cells(found.problem, examined.left)),
+        tuple(heat_cells(diagnosis.problem, examined.left)),
         examined.description,
         next_runs,
     )
@@ -149,63 +149,63 @@ def _of_cause(examined: Examined, cause: Fit) -> Iterator[str]:
 
 
 def _ranking(examined: Examined) -> Iterator[Ranked]:
-    found = examined.diagnosis
+    diagnosis = examined.diagnosis
     fits: dict[str, Fit] = {}
-    for one in found.weighed.ranked:
-        fits.setdefault(one.answer, one)
+    for ranked_fit in diagnosis.weighed.ranked:
+        fits.setdefault(ranked_fit.answer, ranked_fit)
     shares = examined.shares
     ranked, best = list(shares), examined.conclusion.weighing.best
-    kept = [
+    names = [
         name for number, name in enumerate(ranked[:_SHOWN]) if number < 3 or shares[name] > _LEAST
     ]
-    for name in kept:
+    for name in names:
         fit = fits.get(name)
-        members = found.classes if name == best else {}
-        alike = {other: left for group in members.values() for other, left in group}
+        members = diagnosis.classes if name == best else {}
+        alike = {twin: sigma for group in members.values() for twin, sigma in group}
         stage = "" if fit is None else " and ".join(
-            dict.fromkeys(one.stage for one in fit.candidates)
+            dict.fromkeys(candidate.stage for candidate in fit.candidates)
         )  # fmt: skip
         effects = [] if fit is None else list(effect_rows(fit))
         measure = [
             how
-            for own, group in members.items()
-            for how in separating_measurements([own, *(other for other, _ in group)])
+            for effect, group in members.items()
+            for how in separating_measurements([effect, *(twin for twin, _ in group)])
         ]
-        left = examined.judged.by_answer.get(name, math.nan)
-        yield Ranked(name, float(shares[name]), left, stage, effects, alike, measure)
+        withheld_u = examined.judged.by_answer.get(name, math.nan)
+        yield Ranked(name, float(shares[name]), withheld_u, stage, effects, alike, measure)
 
 
 def _controls(examined: Examined) -> Iterator[ControlRow]:
-    found, judged = examined.diagnosis, examined.judged
+    diagnosis, judged = examined.diagnosis, examined.judged
     rows: list[tuple[str, Sequence[Predicted]]] = []
-    if found.best is not None:
+    if diagnosis.best is not None:
         near = "nearest, but not it: " if examined.cause is None else ""
-        rows.append((near + joined(found.best.answer), judged.cured))
-    if found.rival is not None:
-        rows.append((f"second best: {joined(found.rival.answer)}", judged.rival))
+        rows.append((near + joined(diagnosis.best.answer), judged.cured))
+    if diagnosis.rival is not None:
+        rows.append((f"second best: {joined(diagnosis.rival.answer)}", judged.rival))
     rows.append(("free polynomial", judged.free_form))
-    for what, after in rows:
+    for answer, after in rows:
         if judged.plain and after:
-            one = shrinkage(judged.plain, after)
+            change = shrinkage(judged.plain, after)
             certain = len(after) > 1
-            low, high = (one.low, one.high) if certain else (math.nan, math.nan)
-            yield ControlRow(what, one.before, one.after, one.share, low, high)
+            low, high = (change.low, change.high) if certain else (math.nan, math.nan)
+            yield ControlRow(answer, change.before, change.after, change.share, low, high)
 
 
 def _regimes(examined: Examined) -> Iterator[RegimeRow]:
     judged = examined.judged
-    for number, one in enumerate(judged.plain):
+    for number, prediction in enumerate(judged.plain):
         after = [
             gap_of(part[number].left) if part else math.nan
             for part in (judged.cured, judged.rival, judged.free_form)
         ]
-        yield RegimeRow(str(one.regime), gap_of(one.left), *after)
+        yield RegimeRow(str(prediction.regime), gap_of(prediction.left), *after)
 
 
-def _next(one: Proposal) -> dict[str, Any]:
+def _next(proposal: Proposal) -> dict[str, Any]:
     return {
-        "run": next_run(one),
-        "said": str(one),
-        "gain_log_odds": one.gain,
-        "between": list(one.between),
+        "run": next_run(proposal),
+        "said": str(proposal),
+        "gain_log_odds": proposal.gain,
+        "between": list(proposal.between),
     }

@@ -32,8 +32,8 @@ class RigPlace:
         """Return what the folder holds."""
         plan, file = read_growing(self._folder, self._file), self._file
         if plan is None:
-            given = tuple(run for run in file.fixed if run.oscillates)
-            return Standing((), 0.0, given, (), frozenset(), time_left_s=file.time_s)
+            fixed_runs = tuple(run for run in file.fixed if run.oscillates)
+            return Standing((), 0.0, fixed_runs, (), frozenset(), time_left_s=file.time_s)
         made = plan.made
         self._last = made[-1] if made else None
         return Standing(
@@ -48,7 +48,11 @@ class RigPlace:
     def offered(self, worth: Sequence[Suggestion]) -> Sequence[tuple[Suggestion, RunPlan]]:
         """Return which of some runs the grid has."""
         runs = {run.set_point: run for run in reversed(self._file.grid.runs)}
-        return [(one, runs[one.set_point]) for one in worth if one.set_point in runs]
+        return [
+            (suggestion, runs[suggestion.set_point])
+            for suggestion in worth
+            if suggestion.set_point in runs
+        ]
 
     def costs_s(self, runs: Sequence[RunPlan]) -> tuple[float, ...]:
         """Return the tank time of each of some runs that are to follow."""

@@ -24,29 +24,30 @@ def run_notes(examined: Examined) -> Iterator[str]:
 def noise_notes(examined: Examined) -> Iterator[str]:
     """Yield the channels whose noise is not as it is stated: what was heard is what counts."""
     for line in examined.campaign.acquisition.lines:
-        own = line.digitiser.noise_rms
-        found = heard_rms(examined.ready.fitted, line.channel.name)
-        if own and found and not 1.0 / NOTED < found / own < NOTED:
+        stated_rms = line.digitiser.noise_rms
+        measured_rms = heard_rms(examined.ready.fitted, line.channel.name)
+        if stated_rms and measured_rms and not 1.0 / NOTED < measured_rms / stated_rms < NOTED:
             unit = line.channel.unit
             yield (
-                f"{line.channel.name}: white noise of {found:.2g} {unit} is heard, "
-                f"{own:.2g} {unit} are stated as noise_rms; what is heard is used"
+                f"{line.channel.name}: white noise of {measured_rms:.2g} {unit} is heard, "
+                f"{stated_rms:.2g} {unit} are stated as noise_rms; what is heard is used"
             )
 
 
 def command_notes(examined: Examined) -> Iterator[str]:
     """Yield what commands and measured positions told of the settings."""
-    for one in examined.ready.commanded:
-        added = "" if one.added_m is None else f" and {_off(one.added_m)}"
+    for setting in examined.ready.commanded:
+        added = "" if setting.added_m is None else f" and {_off(setting.added_m)}"
         yield (
-            f"{one.name}: {_off(one.off)}{added} off, by command and measured position of "
-            f"{one.runs} runs; the simulation has it so, within {one.key} = {one.tolerance:.2g}"
+            f"{setting.name}: {_off(setting.off)}{added} off, by command and measured position of "
+            f"{setting.runs} runs; the simulation has it so, within {setting.key} = "
+            f"{setting.tolerance:.2g}"
         )
 
 
-def _off(one: Estimate) -> str:
-    unit = "" if one.unit == "1" else f" {one.unit}"
-    return f"{one.value:+.3g} ± {one.half_width():.2g}{unit}"
+def _off(estimate: Estimate) -> str:
+    unit = "" if estimate.unit == "1" else f" {estimate.unit}"
+    return f"{estimate.value:+.3g} ± {estimate.half_width():.2g}{unit}"
 
 
 def odd_one(examined: Examined) -> str:
@@ -69,9 +70,9 @@ def _not_foretold(examined: Examined) -> Iterator[str]:
     if cause is None or not judged.chosen or not judged.cured:
         return
     for plain, cured in zip(judged.plain, judged.cured, strict=True):
-        before, left = gap_of(plain.left), gap_of(cured.left)
-        if left > max(1.0, 0.5 * before):
+        before, after = gap_of(plain.left), gap_of(cured.left)
+        if after > max(1.0, 0.5 * before):
             yield (
-                f"{cured.regime} is not foretold: {' and '.join(cause.names)} leaves {left:.3g} u "
+                f"{cured.regime} is not foretold: {' and '.join(cause.names)} leaves {after:.3g} u "
                 "of it; it may itself be off, or the cause be another one"
             )

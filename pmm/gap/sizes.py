@@ -19,7 +19,7 @@ from pmm.gap.steps import StepRow
 _UNITS: Final = {
     **dict.fromkeys(FORCES, "N"),
     **dict.fromkeys(DISPLACEMENTS, "m"),
-    **{one.name: one.unit for one in (SHAFT_ANGLE, CARRIAGE_SPEED)},
+    **{channel.name: channel.unit for channel in (SHAFT_ANGLE, CARRIAGE_SPEED)},
 }
 _ONE_UNIT: Final = (SHAFT, MOTION, FORCE)  # steps whose numbers are all in the same unit
 _HARMONIC: Final = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE)
@@ -95,10 +95,10 @@ def how_large(
     walk
         Where no step has a gap, the size is that in the forces, or at the end of the chain.
     """
-    present = {step_of(one) for one in stack.components}
-    steps = [one.what for one in walk if one.gap and one.what in present]
+    present = {step_of(component) for component in stack.components}
+    steps = [step.what for step in walk if step.gap and step.what in present]
     steps = steps or [FORCE if FORCE in present else walk[-1].what]
-    return HowLarge(tuple(_largest(stack, change, what) for what in steps), spoiled(rows))
+    return HowLarge(tuple(_largest(stack, change, step) for step in steps), spoiled(rows))
 
 
 def spoiled(rows: Sequence[CoefficientRow]) -> Spoiled | None:
@@ -107,41 +107,41 @@ def spoiled(rows: Sequence[CoefficientRow]) -> Spoiled | None:
     Without the effect that is named from with it; where none is, as fitted from what is stated.
     Of those that are no more than their uncertainty a per cent says nothing.
     """
-    known = [one for one in rows if one.off and one.is_told]
-    spoilt = [Spoiled(one.where, _per_cent(one)) for one in known]
-    return max(spoilt, key=lambda one: abs(one.per_cent), default=None)
+    off_rows = [row for row in rows if row.off and row.is_told]
+    spoilt = [Spoiled(row.where, _per_cent(row)) for row in off_rows]
+    return max(spoilt, key=lambda coefficient: abs(coefficient.per_cent), default=None)
 
 
-def _per_cent(one: CoefficientRow) -> float:
-    there, _ = one.reference
-    return 100.0 * (one.without - there) / there
+def _per_cent(row: CoefficientRow) -> float:
+    reference, _ = row.reference
+    return 100.0 * (row.without - reference) / reference
 
 
-def _largest(stack: Stack, change: FloatArray, what: str) -> Size:
+def _largest(stack: Stack, change: FloatArray, step: str) -> Size:
     """Return the largest harmonic of a step in its unit; beside them, what is clearest."""
     cells: dict[tuple[int, Component], list[int]] = {}
-    for at, one in enumerate(stack.components):
-        if step_of(one) == what:
-            part = Part.MEAN if one.part in _HARMONIC else one.part
-            key = int(stack.run[at]), Component(one.channel, part, one.order)
+    for at, component in enumerate(stack.components):
+        if step_of(component) == step:
+            part = Part.MEAN if component.part in _HARMONIC else component.part
+            key = int(stack.run[at]), Component(component.channel, part, component.order)
             cells.setdefault(key, []).append(at)
-    scale = stack.uncertainty if what in _ONE_UNIT else np.ones(len(change))
+    scale = stack.uncertainty if step in _ONE_UNIT else np.ones(len(change))
     sizes = {key: float(np.linalg.norm((change * scale)[rows])) for key, rows in cells.items()}
     run, which = max(sizes, key=lambda key: sizes[key])
-    own = cells[run, which]
-    value = float(np.linalg.norm((change * stack.uncertainty)[own]))
-    return _size(stack, what, run, which, value)
+    rows = cells[run, which]
+    value = float(np.linalg.norm((change * stack.uncertainty)[rows]))
+    return _size(stack, step, run, which, value)
 
 
 def _size(stack: Stack, step: str, run: int, which: Component, value: float) -> Size:
-    there = stack.runs[run]
+    gap_run = stack.runs[run]
     if which.part is Part.FREQUENCY:
-        return Size(step, 100.0 * value, "%", "the frequency", there.name, math.nan)
+        return Size(step, 100.0 * value, "%", "the frequency", gap_run.name, math.nan)
     if which.part is Part.PULSES:
-        return Size(step, 100.0 * value, "%", "the photocell's pulses", there.name, math.nan)
+        return Size(step, 100.0 * value, "%", "the photocell's pulses", gap_run.name, math.nan)
     if which.part is not Part.MEAN and which.part not in TRENDS:
         shown = f"{which.part} of {which.channel}" if which.channel else str(which.part)
-        return Size(step, 100.0 * math.expm1(value), "%", shown, there.name, math.nan)
+        return Size(step, 100.0 * math.expm1(value), "%", shown, gap_run.name, math.nan)
     unit = display(_UNITS.get(which.channel, ""))
     trend = " per period" if which.part in TRENDS else ""
     return Size(
@@ -149,15 +149,15 @@ def _size(stack: Stack, step: str, run: int, which: Component, value: float) -> 
         unit.factor * value,
         f"{unit.label}{trend}",
         f"{_of_order(which)} of {which.channel}",
-        there.name,
-        100.0 * value / _first(there, which.channel),
+        gap_run.name,
+        100.0 * value / _first(gap_run, which.channel),
     )
 
 
 def _first(run: GapRun, channel: str) -> float:
     """Return the amplitude of a channel's first harmonic; NaN where it is no measure."""
     parts = (Part.IN_PHASE, Part.QUADRATURE)
-    first = math.hypot(*(run.observed.value(channel, one, 1) for one in parts))
+    first = math.hypot(*(run.observed.value(channel, part, 1) for part in parts))
     return first if channel in (*FORCES, *DISPLACEMENTS) and first > 0.0 else math.nan
 
 

@@ -56,29 +56,31 @@ class StepRow:
     @property
     def largest(self) -> str:
         """The largest number, and what is out of its tolerance."""
-        most = sorted(self.strained.items(), key=lambda one: -abs(one[1]))
+        most = sorted(self.strained.items(), key=lambda pair: -abs(pair[1]))
         off = [f"{name} off by {units:+.1f} tolerances" for name, units in most[:_TOLD]]
         more = [f"{len(most) - _TOLD} more"] if len(most) > _TOLD else []
         return "; ".join([self.worst, *off, *more])
 
 
-def step_row(one: Gap) -> StepRow:
+def step_row(gap: Gap) -> StepRow:
     """Return a part of the difference as a row."""
-    told = dict(one.strained)
-    return StepRow(one.what, one.rms, one.count, one.beyond, one.worst, one.stated, one.tells, told)
+    strains = dict(gap.strained)
+    return StepRow(
+        gap.what, gap.rms, gap.count, gap.beyond, gap.worst, gap.stated, gap.tells, strains
+    )
 
 
 def walk_rows(walk: Walk) -> tuple[StepRow, ...]:
     """Return a row for each step of a walk."""
-    return tuple(step_row(one) for one in walk.steps)
+    return tuple(step_row(step) for step in walk.steps)
 
 
 def remains(problem: Problem, residual: FloatArray) -> Iterator[StepRow]:
     """Yield what an answer leaves of a whitened difference, step by step along the chain."""
-    left = left_by_step(problem, residual)
+    remainder = left_by_step(problem, residual)
     out = strained(problem, residual + problem.stated - problem.residual)
     stack = problem.simulator.stack
-    for what in CHAIN:
-        rows = np.array([step_of(one) == what for one in stack.components])
+    for step in CHAIN:
+        rows = np.array([step_of(component) == step for component in stack.components])
         if rows.any():
-            yield step_row(replace(gap_of(stack, left, what, rows), strained=out[what]))
+            yield step_row(replace(gap_of(stack, remainder, step, rows), strained=out[step]))

@@ -70,8 +70,8 @@ _TWO: Final = written(".2f")
 _FOUR: Final = written(".4f")
 
 STEPS: Final[tuple[Column[StepRow], ...]] = (
-    Column("verdict", lambda one: one.verdict),
-    Column("largest", lambda one: one.largest),
+    Column("verdict", lambda row: row.verdict),
+    Column("largest", lambda row: row.largest),
     number("E/u as stated", "stated_u", lambda stated: "" if math.isnan(stated) else _TWO(stated)),
     number("E/u", "gap_u", _TWO),
     number("numbers", "count"),
@@ -80,7 +80,7 @@ STEPS: Final[tuple[Column[StepRow], ...]] = (
 RANKING: Final[tuple[Column[Ranked], ...]] = (
     word("answer", "answer", joined),
     word("stage", "stage"),
-    Column("parameters (95 %)", lambda one: "; ".join(parameters(one.effects))),
+    Column("parameters (95 %)", lambda row: "; ".join(parameters(row.effects))),
     number("probability", "probability", _FOUR),
     number("withheld", "withheld_u", _TWO, "u"),
     *data_only("effects", "alike", "measure"),
@@ -88,7 +88,7 @@ RANKING: Final[tuple[Column[Ranked], ...]] = (
 EFFECTS: Final[tuple[Column[Marginal], ...]] = (
     word("effect in any answer", "name"),
     word("stage", "stage"),
-    Column("cannot be told from", lambda one: _alike(one)),
+    Column("cannot be told from", lambda marginal: _alike(marginal)),
     number("probability", "probability", _FOUR),
     number("of its class", "class_probability", _FOUR),
     *data_only("size_sigma", "alike"),
@@ -97,8 +97,8 @@ CONTROLS: Final[tuple[Column[ControlRow], ...]] = (
     word("answer", "what"),
     number("gap before", "before_u", _TWO, "u"),
     number("after", "after_u", _TWO, "u"),
-    Column("shrinks", lambda one: shrinks(one), number=True),
-    Column("95 %", lambda one: interval(one), number=True),
+    Column("shrinks", lambda row: shrinks(row), number=True),
+    Column("95 %", lambda row: interval(row), number=True),
     *data_only("share", "low", "high"),
 )
 REGIMES: Final = (
@@ -109,11 +109,11 @@ REGIMES: Final = (
     number("polynomial", "polynomial", _TWO, "u"),
 )
 NEXT: Final[tuple[Column[dict[str, Any]], ...]] = (
-    Column("run", lambda one: one["said"], "said"),
-    Column("expected log odds", lambda one: one["gain_log_odds"], "gain_log_odds", written(".1f"),
+    Column("run", lambda run: run["said"], "said"),
+    Column("expected log odds", lambda run: run["gain_log_odds"], "gain_log_odds", written(".1f"),
            number=True),
-    Column(None, lambda one: one["run"], "run"),
-    Column(None, lambda one: one["between"], "between"),
+    Column(None, lambda run: run["run"], "run"),
+    Column(None, lambda run: run["between"], "between"),
 )  # fmt: skip
 
 
@@ -131,28 +131,28 @@ def parameters(effects: Sequence[Mapping[str, Any]]) -> list[str]:
     ]
 
 
-def _with_interval(one: Mapping[str, float]) -> str:
-    if one["low"] == one["high"]:  # not fitted
-        return f"{one['value']:.4g}"
-    return f"{one['value']:.4g} ({one['low']:.4g} to {one['high']:.4g})"
+def _with_interval(estimate: Mapping[str, float]) -> str:
+    if estimate["low"] == estimate["high"]:  # not fitted
+        return f"{estimate['value']:.4g}"
+    return f"{estimate['value']:.4g} ({estimate['low']:.4g} to {estimate['high']:.4g})"
 
 
-def _alike(one: Marginal) -> str:
-    if math.isnan(one.class_probability):
+def _alike(marginal: Marginal) -> str:
+    if math.isnan(marginal.class_probability):
         return "its absence"
-    return ", ".join(f"{name} ({left:.1f} sigma left)" for name, left in one.alike.items())
+    return ", ".join(f"{name} ({sigma:.1f} sigma left)" for name, sigma in marginal.alike.items())
 
 
-def shrinks(one: ControlRow) -> str:
+def shrinks(row: ControlRow) -> str:
     """Return by how much a gap shrinks; a dash where there was none."""
-    return percent("z.0f")(one.share if one.before_u > 0.0 else math.nan)
+    return percent("z.0f")(row.share if row.before_u > 0.0 else math.nan)
 
 
-def interval(one: ControlRow) -> str:
+def interval(row: ControlRow) -> str:
     """Return the interval of that; a dash where nobody knows it."""
-    if one.before_u <= 0.0 or math.isnan(one.low):
+    if row.before_u <= 0.0 or math.isnan(row.low):
         return NOT_KNOWN
-    return f"{100.0 * one.low:z.0f} to {percent('z.0f')(one.high)}"
+    return f"{100.0 * row.low:z.0f} to {percent('z.0f')(row.high)}"
 
 
 def coefficient_columns(*, compared: bool) -> tuple[Column[CoefficientRow], ...]:
@@ -160,17 +160,17 @@ def coefficient_columns(*, compared: bool) -> tuple[Column[CoefficientRow], ...]
     fitted: tuple[Column[CoefficientRow], ...] = (
         Column(
             "fitted without effect" if compared else "fitted",
-            lambda one: f"{one.without:.6g} ± {2.0 * one.u_without:.2g}",
+            lambda row: f"{row.without:.6g} ± {2.0 * row.u_without:.2g}",
             number=True,
         ),
     )
     with_it: tuple[Column[CoefficientRow], ...] = (
-        Column("with it", lambda one: f"{one.with_effect:.6g} ± {2.0 * one.u_with:.2g}",
+        Column("with it", lambda row: f"{row.with_effect:.6g} ± {2.0 * row.u_with:.2g}",
                number=True),
         number("bias", "bias_u", written("+z.1f"), "u"),
     )  # fmt: skip
     return (
-        Column("coefficient", lambda one: one.where),
+        Column("coefficient", lambda row: row.where),
         word("unit", "unit"),
         number("stated", "stated", written(".6g")),
         *fitted,

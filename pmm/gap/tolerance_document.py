@@ -49,7 +49,7 @@ NUMBERS: Final[Mapping[str, tuple[str, ...]]] = {
     "warming_k_h": ("warming",),
     "warming_n_s": ("drift aft", "drift fore"),
     "hum_n": tuple(
-        f"hum {one} {mains_hz:g} Hz" for one in ("aft", "fore") for mains_hz in MAINS_HZ
+        f"hum {side} {mains_hz:g} Hz" for side in ("aft", "fore") for mains_hz in MAINS_HZ
     ),
 }
 """The free numbers that each tolerance is of, by its key; no others have a name."""
@@ -96,11 +96,11 @@ def tolerance_document(folder: Path, options: Options) -> Document:
     DataError
         If fewer than three runs can be used, or a channel is in other units in all of them.
     """
-    known, more = chosen_effects(options.effects, options.without)
-    ready = prepare(folder, known, more, options.sensors, options.hold_out)
+    kinds, more = chosen_effects(options.effects, options.without)
+    ready = prepare(folder, kinds, more, options.sensors, options.hold_out)
     rows = tuple(_rows(ready, campaign_file(folder)))
     table = Table("Tolerances", _COLUMNS, rows, "tolerances")
-    stated = sum(one.source.startswith(_STATED) for one in rows)
+    stated = sum(row.source.startswith(_STATED) for row in rows)
     said = f"{stated} of {len(rows)} tolerances are stated, the others are as usual."
     section = Section("", (Text((said,), strong=True), Text((_SAID,)), table))
     return Document(ready.campaign.name, "what may be off without a gap", (section,), SCHEMA)
@@ -110,18 +110,18 @@ def _rows(ready: Prepared, file: Path) -> Iterator[ToleranceRow]:
     tolerances, stated = ready.case.tolerances, stated_tolerances(file)
     problem = problem_of(ready.there.rig, ready.fitted, ready.settings, ready.there.free)
     moved = _shown(problem)
-    commanded = {one.key for one in ready.commanded}
-    for one in fields(tolerances):
-        told = one.metadata
-        where = f"{_STATED}{stated[one.name][1]}" if one.name in stated else ""
-        where = _COMMANDED if one.name in commanded else where
+    commanded = {setting.key for setting in ready.commanded}
+    for tolerance in fields(tolerances):
+        metadata = tolerance.metadata
+        where = f"{_STATED}{stated[tolerance.name][1]}" if tolerance.name in stated else ""
+        where = _COMMANDED if tolerance.name in commanded else where
         yield ToleranceRow(
-            one.name,
-            getattr(tolerances, one.name),
-            told["unit"],
-            told["meaning"],
-            where or _AS_USUAL + told["source"],
-            {name: moved[name] for name in NUMBERS.get(one.name, ()) if name in moved},
+            tolerance.name,
+            getattr(tolerances, tolerance.name),
+            metadata["unit"],
+            metadata["meaning"],
+            where or _AS_USUAL + metadata["source"],
+            {name: moved[name] for name in NUMBERS.get(tolerance.name, ()) if name in moved},
         )
 
 
@@ -134,9 +134,9 @@ def _shown(problem: Problem) -> dict[str, dict[str, float]]:
     covariance = np.linalg.inv(np.eye(columns.shape[1]) + columns.T @ columns)
     spread = np.sqrt(np.diagonal(covariance))
     pairs = zip(coefficient_shift(problem).items(), spread.tolist(), strict=False)
-    return {name: {"tolerances": off, "u": own} for (name, off), own in pairs if own < _LEARNT}
+    return {name: {"tolerances": off, "u": u} for (name, off), u in pairs if u < _LEARNT}
 
 
 def _moved(moved: Mapping[str, Mapping[str, float]]) -> Iterator[str]:
-    for name, one in moved.items():
-        yield f"{name} {one['tolerances']:+.2f} ± {one['u']:.2f}"
+    for name, shift in moved.items():
+        yield f"{name} {shift['tolerances']:+.2f} ± {shift['u']:.2f}"

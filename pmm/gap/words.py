@@ -32,19 +32,23 @@ class Remedies:
 
 
 def sentences(
-    found: Conclusion, large: HowLarge, own: Sequence[str], todo: Remedies
+    conclusion: Conclusion, large: HowLarge, effect_sizes: Sequence[str], todo: Remedies
 ) -> tuple[str, str, str]:
     """Return the three sentences.
 
     Parameters
     ----------
-    own
+    effect_sizes
         The sizes of the effects that are named, in their own units.
     """
-    return what_is_wrong(found), how_large_it_is(found, large, own), what_to_do(found, todo)
+    return (
+        what_is_wrong(conclusion),
+        how_large_it_is(conclusion, large, effect_sizes),
+        what_to_do(conclusion, todo),
+    )
 
 
-def what_is_wrong(found: Conclusion) -> str:
+def what_is_wrong(conclusion: Conclusion) -> str:
     """Return what separates rig and simulation, and how probable that is."""
     said = {
         NONE: _none,
@@ -53,90 +57,96 @@ def what_is_wrong(found: Conclusion) -> str:
         UNKNOWN: _unknown,
         EFFECT: _effect,
     }
-    return f"{said[found.verdict](found)}."
+    return f"{said[conclusion.verdict](conclusion)}."
 
 
-def _none(found: Conclusion) -> str:
-    if found.unexplained:
+def _none(conclusion: Conclusion) -> str:
+    if conclusion.unexplained:
         return (
-            f"Nothing that was considered explains the difference in {_steps(found)}: that there "
-            f"is no gap has probability {found.probability:.2f}"
+            f"Nothing that was considered explains the difference in {_steps(conclusion)}: that "
+            f"there is no gap has probability {conclusion.probability:.2f}"
         )
-    fitted = " once the coefficients are fitted" if found.fitted else ""
+    fitted = " once the coefficients are fitted" if conclusion.fitted else ""
     agree = f"rig and simulation agree{fitted} within what the recordings can tell"
-    return f"No gap: {agree} (probability {found.probability:.2f})"
+    return f"No gap: {agree} (probability {conclusion.probability:.2f})"
 
 
-def _coefficients(found: Conclusion) -> str:
-    left = f"; they do not explain the difference in {_steps(found)}" if found.unexplained else ""
+def _coefficients(conclusion: Conclusion) -> str:
+    remark = (
+        f"; they do not explain the difference in {_steps(conclusion)}"
+        if conclusion.unexplained
+        else ""
+    )
     missing = "No effect is missing: the coefficients are not those that the campaign states"
-    return f"{missing} (probability {found.probability:.2f}){left}"
+    return f"{missing} (probability {conclusion.probability:.2f}){remark}"
 
 
-def _odd_run(found: Conclusion) -> str:
+def _odd_run(conclusion: Conclusion) -> str:
     return (
-        f"Run {found.weighing.odd_run} alone is off, by a gain or a zero of its own "
-        f"(probability {found.probability:.2f})"
+        f"Run {conclusion.weighing.odd_run} alone is off, by a gain or a zero of its own "
+        f"(probability {conclusion.probability:.2f})"
     )
 
 
-def _unknown(found: Conclusion) -> str:
-    given = found.weighing
+def _unknown(conclusion: Conclusion) -> str:
+    weighing = conclusion.weighing
     outside = OUTSIDE
-    if given.restricted is not None:
-        outside = f"something else than the {given.restricted} effects considered"
-    where = f", most likely in the {given.stage}" if given.stage else ""
-    near = f"; nearest, but not it: {joined(given.best)}" if given.best else ""
+    if weighing.restricted is not None:
+        outside = f"something else than the {weighing.restricted} effects considered"
+    where = f", most likely in the {weighing.stage}" if weighing.stage else ""
+    near = f"; nearest, but not it: {joined(weighing.best)}" if weighing.best else ""
     return (
         f"{outside[0].upper()}{outside[1:]} separates rig and simulation "
-        f"(probability {found.probability:.2f}){where}{near}"
+        f"(probability {conclusion.probability:.2f}){where}{near}"
     )
 
 
-def _effect(found: Conclusion) -> str:
-    given = found.weighing
-    what = " and ".join(f"{given.titles.get(one, one)} ({one})" for one in found.names)
-    verb = "is" if len(found.names) == 1 else "are"
-    said = f"{what} {verb} missing in the simulation"
+def _effect(conclusion: Conclusion) -> str:
+    weighing = conclusion.weighing
+    titles = " and ".join(
+        f"{weighing.titles.get(name, name)} ({name})" for name in conclusion.names
+    )
+    verb = "is" if len(conclusion.names) == 1 else "are"
+    said = f"{titles} {verb} missing in the simulation"
     alike = [
-        f"{' or '.join(others)} would look the same as {own} in these runs"
-        for own, others in given.alike.items()
-        if others and own in found.names
+        f"{' or '.join(twins)} would look the same as {effect} in these runs"
+        for effect, twins in weighing.alike.items()
+        if twins and effect in conclusion.names
     ]
-    said = f"{said} (probability {found.probability:.2f}), or whatever acts alike"
+    said = f"{said} (probability {conclusion.probability:.2f}), or whatever acts alike"
     return "; ".join([said, *alike])
 
 
-def _steps(found: Conclusion) -> str:
-    return " and ".join(one.what for one in found.unexplained)
+def _steps(conclusion: Conclusion) -> str:
+    return " and ".join(step.what for step in conclusion.unexplained)
 
 
-def how_large_it_is(found: Conclusion, large: HowLarge, own: Sequence[str]) -> str:
+def how_large_it_is(conclusion: Conclusion, large: HowLarge, effect_sizes: Sequence[str]) -> str:
     """Return how large the difference is, and by how much it puts a coefficient off."""
-    sizes, worst = " and ".join(one.said for one in large.sizes), large.coefficient
-    if found.adds:
+    sizes, worst = " and ".join(size.said for size in large.sizes), large.coefficient
+    if conclusion.adds:
         put = f"it puts {worst.name} off by {worst.said}" if worst else _WITHIN
-        return f"{'; '.join([f'It changes {sizes}', put, *own])}."
+        return f"{'; '.join([f'It changes {sizes}', put, *effect_sizes])}."
     fitted = f"{worst.name} is fitted {worst.said} off what is stated" if worst else _WITHIN
-    if found.unexplained:
+    if conclusion.unexplained:
         why = ", whatever the reason" if worst else ""
         return f"Rig and simulation differ in {sizes}; {fitted}{why}."
     return f"They differ in {sizes}, no more than noise; {fitted}."
 
 
-def what_to_do(found: Conclusion, todo: Remedies) -> str:
+def what_to_do(conclusion: Conclusion, todo: Remedies) -> str:
     """Return what to do next."""
     if todo.odd:
         return f"Withhold run {todo.odd}, which alone is off: --hold-out {todo.odd}."
-    if found.adds:
+    if conclusion.adds:
         add = 'put it into the simulation with "pmm gap add", and look again'
         if not todo.measures:
             return f"{add[0].upper()}{add[1:]}."
         return f"Tell what looks the same apart by {'; '.join(todo.measures)}; or {add}."
     make = f"make the run that tells most, {todo.run}" if todo.run else "record more kinds of runs"
-    if found.unexplained:
+    if conclusion.unexplained:
         return f"Look at what remains, below, and {make}."
-    if found.verdict == COEFFICIENTS:
+    if conclusion.verdict == COEFFICIENTS:
         return "Put the fitted coefficients into the campaign file: to find them is what it is for."
     return "Nothing has to be done: the coefficients of this campaign may be reported."
 
