@@ -43,7 +43,7 @@ def air_rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 def without_air(
     table: Any,
-    found: Assessment,
+    assessment: Assessment,
     *,
     depth: Estimate | None = None,
     by_sway: bool = False,
@@ -60,18 +60,18 @@ def without_air(
     """
     air: AirTable | None = table.entrained_air
     if air is None:
-        return found
+        return assessment
     ratio = table.air_density_kg_m3 / table.body_density_kg_m3
     inputs = {
-        "gyradius_in_air_m": found.budget.result,
+        "gyradius_in_air_m": assessment.budget.result,
         "coefficient": given(air, "coefficient", "entrained_air"),
         "depth_m": depth or exactly(0.0, "m"),
     }
     if by_sway:
         inputs["sway_coefficient"] = given(air, "sway_coefficient", "entrained_air")
-    own = given_or_none(air, "gyradius_m", "entrained_air")
-    if own is not None:
-        inputs["air_gyradius_m"] = own
+    air_gyradius = given_or_none(air, "gyradius_m", "entrained_air")
+    if air_gyradius is not None:
+        inputs["air_gyradius_m"] = air_gyradius
 
     def gyradius(
         gyradius_in_air_m: Value, coefficient: Value, depth_m: Value, **more: Value
@@ -83,4 +83,4 @@ def without_air(
         # of 1 kg of body, so the displaced air is the ratio and the inertia the square
         return sqrt(without_entrained_air(square, ratio, coefficient, about))
 
-    return assess(found.budget.name, gyradius, inputs, unit="m", seed=seed)
+    return assess(assessment.budget.name, gyradius, inputs, unit="m", seed=seed)

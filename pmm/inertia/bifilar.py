@@ -38,21 +38,21 @@ def run(path: str) -> Outcome:
     """
     test = Experiment.of(path, BifilarTable)
     table = test.table
-    suspended = [hang(test.job, one) for one in table.suspensions]
-    for one in suspended:
-        test.findings += _findings(one, several=len(suspended) > 1)
-        test.flags += one.flags
-        test.periods += one.periods
-        depth = one.found.get("depth")
+    suspended = [hang(test.job, suspension) for suspension in table.suspensions]
+    for suspension in suspended:
+        test.findings += _findings(suspension, several=len(suspended) > 1)
+        test.flags += suspension.flags
+        test.periods += suspension.periods
+        depth = suspension.found.get("depth")
         below_m = None if depth is None else depth.result.value
-        held = one.table
+        held = suspension.table
         test.sketches.append(on_two_lines(held.name, held.half_spacing_m, held.line_m, below_m))
     gyradii, used = _results(test, suspended)
     test.notes += _air_notes(table, gyradii)
     axes = _tilts(test, gyradii, used)
     step = workflow(test, suspended)
     test.plumb()
-    test.weigh(gyradii, [one.budget for one in used.values()], test.flags)
+    test.weigh(gyradii, [assessment.budget for assessment in used.values()], test.flags)
     if test.body is not None and table.take_off:
         test.findings += _own_findings(test.body.mass, test.body.gyradii)
     return test.outcome("bifilar", _plane(gyradii), next_step=step, axes=axes)
@@ -60,9 +60,9 @@ def run(path: str) -> Outcome:
 
 def _air_notes(table: BifilarTable, gyradii: Mapping[str, Estimate]) -> Iterator[str]:
     """Say which gyradii still have their air in them."""
-    left = [axis for axis in ("pitch", "roll") if axis in gyradii]
-    if table.entrained_air is not None and left:
-        yield f"entrained air is taken off yaw only; {' and '.join(left)} still have theirs"
+    axes = [axis for axis in ("pitch", "roll") if axis in gyradii]
+    if table.entrained_air is not None and axes:
+        yield f"entrained air is taken off yaw only; {' and '.join(axes)} still have theirs"
 
 
 def _plane(gyradii: Mapping[str, Estimate]) -> Plane | None:
@@ -72,10 +72,10 @@ def _plane(gyradii: Mapping[str, Estimate]) -> Plane | None:
     return Plane.VERTICAL if "pitch" in gyradii else Plane.HORIZONTAL
 
 
-def _findings(one: Suspended, *, several: bool) -> Iterator[Finding]:
-    where = f"{one.table.name}: " if several else ""
-    prefix = f"{one.table.name}_" if several else ""
-    for key, assessment in one.found.items():
+def _findings(suspension: Suspended, *, several: bool) -> Iterator[Finding]:
+    where = f"{suspension.table.name}: " if several else ""
+    prefix = f"{suspension.table.name}_" if several else ""
+    for key, assessment in suspension.found.items():
         if key == "depth":
             yield assessed(f"{prefix}depth_m", f"{where}CG below the suspension", assessment)
         else:
@@ -94,7 +94,9 @@ def _results(
     used: dict[str, Assessment] = {}
     for axis in AXES:
         chosen = [
-            (one, assessment) for one in hung if (assessment := _chosen(test.table, one, axis))
+            (suspension, assessment)
+            for suspension in hung
+            if (assessment := _chosen(test.table, suspension, axis))
         ]
         if not chosen:
             continue
@@ -103,57 +105,75 @@ def _results(
         if len(chosen) > 1:
             rows = [
                 SuspensionGyradius(
-                    one.table.name, found.result, one.table.half_spacing_m, one.table.line_m
+                    suspension.table.name,
+                    assessment.result,
+                    suspension.table.half_spacing_m,
+                    suspension.table.line_m,
                 )
-                for one, found in chosen
+                for suspension, assessment in chosen
             ]
             spread = compare_geometries(rows, result=f"k_{axis}_m")
             gyradii[axis] = spread.gyradius
             test.flags += spread.flags
             test.redundancy.append(spread.redundancy)
-        test.findings = [one for one in test.findings if one.name != f"k_{axis}_m"]
-        whole = used[axis] if len(chosen) == 1 else None
-        test.findings.append(Finding(f"k_{axis}_m", f"{axis} gyradius", gyradii[axis], whole))
-    test.flags += [flag for one in hung for flag in _between_methods(one)]
-    test.redundancy += [found for one in hung for found in _methods(one)]
+        test.findings = [finding for finding in test.findings if finding.name != f"k_{axis}_m"]
+        single = used[axis] if len(chosen) == 1 else None
+        test.findings.append(Finding(f"k_{axis}_m", f"{axis} gyradius", gyradii[axis], single))
+    test.flags += [flag for suspension in hung for flag in _between_methods(suspension)]
+    test.redundancy += [redundancy for suspension in hung for redundancy in _methods(suspension)]
     if len([key for key in hung[0].found if key.startswith("yaw")]) > 1 and "yaw" in used:
-        method = next(key for key, one in hung[0].found.items() if one is used["yaw"])
+        method = next(key for key, assessment in hung[0].found.items() if assessment is used["yaw"])
         test.notes.append(f"the {method} is the result (method in the file chooses another)")
     return gyradii, used
 
 
-def _between_methods(one: Suspended) -> Iterator[Flag]:
+def _between_methods(suspension: Suspended) -> Iterator[Flag]:
     """Flag methods whose yaw gyradii differ by more than three times their joint uncertainty."""
-    own = [(key, found.result) for key, found in one.found.items() if key.startswith("yaw by")]
-    for (first, a), (second, b) in combinations(own, 2):
+    gyradii = [
+        (key, assessment.result)
+        for key, assessment in suspension.found.items()
+        if key.startswith("yaw by")
+    ]
+    for (first, a), (second, b) in combinations(gyradii, 2):
         apart = difference(a, b)
         if abs(apart.value) > _APART * apart.uncertainty:
             message = (
-                f"{one.table.name}: {first} gives {a.value:.5g} m and {second} {b.value:.5g} m, "
-                f"{abs(apart.value):.2g} m apart (limit {_APART * apart.uncertainty:.2g} m, "
+                f"{suspension.table.name}: {first} gives {a.value:.5g} m and {second} "
+                f"{b.value:.5g} m, {abs(apart.value):.2g} m apart "
+                f"(limit {_APART * apart.uncertainty:.2g} m, "
                 f"{_APART:g} joint standard uncertainties); "
                 "check line length (period), sway record (ratio) and count (beats)"
             )
             yield Flag("methods_disagree", Severity.WARNING, message)
 
 
-def _methods(one: Suspended) -> Iterator[Redundancy]:
+def _methods(suspension: Suspended) -> Iterator[Redundancy]:
     """Yield how the yaw gyradii of several methods agree."""
-    own = {key: found.result for key, found in one.found.items() if key.startswith("yaw by")}
-    if len(own) > 1:
-        ones, whole = np.ones((len(own), 1)), joint(own.values())
-        what = f"{one.table.name}: yaw gyradius by several methods"
-        yield best_fit(ones, whole, what=what, results=("k_yaw_m",), data=list(own))[1]
+    gyradii = {
+        key: assessment.result
+        for key, assessment in suspension.found.items()
+        if key.startswith("yaw by")
+    }
+    if len(gyradii) > 1:
+        matrix, measured = np.ones((len(gyradii), 1)), joint(gyradii.values())
+        title = f"{suspension.table.name}: yaw gyradius by several methods"
+        yield best_fit(matrix, measured, what=title, results=("k_yaw_m",), data=list(gyradii))[1]
 
 
-def _chosen(table: BifilarTable, one: Suspended, axis: str) -> Assessment | None:
+def _chosen(table: BifilarTable, suspension: Suspended, axis: str) -> Assessment | None:
     """Return the method's that the file names, or else the surest."""
     if axis != "yaw":
-        return one.found.get(axis)
+        return suspension.found.get(axis)
     if table.method is not None:
-        return one.found.get(f"yaw by {table.method}")
-    own = [found for key, found in one.found.items() if key.startswith("yaw by")]
-    return min(own, key=lambda found: found.result.uncertainty) if own else None
+        return suspension.found.get(f"yaw by {table.method}")
+    assessments = [
+        assessment for key, assessment in suspension.found.items() if key.startswith("yaw by")
+    ]
+    return (
+        min(assessments, key=lambda assessment: assessment.result.uncertainty)
+        if assessments
+        else None
+    )
 
 
 def _tilts(
@@ -166,26 +186,28 @@ def _tilts(
     if level is None:
         raise ConfigurationError(f"{test.job.path}: tilted needs the level yaw test too; add yaw")
     tilted = []
-    for number, one in enumerate(table.tilted, 1):
-        runs = test.period(one, f"tilted[{number}]")
+    for number, yaw_test in enumerate(table.tilted, 1):
+        runs = test.period(yaw_test, f"tilted[{number}]")
         at = next((s for s in table.suspensions if s.yaw is not None), table.suspensions[0])
         spacing, line = (
-            given(at, key, at.name) if getattr(one, key) is None else given(one, key)
+            given(at, key, at.name) if getattr(yaw_test, key) is None else given(yaw_test, key)
             for key in ("half_spacing_m", "line_m")
         )
-        own = yaw_from_period(runs.period, spacing, line, gravity_of(table))
+        assessment = yaw_from_period(runs.period, spacing, line, gravity_of(table))
         if at.line_mass_kg:
             share = line_share(at, given(table.model, "mass_kg", "model"))
-            own = yaw_off_lines(one if one.half_spacing_m else at, share, own)
-        gyradius = without_air(table, own).result
-        angle = one.angle
+            assessment = yaw_off_lines(
+                yaw_test if yaw_test.half_spacing_m else at, share, assessment
+            )
+        gyradius = without_air(table, assessment).result
+        angle = yaw_test.angle
         tilted.append((angle, gyradius))
     seed = table.monte_carlo_seed + 30
-    found, axes, agreement = plane_axes(level, gyradii.get("roll"), tilted, seed)
-    test.findings += found
+    findings, axes, agreement = plane_axes(level, gyradii.get("roll"), tilted, seed)
+    test.findings += findings
     test.redundancy += agreement
-    test.flags += [flag for one in agreement for flag in one.flags()]
-    for row in found:
+    test.flags += [flag for redundancy in agreement for flag in redundancy.flags()]
+    for row in findings:
         if row.name == "k_roll_m" and row.assessment is not None:
             gyradii["roll"], used["roll"] = row.estimate, row.assessment
     return axes

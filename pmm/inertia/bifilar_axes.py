@@ -68,10 +68,12 @@ def plane_axes(
         return _from_many(level, roll, tests, seed)
     if roll is not None:
         (angle, tilted), *_ = tests
-        found = principal_axes(roll, level, tilted, angle, seed=seed)
-        trio = (found.angle, found.roll, found.yaw)
-        rows = [assessed(n, _WORDS[n], one) for n, one in zip(_WORDS, trio, strict=True)]
-        values = [one.budget.result.value for one in trio]
+        principal = principal_axes(roll, level, tilted, angle, seed=seed)
+        trio = (principal.angle, principal.roll, principal.yaw)
+        rows = [
+            assessed(n, _WORDS[n], assessment) for n, assessment in zip(_WORDS, trio, strict=True)
+        ]
+        values = [assessment.budget.result.value for assessment in trio]
         points = (*points, (0.5 * math.pi, roll))
         return rows, PlaneAxes(values[1], values[2], values[0], points), ()
     if len(tests) < 2:
@@ -79,7 +81,7 @@ def plane_axes(
             "one tilted yaw test alone tells nothing; measure roll by itself, or tilt a second time"
         )
     (first_angle, first), (second_angle, second) = tests[:2]
-    own = roll_from_three_yaws(level, first, second, first_angle, second_angle, seed=seed)
+    roll_by_yaws = roll_from_three_yaws(level, first, second, first_angle, second_angle, seed=seed)
     inputs = {
         "level_m": level,
         "first_m": first,
@@ -87,13 +89,13 @@ def plane_axes(
         "first_rad": first_angle,
         "second_rad": second_angle,
     }
-    rows = [assessed("k_roll_m", "roll gyradius by three yaw tests", own)]
+    rows = [assessed("k_roll_m", "roll gyradius by three yaw tests", roll_by_yaws)]
     for k, (name, formula) in enumerate(_FORMULAS.items()):
         unit = "rad" if name == "psi_rad" else "m"
         made = assess(name, formula, inputs, unit=unit, seed=seed + 1 + k)
         rows.append(assessed(name, _WORDS[name], made))
     psi, px, pz = (
-        one.assessment.budget.result.value for one in rows[1:] if one.assessment is not None
+        row.assessment.budget.result.value for row in rows[1:] if row.assessment is not None
     )
     return rows, PlaneAxes(px, pz, psi, points), ()
 
@@ -108,7 +110,7 @@ def _from_many(
     rows = [(exactly(0.0, "rad"), level), *tests]
     if roll is not None:
         rows.append((exactly(0.5 * math.pi, "rad"), roll))
-    squares = [one.following(one.value**2, 2.0 * one.value) for _, one in rows]
+    squares = [gyradius.following(gyradius.value**2, 2.0 * gyradius.value) for _, gyradius in rows]
     plane = plane_inertia(squares, [angle for angle, _ in rows], results=_SQUARES)
     inputs = {name: plane.estimate(k) for k, name in enumerate(_SQUARES)}
     formulas = _OF_SQUARES if roll is None else _OF_SQUARES[1:]
@@ -116,10 +118,12 @@ def _from_many(
         assessed(name, words, assess(name, formula, inputs, unit=unit, seed=seed + k))
         for k, (name, words, unit, formula) in enumerate(formulas)
     ]
-    psi, px, pz = (one.estimate.value for one in findings[-3:])
+    psi, px, pz = (finding.estimate.value for finding in findings[-3:])
     points = tuple((angle.value, gyradius) for angle, gyradius in rows)
-    found = plane.redundancy.of(("k_roll_m", "k_yaw_m"), lambda one: np.sqrt(one[..., :2]))
-    return findings, PlaneAxes(px, pz, psi, points), (found,)
+    agreement = plane.redundancy.of(
+        ("k_roll_m", "k_yaw_m"), lambda values: np.sqrt(values[..., :2])
+    )
+    return findings, PlaneAxes(px, pz, psi, points), (agreement,)
 
 
 _SQUARES = ("roll_square_m2", "yaw_square_m2", "product_m2")
@@ -164,12 +168,12 @@ def _psi(
     return principal_angle(roll, level_m, first_m, first_rad)
 
 
-def _px(**given: Value) -> Value:
-    return principal_gyradii(roll_from_tilts(**given), given["level_m"], _psi(**given))[0]
+def _px(**inputs: Value) -> Value:
+    return principal_gyradii(roll_from_tilts(**inputs), inputs["level_m"], _psi(**inputs))[0]
 
 
-def _pz(**given: Value) -> Value:
-    return principal_gyradii(roll_from_tilts(**given), given["level_m"], _psi(**given))[1]
+def _pz(**inputs: Value) -> Value:
+    return principal_gyradii(roll_from_tilts(**inputs), inputs["level_m"], _psi(**inputs))[1]
 
 
 _FORMULAS: dict[str, Formula] = {"psi_rad": _psi, "k_px_m": _px, "k_pz_m": _pz}

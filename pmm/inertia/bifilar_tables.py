@@ -134,10 +134,10 @@ class BifilarTable(JobTable):
         if rows == []:
             yield "suspensions", "is empty; add a table [[suspensions]]"
         named = rows if isinstance(rows, list) else []
-        for number, one in enumerate(named):
-            if isinstance(one, dict) and not _measures(one) and "tare" not in table:
+        for number, row in enumerate(named):
+            if isinstance(row, dict) and not _measures(row) and "tare" not in table:
                 yield f"suspensions[{number + 1}]", _NOTHING
-        names = [str(one.get("name")) for one in named if isinstance(one, dict)]
+        names = [str(row.get("name")) for row in named if isinstance(row, dict)]
         if len(set(names)) < len(names):
             yield "suspensions", "have to have names of their own, each another one"
 

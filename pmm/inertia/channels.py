@@ -29,9 +29,9 @@ def chosen_series(
             f"{job.path}: {where}.channel is missing: {recording.name} holds {', '.join(names)}"
         )
     chosen = series_from_recording(recording, channel or names[0])
-    unit = {one.name: one.unit for one in recording.channels}
-    others = [name for name in names if name != chosen.channel and unit[name] == chosen.unit]
-    beside = tuple(series_from_recording(recording, name) for name in others)
+    unit = {column.name: column.unit for column in recording.channels}
+    neighbours = [name for name in names if name != chosen.channel and unit[name] == chosen.unit]
+    beside = tuple(series_from_recording(recording, name) for name in neighbours)
     damaged = (flag for flag in recording.flags if flag.damaged)
     return chosen, (*strongest_axis(chosen, beside), *damaged)
 

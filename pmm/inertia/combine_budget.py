@@ -32,18 +32,18 @@ def combined_budgets(
     are called ``part.key``, those of what is taken off ``less part.key``.
     """
     tables = [*parts, *without]
-    labels = _labels([one.name for one in parts], [f"less {one.name}" for one in without])
+    labels = _labels([part.name for part in parts], [f"less {part.name}" for part in without])
     inputs: dict[str, Estimate] = {}
-    for label, one in zip(labels, tables, strict=True):
-        own = one.measured().items()
-        inputs |= {f"{label}.{key}": value for key, value in own if value.uncertainty > 0.0}
+    for label, table in zip(labels, tables, strict=True):
+        measured = table.measured().items()
+        inputs |= {f"{label}.{key}": value for key, value in measured if value.uncertainty > 0.0}
     if not inputs:
         return {}
     put = _putting(tables, labels, np.array([1.0] * len(parts) + [-1.0] * len(without)))
-    whole = put({})
-    reached = [*_ROWS, *(key for key, row in _GYRADII.items() if whole[row] > 0.0)]
-    found = {key: _assessed(key, _reading(put, key), inputs) for key in reached}
-    return {key: one for key, one in found.items() if one is not None}
+    total = put({})
+    reached = [*_ROWS, *(key for key, row in _GYRADII.items() if total[row] > 0.0)]
+    assessments = {key: _assessed(key, _reading(put, key), inputs) for key in reached}
+    return {key: assessment for key, assessment in assessments.items() if assessment is not None}
 
 
 def _assessed(key: str, formula: Formula, inputs: "Mapping[str, Estimate]") -> Assessment | None:
@@ -65,13 +65,13 @@ def _labels(parts: list[str], without: list[str]) -> list[str]:
 
 def _putting(tables: Sequence[PartTable], labels: Sequence[str], signs: FloatArray) -> Put:
     """Return what puts the parts together for some inputs, numbers or trials; the rest as read."""
-    read = [{key: one.value for key, one in table.measured().items()} for table in tables]
+    read = [{key: estimate.value for key, estimate in table.measured().items()} for table in tables]
 
-    def put(given: Mapping[str, Any]) -> FloatArray:
-        shape = np.broadcast_shapes(*(np.shape(value) for value in given.values()))
+    def put(inputs: Mapping[str, Any]) -> FloatArray:
+        shape = np.broadcast_shapes(*(np.shape(value) for value in inputs.values()))
         rows = np.empty((len(tables), 10, *shape))
-        for row, label, own in zip(rows, labels, read, strict=True):
-            values = [given.get(f"{label}.{key}", own[key]) for key in MADE_OF]
+        for row, label, numbers in zip(rows, labels, read, strict=True):
+            values = [inputs.get(f"{label}.{key}", numbers[key]) for key in MADE_OF]
             row[:4] = np.broadcast_arrays(*values[:4], row[0])[:4]
             for k, gyradius in enumerate(values[4:7], start=4):
                 row[k] = values[0] * gyradius**2
@@ -85,10 +85,10 @@ def _putting(tables: Sequence[PartTable], labels: Sequence[str], signs: FloatArr
 def _reading(put: Put, key: str) -> Formula:
     """Return the formula of one result."""
 
-    def formula(**given: Any) -> Any:
-        whole = put(given)
+    def formula(**inputs: Any) -> Any:
+        total = put(inputs)
         if key in _ROWS:
-            return whole[_ROWS[key]]
-        return sqrt(whole[_GYRADII[key]] / whole[0])
+            return total[_ROWS[key]]
+        return sqrt(total[_GYRADII[key]] / total[0])
 
     return formula

@@ -41,13 +41,13 @@ def form_fits(outcome: Outcome) -> tuple[FormFit, ...]:
     DataError
         If a form does not fit a record.
     """
-    return tuple(fit for one in outcome.periods for fit in _of_period(one))
+    return tuple(fit for runs in outcome.periods for fit in _of_period(runs))
 
 
-def _of_period(one: PeriodRuns) -> Iterator[FormFit]:
-    if len(one.periods) > 1:
+def _of_period(runs: PeriodRuns) -> Iterator[FormFit]:
+    if len(runs.periods) > 1:
         return
-    for run in one.records:
+    for run in runs.records:
         series = run.part.series
         for form in SwingForm:
             fit = fit_swing_form(
@@ -56,7 +56,7 @@ def _of_period(one: PeriodRuns) -> Iterator[FormFit]:
             )  # fmt: skip
             mode = fit.modes[0]
             yield FormFit(
-                one.where, series.name, series.channel, form,
+                runs.where, series.name, series.channel, form,
                 mode.period_s, fit.period_uncertainty_s(), mode.decay_1_s, fit.offset,
                 float((fit.residual**2).mean() ** 0.5),
             )  # fmt: skip

@@ -71,15 +71,15 @@ class HangingLine:
         if self.to_x_m is not None:
             x, z, to_x, to_z = (given(self, key) for key in ("x_m", "z_m", "to_x_m", "to_z_m"))
             return PlumbLine(name, x, z, _direction(x, z, to_x, to_z))
-        own = given(self, "angle_deg" if self.angle_deg is not None else "angle_rad")
-        angle = own.widened(common_angle_rad, label="hanging.common_angle")
+        stated_angle = given(self, "angle_deg" if self.angle_deg is not None else "angle_rad")
+        angle = stated_angle.widened(common_angle_rad, label="hanging.common_angle")
         if self.distance_m is None:
             return PlumbLine(name, given(self, "x_m"), given(self, "z_m"), angle)
-        both = {"distance": given(self, "distance_m"), "angle": angle}
+        inputs = {"distance": given(self, "distance_m"), "angle": angle}
         return PlumbLine(
             name,
-            derived("x", lambda distance, angle: distance * cos(angle), "m", **both),
-            derived("z", lambda distance, angle: -distance * sin(angle), "m", **both),
+            derived("x", lambda distance, angle: distance * cos(angle), "m", **inputs),
+            derived("z", lambda distance, angle: -distance * sin(angle), "m", **inputs),
             angle,
         )
 
@@ -118,7 +118,7 @@ class HangingTable:
         if isinstance(lines, list) and len(lines) < 2:
             yield "lines", f"are {len(lines)}; where they cross takes two or more"
 
-    def centre(self, what: str = "plumb lines") -> HangingCentre:
+    def centre(self, title: str = "plumb lines") -> HangingCentre:
         """Return where the lines cross.
 
         Raises
@@ -127,8 +127,8 @@ class HangingTable:
             If they are nearly parallel.
         """
         common = self.u_common_angle_rad + math.radians(self.u_common_angle_deg)
-        lines = [one.line(str(k), common) for k, one in enumerate(self.lines, 1)]
-        return centre_of_lines(lines, what=what)
+        lines = [line.line(str(k), common) for k, line in enumerate(self.lines, 1)]
+        return centre_of_lines(lines, what=title)
 
 
 def hanging_rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

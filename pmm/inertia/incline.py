@@ -91,18 +91,20 @@ def run(path: str) -> Outcome:
     table = read_job(path, InclineJob).table
     mass, weight, seed = given(table, "mass_kg"), given(table, "weight_kg"), table.monte_carlo_seed
     if table.one_end is not None:
-        one = table.one_end
-        lever, drop = given(one, "lever_m"), given(one, "drop_m")
-        found = incline_from_one_end(weight, mass, lever, drop, _tilt(one, "one_end"), seed=seed)
+        end = table.one_end
+        lever, drop = given(end, "lever_m"), given(end, "drop_m")
+        assessment = incline_from_one_end(
+            weight, mass, lever, drop, _tilt(end, "one_end"), seed=seed
+        )
     else:
-        both = table.both_ends
-        if both is None:
+        ends = table.both_ends
+        if ends is None:
             raise DataError("an incline test needs one end or both")
-        drops = (given(both.stern, "drop_m"), given(both.bow, "drop_m"))
-        tilts = (_tilt(both.stern, "stern"), _tilt(both.bow, "bow"))
-        length = given(both, "length_m")
-        found = incline_from_both_ends(weight, mass, length, drops, tilts, seed=seed)
-    findings = (assessed("depth_m", "CG below the suspension point", found),)
+        drops = (given(ends.stern, "drop_m"), given(ends.bow, "drop_m"))
+        tilts = (_tilt(ends.stern, "stern"), _tilt(ends.bow, "bow"))
+        length = given(ends, "length_m")
+        assessment = incline_from_both_ends(weight, mass, length, drops, tilts, seed=seed)
+    findings = (assessed("depth_m", "CG below the suspension point", assessment),)
     return Outcome(
         "incline",
         table.name,

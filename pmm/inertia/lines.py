@@ -21,8 +21,8 @@ def line_rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     rows = table.get("suspensions")
     model = table.get("model")
     body = model.get("mass_kg") if isinstance(model, Mapping) else None
-    for number, one in enumerate(rows if isinstance(rows, list) else [], 1):
-        lines = one.get("line_mass_kg") if isinstance(one, Mapping) else None
+    for number, row in enumerate(rows if isinstance(rows, list) else [], 1):
+        lines = row.get("line_mass_kg") if isinstance(row, Mapping) else None
         if not isinstance(lines, int | float) or not lines:
             continue
         where = f"suspensions[{number}].line_mass_kg"
@@ -55,35 +55,42 @@ def line_share(table: Any, mass: Estimate) -> Estimate | None:
 
 
 def yaw_off_lines(
-    table: Any, share: Estimate | None, found: Assessment, *, by_sway: bool = False, seed: int = 0
+    table: Any,
+    share: Estimate | None,
+    assessment: Assessment,
+    *,
+    by_sway: bool = False,
+    seed: int = 0,
 ) -> Assessment:
     """Take the lines off a yaw gyradius; it stays where they are light."""
     if share is None:
-        return found
+        return assessment
     spacing = table.half_spacing_m
 
     def gyradius(gyradius_on_lines_m: Value, line_share: Value) -> Value:
-        own: Value = yaw_without_lines(gyradius_on_lines_m, line_share, spacing, by_sway=by_sway)
-        return own
+        gyradius_m: Value = yaw_without_lines(
+            gyradius_on_lines_m, line_share, spacing, by_sway=by_sway
+        )
+        return gyradius_m
 
-    inputs = {"gyradius_on_lines_m": found.budget.result, "line_share": share}
-    return assess(found.budget.name, gyradius, inputs, unit="m", seed=seed)
+    inputs = {"gyradius_on_lines_m": assessment.budget.result, "line_share": share}
+    return assess(assessment.budget.name, gyradius, inputs, unit="m", seed=seed)
 
 
 def pitch_off_lines(
-    share: Estimate | None, found: PendulumResult, *, seed: int = 0
+    share: Estimate | None, result: PendulumResult, *, seed: int = 0
 ) -> PendulumResult:
     """Take the lines off a pitch (or roll) gyradius and a depth."""
     if share is None:
-        return found
+        return result
     inputs = {
-        "gyradius_on_lines_m": found.gyradius.budget.result,
-        "depth_on_lines_m": found.depth.budget.result,
+        "gyradius_on_lines_m": result.gyradius.budget.result,
+        "depth_on_lines_m": result.depth.budget.result,
         "line_share": share,
     }
     made = (
         assess(name, _part(part), inputs, unit="m", seed=seed + part)
-        for part, name in enumerate((found.gyradius.budget.name, found.depth.budget.name))
+        for part, name in enumerate((result.gyradius.budget.name, result.depth.budget.name))
     )
     return PendulumResult(*made)
 

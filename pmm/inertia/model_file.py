@@ -44,8 +44,8 @@ def model_section(outcome: Outcome) -> str:
     if void:
         raise DataError(f"{outcome.name}: no model is written: {void[0].message}")
     if outcome.body is None:
-        what = ", ".join(outcome.missing) or "the model's mass properties"
-        raise ConfigurationError(f"{outcome.name}: --output needs {what}; add to the file")
+        missing = ", ".join(outcome.missing) or "the model's mass properties"
+        raise ConfigurationError(f"{outcome.name}: --output needs {missing}; add to the file")
     plane = outcome.plane or _only_plane(outcome)
     return model_toml(outcome.body, plane)
 
@@ -86,16 +86,22 @@ def mass_properties(outcome: Outcome, path: Path) -> str:
     return written(outcome.name, outcome.tensor)
 
 
-def _csv(name: str, whole: BodyPart) -> str:
+def _csv(name: str, body: BodyPart) -> str:
     """Return a row for each property, with its uncertainty and its row of the covariance."""
-    own = whole.uncertain
+    properties = body.uncertain
     head = (
         f"# {plain(name)}: x forward, y to starboard, z down from the datum; inertias about the "
         "centre of gravity; products are sums, ixy = sum m x y\n"
     )
-    rows = zip(NAMES, own.values, own.standard_uncertainty, own.covariance(), strict=True)
+    rows = zip(
+        NAMES,
+        properties.values,
+        properties.standard_uncertainty,
+        properties.covariance(),
+        strict=True,
+    )
     lines = [
-        ",".join((key, f"{value!r}", f"{u!r}", *(f"{one!r}" for one in row)))
+        ",".join((key, f"{value!r}", f"{u!r}", *(f"{covariance!r}" for covariance in row)))
         for key, value, u, row in (
             (key, float(value), float(u), row.tolist()) for key, value, u, row in rows
         )
@@ -104,7 +110,7 @@ def _csv(name: str, whole: BodyPart) -> str:
     return head + columns + "\n" + "\n".join(lines) + "\n"
 
 
-def _urdf(name: str, whole: BodyPart) -> str:
+def _urdf(name: str, body: BodyPart) -> str:
     """Return a link with x forward, y to port and z up; products with the tensor's sign.
 
     Turned about x by half a turn, ``ixy = -sum m x y`` becomes ``sum m x y`` of our axes, ``ixz``
@@ -112,7 +118,7 @@ def _urdf(name: str, whole: BodyPart) -> str:
     """
     from xml.sax.saxutils import quoteattr
 
-    mass, x, y, z, xx, yy, zz, xy, xz, yz = whole.parameters.tolist()
+    mass, x, y, z, xx, yy, zz, xy, xz, yz = body.parameters.tolist()
     return (
         '<?xml version="1.0"?>\n'
         f"<robot name={quoteattr(name)}>\n  <link name={quoteattr(name)}>\n    <inertial>\n"

@@ -129,28 +129,31 @@ class Outcome:
     @property
     def agreements(self) -> tuple[Redundancy, ...]:
         """How data agree, those of each period first; where more are there than are needed."""
-        every = (*(found for one in self.periods for found in one.redundancy), *self.redundancy)
-        return tuple(one for one in every if one.degrees_of_freedom)
+        redundancies = (
+            *(redundancy for runs in self.periods for redundancy in runs.redundancy),
+            *self.redundancy,
+        )
+        return tuple(redundancy for redundancy in redundancies if redundancy.degrees_of_freedom)
 
     @property
     def budgeted(self) -> tuple[tuple[Finding, Assessment], ...]:
         """Findings with an assessment, each assessment once."""
         first: dict[int, tuple[Finding, Assessment]] = {}
-        for one in self.findings:
-            if one.assessment is not None:
-                first.setdefault(id(one.assessment), (one, one.assessment))
+        for finding in self.findings:
+            if finding.assessment is not None:
+                first.setdefault(id(finding.assessment), (finding, finding.assessment))
         return tuple(first.values())
 
     @property
     def said_no(self) -> bool:
         """Whether a target is missed or a number is not to be used."""
         void = any(flag.severity is Severity.VOID for flag in self.flags)
-        return void or any(one.verdict == "fail" for one in self.comparisons)
+        return void or any(comparison.verdict == "fail" for comparison in self.comparisons)
 
 
-def assessed(name: str, what: str, assessment: Assessment) -> Finding:
+def assessed(name: str, words: str, assessment: Assessment) -> Finding:
     """Return a finding with the assessment's own choice of linear budget or Monte Carlo."""
-    return Finding(name, what, assessment.result, assessment)
+    return Finding(name, words, assessment.result, assessment)
 
 
 def once(flags: Sequence[Flag]) -> tuple[Flag, ...]:
@@ -167,13 +170,15 @@ def compare(findings: Sequence[Finding], targets: Sequence[TargetTable]) -> tupl
     ConfigurationError
         If there is no such finding; the message names the nearest.
     """
-    by_name = {one.name: one for one in findings}
-    found = []
+    by_name = {finding.name: finding for finding in findings}
+    comparisons = []
     for target in targets:
         if target.quantity not in by_name:
             near = get_close_matches(target.quantity, by_name, n=1, cutoff=0.4)
             hint = f"did you mean {near[0]}?" if near else f"found: {', '.join(by_name)}"
             raise ConfigurationError(f"target {target.quantity!r}: nothing of that name; {hint}")
         measured = by_name[target.quantity].estimate
-        found.append(compare_with_target(target.quantity, measured, target.value, target.tolerance))
-    return tuple(found)
+        comparisons.append(
+            compare_with_target(target.quantity, measured, target.value, target.tolerance)
+        )
+    return tuple(comparisons)

@@ -113,18 +113,18 @@ def run_combine(path: str) -> Outcome:
         If the file is wrong, or no mass would be left.
     """
     table = read_job(path, CombineJob).table
-    parts, without = ([one.part() for one in tables] for tables in (table.parts, table.without))
-    whole = combine(table.name, parts, without=without)
-    findings = _budgeted(_findings(whole), combined_budgets(table.parts, table.without))
+    parts, without = ([row.part() for row in tables] for tables in (table.parts, table.without))
+    combined = combine(table.name, parts, without=without)
+    findings = _budgeted(_findings(combined), combined_budgets(table.parts, table.without))
     bare = sorted(without_uncertainty(table))
-    centres = (one.centre for one in (*table.parts, *table.without))
-    found = tuple(one.redundancy for one in centres if one is not None)
+    centres = (row.centre for row in (*table.parts, *table.without))
+    redundancies = tuple(centre.redundancy for centre in centres if centre is not None)
     flags = (
         *_exact(bare),
-        *(flag for one in found for flag in one.flags()),
-        *_impossible([*parts, *without], whole),
+        *(flag for redundancy in redundancies for flag in redundancy.flags()),
+        *_impossible([*parts, *without], combined),
     )
-    body = _body(table.name, whole, flags)
+    body = _body(table.name, combined, flags)
     checks = compare(findings, table.targets)
     return Outcome(
         "combine",
@@ -134,43 +134,45 @@ def run_combine(path: str) -> Outcome:
         body=body,
         plane=table.plane,
         comparisons=checks,
-        axes=_axes(whole),
-        redundancy=found,
-        tensor=whole,
+        axes=_axes(combined),
+        redundancy=redundancies,
+        tensor=combined,
     )
 
 
-def _impossible(parts: Sequence[BodyPart], whole: BodyPart) -> tuple[Flag, ...]:
+def _impossible(parts: Sequence[BodyPart], combined: BodyPart) -> tuple[Flag, ...]:
     """Flag parts, or else the whole, with moments that no body has.
 
     Where some moments of a part were not given the whole lacks them too.
     """
-    given = [one.parameters[4:7] > 0.0 for one in parts]
-    flags = tuple(flag for one in parts for flag in impossible(one))
-    if flags or any(some.any() and not some.all() for some in given):
+    masks = [body.parameters[4:7] > 0.0 for body in parts]
+    flags = tuple(flag for body in parts for flag in impossible(body))
+    if flags or any(mask.any() and not mask.all() for mask in masks):
         return flags
-    return impossible(whole)
+    return impossible(combined)
 
 
 def _budgeted(
     findings: tuple[Finding, ...], budgets: Mapping[str, Assessment]
 ) -> tuple[Finding, ...]:
     return tuple(
-        assessed(one.name, one.what, budgets[one.name]) if one.name in budgets else one
-        for one in findings
+        assessed(finding.name, finding.what, budgets[finding.name])
+        if finding.name in budgets
+        else finding
+        for finding in findings
     )
 
 
-def _axes(whole: BodyPart) -> PlaneAxes | None:
+def _axes(body: BodyPart) -> PlaneAxes | None:
     """Return the principal axes in the centre plane, where the body has an extent in it."""
-    mass, xx, zz, xz = (float(whole.parameters[k]) for k in (0, 4, 6, 8))
+    mass, xx, zz, xz = (float(body.parameters[k]) for k in (0, 4, 6, 8))
     if min(xx, zz) <= 0.0 or xx == zz:
         return None
     angle = 0.5 * math.atan(2.0 * xz / (zz - xx))
     near_x, near_z = inertias_at(xx, zz, xz, angle)
     if min(near_x, near_z) <= 0.0:
         return None
-    roll, _, yaw = whole.gyradii
+    roll, _, yaw = body.gyradii
     measured = ((0.0, yaw), (0.5 * math.pi, roll))
     return PlaneAxes(math.sqrt(near_x / mass), math.sqrt(near_z / mass), angle, measured)
 
@@ -192,40 +194,40 @@ def run_ballast(path: str) -> Outcome:
         wanted.tolerance_kg,
         wanted.tolerance_m,
     )
-    weights = [one.weight() for one in table.weights]
-    found = place_ballast(base, weights, target, seed=table.seed)
-    rows = [found.positions_m[k] for k in range(len(weights))]
+    weights = [row.weight() for row in table.weights]
+    placement = place_ballast(base, weights, target, seed=table.seed)
+    rows = [placement.positions_m[k] for k in range(len(weights))]
     placed = [
         part(
-            one.name,
-            exactly(one.mass_kg, "kg"),
+            weight.name,
+            exactly(weight.mass_kg, "kg"),
             _exactly(place),
-            _exactly(one.gyradii_m),
+            _exactly(weight.gyradii_m),
         )
-        for one, place in zip(weights, rows, strict=True)
+        for weight, place in zip(weights, rows, strict=True)
     ]
-    whole = combine(table.name, [base, *placed])
-    findings = _findings(whole)
-    flags = () if found.feasible else (_infeasible(found.message),)
+    combined = combine(table.name, [base, *placed])
+    findings = _findings(combined)
+    flags = () if placement.feasible else (_infeasible(placement.message),)
     return Outcome(
         "ballast",
         table.name,
         findings,
         flags,
-        body=_body(table.name, whole, flags) if found.feasible else None,
-        missing=() if found.feasible else ("a feasible ballasting",),
+        body=_body(table.name, combined, flags) if placement.feasible else None,
+        missing=() if placement.feasible else ("a feasible ballasting",),
         plane=table.plane,
-        tensor=whole if found.feasible else None,
-        notes=(found.message,) if found.feasible else (),
+        tensor=combined if placement.feasible else None,
+        notes=(placement.message,) if placement.feasible else (),
         placements=tuple(
-            (one.name, one.mass_kg, float(place[0]), float(place[1]), float(place[2]))
-            for one, place in zip(weights, rows, strict=True)
+            (weight.name, weight.mass_kg, float(place[0]), float(place[1]), float(place[2]))
+            for weight, place in zip(weights, rows, strict=True)
         ),
     )
 
 
-def _exactly(three: Sequence[float] | FloatArray) -> tuple[Estimate, Estimate, Estimate]:
-    x, y, z = (exactly(float(value), "m") for value in three)
+def _exactly(triple: Sequence[float] | FloatArray) -> tuple[Estimate, Estimate, Estimate]:
+    x, y, z = (exactly(float(value), "m") for value in triple)
     return x, y, z
 
 
@@ -240,26 +242,26 @@ def _exact(bare: list[str]) -> tuple[Flag, ...]:
     return (Flag("no_uncertainty", Severity.NOTE, message),)
 
 
-def _findings(whole: BodyPart) -> tuple[Finding, ...]:
-    rows = [Finding("mass_kg", "mass", whole.mass)]
-    places = zip("xyz", ("forward", "to starboard", "down"), whole.centre_of_gravity, strict=True)
+def _findings(body: BodyPart) -> tuple[Finding, ...]:
+    rows = [Finding("mass_kg", "mass", body.mass)]
+    places = zip("xyz", ("forward", "to starboard", "down"), body.centre_of_gravity, strict=True)
     rows += [Finding(f"cg_{axis}_m", f"CG {words}", value) for axis, words, value in places]
-    for axis, value in zip(AXES, whole.gyradii, strict=True):
+    for axis, value in zip(AXES, body.gyradii, strict=True):
         rows.append(Finding(f"k_{axis}_m", f"{axis} gyradius", value))
-    for axis, value in zip(AXES, whole.inertia, strict=True):
+    for axis, value in zip(AXES, body.inertia, strict=True):
         rows.append(Finding(f"i_{axis}_kg_m2", f"{axis} inertia about the CG", value))
-    for key, value in zip(PRODUCTS, whole.products, strict=True):
+    for key, value in zip(PRODUCTS, body.products, strict=True):
         rows.append(
             Finding(key, f"product of inertia about the CG, sum m {key[1]} {key[2]}", value)
         )
     return tuple(rows)
 
 
-def _body(name: str, whole: BodyPart, flags: tuple[Flag, ...]) -> MassProperties:
+def _body(name: str, body: BodyPart, flags: tuple[Flag, ...]) -> MassProperties:
     """Return the mass properties; what has no gyradius there was given none."""
-    x, y, z = whole.centre_of_gravity
+    x, y, z = body.centre_of_gravity
     gyradii: dict[str, Estimate] = {
-        axis: value for axis, value in zip(AXES, whole.gyradii, strict=True) if value.value > 0.0
+        axis: value for axis, value in zip(AXES, body.gyradii, strict=True) if value.value > 0.0
     }
     if not gyradii:
         gyradii = {"yaw": exactly(0.0, "m")}
@@ -270,4 +272,4 @@ def _body(name: str, whole: BodyPart, flags: tuple[Flag, ...]) -> MassProperties
         f"the centre of gravity lies {1e3 * y.value:.3g} mm off the centre plane; a campaign's "
         "model lies in it",
     )
-    return MassProperties(name, whole.mass, x, z, gyradii, (), (*flags, *((flag,) if side else ())))
+    return MassProperties(name, body.mass, x, z, gyradii, (), (*flags, *((flag,) if side else ())))

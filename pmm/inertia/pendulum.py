@@ -80,7 +80,7 @@ def run(path: str) -> Outcome:
     test = Experiment.of(path, PendulumJob)
     swung = _swing(test)
     test.plumb()
-    test.flags += [flag for one in test.redundancy for flag in one.flags()]
+    test.flags += [flag for redundancy in test.redundancy for flag in redundancy.flags()]
     gyradii: dict[str, Estimate] = (
         {} if swung.gyradius is None else {test.table.axis: swung.gyradius.result}
     )
@@ -121,27 +121,27 @@ def _on_axis(test: Experiment[PendulumJob]) -> _Swung:
     first = _period(test)
     if table.second is None:
         depth = given(table, "depth_m")
-        own = compound_pendulum(first, depth, gravity, seed=seed)
+        gyradius = compound_pendulum(first, depth, gravity, seed=seed)
     else:
         second = test.period(table.second.period, "second.period", pendulum=True).period
         apart = given(table.second, "apart_m")
-        below, own = lamboley(first, second, apart, gravity, seed=seed)
+        below, gyradius = lamboley(first, second, apart, gravity, seed=seed)
         depth = below.budget.result
         test.findings.append(assessed("depth_m", "CG below the first axis", below))
     name, words = f"k_{table.axis}_m", f"{table.axis} gyradius"
     apart_m = None if table.second is None else table.second.apart_m
     test.sketches.append(about_axis(table.name, {"body": depth.value}, {}, apart_m))
     if table.entrained_air is not None:
-        in_air = assessed(f"k_{table.axis}_in_air_m", f"{words}, with its air", own)
+        in_air = assessed(f"k_{table.axis}_in_air_m", f"{words}, with its air", gyradius)
         test.findings.append(in_air)
-        own = without_air(table, own, depth=depth, seed=seed + 2)
-    test.findings.append(assessed(name, words, own))
+        gyradius = without_air(table, gyradius, depth=depth, seed=seed + 2)
+    test.findings.append(assessed(name, words, gyradius))
     mass = given_or_none(table.model, "mass_kg", "model")
     if mass is not None:
-        inputs = {"mass_kg": mass, "gyradius_m": own.budget.result}
+        inputs = {"mass_kg": mass, "gyradius_m": gyradius.budget.result}
         about = assess("I", _inertia, inputs, unit="kg m2", seed=seed + 3)
         test.findings.append(_about(table, about))
-    return _Swung(own)
+    return _Swung(gyradius)
 
 
 def _on_rod(test: Experiment[PendulumJob], torsion: TorsionTable) -> _Swung:
@@ -157,9 +157,9 @@ def _on_rod(test: Experiment[PendulumJob], torsion: TorsionTable) -> _Swung:
     if mass is None:
         return _Swung()
     inputs = {"inertia_kg_m2": about.budget.result, "mass_kg": mass}
-    own = assess("k", _gyradius, inputs, unit="m", seed=seed + 2)
-    test.findings.append(assessed(f"k_{table.axis}_m", f"{table.axis} gyradius", own))
-    return _Swung(own)
+    gyradius = assess("k", _gyradius, inputs, unit="m", seed=seed + 2)
+    test.findings.append(assessed(f"k_{table.axis}_m", f"{table.axis} gyradius", gyradius))
+    return _Swung(gyradius)
 
 
 def _period(test: Experiment[PendulumJob], *, pendulum: bool = True) -> Estimate:
@@ -187,10 +187,12 @@ def decay_findings(runs: PeriodRuns) -> list[Finding]:
     do in the other.
     """
     period = runs.period
-    found = [Finding("period_s", "period at no amplitude, undamped", period)]
+    findings = [Finding("period_s", "period at no amplitude, undamped", period)]
     if runs.records:
-        damped = float(np.mean([one.fit.modes[0].period_s for one in runs.records]))
-        own = period.following(damped, 1.0)
-        found.append(Finding("damped_period_s", "damped period of the whole record", own))
-        found.append(Finding("damping_ratio", "damping ratio", damping_of(runs.records)))
-    return found
+        damped = float(np.mean([record.fit.modes[0].period_s for record in runs.records]))
+        damped_period = period.following(damped, 1.0)
+        findings.append(
+            Finding("damped_period_s", "damped period of the whole record", damped_period)
+        )
+        findings.append(Finding("damping_ratio", "damping ratio", damping_of(runs.records)))
+    return findings

@@ -129,7 +129,7 @@ def _plan_bifilar(
     flags: list[Flag],
     notes: list[str],
 ) -> None:
-    found = forecast_suspension(
+    forecast = forecast_suspension(
         _design(table, "k_yaw_m"),
         _design(table, "k_pitch_m"),
         _design(table, "depth_m"),
@@ -140,16 +140,16 @@ def _plan_bifilar(
     )
     scatter = plan.period_scatter_relative
     for name, words, period in (
-        ("sway", "sway", found.sway_s),
-        ("yaw", "yaw", found.yaw_s),
-        ("pitch_slow", "slow pitch mode", found.slow_s),
-        ("pitch_fast", "fast pitch mode", found.fast_s),
+        ("sway", "sway", forecast.sway_s),
+        ("yaw", "yaw", forecast.yaw_s),
+        ("pitch_slow", "slow pitch mode", forecast.slow_s),
+        ("pitch_fast", "fast pitch mode", forecast.fast_s),
     ):
         estimate = Estimate.of(period, scatter * period, "s")
         findings.append(Finding(f"bifilar_{name}_period_s", f"bifilar: {words}, period", estimate))
     findings += [
-        Finding("bifilar_k_yaw_m", "bifilar: yaw gyradius", found.yaw_gyradius),
-        Finding("bifilar_k_pitch_m", "bifilar: pitch gyradius", found.pitch_gyradius),
+        Finding("bifilar_k_yaw_m", "bifilar: yaw gyradius", forecast.yaw_gyradius),
+        Finding("bifilar_k_pitch_m", "bifilar: pitch gyradius", forecast.pitch_gyradius),
     ]
     by_reading = {
         "fixed": "best line for pitch, depth known (fig 17)",
@@ -157,11 +157,11 @@ def _plan_bifilar(
     }
     findings += [
         Finding(f"bifilar_best_line_{reading}_m", by_reading[reading], exactly(length, "m"))
-        for reading, length in found.best_line_m.items()
+        for reading, length in forecast.best_line_m.items()
     ]
-    flags += found.flags
+    flags += forecast.flags
     notes += [
-        f"points {pair}: {', '.join(what for what in gives if what)}"
+        f"points {pair}: {', '.join(result for result in gives if result)}"
         for pair, gives in SUSPENSION_OPTIONS.items()
     ]
 
@@ -176,7 +176,7 @@ def _plan_swing(
     mass, cg = given(plan, "mass_kg"), given(plan, "cg_below_pivot_m")
     moment = derived("S", lambda cg, mass: cg * mass, "kg m", cg=cg, mass=mass)
     state = SwingState(given(plan, "period_s"), mass, moment, gravity_of(table))
-    found = forecast_swing(
+    forecast = forecast_swing(
         state,
         given(table.expected, "mass_kg"),
         plan.model_cg_below_pivot_m,
@@ -184,14 +184,14 @@ def _plan_swing(
         period_scatter_relative=plan.period_scatter_relative,
         moment_relative=plan.moment_relative,
     )
-    period = Estimate.of(found.period_s, plan.period_scatter_relative * found.period_s, "s")
+    period = Estimate.of(forecast.period_s, plan.period_scatter_relative * forecast.period_s, "s")
     findings += [
         Finding("swing_period_s", "swing: period with model", period),
-        Finding(f"swing_k_{plan.axis}_m", f"swing: {plan.axis} gyradius", found.gyradius),
-        Finding("swing_share", "swing: model's part of the total", exactly(found.share)),
+        Finding(f"swing_k_{plan.axis}_m", f"swing: {plan.axis} gyradius", forecast.gyradius),
+        Finding("swing_share", "swing: model's part of the total", exactly(forecast.share)),
     ]
-    notes.append(f"swing: {'worth' if found.worth_swinging else 'not worth'} swinging")
-    flags += found.flags
+    notes.append(f"swing: {'worth' if forecast.worth_swinging else 'not worth'} swinging")
+    flags += forecast.flags
 
 
 def _line_errors(table: PlanJob) -> dict[str, list[tuple[float, float]]]:

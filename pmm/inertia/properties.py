@@ -37,39 +37,41 @@ class CorrelationTable:
 def correlation_rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Yield keys that are not there, and coefficients that no values can have."""
     rows = table.get("correlations")
-    entries = [one for one in rows if isinstance(one, dict)] if isinstance(rows, list) else []
-    if not entries or any(set(one) != {"between", "coefficient"} for one in entries):
+    entries = [row for row in rows if isinstance(row, dict)] if isinstance(rows, list) else []
+    if not entries or any(set(entry) != {"between", "coefficient"} for entry in entries):
         return
-    for one in entries:
-        for key in one["between"]:
+    for entry in entries:
+        for key in entry["between"]:
             if not isinstance(table.get(f"u_{key}"), int | float):
                 yield "correlations", f"name {key}, which has no u_{key} here"
                 return
-    matrix = _matrix(sorted({key for one in entries for key in one["between"]}), entries)
+    matrix = _matrix(sorted({key for entry in entries for key in entry["between"]}), entries)
     if float(np.linalg.eigvalsh(matrix).min()) < -1e-9:
         yield "correlations", "cannot all be: no values are correlated like that"
 
 
 def correlated(table: object, entries: Sequence[CorrelationTable]) -> dict[str, Estimate]:
     """Return the values that are correlated, by key, in the units of their keys."""
-    keys = sorted({key for one in entries for key in one.between})
+    keys = sorted({key for entry in entries for key in entry.between})
     if not keys:
         return {}
-    rows = [{"between": one.between, "coefficient": one.coefficient} for one in entries]
+    rows = [{"between": entry.between, "coefficient": entry.coefficient} for entry in entries]
     size, axes = np.linalg.eigh(_matrix(keys, rows))
     spread = np.array([getattr(table, f"u_{key}") for key in keys], dtype=np.float64)
     parts = spread[:, None] * axes * np.sqrt(size.clip(0.0))
-    own = Contribution(fresh_label(), np.inf, np.arange(len(keys)), parts)
+    contribution = Contribution(fresh_label(), np.inf, np.arange(len(keys)), parts)
     values = np.array([getattr(table, key) for key in keys], dtype=np.float64)
-    whole = UncertainValues(values, (own,))
-    return {key: Estimate(whole.taken([k]), unit_of(key)[0]) for k, key in enumerate(keys)}
+    uncertain_values = UncertainValues(values, (contribution,))
+    return {
+        key: Estimate(uncertain_values.taken([k]), unit_of(key)[0]) for k, key in enumerate(keys)
+    }
 
 
 def _matrix(keys: Sequence[str], entries: Sequence[Mapping[str, Any]]) -> FloatArray:
     matrix = np.eye(len(keys))
-    for one in entries:
-        first, second = (keys.index(key) for key in one["between"])
-        matrix[first, second] = matrix[second, first] = one["coefficient"]
+    for entry in entries:
+        first, second = (keys.index(key) for key in entry["between"])
+        matrix[first, second] = matrix[second, first] = entry["coefficient"]
     return matrix
 
 
@@ -134,18 +136,21 @@ class PartTable:
 
     def measured(self) -> dict[str, Estimate]:
         """Return mass, place, gyradii and products by :data:`MADE_OF`."""
-        own = correlated(self, self.correlations)
-        found = {key: own.get(key) or given(self, key) for key in MADE_OF}
+        correlated_values = correlated(self, self.correlations)
+        values = {key: correlated_values.get(key) or given(self, key) for key in MADE_OF}
         if self.centre is not None:
-            found |= {"x_m": self.centre.x, "z_m": self.centre.z}
+            values |= {"x_m": self.centre.x, "z_m": self.centre.z}
         for axis, moment in zip(AXES, _MOMENTS, strict=True):
             if getattr(self, moment) is not None:
-                inputs = {"about": own.get(moment) or given(self, moment), "mass": found["mass_kg"]}
-                found[f"k_{axis}_m"] = derived("k", _gyradius, "m", **inputs)
+                inputs = {
+                    "about": correlated_values.get(moment) or given(self, moment),
+                    "mass": values["mass_kg"],
+                }
+                values[f"k_{axis}_m"] = derived("k", _gyradius, "m", **inputs)
         if self.square_half_side_m is not None:
             keys = (f"k_{axis}_m" for axis in AXES)
-            found |= zip(keys, self._square(given(self, "square_half_side_m")), strict=True)
-        return found
+            values |= zip(keys, self._square(given(self, "square_half_side_m")), strict=True)
+        return values
 
     def part(self) -> BodyPart:
         """Return it with its covariance."""
@@ -202,8 +207,8 @@ def properties(
     if centre is not None:
         x, z = centre.x, centre.z
     z = cg_z or z
-    known = {"mass_kg": mass, "cg_x_m": x, "cg_z_m": z}
-    missing = tuple(f"model.{key}" for key, value in known.items() if value is None)
+    inputs = {"mass_kg": mass, "cg_x_m": x, "cg_z_m": z}
+    missing = tuple(f"model.{key}" for key, value in inputs.items() if value is None)
     if mass is None or x is None or z is None or not gyradii:
         return None, missing or ("a gyradius",)
     if take_off:
@@ -217,16 +222,16 @@ def properties(
 
 def _without(
     name: str,
-    whole: tuple[Estimate, Estimate, Estimate],
+    mass_and_cg: tuple[Estimate, Estimate, Estimate],
     gyradii: Mapping[str, Estimate],
     take_off: Sequence[PartTable],
 ) -> tuple[tuple[Estimate, Estimate, Estimate], dict[str, Estimate]]:
     """Take parts off by the parallel axis theorem."""
     nothing = exactly(0.0, "m")
-    mass, x, z = whole
+    mass, x, z = mass_and_cg
     roll, pitch, yaw = (gyradii.get(axis, nothing) for axis in AXES)
     hung = part(name, mass, (x, nothing, z), (roll, pitch, yaw))
-    left = combine(name, [hung], without=[one.part() for one in take_off])
-    own = dict(zip(AXES, left.gyradii, strict=True))
-    ahead, _, below = left.centre_of_gravity
-    return (left.mass, ahead, below), {axis: own[axis] for axis in gyradii}
+    model = combine(name, [hung], without=[table.part() for table in take_off])
+    model_gyradii = dict(zip(AXES, model.gyradii, strict=True))
+    ahead, _, below = model.centre_of_gravity
+    return (model.mass, ahead, below), {axis: model_gyradii[axis] for axis in gyradii}

@@ -50,11 +50,11 @@ def read_job(path: str | Path, kind: type[Table]) -> Job[Table]:
     faults: list[Fault] = []
     columns = take_columns(table, path, faults)
     faults += limit_faults(table)
-    found = validate(kind, table, faults)
+    job_table = validate(kind, table, faults)
     faults += rule_faults(kind, table)
-    if found is None or faults:
+    if job_table is None or faults:
         raise as_error(path, faults, original)
-    return Job(path, found, columns)
+    return Job(path, job_table, columns)
 
 
 def rule_faults(kind: Any, table: Mapping[str, Any], place: Place = ()) -> Iterator[Fault]:
@@ -69,8 +69,8 @@ def rule_faults(kind: Any, table: Mapping[str, Any], place: Place = ()) -> Itera
     hints = get_type_hints(kind)
     for key, value in table.items():
         inner = _table_class(hints.get(key))
-        for number, one in _tables(value) if inner is not None else ():
-            yield from rule_faults(inner, one, (*place, key, *number))
+        for number, row in _tables(value) if inner is not None else ():
+            yield from rule_faults(inner, row, (*place, key, *number))
 
 
 def _no_rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:  # noqa: ARG001
@@ -78,10 +78,10 @@ def _no_rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:  # noqa: A
 
 
 def _lonely_uncertainties(kind: Any, table: Mapping[str, Any], place: Place) -> Iterator[Fault]:
-    known = get_type_hints(kind)
+    hints = get_type_hints(kind)
     for key in table:
         of = key.removeprefix("u_")
-        if key in known and of != key and of in known and of not in table:
+        if key in hints and of != key and of in hints and of not in table:
             yield Fault((*place, key), f"is given without {of}, whose uncertainty it is")
 
 
@@ -89,28 +89,35 @@ def _tables(value: object) -> list[tuple[tuple[int, ...], dict[str, Any]]]:
     if isinstance(value, dict):
         return [((), value)]
     rows = value if isinstance(value, list) else []
-    return [((number,), one) for number, one in enumerate(rows) if isinstance(one, dict)]
+    return [((number,), row) for number, row in enumerate(rows) if isinstance(row, dict)]
 
 
 def _table_class(hint: Any) -> Any:
     """Return the dataclass within ``T``, ``T | None`` or ``tuple[T, ...]``, if there is one."""
     if is_dataclass(hint):
         return hint
-    return next((one for one in map(_table_class, get_args(hint)) if one is not None), None)
+    return next(
+        (
+            table_class
+            for table_class in map(_table_class, get_args(hint))
+            if table_class is not None
+        ),
+        None,
+    )
 
 
 def one_of(table: Mapping[str, Any], *keys: str, needed: bool = True) -> Iterator[tuple[str, str]]:
     """Yield a rule's message unless exactly one of these keys is given (or none, if not needed)."""
-    given = [key for key in keys if table.get(key) not in (None, [])]
-    if len(given) > 1:
-        yield given[-1], f"and {given[0]} are both given; one is enough"
-    elif needed and not given:
+    stated_keys = [key for key in keys if table.get(key) not in (None, [])]
+    if len(stated_keys) > 1:
+        yield stated_keys[-1], f"and {stated_keys[0]} are both given; one is enough"
+    elif needed and not stated_keys:
         yield "", f"needs one of {', '.join(keys)}"
 
 
 def together(table: Mapping[str, Any], *keys: str) -> Iterator[tuple[str, str]]:
     """Yield a rule's message where some of these keys are given and others are not."""
-    given = [key for key in keys if key in table]
+    stated_keys = [key for key in keys if key in table]
     for key in keys:
-        if given and key not in given:
-            yield key, f"is missing beside {given[0]}"
+        if stated_keys and key not in stated_keys:
+            yield key, f"is missing beside {stated_keys[0]}"

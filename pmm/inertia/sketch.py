@@ -84,22 +84,22 @@ def about_axis(
     second_m
         Height of a second axis over the first.
     """
-    here, axes = (0.0, 0.0), {"axis": (0.0, 0.0)}
+    pivot, axes = (0.0, 0.0), {"axis": (0.0, 0.0)}
     ends = [0.0, *(-depth for depth in depths_m.values())]
     measures = [
-        Dimension(here, (0.0, -depth), f"{name}: {1e3 * depth:.4g} mm")
+        Dimension(pivot, (0.0, -depth), f"{name}: {1e3 * depth:.4g} mm")
         for name, depth in depths_m.items()
     ]
     measures += [
-        Dimension(here, (arm, 0.0), f"{name}: {arm:.4g} m") for name, arm in arms_m.items()
+        Dimension(pivot, (arm, 0.0), f"{name}: {arm:.4g} m") for name, arm in arms_m.items()
     ]
     if second_m is not None:
         axes["second axis"] = (0.0, second_m)
         ends.append(second_m)
-        measures.append(Dimension(here, (0.0, second_m), f"{second_m:.4g} m"))
+        measures.append(Dimension(pivot, (0.0, second_m), f"{second_m:.4g} m"))
     return Sketch(
         title,
-        tuple((here, (arm, 0.0)) for arm in arms_m.values()),
+        tuple((pivot, (arm, 0.0)) for arm in arms_m.values()),
         (((0.0, min(ends)), (0.0, max(ends))),),
         axes,
         {f"CG, {name}": (0.0, -depth) for name, depth in depths_m.items()},

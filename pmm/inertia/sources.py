@@ -191,31 +191,31 @@ def read_period(
 def _from_records(
     job: Job[Any], source: PeriodSource, where: str, modes: int, pendulum: bool
 ) -> PeriodRuns:
-    runs, whole, flags = [], [], []
+    runs, all_series, flags = [], [], []
     for name in source.records:
         recording = read_recording(
             job.beside(name), job.columns, sample_rate_hz=source.sample_rate_hz
         )
-        series, own = chosen_series(job, recording, source.channel, where)
+        series, series_flags = chosen_series(job, recording, source.channel, where)
         if source.inclinometer_radius_m is not None:
             series, more = true_angles(job, series, source.inclinometer_radius_m, where)
-            own = (*own, *more)
+            series_flags = (*series_flags, *more)
         run = analyse_record(series, modes=modes, pendulum=pendulum)
         runs.append(run)
-        whole.append(series)
-        flags += [*own, *run.flags]
+        all_series.append(series)
+        flags += [*series_flags, *run.flags]
     repeated = [_undamped(runs, mode, source, where) for mode in range(modes)]
-    flags += [flag for one in repeated for flag in one.flags]
+    flags += [flag for joined in repeated for flag in joined.flags]
     return PeriodRuns(
         where,
         f"{len(runs)} record{'s' if len(runs) > 1 else ''}, {runs[0].part.series.channel}",
-        tuple(one.estimate for one in repeated),
-        tuple(one.runs for one in repeated),
+        tuple(joined.estimate for joined in repeated),
+        tuple(joined.runs for joined in repeated),
         _ratio(runs, where) if modes == 2 else None,
         tuple(runs),
-        tuple(whole),
+        tuple(all_series),
         flags=tuple(flags),
-        redundancy=tuple(found for one in repeated for found in one.redundancy),
+        redundancy=tuple(redundancy for joined in repeated for redundancy in joined.redundancy),
     )
 
 
@@ -246,11 +246,14 @@ def _from_gates(job: Job[Any], source: PeriodSource, where: str) -> PeriodRuns:
     for name in source.gates:
         path = job.beside(name)
         events = read_gate_events(path, time=source.time_column, gates=source.gate_columns)
-        seen = passages(events)
-        fits.append((seen, fit_passages(seen)))
-        flags += [*events.flags, *seen.flags]
-    found: tuple[Redundancy, ...] = ()
-    periods = [_demodulated(seen) if source.remove_modulation else fit.period for seen, fit in fits]
+        gate_passages = passages(events)
+        fits.append((gate_passages, fit_passages(gate_passages)))
+        flags += [*events.flags, *gate_passages.flags]
+    redundancy: tuple[Redundancy, ...] = ()
+    periods = [
+        _demodulated(gate_passages) if source.remove_modulation else fit.period
+        for gate_passages, fit in fits
+    ]
     if len(periods) == 1 and source.known_scatter is None:
         estimate, flag = _single_gate_run(*fits[0], periods[0], where)
         flags.append(flag)
@@ -258,7 +261,7 @@ def _from_gates(job: Job[Any], source: PeriodSource, where: str) -> PeriodRuns:
         joined = combine_runs(
             periods, known_scatter=source.known_scatter, what=where, names=source.gates
         )
-        estimate, flags, found = joined.estimate, [*flags, *joined.flags], joined.redundancy
+        estimate, flags, redundancy = joined.estimate, [*flags, *joined.flags], joined.redundancy
     single = tuple(period.value for period in periods)
     how = f"light gates, {len(fits)} run{'s' if len(fits) > 1 else ''}"
     return PeriodRuns(
@@ -268,26 +271,31 @@ def _from_gates(job: Job[Any], source: PeriodSource, where: str) -> PeriodRuns:
         (single,),
         gates=tuple(fits),
         flags=tuple(flags),
-        redundancy=found,
+        redundancy=redundancy,
     )
 
 
-def _demodulated(seen: Passages) -> Estimate:
+def _demodulated(gate_passages: Passages) -> Estimate:
     """Return the period of whole swings without their modulation."""
-    whole = seen.number[2:] - seen.number[:-2] == 2
-    found = remove_modulation(seen.time_s[1:-1][whole], (seen.time_s[2:] - seen.time_s[:-2])[whole])
-    freedom = float(max(int(whole.sum()) - found.fit.covariance.shape[0], 1))
-    return Estimate.of(found.period_s, found.uncertainty_s, "s", freedom)
+    rows = gate_passages.number[2:] - gate_passages.number[:-2] == 2
+    result = remove_modulation(
+        gate_passages.time_s[1:-1][rows],
+        (gate_passages.time_s[2:] - gate_passages.time_s[:-2])[rows],
+    )
+    freedom = float(max(int(rows.sum()) - result.fit.covariance.shape[0], 1))
+    return Estimate.of(result.period_s, result.uncertainty_s, "s", freedom)
 
 
 def _single_gate_run(
-    seen: Passages, fit: PassageFit, own: Estimate, where: str
+    gate_passages: Passages, fit: PassageFit, period: Estimate, where: str
 ) -> tuple[Estimate, Flag]:
     """Let the scatter between a run's parts stand in for that between runs, undivided."""
-    parts = np.array_split(np.arange(seen.number.size), _PARTS)
-    slopes = [2.0 * np.polyfit(seen.number[one], fit.residual_s[one], 1)[0] for one in parts]
+    parts = np.array_split(np.arange(gate_passages.number.size), _PARTS)
+    slopes = [
+        2.0 * np.polyfit(gate_passages.number[part], fit.residual_s[part], 1)[0] for part in parts
+    ]
     spread = float(np.std(slopes, ddof=1))
-    estimate = own.widened(spread, float(_PARTS - 1))
+    estimate = period.widened(spread, float(_PARTS - 1))
     message = (
         f"{where}: one run only; the scatter between its {_PARTS} parts ({spread:.2g} s) stands in "
         "for that between runs: repeat the release, or give known_scatter_s"

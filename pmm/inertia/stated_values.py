@@ -53,8 +53,8 @@ def given_or_none(table: object, key: str, place: str | None = None) -> Estimate
 
 def gravity_of(table: Any) -> Estimate:
     """Return gravity less buoyancy; that of anywhere at sea level where none is given."""
-    known = table.gravity_m_s2 is not None
-    plain = given(table, "gravity_m_s2", "file") if known else _GRAVITY_ANYWHERE
+    is_stated = table.gravity_m_s2 is not None
+    plain = given(table, "gravity_m_s2", "file") if is_stated else _GRAVITY_ANYWHERE
     if not getattr(table, "body_density_kg_m3", None):
         return plain
     value = gravity_in_air(plain.value, table.air_density_kg_m3, table.body_density_kg_m3)
@@ -83,14 +83,14 @@ def without_uncertainty(table: Any, place: str = "") -> Iterator[str]:
 
     Not those that are 0 where they are left out: a part in the centre plane, no gyradius.
     """
-    defaults = {one.name: one.default for one in fields(table)}
+    defaults = {field.name: field.default for field in fields(table)}
     for name in sorted(defaults):
         value = getattr(table, name)
         left_out = value == 0.0 == defaults[name]
         if isinstance(value, float) and getattr(table, f"u_{name}", None) == 0.0 and not left_out:
             yield f"{place}{name}"
-        for number, one in enumerate(value if isinstance(value, tuple) else (value,), 1):
-            if is_dataclass(one):
-                own = getattr(one, "name", None) or number
-                inner = f"{name}[{own}]" if isinstance(value, tuple) else name
-                yield from without_uncertainty(one, f"{place}{inner}.")
+        for number, item in enumerate(value if isinstance(value, tuple) else (value,), 1):
+            if is_dataclass(item):
+                label = getattr(item, "name", None) or number
+                inner = f"{name}[{label}]" if isinstance(value, tuple) else name
+                yield from without_uncertainty(item, f"{place}{inner}.")

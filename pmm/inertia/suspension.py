@@ -65,7 +65,7 @@ def hang(job: Job[BifilarTable], table: SuspensionTable) -> Suspended:
         If a record does not carry what is asked, or shows another axis.
     """
     where = f'suspensions["{table.name}"]'
-    found: dict[str, Assessment] = {}
+    assessments: dict[str, Assessment] = {}
     periods: list[PeriodRuns] = []
     flags: list[Flag] = []
     yaw, sway = None, None
@@ -76,17 +76,17 @@ def hang(job: Job[BifilarTable], table: SuspensionTable) -> Suspended:
         periods.append(runs)
         sway = runs.period
     if table.yaw is not None:
-        yaw, sway = _yaw(job, table.yaw, table, sway, found, periods, flags)
+        yaw, sway = _yaw(job, table.yaw, table, sway, assessments, periods, flags)
     if table.beats is not None:
         count = _beats(job, table.beats, f"{where}.beats")
         by_beats = yaw_from_beats(
             count, given(table, "half_spacing_m", table.name), yaw_slower=table.beats.yaw_slower
         )
         by_beats = yaw_off_lines(table, _share(job, table), by_beats, by_sway=True, seed=4)
-        found["yaw by beats"] = without_air(job.table, by_beats, by_sway=True)
-    _double_pendulum(job, table, where, (yaw, sway), found, periods, flags)
+        assessments["yaw by beats"] = without_air(job.table, by_beats, by_sway=True)
+    _double_pendulum(job, table, where, (yaw, sway), assessments, periods, flags)
     flags += [flag for runs in periods for flag in runs.flags]
-    return Suspended(table, yaw, found, tuple(periods), tuple(flags))
+    return Suspended(table, yaw, assessments, tuple(periods), tuple(flags))
 
 
 def _share(job: Job[BifilarTable], table: SuspensionTable) -> Estimate | None:
@@ -112,9 +112,9 @@ def _beats(job: Job[BifilarTable], table: BeatsTable, where: str) -> BeatCount:
             raise DataError(f"{part.where}: beats are not counted over gaps; choose another record")
         counts.append(count_beats(part.time_s, part.values))
     return BeatCount(
-        sum(one.oscillations for one in counts),
-        sum(one.beats for one in counts),
-        sum(one.counting_error for one in counts),
+        sum(count.oscillations for count in counts),
+        sum(count.beats for count in counts),
+        sum(count.counting_error for count in counts),
     )
 
 
@@ -123,7 +123,7 @@ def _yaw(
     source: YawTable,
     table: SuspensionTable,
     sway: Estimate | None,
-    found: dict[str, Assessment],
+    assessments: dict[str, Assessment],
     periods: list[PeriodRuns],
     flags: list[Flag],
 ) -> tuple[Estimate, Estimate | None]:
@@ -135,9 +135,11 @@ def _yaw(
     yaw, ratio = runs.period, None
     if source.oscillations == 2:
         place = _sway_mode(runs, table.line_m, gravity.value)
-        own = runs.periods[place]
-        check_sway_axis(f"{job.path.name}: {runs.where}", own.value, table.line_m, gravity.value)
-        yaw, sway = runs.periods[1 - place], sway or own
+        measured_sway = runs.periods[place]
+        check_sway_axis(
+            f"{job.path.name}: {runs.where}", measured_sway.value, table.line_m, gravity.value
+        )
+        yaw, sway = runs.periods[1 - place], sway or measured_sway
         ratio = runs.ratio if place == 1 else _inverse(runs.ratio)
     flags += check_yaw_axis(runs.where, yaw.value, table.line_m, gravity.value)
     by_period = yaw_from_period(
@@ -145,19 +147,19 @@ def _yaw(
     )
     share = _share(job, table)
     by_period = yaw_off_lines(table, share, by_period, seed=seed + 4)
-    found["yaw by period"] = without_air(job.table, by_period, seed=seed + 2)
-    both = (ratio, exactly(1.0)) if ratio is not None else (yaw, sway)
-    if both[1] is not None:
-        by_ratio = yaw_from_ratio(both[0], both[1], spacing, seed=seed + 1)
+    assessments["yaw by period"] = without_air(job.table, by_period, seed=seed + 2)
+    pair = (ratio, exactly(1.0)) if ratio is not None else (yaw, sway)
+    if pair[1] is not None:
+        by_ratio = yaw_from_ratio(pair[0], pair[1], spacing, seed=seed + 1)
         by_ratio = yaw_off_lines(table, share, by_ratio, by_sway=True, seed=seed + 5)
-        found["yaw by ratio"] = without_air(job.table, by_ratio, by_sway=True, seed=seed + 3)
+        assessments["yaw by ratio"] = without_air(job.table, by_ratio, by_sway=True, seed=seed + 3)
     return yaw, sway
 
 
 def _sway_mode(runs: PeriodRuns, line_m: float, gravity_m_s2: float) -> int:
     """Return which oscillation is sway: the one whose period is nearest to the lines'."""
     expected = sway_period(line_m, gravity_m_s2)
-    off = [abs(math.log(one.value / expected)) for one in runs.periods]
+    off = [abs(math.log(period.value / expected)) for period in runs.periods]
     return off.index(min(off))
 
 
@@ -171,8 +173,8 @@ def _double_pendulum(
     job: Job[BifilarTable],
     table: SuspensionTable,
     where: str,
-    known: tuple[Estimate | None, Estimate | None],
-    found: dict[str, Assessment],
+    yaw_and_sway: tuple[Estimate | None, Estimate | None],
+    assessments: dict[str, Assessment],
     periods: list[PeriodRuns],
     flags: list[Flag],
 ) -> None:
@@ -180,10 +182,10 @@ def _double_pendulum(
 
     Parameters
     ----------
-    known
+    yaw_and_sway
         Periods of yaw and sway, as far as they were measured.
     """
-    yaw, sway = known
+    yaw, sway = yaw_and_sway
     for axis in ("pitch", "roll"):
         source: PendulumTable | None = getattr(table, axis)
         if source is None:
@@ -194,7 +196,7 @@ def _double_pendulum(
         lines = sway or period_of_lines(given(table, "line_m", table.name), gravity, share)
         result = pitch_from_periods(slow, fast, lines, gravity, seed=seed)
         result = pitch_off_lines(share, result, seed=seed + 2)
-        found[axis], found["depth"] = result.gyradius, result.depth
+        assessments[axis], assessments["depth"] = result.gyradius, result.depth
         if axis == "pitch" and yaw is not None:
             flags += resonance_flags(yaw.value, slow.value)
 

@@ -56,16 +56,20 @@ def first_moment(table: StateTable, mass: Estimate) -> Moment:
 
 
 def _tilts(table: StateTable) -> StaticResult:
-    return fit_static([one.series() for one in table.levers], with_offset=table.static_fit == "F2")
+    return fit_static(
+        [lever.series() for lever in table.levers], with_offset=table.static_fit == "F2"
+    )
 
 
 def _scaled(table: StateTable, static: StaticResult) -> Estimate:
     """Add the levers' and the inclinometer's errors, which all states that use them share."""
-    own = static.pooled.moment
-    lever = float(np.mean([one.u_lever_m / one.lever_m for one in table.levers]))
-    levers = ", ".join(sorted(f"{one.name} of {one.lever_m:g} m" for one in table.levers))
-    by_levers = own.widened(own.value * lever, label=f"levers {levers}")
-    return by_levers.widened(own.value * table.u_tilt_relative, label="scale of the inclinometer")
+    moment = static.pooled.moment
+    lever_relative = float(np.mean([lever.u_lever_m / lever.lever_m for lever in table.levers]))
+    levers = ", ".join(sorted(f"{lever.name} of {lever.lever_m:g} m" for lever in table.levers))
+    by_levers = moment.widened(moment.value * lever_relative, label=f"levers {levers}")
+    return by_levers.widened(
+        moment.value * table.u_tilt_relative, label="scale of the inclinometer"
+    )
 
 
 @dataclass(frozen=True)
@@ -93,16 +97,16 @@ def run(path: str) -> Outcome:
     test.plumb()
     _model(test, states)
     step = _workflow(test, states)
-    for one in states.values():
-        if one.moment.static is not None:
-            test.redundancy += _agreements(one.key, one.moment.static)
-            test.notes += _lever_notes(one, one.moment.static)
+    for measured in states.values():
+        if measured.moment.static is not None:
+            test.redundancy += _agreements(measured.key, measured.moment.static)
+            test.notes += _lever_notes(measured, measured.moment.static)
     upper = table.second_pivot
     test.sketches.append(
         about_axis(
             table.name,
             {_WORDS[key]: states[key].moment.cg.value for key in _DRAWN if key in states},
-            {one.name: one.lever_m for one in table.tare.levers},
+            {lever.name: lever.lever_m for lever in table.tare.levers},
             None if upper is None else upper.pivot_distance_m,
         )
     )
@@ -111,16 +115,16 @@ def run(path: str) -> Outcome:
 
 def _agreements(key: str, static: StaticResult) -> Iterator[Redundancy]:
     """Yield how a state's tilts and levers agree."""
-    for found in static.redundancy:
-        yield replace(found, what=f"{key}: {found.what}")
+    for redundancy in static.redundancy:
+        yield replace(redundancy, what=f"{key}: {redundancy.what}")
 
 
-def _lever_notes(one: _Measured, static: StaticResult) -> Iterator[str]:
+def _lever_notes(measured: _Measured, static: StaticResult) -> Iterator[str]:
     """Say what each lever alone gives."""
     for alone in static.alone:
-        cg, offset = distance(alone.moment, one.state.mass), alone.offset_rad
+        cg, offset = distance(alone.moment, measured.state.mass), alone.offset_rad
         yield (
-            f"{one.key}, {alone.series[0]} alone: CG {1e3 * cg.value:.2f} +- "
+            f"{measured.key}, {alone.series[0]} alone: CG {1e3 * cg.value:.2f} +- "
             f"{1e3 * cg.uncertainty:.2g} mm below the pivot, offset {offset.value:.5f} +- "
             f"{offset.uncertainty:.1g} rad, residual {alone.residual_rms_rad:.1g} rad"
         )
@@ -144,7 +148,7 @@ def _measure(test: Experiment[SwingTable], key: str) -> _Measured:
     mass, gravity = given(table, "mass_kg"), gravity_of(test.table)
     moment = first_moment(table, mass)
     if moment.static is not None:
-        series = tuple(one.series() for one in table.levers)
+        series = tuple(lever.series() for lever in table.levers)
         test.statics.append(StaticTest(f"{key}.levers", series, moment.static))
         test.flags += moment.static.flags
     state = SwingState(period, mass, moment.estimate, gravity)
@@ -164,7 +168,7 @@ def _two_pivots(test: Experiment[SwingTable], states: Mapping[str, _Measured]) -
     if table.second_pivot is None:
         return
     first, second = states["tare"], states["second_pivot"]
-    found = check_two_pivots(
+    result = check_two_pivots(
         PivotTest(first.state.period, first.moment.cg),
         PivotTest(second.state.period, second.moment.cg),
         first.state.mass,
@@ -172,17 +176,17 @@ def _two_pivots(test: Experiment[SwingTable], states: Mapping[str, _Measured]) -
         first.state.gravity,
     )
     test.findings += [
-        Finding("two_pivots_excess_m", "two pivots: distance too long by", found.distance_excess),
+        Finding("two_pivots_excess_m", "two pivots: distance too long by", result.distance_excess),
         Finding(
-            "two_pivots_difference_kg_m2", "two pivots: inertia differs", found.inertia_difference
+            "two_pivots_difference_kg_m2", "two pivots: inertia differs", result.inertia_difference
         ),
     ]
     test.notes.append(
-        f"two pivots: {'pass' if found.passes else 'fail'}; by the periods alone the CG lies "
-        f"{found.from_periods_m:.5f} m below the lower one"
+        f"two pivots: {'pass' if result.passes else 'fail'}; by the periods alone the CG lies "
+        f"{result.from_periods_m:.5f} m below the lower one"
     )
-    if not found.passes:
-        message = "the two pivots disagree; it points to: " + "; or ".join(found.points_to)
+    if not result.passes:
+        message = "the two pivots disagree; it points to: " + "; or ".join(result.points_to)
         test.flags.append(Flag("two_pivots_disagree", Severity.WARNING, message))
 
 
@@ -194,35 +198,35 @@ def _model(test: Experiment[SwingTable], states: Mapping[str, _Measured]) -> Non
     table = test.table
     model, loaded = table.model, states["loaded"]
     mass = given(model, "mass_kg", "model")
-    found = model_on_swing(
+    result = model_on_swing(
         states["tare"].state,
         loaded.state,
         mass,
         seed=table.monte_carlo_seed + 10,
     )
     axis = model.axis
-    test.flags += found.flags
-    own = without_air(table, found.gyradius, depth=found.cg_below_pivot.budget.result)
+    test.flags += result.flags
+    gyradius = without_air(table, result.gyradius, depth=result.cg_below_pivot.budget.result)
     in_air = "_in_air" if table.entrained_air is not None else ""
     with_air = ", with its air" if in_air else ""
     test.findings += [
-        assessed("cg_below_pivot_m", "model: CG below the pivot", found.cg_below_pivot),
+        assessed("cg_below_pivot_m", "model: CG below the pivot", result.cg_below_pivot),
         assessed(
             f"i_{axis}{in_air}_kg_m2",
             f"model: {axis} inertia about its CG{with_air}",
-            found.about_cg,
+            result.about_cg,
         ),
-        assessed(f"k_{axis}{in_air}_m", f"model: {axis} gyradius{with_air}", found.gyradius),
-        *([assessed(f"k_{axis}_m", f"model: {axis} gyradius", own)] if in_air else []),
-        Finding("share", "model's part of the total inertia", exactly(found.share)),
+        assessed(f"k_{axis}{in_air}_m", f"model: {axis} gyradius{with_air}", result.gyradius),
+        *([assessed(f"k_{axis}_m", f"model: {axis} gyradius", gyradius)] if in_air else []),
+        Finding("share", "model's part of the total inertia", exactly(result.share)),
     ]
     cg_z = None
     above = given_or_none(model, "pivot_above_midpoint_m")
     if above is not None:
-        cg_z = difference(found.cg_below_pivot.result, above)
+        cg_z = difference(result.cg_below_pivot.result, above)
         test.findings.append(Finding("cg_z_m", "model: CG below the struts' midpoint", cg_z))
-    parts = (found.cg_below_pivot, found.about_cg, found.gyradius)
-    test.weigh({axis: own.result}, [one.budget for one in parts], found.flags, cg_z)
+    parts = (result.cg_below_pivot, result.about_cg, result.gyradius)
+    test.weigh({axis: gyradius.result}, [part.budget for part in parts], result.flags, cg_z)
 
 
 _STEPS = {
@@ -241,5 +245,5 @@ def _workflow(test: Experiment[SwingTable], states: Mapping[str, _Measured]) -> 
         if key in states
     }
     check = test.table.check
-    known = None if check is None else given(check, "known_inertia_kg_m2")
-    return guide(measured, _STEPS, known, "the pivot", test.findings, test.flags)
+    known_inertia = None if check is None else given(check, "known_inertia_kg_m2")
+    return guide(measured, _STEPS, known_inertia, "the pivot", test.findings, test.flags)

@@ -75,9 +75,9 @@ def stiffness(test: Experiment[Any], table: TorsionTable, seed: int) -> Estimate
         square = length_m * length_m / 12.0 + diameter_m * diameter_m / 16.0
         return torsional_stiffness(mass_kg * square, period_s)
 
-    found = assess("c", rod, inputs, unit="N m/rad", seed=seed)
-    test.findings.append(assessed("stiffness_n_m_rad", "torsion rod: stiffness", found))
-    return found.budget.result
+    assessment = assess("c", rod, inputs, unit="N m/rad", seed=seed)
+    test.findings.append(assessed("stiffness_n_m_rad", "torsion rod: stiffness", assessment))
+    return assessment.budget.result
 
 
 def about_rod(rod: Estimate, period: Estimate, seed: int) -> Assessment:
@@ -101,8 +101,8 @@ class TorsionPlane:
 
     def findings(self) -> Iterator[Finding]:
         """Yield roll, yaw and product of inertia, and the principal axis."""
-        for k, (name, what) in enumerate(zip(IN_PLANE, _WORDS, strict=True)):
-            yield Finding(name, what, self.inertia.estimate(k))
+        for k, (name, words) in enumerate(zip(IN_PLANE, _WORDS, strict=True)):
+            yield Finding(name, words, self.inertia.estimate(k))
         yield Finding("psi_rad", "principal x axis, from body x", self.inertia.principal_angle)
 
     def ellipse(self, mass: Estimate) -> PlaneAxes:
@@ -122,7 +122,7 @@ class TorsionPlane:
                 "axes' angles (from body z towards body x)"
             )
         measured = tuple((angle, _gyradius(about, mass)) for angle, about in self.axes)
-        roll, yaw = (math.sqrt(one / mass.value) for one in (first, second))
+        roll, yaw = (math.sqrt(inertia / mass.value) for inertia in (first, second))
         return PlaneAxes(roll, yaw, psi, measured)
 
 
@@ -144,14 +144,14 @@ def in_plane(test: Experiment[Any], torsion: TorsionTable, rod: Estimate) -> Tor
     stiff = exactly(rod.value, rod.unit)  # its own uncertainty is a factor that all axes share
     angles, about = [], []
     common = torsion.u_common_angle_rad + math.radians(torsion.u_common_angle_deg)
-    for number, one in enumerate(torsion.axes, 1):
-        runs = test.period(one, f"torsion.axes[{number}]")
-        angles.append(one.angle.widened(common, label="torsion.common_angle"))
+    for number, axis in enumerate(torsion.axes, 1):
+        runs = test.period(axis, f"torsion.axes[{number}]")
+        angles.append(axis.angle.widened(common, label="torsion.common_angle"))
         inputs = {"stiffness_n_m_rad": stiff, "period_s": runs.period}
         about.append(derived("I", torsional_inertia, "kg m2", **inputs))
-    found = plane_inertia(about, angles).scaled(rod.following(1.0, 1.0 / rod.value))
-    measured = tuple((angle.value, own) for angle, own in zip(angles, about, strict=True))
-    plane = TorsionPlane(found, measured)
+    inertia = plane_inertia(about, angles).scaled(rod.following(1.0, 1.0 / rod.value))
+    measured = tuple((angle.value, estimate) for angle, estimate in zip(angles, about, strict=True))
+    plane = TorsionPlane(inertia, measured)
     test.findings += plane.findings()
-    test.redundancy.append(found.redundancy)
+    test.redundancy.append(inertia.redundancy)
     return plane

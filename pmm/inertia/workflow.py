@@ -32,7 +32,7 @@ _WORDS = {
 def guide(
     measured: Mapping[Step, Estimate],
     tables: Mapping[Step, str],
-    known: Estimate | None,
+    known_inertia: Estimate | None,
     axis: str,
     findings: list[Finding],
     flags: list[Flag],
@@ -45,7 +45,7 @@ def guide(
         Inertia that each step gave, kg m2.
     tables
         The table of the job's file in which a step stands.
-    known
+    known_inertia
         The known body's inertia, if the file has it.
     axis
         In words, what the inertias are about.
@@ -58,21 +58,21 @@ def guide(
     readings = tuple(StepResult(step, measured[step]) for step in Step if step in measured)
     following = next_step(readings)
     if following is not None:
-        step, what = following
-        return f"{len(readings) + 1} of {len(Step)}, [{tables[step]}]: {what}"
-    if known is None:
+        step, task = following
+        return f"{len(readings) + 1} of {len(Step)}, [{tables[step]}]: {task}"
+    if known_inertia is None:
         raise ConfigurationError("the workflow has no known-weight check; add [check]")
-    found = assess_workflow(readings, known)
-    flags += found.flags
+    result = assess_workflow(readings, known_inertia)
+    flags += result.flags
     findings += [
-        Finding("workflow_tare_kg_m2", f"both tares: inertia about {axis}", found.tare),
-        Finding("workflow_drift_kg_m2", "second less first tare", found.tare_drift),
-        Finding("workflow_model_kg_m2", f"test less tare, about {axis}", found.test_less_tare),
-        Finding("workflow_check_kg_m2", f"known body, about {axis}", found.check_less_tare),
+        Finding("workflow_tare_kg_m2", f"both tares: inertia about {axis}", result.tare),
+        Finding("workflow_drift_kg_m2", "second less first tare", result.tare_drift),
+        Finding("workflow_model_kg_m2", f"test less tare, about {axis}", result.test_less_tare),
+        Finding("workflow_check_kg_m2", f"known body, about {axis}", result.check_less_tare),
         Finding(
             "workflow_normalised_error",
             "known body's error over its interval",
-            exactly(found.normalised_error),
+            exactly(result.normalised_error),
         ),
     ]
     return None
@@ -101,21 +101,23 @@ def workflow(test: Experiment[BifilarTable], hung: Sequence[Suspended]) -> str |
         inertias[step] = _inertia(table, first, period, given(source, "mass_kg"))
         name = f"{_TABLES[step]}_i_yaw_kg_m2"
         test.findings.append(Finding(name, f"{words}: yaw inertia", inertias[step]))
-    known = None if table.check is None else given(table.check, "known_inertia_kg_m2")
-    return guide(inertias, _TABLES, known, "the vertical axis", test.findings, test.flags)
+    known_inertia = None if table.check is None else given(table.check, "known_inertia_kg_m2")
+    return guide(inertias, _TABLES, known_inertia, "the vertical axis", test.findings, test.flags)
 
 
-def _inertia(table: BifilarTable, one: Suspended, period: Estimate, mass: Estimate) -> Estimate:
+def _inertia(
+    table: BifilarTable, suspension: Suspended, period: Estimate, mass: Estimate
+) -> Estimate:
     """Return the inertia of what hangs."""
-    lines = one.table
+    lines = suspension.table
 
     def inertia(
         period_s: Value, mass_kg: Value, half_spacing_m: Value, line_m: Value, gravity_m_s2: Value
     ) -> Value:
         on_lines = yaw_gyradius(period_s, half_spacing_m, line_m, gravity_m_s2)
         share = lines.line_mass_kg / mass_kg
-        own = yaw_without_lines(on_lines, share, half_spacing_m, by_sway=False)
-        return mass_kg * own**2
+        gyradius = yaw_without_lines(on_lines, share, half_spacing_m, by_sway=False)
+        return mass_kg * gyradius**2
 
     lengths = {key: given(lines, key, lines.name) for key in ("half_spacing_m", "line_m")}
     inputs = {"period_s": period, "mass_kg": mass, "gravity_m_s2": gravity_of(table)}
