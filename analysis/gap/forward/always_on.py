@@ -65,8 +65,8 @@ def always_on(simulator: Simulator, base: FloatArray, tolerances: Tolerances) ->
 
 def _change(simulator: Simulator, base: FloatArray, effect: Effect) -> FloatArray:
     """Return what ten times an effect changes."""
-    found = (simulator.steady((effect,)) - base) / _STEP / simulator.stack.uncertainty
-    return np.asarray(found, np.float64)
+    change = (simulator.steady((effect,)) - base) / _STEP / simulator.stack.uncertainty
+    return np.asarray(change, np.float64)
 
 
 def _of_load(simulator: Simulator, twice: dict[str, FloatArray]) -> FloatArray:
@@ -82,8 +82,8 @@ def _of_load(simulator: Simulator, twice: dict[str, FloatArray]) -> FloatArray:
     """
     stack = simulator.stack
     ripples = np.array([_ripple(simulator, run) if run.turns else 0j for run in stack.runs])
-    own = ripples[stack.run]
-    return np.asarray(twice["sine"] * own.real + twice["cosine"] * own.imag, np.float64)
+    ripple = ripples[stack.run]
+    return np.asarray(twice["sine"] * ripple.real + twice["cosine"] * ripple.imag, np.float64)
 
 
 def _ripple(simulator: Simulator, run: GapRun) -> complex:
@@ -95,7 +95,7 @@ def _ripple(simulator: Simulator, run: GapRun) -> complex:
     power = np.zeros(period.points)
     for force, motion in zip(STRUT_FORCES, signals.STRUT_MOTIONS, strict=True):
         pair = (state.spectra[force], state.spectra[motion[1].name])
-        power += np.prod([(turn @ one).real for one in pair], axis=0)
+        power += np.prod([(turn @ spectrum).real for spectrum in pair], axis=0)
     omega = 2.0 * math.pi * period.frequency_hz
     start = np.exp(-2j * simulator.rig.drive.initial_angle_rad)
     torque = 2.0 * np.mean(power / omega * np.exp(-2j * angle_rad)) * start
@@ -109,7 +109,7 @@ def _drifts(stack: Stack, drift_n_s: float) -> Named:
     times_s = {Part.MEAN: np.array(middle_s), Part.TREND: 1.0 / frequency_hz}
     for channel in FORCES:
         column = np.zeros(len(stack.components))
-        for at, one in enumerate(stack.components):
-            if one.channel == channel and one.part in times_s:
-                column[at] = drift_n_s * times_s[one.part][stack.run[at]]
+        for at, component in enumerate(stack.components):
+            if component.channel == channel and component.part in times_s:
+                column[at] = drift_n_s * times_s[component.part][stack.run[at]]
         yield f"drift {channel.removeprefix('force_')}", column / stack.uncertainty

@@ -69,10 +69,14 @@ class Axis:
     @property
     def range(self) -> tuple[float, float]:
         """Plausible values, on this side of zero where that one is never passed."""
-        one = self.parameter
-        if not one.least:
-            return one.low, one.high
-        return (one.least, one.high) if self.sign > 0.0 else (one.low, -one.least)
+        parameter = self.parameter
+        if not parameter.least:
+            return parameter.low, parameter.high
+        return (
+            (parameter.least, parameter.high)
+            if self.sign > 0.0
+            else (parameter.low, -parameter.least)
+        )
 
 
 @dataclass(frozen=True)
@@ -107,7 +111,7 @@ class Candidate:
     @property
     def start(self) -> FloatArray:
         """Where a fit begins, shape ``(p,)``, in prior units."""
-        return np.array([one.start for one in self.axes])
+        return np.array([axis.start for axis in self.axes])
 
     def freed(self, axis: Axis) -> "Candidate":
         """Return it with a parameter free that it holds."""
@@ -117,11 +121,11 @@ class Candidate:
     def effect(self, units: FloatArray) -> Any:
         """Return the effect with its parameters at ``units`` prior deviations."""
         values = {
-            one.parameter.name: one.value(float(unit))
-            for one, unit in zip(self.axes, units, strict=True)
+            axis.parameter.name: axis.value(float(unit))
+            for axis, unit in zip(self.axes, units, strict=True)
         }
-        own = {"channel": self.channel} if self.channel else {}
-        return self.kind(**values, **self.held, **own)
+        channel = {"channel": self.channel} if self.channel else {}
+        return self.kind(**values, **self.held, **channel)
 
     @property
     def reach(self) -> float:
@@ -133,7 +137,7 @@ class Candidate:
     @property
     def bounds(self) -> FloatArray:
         """Plausible range of each parameter in prior units, shape ``(2, p)``."""
-        pairs = [[one.unit(end) for end in one.range] for one in self.axes]
+        pairs = [[axis.unit(end) for end in axis.range] for axis in self.axes]
         return np.array(pairs).reshape(-1, 2).T
 
 
@@ -146,83 +150,98 @@ def candidates(kind: type[Effect], frequencies_hz: Sequence[float]) -> Iterator[
         Of the runs; a parameter that is a resonance starts among them as well.
     """
     parameters = kind.parameters()
-    options = [list(_options(kind, one, frequencies_hz)) for one in parameters]
+    options = [list(_options(kind, parameter, frequencies_hz)) for parameter in parameters]
     for chosen in product(*options):
-        axes = tuple(one for one in chosen if isinstance(one, Axis))
-        held = {name: value for one in chosen if not isinstance(one, Axis) for name, value in [one]}
+        axes = tuple(choice for choice in chosen if isinstance(choice, Axis))
+        held = {
+            name: value
+            for choice in chosen
+            if not isinstance(choice, Axis)
+            for name, value in [choice]
+        }
         yield Candidate(kind, axes, held, kind.stage.value, kind.repeats, kind.costly)
 
 
 def _options(
-    kind: type[Effect], one: Parameter, frequencies_hz: Sequence[float]
+    kind: type[Effect], parameter: Parameter, frequencies_hz: Sequence[float]
 ) -> Iterator[Axis | tuple[str, float]]:
-    axis = axis_of(one, kind.parameters())
+    axis = axis_of(parameter, kind.parameters())
     # Of what does not keep step only the size shows, and in which band.
-    sizes = axis.is_size or is_share(one)
-    if one.held:
-        yield from ((one.name, value) for value in one.starts or (one.typical,))
+    sizes = axis.is_size or is_share(parameter)
+    if parameter.held:
+        yield from ((parameter.name, value) for value in parameter.starts or (parameter.typical,))
     elif not (kind.repeats or sizes):
-        yield from ((one.name, value) for value in one.starts or _bands(one, frequencies_hz))
+        yield from (
+            (parameter.name, value)
+            for value in parameter.starts or _bands(parameter, frequencies_hz)
+        )
     else:
         begins = _begins(axis, frequencies_hz)
         yield from (replace(axis, start=axis.unit(value)) for value in begins)
-        if one.least:
+        if parameter.least:
             yield from (replace(axis, sign=-1.0, start=-axis.unit(value)) for value in begins)
 
 
-def _bands(one: Parameter, frequencies_hz: Sequence[float]) -> Sequence[float]:
-    if one.unit == "Hz":
+def _bands(parameter: Parameter, frequencies_hz: Sequence[float]) -> Sequence[float]:
+    if parameter.unit == "Hz":
         inside = (0.45 * min(frequencies_hz), 3.3 * max(frequencies_hz))
-        return (one.typical, *(value for value in inside if one.low <= value <= one.high))
-    return (1.0,) if is_phase(one) else (one.typical,)
+        return (
+            parameter.typical,
+            *(value for value in inside if parameter.low <= value <= parameter.high),
+        )
+    return (1.0,) if is_phase(parameter) else (parameter.typical,)
 
 
-def axis_of(one: Parameter, siblings: tuple[Parameter, ...]) -> Axis:
+def axis_of(parameter: Parameter, siblings: tuple[Parameter, ...]) -> Axis:
     """Return a parameter with its prior, begun at the middle of it."""
-    if is_share(one):
-        return Axis(one, 0.5, 0.5, is_log=False)
-    if is_phase(one):
-        return Axis(one, 0.0, _EVEN, is_log=False)
-    if one.low <= 0.0 and not one.least:
-        return Axis(one, 0.0, _TYPICAL * _size(one, siblings), is_log=False)
-    widest = math.log(one.high / (one.least or one.low))
-    return Axis(one, math.log(one.typical), _SPREAD * widest, is_log=True)
+    if is_share(parameter):
+        return Axis(parameter, 0.5, 0.5, is_log=False)
+    if is_phase(parameter):
+        return Axis(parameter, 0.0, _EVEN, is_log=False)
+    if parameter.low <= 0.0 and not parameter.least:
+        return Axis(parameter, 0.0, _TYPICAL * _size(parameter, siblings), is_log=False)
+    widest = math.log(parameter.high / (parameter.least or parameter.low))
+    return Axis(parameter, math.log(parameter.typical), _SPREAD * widest, is_log=True)
 
 
 def _begins(axis: Axis, frequencies_hz: Sequence[float]) -> Sequence[float]:
     """Return the values from which a parameter is fitted."""
-    one = axis.parameter
-    usual = one.starts or _usual(axis)
-    if not one.resonance:
+    parameter = axis.parameter
+    usual = parameter.starts or _usual(axis)
+    if not parameter.resonance:
         return usual
     low, high = min(frequencies_hz), max(frequencies_hz)
     return (*usual, 1.15 * high, math.sqrt(high * low))
 
 
 def _usual(axis: Axis) -> tuple[float, ...]:
-    one = axis.parameter
-    if is_share(one):
-        return (one.high, one.low)
-    if is_phase(one):
+    parameter = axis.parameter
+    if is_share(parameter):
+        return (parameter.high, parameter.low)
+    if is_phase(parameter):
         return (0.0,)
-    return (one.typical or 0.1 * axis.deviation,)
+    return (parameter.typical or 0.1 * axis.deviation,)
 
 
 def least_step(parts: Sequence[Candidate], axis: int) -> float:
     """Return the least step of a slope, in prior deviations."""
-    number, part = [(one, part) for part in parts for one in part.axes][axis]
+    number, part = [(number, part) for part in parts for number in part.axes][axis]
     linear = not part.repeats and number.parameter.low < 0.0 and not is_phase(number.parameter)
     return _STEP_IN_TIME if linear else STEP
 
 
-def is_phase(one: Parameter) -> bool:
+def is_phase(parameter: Parameter) -> bool:
     """Tell whether a parameter is an angle on the whole circle."""
-    return one.unit == "rad" and math.isclose(one.high, math.pi) and math.isclose(one.low, -math.pi)
+    return (
+        parameter.unit == "rad"
+        and math.isclose(parameter.high, math.pi)
+        and math.isclose(parameter.low, -math.pi)
+    )
 
 
-def is_share(one: Parameter) -> bool:
+def is_share(parameter: Parameter) -> bool:
     """Tell whether a parameter is a share of a whole; a fit begins at either end of it."""
-    return one.unit == "1" and one.low == 0.0 and one.high == 1.0
+    return parameter.unit == "1" and parameter.low == 0.0 and parameter.high == 1.0
 
 
 def turned(candidate: Candidate) -> Iterator[FloatArray]:
@@ -235,11 +254,13 @@ def turned(candidate: Candidate) -> Iterator[FloatArray]:
                 yield start
 
 
-def _size(one: Parameter, siblings: tuple[Parameter, ...]) -> float:
+def _size(parameter: Parameter, siblings: tuple[Parameter, ...]) -> float:
     """Return a parameter's usual size; that of its siblings of the same unit where it is zero.
 
     Only of siblings that can be zero too: a rod's length says nothing of what it is out of line by.
     """
-    zeroed = [other for other in siblings if other.low <= 0.0 and not other.least]
-    alike = [abs(other.typical) for other in zeroed if other.unit == one.unit]
-    return abs(one.typical) or max(alike) or max(abs(one.low), abs(one.high)) / 10.0
+    zeroed = [sibling for sibling in siblings if sibling.low <= 0.0 and not sibling.least]
+    alike = [abs(sibling.typical) for sibling in zeroed if sibling.unit == parameter.unit]
+    return (
+        abs(parameter.typical) or max(alike) or max(abs(parameter.low), abs(parameter.high)) / 10.0
+    )

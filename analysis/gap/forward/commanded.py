@@ -102,17 +102,17 @@ def commanded(
     stated
         Keys of tolerances that the user states: what these are of stays as it is stated.
     """
-    found: dict[str, list[_Off]] = {}
+    offs_by_name: dict[str, list[_Off]] = {}
     for run in runs:
-        for one in _of_run(rig, run, on, reference) if run.following else ():
-            if _TOLERANCES[one.name] not in stated:
-                found.setdefault(one.name, []).append(one)
-    told = tuple(_told(offs, tolerances) for offs in found.values())
+        for off in _of_run(rig, run, on, reference) if run.following else ():
+            if _TOLERANCES[off.name] not in stated:
+                offs_by_name.setdefault(off.name, []).append(off)
+    settings = tuple(_told(offs, tolerances) for offs in offs_by_name.values())
     wide: dict[str, float] = {}
-    for known in told:
-        rig = _MOVED[known.name](rig, known)
-        wide[known.key] = max(wide.get(known.key, 0.0), known.tolerance)
-    return Commanded(rig, replace(tolerances, **wide), told)
+    for setting in settings:
+        rig = _MOVED[setting.name](rig, setting)
+        wide[setting.key] = max(wide.get(setting.key, 0.0), setting.tolerance)
+    return Commanded(rig, replace(tolerances, **wide), settings)
 
 
 def _of_run(
@@ -122,21 +122,23 @@ def _of_run(
     omega, set_m = 2.0 * math.pi * set_point.frequency_hz, set_point.eccentricity_m
     linkages = (acting.linkage_aft, acting.linkage_fore)
     pairs = [run.following.get(channel) for channel in DISPLACEMENTS]
-    for name, linkage, one in zip(_ECCENTRICITIES, linkages, pairs, strict=True):
-        if one is not None:
-            off = one.gain.value - linkage.eccentricity_m(set_m) / set_m
-            yield _Off(name, one.gain.following(off, 1.0), set_m)
-    rate = min((one.clock_rate for one in pairs if one), key=lambda one: one.uncertainty)
+    for name, linkage, pair in zip(_ECCENTRICITIES, linkages, pairs, strict=True):
+        if pair is not None:
+            off = pair.gain.value - linkage.eccentricity_m(set_m) / set_m
+            yield _Off(name, pair.gain.following(off, 1.0), set_m)
+    rate = min(
+        (pair.clock_rate for pair in pairs if pair), key=lambda estimate: estimate.uncertainty
+    )
     slower = rate.following(-rate.value - acting.drive.speed_error, -1.0)
     yield _Off(_FREQUENCY, replace(slower, unit="1"), set_m)
-    aft, fore = (None if one is None else _ahead(one.lag_s, omega) for one in pairs)
+    aft, fore = (None if pair is None else _ahead(pair.lag_s, omega) for pair in pairs)
     if aft is not None and fore is not None:
         set_rad = linkages[1].phase_error_rad - linkages[0].phase_error_rad
         yield _Off(_PHASE, _less(difference(fore, aft), set_rad), set_m)
     if aft is not None and reference == COMMANDS[0]:
         cell = acting.photocell or PhotocellStage()
-        there_rad = cell.mark_angle_rad + omega * cell.latency_s
-        yield _Off(_REFERENCE, _less(aft, there_rad), set_m)
+        mark_rad = cell.mark_angle_rad + omega * cell.latency_s
+        yield _Off(_REFERENCE, _less(aft, mark_rad), set_m)
 
 
 def _ahead(lag_s: Estimate, omega: float) -> Estimate:
@@ -152,55 +154,60 @@ def _less(angle: Estimate, stated_rad: float) -> Estimate:
 def _told(offs: Sequence[_Off], tolerances: Tolerances) -> KnownSetting:
     """Return what the runs have in common; where they do not agree, Birge's ratio widens it."""
     name, unit = offs[0].name, offs[0].off.unit
-    set_m = np.array([one.eccentricity_m for one in offs])
+    set_m = np.array([off.eccentricity_m for off in offs])
     struts = name in _ECCENTRICITIES
-    both = struts and float(np.ptp(set_m)) > _UNLIKE * float(set_m.max())
-    matrix = np.column_stack([np.ones(len(offs)), 1.0 / set_m] if both else [np.ones(len(offs))])
+    has_added = struts and float(np.ptp(set_m)) > _UNLIKE * float(set_m.max())
+    matrix = np.column_stack(
+        [np.ones(len(offs)), 1.0 / set_m] if has_added else [np.ones(len(offs))]
+    )
     fitted, _ = best_fit(
         matrix,
-        joint([one.off for one in offs]),
+        joint([off.off for off in offs]),
         what=name,
         results=(name, "added")[: matrix.shape[1]],
         data=[f"run {number + 1}" for number in range(len(offs))],
     )
     off = Estimate(fitted.taken([0]), unit)
-    added_m = Estimate(fitted.taken([1]), "m") if both else None
-    seen, unseen = off.uncertainty, tolerances.frequency_relative if name == _FREQUENCY else 0.0
+    added_m = Estimate(fitted.taken([1]), "m") if has_added else None
+    uncertainty, unseen = (
+        off.uncertainty,
+        tolerances.frequency_relative if name == _FREQUENCY else 0.0,
+    )
     if struts:
         in_metres = fitted.mapped(set_m[:, None] * matrix)
-        seen = float(in_metres.standard_uncertainty.max())
+        uncertainty = float(in_metres.standard_uncertainty.max())
         unseen = tolerances.displacement_gain_relative * float(set_m.max())
-    return KnownSetting(name, off, added_m, math.hypot(seen, unseen), len(offs))
+    return KnownSetting(name, off, added_m, math.hypot(uncertainty, unseen), len(offs))
 
 
 def _eccentricity(strut: str) -> Callable[[SimulatedRig, KnownSetting], SimulatedRig]:
-    def moved(rig: SimulatedRig, known: KnownSetting) -> SimulatedRig:
-        own = rig.linkage_aft if strut == "aft" else rig.linkage_fore
-        added_m = 0.0 if known.added_m is None else known.added_m.value
+    def moved(rig: SimulatedRig, setting: KnownSetting) -> SimulatedRig:
+        linkage = rig.linkage_aft if strut == "aft" else rig.linkage_fore
+        added_m = 0.0 if setting.added_m is None else setting.added_m.value
         off = replace(
-            own,
-            gain=own.gain + known.off.value,
-            eccentricity_error_m=own.eccentricity_error_m + added_m,
+            linkage,
+            gain=linkage.gain + setting.off.value,
+            eccentricity_error_m=linkage.eccentricity_error_m + added_m,
         )
         return replace(rig, linkage_aft=off) if strut == "aft" else replace(rig, linkage_fore=off)
 
     return moved
 
 
-def _strut_phase(rig: SimulatedRig, known: KnownSetting) -> SimulatedRig:
+def _strut_phase(rig: SimulatedRig, setting: KnownSetting) -> SimulatedRig:
     fore = rig.linkage_fore
-    turned = replace(fore, phase_error_rad=fore.phase_error_rad + known.off.value)
+    turned = replace(fore, phase_error_rad=fore.phase_error_rad + setting.off.value)
     return replace(rig, linkage_fore=turned)
 
 
-def _frequency(rig: SimulatedRig, known: KnownSetting) -> SimulatedRig:
-    speed_error = rig.drive.speed_error + known.off.value
+def _frequency(rig: SimulatedRig, setting: KnownSetting) -> SimulatedRig:
+    speed_error = rig.drive.speed_error + setting.off.value
     return replace(rig, drive=replace(rig.drive, speed_error=speed_error))
 
 
-def _reference(rig: SimulatedRig, known: KnownSetting) -> SimulatedRig:
+def _reference(rig: SimulatedRig, setting: KnownSetting) -> SimulatedRig:
     cell = rig.photocell or PhotocellStage()
-    marked = replace(cell, mark_angle_rad=cell.mark_angle_rad + known.off.value)
+    marked = replace(cell, mark_angle_rad=cell.mark_angle_rad + setting.off.value)
     return replace(rig, photocell=marked)
 
 

@@ -85,8 +85,8 @@ class Free:
 
 def free_numbers(rig: SimulatedRig, tolerances: Tolerances) -> tuple[Free, ...]:
     """Return what is left free for a rig as it is stated; what has no tolerance is not."""
-    every = (*_coefficients(rig, tolerances), *_settings(rig, tolerances))
-    return tuple(one for one in every if one.deviation > 0.0)
+    numbers = (*_coefficients(rig, tolerances), *_settings(rig, tolerances))
+    return tuple(number for number in numbers if number.deviation > 0.0)
 
 
 def _coefficients(rig: SimulatedRig, tolerances: Tolerances) -> Iterator[Free]:
@@ -101,14 +101,16 @@ def _coefficients(rig: SimulatedRig, tolerances: Tolerances) -> Iterator[Free]:
 def _of_matrix(rig: SimulatedRig, term: str, tolerances: Tolerances) -> Iterator[Free]:
     matrix = np.abs(np.array(getattr(rig.water, term), dtype=np.float64))
     if term != "restoring":
-        own = np.diagonal(matrix + np.abs(_remembered(rig, term)))
+        diagonal = np.diagonal(matrix + np.abs(_remembered(rig, term)))
         # Where nothing states what the water does, the body says what is much.
-        matrix = np.diag(np.where(own > 0.0, own, (rig.body.mass_kg, rig.body.inertia_kg_m2)))
+        matrix = np.diag(
+            np.where(diagonal > 0.0, diagonal, (rig.body.mass_kg, rig.body.inertia_kg_m2))
+        )
     for row in range(2):
         for column in range(2):
             scale = float(np.sqrt(matrix[row, row] * matrix[column, column]))
-            own = getattr(tolerances, f"{term}_relative")
-            weight = own if row == column else tolerances.coupling_relative
+            diagonal = getattr(tolerances, f"{term}_relative")
+            weight = diagonal if row == column else tolerances.coupling_relative
             name = f"{_TERMS[term]}{row + 1}{column + 1}"
             yield Free(name, weight * scale, _adding(term, row, column))
 
@@ -125,7 +127,7 @@ def _remembered(rig: SimulatedRig, term: str) -> FloatArray:
 def _adding(term: str, row: int, column: int) -> Change:
     def change(rig: SimulatedRig, value: float) -> SimulatedRig:
         old: Matrix = getattr(rig.water, term)
-        rows = [list(one) for one in old]
+        rows = [list(terms) for terms in old]
         rows[row][column] += value
         new = ((rows[0][0], rows[0][1]), (rows[1][0], rows[1][1]))
         return replace(rig, water=replace(rig.water, **{term: new}))
@@ -160,8 +162,8 @@ def with_coefficients(
     rig: SimulatedRig, free: Sequence[Free], units: Sequence[float]
 ) -> SimulatedRig:
     """Return the rig with the free coefficients changed by some prior deviations each."""
-    for one, unit in zip(free, units, strict=True):
-        rig = one.applied(rig, float(unit) * one.deviation)
+    for number, unit in zip(free, units, strict=True):
+        rig = number.applied(rig, float(unit) * number.deviation)
     return rig
 
 
@@ -174,43 +176,47 @@ def tolerated(simulator: Simulator, free: Sequence[Free], tolerances: Tolerances
     is noisier than believed has no gap for that.
     """
     base, sigma = simulator.steady(()), simulator.stack.uncertainty
-    found = [(one.steady(simulator, _STEP) - base) / _STEP / sigma for one in free]
+    changes = [(number.steady(simulator, _STEP) - base) / _STEP / sigma for number in free]
     sensors = _sensors(simulator.stack, base, tolerances.displacement_gain_relative)
     stack = simulator.stack
-    own = [
+    run_columns = [
         *by_run(stack, _frequencies(simulator, base, tolerances.frequency_relative)),
         *by_run(stack, _turned(stack, base, 1.0) * references_rad(stack, tolerances.reference_rad)),
-        *_uneven(stack, free, found, tolerances.carriage_relative),
+        *_uneven(stack, free, changes, tolerances.carriage_relative),
     ]
-    levels = {one.name: column for one, column in zip(free, found, strict=True) if one.is_sought}
+    levels = {
+        number.name: column
+        for number, column in zip(free, changes, strict=True)
+        if number.is_sought
+    }
     smooth = smooth_changes(stack, levels, tolerances)
     on = dict(always_on(simulator, base, tolerances))
-    names = (*(one.name for one in free), *on)
-    every = [*found, *on.values(), *sensors, *own, *smooth, *noise_levels(stack)]
-    return Nuisances(np.column_stack(every), names, len(on))
+    names = (*(number.name for number in free), *on)
+    columns = [*changes, *on.values(), *sensors, *run_columns, *smooth, *noise_levels(stack)]
+    return Nuisances(np.column_stack(columns), names, len(on))
 
 
 def _sensors(stack: Stack, base: FloatArray, relative: float) -> Iterator[FloatArray]:
     """Yield what a displacement sensor's gain changes, a column for each."""
     for channel in DISPLACEMENTS:
-        own = np.array([one.channel == channel for one in stack.components])
-        yield np.where(own, relative * base / stack.uncertainty, 0.0)
+        rows = np.array([component.channel == channel for component in stack.components])
+        yield np.where(rows, relative * base / stack.uncertainty, 0.0)
 
 
 def _uneven(
-    stack: Stack, free: Sequence[Free], found: Sequence[FloatArray], relative: float
+    stack: Stack, free: Sequence[Free], changes: Sequence[FloatArray], relative: float
 ) -> Iterator[FloatArray]:
     """Yield what an uneven carriage leaves in each run's mean speed, a column for each that runs.
 
     Parameters
     ----------
-    found
+    changes
         What a tolerance of each free number changes, in sigma.
     """
-    for one, column in zip(free, found, strict=True):
-        if one.name == _CARRIAGE:
-            each = by_run(stack, _IN_MEAN * relative / one.deviation * column)
-            yield from (own for own in each if own.any())
+    for number, column in zip(free, changes, strict=True):
+        if number.name == _CARRIAGE:
+            each = by_run(stack, _IN_MEAN * relative / number.deviation * column)
+            yield from (run_column for run_column in each if run_column.any())
 
 
 def _frequencies(simulator: Simulator, base: FloatArray, relative: float) -> FloatArray:
@@ -221,17 +227,17 @@ def _frequencies(simulator: Simulator, base: FloatArray, relative: float) -> Flo
 
 def _turned(stack: Stack, base: FloatArray, angle_rad: float) -> FloatArray:
     """Return what it changes to count the shaft's angle from a little later."""
-    other = {Part.IN_PHASE: (Part.QUADRATURE, -1.0), Part.QUADRATURE: (Part.IN_PHASE, 1.0)}
+    partners = {Part.IN_PHASE: (Part.QUADRATURE, -1.0), Part.QUADRATURE: (Part.IN_PHASE, 1.0)}
     keys = zip(stack.run.tolist(), stack.components, strict=True)
-    at = {(run, one): number for number, (run, one) in enumerate(keys)}
+    at = {(run, component): number for number, (run, component) in enumerate(keys)}
     change = np.zeros(len(base))
-    for (run, one), number in at.items():
-        if one.part in other:
-            part, sign = other[one.part]
-            partner = at.get((run, replace(one, part=part)))
+    for (run, component), number in at.items():
+        if component.part in partners:
+            part, sign = partners[component.part]
+            partner = at.get((run, replace(component, part=part)))
             if partner is not None:
-                change[number] = sign * one.order * angle_rad * base[partner]
-            if one.channel == SHAFT_ANGLE.name:
+                change[number] = sign * component.order * angle_rad * base[partner]
+            if component.channel == SHAFT_ANGLE.name:
                 change[number] = 0.0
     return change / stack.uncertainty
 
@@ -241,9 +247,9 @@ def references_rad(stack: Stack, usual_rad: float) -> FloatArray:
 
     No better than its pulses scatter: an interval is two of them, and a run has as many as periods.
     """
-    known = []
+    uncertainties_rad = []
     for run in stack.runs:
         spread = math.exp(run.observed.value("", Part.PERIOD_SCATTER))  # of the intervals, relative
         jitter = math.sqrt(2.0) * math.pi * (spread if math.isfinite(spread) else 0.0)
-        known.append(math.hypot(usual_rad, jitter / math.sqrt(max(run.periods, 1))))
-    return np.array(known)[stack.run]
+        uncertainties_rad.append(math.hypot(usual_rad, jitter / math.sqrt(max(run.periods, 1))))
+    return np.array(uncertainties_rad)[stack.run]

@@ -25,22 +25,22 @@ def hum_columns(stack: Stack, hum_n: float) -> Iterator[tuple[str, FloatArray]]:
     shows between its lines.
     """
     loud = {
-        (run, one.channel, one.order): value
-        for run, one, value in zip(
+        (run, component.channel, component.order): value
+        for run, component, value in zip(
             stack.run.tolist(), stack.components, stack.values.tolist(), strict=True
         )
-        if one.part is Part.BETWEEN
+        if component.part is Part.BETWEEN
     }
     power = (_FAR * hum_n) ** 2 / 3.0
     for channel, mains_hz in product(FORCES, MAINS_HZ):
         column = np.zeros(len(stack.components))
-        for at, one in enumerate(stack.components):
+        for at, component in enumerate(stack.components):
             run = int(stack.run[at])
-            if one.part is Part.LINE and one.channel == channel:
-                found = _lines(stack.runs[run], one.order, mains_hz)
-                middle = loud.get((run, channel, one.order), math.inf)
-                if found:
-                    rise = (1.0 + power / math.exp(middle)) / expected_highest(found)
+            if component.part is Part.LINE and component.channel == channel:
+                count = _lines(stack.runs[run], component.order, mains_hz)
+                middle = loud.get((run, channel, component.order), math.inf)
+                if count:
+                    rise = (1.0 + power / math.exp(middle)) / expected_highest(count)
                     column[at] = math.log(max(rise, 1.0)) / _FAR
         yield f"hum {channel.removeprefix('force_')} {mains_hz:g} Hz", column / stack.uncertainty
 
@@ -51,5 +51,5 @@ def _lines(run: GapRun, number: int, mains_hz: float) -> float:
     rate_hz, duration_s = run.sample_rate_hz, run.periods / run.set_point.frequency_hz
     folded = np.array([abs(mains_hz - rate_hz * round(mains_hz / rate_hz))])
     beside = free_of_harmonics(folded, run.set_point.frequency_hz, _NEAR / duration_s)
-    there = bool(beside[0]) and low < folded[0] < high
-    return (min(high, 0.5 * rate_hz) - low) * duration_s if there else 0.0
+    is_inside = bool(beside[0]) and low < folded[0] < high
+    return (min(high, 0.5 * rate_hz) - low) * duration_s if is_inside else 0.0

@@ -67,17 +67,17 @@ class ChannelNoise:
 def channel_noise(runs: Sequence[GapRun]) -> dict[str, ChannelNoise]:
     """Return what the lines of all runs say of each channel that has enough of them."""
     names = dict.fromkeys(name for run in runs for name in run.observed.quiet)
-    found = {}
+    noises = {}
     for name in names:
-        seen = [run for run in runs if name in run.observed.quiet]
-        lines = [run.observed.quiet[name] for run in seen]
+        quiet_runs = [run for run in runs if name in run.observed.quiet]
+        lines = [run.observed.quiet[name] for run in quiet_runs]
         together = loudness(lines)
         if together is not None:
-            own = levels(lines, together)
-            each = zip(own.values, own.variances, strict=True)
-            by_run = dict(zip((run.name for run in seen), each, strict=True))
-            found[name] = ChannelNoise(together, by_run)
-    return found
+            run_levels = levels(lines, together)
+            each = zip(run_levels.values, run_levels.variances, strict=True)
+            by_run = dict(zip((run.name for run in quiet_runs), each, strict=True))
+            noises[name] = ChannelNoise(together, by_run)
+    return noises
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,26 +107,26 @@ class Usual:
             {key: float(np.median(values)) for key, values in densities.items()},
         )
 
-    def variance(self, one: Component, run: GapRun) -> tuple[float, float] | None:
+    def variance(self, component: Component, run: GapRun) -> tuple[float, float] | None:
         """Return a component's usual variance, and how many numbers it is known by."""
-        share = _share(one.part, run)
-        if one.channel in self.loud:
+        share = _share(component.part, run)
+        if component.channel in self.loud:
             # A trend is half a wave over the whole record.
-            order = one.order or (0.5 / run.periods if one.part is Part.TREND else 0)
-            heard = self.loud[one.channel]
+            order = component.order or (0.5 / run.periods if component.part is Part.TREND else 0)
+            heard = self.loud[component.channel]
             density = heard.together.at(order * run.set_point.frequency_hz)
-            twice = one.part in _OF_HARMONICS
+            twice = component.part in _OF_HARMONICS
             level, variance = heard.own.get(run.name, (0.0, 0.0))
             freedom = 1.0 / (1.0 / _LINES_FREEDOM + 0.5 * variance)
             return density * math.exp(level) * share * (2.0 if twice else 1.0), freedom
-        key = _kind(one)
+        key = _kind(component)
         return (self.scatter[key] * share, _FREEDOM) if key in self.scatter else None
 
 
-def _kind(one: Component) -> tuple[str, Part, int]:
+def _kind(component: Component) -> tuple[str, Part, int]:
     """Return the class within which noise is alike: mean, trend, low orders, high orders."""
-    alone = one.part in (Part.MEAN, Part.TREND)
-    return one.channel, one.part if alone else Part.IN_PHASE, min(one.order, 2)
+    alone = component.part in (Part.MEAN, Part.TREND)
+    return component.channel, component.part if alone else Part.IN_PHASE, min(component.order, 2)
 
 
 def _share(part: Part, run: GapRun) -> float:
@@ -141,39 +141,43 @@ def _share(part: Part, run: GapRun) -> float:
 
 
 def _densities(run: GapRun) -> list[tuple[tuple[str, Part, int], float]]:
-    seen = run.observed
+    observation = run.observed
     return [
-        (_kind(one), float(sigma**2) / _share(one.part, run))
-        for one, sigma in zip(seen.components, seen.uncertainty, strict=True)
-        if one.part in _POOLED and one.channel and np.isfinite(sigma)
+        (_kind(component), float(sigma**2) / _share(component.part, run))
+        for component, sigma in zip(observation.components, observation.uncertainty, strict=True)
+        if component.part in _POOLED and component.channel and np.isfinite(sigma)
     ]
 
 
 def _with(run: GapRun, usual: Usual, encoder_rad: float) -> GapRun:
-    seen = run.observed
+    observation = run.observed
     own_freedom = max(run.periods - 2.0, 0.0)
-    uncertainty = seen.uncertainty.copy()
-    for at, one in enumerate(seen.components):
-        known = usual.variance(one, run) if one.part in _POOLED else None
-        if known is not None:
-            theirs, many = known
-            own = uncertainty[at] ** 2 if np.isfinite(uncertainty[at]) else 0.0
-            freedom = own_freedom if own else 0.0
-            variance = (freedom * own + many * theirs) / (freedom + many)
-            if one.part in SETTLING:  # pulses that scatter move harmonics, not what lies between
-                variance = max(variance, own)
-            floor = 0.0 if one.part in TRENDS else _floor(run, one.channel, encoder_rad)
+    uncertainty = observation.uncertainty.copy()
+    for at, component in enumerate(observation.components):
+        pooled = usual.variance(component, run) if component.part in _POOLED else None
+        if pooled is not None:
+            pooled_variance, pooled_freedom = pooled
+            run_variance = uncertainty[at] ** 2 if np.isfinite(uncertainty[at]) else 0.0
+            freedom = own_freedom if run_variance else 0.0
+            variance = (freedom * run_variance + pooled_freedom * pooled_variance) / (
+                freedom + pooled_freedom
+            )
+            if (
+                component.part in SETTLING
+            ):  # pulses that scatter move harmonics, not what lies between
+                variance = max(variance, run_variance)
+            floor = 0.0 if component.part in TRENDS else _floor(run, component.channel, encoder_rad)
             uncertainty[at] = np.sqrt(variance + floor**2)
-        if one.part not in (*STEADY_PARTS, *SETTLING):
+        if component.part not in (*STEADY_PARTS, *SETTLING):
             uncertainty[at] *= RECORDS
-    return replace(run, observed=replace(seen, uncertainty=uncertainty))
+    return replace(run, observed=replace(observation, uncertainty=uncertainty))
 
 
 def _floor(run: GapRun, channel: str, encoder_rad: float) -> float:
     if channel == SHAFT_ANGLE.name:
         return encoder_rad
-    seen = run.observed
-    parts = [seen.value(channel, part, 1) for part in (Part.IN_PHASE, Part.QUADRATURE)]
+    observation = run.observed
+    parts = [observation.value(channel, part, 1) for part in (Part.IN_PHASE, Part.QUADRATURE)]
     return SIMULATION * math.hypot(*parts) if np.isfinite(parts).all() else 0.0
 
 

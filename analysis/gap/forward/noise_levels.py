@@ -34,27 +34,31 @@ def noise_levels(stack: Stack) -> Iterator[FloatArray]:
     """
     spreads = _spreads(stack)
     frequency = np.log([run.set_point.frequency_hz for run in stack.runs])[stack.run]
-    for kind in dict.fromkeys(one for one in stack.components if one.part in _LOUDNESS):
-        own = np.array([one == kind for one in stack.components]) / stack.uncertainty
-        yield _LOUDNESS[kind.part] * own
+    for kind in dict.fromkeys(
+        component for component in stack.components if component.part in _LOUDNESS
+    ):
+        column = np.array([component == kind for component in stack.components]) / stack.uncertainty
+        yield _LOUDNESS[kind.part] * column
         if kind.part in _COLOUR:
-            yield _COLOUR[kind.part] * own * (frequency - frequency.mean())
+            yield _COLOUR[kind.part] * column * (frequency - frequency.mean())
             # The cycles scatter as loud as it is among the harmonics: in the first band.
             band = kind.order if kind.part is Part.BETWEEN else 1
             spread = spreads.get((kind.channel, band), 0.0)
-            yield from by_run(stack, _PER_LEVEL[kind.part] * spread * own) if spread else ()
+            yield from by_run(stack, _PER_LEVEL[kind.part] * spread * column) if spread else ()
 
 
 def _spreads(stack: Stack) -> dict[tuple[str, int], float]:
     """Return by channel and band how much the runs' noise differs, as a logarithm of its power."""
     frequency = np.log([run.set_point.frequency_hz for run in stack.runs])[stack.run]
-    found = {}
-    for kind in dict.fromkeys(one for one in stack.components if one.part is Part.BETWEEN):
-        rows = [at for at, one in enumerate(stack.components) if one == kind]
+    spreads = {}
+    for kind in dict.fromkeys(
+        component for component in stack.components if component.part is Part.BETWEEN
+    ):
+        rows = [at for at, component in enumerate(stack.components) if component == kind]
         line = np.column_stack((np.ones(len(rows)), frequency[rows] - frequency.mean()))
         weight = 1.0 / stack.uncertainty[rows] ** 2
-        found[kind.channel, kind.order] = spread_about(line, stack.values[rows], weight)
-    return found
+        spreads[kind.channel, kind.order] = spread_about(line, stack.values[rows], weight)
+    return spreads
 
 
 def by_run(stack: Stack, change: FloatArray) -> Iterator[FloatArray]:

@@ -18,7 +18,7 @@ _POWERS: Final = {
 
 
 def _powers(parts: Sequence[Component]) -> FloatArray:
-    return np.array([_POWERS.get(one.part, 0.0) for one in parts])
+    return np.array([_POWERS.get(component.part, 0.0) for component in parts])
 
 
 def _logarithms(ratio: FloatArray, power: FloatArray) -> FloatArray:
@@ -55,7 +55,7 @@ def on_noise(
         Without it, at mean over the draws.
     """
     power = _powers(parts)
-    pulses = np.array([one.part is Part.PERIOD_SCATTER for one in parts])
+    pulses = np.array([component.part is Part.PERIOD_SCATTER for component in parts])
     # The same power on top of another one of the noise is the effect at another size. The pulses'
     # deviates are scaled, not added to: what is odd about them is odd with the effect, too.
     ratio = np.expm1(np.maximum(power * (alone - base), 0.0)) * np.exp(power * (base - usual))

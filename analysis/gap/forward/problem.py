@@ -78,11 +78,11 @@ class Problem:
         Pulses that scatter less than is believed of any rig are no gap.
         """
         stack = self.simulator.stack
-        found = self.whitened(stack.values - self.simulator.nominal)
-        pulses = np.array([one.part is Part.PERIOD_SCATTER for one in stack.components])
-        if pulses.any() and found[pulses].mean() < 0.0:
-            found[pulses] = 0.0
-        return found
+        residual = self.whitened(stack.values - self.simulator.nominal)
+        pulses = np.array([component.part is Part.PERIOD_SCATTER for component in stack.components])
+        if pulses.any() and residual[pulses].mean() < 0.0:
+            residual[pulses] = 0.0
+        return residual
 
     @cached_property
     def steady(self) -> FloatArray:
@@ -110,6 +110,6 @@ def built(parts: Sequence[Candidate], units: FloatArray) -> tuple[Any, ...]:
     """Return the effects at some parameters."""
     if not parts:
         return ()
-    cuts = np.cumsum([len(one.axes) for one in parts])[:-1]
+    cuts = np.cumsum([len(part.axes) for part in parts])[:-1]
     pieces = np.split(units, cuts)
-    return tuple(one.effect(piece) for one, piece in zip(parts, pieces, strict=True))
+    return tuple(part.effect(piece) for part, piece in zip(parts, pieces, strict=True))

@@ -79,7 +79,7 @@ class Simulator:
     @cached_property
     def _repeating(self) -> tuple[Effect, ...]:
         """Of what is always on, without what only luck makes of it: a steady state has none."""
-        return tuple(one for one in self.on if not one.by_chance)
+        return tuple(effect for effect in self.on if not effect.by_chance)
 
     def with_rig(self, rig: SimulatedRig) -> "Simulator":
         """Return the simulator of another rig."""
@@ -87,9 +87,9 @@ class Simulator:
 
     def among(self, numbers: NDArray[np.intp]) -> "Simulator":
         """Return the simulator of some of the runs, with what is simulated of them already."""
-        found = replace(self, stack=Stack.of([self.stack.runs[at] for at in numbers]))
-        found._records.update(self._records)
-        return found
+        simulator = replace(self, stack=Stack.of([self.stack.runs[at] for at in numbers]))
+        simulator._records.update(self._records)
+        return simulator
 
     def predict(self, effects: Sequence[Effect]) -> FloatArray:
         """Return every component of every run, shape ``(observations,)``.
@@ -99,7 +99,7 @@ class Simulator:
         ConfigurationError
             If an effect cannot act on this rig.
         """
-        alike = all(one.repeats for one in effects)
+        alike = all(effect.repeats for effect in effects)
         parts = [
             self._run(number, effects) if alike else self._not_repeating(number, effects)
             for number in range(len(self.stack.runs))
@@ -115,9 +115,9 @@ class Simulator:
     def _not_repeating(self, number: int, effects: Sequence[Effect]) -> FloatArray:
         """Return what repeats with the effects that do, and on it what the others change alone."""
         run = self.stack.runs[number]
-        moving = tuple(one for one in effects if not one.repeats)
-        sure = tuple(one for one in moving if not one.by_chance)
-        repeating = (one for one in effects if one.repeats)
+        moving = tuple(effect for effect in effects if not effect.repeats)
+        sure = tuple(effect for effect in moving if not effect.by_chance)
+        repeating = (effect for effect in effects if effect.repeats)
         steady = self._steady(run, (*self._repeating, *repeating))
         if sure and run.applied is None:  # of what is done to a standing rig, what repeats is told
             steady = steady + self._record(number, sure) - self._record(number)
@@ -167,38 +167,44 @@ class Simulator:
         return steady + _drifted(rig, run.observed, middle_s)
 
     def _set(self, run: GapRun, effects: Sequence[Effect]) -> tuple[SimulatedRig, SetPoint]:
-        told = run.set_point
+        set_point = run.set_point
         if self.frequency_ratio != 1.0:
-            told = replace(told, frequency_hz=told.frequency_hz * self.frequency_ratio)
-        return switch_on(*_preloaded(effects, self.rig, run), told, run.place)
+            set_point = replace(
+                set_point, frequency_hz=set_point.frequency_hz * self.frequency_ratio
+            )
+        return switch_on(*_preloaded(effects, self.rig, run), set_point, run.place)
 
     def _in_time(self, run: GapRun, effects: Sequence[Effect], seed: int) -> FloatArray:
         acting, believed = _preloaded(effects, self.rig, run)
         rig, set_point = switch_on(acting, believed, run.set_point, run.place)
         if not run.turns:
-            seen = record_at_rest(rig, set_point, run, seed + run.place.index)
-            return align(seen, run.observed)
+            observation = record_at_rest(rig, set_point, run, seed + run.place.index)
+            return align(observation, run.observed)
         # The run has been made: whatever the strut may carry, it did.
         oscillator = replace(rig.oscillator, force_per_strut_n=float("inf"))
         record = _recorded(
             replace(rig, oscillator=oscillator), set_point, run, seed + run.place.index
         )
         phase = ReferenceChoice(channel=self.reference_channel)
-        found = observe(record, phase, wanted={one.part for one in run.observed.components})
-        later_s = run.lead_s - found.lead_s
-        return align(found.observation, run.observed) + _drifted(rig, run.observed, later_s)
+        observed = observe(
+            record, phase, wanted={component.part for component in run.observed.components}
+        )
+        later_s = run.lead_s - observed.lead_s
+        return align(observed.observation, run.observed) + _drifted(rig, run.observed, later_s)
 
 
 def _recorded(rig: SimulatedRig, set_point: SetPoint, run: GapRun, seed: int) -> Recording:
     """Return a simulated record of a run, as long and as fast as the one that was made."""
     rate_hz, lines = run.sample_rate_hz, rig.acquisition.lines
-    found, skipped = signals_of_run(rig, set_point, run.periods, _SETTLING, rate_hz, seed)
+    series, skipped = signals_of_run(rig, set_point, run.periods, _SETTLING, rate_hz, seed)
     channels = tuple(
-        replace(one.channel, full_scale=full_scale(rig, one.channel.name, one.digitiser.full_scale))
-        for one in lines
+        replace(
+            line.channel, full_scale=full_scale(rig, line.channel.name, line.digitiser.full_scale)
+        )
+        for line in lines
     )
-    samples = np.array([found[recorded(one.channel).name][skipped:] for one in lines])
-    edges_s = edges_of(found, skipped, rate_hz)
+    samples = np.array([series[recorded(line.channel).name][skipped:] for line in lines])
+    edges_s = edges_of(series, skipped, rate_hz)
     return Recording(run.name, channels, samples, rate_hz, 0.0, edges_s, run.set_point)
 
 
@@ -213,11 +219,11 @@ def _preloaded(
     if not run.preload_n:
         return effects, rig
     weight = Acting(Spring(preload_n=run.preload_n))
-    left = [one for one in effects if not one.taken_up]
+    remaining_effects = [one for one in effects if not one.taken_up]
     body, mass_kg = rig.body, rig.body.mass_kg + run.preload_n / STANDARD_GRAVITY_M_S2
     share = body.mass_kg / mass_kg
     heavier = replace(body, mass_kg=mass_kg, cg_x_m=share * body.cg_x_m, cg_z_m=share * body.cg_z_m)
-    return left, replace(rig, body=heavier, forces=(*rig.forces, weight))
+    return remaining_effects, replace(rig, body=heavier, forces=(*rig.forces, weight))
 
 
 def _drifted(rig: SimulatedRig, measured: Observation, later_s: float) -> FloatArray | float:
@@ -228,8 +234,13 @@ def _drifted(rig: SimulatedRig, measured: Observation, later_s: float) -> FloatA
     }
     if not any(drift.values()):
         return 0.0
-    ones = measured.components
-    return np.array([drift.get(one.channel, 0.0) * (one.part is Part.MEAN) for one in ones])
+    components = measured.components
+    return np.array(
+        [
+            drift.get(component.channel, 0.0) * (component.part is Part.MEAN)
+            for component in components
+        ]
+    )
 
 
 def _stated_drift(rig: SimulatedRig, channel: str) -> float:
@@ -245,7 +256,7 @@ def align(simulated: Observation, measured: Observation) -> FloatArray:
     """
     at = dict(zip(simulated.components, simulated.values, strict=True))
     pairs = zip(measured.components, measured.values, strict=True)
-    return np.array([at.get(one, value) for one, value in pairs])
+    return np.array([at.get(component, value) for component, value in pairs])
 
 
 def read_steady(

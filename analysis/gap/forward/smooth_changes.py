@@ -31,11 +31,11 @@ def smooth_changes(
         "a": _ways(stack, tolerances.added_mass_per_octave, tolerances.added_mass_per_speed),
         "b": _ways(stack, tolerances.damping_per_octave, tolerances.damping_per_speed),
     }
-    own = {"a": tolerances.added_mass_relative, "b": tolerances.damping_relative}
+    relatives = {"a": tolerances.added_mass_relative, "b": tolerances.damping_relative}
     for name, level in levels.items():
         kind, diagonal = name[0], name[1] == name[2]
         for change in ways[kind]:
-            relative = own[kind] if diagonal else tolerances.coupling_relative
+            relative = relatives[kind] if diagonal else tolerances.coupling_relative
             yield level / relative * change
 
 
@@ -51,11 +51,13 @@ def _ways(stack: Stack, per_octave: float, per_speed: float) -> list[FloatArray]
     apart = math.sqrt(3.0) * np.abs(octaves[:, None] - octaves)
     values, vectors = np.linalg.eigh((1.0 + apart) * np.exp(-apart))
     pairs = zip(values, vectors.T, strict=True)
-    shapes = [math.sqrt(value) * one for value, one in pairs if value > _LEAST * values[-1]]
+    shapes = [math.sqrt(value) * vector for value, vector in pairs if value > _LEAST * values[-1]]
     speeds = np.array([run.set_point.carriage_speed_m_s for run in stack.runs])
     moving = speeds > 0.0
     middle = speeds[moving].mean() if moving.any() else 1.0
     faster = np.where(moving, speeds / middle - 1.0, 0.0)
     standing = np.where(moving, 0.0, float(moving.any()))
-    rows = [per_octave * one for one in shapes] + [per_speed * one for one in (faster, standing)]
-    return [one[stack.run] for one in rows if one.any()]
+    rows = [per_octave * shape for shape in shapes] + [
+        per_speed * change for change in (faster, standing)
+    ]
+    return [row[stack.run] for row in rows if row.any()]

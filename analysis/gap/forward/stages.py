@@ -34,21 +34,21 @@ class Solved:
         """Return the steady state of a chain without inputs; see :mod:`sim.periodic`."""
         spectra: dict[str, ComplexArray] = {}
         for stage in stages:
-            fed = {one.name: spectra[one.name] for one in stage.reads}
+            fed = {signal.name: spectra[signal.name] for signal in stage.reads}
             period, written = self._stage(stage, period, fed)
             spectra |= written
         return SteadyState(period, spectra)
 
     def _stage(self, stage: Any, period: Period, fed: Spectra) -> tuple[Period, Spectra]:
         # The arrays of one result are fed on as they are, so their identity tells them.
-        key = (stage, period, *(id(one) for one in fed.values()))
+        key = (stage, period, *(id(array) for array in fed.values()))
         try:
-            known = self._known.get(key)
+            solution = self._known.get(key)
         except TypeError:  # a stage that holds an array has no hash
             return steady_of(stage, period, fed)
-        if known is None:
+        if solution is None:
             if len(self._known) >= _MOST:
                 self._known.clear()
-            known = (fed, *steady_of(stage, period, fed))
-            self._known[key] = known
-        return known[1], known[2]
+            solution = (fed, *steady_of(stage, period, fed))
+            self._known[key] = solution
+        return solution[1], solution[2]

@@ -106,9 +106,9 @@ class Tolerances:
 
     def __post_init__(self) -> None:
         faults = [
-            f"tolerances.{one.name} = {getattr(self, one.name):g} must not be negative"
-            for one in fields(self)
-            if not getattr(self, one.name) >= 0.0
+            f"tolerances.{tolerance.name} = {getattr(self, tolerance.name):g} must not be negative"
+            for tolerance in fields(self)
+            if not getattr(self, tolerance.name) >= 0.0
         ]
         if self.wander_n > 0.0 and self.wander_s == 0.0:
             faults.append("tolerances.wander_s = 0 must be above 0 where wander_n is")

@@ -88,62 +88,70 @@ class Considered:
         return math.log(prior(len(effects_in(answer)), self.count))
 
 
-def answers(given: Considered, beside: Background) -> Answers:
+def answers(considered: Considered, beside: Background) -> Answers:
     """Weigh every hypothesis.
 
     Posterior is prior odds times evidence to a power, summed over the sizes of a deviation of no
     particular form: small ones only where nothing is there, or coefficients or one run are what
     differs, visible ones where something unknown is, any beside a named effect.
     """
-    found = zip(given.sets, beside.named(given.sets), strict=True)
-    named = {answer_of(one.names): own for one, own in found}
-    logs = {name: weight(own) + given.log_prior(name) for name, own in named.items()}
+    evidence_pairs = zip(considered.sets, beside.named(considered.sets), strict=True)
+    named = {answer_of(hypothesis.names): evidences for hypothesis, evidences in evidence_pairs}
+    logs = {
+        name: weight(evidences) + considered.log_prior(name) for name, evidences in named.items()
+    }
     odd = _odd_runs(beside)
-    both = _beside_odd_runs(given, beside, logs, odd)
+    by_effect = _beside_odd_runs(considered, beside, logs, odd)
     stages = _of_unknown(beside.unknown(), SHAPED * ODDS.unknown)
     kinds = _of_unknown(beside.alone(), (1.0 - SHAPED) * ODDS.unknown)
-    logs |= {name: _sum([logs[name], *own.values()]) for name, own in both.items()}
+    logs |= {name: _sum([logs[name], *by_run.values()]) for name, by_run in by_effect.items()}
     logs |= {
-        NONE: _log_weight(beside.none(), _even(_SMALL), given.nothing),
+        NONE: _log_weight(beside.none(), _even(_SMALL), considered.nothing),
         COEFFICIENTS: _log_weight(beside.coefficients(), _even(_SMALL), ODDS.mistake),
         UNKNOWN: _sum([*stages.values(), *kinds.values()]),
         ODD_RUN: _sum(list(odd.values())),
     }
     total = _sum(list(logs.values()))
     runs = {
-        run: [log, *(own[run] for own in both.values() if run in own)] for run, log in odd.items()
+        run: [log, *(by_run[run] for by_run in by_effect.values() if run in by_run)]
+        for run, log in odd.items()
     }
     return Answers(
         {name: math.exp(log - total) for name, log in logs.items()},
         _located(stages, kinds, beside),
-        {run: math.exp(_sum(every) - total) for run, every in runs.items()},
-        {name: _above(own) for name, own in named.items()},
-        {name: max(ones, key=lambda one: one.log_evidence) for name, ones in named.items()},
+        {run: math.exp(_sum(run_logs) - total) for run, run_logs in runs.items()},
+        {name: _above(evidences) for name, evidences in named.items()},
+        {
+            name: max(evidences, key=lambda evidence: evidence.log_evidence)
+            for name, evidences in named.items()
+        },
     )
 
 
 def _odd_runs(beside: Background) -> dict[str, float]:
     """Return the log weight of each run being odd."""
     each = ODDS.mistake / max(len(beside.own), 1)
-    return {run: _log_weight(one, _seen(one), each) for run, one in beside.odd_runs().items()}
+    return {run: _log_weight(logs, _seen(logs), each) for run, logs in beside.odd_runs().items()}
 
 
 def _beside_odd_runs(
-    given: Considered, beside: Background, logs: Mapping[str, float], odd: Mapping[str, float]
+    considered: Considered, beside: Background, logs: Mapping[str, float], odd: Mapping[str, float]
 ) -> dict[str, dict[str, float]]:
     """Return by single effect and run the log weight of both, of those that lead."""
     each = math.log(ODDS.mistake / max(len(beside.own), 1))
-    leading = sorted(given.singles, key=lambda one: -logs[answer_of(one.names)])[:_LEADING]
+    leading = sorted(considered.singles, key=lambda hypothesis: -logs[answer_of(hypothesis.names)])[
+        :_LEADING
+    ]
     oddest = sorted(odd, key=lambda run: -odd[run])[:_ODDEST]
     return {
         name: {
-            run: _log_weight(beside.named_beside(one, run), _even(~_SMALL), 1.0)
+            run: _log_weight(beside.named_beside(hypothesis, run), _even(~_SMALL), 1.0)
             + each
-            + given.log_prior(name)
+            + considered.log_prior(name)
             for run in oddest
         }
-        for one in leading
-        for name in [answer_of(one.names)]
+        for hypothesis in leading
+        for name in [answer_of(hypothesis.names)]
     }
 
 
@@ -156,7 +164,7 @@ def _located(
         stages = beside.kinds[kind].stages
         for stage in stages:
             parts.setdefault(stage, []).append(log - math.log(len(stages)))
-    logs = {stage: _sum(own) for stage, own in parts.items()}
+    logs = {stage: _sum(stage_logs) for stage, stage_logs in parts.items()}
     total = _sum(list(logs.values()))
     return {stage: math.exp(log - total) for stage, log in logs.items()}
 
@@ -166,9 +174,9 @@ def prior(size: int, count: int) -> float:
     return ODDS.single * ODDS.further ** (size - 1) / max(math.comb(count, size), 1)
 
 
-def weight(found: Sequence[Evidence]) -> float:
+def weight(evidences: Sequence[Evidence]) -> float:
     """Return the log weight of a named answer but for its prior odds, beside any deviation."""
-    return _log_weight(_evidences(found), _any_size(), 1.0)
+    return _log_weight(_evidences(evidences), _any_size(), 1.0)
 
 
 def answer_of(names: Sequence[str]) -> str:
@@ -186,20 +194,20 @@ def _any_size() -> FloatArray:
     return _even(np.ones_like(_SMALL))
 
 
-def _evidences(found: Sequence[Evidence]) -> FloatArray:
-    return np.array([one.log_evidence for one in found])
+def _evidences(evidences: Sequence[Evidence]) -> FloatArray:
+    return np.array([evidence.log_evidence for evidence in evidences])
 
 
-def _above(found: Sequence[Evidence]) -> float:
+def _above(evidences: Sequence[Evidence]) -> float:
     """Return the part of a named answer's weight at deviations larger than is tolerated."""
-    logs = ETA * _evidences(found)
+    logs = ETA * _evidences(evidences)
     return float(np.exp(np.logaddexp.reduce(logs[~_SMALL]) - np.logaddexp.reduce(logs)))
 
 
-def _of_unknown(found: Mapping[str, FloatArray], share: float) -> dict[str, float]:
+def _of_unknown(logs_by_name: Mapping[str, FloatArray], share: float) -> dict[str, float]:
     """Return the log weights of something unknown, each way of it as likely as the others."""
-    each = share / max(len(found), 1)
-    return {name: _log_weight(logs, _seen(logs), each) for name, logs in found.items()}
+    each = share / max(len(logs_by_name), 1)
+    return {name: _log_weight(logs, _seen(logs), each) for name, logs in logs_by_name.items()}
 
 
 def _seen(logs: FloatArray) -> FloatArray:
@@ -213,10 +221,10 @@ def _even(sizes: BoolArray) -> FloatArray:
 
 def _log_weight(logs: FloatArray, sizes: FloatArray, share: float) -> float:
     """Return the log weight of an answer, over all sizes of the deviation."""
-    there = sizes > 0.0
-    if not there.any():
+    positive = sizes > 0.0
+    if not positive.any():
         return math.log(_TINY)
-    each = ETA * logs[there] + np.log(sizes[there])
+    each = ETA * logs[positive] + np.log(sizes[positive])
     return float(np.logaddexp.reduce(each)) + math.log(max(share, _TINY))
 
 

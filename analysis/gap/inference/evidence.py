@@ -70,10 +70,10 @@ class Background:
         """Return that of coefficients that are off by more than anybody thought: one, or all."""
         if not self.sought.any():
             return np.full(len(TAUS), -np.inf)
-        ones = np.eye(int(self.sought.sum()))
+        axes = np.eye(int(self.sought.sum()))
         more = math.sqrt(WIDE**2 - 1.0)  # beside the tolerance itself
-        wide = [more * own for own in (*ones, np.ones(len(ones)))]
-        return _mean(self._smooth(self._scale(sought=one)) for one in wide)
+        wide = [more * axis for axis in (*axes, np.ones(len(axes)))]
+        return _mean(self._smooth(self._scale(sought=scale)) for scale in wide)
 
     def unknown(self) -> dict[str, FloatArray]:
         """Return that of something unknown, by the stage whose effects it looks like."""
@@ -88,17 +88,17 @@ class Background:
 
     def alone(self) -> dict[str, FloatArray]:
         """Return that of something unknown, by the kind of observations in which it shows."""
-        return {kind: self._seen(self._within(one.rows)) for kind, one in self.kinds.items()}
+        return {name: self._seen(self._within(kind.rows)) for name, kind in self.kinds.items()}
 
     def _within(self, rows: BoolArray) -> list[Reduced]:
         """Return the residual's products under a deviation of each size in some observations."""
         if rows.all():
-            return [one.reduced(self._scale(), self._of) for one in self._calm]
+            return [weighted.reduced(self._scale(), self._of) for weighted in self._calm]
         each = np.zeros((len(rows), int(rows.sum())))
         each[rows] = np.eye(each.shape[1])
-        found = self._bare.reduced(self._scale(), np.hstack((self._of, each)))
+        reduced = self._bare.reduced(self._scale(), np.hstack((self._of, each)))
         sizes, at = np.sqrt(self.kernel.values[rows]), range(1, 1 + each.shape[1])
-        return [found.widened(1, at, tau * sizes) for tau in TAUS]
+        return [reduced.widened(1, at, tau * sizes) for tau in TAUS]
 
     def _spread(self, columns: FloatArray, share: float, rows: BoolArray) -> FloatArray:
         """Return the log evidence of shapes, and of a share of none in some observations.
@@ -122,51 +122,57 @@ class Background:
     def odd_runs(self) -> dict[str, FloatArray]:
         """Return that of one run with a gain or a zero of its own, by run."""
         of, at = self._with_own(self._of)
-        calm = [one.reduced(self._scale(), of) for one in self._tolerated]
+        calm = [weighted.reduced(self._scale(), of) for weighted in self._tolerated]
         return {
-            run: _mean(self._seen([one.widened(1, rows, tau) for tau in TAUS]) for one in calm)
+            run: _mean(
+                self._seen([reduced.widened(1, rows, tau) for tau in TAUS]) for reduced in calm
+            )
             for run, rows in at.items()
         }
 
     def named(self, sets: Sequence[Hypothesis]) -> list[list[Evidence]]:
         """Return what each set of named effects is worth beside a deviation of each size."""
-        shapes = [self.shapes.beside(one.names) for one in sets]
-        turned = [self._turned(one) for one in sets]
-        found: list[list[Evidence]] = [[] for _ in sets]
+        shapes = [self.shapes.beside(hypothesis.names) for hypothesis in sets]
+        turned = [self._turned(hypothesis) for hypothesis in sets]
+        evidences: list[list[Evidence]] = [[] for _ in sets]
         for tau, plain in zip(TAUS, self._plain, strict=True):
-            beside = [self._beside(tau, one) for one in shapes]
-            for own, one, reduced in zip(found, sets, plain.each(beside, turned), strict=True):
-                own.append(_in_any_form(one, reduced))
-        return found
+            beside = [self._beside(tau, shape) for shape in shapes]
+            for set_evidences, hypothesis, reduced in zip(
+                evidences, sets, plain.each(beside, turned), strict=True
+            ):
+                set_evidences.append(_in_any_form(hypothesis, reduced))
+        return evidences
 
-    def named_beside(self, one: Hypothesis, run: str) -> FloatArray:
+    def named_beside(self, hypothesis: Hypothesis, run: str) -> FloatArray:
         """Return the log evidence of named effects beside one odd run."""
         large = np.array(TAUS) > TOLERATED
-        of, at = self._with_own(self._turned(one))
+        of, at = self._with_own(self._turned(hypothesis))
         logs = np.full((len(self._tolerated), len(TAUS)), -np.inf)
         for row, under in enumerate(self._tolerated):
             calm = under.reduced(self._scale(), of)
             for column in np.flatnonzero(large):
-                found = _in_any_form(one, calm, at[run], TAUS[column])
-                logs[row, column] = found.log_evidence
+                evidence = _in_any_form(hypothesis, calm, at[run], TAUS[column])
+                logs[row, column] = evidence.log_evidence
         return _mean(logs)
 
-    def _turned(self, one: Hypothesis) -> FloatArray:
+    def _turned(self, hypothesis: Hypothesis) -> FloatArray:
         """Return target, slopes and forms of a hypothesis in the kernel's coordinates."""
-        return self.kernel.turned(np.column_stack((one.target, one.columns, one.forms)))
+        return self.kernel.turned(
+            np.column_stack((hypothesis.target, hypothesis.columns, hypothesis.forms))
+        )
 
     def _with_own(self, of: FloatArray) -> tuple[FloatArray, dict[str, list[int]]]:
         """Return columns with those of each run's own behind them, and where those are."""
-        ends = np.cumsum([of.shape[1], *(one.shape[1] for one in self._owned)])
+        ends = np.cumsum([of.shape[1], *(columns.shape[1] for columns in self._owned)])
         at = [[*range(first, last)] for first, last in pairwise(ends.tolist())]
-        own = self.kernel.turned(np.hstack(self._owned)) if self.own else of[:, :0]
-        return np.hstack((of, own)), dict(zip(self.own, at, strict=True))
+        run_columns = self.kernel.turned(np.hstack(self._owned)) if self.own else of[:, :0]
+        return np.hstack((of, run_columns)), dict(zip(self.own, at, strict=True))
 
     @cached_property
     def _columns(self) -> FloatArray:
         sought = self.tolerances[:, self.sought]
-        every = (self.tolerances, self.shapes.columns, *self._owned, sought)
-        return self.kernel.turned(np.hstack(every))
+        blocks = (self.tolerances, self.shapes.columns, *self._owned, sought)
+        return self.kernel.turned(np.hstack(blocks))
 
     @cached_property
     def _of(self) -> FloatArray:
@@ -180,7 +186,9 @@ class Background:
     @property
     def _tolerated(self) -> Sequence[Weighted]:
         """Under a smooth deviation of each tolerated size."""
-        return [one for one, tau in zip(self._calm, TAUS, strict=True) if tau <= TOLERATED]
+        return [
+            weighted for weighted, tau in zip(self._calm, TAUS, strict=True) if tau <= TOLERATED
+        ]
 
     @cached_property
     def _plain(self) -> Sequence[Weighted]:
@@ -206,7 +214,7 @@ class Background:
         return np.concatenate(
             (
                 np.broadcast_to(shapes, self.shapes.columns.shape[1]),
-                np.full(sum(one.shape[1] for one in self._owned), own),
+                np.full(sum(columns.shape[1] for columns in self._owned), own),
                 np.broadcast_to(sought, int(self.sought.sum())),
             )
         )
@@ -232,35 +240,41 @@ class Background:
         """Log determinant of tolerances and of a deviation that these runs hardly show."""
         return self._bare.reduced(self._scale(), self._of).log_determinant + 2.0 * VISIBLE
 
-    def _seen(self, found: Sequence[Reduced]) -> FloatArray:
+    def _seen(self, products: Sequence[Reduced]) -> FloatArray:
         """Return log evidences, minus infinity where these runs would hardly show a deviation."""
         return np.array(
-            [_density(one) if one.log_determinant > self._least else -np.inf for one in found]
+            [
+                _density(reduced) if reduced.log_determinant > self._least else -np.inf
+                for reduced in products
+            ]
         )
 
 
 def _in_any_form(
-    one: Hypothesis, found: Reduced, own: Sequence[int] = (), tau: float = 0.0
+    hypothesis: Hypothesis, products: Reduced, run_columns: Sequence[int] = (), tau: float = 0.0
 ) -> Evidence:
     """Return what named effects are worth, in whichever form of their families they are.
 
     Parameters
     ----------
-    found
+    products
         Products of the target, the slopes, the forms and more.
-    own
+    run_columns
         Which of them are a run's own, where one is odd.
     tau
         Size of its deviation.
     """
-    kept, count = 1 + one.columns.shape[1], one.forms.shape[1]
-    at = [*range(kept, kept + count), *own]
-    every = [
-        weighed(one, found.widened(kept, at, np.repeat((share, tau), (count, len(own)))))
+    linear_count, count = 1 + hypothesis.columns.shape[1], hypothesis.forms.shape[1]
+    at = [*range(linear_count, linear_count + count), *run_columns]
+    evidences = [
+        weighed(
+            hypothesis,
+            products.widened(linear_count, at, np.repeat((share, tau), (count, len(run_columns)))),
+        )
         for share in (FORMS if count else FORMS[:1])
     ]
-    logs = np.array([each.log_evidence for each in every])
-    return replace(every[int(np.argmax(logs))], log_evidence=float(_mean(logs)))
+    logs = np.array([each.log_evidence for each in evidences])
+    return replace(evidences[int(np.argmax(logs))], log_evidence=float(_mean(logs)))
 
 
 def _mean(each: Iterable[FloatArray]) -> FloatArray:
@@ -269,5 +283,5 @@ def _mean(each: Iterable[FloatArray]) -> FloatArray:
     return np.asarray(np.logaddexp.reduce(logs, axis=0) - math.log(len(logs)), np.float64)
 
 
-def _density(found: Reduced) -> float:
-    return -0.5 * (float(found.gram[0, 0]) + found.log_determinant)
+def _density(reduced: Reduced) -> float:
+    return -0.5 * (float(reduced.gram[0, 0]) + reduced.log_determinant)

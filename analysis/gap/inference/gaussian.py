@@ -53,8 +53,8 @@ class Nuisances:
     def without_always_on(self) -> "Nuisances":
         """All but what is always on."""
         count = len(self.names) - self.always_on
-        kept = np.delete(self.columns, np.s_[count : len(self.names)], axis=1)
-        return Nuisances(kept, self.names[:count])
+        columns = np.delete(self.columns, np.s_[count : len(self.names)], axis=1)
+        return Nuisances(columns, self.names[:count])
 
     @cached_property
     def _gain(self) -> FloatArray:
@@ -69,8 +69,8 @@ class Nuisances:
 
     def whiten(self, columns: FloatArray) -> FloatArray:
         """Return ``(1 + N N^T)^-1`` times columns: what the nuisances leave of them."""
-        left: FloatArray = columns - self.columns @ (self._gain @ columns)
-        return left
+        remainder: FloatArray = columns - self.columns @ (self._gain @ columns)
+        return remainder
 
     def fitted(self, residual: FloatArray) -> FloatArray:
         """Return the nuisances' most probable values, in units of their prior."""
@@ -96,17 +96,17 @@ class Posterior:
     precision: FloatArray
 
     @classmethod
-    def of(cls, told: FloatArray, pull: FloatArray) -> "Posterior":
+    def of(cls, data_precision: FloatArray, pull: FloatArray) -> "Posterior":
         """Return it under a unit normal prior.
 
         Parameters
         ----------
-        told
+        data_precision
             Precision by the data alone, shape ``(p, p)``.
         pull
             That times what the data alone ask for, shape ``(p,)``.
         """
-        precision = np.eye(len(told)) + told
+        precision = np.eye(len(data_precision)) + data_precision
         return cls(np.asarray(np.linalg.solve(precision, pull), np.float64), precision)
 
     @cached_property
@@ -120,7 +120,7 @@ class Posterior:
         return -0.5 * float(np.linalg.slogdet(self.precision)[1])
 
 
-def any_size(found: Posterior, groups: Sequence[BoolArray], reaches: Sequence[float]) -> float:
+def any_size(posterior: Posterior, groups: Sequence[BoolArray], reaches: Sequence[float]) -> float:
     """Return the log evidence gained by not knowing by orders of magnitude how large effects are.
 
     A size's prior is a mixture of normals: as wide as it is, thrice that up to what is plausible, a
@@ -130,25 +130,25 @@ def any_size(found: Posterior, groups: Sequence[BoolArray], reaches: Sequence[fl
 
     Parameters
     ----------
-    found
+    posterior
         Under unit normal priors.
     groups
         For each effect which parameters are sizes, of shape ``(p,)``; those share their scale.
     reaches
         For each effect the largest plausible standard deviation.
     """
-    informs = found.precision @ found.mean
-    told = found.precision - np.eye(len(informs))
-    every = [
-        scales(np.diagonal(told)[group], reach)
+    informs = posterior.precision @ posterior.mean
+    data_precision = posterior.precision - np.eye(len(informs))
+    group_scales = [
+        scales(np.diagonal(data_precision)[group], reach)
         for group, reach in zip(groups, reaches, strict=True)
     ]
     each = [
-        np.ones(len(told))
-        + sum((width - 1.0) * group for width, group in zip(one, groups, strict=True))
-        for one in product(*every)
+        np.ones(len(data_precision))
+        + sum((width - 1.0) * group for width, group in zip(widths, groups, strict=True))
+        for widths in product(*group_scales)
     ]
-    logs = _under_priors(told, informs, np.array([np.ones(len(told)), *each]))
+    logs = _under_priors(data_precision, informs, np.array([np.ones(len(data_precision)), *each]))
     return float(np.logaddexp.reduce(logs[1:]) - math.log(len(each)) - logs[0])
 
 
@@ -163,17 +163,21 @@ def scales(squares: FloatArray, reach: float) -> FloatArray:
         Their largest plausible standard deviation.
     """
     shown = math.sqrt(max(float(squares.max(initial=0.0)), 0.0))
-    down, up = (math.log(max(one, 1.0)) / math.log(_APART) for one in (shown / _HARDLY, reach))
+    down, up = (math.log(max(ratio, 1.0)) / math.log(_APART) for ratio in (shown / _HARDLY, reach))
     return _APART ** np.arange(-min(int(down), _MOST_SCALES), int(up) + 1.0)
 
 
-def _under_priors(told: FloatArray, informs: FloatArray, widths: FloatArray) -> FloatArray:
+def _under_priors(
+    data_precision: FloatArray, informs: FloatArray, widths: FloatArray
+) -> FloatArray:
     """Return log evidences but for a constant; prior widths of shape ``(priors, p)``."""
-    precision = np.eye(len(told)) + widths[:, :, None] * told * widths[:, None, :]
+    precision = (
+        np.eye(len(data_precision)) + widths[:, :, None] * data_precision * widths[:, None, :]
+    )
     pulls = widths * informs
     solved = np.linalg.solve(precision, pulls[:, :, None])[:, :, 0]
-    found = 0.5 * np.sum(pulls * solved, axis=1) - 0.5 * np.linalg.slogdet(precision)[1]
-    return np.asarray(found, np.float64)
+    logs = 0.5 * np.sum(pulls * solved, axis=1) - 0.5 * np.linalg.slogdet(precision)[1]
+    return np.asarray(logs, np.float64)
 
 
 def posterior(residual: FloatArray, columns: FloatArray, nuisances: Nuisances) -> Posterior:
@@ -202,7 +206,7 @@ def misfit(residual: FloatArray, nuisances: Nuisances) -> float:
 
 def cosine(a: FloatArray, b: FloatArray, nuisances: Nuisances) -> float:
     """Return the largest cosine between what the nuisances leave of two effects' columns."""
-    first, second = (np.linalg.qr(rooted(nuisances, one))[0] for one in (a, b))
+    first, second = (np.linalg.qr(rooted(nuisances, columns))[0] for columns in (a, b))
     return float(min(1.0, np.linalg.svd(first.T @ second, compute_uv=False)[0]))
 
 
@@ -215,5 +219,5 @@ def rooted(nuisances: Nuisances, columns: FloatArray) -> FloatArray:
     """Return ``(1 + N N^T)^(-1/2)`` times columns."""
     u, s, _ = np.linalg.svd(nuisances.columns, full_matrices=False)
     shrink = 1.0 - 1.0 / np.sqrt(1.0 + s**2)
-    left: FloatArray = columns - u @ (shrink[:, None] * (u.T @ columns))
-    return left
+    remainder: FloatArray = columns - u @ (shrink[:, None] * (u.T @ columns))
+    return remainder

@@ -25,12 +25,12 @@ class Reduced:
     gram: FloatArray
     log_determinant: float
 
-    def widened(self, kept: int, at: Sequence[int], scale: FloatArray | float) -> "Reduced":
+    def widened(self, count: int, at: Sequence[int], scale: FloatArray | float) -> "Reduced":
         """Return the products of the first columns under a covariance with some others in it.
 
         Parameters
         ----------
-        kept
+        count
             How many of the columns X are asked for.
         at
             Which of the others, M, are in it: ``S + M M^T``.
@@ -38,11 +38,11 @@ class Reduced:
             What each of them counts, shape ``(len(at),)`` or one for all.
         """
         if not len(at):
-            return Reduced(self.gram[:kept, :kept], self.log_determinant)
-        own = np.broadcast_to(scale, len(at))
-        across = own[:, None] * self.gram[at, :kept]
-        within = own[:, None] * self.gram[np.ix_(at, at)] * own
-        return _absorbed(self.gram[:kept, :kept], across, within, self.log_determinant)
+            return Reduced(self.gram[:count, :count], self.log_determinant)
+        scales = np.broadcast_to(scale, len(at))
+        across = scales[:, None] * self.gram[at, :count]
+        within = scales[:, None] * self.gram[np.ix_(at, at)] * scales
+        return _absorbed(self.gram[:count, :count], across, within, self.log_determinant)
 
 
 def _absorbed(
@@ -110,26 +110,26 @@ class Weighted:
         """
         return next(self.each([scale], [of]))
 
-    def each(self, scales: Sequence[FloatArray], every: Sequence[FloatArray]) -> Iterator[Reduced]:
+    def each(self, scales: Sequence[FloatArray], sets: Sequence[FloatArray]) -> Iterator[Reduced]:
         """Yield the same of several sets of columns X, each with what the others count beside it.
 
         One product with all of them at once costs a fraction of as many with a few columns each.
         """
         lower, log_determinant, half, products = self._under_shared
-        whole = np.hstack([np.empty((len(self.diagonal), 0)), *every])
-        over = whole / self.diagonal[:, None]
+        columns = np.hstack([np.empty((len(self.diagonal), 0)), *sets])
+        over = columns / self.diagonal[:, None]
         common = self.columns.T @ over
         shared = _solved(lower, common[: self.shared])
         across = common[self.shared :] - half.T @ shared
-        ends = np.cumsum([0, *(one.shape[1] for one in every)])
+        ends = np.cumsum([0, *(columns.shape[1] for columns in sets)])
         for scale, first, last in zip(scales, ends[:-1], ends[1:], strict=True):
-            at, kept = slice(first, last), np.flatnonzero(scale)
-            gram = whole[:, at].T @ over[:, at] - shared[:, at].T @ shared[:, at]
-            if not len(kept):
+            at, rows = slice(first, last), np.flatnonzero(scale)
+            gram = columns[:, at].T @ over[:, at] - shared[:, at].T @ shared[:, at]
+            if not len(rows):
                 yield Reduced(gram, log_determinant)
                 continue
-            own = scale[kept]
-            within = products[np.ix_(kept, kept)]
-            within *= own
-            within *= own[:, None]
-            yield _absorbed(gram, own[:, None] * across[kept, at], within, log_determinant)
+            weights = scale[rows]
+            within = products[np.ix_(rows, rows)]
+            within *= weights
+            within *= weights[:, None]
+            yield _absorbed(gram, weights[:, None] * across[rows, at], within, log_determinant)

@@ -49,23 +49,23 @@ class Evidence:
     posterior: Posterior
 
 
-def weighed(one: Hypothesis, found: Reduced) -> Evidence:
+def weighed(hypothesis: Hypothesis, products: Reduced) -> Evidence:
     """Return a hypothesis's log evidence by Laplace.
 
     Parameters
     ----------
-    found
+    products
         Products of the target and the columns, in this order.
     """
-    square, pull, told = found.gram[0, 0], found.gram[1:, 0], found.gram[1:, 1:]
-    about = Posterior.of(told, pull)
-    units = within(about, one.bounds)
-    cost = square - 2.0 * units @ pull + units @ told @ units + units @ units
-    volume = about.log_volume + any_size(about, one.sizes, one.reaches)
-    return Evidence(-0.5 * float(cost + found.log_determinant) + volume, units, about)
+    square, pull, data_precision = products.gram[0, 0], products.gram[1:, 0], products.gram[1:, 1:]
+    about = Posterior.of(data_precision, pull)
+    units = within(about, hypothesis.bounds)
+    cost = square - 2.0 * units @ pull + units @ data_precision @ units + units @ units
+    volume = about.log_volume + any_size(about, hypothesis.sizes, hypothesis.reaches)
+    return Evidence(-0.5 * float(cost + products.log_determinant) + volume, units, about)
 
 
-def within(found: Posterior, bounds: FloatArray) -> FloatArray:
+def within(posterior: Posterior, bounds: FloatArray) -> FloatArray:
     """Return the most probable parameters within their ranges, some of them at an end of these.
 
     Raises
@@ -74,12 +74,12 @@ def within(found: Posterior, bounds: FloatArray) -> FloatArray:
         If the posterior's precision is not positive definite.
     """
     low, high = bounds
-    if np.all((low <= found.mean) & (found.mean <= high)):
-        return found.mean
+    if np.all((low <= posterior.mean) & (posterior.mean <= high)):
+        return posterior.mean
     from scipy.optimize import lsq_linear  # half a second that few commands need
 
     # (u - m)^T P (u - m) as a sum of squares, least within the ranges
-    root = np.linalg.cholesky(found.precision).T
-    least = lsq_linear(root, root @ found.mean, (low, high), method="bvls")
+    root = np.linalg.cholesky(posterior.precision).T
+    least = lsq_linear(root, root @ posterior.mean, (low, high), method="bvls")
     held = np.where(least.active_mask > 0, high, low)  # to the last digit
     return np.where(least.active_mask == 0, np.clip(least.x, low, high), held)

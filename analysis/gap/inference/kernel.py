@@ -40,7 +40,8 @@ class Kernel:
             How large a deviation of 1 is at each observation, in sigma.
         """
         blocks = [
-            own * scale[rows][:, None] * scale[rows] for rows, own in zip(cells, alike, strict=True)
+            correlation * scale[rows][:, None] * scale[rows]
+            for rows, correlation in zip(cells, alike, strict=True)
         ]
         return cls(tuple(cells), tuple(blocks))
 
@@ -50,8 +51,8 @@ class Kernel:
         values = np.zeros(count)
         rows, columns, entries = [], [], []
         for cell, block in zip(self.cells, self.blocks, strict=True):
-            found, vectors = np.linalg.eigh(block)
-            values[cell] = np.maximum(found, 0.0)
+            eigenvalues, vectors = np.linalg.eigh(block)
+            values[cell] = np.maximum(eigenvalues, 0.0)
             rows.append(np.repeat(cell, len(cell)))
             columns.append(np.tile(cell, len(cell)))
             entries.append(vectors.ravel())

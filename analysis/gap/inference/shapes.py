@@ -72,11 +72,11 @@ class Shapes:
             How large a deviation of 1 is at each observation, in sigma.
         """
         columns, effects, stages = [np.zeros((len(scale), 0))], [], []
-        for one in looked:
-            found = _directions(np.column_stack((one.signature, one.columns)), scale)
-            columns.append(found)
-            effects += [one.name] * found.shape[1]
-            stages += [one.stage] * found.shape[1]
+        for effect in looked:
+            directions = _directions(np.column_stack((effect.signature, effect.columns)), scale)
+            columns.append(directions)
+            effects += [effect.name] * directions.shape[1]
+            stages += [effect.stage] * directions.shape[1]
         return cls(np.hstack(columns), tuple(effects), tuple(stages), _alike(looked, tolerances))
 
     def beside(self, names: Sequence[str]) -> FloatArray:
@@ -97,24 +97,27 @@ class Shapes:
         plain
             Share of it that has no shape.
         """
-        kept: BoolArray = np.array([chosen(at) for at in range(len(self.effects))], dtype=bool)
-        count = len({self.effects[at] for at in np.flatnonzero(kept)})
-        return np.asarray(kept * math.sqrt((1.0 - plain) / max(count, 1)), np.float64)
+        mask: BoolArray = np.array([chosen(at) for at in range(len(self.effects))], dtype=bool)
+        count = len({self.effects[at] for at in np.flatnonzero(mask)})
+        return np.asarray(mask * math.sqrt((1.0 - plain) / max(count, 1)), np.float64)
 
 
 def _directions(changes: FloatArray, scale: FloatArray) -> FloatArray:
     sizes = np.sqrt(np.mean((changes / scale[:, None]) ** 2, axis=0))
-    there = sizes > _ROUNDING
-    seen = changes[:, there] / sizes[there] / np.sqrt(max(int(there.sum()), 1))
-    left, values, _ = np.linalg.svd(seen, full_matrices=False)
-    kept = values > _LEAST * values.max(initial=0.0)
-    return np.asarray(left[:, kept] * values[kept], np.float64)
+    nonzero = sizes > _ROUNDING
+    directions = changes[:, nonzero] / sizes[nonzero] / np.sqrt(max(int(nonzero.sum()), 1))
+    left, values, _ = np.linalg.svd(directions, full_matrices=False)
+    significant = values > _LEAST * values.max(initial=0.0)
+    return np.asarray(left[:, significant] * values[significant], np.float64)
 
 
 def _alike(looked: Sequence[SignatureOfEffect], tolerances: Nuisances) -> dict[str, frozenset[str]]:
     if not looked:
         return {}
-    names, signatures = [one.name for one in looked], np.column_stack([o.signature for o in looked])
+    names, signatures = (
+        [effect.name for effect in looked],
+        np.column_stack([effect.signature for effect in looked]),
+    )
     gram = signatures.T @ tolerances.whiten(signatures)
     size = np.sqrt(np.maximum(np.diagonal(gram), 1e-12))
     near = np.abs(gram) > ALIKE * np.outer(size, size)
