@@ -44,12 +44,12 @@ class Forecast:
 
     def whole(self, rows: BoolArray) -> FloatArray:
         """Return a root of the covariance of some observations to be made, without the noise."""
-        every = [one[rows] for one in (self.root, self.own, self.form)]
-        return np.hstack([one[:, one.any(axis=0)] for one in every])
+        roots = [root[rows] for root in (self.root, self.own, self.form)]
+        return np.hstack([root[:, root.any(axis=0)] for root in roots])
 
-    def values(self, there: Problem) -> FloatArray:
+    def values(self, problem_ahead: Problem) -> FloatArray:
         """Return the predicted components in their own units."""
-        simulator = there.simulator
+        simulator = problem_ahead.simulator
         return simulator.nominal + self.mean * simulator.stack.uncertainty
 
 
@@ -77,14 +77,18 @@ def planned(
     near = min(
         made, key=lambda run: abs(math.log(run.set_point.frequency_hz / set_point.frequency_hz))
     )
-    kept = [at for at, one in enumerate(near.observed.components) if one.part in STEADY_PARTS]
-    parts = tuple(near.observed.components[at] for at in kept)
+    rows = [
+        at
+        for at, component in enumerate(near.observed.components)
+        if component.part in STEADY_PARTS
+    ]
+    parts = tuple(near.observed.components[at] for at in rows)
     longer = set_point.frequency_hz / near.set_point.frequency_hz
-    noise = near.observed.uncertainty[kept] * math.sqrt(longer)
-    there = place or CampaignRun(len(made) + number, 0.0, 0.0, made[-1].set_point)
+    noise = near.observed.uncertainty[rows] * math.sqrt(longer)
+    planned_place = place or CampaignRun(len(made) + number, 0.0, 0.0, made[-1].set_point)
     observed = Observation(parts, np.zeros(len(parts)), noise)
     return replace(
-        near, name=f"further {number}", set_point=set_point, place=there, observed=observed
+        near, name=f"further {number}", set_point=set_point, place=planned_place, observed=observed
     )
 
 
@@ -99,7 +103,7 @@ def further(
 
 def forecast(
     problem: Problem,
-    there: Problem,
+    problem_ahead: Problem,
     fit: Fit | None,
     columns_ahead: FloatArray | None = None,
     *,
@@ -122,7 +126,7 @@ def forecast(
     if fit is not None and columns_ahead is not None:
         ahead = _Ahead(columns_ahead @ fit.units, columns_ahead)
     else:
-        ahead = _Ahead.of(problem, there, fit, roughly)
+        ahead = _Ahead.of(problem, problem_ahead, fit, roughly)
     effect = np.zeros((len(problem.residual), 0)) if fit is None else fit.columns
     shared = np.hstack((problem.nuisances.columns, effect[:, : ahead.columns.shape[1]]))
     # A root of the posterior's covariance by the precision's eigenvectors: no eigenvalue is below
@@ -131,29 +135,29 @@ def forecast(
     spread = turn / np.sqrt(np.maximum(precision, 1.0))
     residual = problem.residual - (0.0 if fit is None else fit.signature)
     fitted = spread @ (spread.T @ (shared.T @ residual))
-    own = problem.nuisances.columns.shape[1]
-    kept = np.r_[np.arange(count), own + np.arange(ahead.columns.shape[1])]
-    wide = there.nuisances.columns
-    known = np.hstack((wide[:, :count], ahead.columns))
-    root = np.transpose(np.linalg.qr(spread[kept].T)[1])
-    mean = ahead.signature + known @ fitted[kept]
-    found = Forecast(mean, known @ root, wide[:, count:], np.zeros((len(mean), 0)))
+    nuisance_count = problem.nuisances.columns.shape[1]
+    rows = np.r_[np.arange(count), nuisance_count + np.arange(ahead.columns.shape[1])]
+    wide = problem_ahead.nuisances.columns
+    columns = np.hstack((wide[:, :count], ahead.columns))
+    root = np.transpose(np.linalg.qr(spread[rows].T)[1])
+    mean = ahead.signature + columns @ fitted[rows]
+    prediction = Forecast(mean, columns @ root, wide[:, count:], np.zeros((len(mean), 0)))
     if fit is None:
-        return found
+        return prediction
     # What the coefficients make up for, they make up for in any form.
-    alone = mean - forecast(problem, there, None).mean
-    return replace(found, form=_of_form(there, alone, LEAST_FORM))
+    alone = mean - forecast(problem, problem_ahead, None).mean
+    return replace(prediction, form=_of_form(problem_ahead, alone, LEAST_FORM))
 
 
-def _of_form(there: Problem, signature: FloatArray, share: float) -> FloatArray:
+def _of_form(problem_ahead: Problem, signature: FloatArray, share: float) -> FloatArray:
     """Return what the effect's own form may change: of each harmonic of a channel some share."""
     number: dict[tuple[str, int], int] = {}
     kinds = [
-        number.setdefault((one.channel, one.order), len(number))
-        for one in there.simulator.stack.components
+        number.setdefault((component.channel, component.order), len(number))
+        for component in problem_ahead.simulator.stack.components
     ]
-    own = share * signature[:, None] * np.eye(len(number))[kinds]
-    return np.asarray(own[:, own.any(axis=0)], np.float64)
+    columns = share * signature[:, None] * np.eye(len(number))[kinds]
+    return np.asarray(columns[:, columns.any(axis=0)], np.float64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,23 +168,31 @@ class _Ahead:
     columns: FloatArray
 
     @classmethod
-    def of(cls, problem: Problem, there: Problem, fit: Fit | None, roughly: bool) -> "_Ahead":
+    def of(
+        cls, problem: Problem, problem_ahead: Problem, fit: Fit | None, roughly: bool
+    ) -> "_Ahead":
         if fit is not None:
             try:
-                found = at(there, fit.candidates, fit.units)
-                signature = found.signature
+                fit_ahead = at(problem_ahead, fit.candidates, fit.units)
+                signature = fit_ahead.signature
                 if not roughly:
-                    signature = _on_fitted_rig(problem, there, fit, found)
-                return cls(signature, found.columns)
+                    signature = _on_fitted_rig(problem, problem_ahead, fit, fit_ahead)
+                return cls(signature, fit_ahead.columns)
             except PmmError:
                 pass
-        count = len(there.nuisances.columns)
+        count = len(problem_ahead.nuisances.columns)
         return cls(np.zeros(count), np.zeros((count, 0)))
 
 
-def _on_fitted_rig(problem: Problem, there: Problem, fit: Fit, found: Fit) -> FloatArray:
+def _on_fitted_rig(
+    problem: Problem, problem_ahead: Problem, fit: Fit, fit_ahead: Fit
+) -> FloatArray:
     """Return the signature at further runs on the rig as the campaign fits its coefficients."""
-    if not any(one.repeats for one in fit.candidates):
-        return found.signature
-    shared = problem.nuisances.fitted(problem.residual - fit.signature)[: len(there.numbers)]
-    return FittedRig.of(there, there.numbers, shared).signature(fit.candidates, fit.units)
+    if not any(candidate.repeats for candidate in fit.candidates):
+        return fit_ahead.signature
+    shared = problem.nuisances.fitted(problem.residual - fit.signature)[
+        : len(problem_ahead.numbers)
+    ]
+    return FittedRig.of(problem_ahead, problem_ahead.numbers, shared).signature(
+        fit.candidates, fit.units
+    )

@@ -58,11 +58,11 @@ def gained(shares: Sequence[float], odds: FloatArray, enough: float = ENOUGH) ->
     """
     if len(shares) < 2:
         return 0.0
-    others = np.tile(np.log(np.maximum(shares, _NEVER)), (len(shares), 1))
-    np.fill_diagonal(others, -np.inf)
-    left = others - np.minimum(odds, enough)
+    prior_logs = np.tile(np.log(np.maximum(shares, _NEVER)), (len(shares), 1))
+    np.fill_diagonal(prior_logs, -np.inf)
+    posterior_logs = prior_logs - np.minimum(odds, enough)
     # As logarithms: of what is thrown far, no number would be left.
-    gain = np.logaddexp.reduce(others, axis=1) - np.logaddexp.reduce(left, axis=1)
+    gain = np.logaddexp.reduce(prior_logs, axis=1) - np.logaddexp.reduce(posterior_logs, axis=1)
     return float(np.average(gain, weights=shares))
 
 
@@ -92,15 +92,15 @@ def by_itself(problem: Problem, kind: str, leading: Leading) -> FloatArray:
     """
     stack = problem.simulator.stack
     rows = ~stack.steady
-    told = [_named(fit, kind) for fit, _ in leading]
+    effect_sets = [_named(fit, kind) for fit, _ in leading]
     shown = [
         fit.signature[rows] if fit is not None and names else np.zeros(int(rows.sum()))
-        for (fit, _), names in zip(leading, told, strict=True)
+        for (fit, _), names in zip(leading, effect_sets, strict=True)
     ]
     free = problem.nuisances.among(rows)
-    odds = np.zeros((len(told), len(told)))
-    for i, j in combinations(range(len(told)), 2):
-        if told[i] != told[j]:
+    odds = np.zeros((len(effect_sets), len(effect_sets)))
+    for i, j in combinations(range(len(effect_sets)), 2):
+        if effect_sets[i] != effect_sets[j]:
             away = shown[i] - shown[j]
             odds[i, j] = odds[j, i] = 0.5 * away @ free.whiten(away) / len(stack.turning)
     return np.minimum(odds, ENOUGH)
@@ -109,4 +109,4 @@ def by_itself(problem: Problem, kind: str, leading: Leading) -> FloatArray:
 def _named(fit: Fit | None, kind: str) -> set[str]:
     """Return the effects of an answer that do not repeat and show in a measurement."""
     parts = () if fit is None else fit.candidates
-    return {one.name for one in parts if kind in one.kind.shown_by}
+    return {candidate.name for candidate in parts if kind in candidate.kind.shown_by}

@@ -60,22 +60,26 @@ def measured_besides(
         Check weight, or amplitude of the sine.
     """
     near = min(problem.simulator.stack.turning, key=_far)
-    parts = tuple(_parts(kind, {one.channel for one in near.observed.components}))
-    loaded = [one.channel for one in parts if one.channel.endswith(strut)]
+    parts = tuple(_parts(kind, {component.channel for component in near.observed.components}))
+    loaded = [component.channel for component in parts if component.channel.endswith(strut)]
     sampled = (
         near.sample_rate_hz >= _SAMPLED * INJECTED_HZ or kind is not FurtherMeasurement.INJECTION
     )
     if not (loaded and sampled):
         return None
     applied = _applied(kind, force_n, strut)
-    noise = np.array([near.observed.uncertainty[_mean(near, one.channel)] for one in parts])
-    longer = REST_S * near.set_point.frequency_hz / near.periods
-    known = _KNOWN.get(kind, 0.0) * np.array(
-        [_size_n(applied, one) if one.channel in loaded else 0.0 for one in parts]
+    noise = np.array(
+        [near.observed.uncertainty[_mean(near, component.channel)] for component in parts]
     )
-    seen = Observation(parts, np.zeros(len(parts)), np.hypot(noise / math.sqrt(longer), known))
+    longer = REST_S * near.set_point.frequency_hz / near.periods
+    size_uncertainty = _KNOWN.get(kind, 0.0) * np.array(
+        [_size_n(applied, component) if component.channel in loaded else 0.0 for component in parts]
+    )
+    observation = Observation(
+        parts, np.zeros(len(parts)), np.hypot(noise / math.sqrt(longer), size_uncertainty)
+    )
     return replace(
-        near, name=f"{kind} {strut}".strip(), set_point=_STANDS, place=place, observed=seen,
+        near, name=f"{kind} {strut}".strip(), set_point=_STANDS, place=place, observed=observation,
         periods=round(REST_S * INJECTED_HZ), lead_s=0.0, stands_at_m=(0.0, 0.0), applied=applied,
     )  # fmt: skip
 
@@ -103,9 +107,9 @@ def _applied(kind: FurtherMeasurement, force_n: float, strut: str) -> Excitation
     return injection(force_n, INJECTED_HZ) if kind is FurtherMeasurement.INJECTION else None
 
 
-def _size_n(applied: Excitation | None, one: Component) -> float:
+def _size_n(applied: Excitation | None, component: Component) -> float:
     """Return the size of what is done to a gauge: its mean, and its first harmonic."""
     if applied is None:
         return 0.0
     _, *sizes = applied.forces_n[0]  # the same at each gauge that it is done to
-    return abs(sizes[one.order]) if one.order < len(sizes) else 0.0
+    return abs(sizes[component.order]) if component.order < len(sizes) else 0.0

@@ -132,29 +132,34 @@ def proposals(
     place = next_place(problem)
     weighed = partial(_weighed, problem, leading, free=free, tolerances=tolerances)
     first, gentler = _by_size(tuple(_oscillations(problem, choices, place)))
-    found = sorted(weighed(first), key=_order)
+    ranked = sorted(weighed(first), key=_order)
     # A gentler motion tells more than another kind of run only where the larger one tells much.
-    best = {_kind_of(one) for one, _ in found[: -(-len(found) // _GENTLER)]}
-    found += weighed([one for one in gentler if _kind_of(one) in best])
-    found.sort(key=_order)
-    others = [one for one in gentler if _kind_of(one) not in best]
-    plays = any(one.kind.taken_up for fit, _ in leading if fit for one in fit.candidates)
+    best = {_kind_of(choice) for choice, _ in ranked[: -(-len(ranked) // _GENTLER)]}
+    ranked += weighed([choice for choice in gentler if _kind_of(choice) in best])
+    ranked.sort(key=_order)
+    remaining = [choice for choice in gentler if _kind_of(choice) not in best]
+    plays = any(
+        candidate.kind.taken_up for fit, _ in leading if fit for candidate in fit.candidates
+    )
     if plays and FurtherMeasurement.PRELOAD in choices.special:
-        bare = [*(one for one, _ in found), *others]  # the larger ones may throw a weight off
+        bare = [
+            *(choice for choice, _ in ranked),
+            *remaining,
+        ]  # the larger ones may throw a weight off
         pressed = _preloaded(problem.simulator, bare, choices)
-        found += weighed(tuple(islice(pressed, _PRELOADED)))
-    found += weighed(tuple(_measurements(problem, choices, place)))
+        ranked += weighed(tuple(islice(pressed, _PRELOADED)))
+    ranked += weighed(tuple(_measurements(problem, choices, place)))
     answers = tuple(NO_GAP if fit is None else " and ".join(fit.names) for fit, _ in leading)
     return tuple(
-        Proposal(one.kind, one.set_point, one.force_n, worth.gain, answers, one.strut)
-        for one, worth in sorted(found, key=_order)
+        Proposal(choice.kind, choice.set_point, choice.force_n, worth.gain, answers, choice.strut)
+        for choice, worth in sorted(ranked, key=_order)
     )
 
 
 def _order(weighed: tuple[_Choice, Worth]) -> tuple[float, ...]:
     """Sort by worth, and where that is the same by how gently the model is moved."""
-    one, worth = weighed
-    point = one.set_point
+    choice, worth = weighed
+    point = choice.set_point
     return *worth.order, 0.0 if point is None else point.eccentricity_m * point.frequency_hz
 
 
@@ -165,18 +170,18 @@ def _oscillations(problem: Problem, choices: Choices, place: CampaignRun) -> Ite
             yield _Choice(OSCILLATION, point, 0.0, run)
 
 
-def _kind_of(one: _Choice) -> SetPoint | None:
+def _kind_of(choice: _Choice) -> SetPoint | None:
     """Return what runs of other eccentricities have in common."""
-    return None if one.set_point is None else replace(one.set_point, eccentricity_m=0.0)
+    return None if choice.set_point is None else replace(choice.set_point, eccentricity_m=0.0)
 
 
-def _by_size(every: Sequence[_Choice]) -> tuple[list[_Choice], list[_Choice]]:
+def _by_size(choices: Sequence[_Choice]) -> tuple[list[_Choice], list[_Choice]]:
     """Return the run of the largest eccentricity of each kind, and the others."""
     largest: dict[SetPoint | None, _Choice] = {}
-    for one in sorted(every, key=lambda one: one.run.set_point.eccentricity_m):
-        largest[_kind_of(one)] = one
+    for choice in sorted(choices, key=lambda choice: choice.run.set_point.eccentricity_m):
+        largest[_kind_of(choice)] = choice
     first = list(largest.values())
-    return first, [one for one in every if one not in first]
+    return first, [choice for choice in choices if choice not in first]
 
 
 def _preloaded(
@@ -186,12 +191,12 @@ def _preloaded(
 
     Each strut carries half of it, and half of what its mass takes to be moved along.
     """
-    for one in turning:
-        largest_n = _largest_force_n(simulator, [one.run])
-        swing = _swing(one.run.set_point)
+    for choice in turning:
+        largest_n = _largest_force_n(simulator, [choice.run])
+        swing = _swing(choice.run.set_point)
         weight_n = _pressing_n(largest_n, swing)
         if weight_n > 0.0 and largest_n + 0.5 * weight_n * (1.0 + swing) < choices.force_limit_n:
-            yield replace(one, force_n=weight_n, run=replace(one.run, preload_n=weight_n))
+            yield replace(choice, force_n=weight_n, run=replace(choice.run, preload_n=weight_n))
 
 
 def _swing(point: SetPoint) -> float:
@@ -229,22 +234,22 @@ def _readable(force_n: float) -> float:
 def _weighed(
     problem: Problem,
     leading: Leading,
-    some: Sequence[_Choice],
+    batch: Sequence[_Choice],
     free: Sequence[Free],
     tolerances: Tolerances,
 ) -> Iterator[tuple[_Choice, Worth]]:
     """Yield each choice with what it is worth."""
-    if not some:
+    if not batch:
         return
-    there = further(problem, [one.run for one in some], free, tolerances)
-    told = [forecast(problem, there, fit, roughly=True) for fit, _ in leading]
+    problem_ahead = further(problem, [choice.run for choice in batch], free, tolerances)
+    forecasts = [forecast(problem, problem_ahead, fit, roughly=True) for fit, _ in leading]
     shares = [share for _, share in leading]
-    for number, one in enumerate(some):
-        rows = there.simulator.stack.run == number
-        means = np.column_stack([forecasted.mean[rows] for forecasted in told])
-        odds = apart(means, [forecasted.whole(rows) for forecasted in told])
-        odds = odds + by_itself(problem, one.kind, leading)
-        yield one, Worth.of(shares, odds)
+    for number, choice in enumerate(batch):
+        rows = problem_ahead.simulator.stack.run == number
+        means = np.column_stack([forecasted.mean[rows] for forecasted in forecasts])
+        odds = apart(means, [forecasted.whole(rows) for forecasted in forecasts])
+        odds = odds + by_itself(problem, choice.kind, leading)
+        yield choice, Worth.of(shares, odds)
 
 
 def set_points(choices: Choices) -> Iterator[SetPoint]:
@@ -265,7 +270,7 @@ def set_points(choices: Choices) -> Iterator[SetPoint]:
 def _steps(span: Range, count: int, ratio: float) -> tuple[float, ...]:
     """Return equal ratios down from the largest, each once: a rig may have one frequency only."""
     values = np.geomspace(max(span.low, span.high / ratio), span.high, count)
-    return tuple(dict.fromkeys(_settable(float(one), span) for one in values))
+    return tuple(dict.fromkeys(_settable(float(value), span) for value in values))
 
 
 def _settable(value: float, span: Range) -> float:
@@ -285,4 +290,4 @@ def _largest_force_n(simulator: Simulator, runs: Sequence[GapRun]) -> float:
 
 def _force_n(simulator: Simulator, run: GapRun) -> float:
     spectra = simulator.state(run, simulator.on).spectra
-    return max(abs(complex(spectra[one.name][1])) for one in (FORCE_AFT, FORCE_FORE))
+    return max(abs(complex(spectra[force.name][1])) for force in (FORCE_AFT, FORCE_FORE))

@@ -219,7 +219,7 @@ def _preloaded(
     if not run.preload_n:
         return effects, rig
     weight = Acting(Spring(preload_n=run.preload_n))
-    remaining_effects = [one for one in effects if not one.taken_up]
+    remaining_effects = [effect for effect in effects if not effect.taken_up]
     body, mass_kg = rig.body, rig.body.mass_kg + run.preload_n / STANDARD_GRAVITY_M_S2
     share = body.mass_kg / mass_kg
     heavier = replace(body, mass_kg=mass_kg, cg_x_m=share * body.cg_x_m, cg_z_m=share * body.cg_z_m)

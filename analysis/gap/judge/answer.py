@@ -40,11 +40,11 @@ class NamedAnswer:
     tried: float
 
 
-def named_answer(found: Diagnosis) -> NamedAnswer:
+def named_answer(diagnosis: Diagnosis) -> NamedAnswer:
     """Return what a diagnosis names."""
-    best, shrinks = found.best, found.shrinkage
-    share = 0.0 if best is None else found.answers.by_answer[best.answer]
-    return NamedAnswer(best, found.rival, share, 0.0 if shrinks is None else shrinks.share)
+    best, shrinks = diagnosis.best, diagnosis.shrinkage
+    share = 0.0 if best is None else diagnosis.answers.by_answer[best.answer]
+    return NamedAnswer(best, diagnosis.rival, share, 0.0 if shrinks is None else shrinks.share)
 
 
 def predicted_shrinkage(
@@ -65,14 +65,14 @@ def predicted_shrinkage(
     """
     if named.best is None:
         return 0.0, 0.0, 0.0
-    rows = np.array([one.channel in FORCES for one in stack.components])
+    rows = np.array([component.channel in FORCES for component in stack.components])
     gap, root, form = (cured.mean - plain.mean)[rows], cured.root[rows], cured.form[rows]
     rng, shares = np.random.default_rng(_SEED), []
     right = min(named.share, _SUREST) * _DRAWS
     for number in range(_DRAWS):
         if number >= right:
-            other = _SCATTER * rng.standard_normal() - _LESS * rng.exponential()
-            shares.append(min(named.tried + float(other), 1.0))
+            share = _SCATTER * rng.standard_normal() - _LESS * rng.exponential()
+            shares.append(min(named.tried + float(share), 1.0))
             continue
         off = root @ rng.standard_normal(root.shape[1])
         size = math.exp(_FORM_KNOWN * float(rng.standard_normal()))

@@ -85,5 +85,5 @@ def coefficient_error(name: str) -> str:
 
 def separating_measurements(names: Sequence[str]) -> tuple[str, ...]:
     """Return what to measure to tell the members of a class apart; empty where nothing is known."""
-    found = [_SEPARATED.get(frozenset(pair), "") for pair in combinations(sorted(names), 2)]
-    return tuple(dict.fromkeys(one for one in found if one))
+    measurements = [_SEPARATED.get(frozenset(pair), "") for pair in combinations(sorted(names), 2)]
+    return tuple(dict.fromkeys(measurement for measurement in measurements if measurement))

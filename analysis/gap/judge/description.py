@@ -80,68 +80,78 @@ def describe(problem: Problem, residual: FloatArray) -> Description | None:
     """
     # What changes smoothly over the runs would take a part of any law.
     settings = problem.nuisances.settings
-    left = residual - settings.columns @ settings.fitted(residual)
+    remainder = residual - settings.columns @ settings.fitted(residual)
     stack = problem.simulator.stack
-    rows = np.array([one.channel in FORCES and one.order <= _highest(stack) and one.part in FORM
-                     for one in stack.components])  # fmt: skip
-    if not rows.any() or math.sqrt(float(np.mean(left[rows] ** 2))) < _CLEAR:
+    rows = np.array(
+        [
+            component.channel in FORCES
+            and component.order <= _highest(stack)
+            and component.part in FORM
+            for component in stack.components
+        ]
+    )
+    if not rows.any() or math.sqrt(float(np.mean(remainder[rows] ** 2))) < _CLEAR:
         return None
-    channels = [name for name in FORCES if name in {one.channel for one in stack.components}]
-    shown = _shown(stack, left, rows)
+    channels = [
+        name for name in FORCES if name in {component.channel for component in stack.components}
+    ]
+    shown = _shown(stack, remainder, rows)
     sizes = np.array([_size(stack, shown, run) for run in range(len(stack.runs))])
     return Description(
-        _follows(stack, left, channels),
-        _orders(stack, left, rows),
+        _follows(stack, remainder, channels),
+        _orders(stack, remainder, rows),
         _power(stack, sizes, frequency=True),
         _power(stack, sizes, frequency=False),
         _medium(stack, sizes),
         sparse_law(problem, residual),
-        tuple(_map(stack, left, channel) for channel in channels),
+        tuple(_map(stack, remainder, channel) for channel in channels),
     )
 
 
 def _highest(stack: Stack) -> int:
-    return max(one.order for one in stack.components if one.part in FORM)
+    return max(component.order for component in stack.components if component.part in FORM)
 
 
-def _orders(stack: Stack, left: FloatArray, rows: BoolArray) -> dict[int, float]:
-    total = float(np.sum(left[rows] ** 2))
-    order = np.array([one.order for one in stack.components])
+def _orders(stack: Stack, remainder: FloatArray, rows: BoolArray) -> dict[int, float]:
+    total = float(np.sum(remainder[rows] ** 2))
+    order = np.array([component.order for component in stack.components])
     return {
-        int(n): float(np.sum(left[rows & (order == n)] ** 2)) / total
+        int(n): float(np.sum(remainder[rows & (order == n)] ** 2)) / total
         for n in np.unique(order[rows])
     }
 
 
-def _shown(stack: Stack, left: FloatArray, rows: BoolArray) -> FloatArray:
+def _shown(stack: Stack, remainder: FloatArray, rows: BoolArray) -> FloatArray:
     """Return the remainder without first harmonics, if the others show it.
 
     The free coefficients take their part of the first harmonics, and leave another dependence on
     frequency, amplitude and medium than what is there has.
     """
-    others = rows & np.array([one.order != 1 for one in stack.components])
-    clear = others.any() and math.sqrt(float(np.mean(left[others] ** 2))) > _CLEAR
-    return np.where(others, left, 0.0) if clear else left
+    higher = rows & np.array([component.order != 1 for component in stack.components])
+    clear = higher.any() and math.sqrt(float(np.mean(remainder[higher] ** 2))) > _CLEAR
+    return np.where(higher, remainder, 0.0) if clear else remainder
 
 
-def force_over_period(stack: Stack, left: FloatArray, run: int, channel: str) -> FloatArray:
+def force_over_period(stack: Stack, remainder: FloatArray, run: int, channel: str) -> FloatArray:
     """Return the remainder of a run as a force over its period, in N, shape ``(points,)``."""
     count = len(motion(stack.runs[run], channel)[0])
     spectrum = np.zeros(count // 2 + 1, dtype=np.complex128)
     for at in np.flatnonzero(stack.run == run):
-        one, value = stack.components[at], float(left[at] * stack.uncertainty[at])
-        if one.channel != channel or one.part not in FORM:
+        component, value = stack.components[at], float(remainder[at] * stack.uncertainty[at])
+        if component.channel != channel or component.part not in FORM:
             continue
-        if one.part is Part.MEAN:
+        if component.part is Part.MEAN:
             spectrum[0] += value
         else:
-            spectrum[one.order] += 0.5 * value * (1.0 if one.part is Part.QUADRATURE else -1j)
+            spectrum[component.order] += (
+                0.5 * value * (1.0 if component.part is Part.QUADRATURE else -1j)
+            )
     return np.fft.irfft(spectrum, count) * count
 
 
-def _size(stack: Stack, left: FloatArray, run: int) -> float:
-    forces = [force_over_period(stack, left, run, channel) for channel in FORCES]
-    return math.sqrt(sum(float(np.mean(one**2)) for one in forces))
+def _size(stack: Stack, remainder: FloatArray, run: int) -> float:
+    forces = [force_over_period(stack, remainder, run, channel) for channel in FORCES]
+    return math.sqrt(sum(float(np.mean(force**2)) for force in forces))
 
 
 def _power(stack: Stack, sizes: FloatArray, *, frequency: bool) -> float:
@@ -152,9 +162,9 @@ def _power(stack: Stack, sizes: FloatArray, *, frequency: bool) -> float:
             continue
         at = run.set_point
         pair = (at.frequency_hz, at.eccentricity_m)
-        varied, other = pair if frequency else pair[::-1]
+        varied, fixed = pair if frequency else pair[::-1]
         air = float(at.medium is Medium.AIR)
-        key = (other, at.strut_phase_rad, at.carriage_speed_m_s, air, at.drift_rad)
+        key = (fixed, at.strut_phase_rad, at.carriage_speed_m_s, air, at.drift_rad)
         groups.setdefault(key, []).append((math.log(varied), math.log(max(size, 1e-12))))
     square = product = 0.0
     for pairs in groups.values():
@@ -176,38 +186,38 @@ def _medium(stack: Stack, sizes: FloatArray) -> float:
     return math.exp(float(np.mean(pairs))) if pairs else math.nan
 
 
-def _same_motion(stack: Stack, run: int, other: SetPoint) -> bool:
+def _same_motion(stack: Stack, run: int, set_point: SetPoint) -> bool:
     at = stack.runs[run].set_point
     keys = ("frequency_hz", "eccentricity_m", "strut_phase_rad")
-    return all(math.isclose(getattr(at, key), getattr(other, key)) for key in keys)
+    return all(math.isclose(getattr(at, key), getattr(set_point, key)) for key in keys)
 
 
-def _follows(stack: Stack, left: FloatArray, channels: Sequence[str]) -> dict[str, float]:
-    found = {}
+def _follows(stack: Stack, remainder: FloatArray, channels: Sequence[str]) -> dict[str, float]:
+    shares = {}
     for at, name in enumerate(("displacement", "velocity", "acceleration")):
         carried = total = 0.0
         for channel in channels:
-            place = np.concatenate([one[at] for one in scaled_motion(stack, channel)])
-            force = _forces(stack, left, channel)
+            place = np.concatenate([run_motion[at] for run_motion in scaled_motion(stack, channel)])
+            force = _forces(stack, remainder, channel)
             cells = np.clip(((place + 1.0) / 2.0 * _BINS).astype(int), 0, _BINS - 1)
             sums = np.bincount(cells, force, _BINS)
             counts = np.bincount(cells, minlength=_BINS)
             carried += float(np.sum(sums**2 / np.maximum(counts, 1)))
             total += float(np.sum(force**2))
-        found[name] = carried / total if total > 0.0 else 0.0
-    return found
+        shares[name] = carried / total if total > 0.0 else 0.0
+    return shares
 
 
-def _forces(stack: Stack, left: FloatArray, channel: str) -> FloatArray:
+def _forces(stack: Stack, remainder: FloatArray, channel: str) -> FloatArray:
     runs = range(len(stack.runs))
-    return np.concatenate([force_over_period(stack, left, run, channel) for run in runs])
+    return np.concatenate([force_over_period(stack, remainder, run, channel) for run in runs])
 
 
-def _map(stack: Stack, left: FloatArray, channel: str) -> ForceMap:
+def _map(stack: Stack, remainder: FloatArray, channel: str) -> ForceMap:
     moved = scaled_motion(stack, channel)
     edges = np.linspace(-1.0, 1.0, _BINS + 1)
-    x, v = (np.concatenate([one[at] for one in moved]) for at in (0, 1))
-    force = _forces(stack, left, channel)
+    x, v = (np.concatenate([run_motion[at] for run_motion in moved]) for at in (0, 1))
+    force = _forces(stack, remainder, channel)
     bins = (edges, edges)
     sums = np.histogram2d(v, x, bins, weights=force)[0]
     counts = np.histogram2d(v, x, bins)[0]

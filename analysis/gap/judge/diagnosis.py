@@ -142,7 +142,9 @@ def problem_of(
 
 def _always(rig: SimulatedRig, stack: Stack, tolerances: Tolerances) -> tuple[Effect, ...]:
     """Return what every photocell has: pulses that scatter a little; an encoder's turns do not."""
-    pulsed = any(one.part in (Part.PULSES, Part.PERIOD_SCATTER) for one in stack.components)
+    pulsed = any(
+        component.part in (Part.PULSES, Part.PERIOD_SCATTER) for component in stack.components
+    )
     if rig.photocell is None or not pulsed or not tolerances.pulse_scatter_rad:
         return ()
     return (TriggerJitter(tolerances.pulse_scatter_rad),)
@@ -156,15 +158,15 @@ def _concluded(
     free: tuple[Free, ...],
     progress: Callable[[str], None],
 ) -> Diagnosis:
-    fits = [one.fit for one in weighed.looked if one.fit is not None]
-    ones, calm = weighed.ranked, weighed.answers.best in (NONE, COEFFICIENTS)
-    best = None if calm or not ones else ones[0]
+    fits = [look.fit for look in weighed.looked if look.fit is not None]
+    ranked, calm = weighed.ranked, weighed.answers.best in (NONE, COEFFICIENTS)
+    best = None if calm or not ranked else ranked[0]
     classes = {} if best is None else equivalents(problem, best, fits)
-    rival = _rival(best, ones, classes)
+    rival = _rival(best, ranked, classes)
     withheld = settings.withheld or regimes(problem.simulator.stack.runs)
     before = predict_withheld(problem, None, withheld)
     after = before if best is None else predict_withheld(problem, best, withheld)
-    other = before if rival is None else predict_withheld(problem, rival, withheld)
+    rival_after = before if rival is None else predict_withheld(problem, rival, withheld)
     named = best is not None and bool(before)
     progress("choosing the next run")
     return Diagnosis(
@@ -178,21 +180,21 @@ def _concluded(
         before,
         after,
         shrinkage(before, after) if named else None,
-        shrinkage(before, other) if named and rival is not None else None,
+        shrinkage(before, rival_after) if named and rival is not None else None,
         _next(problem, weighed, settings, free),
     )
 
 
 def _rival(
     best: Fit | None,
-    ones: Sequence[Fit],
+    ranked: Sequence[Fit],
     classes: Mapping[str, tuple[tuple[str, float], ...]],
 ) -> Fit | None:
     """Return the wrong-effect control: the next best of which none passes for the best's."""
     if best is None:
-        return ones[0] if ones else None
-    alike = {*best.names, *(name for own in classes.values() for name, _ in own)}
-    return next((one for one in ones if not set(one.names) & alike), None)
+        return ranked[0] if ranked else None
+    alike = {*best.names, *(name for members in classes.values() for name, _ in members)}
+    return next((fit for fit in ranked if not set(fit.names) & alike), None)
 
 
 def _next(

@@ -16,8 +16,8 @@ def leading(weighed: Weighed) -> list[tuple[Fit | None, float]]:
     Each with its probability; ``None`` stands for no gap, and for what nobody knows.
     """
     shares, fits = weighed.answers.by_answer, weighed.ranked
-    others = [one for one in fits[1:] if not {*one.names} & {*fits[0].names}]
-    ones: list[tuple[Fit | None, float]] = [
-        (one, max(shares[one.answer], _DOUBTED)) for one in [*fits[:1], *others][:_MOST]
+    unrelated = [fit for fit in fits[1:] if not {*fit.names} & {*fits[0].names}]
+    answers: list[tuple[Fit | None, float]] = [
+        (fit, max(shares[fit.answer], _DOUBTED)) for fit in [*fits[:1], *unrelated][:_MOST]
     ]
-    return [*ones, (None, max(sum(shares[name] for name in NAMELESS), _DOUBTED))]
+    return [*answers, (None, max(sum(shares[name] for name in NAMELESS), _DOUBTED))]

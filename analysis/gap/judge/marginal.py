@@ -53,43 +53,45 @@ def by_effect(by_answer: Mapping[str, float]) -> dict[str, float]:
     """
     names = {name for answer in by_answer for name in effects_in(answer)}
     shares = {name: of_any(by_answer, [name]) for name in names}
-    return dict(sorted(shares.items(), key=lambda one: (-one[1], one[0])))
+    return dict(sorted(shares.items(), key=lambda pair: (-pair[1], pair[0])))
 
 
 def of_any(by_answer: Mapping[str, float], names: Sequence[str]) -> float:
     """Return the probability of all answers with any of some effects, each counted once."""
     wanted = set(names)
-    found = math.fsum(share for one, share in by_answer.items() if wanted & {*effects_in(one)})
-    return min(found, 1.0)
+    total = math.fsum(
+        share for answer, share in by_answer.items() if wanted & {*effects_in(answer)}
+    )
+    return min(total, 1.0)
 
 
-def marginals(found: Diagnosis) -> tuple[Marginal, ...]:
+def marginals(diagnosis: Diagnosis) -> tuple[Marginal, ...]:
     """Return the effects that are not out of the question, most probable first."""
-    shares = found.answers.by_answer
-    fits = found.weighed.ranked
+    shares = diagnosis.answers.by_answer
+    fits = diagnosis.weighed.ranked
     leading = [name for name, share in by_effect(shares).items() if share > LEAST][:_MOST]
-    best = {name: next(one for one in fits if name in one.names) for name in leading}
-    return tuple(_marginal(found, name, fit) for name, fit in best.items())
+    best = {name: next(fit for fit in fits if name in fit.names) for name in leading}
+    return tuple(_marginal(diagnosis, name, fit) for name, fit in best.items())
 
 
-def _marginal(found: Diagnosis, name: str, fit: Fit) -> Marginal:
-    shares = found.answers.by_answer
+def _marginal(diagnosis: Diagnosis, name: str, fit: Fit) -> Marginal:
+    shares = diagnosis.answers.by_answer
     number = fit.names.index(name)
     stage = fit.candidates[number].stage
-    size = _size(found.problem, fit, number)
+    size = _size(diagnosis.problem, fit, number)
     probability = of_any(shares, [name])
     if size < ALIKE:
         return Marginal(name, stage, probability, size, {}, math.nan)
-    looked = [one.fit for one in found.weighed.looked if one.fit is not None]
-    alike = dict(equivalents(found.problem, fit, looked)[name])
+    looked = [look.fit for look in diagnosis.weighed.looked if look.fit is not None]
+    alike = dict(equivalents(diagnosis.problem, fit, looked)[name])
     return Marginal(name, stage, probability, size, alike, of_any(shares, [name, *alike]))
 
 
 def _size(problem: Problem, fit: Fit, number: int) -> float:
     """Return what the rest of a fit and the free numbers leave of one effect's signature."""
     try:
-        own, beside = beside_rest(problem, fit, number)
+        signature, beside = beside_rest(problem, fit, number)
     except PmmError:
         return math.inf
-    left = own - beside @ posterior(own, beside, problem.nuisances).mean
-    return math.sqrt(max(misfit(left, problem.nuisances), 0.0))
+    remainder = signature - beside @ posterior(signature, beside, problem.nuisances).mean
+    return math.sqrt(max(misfit(remainder, problem.nuisances), 0.0))

@@ -64,7 +64,9 @@ def sparse_law(problem: Problem, residual: FloatArray) -> Law:
     names = [(channel, name) for channel in FORCES for name in LIBRARY]
     columns = np.column_stack(
         [
-            components_of(stack, channel, [LIBRARY[name](one) for one in moved[channel]])
+            components_of(
+                stack, channel, [LIBRARY[name](run_motion) for run_motion in moved[channel]]
+            )
             for channel, name in names
         ]
     )
@@ -78,17 +80,17 @@ def sparse_law(problem: Problem, residual: FloatArray) -> Law:
 
 def _forward(columns: FloatArray, target: FloatArray) -> tuple[list[int], float]:
     """Choose columns one by one, each by the share of the target that it adds."""
-    left, basis, chosen = target.copy(), columns.copy(), list[int]()
+    remainder, basis, chosen = target.copy(), columns.copy(), list[int]()
     total = float(target @ target)
     for _ in range(MOST_TERMS):
         norms = np.sqrt(np.sum(basis**2, axis=0))
         usable = norms > 1e-6 * np.sqrt(np.sum(columns**2, axis=0)).max()
         unit = np.where(usable, basis / np.where(usable, norms, 1.0), 0.0)
-        shares = (left @ unit) ** 2 / total
+        shares = (remainder @ unit) ** 2 / total
         best = int(np.argmax(shares))
         if shares[best] < _WORTH:
             break
         chosen.append(best)
-        left = left - unit[:, best] * (unit[:, best] @ left)
+        remainder = remainder - unit[:, best] * (unit[:, best] @ remainder)
         basis = basis - np.outer(unit[:, best], unit[:, best] @ basis)
-    return chosen, 1.0 - float(left @ left) / total
+    return chosen, 1.0 - float(remainder @ remainder) / total

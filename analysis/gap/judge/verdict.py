@@ -20,7 +20,7 @@ _UNBOUND: Final = 1e4  # prior deviations: as good as no prior
 
 
 def equivalents(
-    problem: Problem, fit: Fit, others: Sequence[Fit]
+    problem: Problem, fit: Fit, fits: Sequence[Fit]
 ) -> dict[str, tuple[tuple[str, float], ...]]:
     """Return which effects pass in these runs for a fitted one, or for each effect of a pair.
 
@@ -32,21 +32,21 @@ def equivalents(
         For each effect, names and sigma left of its fitted signature when the other takes what it
         can; those below ``ALIKE``, best first. Empty for what cannot be simulated by itself.
     """
-    found: dict[str, tuple[tuple[str, float], ...]] = {}
+    classes: dict[str, tuple[tuple[str, float], ...]] = {}
     for number, name in enumerate(fit.names):
         try:
-            own, beside = beside_rest(problem, fit, number)
+            signature, beside = beside_rest(problem, fit, number)
         except PmmError:
-            found[name] = ()
+            classes[name] = ()
             continue
-        left = [
-            (other.names[0], _left(problem, own, beside, other))
-            for other in others
-            if other.names[0] not in fit.names
+        remainders = [
+            (rival.names[0], _left(problem, signature, beside, rival))
+            for rival in fits
+            if rival.names[0] not in fit.names
         ]
-        alike = [pair for pair in left if pair[1] < ALIKE]
-        found[name] = tuple(sorted(alike, key=lambda pair: pair[1]))
-    return found
+        alike = [pair for pair in remainders if pair[1] < ALIKE]
+        classes[name] = tuple(sorted(alike, key=lambda pair: pair[1]))
+    return classes
 
 
 def coefficient_twins(
@@ -59,16 +59,16 @@ def coefficient_twins(
     dict
         By name, by how much it would be off, in its own unit and in prior deviations.
     """
-    found = {}
-    for number, one in enumerate(free):
+    twins = {}
+    for number, free_number in enumerate(free):
         column = _UNBOUND * problem.nuisances.columns[:, number : number + 1]
         units = posterior(fit.signature, column, problem.nuisances).mean
-        left = misfit(fit.signature - column @ units, problem.nuisances)
-        if one.is_coefficient and left < ALIKE**2:
-            whole = posterior(problem.residual, column, problem.nuisances).mean
-            off = _UNBOUND * float(whole[0])
-            found[one.name] = (off * one.deviation, off)
-    return found
+        remainder = misfit(fit.signature - column @ units, problem.nuisances)
+        if free_number.is_coefficient and remainder < ALIKE**2:
+            residual_units = posterior(problem.residual, column, problem.nuisances).mean
+            off = _UNBOUND * float(residual_units[0])
+            twins[free_number.name] = (off * free_number.deviation, off)
+    return twins
 
 
 def beside_rest(problem: Problem, fit: Fit, number: int) -> tuple[np.ndarray, np.ndarray]:
@@ -79,7 +79,7 @@ def beside_rest(problem: Problem, fit: Fit, number: int) -> tuple[np.ndarray, np
     PmmError
         If the rest cannot be simulated by itself.
     """
-    rest = tuple(one for at, one in enumerate(fit.effects) if at != number)
+    rest = tuple(effect for at, effect in enumerate(fit.effects) if at != number)
     columns = fit.columns[:, fit.whose != number]
     if not rest:
         return fit.signature, columns
@@ -87,20 +87,22 @@ def beside_rest(problem: Problem, fit: Fit, number: int) -> tuple[np.ndarray, np
     return fit.signature - problem.whitened(change), columns
 
 
-def _left(problem: Problem, own: np.ndarray, beside: np.ndarray, other: Fit) -> float:
+def _left(problem: Problem, signature: np.ndarray, beside: np.ndarray, rival: Fit) -> float:
     """Return what is left of a signature, in sigma, when another effect takes what it can."""
-    target = own - other.signature + other.columns @ other.units
-    columns = np.hstack((other.columns, beside))
+    target = signature - rival.signature + rival.columns @ rival.units
+    columns = np.hstack((rival.columns, beside))
     best = posterior(target, columns, problem.nuisances).mean
     return math.sqrt(max(misfit(target - columns @ best, problem.nuisances), 0.0))
 
 
-def stage_probabilities(found: Answers, catalogue: Mapping[str, type[Effect]]) -> dict[str, float]:
+def stage_probabilities(
+    answers: Answers, catalogue: Mapping[str, type[Effect]]
+) -> dict[str, float]:
     """Return how probable it is that the gap comes from each stage; empty where there is none."""
     shares: dict[str, float] = defaultdict(float)
-    for answer, share in found.by_answer.items():
+    for answer, share in answers.by_answer.items():
         if answer == UNKNOWN:
-            for stage, part in found.unknown_stages.items():
+            for stage, part in answers.unknown_stages.items():
                 shares[stage] += share * part
         names = effects_in(answer)
         for name in names:

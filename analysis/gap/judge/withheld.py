@@ -68,15 +68,15 @@ def _one(problem: Problem, fit: Fit | None, regime: Regime) -> Predicted:
     stack = problem.simulator.stack
     out = np.isin(stack.run, regime.runs)
     residual, columns = linear_model(problem, fit)
-    kept = problem.nuisances.among(~out)
-    found = posterior(residual[~out], columns[~out], kept)
-    rest = residual - columns @ found.mean
-    rest = rest - problem.nuisances.columns @ kept.fitted(rest[~out])
-    steady = np.array([one.part in STEADY_PARTS for one in stack.components])
+    nuisances = problem.nuisances.among(~out)
+    estimate = posterior(residual[~out], columns[~out], nuisances)
+    rest = residual - columns @ estimate.mean
+    rest = rest - problem.nuisances.columns @ nuisances.fitted(rest[~out])
+    steady = np.array([component.part in STEADY_PARTS for component in stack.components])
     rows = out & steady
-    both = np.hstack((problem.nuisances.columns, columns))
-    inverse = np.linalg.inv(np.eye(both.shape[1]) + both[~out].T @ both[~out])
-    spread = np.sqrt(1.0 + np.einsum("ij,jk,ik->i", both[rows], inverse, both[rows]))
+    all_columns = np.hstack((problem.nuisances.columns, columns))
+    inverse = np.linalg.inv(np.eye(all_columns.shape[1]) + all_columns[~out].T @ all_columns[~out])
+    spread = np.sqrt(1.0 + np.einsum("ij,jk,ik->i", all_columns[rows], inverse, all_columns[rows]))
     return Predicted(regime, rows, rest[rows] / spread)
 
 
@@ -88,7 +88,7 @@ def linear_model(problem: Problem, fit: Fit | None) -> tuple[FloatArray, FloatAr
     return fit.linearised(residual), fit.columns
 
 
-def gap_of(left: FloatArray, noise: float = 0.0) -> float:
+def gap_of(remainder: FloatArray, noise: float = 0.0) -> float:
     """Return a gap in u: the root mean square with the noise's own 1 taken off.
 
     Parameters
@@ -96,7 +96,7 @@ def gap_of(left: FloatArray, noise: float = 0.0) -> float:
     noise
         What the mean square may be off by.
     """
-    return math.sqrt(max(float(np.mean(left**2)) - 1.0 + noise, 0.0))
+    return math.sqrt(max(float(np.mean(remainder**2)) - 1.0 + noise, 0.0))
 
 
 def shrinkage(before: Sequence[Predicted], after: Sequence[Predicted]) -> Shrinkage:
@@ -105,7 +105,7 @@ def shrinkage(before: Sequence[Predicted], after: Sequence[Predicted]) -> Shrink
     What repeats is the run: all components of a run are drawn together. A mean square of n numbers
     is known to its own noise only, so that a gap of 0 is 0 within that.
     """
-    pairs = [(one.left, two.left) for one, two in zip(before, after, strict=True)]
+    pairs = [(plain.left, cured.left) for plain, cured in zip(before, after, strict=True)]
     first, second = (np.concatenate([pair[at] for pair in pairs]) for at in (0, 1))
     generator = np.random.default_rng(_SEED)
     shares = []

@@ -89,22 +89,22 @@ def fed(problem: Problem, feed: Feed, rows: BoolArray) -> Fed | None:
     simulator = problem.simulator
     stack = simulator.stack
     runs = [_run_fed(simulator, run, feed) for run in stack.runs]
-    seen = np.array([one is not None for one in runs])[stack.run]
-    compared = rows & seen
+    is_fed = np.array([pair is not None for pair in runs])[stack.run]
+    compared = rows & is_fed
     if not compared.any():
         return None
-    found, wider = np.where(seen, simulator.nominal, 0.0), np.zeros(len(rows))
-    for number, one in enumerate(runs):
-        if one is not None:
-            found[stack.run == number], wider[stack.run == number] = one
+    simulated, wider = np.where(is_fed, simulator.nominal, 0.0), np.zeros(len(rows))
+    for number, pair in enumerate(runs):
+        if pair is not None:
+            simulated[stack.run == number], wider[stack.run == number] = pair
     shrink = stack.uncertainty / np.hypot(stack.uncertainty, wider)
-    timed = seen & np.array([one.part is Part.FREQUENCY for one in stack.components])
+    timed = is_fed & np.array([component.part is Part.FREQUENCY for component in stack.components])
     names = problem.nuisances.names
     turns = np.array([not is_of_drive(name) for name in names])  # the shaft is as it was measured
-    kept = problem.nuisances.columns * shrink[:, None]
-    kept[:, : len(names)] *= turns
-    part = Nuisances(kept, names)
-    with_it = problem.whitened(stack.values - found) * shrink
+    columns = problem.nuisances.columns * shrink[:, None]
+    columns[:, : len(names)] *= turns
+    part = Nuisances(columns, names)
+    with_it = problem.whitened(stack.values - simulated) * shrink
     return Fed(
         compared,
         _left(part, with_it, compared, timed),
@@ -129,15 +129,15 @@ def _run_fed(simulator: Simulator, run: GapRun, feed: Feed) -> tuple[FloatArray,
     if not run.turns:  # where its struts stand is measured in any case
         still = steady_at_rest(rig, set_point, run)
         return still, np.zeros_like(still)
-    if not {*feed.channels} <= {one.channel for one in run.observed.components}:
+    if not {*feed.channels} <= {component.channel for component in run.observed.components}:
         return None
     chain = _Chain.of(rig, set_point, run, simulator.reference_channel)
-    seen = {name: _spectrum(run, name, ORDERS) for name in feed.channels}
-    base, turn = chain.read(feed, seen, chain.unfed)
+    spectra = {name: _spectrum(run, name, ORDERS) for name in feed.channels}
+    base, turn = chain.read(feed, spectra, chain.unfed)
     noises = {name: _noise(run, name, ORDERS) for name in feed.channels}
     moved = [
-        chain.read(feed, {**seen, name: seen[name] + one}, turn)[0] - base
-        for name, one in noises.items()
+        chain.read(feed, {**spectra, name: spectra[name] + noise}, turn)[0] - base
+        for name, noise in noises.items()
     ]
     squares = np.sum([_whole(run, change) ** 2 for change in moved], axis=0)
     return base, np.sqrt(squares)
@@ -169,20 +169,20 @@ class _Chain:
         return turned(steady_state(self.chain, self.period), self.reference_channel)
 
     def read(
-        self, feed: Feed, seen: Mapping[str, ComplexArray], turn: ComplexArray
+        self, feed: Feed, spectra: Mapping[str, ComplexArray], turn: ComplexArray
     ) -> tuple[FloatArray, ComplexArray]:
         """Return the components with the measured channels, and how the reference then turns.
 
         Parameters
         ----------
-        seen
+        spectra
             Recorded harmonics by channel, counted from the phase reference.
         turn
             About how the reference turns each order: where it is depends on what is fed.
         """
         for _ in range(_ROUNDS):
-            recorded = {name: own * np.conj(turn) for name, own in seen.items()}
-            physical = {name: self._physical(name, own) for name, own in recorded.items()}
+            recorded = {name: spectrum * np.conj(turn) for name, spectrum in spectra.items()}
+            physical = {name: self._physical(name, spectrum) for name, spectrum in recorded.items()}
             state = steady_state(self.chain, self.period, feed.signals(self.period, physical))
             turn = turned(state, self.reference_channel)
         layout = self.run.observed.layout
@@ -191,12 +191,12 @@ class _Chain:
 
     def _physical(self, name: str, recorded: ComplexArray) -> ComplexArray:
         """Return what a channel measures, by the calibration that it is believed to have."""
-        how: Digitiser | None = getattr(self.rig.acquisition, name)
-        if how is None:
+        digitiser: Digitiser | None = getattr(self.rig.acquisition, name)
+        if digitiser is None:
             return recorded
-        found = recorded / how.response(self.period.s)
-        found[0] -= how.offset
-        return found
+        measured = recorded / digitiser.response(self.period.s)
+        measured[0] -= digitiser.offset
+        return measured
 
 
 def _measured_hz(run: GapRun, set_hz: float) -> float:
@@ -206,18 +206,18 @@ def _measured_hz(run: GapRun, set_hz: float) -> float:
 
 def _noise(run: GapRun, channel: str, orders: int) -> ComplexArray:
     """Return one standard deviation of each harmonic's cosine."""
-    found = np.zeros(orders + 1, dtype=np.complex128)
-    seen = run.observed
-    for one, sigma in zip(seen.components, seen.uncertainty, strict=True):
-        if one.channel == channel and one.part in (Part.MEAN, Part.QUADRATURE):
-            found[one.order] = sigma
-    return found
+    noise = np.zeros(orders + 1, dtype=np.complex128)
+    observation = run.observed
+    for component, sigma in zip(observation.components, observation.uncertainty, strict=True):
+        if component.channel == channel and component.part in (Part.MEAN, Part.QUADRATURE):
+            noise[component.order] = sigma
+    return noise
 
 
 def _whole(run: GapRun, change: FloatArray) -> FloatArray:
     """Return each harmonic's amplitude in place of both its parts: noise has any phase."""
     squares: dict[tuple[str, int], float] = defaultdict(float)
-    keys = [(one.channel, one.order) for one in run.observed.components]
+    keys = [(component.channel, component.order) for component in run.observed.components]
     for key, value in zip(keys, change, strict=True):
         squares[key] += float(value) ** 2
     return np.sqrt([squares[key] for key in keys])
@@ -225,23 +225,27 @@ def _whole(run: GapRun, change: FloatArray) -> FloatArray:
 
 def _spectrum(run: GapRun, channel: str, orders: int) -> ComplexArray:
     """Return a channel's harmonics; 0 for what is not observed, as is the mean of the shaft."""
-    found = np.zeros(orders + 1, dtype=np.complex128)
+    spectrum = np.zeros(orders + 1, dtype=np.complex128)
     mean = run.observed.value(channel, Part.MEAN)
-    found[0] = 0.0 if np.isnan(mean) else mean
+    spectrum[0] = 0.0 if np.isnan(mean) else mean
     for order in range(1, orders + 1):
-        part = [run.observed.value(channel, one, order) for one in (Part.QUADRATURE, Part.IN_PHASE)]
-        if np.isfinite(part).all():
-            found[order] = complex(part[0], -part[1])
-    return found
+        pair = [
+            run.observed.value(channel, part, order) for part in (Part.QUADRATURE, Part.IN_PHASE)
+        ]
+        if np.isfinite(pair).all():
+            spectrum[order] = complex(pair[0], -pair[1])
+    return spectrum
 
 
 def _motion(period: Period, channels: Mapping[str, ComplexArray]) -> Spectra:
     """Return displacement, velocity and acceleration of both struts."""
-    given: Spectra = {}
+    spectra: Spectra = {}
     for names in signals.STRUT_MOTIONS:
-        own = channels[names[0].name]
-        given |= {one.name: period.s**times * own for times, one in enumerate(names)}
-    return given
+        displacement = channels[names[0].name]
+        spectra |= {
+            signal.name: period.s**times * displacement for times, signal in enumerate(names)
+        }
+    return spectra
 
 
 def _shaft(period: Period, channels: Mapping[str, ComplexArray]) -> Spectra:

@@ -44,33 +44,37 @@ def shown(problem: Problem) -> frozenset[DeviationTrace]:
     stack = problem.simulator.stack
     # An effect may show in what every rig has a little of.
     bare = replace(problem, nuisances=problem.nuisances.without_always_on)
-    left = left_by_step(bare, problem.residual)
+    remainder = left_by_step(bare, problem.residual)
     kinds: dict[Component, list[int]] = {}
-    for at, one in enumerate(stack.components):
-        kinds.setdefault(one, []).append(at)
-    seen = [one for one, rows in kinds.items() if _deviates(left, rows)]
-    found = {trace for trace, own in _PARTS.items() if any(one.part in own for one in seen)}
-    steady = [one.channel for one in seen if one.part in STEADY_PARTS]
-    motion = _CHANNELS[DeviationTrace.MOTION] & {one.channel for one in kinds}
-    for trace, own in _CHANNELS.items():
-        if _show(steady, own & motion or motion):
-            found.add(trace)
-    return frozenset(found)
+    for at, component in enumerate(stack.components):
+        kinds.setdefault(component, []).append(at)
+    deviating = [component for component, rows in kinds.items() if _deviates(remainder, rows)]
+    traces = {
+        trace
+        for trace, parts in _PARTS.items()
+        if any(component.part in parts for component in deviating)
+    }
+    steady = [component.channel for component in deviating if component.part in STEADY_PARTS]
+    motion = _CHANNELS[DeviationTrace.MOTION] & {component.channel for component in kinds}
+    for trace, channels in _CHANNELS.items():
+        if _show(steady, channels & motion or motion):
+            traces.add(trace)
+    return frozenset(traces)
 
 
 def _show(deviating: Iterable[str], channels: Set[str]) -> bool:
     """Tell whether any of these channels deviates, or the frequency; any at all where none is."""
-    return any(one in channels or not (one and channels) for one in deviating)
+    return any(channel in channels or not (channel and channels) for channel in deviating)
 
 
-def _deviates(left: FloatArray, rows: list[int]) -> bool:
-    own = left[rows]
+def _deviates(remainder: FloatArray, rows: list[int]) -> bool:
+    values = remainder[rows]
     limit = len(rows) + BEYOND * (2.0 * len(rows)) ** 0.5
-    return bool(own @ own > limit or np.abs(own).max() > _LONE)
+    return bool(values @ values > limit or np.abs(values).max() > _LONE)
 
 
-def worth_a_look(kind: type[Effect], seen: Set[DeviationTrace]) -> bool:
+def worth_a_look(kind: type[Effect], traces: Set[DeviationTrace]) -> bool:
     """Tell whether an effect can be among what deviates; always so if a look at it is cheap."""
     if kind.shows_in:
-        return not seen.isdisjoint(kind.shows_in)
-    return kind.repeats or bool(seen)
+        return not traces.isdisjoint(kind.shows_in)
+    return kind.repeats or bool(traces)

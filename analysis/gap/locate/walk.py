@@ -86,7 +86,7 @@ class Walk:
     @property
     def stages(self) -> tuple[StageName, ...]:
         """Stages that the walk leaves as the gap's place, from upstream down."""
-        beyond = {one.what for one in self.steps if one.off}
+        beyond = {step.what for step in self.steps if step.off}
         if CARRIAGE in beyond:
             return (StageName.CARRIAGE,)
         if self.comes_with_the_shaft:
@@ -101,7 +101,7 @@ class Walk:
     @property
     def comes_with_the_shaft(self) -> bool:
         """Whether the shaft is off, and what follows it is as it should be with it as measured."""
-        steps = {one.what: one for one in self.steps}
+        steps = {step.what: step for step in self.steps}
         behind, by_shaft = (MOTION, MOTION_FED) if MOTION in steps else (FORCE, FORCE_BY_SHAFT)
         if not {SHAFT, behind, by_shaft} <= steps.keys():
             return False
@@ -130,35 +130,39 @@ _FED: Final = (
 
 def walk(problem: Problem) -> Walk:
     """Walk along the chain."""
-    stack, whole = problem.simulator.stack, problem.stated
-    left, off = left_by_step(problem, problem.residual), strained(problem, problem.stated)
+    stack, stated = problem.simulator.stack, problem.stated
+    remainder, off = left_by_step(problem, problem.residual), strained(problem, problem.stated)
     steps = []
-    for what in CHAIN:
-        rows = _of_step(stack.components, what)
+    for step_name in CHAIN:
+        rows = _of_step(stack.components, step_name)
         if rows.any():
-            plain = replace(gap_of(stack, left, what, rows, whole), strained=off[what])
-            steps += [plain, *_with_measured(problem, plain, what, rows)]
-    return Walk(tuple(steps), tuple(_contrasts(problem, left)))
+            plain = replace(
+                gap_of(stack, remainder, step_name, rows, stated), strained=off[step_name]
+            )
+            steps += [plain, *_with_measured(problem, plain, step_name, rows)]
+    return Walk(tuple(steps), tuple(_contrasts(problem, remainder)))
 
 
-def _with_measured(problem: Problem, plain: Gap, what: str, rows: BoolArray) -> list[Gap]:
+def _with_measured(problem: Problem, plain: Gap, step_name: str, rows: BoolArray) -> list[Gap]:
     """Return a step's gap with the last input that was measured fed; none where there is none."""
     stack = problem.simulator.stack
     for step, feed, name in _FED:
-        found = fed(problem, feed, rows) if step == what else None
-        if found is not None:
-            told = gap_of(stack, found.left, name, found.rows)
-            seen = gap_of(stack, found.unfed, name, found.rows).beyond or not plain.beyond
-            return [replace(told, tells=seen or told.beyond)]
+        comparison = fed(problem, feed, rows) if step == step_name else None
+        if comparison is not None:
+            gap = gap_of(stack, comparison.left, name, comparison.rows)
+            is_telling = (
+                gap_of(stack, comparison.unfed, name, comparison.rows).beyond or not plain.beyond
+            )
+            return [replace(gap, tells=is_telling or gap.beyond)]
     return []
 
 
 def left_by_step(problem: Problem, residual: FloatArray) -> FloatArray:
     """Return what the free numbers leave, each step judged by itself and those upstream of it."""
-    found = np.zeros_like(residual)
-    for _, own, units in _fitted_by_step(problem, residual):
-        found[own] = residual[own] - problem.nuisances.columns[own] @ units
-    return found
+    remainder = np.zeros_like(residual)
+    for _, rows, units in _fitted_by_step(problem, residual):
+        remainder[rows] = residual[rows] - problem.nuisances.columns[rows] @ units
+    return remainder
 
 
 def strained(problem: Problem, residual: FloatArray) -> dict[str, dict[str, float]]:
@@ -166,13 +170,13 @@ def strained(problem: Problem, residual: FloatArray) -> dict[str, dict[str, floa
 
     A number counts where it is pulled so far first.
     """
-    seen, found = set[str](), {}
-    for what, _, units in _fitted_by_step(problem, residual):
+    pulled_names, by_step = set[str](), {}
+    for step_name, _, units in _fitted_by_step(problem, residual):
         pulled = zip(problem.free, units.tolist(), strict=False)
-        far = {name: unit for name, unit in pulled if abs(unit) > FAR and name not in seen}
-        seen |= far.keys()
-        found[what] = far
-    return found
+        far = {name: unit for name, unit in pulled if abs(unit) > FAR and name not in pulled_names}
+        pulled_names |= far.keys()
+        by_step[step_name] = far
+    return by_step
 
 
 def _fitted_by_step(
@@ -185,53 +189,53 @@ def _fitted_by_step(
     """
     parts = problem.simulator.stack.components
     upstream = np.zeros(len(parts), dtype=bool)
-    for what in CHAIN:
-        own = _of_step(parts, what)
-        if own.any():
-            upstream |= own
+    for step_name in CHAIN:
+        rows = _of_step(parts, step_name)
+        if rows.any():
+            upstream |= rows
             part = problem.nuisances.among(upstream)
-            yield what, own, part.fitted(residual[upstream])
+            yield step_name, rows, part.fitted(residual[upstream])
 
 
 CHAIN: Final = (CARRIAGE, SHAFT, TIMING, MOTION, FORCE, BESIDE)
 
 
-def step_of(one: Component) -> str:
+def step_of(component: Component) -> str:
     """Return the step of the chain that a component tells of."""
     steps = {"": TIMING, SHAFT_ANGLE.name: SHAFT, SPEED: CARRIAGE}
     steps |= dict.fromkeys(DISPLACEMENTS, MOTION)
-    return steps.get(one.channel) or (FORCE if one.part in _HARMONIC else BESIDE)
+    return steps.get(component.channel) or (FORCE if component.part in _HARMONIC else BESIDE)
 
 
-def _of_step(components: Sequence[Component], what: str) -> BoolArray:
-    return np.array([step_of(one) == what for one in components])
+def _of_step(components: Sequence[Component], step_name: str) -> BoolArray:
+    return np.array([step_of(component) == step_name for component in components])
 
 
 def gap_of(
     stack: Stack,
-    left: FloatArray,
-    what: str,
+    remainder: FloatArray,
+    name: str,
     rows: BoolArray,
-    whole: FloatArray | None = None,
+    stated_residual: FloatArray | None = None,
 ) -> Gap:
     """Return the gap over some components: what is left of it, and the whole where it is given."""
     if not rows.any():
-        return Gap(what, 0.0, 0, "")
-    size = np.where(rows, np.abs(left), 0.0)
+        return Gap(name, 0.0, 0, "")
+    size = np.where(rows, np.abs(remainder), 0.0)
     worst = int(np.argmax(size))
     run = stack.runs[stack.run[worst]].name
-    said = f"{run}: {stack.components[worst]} {left[worst]:+z.1f} u"
-    stated = math.nan if whole is None else _rms(whole[rows])
-    return Gap(what, _rms(left[rows]), int(rows.sum()), said, stated)
+    said = f"{run}: {stack.components[worst]} {remainder[worst]:+z.1f} u"
+    stated = math.nan if stated_residual is None else _rms(stated_residual[rows])
+    return Gap(name, _rms(remainder[rows]), int(rows.sum()), said, stated)
 
 
 def _rms(values: FloatArray) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-def _contrasts(problem: Problem, left: FloatArray) -> Iterator[Gap]:
-    stack, whole = problem.simulator.stack, problem.stated
-    forces = np.array([one.channel in FORCES for one in stack.components])
+def _contrasts(problem: Problem, remainder: FloatArray) -> Iterator[Gap]:
+    stack, stated = problem.simulator.stack, problem.stated
+    forces = np.array([component.channel in FORCES for component in stack.components])
     for kind in contrasts(stack.runs):
         rows = forces & np.isin(stack.run, kind.runs)
-        yield gap_of(stack, left, str(kind), rows, whole)
+        yield gap_of(stack, remainder, str(kind), rows, stated)

@@ -38,8 +38,8 @@ def run_at_rest(recording: Recording, place: CampaignRun, set_point: SetPoint) -
     duration_s = recording.sample_count / recording.sample_rate_hz
     point = replace(set_point, frequency_hz=ZERO_BLOCKS / duration_s, eccentricity_m=0.0)
     aft_m, fore_m = (
-        float(recording.values(one).mean()) if one in recording.channel_names else 0.0
-        for one in DISPLACEMENTS
+        float(recording.values(channel).mean()) if channel in recording.channel_names else 0.0
+        for channel in DISPLACEMENTS
     )
     return GapRun(
         recording.name,
@@ -60,7 +60,7 @@ def observe_at_rest(recording: Recording) -> Observation:
     DataError
         As :func:`run_at_rest`.
     """
-    names = tuple(one for one in FORCES if one in recording.channel_names)
+    names = tuple(channel for channel in FORCES if channel in recording.channel_names)
     if not names:
         raise DataError(
             f"{recording.name}: no channel {' or '.join(FORCES)}; the diagnosis compares forces"

@@ -86,18 +86,25 @@ class Layout:
     @classmethod
     def of(cls, components: Sequence[Component]) -> "Layout":
         """Find each component."""
-        names = tuple(dict.fromkeys(one.channel for one in components if one.channel))
-        parts = [one.part for one in components]
-        harmonic = [one in (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE) for one in parts]
+        names = tuple(
+            dict.fromkeys(component.channel for component in components if component.channel)
+        )
+        parts = [component.part for component in components]
+        harmonic = [part in (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE) for part in parts]
         pairs = list(zip(components, harmonic, strict=True))
         return cls(
             names,
-            np.array([names.index(one.channel) if has else 0 for one, has in pairs]),
-            np.array([one.order if has else 0 for one, has in pairs]),
-            np.array([float(one in (Part.MEAN, Part.QUADRATURE)) for one in parts]),
-            np.array([-float(one is Part.IN_PHASE) for one in parts]),
-            np.array([one is Part.FREQUENCY for one in parts]),
-            np.array([one in (*STEADY_PARTS, *SETTLING) for one in parts]),
+            np.array(
+                [
+                    names.index(component.channel) if is_harmonic else 0
+                    for component, is_harmonic in pairs
+                ]
+            ),
+            np.array([component.order if is_harmonic else 0 for component, is_harmonic in pairs]),
+            np.array([float(part in (Part.MEAN, Part.QUADRATURE)) for part in parts]),
+            np.array([-float(part is Part.IN_PHASE) for part in parts]),
+            np.array([part is Part.FREQUENCY for part in parts]),
+            np.array([part in (*STEADY_PARTS, *SETTLING) for part in parts]),
         )
 
     @cached_property
@@ -116,9 +123,9 @@ class Layout:
         turn
             By what each order is turned.
         """
-        own = np.array([spectra[name] for name in self._recorded]) * turn
-        found = own[self.row, self.order]
-        return np.asarray(self.real * found.real + self.imaginary * found.imag, np.float64)
+        recorded = np.array([spectra[name] for name in self._recorded]) * turn
+        harmonics = recorded[self.row, self.order]
+        return np.asarray(self.real * harmonics.real + self.imaginary * harmonics.imag, np.float64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,21 +230,23 @@ class Stack:
     @classmethod
     def of(cls, runs: Sequence[GapRun]) -> "Stack":
         """Put runs together."""
-        seen = [one.observed for one in runs]
+        observations = [run.observed for run in runs]
         return cls(
             tuple(runs),
-            tuple(part for one in seen for part in one.components),
-            np.repeat(np.arange(len(runs)), [len(one.components) for one in seen]),
-            np.concatenate([one.values for one in seen]),
-            np.concatenate([one.uncertainty for one in seen]),
+            tuple(part for observation in observations for part in observation.components),
+            np.repeat(
+                np.arange(len(runs)), [len(observation.components) for observation in observations]
+            ),
+            np.concatenate([observation.values for observation in observations]),
+            np.concatenate([observation.uncertainty for observation in observations]),
         )
 
     @property
     def turning(self) -> tuple[GapRun, ...]:
         """The runs that oscillate."""
-        return tuple(one for one in self.runs if one.turns)
+        return tuple(run for run in self.runs if run.turns)
 
     @cached_property
     def steady(self) -> BoolArray:
         """Which observations a steady state tells, shape ``(observations,)``."""
-        return np.concatenate([one.observed.layout.steady for one in self.runs])
+        return np.concatenate([run.observed.layout.steady for run in self.runs])

@@ -20,22 +20,22 @@ def following(recording: Recording) -> tuple[Following, str]:
 
     The second part says why one was not compared; it is empty where each was.
     """
-    found, said = {}, []
+    comparisons, said = {}, []
     for command, channel in zip(COMMANDS, DISPLACEMENTS, strict=True):
         if not {command, channel} <= {*recording.channel_names}:
             continue
         try:
-            one = compare(recording, command, recording, channel)
+            comparison = compare(recording, command, recording, channel)
         except DataError as error:
             said.append(f"{channel} is not compared with its command: {error}")
             continue
-        gain, lag_s = one.gain.value, one.lag_s.value
-        quarter_s = math.inf if one.modulo_s is None else one.modulo_s / 4.0
+        gain, lag_s = comparison.gain.value, comparison.lag_s.value
+        quarter_s = math.inf if comparison.modulo_s is None else comparison.modulo_s / 4.0
         if 1.0 / _APART < gain < _APART and abs(lag_s) < quarter_s:
-            found[channel] = one
+            comparisons[channel] = comparison
         else:
             said.append(
                 f"{command} is not used: {channel} is {gain:.3g} times as large, {lag_s:.3g} s "
                 "later; are units and sign those of the other?"
             )
-    return found, "; ".join(said)
+    return comparisons, "; ".join(said)

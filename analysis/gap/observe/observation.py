@@ -70,7 +70,7 @@ class Observed:
 
 def observe(
     recording: Recording,
-    told: ReferenceChoice = ReferenceChoice(),
+    reference: ReferenceChoice = ReferenceChoice(),
     window: ResolverSettings = ResolverSettings(),
     *,
     wanted: Set[Part] | None = None,
@@ -79,7 +79,7 @@ def observe(
 
     Parameters
     ----------
-    told
+    reference
         What tells the phase (:func:`analysis.gap.observe.phase.choose_phase`).
     window
         Where the gate opens and for how long, how steady it has to be; channels, orders and the
@@ -94,21 +94,21 @@ def observe(
     DataError
         If the recording has no force, or too few whole periods without missing samples.
     """
-    names = tuple(one for one in COMPARED if one in recording.channel_names)
+    names = tuple(name for name in COMPARED if name in recording.channel_names)
     if not set(names) & set(FORCES):
         raise DataError(
             f"{recording.name}: no channel {' or '.join(FORCES)}; the diagnosis compares forces"
         )
-    whole = unwrapped(recording)
-    phased, choice = choose_phase(whole, told)
-    kept = tuple(one for one in names if one != choice.channel or one in FORCES)
-    settings = replace(window, channels=kept, harmonics=_orders(recording), gate_periods=None)
+    continuous = unwrapped(recording)
+    phased, choice = choose_phase(continuous, reference)
+    channels = tuple(name for name in names if name != choice.channel or name in FORCES)
+    settings = replace(window, channels=channels, harmonics=_orders(recording), gate_periods=None)
     analysis = analyse(phased, choice, settings, intervals=wanted is None)
     _check_periods(analysis)
     moving = _moving(analysis)
-    found = [*_harmonics(analysis, moving), *_frequency(analysis, recording)]
-    timed = phased is whole and analysis.reference.source is ReferenceSource.PHOTOCELL
-    found += _pulses(recording) if timed else ()
+    entries = [*_harmonics(analysis, moving), *_frequency(analysis, recording)]
+    timed = phased is continuous and analysis.reference.source is ReferenceSource.PHOTOCELL
+    entries += _pulses(recording) if timed else ()
     even = recording.stamps_s is None
     if even and analysis.stretch.period_count >= _FEW_PERIODS:
         makers = (
@@ -118,35 +118,37 @@ def observe(
             (_BETWEEN, _surges(analysis, moving)),
         )
         for parts_made, made in makers:
-            found += made if wanted is None or wanted & parts_made else ()
+            entries += made if wanted is None or wanted & parts_made else ()
     # Cycles with missing samples have no trend and no scatter, and records with some no spectrum.
-    parts, values, uncertainty = zip(*(one for one in found if np.isfinite(one[1])), strict=True)
-    seen = Observation(parts, np.array(values), np.array(uncertainty))
+    parts, values, uncertainty = zip(
+        *(entry for entry in entries if np.isfinite(entry[1])), strict=True
+    )
+    observation = Observation(parts, np.array(values), np.array(uncertainty))
     if wanted is None:
         steady, frequency_hz = _steady(analysis, recording), analysis.readings[0].frequency_hz
-        seen = replace(
-            seen,
+        observation = replace(
+            observation,
             steps=steps_of(steady),
             quiet=_quiet(analysis, moving) if even else {},
             plateaus=_plateaus(steady),
             turns_per_period=turns_per_period(steady, frequency_hz),
         )
-    return Observed(seen, analysis)
+    return Observed(observation, analysis)
 
 
 def _moving(analysis: Analysis) -> tuple[str, ...]:
     """Return the channels that move; of the others the mean is all that there is."""
     part = _steady(analysis)
     ranges = {name: part.values(name) for name in analysis.readings[0].channel_names}
-    return tuple(name for name, own in ranges.items() if np.nanmax(own) > np.nanmin(own))
+    return tuple(name for name, values in ranges.items() if np.nanmax(values) > np.nanmin(values))
 
 
 def _check_periods(analysis: Analysis) -> None:
-    count, whole = analysis.stretch.period_count, usable(analysis.steady_sums).period_count
-    if whole < min(count, _FEW_PERIODS):
+    count, complete = analysis.stretch.period_count, usable(analysis.steady_sums).period_count
+    if complete < min(count, _FEW_PERIODS):
         raise DataError(
-            f"{analysis.recording.name}: {whole} of {count} whole periods have no missing samples; "
-            f"{_FEW_PERIODS} are needed"
+            f"{analysis.recording.name}: {complete} of {count} whole periods have no missing "
+            f"samples; {_FEW_PERIODS} are needed"
         )
 
 
@@ -163,15 +165,15 @@ def _harmonics(analysis: Analysis, moving: Moving) -> Found:
     reading = analysis.readings[0]
     deviation = reading.standard_uncertainty
     for row, name in enumerate(reading.channel_names):
-        values, own = reading.coefficients[row], deviation[row]
+        values, deviations = reading.coefficients[row], deviation[row]
         if name != SHAFT_ANGLE.name:  # its mean is a matter of counting turns
-            yield Component(name, Part.MEAN), values[0], own[0]
+            yield Component(name, Part.MEAN), values[0], deviations[0]
         # The carriage does not go with the shaft; what varies shows among the lines.
         if name == SPEED or name not in moving:
             continue
         for order in range(1, reading.order + 1):
             for part, at in ((Part.IN_PHASE, 2 * order - 1), (Part.QUADRATURE, 2 * order)):
-                yield Component(name, part, order), values[at], own[at]
+                yield Component(name, part, order), values[at], deviations[at]
 
 
 def _frequency(analysis: Analysis, recording: Recording) -> Found:
@@ -213,8 +215,8 @@ def _slope(values: FloatArray) -> tuple[float, float]:
     turn = np.arange(count) - (count - 1) / 2.0
     weight = turn / (turn @ turn)
     slope = float(weight @ values)
-    left = values - values.mean() - slope * turn
-    spread = np.sqrt(left @ left / max(count - 2, 1))
+    remainder = values - values.mean() - slope * turn
+    spread = np.sqrt(remainder @ remainder / max(count - 2, 1))
     return slope, float(spread * np.sqrt(weight @ weight))
 
 
@@ -226,8 +228,8 @@ def _scatter(analysis: Analysis, moving: Moving, *, timed: bool) -> Found:
         intervals = sums.closed_s - sums.opened_s
         spread = float(np.std(intervals, ddof=1) / np.mean(intervals))
         # Neighbours share a pulse: their spread is known as if by two thirds of their number.
-        own = sure * np.sqrt(1.5)
-        yield Component("", Part.PERIOD_SCATTER), float(np.log(spread + 1e-7)), float(own)
+        uncertainty = sure * np.sqrt(1.5)
+        yield Component("", Part.PERIOD_SCATTER), float(np.log(spread + 1e-7)), float(uncertainty)
     solved = solve_periods(sums).coefficients
     for row, name in enumerate(sums.channel_names):
         if name in FORCES and name in moving:
@@ -240,8 +242,8 @@ def _scatter(analysis: Analysis, moving: Moving, *, timed: bool) -> Found:
 
 def _steady(analysis: Analysis, recording: Recording | None = None) -> Recording:
     """Return the whole periods of a record that were analysed."""
-    sums, whole = analysis.steady_sums, recording or analysis.recording
-    return whole.between(float(sums.opened_s[0]), float(sums.closed_s[-1]))
+    sums, record = analysis.steady_sums, recording or analysis.recording
+    return record.between(float(sums.opened_s[0]), float(sums.closed_s[-1]))
 
 
 def _between(analysis: Analysis, moving: Moving) -> Found:
@@ -265,19 +267,19 @@ def _between(analysis: Analysis, moving: Moving) -> Found:
 
 def _plateaus(part: Recording) -> dict[str, Plateau]:
     """Return what is cut off struts and forces, also of the channel that tells the phase."""
-    names = [one for one in (*DISPLACEMENTS, *FORCES) if one in part.channel_names]
+    names = [name for name in (*DISPLACEMENTS, *FORCES) if name in part.channel_names]
     return {name: plateau(part.values(name)) for name in names}
 
 
 def _quiet(analysis: Analysis, moving: Moving) -> dict[str, Lines]:
     """Return what lies between the harmonics of each channel."""
     part, reading = _steady(analysis), analysis.readings[0]
-    names = [one for one in moving if np.isfinite(part.values(one)).all()]
+    names = [name for name in moving if np.isfinite(part.values(name)).all()]
     if not names:
         return {}
     values = np.stack([part.values(name) for name in names])
-    found = quiet_lines(part.time_s(), values, reading.frequency_hz, reading.order)
-    return dict(zip(names, found, strict=True))
+    lines = quiet_lines(part.time_s(), values, reading.frequency_hz, reading.order)
+    return dict(zip(names, lines, strict=True))
 
 
 def _surges(analysis: Analysis, moving: Moving) -> Found:

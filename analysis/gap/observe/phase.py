@@ -12,7 +12,7 @@ from hardware.description.errors import DataError
 
 
 def choose_phase(
-    recording: Recording, told: ReferenceChoice = ReferenceChoice()
+    recording: Recording, reference: ReferenceChoice = ReferenceChoice()
 ) -> tuple[Recording, ReferenceChoice]:
     """Return what the phase comes from, and the recording with the pulses that this takes.
 
@@ -28,17 +28,17 @@ def choose_phase(
     """
     names, edges = recording.channel_names, recording.photocell_edges_s
     has_pulses = edges is not None and len(edges) > 1
-    if told.channel is not None and told.channel != SHAFT_ANGLE.name:
-        recording.index(told.channel)
-        return recording, ReferenceChoice(channel=told.channel)
-    if has_pulses and told.channel is None:
-        return recording, replace(told, channel=None, frequency_hz=None)
+    if reference.channel is not None and reference.channel != SHAFT_ANGLE.name:
+        recording.index(reference.channel)
+        return recording, ReferenceChoice(channel=reference.channel)
+    if has_pulses and reference.channel is None:
+        return recording, replace(reference, channel=None, frequency_hz=None)
     encoder = SHAFT_ANGLE.name in names
-    for name in DISPLACEMENTS if told.channel is None or not encoder else ():
+    for name in DISPLACEMENTS if reference.channel is None or not encoder else ():
         if name in names:
             return recording, ReferenceChoice(channel=name)
     if encoder:
-        return _turns(recording, told.angle_offset_rad), ReferenceChoice()
+        return _turns(recording, reference.angle_offset_rad), ReferenceChoice()
     for name in FORCES:
         if name in names:
             return recording, ReferenceChoice(channel=name)
@@ -48,8 +48,8 @@ def choose_phase(
 def _turns(recording: Recording, angle_offset_rad: float) -> Recording:
     """Return a recording with a pulse at each whole turn of its encoder."""
     times_s, angle_rad = recording.time_s(), recording.values(SHAFT_ANGLE.name)
-    there = np.isfinite(angle_rad)
-    encoder = from_encoder(times_s[there], angle_rad[there], angle_offset_rad)
+    is_finite = np.isfinite(angle_rad)
+    encoder = from_encoder(times_s[is_finite], angle_rad[is_finite], angle_offset_rad)
     first, last = encoder.cycles[0], encoder.cycles[-1]
     pulses = encoder.times_at(np.arange(np.ceil(first), np.floor(last) + 1.0))
     return replace(recording, photocell_edges_s=pulses)

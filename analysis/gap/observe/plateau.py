@@ -28,17 +28,17 @@ class Plateau:
 
 def plateau(values: FloatArray) -> Plateau:
     """Return what is cut off a channel, whose samples have shape ``(samples,)``."""
-    known = values[np.isfinite(values)]
-    counts = {sign: flat_top(sign * known) for sign in (1.0, -1.0)}
-    levels = tuple(sign * float((sign * known).max()) for sign, count in counts.items() if count)
+    samples = values[np.isfinite(values)]
+    counts = {sign: flat_top(sign * samples) for sign in (1.0, -1.0)}
+    levels = tuple(sign * float((sign * samples).max()) for sign, count in counts.items() if count)
     return Plateau(sum(counts.values()) / len(values), levels)
 
 
 def steps_of(recording: Recording) -> dict[str, float]:
     """Return the smallest step of each channel's values; NaN where it does not move."""
-    found = {}
+    smallest_steps = {}
     for name in recording.channel_names:
         levels = np.unique(recording.values(name))
         steps = np.diff(levels[np.isfinite(levels)])
-        found[name] = float(steps.min()) if steps.size else math.nan
-    return found
+        smallest_steps[name] = float(steps.min()) if steps.size else math.nan
+    return smallest_steps

@@ -22,15 +22,15 @@ def as_recorded(
     word of it is a perfect one. Its noise, white and coloured, is what the lines between the
     harmonics of all runs show, where there are enough of them.
     """
-    recorded = {one.channel for run in runs for one in run.observed.components}
+    recorded = {component.channel for run in runs for component in run.observed.components}
     if reference_channel is not None:
         recorded.add(reference_channel)
     lines = {
-        one.name: getattr(rig.acquisition, one.name) or Digitiser()
-        for one in fields(Acquisition)
-        if one.name in recorded
+        field.name: getattr(rig.acquisition, field.name) or Digitiser()
+        for field in fields(Acquisition)
+        if field.name in recorded
     }
-    heard = {name: _as_loud(one, runs, name) for name, one in lines.items()}
+    heard = {name: _as_loud(digitiser, runs, name) for name, digitiser in lines.items()}
     pulses = None if reference_channel is not None else rig.photocell or PhotocellStage()
     return replace(rig, acquisition=replace(rig.acquisition, **heard), photocell=pulses)
 
@@ -44,18 +44,18 @@ def resolved(
     other runs show. Where neither is known the channel is left out of the run; the second part says
     so, by the run's name.
     """
-    found, said = [], {}
+    resolved_runs, said = [], {}
     for run in runs:
         still = [name for name, step in run.observed.steps.items() if math.isnan(step)]
         steps = {name: _resolution(rig, runs, name) for name in still}
-        found.append(replace(run, observed=_standing(run.observed, steps)))
+        resolved_runs.append(replace(run, observed=_standing(run.observed, steps)))
         unknown = [name for name, step in steps.items() if not step]
         if unknown:
             said[run.name] = (
                 f"{', '.join(unknown)} left out: never changes, and nothing tells the resolution; "
                 f"state it as [acquisition] {unknown[0]} = {{ resolution = ... }}"
             )
-    return tuple(found), said
+    return tuple(resolved_runs), said
 
 
 def heard_rms(runs: Sequence[GapRun], channel: str) -> float:
@@ -64,24 +64,30 @@ def heard_rms(runs: Sequence[GapRun], channel: str) -> float:
     Drift and wander are quiet there. A pole that hardly falls within the lines is not told apart
     from white noise, so the two terms count together.
     """
-    seen = [run for run in runs if channel in run.observed.quiet]
-    lines = [run.observed.quiet[channel] for run in seen]
+    quiet_runs = [run for run in runs if channel in run.observed.quiet]
+    lines = [run.observed.quiet[channel] for run in quiet_runs]
     loud = loudness(lines)
     if loud is None:
         return 0.0
-    rate_hz = float(np.median([run.sample_rate_hz for run in seen]))
-    ends_hz = float(np.concatenate([one.frequency_hz for one in lines]).max())  # short runs: none
+    rate_hz = float(np.median([run.sample_rate_hz for run in quiet_runs]))
+    ends_hz = float(
+        np.concatenate([record.frequency_hz for record in lines]).max()
+    )  # short runs: none
     return math.sqrt(loud.at(ends_hz) * rate_hz)
 
 
-def _standing(seen: Observation, steps: Mapping[str, float]) -> Observation:
-    kept = [at for at, one in enumerate(seen.components) if steps.get(one.channel, 1.0)]
-    own = np.array([steps.get(seen.components[at].channel, 0.0) for at in kept])
+def _standing(observation: Observation, steps: Mapping[str, float]) -> Observation:
+    rows = [
+        at
+        for at, component in enumerate(observation.components)
+        if steps.get(component.channel, 1.0)
+    ]
+    resolutions = np.array([steps.get(observation.components[at].channel, 0.0) for at in rows])
     return replace(
-        seen,
-        components=tuple(seen.components[at] for at in kept),
-        values=seen.values[kept],
-        uncertainty=np.hypot(seen.uncertainty[kept], own / math.sqrt(12.0)),
+        observation,
+        components=tuple(observation.components[at] for at in rows),
+        values=observation.values[rows],
+        uncertainty=np.hypot(observation.uncertainty[rows], resolutions / math.sqrt(12.0)),
     )
 
 
@@ -90,19 +96,19 @@ def _resolution(rig: SimulatedRig, runs: Sequence[GapRun], channel: str) -> floa
     if stated is not None and stated.resolution:
         return float(stated.resolution)
     steps = [run.observed.steps.get(channel, math.nan) for run in runs]
-    return min((one for one in steps if math.isfinite(one)), default=0.0)
+    return min((step for step in steps if math.isfinite(step)), default=0.0)
 
 
-def _as_loud(how: Digitiser, runs: Sequence[GapRun], channel: str) -> Digitiser:
+def _as_loud(digitiser: Digitiser, runs: Sequence[GapRun], channel: str) -> Digitiser:
     """Return a channel with the noise that is heard: white, and behind one pole."""
-    seen = [run for run in runs if channel in run.observed.quiet]
-    loud = loudness(run.observed.quiet[channel] for run in seen)
+    quiet_runs = [run for run in runs if channel in run.observed.quiet]
+    loud = loudness(run.observed.quiet[channel] for run in quiet_runs)
     if loud is None:
-        return how
-    rate_hz = float(np.median([run.sample_rate_hz for run in seen]))
+        return digitiser
+    rate_hz = float(np.median([run.sample_rate_hz for run in quiet_runs]))
     corner = 2.0 * math.pi * loud.corner_hz
     return replace(
-        how,
+        digitiser,
         noise_rms=math.sqrt(loud.white * rate_hz),
         walk_per_sqrt_s=math.sqrt(loud.coloured) * corner,
         walk_corner_hz=loud.corner_hz,

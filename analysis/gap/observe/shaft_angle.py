@@ -16,11 +16,11 @@ def unwrapped(recording: Recording) -> Recording:
     if SHAFT_ANGLE.name not in recording.channel_names:
         return recording
     angle = recording.values(SHAFT_ANGLE.name)
-    there = np.isfinite(angle)
-    if not float(np.abs(np.diff(angle[there])).max(initial=0.0)) > np.pi:
+    is_finite = np.isfinite(angle)
+    if not float(np.abs(np.diff(angle[is_finite])).max(initial=0.0)) > np.pi:
         return recording
     samples = np.array(recording.samples[:, 0 : recording.sample_count])
-    samples[recording.index(SHAFT_ANGLE.name), there] = np.unwrap(angle[there])
+    samples[recording.index(SHAFT_ANGLE.name), is_finite] = np.unwrap(angle[is_finite])
     return replace(recording, samples=samples)
 
 
@@ -33,7 +33,7 @@ def turns_per_period(recording: Recording, frequency_hz: float) -> float:
         return float("nan")
     angle = recording.values(SHAFT_ANGLE.name)
     steps, taken_s = np.diff(angle), np.diff(recording.time_s())
-    kept = np.abs(steps) <= 0.5 * np.ptp(angle)
-    if not kept.any():
+    is_smooth = np.abs(steps) <= 0.5 * np.ptp(angle)
+    if not is_smooth.any():
         return float("nan")
-    return float(steps[kept].sum() / taken_s[kept].sum()) / frequency_hz / (2.0 * np.pi)
+    return float(steps[is_smooth].sum() / taken_s[is_smooth].sum()) / frequency_hz / (2.0 * np.pi)

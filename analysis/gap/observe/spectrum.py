@@ -59,8 +59,8 @@ def quiet_lines(
     basis = repeating(2.0 * np.pi * frequency_hz * (time_s - time_s[0]), 2 * orders)
     taper = np.hanning(count)
     weight = max(float(np.sum(taper**2)), np.finfo(float).tiny)  # of two samples nothing is left
-    left = (values - (values @ basis) @ basis.T) * taper
-    power = np.abs(np.fft.rfft(left, axis=1)) ** 2 / weight * step_s
+    remainder = (values - (values @ basis) @ basis.T) * taper
+    power = np.abs(np.fft.rfft(remainder, axis=1)) ** 2 / weight * step_s
     lines_hz = np.arange(power.shape[1]) / (count * step_s)
     beside_hz = np.abs(lines_hz - np.round(lines_hz / frequency_hz) * frequency_hz)
     quiet = (beside_hz > _BESIDE * lines_hz[1]) & (lines_hz < (orders + 1) * frequency_hz)
@@ -115,17 +115,17 @@ def loudness(records: Iterable[Lines]) -> Loudness | None:
     exponentially distributed. Lines far above it (the mains, an old wave) do not count as noise.
     """
     records = list(records)
-    if sum(len(one.density) for one in records) < _FEWEST:
+    if sum(len(record.density) for record in records) < _FEWEST:
         return None
-    lines_hz = np.concatenate([one.frequency_hz for one in records])
-    power = np.concatenate([one.density for one in records])
+    lines_hz = np.concatenate([record.frequency_hz for record in records])
+    power = np.concatenate([record.density for record in records])
     usual = float(np.median(power)) / _MEDIAN
     if not usual > 0.0:
         return None
     corners = np.geomspace(2.0 * lines_hz.min(), lines_hz.max(), _CORNERS)
-    found = [_fitted(lines_hz, power / usual, float(corner)) for corner in corners]
-    one = min(found, key=lambda pair: pair[0])[1]
-    return Loudness(usual * one.white, usual * one.coloured, one.corner_hz)
+    fits = [_fitted(lines_hz, power / usual, float(corner)) for corner in corners]
+    best = min(fits, key=lambda pair: pair[0])[1]
+    return Loudness(usual * best.white, usual * best.coloured, best.corner_hz)
 
 
 @dataclass(frozen=True)
@@ -151,19 +151,19 @@ def levels(records: Sequence[Lines], usual: Loudness) -> Levels:
     A record's median line over the usual density tells its level, with a variance of 1 / (n ln² 2)
     for n lines that count (Gaussian noise: powers are exponentially distributed).
     """
-    seen = np.zeros(len(records))
+    log_levels = np.zeros(len(records))
     weight = np.zeros(len(records))
-    for at, one in enumerate(records):
-        if one.density.any():
-            ratio = one.density / np.array([usual.at(hz) for hz in one.frequency_hz])
-            seen[at] = math.log(float(np.median(ratio)) / _MEDIAN + _LEAST)
-            weight[at] = _COUNTED * one.density.size * _MEDIAN**2
+    for at, record in enumerate(records):
+        if record.density.any():
+            ratio = record.density / np.array([usual.at(hz) for hz in record.frequency_hz])
+            log_levels[at] = math.log(float(np.median(ratio)) / _MEDIAN + _LEAST)
+            weight[at] = _COUNTED * record.density.size * _MEDIAN**2
     if not weight.any():
         return Levels(0.0, (0.0,) * len(records), (0.0,) * len(records))
-    middle = float(weight @ seen / weight.sum())
-    spread = spread_about(np.ones((len(seen), 1)), seen, weight) ** 2
+    middle = float(weight @ log_levels / weight.sum())
+    spread = spread_about(np.ones((len(log_levels), 1)), log_levels, weight) ** 2
     drawn = spread * weight / (1.0 + spread * weight)
-    values = middle + drawn * (seen - middle)
+    values = middle + drawn * (log_levels - middle)
     variances = spread / (1.0 + spread * weight)
     return Levels(math.sqrt(spread), tuple(values.tolist()), tuple(variances.tolist()))
 
@@ -186,9 +186,9 @@ def spread_about(terms: FloatArray, values: FloatArray, weight: FloatArray) -> f
         return 0.0
     basis = np.linalg.svd(rooted, full_matrices=False)[0][:, : np.linalg.matrix_rank(rooted)]
     scaled = values * np.sqrt(weight)
-    left = scaled - basis @ (basis.T @ scaled)
-    told = float(weight.sum() - np.sum(weight[:, None] * basis**2))
-    return math.sqrt(max(0.0, float(left @ left) - freedom) / max(told, 1e-12))
+    remainder = scaled - basis @ (basis.T @ scaled)
+    information = float(weight.sum() - np.sum(weight[:, None] * basis**2))
+    return math.sqrt(max(0.0, float(remainder @ remainder) - freedom) / max(information, 1e-12))
 
 
 def _fitted(lines_hz: FloatArray, power: FloatArray, corner_hz: float) -> tuple[float, Loudness]:
@@ -201,9 +201,9 @@ def _fitted(lines_hz: FloatArray, power: FloatArray, corner_hz: float) -> tuple[
     terms = np.column_stack((np.ones_like(power), 1.0 / (1.0 + (lines_hz / corner_hz) ** 2)))
     density = np.ones_like(power)
     for _ in range(_SWEEPS):
-        kept = power < _LOUD * density
-        weight = 1.0 / density[kept]
-        sizes = nnls(terms[kept] * weight[:, None], power[kept] * weight)[0]
+        is_noise = power < _LOUD * density
+        weight = 1.0 / density[is_noise]
+        sizes = nnls(terms[is_noise] * weight[:, None], power[is_noise] * weight)[0]
         density = np.maximum(terms @ sizes, _LEAST)
     quiet = np.minimum(power / density, _LOUD)
     cost = float(np.sum(np.log(density) + quiet))

@@ -43,30 +43,32 @@ def wander(
         noise does are not in it.
     """
     still = [run for run in runs if not run.turns and run.applied is None]
-    found = {}
+    wanders = {}
     for channel in FORCES:
-        seen = [run for run in still if math.isfinite(run.observed.value(channel, Part.MEAN))]
-        wandering = _about_line(rig, seen, channel) if len(seen) > 1 else usual
+        readable_runs = [
+            run for run in still if math.isfinite(run.observed.value(channel, Part.MEAN))
+        ]
+        wandering = _about_line(rig, readable_runs, channel) if len(readable_runs) > 1 else usual
         if wandering:
-            found[channel] = wandering
-    return found
+            wanders[channel] = wandering
+    return wanders
 
 
 def _about_line(
     rig: SimulatedRig, runs: Sequence[GapRun], channel: str
 ) -> tuple[float, float] | None:
-    told = [_component(run, steady_at_rest(rig, run.set_point, run), channel) for run in runs]
-    zeros = np.array([run.observed.value(channel, Part.MEAN) for run in runs]) - told
-    own = np.array([_component(run, run.observed.uncertainty, channel) for run in runs])
+    simulated = [_component(run, steady_at_rest(rig, run.set_point, run), channel) for run in runs]
+    zeros = np.array([run.observed.value(channel, Part.MEAN) for run in runs]) - simulated
+    noise = np.array([_component(run, run.observed.uncertainty, channel) for run in runs])
     at_s = np.array([run.place.since_start_s for run in runs])
     spacing_s = float(np.median(np.diff(np.sort(at_s))))
     media = np.array([run.set_point.medium for run in runs])
     slope = _median_slope(at_s, zeros, media)
     zeros = zeros - (slope or 0.0) * at_s
-    for one in set(media.tolist()):
-        zeros[media == one] -= np.median(zeros[media == one])
+    for medium in set(media.tolist()):
+        zeros[media == medium] -= np.median(zeros[media == medium])
     freedom = len(runs) - len(set(media.tolist())) - (slope is not None)
-    variance = (_OF_MEDIAN * float(np.median(np.abs(zeros)))) ** 2 - float(np.median(own)) ** 2
+    variance = (_OF_MEDIAN * float(np.median(np.abs(zeros)))) ** 2 - float(np.median(noise)) ** 2
     if freedom < 1 or not spacing_s > 0.0 or not variance > 0.0:
         return None
     deviation = math.sqrt(variance) * _widened(freedom)
@@ -78,7 +80,7 @@ def _median_slope(at_s: FloatArray, zeros: FloatArray, media: NDArray[np.str_]) 
     first, second = np.triu_indices(len(zeros), 1)
     alike = (media[first] == media[second]) & (at_s[first] != at_s[second])
     first, second = first[alike], second[alike]
-    if max(np.count_nonzero(media == one) for one in media) < _FOR_SLOPE:
+    if max(np.count_nonzero(media == medium) for medium in media) < _FOR_SLOPE:
         return None
     return float(np.median((zeros[second] - zeros[first]) / (at_s[second] - at_s[first])))
 
@@ -89,27 +91,29 @@ def _widened(freedom: int) -> float:
     A median deviation tells as much as a mean square of 37 in 100 of the values does.
     """
     level = 2.0 * _COVERED - 1.0
-    known = max(_EFFICIENCY * freedom, 1.0)
-    return float(student_factor(known, level) / student_factor(np.inf, level))
+    effective_freedom = max(_EFFICIENCY * freedom, 1.0)
+    return float(student_factor(effective_freedom, level) / student_factor(np.inf, level))
 
 
 def _component(run: GapRun, values: FloatArray, channel: str) -> float:
-    parts = [(one.channel, one.part) for one in run.observed.components]
+    parts = [(component.channel, component.part) for component in run.observed.components]
     return float(values[parts.index((channel, Part.MEAN))])
 
 
-def wandered(run: GapRun, found: Mapping[str, tuple[float, float]]) -> GapRun:
+def wandered(run: GapRun, wanders: Mapping[str, tuple[float, float]]) -> GapRun:
     """Return a run whose means and trends are no better known than its zeros wander.
 
     The slope of the straight line that fits a random walk of s per root of a second over T has the
     standard deviation s sqrt(6 / (5 T)).
     """
-    seen, duration_s = run.observed, run.periods / run.set_point.frequency_hz
-    own = np.zeros(len(seen.components))
-    for at, one in enumerate(seen.components):
-        level_n, walk_n = found.get(one.channel, (0.0, 0.0))
-        if one.part is Part.MEAN:
-            own[at] = level_n
-        elif one.part is Part.TREND:
-            own[at] = walk_n * math.sqrt(1.2 / duration_s) / run.set_point.frequency_hz
-    return replace(run, observed=replace(seen, uncertainty=np.hypot(seen.uncertainty, own)))
+    observation, duration_s = run.observed, run.periods / run.set_point.frequency_hz
+    spread = np.zeros(len(observation.components))
+    for at, component in enumerate(observation.components):
+        level_n, walk_n = wanders.get(component.channel, (0.0, 0.0))
+        if component.part is Part.MEAN:
+            spread[at] = level_n
+        elif component.part is Part.TREND:
+            spread[at] = walk_n * math.sqrt(1.2 / duration_s) / run.set_point.frequency_hz
+    return replace(
+        run, observed=replace(observation, uncertainty=np.hypot(observation.uncertainty, spread))
+    )

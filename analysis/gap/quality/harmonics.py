@@ -41,10 +41,10 @@ def of_first_harmonics(
     nominal
         The simulation's components, shape ``(observations,)``.
     """
-    found = _ratios(rig, stack, nominal, channel)
-    if len(found) < _FEW:
+    ratio_pairs = _ratios(rig, stack, nominal, channel)
+    if len(ratio_pairs) < _FEW:
         return
-    ratios = {name: ratio for name, (ratio, _) in found.items()}
+    ratios = {name: ratio for name, (ratio, _) in ratio_pairs.items()}
     sizes = {name: math.log(max(abs(ratio), 1e-12)) for name, ratio in ratios.items()}
     usual = float(np.median(list(sizes.values())))
     unit = (DISPLACEMENT_AFT if channel in DISPLACEMENTS else FORCE_AFT).unit
@@ -54,11 +54,11 @@ def of_first_harmonics(
         yield Doubt("", channel, common)
         return
     for name, ratio in ratios.items():
-        others = [size for other, size in sizes.items() if other != name]
-        own = ratio / turns / math.exp(usual)
+        other_sizes = [size for other_name, size in sizes.items() if other_name != name]
+        relative = ratio / turns / math.exp(usual)
         meant = mistaken(math.exp(sizes[name] - usual), unit, UNIT_NEAR)
-        reason = _reason(sizes[name] - usual, cmath.phase(own), _spread(others), meant)
-        if reason and abs(own - 1.0) > found[name][1]:
+        reason = _reason(sizes[name] - usual, cmath.phase(relative), _spread(other_sizes), meant)
+        if reason and abs(relative - 1.0) > ratio_pairs[name][1]:
             yield Doubt(name, channel, reason)
 
 
@@ -98,8 +98,8 @@ def _spread(values: Sequence[float]) -> float:
 
 def _middle_turn(ratios: Sequence[complex]) -> complex:
     """Return the unit phasor about which most ratios lie; one that is opposite does not count."""
-    unit = np.array([one / abs(one) for one in ratios if one] or [1.0 + 0.0j])
-    return complex(unit[np.argmin([np.median(np.abs(unit - one)) for one in unit])])
+    unit = np.array([ratio / abs(ratio) for ratio in ratios if ratio] or [1.0 + 0.0j])
+    return complex(unit[np.argmin([np.median(np.abs(unit - phasor)) for phasor in unit])])
 
 
 def _ratios(
@@ -110,26 +110,28 @@ def _ratios(
     Beside each stands by how much it may be off where the terms of which the force is the
     difference are off by their usual tolerance.
     """
-    found = {}
+    ratios = {}
     for number, run in enumerate(stack.runs):
-        told = complex(*_first(stack, nominal, number, channel))
-        seen = complex(*_first(stack, stack.values, number, channel))
+        simulated = complex(*_first(stack, nominal, number, channel))
+        measured = complex(*_first(stack, stack.values, number, channel))
         noise = math.hypot(*_first(stack, stack.uncertainty, number, channel))
-        if abs(seen) < _HEARD * noise < 0.1 * abs(told):
-            seen = 0.0j  # what is left is noise
-        if np.isfinite([told, seen]).all() and abs(told) > _least(rig, run, channel):
-            slack = 0.0 if channel in DISPLACEMENTS else _TOLERATED * _terms(rig, run) / abs(told)
-            found[run.name] = seen / told, slack
-    return found
+        if abs(measured) < _HEARD * noise < 0.1 * abs(simulated):
+            measured = 0.0j  # what is left is noise
+        if np.isfinite([simulated, measured]).all() and abs(simulated) > _least(rig, run, channel):
+            slack = (
+                0.0 if channel in DISPLACEMENTS else _TOLERATED * _terms(rig, run) / abs(simulated)
+            )
+            ratios[run.name] = measured / simulated, slack
+    return ratios
 
 
 def _first(stack: Stack, values: FloatArray, run: int, channel: str) -> tuple[float, float]:
-    found = {Part.IN_PHASE: math.nan, Part.QUADRATURE: math.nan}
+    parts = {Part.IN_PHASE: math.nan, Part.QUADRATURE: math.nan}
     for at in np.flatnonzero(stack.run == run):
-        one = stack.components[at]
-        if one.channel == channel and one.order == 1:
-            found[one.part] = float(values[at])
-    return found[Part.IN_PHASE], found[Part.QUADRATURE]
+        component = stack.components[at]
+        if component.channel == channel and component.order == 1:
+            parts[component.part] = float(values[at])
+    return parts[Part.IN_PHASE], parts[Part.QUADRATURE]
 
 
 def _least(rig: SimulatedRig, run: GapRun, channel: str) -> float:

@@ -60,9 +60,9 @@ def recentred(
 ) -> Recentred:
     """Move a rig to the coefficients that fit."""
     free = free_numbers(rig, tolerances)
-    stack = Stack.of([repeating_only(one) for one in pooled(runs, rig, tolerances)])
+    stack = Stack.of([repeating_only(run) for run in pooled(runs, rig, tolerances)])
     simulator = Simulator(rig, stack, tuple(on), reference_channel)
-    owned = np.array([one.is_sought for one in free])
+    owned = np.array([number.is_sought for number in free])
     total = np.zeros(len(free))
     # Of prescribed motions forces are linear in the coefficients: slopes are found once.
     nuisances = tolerated(simulator, free, tolerances)
@@ -71,36 +71,40 @@ def recentred(
         if np.abs(step).max(initial=0.0) < _SETTLED:
             break
         try:
-            there = with_coefficients(rig, free, list(total + step))
-            Simulator(there, simulator.stack, simulator.on, reference_channel).steady(())
+            next_rig = with_coefficients(rig, free, list(total + step))
+            Simulator(next_rig, simulator.stack, simulator.on, reference_channel).steady(())
         except PmmError:
             break
-        total, simulator = total + step, simulator.with_rig(there)
+        total, simulator = total + step, simulator.with_rig(next_rig)
     return _result(simulator.rig, free, total)
 
 
 def repeating_only(run: GapRun) -> GapRun:
     """Return a run without what does not repeat with the shaft: coefficients do not change that."""
-    seen = run.observed
-    kept = [at for at, one in enumerate(seen.components) if one.part in STEADY_PARTS]
-    parts = tuple(seen.components[at] for at in kept)
-    return replace(run, observed=Observation(parts, seen.values[kept], seen.uncertainty[kept]))
+    observation = run.observed
+    rows = [
+        at for at, component in enumerate(observation.components) if component.part in STEADY_PARTS
+    ]
+    parts = tuple(observation.components[at] for at in rows)
+    return replace(
+        run, observed=Observation(parts, observation.values[rows], observation.uncertainty[rows])
+    )
 
 
 def _result(rig: SimulatedRig, free: Sequence[Free], total: FloatArray) -> Recentred:
-    pairs = [(one, float(unit)) for one, unit in zip(free, total, strict=True) if unit]
+    pairs = [(number, float(unit)) for number, unit in zip(free, total, strict=True) if unit]
     return Recentred(
         rig,
         tuple(free),
-        {one.name: unit for one, unit in pairs},
-        {one.name: unit * one.deviation for one, unit in pairs},
+        {number.name: unit for number, unit in pairs},
+        {number.name: unit * number.deviation for number, unit in pairs},
     )
 
 
 def _step(simulator: Simulator, nuisances: Nuisances, total: FloatArray) -> FloatArray:
     """Return how far to go on from where the rig is, the tolerances about what is stated."""
     stack = simulator.stack
-    left = (stack.values - simulator.steady(())) / stack.uncertainty
-    stated = left + nuisances.columns[:, : len(total)] @ total
+    residual = (stack.values - simulator.steady(())) / stack.uncertainty
+    stated = residual + nuisances.columns[:, : len(total)] @ total
     units = nuisances.fitted(stated)[: len(total)] - total
     return np.asarray(units * min(1.0, _LONGEST / max(float(np.abs(units).max()), 1e-12)))

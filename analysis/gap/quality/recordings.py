@@ -37,11 +37,11 @@ def doubts(
         return ()
     stack = Stack.of(runs)
     nominal = Simulator(rig, stack, tuple(on), reference_channel).steady(())
-    found = list(of_records(runs))
+    all_doubts = list(of_records(runs))
     for channel in (*DISPLACEMENTS, *FORCES):
-        found += of_first_harmonics(rig, stack, nominal, channel)
-    found += of_scatter(runs)
-    first = {(one.run, one.channel): one for one in reversed(found)}
+        all_doubts += of_first_harmonics(rig, stack, nominal, channel)
+    all_doubts += of_scatter(runs)
+    first = {(doubt.run, doubt.channel): doubt for doubt in reversed(all_doubts)}
     return tuple(reversed(first.values()))
 
 
@@ -63,14 +63,14 @@ def judged(
         If the rig cannot run what was recorded.
     """
     stated = Recentred(rig, free_numbers(rig, tolerances))
-    found = doubts(rig, runs, on, reference_channel)
-    if any(one.run == "" for one in found):
-        return stated, found
-    bad = {one.run for one in found}
+    stated_doubts = doubts(rig, runs, on, reference_channel)
+    if any(doubt.run == "" for doubt in stated_doubts):
+        return stated, stated_doubts
+    bad = {doubt.run for doubt in stated_doubts}
     good = [run for run in runs if run.name not in bad]
-    fitted = [some for some in (good, runs) if len(some) >= _FEW]
+    fitted = [group for group in (good, runs) if len(group) >= _FEW]
     tried = []
-    for some in fitted if bad else fitted[:1]:
-        there = recentred(rig, some, tolerances, on, reference_channel)
-        tried.append((there, doubts(there.rig, runs, on, reference_channel)))
-    return min(tried, key=lambda one: len(one[1])) if tried else (stated, found)
+    for group in fitted if bad else fitted[:1]:
+        recentred_rig = recentred(rig, group, tolerances, on, reference_channel)
+        tried.append((recentred_rig, doubts(recentred_rig.rig, runs, on, reference_channel)))
+    return min(tried, key=lambda pair: len(pair[1])) if tried else (stated, stated_doubts)

@@ -39,29 +39,29 @@ def of_records(runs: Sequence[GapRun]) -> Iterator[Doubt]:
 
 
 def _of_frequency(runs: Sequence[GapRun]) -> Iterator[Doubt]:
-    logs = [one.observed.value("", Part.FREQUENCY) for one in runs]
+    logs = [run.observed.value("", Part.FREQUENCY) for run in runs]
     usual = float(np.nanmedian(logs)) if np.isfinite(logs).any() else 0.0
     for run, value in zip(runs, logs, strict=True):
         if abs(value - usual) > _OFF_FREQUENCY:
-            told = run.set_point.frequency_hz
-            made = told * math.exp(value)
+            stated_hz = run.set_point.frequency_hz
+            made_hz = stated_hz * math.exp(value)
             yield Doubt(
-                run.name, "", f"made at {made:.4g} Hz, not at the {told:g} Hz that are told"
+                run.name, "", f"made at {made_hz:.4g} Hz, not at the {stated_hz:g} Hz that are told"
             )
 
 
 def _of_shaft_angle(runs: Sequence[GapRun]) -> Iterator[Doubt]:
     """Yield doubts of the shaft's angle, which goes on by a turn each period."""
     turns = {run.name: run.observed.turns_per_period for run in runs}
-    turns = {name: one for name, one in turns.items() if math.isfinite(one)}
+    turns = {name: turn for name, turn in turns.items() if math.isfinite(turn)}
     if not turns:
         return
     usual = _of_turn(float(np.median(list(turns.values()))))
     if usual:
         yield Doubt("", SHAFT_ANGLE.name, f"in all runs {usual} Then {SAY_UNIT}, or leave it out")
         return
-    for name, one in turns.items():
-        reason = _of_turn(one)
+    for name, turn in turns.items():
+        reason = _of_turn(turn)
         if reason:
             yield Doubt(name, SHAFT_ANGLE.name, reason)
 
@@ -81,10 +81,14 @@ def _of_turn(turns: float) -> str:
 
 def _of_speed(runs: Sequence[GapRun]) -> Iterator[Doubt]:
     """Yield doubts of the carriage's speed, which was told and is recorded."""
-    told = {run.name: run.set_point.carriage_speed_m_s for run in runs}
-    seen = {run.name: run.observed.value(SPEED, Part.MEAN) for run in runs}
-    ratios = {name: seen[name] / told[name] for name in seen if told[name] and seen[name]}
-    ratios = {name: one for name, one in ratios.items() if math.isfinite(one)}
+    stated_m_s = {run.name: run.set_point.carriage_speed_m_s for run in runs}
+    measured_m_s = {run.name: run.observed.value(SPEED, Part.MEAN) for run in runs}
+    ratios = {
+        name: measured_m_s[name] / stated_m_s[name]
+        for name in measured_m_s
+        if stated_m_s[name] and measured_m_s[name]
+    }
+    ratios = {name: ratio for name, ratio in ratios.items() if math.isfinite(ratio)}
     if not ratios:
         return
     usual = float(np.median(list(ratios.values())))
@@ -113,15 +117,15 @@ def _of_plateaus(runs: Sequence[GapRun], channel: str) -> Iterator[Doubt]:
 
     What stops at a largest value in most runs is a property of the rig, which may be the cause.
     """
-    found = {run.name: run.observed.plateaus.get(channel) for run in runs}
-    looked = {name: one for name, one in found.items() if one is not None}
-    clipped = {name: one for name, one in looked.items() if one.share}
+    plateaus = {run.name: run.observed.plateaus.get(channel) for run in runs}
+    looked = {name: plateau for name, plateau in plateaus.items() if plateau is not None}
+    clipped = {name: plateau for name, plateau in looked.items() if plateau.share}
     if 2 * len(clipped) >= len(looked):
         return
     unit = (DISPLACEMENT_AFT if channel in DISPLACEMENTS else FORCE_AFT).unit
-    for name, one in clipped.items():
-        at = " and ".join(f"{level:.4g} {unit}" for level in one.levels)
-        share = 100.0 * one.share
+    for name, plateau in clipped.items():
+        at = " and ".join(f"{level:.4g} {unit}" for level in plateau.levels)
+        share = 100.0 * plateau.share
         yield Doubt(name, channel, f"clipped: {share:.2g} % of its samples stand at {at}")
 
 
@@ -129,24 +133,28 @@ def of_scatter(runs: Sequence[GapRun]) -> Iterator[Doubt]:
     """Yield doubts of runs whose forces scatter far more than the others'."""
     for channel in FORCES:
         densities = {run.name: _density(run, channel) for run in runs}
-        known = {name: one for name, one in densities.items() if np.isfinite(one) and one > 0.0}
-        if len(known) < _FEW:
+        usable = {
+            name: density
+            for name, density in densities.items()
+            if np.isfinite(density) and density > 0.0
+        }
+        if len(usable) < _FEW:
             continue
-        usual = float(np.median(list(known.values())))
-        for name, one in known.items():
-            if one > _LOUD * usual:
-                yield Doubt(name, channel, f"scatters {one / usual:.0f} times as much as usual")
+        usual = float(np.median(list(usable.values())))
+        for name, density in usable.items():
+            if density > _LOUD * usual:
+                yield Doubt(name, channel, f"scatters {density / usual:.0f} times as much as usual")
 
 
 def _density(run: GapRun, channel: str) -> float:
     """Return the scatter of the first harmonic, scaled to one second of record."""
-    seen = run.observed
-    own = [
+    observation = run.observed
+    sigmas = [
         sigma
-        for one, sigma in zip(seen.components, seen.uncertainty, strict=True)
-        if one.channel == channel
-        and one.order == 1
-        and one.part in (Part.IN_PHASE, Part.QUADRATURE)
+        for component, sigma in zip(observation.components, observation.uncertainty, strict=True)
+        if component.channel == channel
+        and component.order == 1
+        and component.part in (Part.IN_PHASE, Part.QUADRATURE)
     ]
     duration_s = run.periods / run.set_point.frequency_hz
-    return float(np.sqrt(np.sum(np.square(own)) * duration_s)) if own else math.nan
+    return float(np.sqrt(np.sum(np.square(sigmas)) * duration_s)) if sigmas else math.nan
