@@ -142,10 +142,8 @@ def proposals(
         candidate.kind.taken_up for fit, _ in leading if fit for candidate in fit.candidates
     )
     if plays and FurtherMeasurement.PRELOAD in choices.special:
-        bare = [
-            *(choice for choice, _ in ranked),
-            *remaining,
-        ]  # the larger ones may throw a weight off
+        # the larger ones may throw a weight off
+        bare = [*(choice for choice, _ in ranked), *remaining]
         pressed = _preloaded(problem.simulator, bare, choices)
         ranked += weighed(tuple(islice(pressed, _PRELOADED)))
     ranked += weighed(tuple(_measurements(problem, choices, place)))

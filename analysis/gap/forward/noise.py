@@ -162,9 +162,8 @@ def _with(run: GapRun, usual: Usual, encoder_rad: float) -> GapRun:
             variance = (freedom * run_variance + pooled_freedom * pooled_variance) / (
                 freedom + pooled_freedom
             )
-            if (
-                component.part in SETTLING
-            ):  # pulses that scatter move harmonics, not what lies between
+            # Pulses that scatter move harmonics, not what lies between.
+            if component.part in SETTLING:
                 variance = max(variance, run_variance)
             floor = 0.0 if component.part in TRENDS else _floor(run, component.channel, encoder_rad)
             uncertainty[at] = np.sqrt(variance + floor**2)

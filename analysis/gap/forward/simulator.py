@@ -244,8 +244,8 @@ def _drifted(rig: SimulatedRig, measured: Observation, later_s: float) -> FloatA
 
 
 def _stated_drift(rig: SimulatedRig, channel: str) -> float:
-    how = getattr(rig.acquisition, channel)
-    return 0.0 if how is None else float(how.drift_per_s)
+    digitiser = getattr(rig.acquisition, channel)
+    return 0.0 if digitiser is None else float(digitiser.drift_per_s)
 
 
 def align(simulated: Observation, measured: Observation) -> FloatArray:

@@ -20,7 +20,7 @@ _UNBOUND: Final = 1e4  # prior deviations: as good as no prior
 
 
 def equivalents(
-    problem: Problem, fit: Fit, fits: Sequence[Fit]
+    problem: Problem, fit: Fit, rivals: Sequence[Fit]
 ) -> dict[str, tuple[tuple[str, float], ...]]:
     """Return which effects pass in these runs for a fitted one, or for each effect of a pair.
 
@@ -41,7 +41,7 @@ def equivalents(
             continue
         remainders = [
             (rival.names[0], _left(problem, signature, beside, rival))
-            for rival in fits
+            for rival in rivals
             if rival.names[0] not in fit.names
         ]
         alike = [pair for pair in remainders if pair[1] < ALIKE]

@@ -70,9 +70,8 @@ def heard_rms(runs: Sequence[GapRun], channel: str) -> float:
     if loud is None:
         return 0.0
     rate_hz = float(np.median([run.sample_rate_hz for run in quiet_runs]))
-    ends_hz = float(
-        np.concatenate([record.frequency_hz for record in lines]).max()
-    )  # short runs: none
+    # Short runs have none.
+    ends_hz = float(np.concatenate([record.frequency_hz for record in lines]).max())
     return math.sqrt(loud.at(ends_hz) * rate_hz)
 
 

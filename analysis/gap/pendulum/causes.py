@@ -28,7 +28,7 @@ _GATES: Final = ("flag_width", "gate_offset")
 _UNDER_A_FORCE: Final = ("force", "force_sign", "sensor_sign", "sensor_delay")
 _NOT_UNDER_A_FORCE: Final = ("sensor_offset", "sensor_noise")
 _NEEDS_LINES: Final = ("line_stretch", "line_creep", "off_level", "yaw_pitch_resonance")
-_HUNG: Final = tuple(one.name for one in ON_LINES)
+_HUNG: Final = tuple(effect.name for effect in ON_LINES)
 # A reading's noise shows in the scatter; a power law's damping ratio is that at this amplitude.
 _HELD: Final = {"sensor_noise": {"noise_rms": 0.0}, "power_drag": {"amplitude": 0.1}}
 
@@ -62,31 +62,43 @@ def cause(kind: type[Any], channel: str = "") -> Candidate:
         The one on which it acts; empty for all.
     """
     held = _HELD.get(kind.name, {})
-    known = [
-        Parameter(name, one.unit, one.typical, one.low, one.high, "", starts=one.starts)
-        for name, one in plausible(kind).items()
+    parameters = [
+        Parameter(
+            name,
+            parameter.unit,
+            parameter.typical,
+            parameter.low,
+            parameter.high,
+            "",
+            starts=parameter.starts,
+        )
+        for name, parameter in plausible(kind).items()
     ]
-    axes = [_axis(one, tuple(known)) for one in known if one.name not in held]
+    axes = [
+        _axis(parameter, tuple(parameters))
+        for parameter in parameters
+        if parameter.name not in held
+    ]
     return Candidate(kind, tuple(axes), held, _stage(kind), channel=channel)
 
 
-def starts_of(one: Candidate) -> list[tuple[Candidate, FloatArray]]:
+def starts_of(candidate: Candidate) -> list[tuple[Candidate, FloatArray]]:
     """Return a cause with each of the starts from which it is sought, in prior units."""
-    each = [[*map(axis.unit, axis.parameter.starts)] or [axis.start] for axis in one.axes]
-    return [(one, np.array(start)) for start in product(*each)]
+    each = [[*map(axis.unit, axis.parameter.starts)] or [axis.start] for axis in candidate.axes]
+    return [(candidate, np.array(start)) for start in product(*each)]
 
 
-def _axis(one: Parameter, siblings: tuple[Parameter, ...]) -> Axis:
+def _axis(parameter: Parameter, siblings: tuple[Parameter, ...]) -> Axis:
     """Return a parameter that begins at its typical value, or a tenth of its prior's width."""
-    axis = axis_of(one, siblings)
-    start = axis.unit(one.typical or 0.1 * axis.deviation)
-    return Axis(one, axis.centre, axis.deviation, axis.is_log, start)
+    axis = axis_of(parameter, siblings)
+    start = axis.unit(parameter.typical or 0.1 * axis.deviation)
+    return Axis(parameter, axis.centre, axis.deviation, axis.is_log, start)
 
 
 def _stage(kind: type[Any]) -> str:
     """Return what of a test an effect is about; of one's own the body if it says nothing."""
-    own = (stage for stage, names in _STAGES.items() if kind.name in names)
-    return next(own, str(getattr(kind, "stage", "body")))
+    stages = (stage for stage, names in _STAGES.items() if kind.name in names)
+    return next(stages, str(getattr(kind, "stage", "body")))
 
 
 def causes_for(
@@ -99,27 +111,27 @@ def causes_for(
         unfit += [*_NEEDS_LINES, *_HUNG]
     if isinstance(first, Floating):
         unfit += ["air", "finite_amplitude"]
-    if all(one.scaled for one in trials):  # light gates have no reading to be wrong
+    if all(trial.scaled for trial in trials):  # light gates have no reading to be wrong
         unfit += ["sensor_lag", "sensor_offset", "sensor_gain", "sensor_noise"]
     if isinstance(first, Suspension):
         unfit += ["yaw_pitch_resonance"]
     if not getattr(first, "linear", False):
         unfit += ["finite_amplitude"]
     unfit += _NOT_UNDER_A_FORCE if trials[0].driven else _UNDER_A_FORCE
-    if not any(one.viscous for one in first.resistances):
+    if not any(resistance.viscous for resistance in first.resistances):
         unfit += ["damping"]
-    fit, seen = [one for one in kinds if one.name not in unfit], _sensors(trials)
+    fit, sensors = [kind for kind in kinds if kind.name not in unfit], _sensors(trials)
     return tuple(
-        cause(one, channel)
-        for one in fit
-        for channel in (seen if "channel" in one.__dataclass_fields__ else ("",))
+        cause(kind, channel)
+        for kind in fit
+        for channel in (sensors if "channel" in kind.__dataclass_fields__ else ("",))
     )
 
 
 def _sensors(trials: Sequence[Trial]) -> tuple[str, ...]:
     """Return the sensors that may each be off by itself; an empty name where there is one."""
-    seen = {one.bench.sensors[0].channel.name for one in trials if one.driven}
-    return tuple(sorted(seen)) if len(seen) > 1 else ("",)
+    sensors = {trial.bench.sensors[0].channel.name for trial in trials if trial.driven}
+    return tuple(sorted(sensors)) if len(sensors) > 1 else ("",)
 
 
 def tolerance(name: str, deviation: float, *, own: bool = False) -> Tolerance:
@@ -130,11 +142,11 @@ def tolerance(name: str, deviation: float, *, own: bool = False) -> Tolerance:
     ConfigurationError
         If there is no such effect, or it has more numbers than one.
     """
-    known = by_name()
-    fit = [key for key, kind in known.items() if len(cause(kind).axes) == 1]
+    kinds = by_name()
+    fit = [key for key, kind in kinds.items() if len(cause(kind).axes) == 1]
     if name not in fit:
         near = get_close_matches(name, fit, n=1, cutoff=0.4)
         hint = f"did you mean {near[0]}?" if near else f"known: {', '.join(fit)}"
         raise ConfigurationError(f"nothing called {name!r} can be known within a tolerance; {hint}")
-    (axis,) = cause(known[name]).axes
-    return Tolerance(name, known[name](**{axis.parameter.name: deviation}), own)
+    (axis,) = cause(kinds[name]).axes
+    return Tolerance(name, kinds[name](**{axis.parameter.name: deviation}), own)

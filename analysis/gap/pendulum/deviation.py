@@ -29,7 +29,7 @@ _WHENCE: Final[Mapping[str, tuple[str, ...]]] = {
     "period": (RESTORED, LINES),
     "mean": (READ,),
 }
-_DECAY, _PERIOD, _MEAN = (KINDS.index(one) for one in ("decay", "period", "mean"))
+_DECAY, _PERIOD, _MEAN = (KINDS.index(kind) for kind in ("decay", "period", "mean"))
 
 
 def background(problem: PendulumProblem, looked: Sequence[Looked]) -> Background:
@@ -43,11 +43,14 @@ def background(problem: PendulumProblem, looked: Sequence[Looked]) -> Background
     scale = units(problem) / problem.uncertainty
     columns = problem.nuisances.columns
     shown = [
-        SignatureOfEffect(one.name, one.fit.stages[0], one.fit.signature, one.fit.columns)
-        for one in looked
-        if one.fit is not None
+        SignatureOfEffect(look.name, look.fit.stages[0], look.fit.signature, look.fit.columns)
+        for look in looked
+        if look.fit is not None
     ]
-    stages, everywhere = tuple(dict.fromkeys(one.stage for one in shown)), np.ones_like(scale) > 0.0
+    stages, everywhere = (
+        tuple(dict.fromkeys(effect.stage for effect in shown)),
+        np.ones_like(scale) > 0.0,
+    )
     cells = [np.flatnonzero(problem.kind == kind) for kind in np.unique(problem.kind)]
     return Background(
         problem.residual,
@@ -65,7 +68,7 @@ def _kinds(problem: PendulumProblem, stages: tuple[str, ...]) -> Iterator[tuple[
     """Yield where something unknown may show: in one kind of observable, or in all."""
     for kind in np.unique(problem.kind):
         name = KINDS[kind]
-        whence = tuple(one for one in _WHENCE.get(name, stages) if one in stages)
+        whence = tuple(stage for stage in _WHENCE.get(name, stages) if stage in stages)
         yield name, Kind(problem.kind == kind, whence or stages)
     yield "all", Kind(np.ones(len(problem.kind), dtype=bool), stages)
 
@@ -80,24 +83,26 @@ def units(problem: PendulumProblem) -> FloatArray:
     """
     out = np.ones(len(problem.kind))
     for at, trial in enumerate(problem.trials):
-        here = problem.trial == at
-        falls = problem.nominal[here & (problem.kind == _DECAY)]
+        rows = problem.trial == at
+        falls = problem.nominal[rows & (problem.kind == _DECAY)]
         turned = 1.0 if trial.driven else trial.windows.reference_rad_s * problem.centre_s
-        out = np.where(here & (problem.kind == _PERIOD), turned, out)
-        out = np.where(here & (problem.kind > _MEAN), trial.third_harmonic, out)
+        out = np.where(rows & (problem.kind == _PERIOD), turned, out)
+        out = np.where(rows & (problem.kind > _MEAN), trial.third_harmonic, out)
         if len(falls):
-            out[here & (problem.kind == _DECAY)] = max(float(np.ptp(falls)), 1.0)
-            out[here & (problem.kind == _MEAN)] = float(np.exp(falls.max()))
+            out[rows & (problem.kind == _DECAY)] = max(float(np.ptp(falls)), 1.0)
+            out[rows & (problem.kind == _MEAN)] = float(np.exp(falls.max()))
     return np.asarray(out, np.float64)
 
 
 def _likeness(problem: PendulumProblem, rows: NDArray[np.intp]) -> FloatArray:
     """Return how alike a deviation is in some windows, shape ``(rows, rows)``."""
     record, size = problem.trial[rows], _log_size(problem)[rows]
-    alike = np.array([[one.alike(other) for other in problem.trials] for one in problem.trials])
+    alike = np.array(
+        [[trial.alike(partner) for partner in problem.trials] for trial in problem.trials]
+    )
     shared = alike[np.ix_(record, record)] * np.exp(-0.5 * ((size[:, None] - size) / _OCTAVE) ** 2)
-    own = record[:, None] == record
-    return np.asarray((1.0 - _OWN) * shared + _OWN * own, np.float64)
+    is_same = record[:, None] == record
+    return np.asarray((1.0 - _OWN) * shared + _OWN * is_same, np.float64)
 
 
 def _log_size(problem: PendulumProblem) -> FloatArray:
@@ -105,14 +110,16 @@ def _log_size(problem: PendulumProblem) -> FloatArray:
 
     Noise that stood here and in what is observed would be taken for a deviation.
     """
-    found = np.zeros(len(problem.kind))
+    log_sizes = np.zeros(len(problem.kind))
     for at, trial in enumerate(problem.trials):
-        seen = np.isfinite(trial.observed[_DECAY])
+        is_finite = np.isfinite(trial.observed[_DECAY])
         if not trial.scaled:
-            time_s, here = trial.windows.centres_s, problem.trial == at
-            fell = np.polynomial.Polynomial.fit(time_s[seen], trial.observed[_DECAY, seen], 2)
-            found[here] = fell(problem.centre_s[here])
-    return found
+            time_s, rows = trial.windows.centres_s, problem.trial == at
+            fell = np.polynomial.Polynomial.fit(
+                time_s[is_finite], trial.observed[_DECAY, is_finite], 2
+            )
+            log_sizes[rows] = fell(problem.centre_s[rows])
+    return log_sizes
 
 
 def _own(problem: PendulumProblem, scale: FloatArray) -> dict[str, FloatArray]:
@@ -130,10 +137,10 @@ def _own(problem: PendulumProblem, scale: FloatArray) -> dict[str, FloatArray]:
         run: np.column_stack(
             [
                 np.where(part & (problem.trial == at), scale, 0.0)
-                for at in own
+                for at in numbers
                 for part in parts
                 if part.any()
             ]
         )
-        for run, own in runs.items()
+        for run, numbers in runs.items()
     }

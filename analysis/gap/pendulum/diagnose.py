@@ -71,7 +71,7 @@ class PendulumDiagnosis:
     def foretells(self) -> float:
         """Share of the gap, where it is least, that the best set foretells; NaN of no gap."""
         gaps = (regime for regime in self.regimes if regime.gap)
-        shares = [one.shrinkage for regime in gaps for one in regime.foretold[:1]]
+        shares = [forecast.shrinkage for regime in gaps for forecast in regime.foretold[:1]]
         return min(shares, default=math.nan)
 
     @property
@@ -107,50 +107,59 @@ def diagnose_trials(
     progress("laws of damping")
     laws = damping_laws(weighed, best, tried) if set(best.names) & set(DAMPING) else ()
     progress("what else it could be")
-    others = alternatives(weighed, best)
+    replacements = alternatives(weighed, best)
     progress("withheld swings")
     regimes = foretell(problem, _asked(weighed, best, laws)) if best.candidates else ()
     laws = _with_withheld(laws, regimes)
     progress("how large")
     after = settle(problem, best)
-    found = PendulumDiagnosis(weighed, verdict, after, where(problem, after), laws, others, regimes)
+    diagnosis = PendulumDiagnosis(
+        weighed, verdict, after, where(problem, after), laws, replacements, regimes
+    )
     progress("the next run")
-    rivals = leading(found)
+    rivals = leading(diagnosis)
     proposals = propose(problem, *rivals, reach) if rivals else ()
-    return replace(found, rivals=rivals, proposals=proposals)
+    return replace(diagnosis, rivals=rivals, proposals=proposals)
 
 
-def leading(found: PendulumDiagnosis) -> tuple[Fit, Fit] | None:
+def leading(diagnosis: PendulumDiagnosis) -> tuple[Fit, Fit] | None:
     """Return the two answers that a further record should tell apart; none where all is told."""
-    left = [law.hypothesis for law in open_laws(found.laws)]
-    if left:
-        best = found.laws[0].hypothesis
-        return best, next((one for one in left if not _nested(best, one)), left[0])
-    if not found.best.candidates:
+    open_fits = [law.hypothesis for law in open_laws(diagnosis.laws)]
+    if open_fits:
+        best = diagnosis.laws[0].hypothesis
+        return best, next((fit for fit in open_fits if not _nested(best, fit)), open_fits[0])
+    if not diagnosis.best.candidates:
         return None
-    second = next((one for one in found.weighed.ranked if not _nested(found.best, one)), None)
+    second = next(
+        (fit for fit in diagnosis.weighed.ranked if not _nested(diagnosis.best, fit)), None
+    )
     if second is None:
         return None
-    shares = found.weighed.answers.by_answer
-    ahead = shares[found.best.answer] > TOLD_APART * shares[second.answer]
-    return None if found.verdict.said == CAUSE and ahead else (found.best, second)
+    shares = diagnosis.weighed.answers.by_answer
+    ahead = shares[diagnosis.best.answer] > TOLD_APART * shares[second.answer]
+    return None if diagnosis.verdict.said == CAUSE and ahead else (diagnosis.best, second)
 
 
-def _nested(one: Fit, other: Fit) -> bool:
+def _nested(first: Fit, second: Fit) -> bool:
     """Whether either has all causes of the other."""
-    return set(one.names) <= set(other.names) or set(other.names) <= set(one.names)
+    return set(first.names) <= set(second.names) or set(second.names) <= set(first.names)
 
 
 def _with_withheld(
     laws: Sequence[DampingLaw], regimes: Sequence[WithheldSwings]
 ) -> tuple[DampingLaw, ...]:
     """Return the laws with what each leaves of the withheld swings."""
-    found = []
+    tested_laws = []
     for law in laws:
         names = named(law.hypothesis)
-        gaps = [one.gap for regime in regimes for one in regime.foretold if one.causes == names]
-        found.append(replace(law, withheld=tuple(gaps)))
-    return tuple(found)
+        gaps = [
+            forecast.gap
+            for regime in regimes
+            for forecast in regime.foretold
+            if forecast.causes == names
+        ]
+        tested_laws.append(replace(law, withheld=tuple(gaps)))
+    return tuple(tested_laws)
 
 
 def _asked(weighed: WeighedCauses, best: Fit, laws: Sequence[DampingLaw]) -> tuple[Fit, ...]:
@@ -168,8 +177,8 @@ def _asked(weighed: WeighedCauses, best: Fit, laws: Sequence[DampingLaw]) -> tup
 def _wrong(weighed: WeighedCauses, best: Fit) -> Fit | None:
     """Return the best single cause among those that the best set has nothing to do with."""
     wrong = [
-        one
-        for answer, one in weighed.sets.items()
+        fit
+        for answer, fit in weighed.sets.items()
         if len(effects_in(answer)) == 1 and answer not in (*best.names, *DAMPING)
     ]
-    return max(wrong, key=lambda one: one.log_evidence, default=None)
+    return max(wrong, key=lambda fit: fit.log_evidence, default=None)

@@ -31,7 +31,7 @@ from sim.pendulum.bench import PendulumBench
 from sim.pendulum.driven import ORDERS, DrivenBody, PeriodicForce, impedance, settled
 from sim.pendulum.effects.base import PendulumEffect
 
-_DECAY, _PERIOD, _MEAN = (KINDS.index(one) for one in ("decay", "period", "mean"))
+_DECAY, _PERIOD, _MEAN = (KINDS.index(kind) for kind in ("decay", "period", "mean"))
 _ORDERS = 23  # of the motion that a window is shown
 _MOST_SAMPLES = 256  # a period: more do not change what a window makes of it
 _ANOTHER_TURN = 1.5 * math.pi  # rad: halfway from half a turn off to a whole one
@@ -107,8 +107,8 @@ class DrivenTrial(Trial):
 
     def _apart(self, shown: FloatArray) -> float:
         """Return the observed phase less a simulated one; 0 where none was observed."""
-        seen = self.observed[_PERIOD, np.isfinite(self.observed[_PERIOD])]
-        return float(np.median(seen) - np.median(shown[_PERIOD])) if seen.size else 0.0
+        phases = self.observed[_PERIOD, np.isfinite(self.observed[_PERIOD])]
+        return float(np.median(phases) - np.median(shown[_PERIOD])) if phases.size else 0.0
 
     def _shown(self, effects: Iterable[PendulumEffect]) -> tuple[FloatArray, FloatArray]:
         """Return what the record would show, its phase in any turn, and by how much it is late."""
@@ -151,8 +151,10 @@ class DrivenTrial(Trial):
 
     def placed(self, effects: Iterable[PendulumEffect]) -> list[PendulumEffect]:
         """Return the effects that act on this run: those of another sensor do not."""
-        own = ("", self.channel)
-        return super().placed(one for one in effects if getattr(one, "channel", "") in own)
+        channels = ("", self.channel)
+        return super().placed(
+            effect for effect in effects if getattr(effect, "channel", "") in channels
+        )
 
     def pushed(self, factor: float) -> "DrivenTrial":
         """Return the run under another force of the same frequency."""
@@ -227,20 +229,22 @@ class KnownForce:
             windows = cut_into_windows(start_s, stop_s, period_s, rate_hz)
             if windows.count < 2:
                 raise DataError(f"{name}: no two windows of {period_s:.3g} s; record longer")
-            seen = swings_of_samples(time_s, values, windows, steady=True)
-            slope = np.polyfit(windows.centres_s, seen[_PERIOD], 1)[0]
+            swings = swings_of_samples(time_s, values, windows, steady=True)
+            slope = np.polyfit(windows.centres_s, swings[_PERIOD], 1)[0]
             period_s = 2.0 * math.pi / (windows.reference_rad_s + float(slope))
         since, omega = time_s - start_s, windows.reference_rad_s
-        grew, changes = _smooth(windows, seen[_DECAY]), float(np.ptp(_good(seen[_DECAY])))
+        grew, changes = _smooth(windows, swings[_DECAY]), float(np.ptp(_good(swings[_DECAY])))
         grew -= grew(since).mean()
         values = _evened(values, grew(since))
-        seen = swings_of_samples(time_s, values, windows, steady=True)
+        swings = swings_of_samples(time_s, values, windows, steady=True)
         inside = (since < windows.length_s * windows.count) & np.isfinite(values)
         turns = np.exp(1j * omega * since[inside, None] * np.arange(1, ORDERS + 1))
         columns = np.column_stack([np.ones(len(turns)), turns.real, turns.imag])
         _, *solved = np.linalg.lstsq(columns, values[inside], rcond=None)[0]
-        found = [complex(a, -b) for a, b in zip(solved[:ORDERS], solved[ORDERS:], strict=True)]
-        return cls(windows, PeriodicForce(omega, tuple(found)), found[0], seen, grew, changes)
+        harmonics = [complex(a, -b) for a, b in zip(solved[:ORDERS], solved[ORDERS:], strict=True)]
+        return cls(
+            windows, PeriodicForce(omega, tuple(harmonics)), harmonics[0], swings, grew, changes
+        )
 
     @property
     def grows_rad_s(self) -> ComplexArray:
@@ -261,13 +265,13 @@ class KnownForce:
         where that of the force is not known.
         """
         values = _evened(values, self.grew(time_s - self.windows.start_s))
-        found = swings_of_samples(time_s, values, self.windows, steady=True)
-        found[_DECAY] -= self.seen[_DECAY] - math.log(abs(self.first))
-        found[_PERIOD] -= self.seen[_PERIOD] - cmath.phase(self.first)
-        found[_MEAN] = np.nan
+        swings = swings_of_samples(time_s, values, self.windows, steady=True)
+        swings[_DECAY] -= self.seen[_DECAY] - math.log(abs(self.first))
+        swings[_PERIOD] -= self.seen[_PERIOD] - cmath.phase(self.first)
+        swings[_MEAN] = np.nan
         if len(self.harmonics.harmonics) < 3:
-            found[_MEAN + 1 :] = np.nan
-        return found
+            swings[_MEAN + 1 :] = np.nan
+        return swings
 
 
 def _smooth(windows: Windows, values: FloatArray) -> Polynomial:

@@ -73,21 +73,25 @@ def propose(
     reach
         Of suspensions; where left out a little beyond those that were used, but no wider.
     """
-    made = (
+    planned_records = (
         _suspensions(problem, first, reach or _reach(problem))
         if problem.on_lines
         else _runs(problem.trials, first)
         if problem.driven
         else _releases(problem.trials[0], first)
     )
-    found = []
-    for what, trial in made:
+    records = []
+    for label, trial in planned_records:
         try:
-            one, other = (_foretold(problem, trial, answer) for answer in (first, second))
+            by_first, by_second = (_foretold(problem, trial, answer) for answer in (first, second))
         except PmmError:  # an answer's friction holds the body at rest
             continue
-        found.append(FurtherRecord(what, (_divergence(one, other), _divergence(other, one))))
-    return tuple(sorted(found, key=lambda one: -one.gain))
+        records.append(
+            FurtherRecord(
+                label, (_divergence(by_first, by_second), _divergence(by_second, by_first))
+            )
+        )
+    return tuple(sorted(records, key=lambda record: -record.gain))
 
 
 def _releases(trial: Trial, first: Fit) -> Iterator[tuple[str, Trial]]:
@@ -102,18 +106,18 @@ def _releases(trial: Trial, first: Fit) -> Iterator[tuple[str, Trial]]:
             )
             windows = replace(trial.windows, count=longer * trial.windows.count)
             bench = replace(trial.bench, release=release)
-            what = f"release at {factor:g} times the amplitude"
-            what += ", a record twice as long" if longer > 1 else ", a record as long"
-            yield what, _planned(replace(trial, windows=windows, bench=bench), trial, first)
+            label = f"release at {factor:g} times the amplitude"
+            label += ", a record twice as long" if longer > 1 else ", a record as long"
+            yield label, _planned(replace(trial, windows=windows, bench=bench), trial, first)
 
 
 def _runs(trials: Sequence[Trial], first: Fit) -> Iterator[tuple[str, Trial]]:
     """Yield the runs again under smaller and larger forces, as the first answer foretells them."""
-    for trial in (one for one in trials if isinstance(one, DrivenTrial)):
+    for trial in (trial for trial in trials if isinstance(trial, DrivenTrial)):
         for factor in _FACTORS:
-            what = f"{trial.name} again under {factor:g} times the force"
+            label = f"{trial.name} again under {factor:g} times the force"
             with suppress(PmmError):
-                yield what, _planned(trial.pushed(factor), trial, first)
+                yield label, _planned(trial.pushed(factor), trial, first)
 
 
 def _suspensions(problem: PendulumProblem, first: Fit, reach: Reach) -> Iterator[tuple[str, Trial]]:
@@ -121,38 +125,38 @@ def _suspensions(problem: PendulumProblem, first: Fit, reach: Reach) -> Iterator
     trial = problem.trials[0]
     body = suspension_of(trial.bench, "a further suspension")
     halves, lines = (
-        np.unique(np.round(np.geomspace(*one, _EACH), 2))
-        for one in (reach.half_spacing_m, reach.line_m)
+        np.unique(np.round(np.geomspace(*span, _EACH), 2))
+        for span in (reach.half_spacing_m, reach.line_m)
     )
     for half in halves:
         for line in lines:
             hung = replace(body, half_spacing_m=float(half), line_length_m=float(line))
-            other = replace(trial, bench=replace(trial.bench, body=hung))
-            on = other.placed([*other.effects, *first.effects])
-            bench = other.bench.with_effects(on)
+            planned = replace(trial, bench=replace(trial.bench, body=hung))
+            on = planned.placed([*planned.effects, *first.effects])
+            bench = planned.bench.with_effects(on)
             inertia, restoring = small_swing(bench, trial.acts_on)
             omega = math.sqrt(restoring / inertia)
-            other = replace(other, windows=replace(trial.windows, reference_rad_s=omega))
-            what = f"half spacing {half:.2f} m, lines of {line:.2f} m"
-            yield what, _planned(other, trial, first)
+            planned = replace(planned, windows=replace(trial.windows, reference_rad_s=omega))
+            label = f"half spacing {half:.2f} m, lines of {line:.2f} m"
+            yield label, _planned(planned, trial, first)
 
 
 def _reach(problem: PendulumProblem) -> Reach:
     bodies = [suspension_of(trial.bench, "a further suspension") for trial in problem.trials]
-    halves = [one.half_spacing_m for one in bodies]
-    lines = [one.line_length_m for one in bodies]
+    halves = [body.half_spacing_m for body in bodies]
+    lines = [body.line_length_m for body in bodies]
     return Reach((min(halves) / _BEYOND, max(halves)), (min(lines) / _BEYOND, _BEYOND * max(lines)))
 
 
 def _planned(planned: Trial, trial: Trial, first: Fit) -> Trial:
     """Return a trial as the first answer foretells it, with noise like the record's."""
     observed = planned.simulate(first.effects)
-    known, size = np.exp(trial.observed[_DECAY]), np.exp(observed[_DECAY])
+    record_size, size = np.exp(trial.observed[_DECAY]), np.exp(observed[_DECAY])
     spread = np.full_like(observed, np.nan)
     for kind in range(len(KINDS)):
-        own = trial.uncertainty[kind] if kind == _MEAN else trial.uncertainty[kind] * known
-        if np.isfinite(own).any():
-            spread[kind] = np.nanmedian(own) / (1.0 if kind == _MEAN else size)
+        noise = trial.uncertainty[kind] if kind == _MEAN else trial.uncertainty[kind] * record_size
+        if np.isfinite(noise).any():
+            spread[kind] = np.nanmedian(noise) / (1.0 if kind == _MEAN else size)
     return replace(planned, observed=observed, uncertainty=spread)
 
 
@@ -164,32 +168,34 @@ class _Expected:
     covariance: FloatArray
 
 
-def _foretold(problem: PendulumProblem, trial: Trial, one: Fit) -> _Expected:
+def _foretold(problem: PendulumProblem, trial: Trial, answer: Fit) -> _Expected:
     """Return what an answer expects of a planned record, given the records that there are."""
-    there = replace(problem, trials=(trial,))
-    again = len(problem.trials) == 1 and not problem.on_lines
-    (kept, free), (carried, begun) = (_parted(part, again=again) for part in (problem, there))
-    columns = np.hstack([kept, one.columns])
-    known = posterior(one.linearised(problem.residual), columns, Nuisances(free))
-    planned = at(there, one.candidates, one.units)
+    problem_ahead = replace(problem, trials=(trial,))
+    same_body = len(problem.trials) == 1 and not problem.on_lines
+    (shared, free), (carried, begun) = (
+        _parted(part, same_body=same_body) for part in (problem, problem_ahead)
+    )
+    columns = np.hstack([shared, answer.columns])
+    estimate = posterior(answer.linearised(problem.residual), columns, Nuisances(free))
+    planned = at(problem_ahead, answer.candidates, answer.units)
     slopes = np.hstack([carried, planned.columns])
-    moved = known.mean - np.concatenate([np.zeros(kept.shape[1]), one.units])
-    covariance = np.eye(len(slopes)) + begun @ begun.T + slopes @ known.covariance @ slopes.T
+    moved = estimate.mean - np.concatenate([np.zeros(shared.shape[1]), answer.units])
+    covariance = np.eye(len(slopes)) + begun @ begun.T + slopes @ estimate.covariance @ slopes.T
     return _Expected(planned.signature + slopes @ moved, covariance)
 
 
-def _parted(problem: PendulumProblem, *, again: bool) -> tuple[FloatArray, FloatArray]:
+def _parted(problem: PendulumProblem, *, same_body: bool) -> tuple[FloatArray, FloatArray]:
     """Return the columns that a further record shares with the others, and those it does not."""
-    own: Sequence[FloatArray] = (problem.releases, problem.unsure)
-    if again:  # the same body in the same set-up: only the release is new
-        return np.hstack([problem.shared, problem.set_ups]), np.hstack(own)
-    return problem.shared, np.hstack([*own, problem.set_ups])
+    record_columns: Sequence[FloatArray] = (problem.releases, problem.unsure)
+    if same_body:  # the same body in the same set-up: only the release is new
+        return np.hstack([problem.shared, problem.set_ups]), np.hstack(record_columns)
+    return problem.shared, np.hstack([*record_columns, problem.set_ups])
 
 
-def _divergence(right: _Expected, other: _Expected) -> float:
+def _divergence(right: _Expected, rival: _Expected) -> float:
     """Return the ln evidence that the right answer is expected to gain on the other one."""
-    solved = np.linalg.solve(other.covariance, right.covariance)
-    apart = other.mean - right.mean
-    square = float(apart @ np.linalg.solve(other.covariance, apart))
+    solved = np.linalg.solve(rival.covariance, right.covariance)
+    apart = rival.mean - right.mean
+    square = float(apart @ np.linalg.solve(rival.covariance, apart))
     spread = float(np.trace(solved)) - apart.size - float(np.linalg.slogdet(solved)[1])
     return 0.5 * (square + spread)

@@ -71,32 +71,34 @@ def damping_laws(
 
     The best set's own law is among them. Linear damping that is stated is more or less of that.
     """
-    others = [one for one in best.candidates if one.name not in DAMPING]
-    possible = {one.name: one for one in causes}
-    own = tuple(one.name for one in best.candidates if one.name in DAMPING)
-    tried = {_law(names): names for names in (*map(partial(_linear_as, possible), LAWS), own)}
+    rest = [candidate for candidate in best.candidates if candidate.name not in DAMPING]
+    possible = {candidate.name: candidate for candidate in causes}
+    law_names = tuple(candidate.name for candidate in best.candidates if candidate.name in DAMPING)
+    tried = {_law(names): names for names in (*map(partial(_linear_as, possible), LAWS), law_names)}
     fitted = {
-        name: fit(weighed.problem, [*others, *(possible[one] for one in names)])
+        name: fit(weighed.problem, [*rest, *(possible[cause_name] for cause_name in names)])
         for name, names in tried.items()
         if set(names) <= set(possible)
     }
-    mine = _law(own)  # from its typical size a fit may go astray, where the search did not
-    fitted[mine] = max((best, fitted.get(mine, best)), key=weighed.weight)
-    weights = {name: weighed.weight(one) for name, one in fitted.items()}
+    best_law = _law(
+        law_names
+    )  # from its typical size a fit may go astray, where the search did not
+    fitted[best_law] = max((best, fitted.get(best_law, best)), key=weighed.weight)
+    weights = {name: weighed.weight(law_fit) for name, law_fit in fitted.items()}
     top = max(weights.values(), default=0.0)
-    laws = [DampingLaw(name, one, weights[name] - top) for name, one in fitted.items()]
+    laws = [DampingLaw(name, law_fit, weights[name] - top) for name, law_fit in fitted.items()]
     return tuple(sorted(laws, key=lambda law: -law.log_ratio))
 
 
 def _linear_as(possible: Mapping[str, Candidate], names: tuple[str, ...]) -> tuple[str, ...]:
     """Return a law with the linear damping that these records can have."""
     linear = "damping" if "damping" in possible else "viscous_damping"
-    return tuple(linear if one == "viscous_damping" else one for one in names)
+    return tuple(linear if name == "viscous_damping" else name for name in names)
 
 
 def _law(names: Sequence[str]) -> str:
     """Return what a law is called."""
-    return " and ".join(dict.fromkeys(one for name, one in _GROWS.items() if name in names))
+    return " and ".join(dict.fromkeys(law for name, law in _GROWS.items() if name in names))
 
 
 @dataclass(frozen=True)
@@ -110,27 +112,29 @@ class Alternative:
 
 def alternatives(weighed: WeighedCauses, best: Fit) -> tuple[Alternative, ...]:
     """Return which causes could stand in the place of each one, weights within a factor of 20."""
-    found = [
-        Alternative(one.name, name, ratio)
-        for at, one in enumerate(best.candidates)
+    rows = [
+        Alternative(candidate.name, name, ratio)
+        for at, candidate in enumerate(best.candidates)
         for name, ratio in _in_place(weighed, best, at)
         if ratio > -math.log(TOLD_APART)
     ]
-    return tuple(sorted(found, key=lambda row: (row.instead_of, -row.log_ratio)))
+    return tuple(sorted(rows, key=lambda row: (row.instead_of, -row.log_ratio)))
 
 
 def _in_place(weighed: WeighedCauses, best: Fit, at: int) -> Iterator[tuple[str, float]]:
     """Yield the causes in the place of one of a set's, and their weight over the set's."""
     problem, reference = weighed.problem, weighed.weight(best)
-    base = fit(problem, [one for number, one in enumerate(best.candidates) if number != at])
-    for seen in weighed.looked:
-        if seen.fit is None or seen.name in best.names:
+    base = fit(
+        problem, [candidate for number, candidate in enumerate(best.candidates) if number != at]
+    )
+    for look in weighed.looked:
+        if look.fit is None or look.name in best.names:
             continue
-        rough = joined(problem, base, seen.fit)
+        rough = joined(problem, base, look.fit)
         if expected_evidence(problem, rough) < best.log_evidence - _HOPELESS:
             continue
         try:
-            one = fit(problem, rough.candidates, rough.units)
+            refit = fit(problem, rough.candidates, rough.units)
         except PmmError:  # cannot act on these tests
             continue
-        yield seen.name, weighed.weight(one) - reference
+        yield look.name, weighed.weight(refit) - reference

@@ -68,13 +68,13 @@ class PendulumProblem:
     @property
     def driven(self) -> bool:
         """Whether the records are of runs under a known force."""
-        return all(one.driven for one in self.trials)
+        return all(trial.driven for trial in self.trials)
 
     @cached_property
     def runs(self) -> NDArray[np.intp]:
         """Number of each trial's run, shape ``(trials,)``; sensors of one run share it."""
-        names = [one.run or f"#{at}" for at, one in enumerate(self.trials)]
-        return np.array([names.index(one) for one in names])
+        names = [trial.run or f"#{at}" for at, trial in enumerate(self.trials)]
+        return np.array([names.index(name) for name in names])
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -84,57 +84,63 @@ class PendulumProblem:
     @property
     def on_lines(self) -> bool:
         """Whether light gates watch a body on two lines."""
-        return all(one.scaled and isinstance(one.bench.body, Suspension) for one in self.trials)
+        return all(
+            trial.scaled and isinstance(trial.bench.body, Suspension) for trial in self.trials
+        )
 
     @cached_property
     def _seen(self) -> tuple[BoolArray, ...]:
         counts = np.array([name in self.kinds for name in KINDS])[:, None]
         return tuple(
-            counts & np.isfinite(one.observed) & np.isfinite(one.uncertainty) for one in self.trials
+            counts & np.isfinite(trial.observed) & np.isfinite(trial.uncertainty)
+            for trial in self.trials
         )
 
     def flat(self, parts: Sequence[FloatArray]) -> FloatArray:
         """Return the trials' values that count, one after the other."""
-        return np.concatenate([part[seen] for part, seen in zip(parts, self._seen, strict=True)])
+        return np.concatenate([part[rows] for part, rows in zip(parts, self._seen, strict=True)])
 
     @cached_property
     def uncertainty(self) -> FloatArray:
         """Standard deviation of each observation, shape ``(observations,)``."""
-        return self.flat([one.uncertainty for one in self.trials])
+        return self.flat([trial.uncertainty for trial in self.trials])
 
     @cached_property
     def observed(self) -> FloatArray:
         """The observations, shape ``(observations,)``."""
-        return self.flat([one.observed for one in self.trials])
+        return self.flat([trial.observed for trial in self.trials])
 
     @cached_property
     def trial(self) -> NDArray[np.intp]:
         """Number of each observation's trial."""
-        parts = [np.full(seen.shape, at) for at, seen in enumerate(self._seen)]
-        return np.concatenate([p[seen] for p, seen in zip(parts, self._seen, strict=True)])
+        parts = [np.full(rows.shape, at) for at, rows in enumerate(self._seen)]
+        return np.concatenate([p[rows] for p, rows in zip(parts, self._seen, strict=True)])
 
     @cached_property
     def kind(self) -> NDArray[np.intp]:
         """Number of each observation's kind."""
-        return np.concatenate([np.nonzero(seen)[0] for seen in self._seen])
+        return np.concatenate([np.nonzero(rows)[0] for rows in self._seen])
 
     @cached_property
     def amplitude(self) -> FloatArray:
         """Amplitude of the window that each observation belongs to."""
         parts = [
-            np.broadcast_to(np.exp(one.observed[0]), one.observed.shape) for one in self.trials
+            np.broadcast_to(np.exp(trial.observed[0]), trial.observed.shape)
+            for trial in self.trials
         ]
         return self.flat(parts)
 
     @cached_property
     def centre_s(self) -> FloatArray:
         """Middle of the window that each observation belongs to."""
-        parts = [np.broadcast_to(one.windows.centres_s, one.observed.shape) for one in self.trials]
+        parts = [
+            np.broadcast_to(trial.windows.centres_s, trial.observed.shape) for trial in self.trials
+        ]
         return self.flat(parts)
 
     def predict(self, effects: Sequence[PendulumEffect] = ()) -> FloatArray:
         """Return what all records would show, shape ``(observations,)``."""
-        return self.flat([one.simulate(effects) for one in self.trials])
+        return self.flat([trial.simulate(effects) for trial in self.trials])
 
     def signature(self, parts: Sequence[Candidate], units: FloatArray) -> FloatArray:
         """Return what effects change of the observations, in sigma."""
@@ -172,35 +178,39 @@ class PendulumProblem:
             columns.append(self._column(at, further, 0.2))
             columns.append(self._column(at, trial.release_error(0.0, 0.2 * TURNED), 0.2))
             if trial.scaled:
-                own = (self.trial == at) & (self.kind == 0)
-                columns.append(_ANY_SIZE * own / self.uncertainty)
+                rows = (self.trial == at) & (self.kind == 0)
+                columns.append(_ANY_SIZE * rows / self.uncertainty)
         return self._stacked(columns)
 
     @cached_property
     def set_ups(self) -> FloatArray:
         """Columns of what each trial's own set-up leaves open: variants, its own tolerances."""
         columns = [
-            self._varied(at, one) for at, trial in enumerate(self.trials) for one in trial.variants
+            self._varied(at, bench)
+            for at, trial in enumerate(self.trials)
+            for bench in trial.variants
         ]
-        for known in self.tolerances:
-            columns += self._tolerated(known) if known.own else []
+        for tolerance in self.tolerances:
+            columns += self._tolerated(tolerance) if tolerance.own else []
         return self._stacked(columns)
 
     @cached_property
     def shared(self) -> FloatArray:
         """Columns of the tolerances that all trials share."""
-        tolerated = [self._tolerated(known) for known in self.tolerances if not known.own]
+        tolerated = [
+            self._tolerated(tolerance) for tolerance in self.tolerances if not tolerance.own
+        ]
         return self._stacked([np.sum(each, axis=0) for each in tolerated])
 
     @cached_property
     def unsure(self) -> FloatArray:
         """Columns of what the nominal simulation itself may be wrong by."""
-        found: list[FloatArray] = []
+        columns: list[FloatArray] = []
         for kind, error in enumerate(self.model_error):
             for at in range(len(self.trials)) if error > 0.0 else ():
                 smooth = self.smooth((self.trial == at) & (self.kind == kind))
-                found += list((error * smooth / self.uncertainty[:, None]).T)
-        return self._stacked(found)
+                columns += list((error * smooth / self.uncertainty[:, None]).T)
+        return self._stacked(columns)
 
     def _stacked(self, columns: Sequence[FloatArray]) -> FloatArray:
         return np.column_stack(columns) if columns else np.empty((self.uncertainty.size, 0))
@@ -218,18 +228,18 @@ class PendulumProblem:
         time_s = self.centre_s[rows]
         apart = (time_s[:, None] - time_s) / (_LONG * max(float(np.ptp(time_s)), 1e-9))
         values, vectors = np.linalg.eigh(np.exp(-0.5 * apart**2))
-        kept = values > _FAINT
-        columns = np.zeros((rows.size, int(kept.sum())))
-        columns[rows] = vectors[:, kept] * np.sqrt(values[kept])
+        is_clear = values > _FAINT
+        columns = np.zeros((rows.size, int(is_clear.sum())))
+        columns[rows] = vectors[:, is_clear] * np.sqrt(values[is_clear])
         return columns
 
-    def _tolerated(self, known: Tolerance) -> list[FloatArray]:
-        return [self._column(at, known.effect, 1.0) for at in range(len(self.trials))]
+    def _tolerated(self, tolerance: Tolerance) -> list[FloatArray]:
+        return [self._column(at, tolerance.effect, 1.0) for at in range(len(self.trials))]
 
     def _varied(self, at: int, bench: PendulumBench) -> FloatArray:
         trial = self.trials[at]
-        other = replace(trial, bench=replace(bench, release=trial.bench.release))
-        return self._change(at, other.simulate(self.about) - trial.simulate(self.about))
+        variant = replace(trial, bench=replace(bench, release=trial.bench.release))
+        return self._change(at, variant.simulate(self.about) - trial.simulate(self.about))
 
     def _column(self, at: int, effect: PendulumEffect, share: float) -> FloatArray:
         """Return the change by an effect on one trial, per whole of which it is a share."""
@@ -238,6 +248,6 @@ class PendulumProblem:
         return self._change(at, change / share)
 
     def _change(self, at: int, change: FloatArray) -> FloatArray:
-        parts = [np.zeros(one.observed.shape) for one in self.trials]
+        parts = [np.zeros(trial.observed.shape) for trial in self.trials]
         parts[at] = change
         return self.flat(parts) / self.uncertainty

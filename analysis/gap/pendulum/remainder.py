@@ -57,20 +57,20 @@ class KindOfGap:
 
 def where(problem: PendulumProblem, after: Settled) -> tuple[KindOfGap, ...]:
     """Return the gap by kind of observable, before and after."""
-    left = remainder(after.problem, after.best)
-    lefts = (as_stated(problem), remainder(problem, nothing(problem)), left)
-    found = []
+    leftover = remainder(after.problem, after.best)
+    leftovers = (as_stated(problem), remainder(problem, nothing(problem)), leftover)
+    kinds = []
     for kind in np.unique(problem.kind):
         rows = problem.kind == kind
-        sizes = [float(np.sqrt(np.mean(left[rows] ** 2))) for left in lefts]
-        found.append(KindOfGap(problem.names[kind], int(rows.sum()), *sizes))
-    return tuple(found)
+        sizes = [float(np.sqrt(np.mean(leftover[rows] ** 2))) for leftover in leftovers]
+        kinds.append(KindOfGap(problem.names[kind], int(rows.sum()), *sizes))
+    return tuple(kinds)
 
 
-def remainder(problem: PendulumProblem, one: Fit) -> FloatArray:
+def remainder(problem: PendulumProblem, hypothesis: Fit) -> FloatArray:
     """Return what a hypothesis leaves of the gap with its nuisances at their best, in sigma."""
-    left = problem.residual - one.signature
-    return left - problem.nuisances.columns @ problem.nuisances.fitted(left)
+    leftover = problem.residual - hypothesis.signature
+    return leftover - problem.nuisances.columns @ problem.nuisances.fitted(leftover)
 
 
 def turned_runs(problem: PendulumProblem, after: Settled) -> tuple[str, ...]:
@@ -84,12 +84,12 @@ def turned_runs(problem: PendulumProblem, after: Settled) -> tuple[str, ...]:
     if not problem.driven:
         return ()
     stated = np.abs(problem.residual * problem.uncertainty)
-    left = np.abs((after.problem.residual - after.best.signature) * problem.uncertainty)
-    off = (np.abs(stated - math.pi) < _SIGN_RAD) & (left > _SIGN_RAD)
+    leftover = np.abs((after.problem.residual - after.best.signature) * problem.uncertainty)
+    off = (np.abs(stated - math.pi) < _SIGN_RAD) & (leftover > _SIGN_RAD)
     phase = problem.kind == KINDS.index("period")
-    names = [one.run or one.name for one in problem.trials]
-    wrong = {one for at, one in enumerate(names) if off[phase & (problem.trial == at)].all()}
-    return tuple(one for one in dict.fromkeys(names) if one in wrong)
+    names = [trial.run or trial.name for trial in problem.trials]
+    wrong = {run for at, run in enumerate(names) if off[phase & (problem.trial == at)].all()}
+    return tuple(run for run in dict.fromkeys(names) if run in wrong)
 
 
 def as_stated(problem: PendulumProblem) -> FloatArray:

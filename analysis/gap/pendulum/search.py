@@ -59,20 +59,23 @@ class WeighedCauses:
     def ranked(self) -> list[Fit]:
         """The sets of causes, most probable first."""
         shares = self.answers.by_answer
-        return sorted(self.sets.values(), key=lambda one: -shares[one.answer])
+        return sorted(self.sets.values(), key=lambda cause_set: -shares[cause_set.answer])
 
     @property
     def strangeness(self) -> float:
         """Log of how much better something unknown does than any set, prior odds left out."""
         shares, count = self.answers.by_answer, len(self.looked)
-        named = (shares[one.answer] / prior(len(one.names), count) for one in self.sets.values())
+        named = (
+            shares[cause_set.answer] / prior(len(cause_set.names), count)
+            for cause_set in self.sets.values()
+        )
         best, unknown = max(named, default=0.0), shares[UNKNOWN] / ODDS.unknown
         return math.log(max(unknown, _TINY)) - math.log(max(best, _TINY))
 
-    def weight(self, one: Fit) -> float:
+    def weight(self, cause_set: Fit) -> float:
         """Return the log weight of a set beside any deviation, prior odds included."""
-        odds = math.log(prior(len(one.names), len(self.looked)))
-        return weight(self.beside.named([hypothesis(self.problem, one)])[0]) + odds
+        odds = math.log(prior(len(cause_set.names), len(self.looked)))
+        return weight(self.beside.named([hypothesis(self.problem, cause_set)])[0]) + odds
 
 
 def weigh(
@@ -90,24 +93,30 @@ def weigh(
     """
     engine = Engine(None, progress)
     progress("looking at causes")
-    looked = tuple(best_look(problem, one.name, starts_of(one)) for one in causes)
+    looked = tuple(best_look(problem, candidate.name, starts_of(candidate)) for candidate in causes)
     none = null_evidence(problem.residual, problem.nuisances)
-    seen = [one for one in looked if one.fit and one.visible >= HIDDEN]
-    singles = fitted(problem, seen, none, engine)
-    pairs = paired(problem, singles, seen, none, engine) if most > 1 else []
-    partners = [*(one.fit for one in seen if one.fit is not None), *singles]
+    looks = [look for look in looked if look.fit and look.visible >= HIDDEN]
+    singles = fitted(problem, looks, none, engine)
+    pairs = paired(problem, singles, looks, none, engine) if most > 1 else []
+    partners = [*(look.fit for look in looks if look.fit is not None), *singles]
     triples = widened(problem, pairs, partners, engine) if most > 2 else []
     progress("weighing")
     beside = background(problem, looked)
-    kept = [[hypothesis(problem, one) for one in ones] for ones in (singles, pairs, triples)]
-    considered = Considered(kept[0], kept[1], len(causes), len(causes) - len(seen), kept[2])
-    found = answers(considered, beside)
-    if not all(math.isfinite(share) for share in found.by_answer.values()):
+    hypotheses = [
+        [hypothesis(problem, cause_set) for cause_set in cause_sets]
+        for cause_sets in (singles, pairs, triples)
+    ]
+    considered = Considered(
+        hypotheses[0], hypotheses[1], len(causes), len(causes) - len(looks), hypotheses[2]
+    )
+    answer_set = answers(considered, beside)
+    if not all(math.isfinite(share) for share in answer_set.by_answer.values()):
         raise DataError("the simulation cannot follow these records: their evidence is no number")
     sets = {
-        one.answer: settled(one, found.settled[one.answer]) for one in (*singles, *pairs, *triples)
+        cause_set.answer: settled(cause_set, answer_set.settled[cause_set.answer])
+        for cause_set in (*singles, *pairs, *triples)
     }
-    return WeighedCauses(problem, sets, looked, beside, found)
+    return WeighedCauses(problem, sets, looked, beside, answer_set)
 
 
 def fit(
@@ -123,10 +132,10 @@ def fit(
     parts = tuple(causes)
     if not parts:
         return nothing(problem)
-    units = np.concatenate([one.start for one in parts]) if start is None else start
+    units = np.concatenate([part.start for part in parts]) if start is None else start
     return refine(problem, at(problem, parts, inside(parts, units)))
 
 
-def named(one: Fit) -> tuple[str, ...]:
+def named(cause_set: Fit) -> tuple[str, ...]:
     """Return a set's causes in alphabetical order."""
-    return effects_in(one.answer) if one.candidates else ()
+    return effects_in(cause_set.answer) if cause_set.candidates else ()

@@ -27,18 +27,18 @@ class Settled:
 
 def settle(problem: PendulumProblem, best: Fit) -> Settled:
     """Fit a set again about itself; as it is where the body would not swing back there."""
-    found = Settled(problem, best)
+    settled = Settled(problem, best)
     for _ in range(_ROUNDS if best.candidates else 0):
         try:
-            about = _about(found)
-            found = Settled(about, fit(about, best.candidates, found.best.units))
+            about = _about(settled)
+            settled = Settled(about, fit(about, best.candidates, settled.best.units))
         except PmmError:
             break
-    return found
+    return settled
 
 
-def _about(found: Settled) -> PendulumProblem:
-    problem, best = found.problem, found.best
+def _about(settled: Settled) -> PendulumProblem:
+    problem, best = settled.problem, settled.best
     free = problem.nuisances.fitted(problem.residual - best.signature)
     first = np.cumsum([0, *(trial.release_columns for trial in problem.trials)])
     trials = tuple(

@@ -68,13 +68,15 @@ def surrogate(trial: Trial, *, restoring: bool = True) -> Surrogate:
     problem = PendulumProblem((trial,), kinds=kinds)
     best = nothing(problem)
     for stage in _STAGES:
-        best = _better(problem, best, [cause(one) for one in stage])
+        best = _better(problem, best, [cause(kind) for kind in stage])
     for more in _PERIODS if restoring else ():
-        kept = [one for one in best.candidates if one.name not in _OF_PERIODS]
-        best = _better(problem, best, [*kept, *(cause(one) for one in more)])
+        candidates = [
+            candidate for candidate in best.candidates if candidate.name not in _OF_PERIODS
+        ]
+        best = _better(problem, best, [*candidates, *(cause(kind) for kind in more)])
     bench = _released(problem, trial, best)
-    left = trial.observed - replace(trial, bench=bench).simulate()
-    rms = tuple(_rms(row) for row in left)
+    remainder = trial.observed - replace(trial, bench=bench).simulate()
+    rms = tuple(_rms(row) for row in remainder)
     return Surrogate(bench, tuple(_variants(trial, best)), named(best), rms)
 
 
@@ -96,19 +98,19 @@ def _rms(row: FloatArray) -> float:
 
 
 def _better(problem: PendulumProblem, best: Fit, causes: Sequence[Candidate]) -> Fit:
-    start = np.concatenate([_start(best, one) for one in causes])
+    start = np.concatenate([_start(best, candidate) for candidate in causes])
     tried = fit(problem, causes, start)
     return tried if tried.log_evidence > best.log_evidence else best
 
 
-def _start(best: Fit, one: Candidate) -> FloatArray:
+def _start(best: Fit, candidate: Candidate) -> FloatArray:
     """Return where the best fit has a cause, or its typical value."""
     at = 0
-    for other in best.candidates:
-        if other.name == one.name:
-            return best.units[at : at + len(one.axes)]
-        at += len(other.axes)
-    return 0.1 * one.start
+    for part in best.candidates:
+        if part.name == candidate.name:
+            return best.units[at : at + len(candidate.axes)]
+        at += len(part.axes)
+    return 0.1 * candidate.start
 
 
 def _released(problem: PendulumProblem, trial: Trial, best: Fit) -> PendulumBench:

@@ -93,10 +93,10 @@ def swings_of_samples(
     rough = _fitted(since, values, windows, windows.reference_rad_s, steady)
     # a second time at the record's own frequency: slopes within a window are then small
     slope = _mean_slope(windows.centres_s, rough[_PERIOD])
-    own = windows.reference_rad_s + slope
-    found = _fitted(since, values, windows, own, steady)
-    found[_PERIOD] += slope * windows.centres_s
-    return found
+    omega_rad_s = windows.reference_rad_s + slope
+    swings = _fitted(since, values, windows, omega_rad_s, steady)
+    swings[_PERIOD] += slope * windows.centres_s
+    return swings
 
 
 def _mean_slope(time_s: FloatArray, phase_rad: FloatArray) -> float:
@@ -109,7 +109,7 @@ def _mean_slope(time_s: FloatArray, phase_rad: FloatArray) -> float:
 def _fitted(
     since_s: FloatArray, values: FloatArray, windows: Windows, omega_rad_s: float, steady: bool
 ) -> FloatArray:
-    found = np.full((len(KINDS), windows.count), np.nan)
+    swings = np.full((len(KINDS), windows.count), np.nan)
     inverses: dict[tuple[int, float], FloatArray] = {}  # windows sampled alike share theirs
     edges = np.searchsorted(since_s, windows.length_s * np.arange(windows.count + 1) - 1e-9)
     for at, centre in enumerate(windows.centres_s):
@@ -123,10 +123,10 @@ def _fitted(
                     np.linalg.pinv(_terms(t, omega_rad_s, steady)), np.float64
                 )
             solved = inverses[key] @ values[inside][good]
-            found[:, at] = _described(solved, omega_rad_s * centre)
-    good = np.isfinite(found[_PERIOD])
-    found[_PERIOD, good] = np.unwrap(found[_PERIOD, good])
-    return found
+            swings[:, at] = _described(solved, omega_rad_s * centre)
+    good = np.isfinite(swings[_PERIOD])
+    swings[_PERIOD, good] = np.unwrap(swings[_PERIOD, good])
+    return swings
 
 
 def _terms(t: FloatArray, omega_rad_s: float, steady: bool) -> FloatArray:
@@ -157,7 +157,7 @@ def swings_of_passages(passages: Passages, windows: Windows, amplitude: float) -
     FloatArray
         As :func:`swings_of_samples`; mean and third harmonic are NaN.
     """
-    found = np.full((len(KINDS), windows.count), np.nan)
+    swings = np.full((len(KINDS), windows.count), np.nan)
     since = passages.time_s - windows.start_s
     advance = 0.5 * math.pi + math.pi * passages.number - windows.reference_rad_s * since
     for at, centre in enumerate(windows.centres_s):
@@ -169,29 +169,29 @@ def swings_of_passages(passages: Passages, windows: Windows, amplitude: float) -
         matrix = np.column_stack([np.ones(t.size), every_second, t])
         rows = np.column_stack([np.log(passages.speed[inside]), advance[inside]])
         solved, *_ = np.linalg.lstsq(matrix, rows, rcond=None)
-        found[[_DECAY, _PERIOD], at] = solved[0]
-    seen = np.flatnonzero(np.isfinite(found[_DECAY]))
-    if seen.size:
-        found[_DECAY] += math.log(amplitude) - found[_DECAY, seen[0]]
+        swings[[_DECAY, _PERIOD], at] = solved[0]
+    finite = np.flatnonzero(np.isfinite(swings[_DECAY]))
+    if finite.size:
+        swings[_DECAY] += math.log(amplitude) - swings[_DECAY, finite[0]]
         # half-swings that were missed before the first window leave whole turns
-        turns = round(float(found[_PERIOD, seen[0]]) / (2.0 * math.pi))
-        found[_PERIOD] -= 2.0 * math.pi * turns
-    return found
+        turns = round(float(swings[_PERIOD, finite[0]]) / (2.0 * math.pi))
+        swings[_PERIOD] -= 2.0 * math.pi * turns
+    return swings
 
 
-def scatter(found: FloatArray) -> FloatArray:
+def scatter(swings: FloatArray) -> FloatArray:
     """Return the standard uncertainty of each window's values, shape ``(5, windows)``.
 
     It is what is left of them after a smooth curve, larger where the amplitude is small, and wider
     where neighbours are alike and, as the deviation of Student's t, where windows are few. NaN
     stays NaN.
     """
-    spread = np.full(found.shape, np.nan)
-    for kind, values in enumerate(found):
+    spread = np.full(swings.shape, np.nan)
+    for kind, values in enumerate(swings):
         good = np.isfinite(values)
         if good.sum() < FEWEST_WINDOWS:
             continue
-        size = np.exp(found[_DECAY, good] - np.max(found[_DECAY, good]))
+        size = np.exp(swings[_DECAY, good] - np.max(swings[_DECAY, good]))
         shape = np.ones(size.size) if kind == _MEAN else 1.0 / size
         spread[kind, good] = shape * _rms_about_smooth(values[good], shape)
     return spread
@@ -205,9 +205,9 @@ def _rms_about_smooth(values: FloatArray, shape: FloatArray) -> float:
     place = np.linspace(-1.0, 1.0, values.size)
     degree = min(_DEGREE, values.size // 3)
     fit = np.polynomial.Legendre.fit(place, values, degree, w=1.0 / shape)
-    left = (values - fit(place)) / shape
+    remainder = (values - fit(place)) / shape
     freedom = values.size - degree - 1
-    alike = float(left[1:] @ left[:-1]) / max(float(left @ left), 1e-300)
+    alike = float(remainder[1:] @ remainder[:-1]) / max(float(remainder @ remainder), 1e-300)
     inflation = min(max((1.0 + alike) / max(1.0 - alike, 0.2), 1.0), 5.0)
     few = freedom / (freedom - 2.0)
-    return max(math.sqrt(few * inflation * float(left @ left) / freedom), _FLOOR)
+    return max(math.sqrt(few * inflation * float(remainder @ remainder) / freedom), _FLOOR)

@@ -77,7 +77,7 @@ class Trial:
         true_rate_hz = rate_hz * (1.0 + bench.clock_error)
         chain = bench.chain()
         _, run = chain.run(chain.start(true_rate_hz, _SEED), count)
-        (sensor,) = (one for one in bench.sensors if one.channel.name == self.coordinate)
+        (sensor,) = (sensor for sensor in bench.sensors if sensor.channel.name == self.coordinate)
         time_s = np.arange(count) / rate_hz
         since = replace(self.windows, start_s=0.0)
         return swings_of_samples(time_s, run[recorded(sensor.channel).name], since)
@@ -85,10 +85,10 @@ class Trial:
     def placed(self, effects: Iterable[PendulumEffect]) -> list[PendulumEffect]:
         """Return effects on the coordinate that is watched, where they name none."""
         return [
-            replace(cast("Any", one), coordinate=self.acts_on)
-            if getattr(one, "coordinate", None) == ""
-            else one
-            for one in effects
+            replace(cast("Any", effect), coordinate=self.acts_on)
+            if getattr(effect, "coordinate", None) == ""
+            else effect
+            for effect in effects
         ]
 
     def released(self) -> "Trial":
@@ -99,7 +99,7 @@ class Trial:
         at_s = self.windows.centres_s[good]
         size, phase = (np.polyfit(at_s, self.observed[kind, good], 1)[1] for kind in (0, 1))
         amplitude, omega = math.exp(float(size)), self.windows.reference_rad_s
-        names = [one.name for one in self.bench.body.coordinates]
+        names = [coordinate.name for coordinate in self.bench.body.coordinates]
         held, rates = [0.0] * len(names), [0.0] * len(names)
         at = names.index(self.coordinate)
         held[at], rates[at] = amplitude * math.cos(phase), -amplitude * omega * math.sin(phase)

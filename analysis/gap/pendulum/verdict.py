@@ -50,14 +50,14 @@ def judge(weighed: WeighedCauses) -> Verdict:
     """
     shares = weighed.answers.by_answer
     first = weighed.ranked[0] if weighed.sets else nothing(weighed.problem)
-    found = {
+    chances = {
         NONE: shares[NONE] + shares[COEFFICIENTS],
         UNKNOWN: shares[UNKNOWN],
         ODD_RUN: shares[ODD_RUN],
         CAUSE: _with_any(shares, [alike(weighed, name) for name in named(first)]),
     }
-    said = max(found, key=lambda name: found[name])
-    probability = found[said]
+    said = max(chances, key=lambda name: chances[name])
+    probability = chances[said]
     unfounded = said == UNKNOWN and weighed.strangeness < math.log(TOLD_APART)
     if said != NONE and (probability < _LIKELY or unfounded):
         said = UNTOLD
@@ -85,20 +85,21 @@ def open_causes(weighed: WeighedCauses, verdict: Verdict) -> dict[str, dict[str,
     by itself is left out, and so is damping that is said to be a cause: its laws are weighed by
     themselves.
     """
-    found, shares = {}, verdict.by_cause
+    groups, shares = {}, verdict.by_cause
     for name in verdict.best.names if verdict.said in (CAUSE, UNTOLD) else ():
-        told = verdict.said == CAUSE
-        if shares[name] >= _LIKELY or (told and name in DAMPING):
+        is_cause = verdict.said == CAUSE
+        if shares[name] >= _LIKELY or (is_cause and name in DAMPING):
             continue
-        others = [
-            one
-            for one in (alike(weighed, name) if told else shares)
-            if one not in verdict.best.names and shares.get(one, 0.0) * TOLD_APART > shares[name]
+        rivals = [
+            rival
+            for rival in (alike(weighed, name) if is_cause else shares)
+            if rival not in verdict.best.names
+            and shares.get(rival, 0.0) * TOLD_APART > shares[name]
         ]
-        if others:
-            ranked = sorted(others, key=lambda one: -shares[one])
-            found[name] = {one: shares[one] for one in (name, *ranked)}
-    return found
+        if rivals:
+            ranked = sorted(rivals, key=lambda rival: -shares[rival])
+            groups[name] = {member: shares[member] for member in (name, *ranked)}
+    return groups
 
 
 def _with_any(shares: Mapping[str, float], groups: Sequence[Sequence[str]]) -> float:
@@ -106,7 +107,7 @@ def _with_any(shares: Mapping[str, float], groups: Sequence[Sequence[str]]) -> f
     return sum(
         share
         for answer, share in shares.items()
-        if groups and all(set(effects_in(answer)) & set(one) for one in groups)
+        if groups and all(set(effects_in(answer)) & set(group) for group in groups)
     )
 
 

@@ -88,14 +88,15 @@ def foretell(problem: PendulumProblem, sets: Sequence[Fit]) -> tuple[WithheldSwi
     if problem.driven:
         enough = len(set(problem.runs)) >= FEWEST_RUNS
         return (_left_out("each run", problem, sets),) if enough else ()
-    found = []
+    regimes = []
     for name, large in (("small swings", False), ("large swings", True)):
         hidden = [_hidden(trial, large=large) for trial in problem.trials]
-        if min(_fewest(rows, one) for rows, one in zip(hidden, problem.trials, strict=True)) >= (
-            FEWEST
+        if (
+            min(_fewest(rows, trial) for rows, trial in zip(hidden, problem.trials, strict=True))
+            >= FEWEST
         ):
-            found.append(_regime(name, problem, hidden, sets))
-    return tuple(found)
+            regimes.append(_regime(name, problem, hidden, sets))
+    return tuple(regimes)
 
 
 def _hidden(trial: Trial, *, large: bool) -> BoolArray:
@@ -115,18 +116,18 @@ def _regime(
     hidden: Sequence[BoolArray],
     sets: Sequence[Fit],
 ) -> WithheldSwings:
-    seen = _without(problem, hidden)
+    training = _without(problem, hidden)
     parts = [
         np.broadcast_to(rows, (len(t.observed), rows.size))
         for rows, t in zip(hidden, problem.trials, strict=True)
     ]
     rows = problem.flat([part.astype(float) for part in parts]) > 0.5
-    plain = _left(problem, nothing(seen), rows)
+    plain = _left(problem, nothing(training), rows)
     before = _foretold(problem, rows, (), plain, plain)
     after = []
-    for one in sets:
-        left = _left(problem, fit(seen, one.candidates, one.units), rows)
-        after.append(_foretold(problem, rows, named(one), plain, left))
+    for cause_set in sets:
+        remainder = _left(problem, fit(training, cause_set.candidates, cause_set.units), rows)
+        after.append(_foretold(problem, rows, named(cause_set), plain, remainder))
     sizes = problem.amplitude[rows]
     count = int(sum(r.sum() for r in hidden))
     return WithheldSwings(
@@ -145,49 +146,55 @@ def _without(problem: PendulumProblem, hidden: Sequence[BoolArray]) -> PendulumP
 
 def _left_out(name: str, problem: PendulumProblem, sets: Sequence[Fit]) -> WithheldSwings:
     """Foretell each run from the others; the sensors of one run belong together."""
-    every = np.ones(problem.residual.size, dtype=bool)
-    lefts: list[list[tuple[FloatArray, FloatArray]]] = [[] for _ in (None, *sets)]
+    all_rows = np.ones(problem.residual.size, dtype=bool)
+    remainders: list[list[tuple[FloatArray, FloatArray]]] = [[] for _ in (None, *sets)]
     for out in np.unique(problem.runs):
         hidden = [
             np.full(trial.windows.count, run == out)
             for run, trial in zip(problem.runs, problem.trials, strict=True)
         ]
-        seen, rows = _without(problem, hidden), problem.runs[problem.trial] == out
-        lefts[0].append(_left(problem, nothing(seen), rows))
-        for kept, one in zip(lefts[1:], sets, strict=True):
+        training, rows = _without(problem, hidden), problem.runs[problem.trial] == out
+        remainders[0].append(_left(problem, nothing(training), rows))
+        for set_remainders, cause_set in zip(remainders[1:], sets, strict=True):
             try:
-                kept.append(_left(problem, fit(seen, one.candidates, one.units), rows))
+                set_remainders.append(
+                    _left(problem, fit(training, cause_set.candidates, cause_set.units), rows)
+                )
             except PmmError:  # friction that holds the body there foretells nothing
-                kept.append(lefts[0][-1])
+                set_remainders.append(remainders[0][-1])
     plain, *after = [
-        (np.concatenate([one for one, _ in part]), np.hstack([drawn for _, drawn in part]))
-        for part in lefts
+        (np.concatenate([values for values, _ in part]), np.hstack([drawn for _, drawn in part]))
+        for part in remainders
     ]
     sizes = problem.amplitude
     return WithheldSwings(
         name,
         sum(trial.windows.count for trial in problem.trials),
         (float(sizes.min()), float(sizes.max())),
-        _foretold(problem, every, (), plain, plain),
+        _foretold(problem, all_rows, (), plain, plain),
         tuple(
-            _foretold(problem, every, named(one), plain, left)
-            for one, left in zip(sets, after, strict=True)
+            _foretold(problem, all_rows, named(cause_set), plain, remainder)
+            for cause_set, remainder in zip(sets, after, strict=True)
         ),
     )
 
 
-def _left(problem: PendulumProblem, one: Fit, rows: BoolArray) -> tuple[FloatArray, FloatArray]:
+def _left(
+    problem: PendulumProblem, cause_set: Fit, rows: BoolArray
+) -> tuple[FloatArray, FloatArray]:
     """Return the withheld windows' remainder in u, and draws of it, shape ``(draws, rows)``."""
-    full = at(problem, one.candidates, one.units)
-    whole = problem.nuisances.columns
-    among = Nuisances(whole[~rows])
-    left = problem.residual - full.signature
-    columns = np.hstack([whole, full.columns])
-    both = posterior(left[~rows], columns[~rows], Nuisances(np.zeros((int((~rows).sum()), 0))))
-    found = left[rows] - whole[rows] @ among.fitted(left[~rows])
-    root = np.linalg.cholesky(both.covariance)
+    full = at(problem, cause_set.candidates, cause_set.units)
+    nuisance_columns = problem.nuisances.columns
+    among = Nuisances(nuisance_columns[~rows])
+    residual = problem.residual - full.signature
+    columns = np.hstack([nuisance_columns, full.columns])
+    estimate = posterior(
+        residual[~rows], columns[~rows], Nuisances(np.zeros((int((~rows).sum()), 0)))
+    )
+    remainder = residual[rows] - nuisance_columns[rows] @ among.fitted(residual[~rows])
+    root = np.linalg.cholesky(estimate.covariance)
     drawn = np.random.default_rng(_SEED).standard_normal((_DRAWS, len(root)))
-    return found, found - drawn @ (columns[rows] @ root).T
+    return remainder, remainder - drawn @ (columns[rows] @ root).T
 
 
 def _foretold(
@@ -195,20 +202,20 @@ def _foretold(
     rows: BoolArray,
     causes: tuple[str, ...],
     plain: tuple[FloatArray, FloatArray],
-    left: tuple[FloatArray, FloatArray],
+    remainder: tuple[FloatArray, FloatArray],
 ) -> Foretold:
     kind = problem.kind[rows]
     decay, period = kind == _DECAY, kind == _PERIOD
     chosen = decay if decay.any() and not problem.driven else np.ones_like(decay)
-    absolute = left[0] * problem.uncertainty[rows]
+    absolute = remainder[0] * problem.uncertainty[rows]
     share, low, high = 0.0, 0.0, 0.0
     if causes:
-        share = _shrinks(plain[0][chosen], left[0][chosen])
-        shares = [_shrinks(plain[0][chosen], one[chosen]) for one in left[1]]
+        share = _shrinks(plain[0][chosen], remainder[0][chosen])
+        shares = [_shrinks(plain[0][chosen], draw[chosen]) for draw in remainder[1]]
         low, high = (float(value) for value in np.quantile(shares, (0.025, 0.975)))
     return Foretold(
         causes,
-        _rms(left[0][chosen]),
+        _rms(remainder[0][chosen]),
         _rms((absolute * problem.amplitude[rows])[decay]),
         _rms(absolute[period]),
         share,
@@ -217,11 +224,11 @@ def _foretold(
     )
 
 
-def _rms(left: FloatArray) -> float:
-    return float(np.sqrt(np.mean(left**2))) if left.size else math.nan
+def _rms(remainder: FloatArray) -> float:
+    return float(np.sqrt(np.mean(remainder**2))) if remainder.size else math.nan
 
 
 def _shrinks(before: FloatArray, after: FloatArray) -> float:
     """Return the share of a gap that goes away, the noise floor of 1 u taken off both."""
-    old, new = (math.sqrt(max(_rms(one) ** 2 - 1.0, 0.0)) for one in (before, after))
+    old, new = (math.sqrt(max(_rms(gap) ** 2 - 1.0, 0.0)) for gap in (before, after))
     return 1.0 - new / old if old > 0.0 else 0.0

@@ -65,9 +65,9 @@ def background(problem: Problem, looked: Sequence[Looked], sought: BoolArray) ->
     wide = np.zeros(columns.shape[1], dtype=bool)
     wide[: len(sought)] = sought
     shown = [
-        SignatureOfEffect(one.name, one.fit.stages[0], one.fit.signature, one.fit.columns)
-        for one in looked
-        if one.fit is not None
+        SignatureOfEffect(look.name, look.fit.stages[0], look.fit.signature, look.fit.columns)
+        for look in looked
+        if look.fit is not None
     ]
     cells = _cells(stack)
     alike = likeness([run.set_point for run in stack.runs])
@@ -86,28 +86,28 @@ def background(problem: Problem, looked: Sequence[Looked], sought: BoolArray) ->
 
 def likeness(set_points: Sequence[SetPoint]) -> FloatArray:
     """Return how alike a deviation is between runs, shape ``(runs, runs)``; 1 on the diagonal."""
-    places = np.array([_place(one) for one in set_points])
+    places = np.array([_place(set_point) for set_point in set_points])
     distance = np.sum((places[:, None, :] - places[None, :, :]) ** 2, axis=2)
     shared = (1.0 - _OWN) * np.exp(-0.5 * distance)
     return np.asarray(shared + _OWN * np.eye(len(places)))
 
 
-def _place(one: SetPoint) -> tuple[float, ...]:
+def _place(set_point: SetPoint) -> tuple[float, ...]:
     return (
-        math.log(one.frequency_hz),
-        math.log(max(one.eccentricity_m, 1e-6)),
-        math.cos(one.strut_phase_rad),
-        math.sin(one.strut_phase_rad),
-        one.carriage_speed_m_s,
-        2.0 * (one.medium is Medium.AIR),
-        one.drift_rad / _DRIFT_RAD,
+        math.log(set_point.frequency_hz),
+        math.log(max(set_point.eccentricity_m, 1e-6)),
+        math.cos(set_point.strut_phase_rad),
+        math.sin(set_point.strut_phase_rad),
+        set_point.carriage_speed_m_s,
+        2.0 * (set_point.medium is Medium.AIR),
+        set_point.drift_rad / _DRIFT_RAD,
     )
 
 
 def _cells(stack: Stack) -> list[NDArray[np.intp]]:
     places: dict[Component, list[int]] = {}
-    for at, one in enumerate(stack.components):
-        places.setdefault(one, []).append(at)
+    for at, component in enumerate(stack.components):
+        places.setdefault(component, []).append(at)
     return [np.array(rows) for rows in places.values()]
 
 
@@ -123,22 +123,27 @@ def units(stack: Stack, nominal: FloatArray) -> FloatArray:
         What the simulation says, shape ``(observations,)``.
     """
     squares: dict[str, list[float]] = {}
-    for one, value in zip(stack.components, nominal, strict=True):
-        first = one.part in (Part.IN_PHASE, Part.QUADRATURE) and one.order == 1
-        standing = one.part is Part.MEAN and one.channel not in (*FORCES, *DISPLACEMENTS)
+    for component, value in zip(stack.components, nominal, strict=True):
+        first = component.part in (Part.IN_PHASE, Part.QUADRATURE) and component.order == 1
+        standing = component.part is Part.MEAN and component.channel not in (
+            *FORCES,
+            *DISPLACEMENTS,
+        )
         if first or standing:
-            squares.setdefault(one.channel, []).append(float(value) ** 2)
+            squares.setdefault(component.channel, []).append(float(value) ** 2)
     runs = max(len(stack.turning), 1)
-    sizes = {name: math.sqrt(sum(found) / runs) for name, found in squares.items()}
+    sizes = {
+        name: math.sqrt(sum(channel_squares) / runs) for name, channel_squares in squares.items()
+    }
     out = np.ones(len(stack.components))
-    for at, one in enumerate(stack.components):
-        if one.part in _HARMONIC:
-            size = max(sizes.get(one.channel, 0.0), _FLOORS.get(one.channel, _FLOOR))
-            out[at] = size / max(one.order, 1)
-            if one.part in TRENDS:
+    for at, component in enumerate(stack.components):
+        if component.part in _HARMONIC:
+            size = max(sizes.get(component.channel, 0.0), _FLOORS.get(component.channel, _FLOOR))
+            out[at] = size / max(component.order, 1)
+            if component.part in TRENDS:
                 out[at] /= max(stack.runs[stack.run[at]].periods, 1)
         else:
-            out[at] = _UNITS.get(one.part, 1.0)
+            out[at] = _UNITS.get(component.part, 1.0)
     return out
 
 
@@ -148,20 +153,25 @@ def _behind(stack: Stack) -> Iterator[tuple[str, BoolArray]]:
         channels = _BEHIND.get(stage)
         yield (
             stage.value,
-            np.array([channels is None or one.channel in channels for one in stack.components]),
+            np.array(
+                [
+                    channels is None or component.channel in channels
+                    for component in stack.components
+                ]
+            ),
         )
 
 
 def _kinds(stack: Stack) -> Iterator[tuple[str, Kind]]:
     """Yield where something unknown may show alone: in one channel, by kind, or in all alike."""
-    channels = np.array([one.channel for one in stack.components])
-    kinds = np.array([_KINDS.get(one.part, "timing") for one in stack.components])
+    channels = np.array([component.channel for component in stack.components])
+    kinds = np.array([_KINDS.get(component.part, "timing") for component in stack.components])
     for channel in dict.fromkeys(channels.tolist()):
         for kind in dict.fromkeys(kinds[channels == channel].tolist()):
             rows = (channels == channel) & (kinds == kind)
             yield f"{channel} {kind}".strip(), Kind(rows, (_instrument(channel, kind),))
-    every = tuple(one.value for one in StageName)
-    yield "all", Kind(np.ones(len(channels), dtype=bool), every)
+    stages = tuple(stage.value for stage in StageName)
+    yield "all", Kind(np.ones(len(channels), dtype=bool), stages)
 
 
 def _instrument(channel: str, kind: str) -> str:
@@ -177,9 +187,9 @@ def _own(stack: Stack, scale: FloatArray) -> Iterator[tuple[str, FloatArray]]:
     for number, run in enumerate(stack.runs):
         columns = []
         for channel in FORCES:
-            here = np.array([one.channel == channel for one in stack.components])
-            here &= stack.run == number
-            mean = here & np.array([one.part is Part.MEAN for one in stack.components])
-            columns.append(np.where(here & stack.steady, measured, 0.0))
+            rows = np.array([component.channel == channel for component in stack.components])
+            rows &= stack.run == number
+            mean = rows & np.array([component.part is Part.MEAN for component in stack.components])
+            columns.append(np.where(rows & stack.steady, measured, 0.0))
             columns.append(np.where(mean, scale, 0.0))
         yield run.name, np.column_stack(columns)

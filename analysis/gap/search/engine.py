@@ -50,14 +50,14 @@ class Engine:
     progress: Callable[[str], None] = lambda _: None
 
     def each(
-        self, what: str, work: Callable[[P, T], R], problem: P, items: Sequence[T]
+        self, task: str, work: Callable[[P, T], R], problem: P, items: Sequence[T]
     ) -> Iterator[R]:
         """Yield what the work makes of each item, in their order."""
-        self.progress(what)
+        self.progress(task)
         mapped = map if self.executor is None else self.executor.map
-        for number, one in enumerate(mapped(work, [problem] * len(items), items), start=1):
-            self.progress(f"{what}: {number} of {len(items)}")
-            yield one
+        for number, result in enumerate(mapped(work, [problem] * len(items), items), start=1):
+            self.progress(f"{task}: {number} of {len(items)}")
+            yield result
 
 
 def looked_at(problem: Problem, kinds: Sequence[type[Effect]], engine: Engine) -> list[Looked]:
@@ -65,7 +65,7 @@ def looked_at(problem: Problem, kinds: Sequence[type[Effect]], engine: Engine) -
     return list(engine.each("looking at effects", look, problem, kinds))
 
 
-def fitted(problem: Compared, seen: Sequence[Looked], none: float, engine: Engine) -> list[Fit]:
+def fitted(problem: Compared, looks: Sequence[Looked], none: float, engine: Engine) -> list[Fit]:
     """Fit the leading effects in full; the most probable comes first.
 
     Parameters
@@ -73,21 +73,21 @@ def fitted(problem: Compared, seen: Sequence[Looked], none: float, engine: Engin
     none
         Log evidence of "no gap".
     """
-    ranked = sorted(seen, key=lambda one: -one.expected)[:LEADERS]
+    ranked = sorted(looks, key=lambda look: -look.expected)[:LEADERS]
     leaders = [
-        one.fit
-        for number, one in enumerate(ranked)
-        if one.fit is not None
-        and (number < _LEAST or one.expected > none + _least(one.fit, ranked[0].expected - none))
+        look.fit
+        for number, look in enumerate(ranked)
+        if look.fit is not None
+        and (number < _LEAST or look.expected > none + _least(look.fit, ranked[0].expected - none))
     ]
-    found = engine.each("fitting the best", _refined, problem, leaders)
-    return sorted(found, key=lambda one: -one.log_evidence)
+    fits = engine.each("fitting the best", _refined, problem, leaders)
+    return sorted(fits, key=lambda fit: -fit.log_evidence)
 
 
 def paired(
     problem: Compared,
     singles: Sequence[Fit],
-    seen: Sequence[Looked],
+    looks: Sequence[Looked],
     none: float,
     engine: Engine,
 ) -> list[Fit]:
@@ -98,15 +98,17 @@ def paired(
     to do better than one effect. An effect is tried from where it was first seen and from where it
     was fitted: alone, it may have gone astray after what its partner does.
     """
-    partners = [*(one.fit for one in seen if one.fit is not None), *singles]
-    least = max([none + _TWICE, *(one.log_evidence - _WORSE for one in singles)])
+    partners = [*(look.fit for look in looks if look.fit is not None), *singles]
+    least = max([none + _TWICE, *(fit.log_evidence - _WORSE for fit in singles)])
     chances: dict[frozenset[str], _Chance] = {}
     firsts, tried = list(singles[:_STARTS]), set[str]()
     for _ in range(_EXCHANGES):
         _join(problem, firsts, partners, chances)
-        tried |= {one.names[0] for one in firsts}
-        members = {name for one in _promising(chances, least)[:_LED] for name in one.fit.names}
-        firsts = [one for one in partners if one.names[0] in members - tried]
+        tried |= {fit.names[0] for fit in firsts}
+        members = {
+            name for chance in _promising(chances, least)[:_LED] for name in chance.fit.names
+        }
+        firsts = [partner for partner in partners if partner.names[0] in members - tried]
     return _fitted_together(problem, chances, least, engine, "fitting pairs")
 
 
@@ -118,7 +120,7 @@ def widened(
         return []
     chances: dict[frozenset[str], _Chance] = {}
     _join(problem, firsts[:_STARTS], partners, chances)
-    least = max(one.log_evidence for one in firsts) - _WORSE
+    least = max(fit.log_evidence for fit in firsts) - _WORSE
     return _fitted_together(problem, chances, least, engine, "fitting sets of three")
 
 
@@ -127,11 +129,11 @@ def _fitted_together(
     chances: Mapping[frozenset[str], "_Chance"],
     least: float,
     engine: Engine,
-    what: str,
+    task: str,
 ) -> list[Fit]:
     worth = _affordable(_promising(chances, least))[:PARTNERS]
-    found = engine.each(what, _refined_together, problem, worth)
-    return sorted(found, key=lambda one: -one.log_evidence)
+    fits = engine.each(task, _refined_together, problem, worth)
+    return sorted(fits, key=lambda fit: -fit.log_evidence)
 
 
 def alone_again(problem: Problem, singles: Sequence[Fit], pairs: Sequence[Fit]) -> list[Fit]:
@@ -139,21 +141,21 @@ def alone_again(problem: Problem, singles: Sequence[Fit], pairs: Sequence[Fit]) 
 
     Alone, an effect may have gone astray where a partner that turns out to be nothing led it right.
     """
-    best = {one.names[0]: one for one in singles}
+    best = {fit.names[0]: fit for fit in singles}
     for pair in pairs[:_LED]:
         for number, candidate in enumerate(pair.candidates):
-            other = best.get(candidate.name)
+            earlier_fit = best.get(candidate.name)
             try:
                 start = at(problem, (candidate,), pair.units[pair.whose == number])
-                least = -math.inf if other is None else other.log_evidence - _WORSE
+                least = -math.inf if earlier_fit is None else earlier_fit.log_evidence - _WORSE
                 if expected_evidence(problem, start) < least:
                     continue
-                found = refine(problem, start)
+                refined = refine(problem, start)
             except PmmError:
                 continue
-            if other is None or found.log_evidence > other.log_evidence:
-                best[candidate.name] = found
-    return sorted(best.values(), key=lambda one: -one.log_evidence)
+            if earlier_fit is None or refined.log_evidence > earlier_fit.log_evidence:
+                best[candidate.name] = refined
+    return sorted(best.values(), key=lambda fit: -fit.log_evidence)
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,22 +178,22 @@ def _join(
             if not set(second.names) & set(first.names):
                 key = frozenset((*first.names, *second.names))
                 # in one order: two ways that differ by rounding alone are the same one
-                both = joined(problem, *sorted((first, second), key=lambda one: one.names))
-                promise = expected_evidence(problem, both)
+                joint_fit = joined(problem, *sorted((first, second), key=lambda fit: fit.names))
+                promise = expected_evidence(problem, joint_fit)
                 if key not in chances or promise > chances[key].promise:
-                    chances[key] = _Chance(promise, both)
+                    chances[key] = _Chance(promise, joint_fit)
 
 
 def _promising(chances: Mapping[frozenset[str], _Chance], least: float) -> list[_Chance]:
     """Return the sets that are worth their cost, most promising first."""
-    worth = [one for one in chances.values() if one.promise > least + _dearer(one.fit)]
-    return sorted(worth, key=lambda one: -one.promise)
+    worth = [chance for chance in chances.values() if chance.promise > least + _dearer(chance.fit)]
+    return sorted(worth, key=lambda chance: -chance.promise)
 
 
 def _affordable(chances: Sequence[_Chance]) -> list[_Chance]:
     """Return the sets without those that are costly, but for the most promising one of these."""
-    first = next((one for one in chances if one.fit.is_costly), None)
-    return [one for one in chances if one is first or not one.fit.is_costly]
+    first = next((chance for chance in chances if chance.fit.is_costly), None)
+    return [chance for chance in chances if chance is first or not chance.fit.is_costly]
 
 
 def _least(fit: Fit, most: float) -> float:
@@ -206,13 +208,13 @@ def _dearer(pair: Fit) -> float:
 
 def _refined(problem: Compared, fit: Fit) -> Fit:
     """Refine a single effect, from a third of a turn to either side too if it has a phase."""
-    found = [refine(problem, fit)]
+    fits = [refine(problem, fit)]
     for start in turned(fit.candidates[0]):
         try:
-            found.append(refine(problem, at(problem, fit.candidates, start)))
+            fits.append(refine(problem, at(problem, fit.candidates, start)))
         except PmmError:
             continue
-    return max(found, key=lambda one: one.log_evidence)
+    return max(fits, key=lambda option: option.log_evidence)
 
 
 def _refined_together(problem: Compared, chance: _Chance) -> Fit:
@@ -229,10 +231,12 @@ def _refined_together(problem: Compared, chance: _Chance) -> Fit:
     best = fit
     for units in (most_probable(fit), fit.units):
         try:
-            found = refine(problem, at(problem, fit.candidates, units))
+            refined = refine(problem, at(problem, fit.candidates, units))
         except PmmError:
             continue
-        best = found if best is fit else max(best, found, key=lambda one: one.log_evidence)
+        best = (
+            refined if best is fit else max(best, refined, key=lambda option: option.log_evidence)
+        )
         if best.log_evidence > chance.promise - _WORSE:
             break
     return best

@@ -64,10 +64,12 @@ class Looked:
 def look(problem: Problem, kind: type[Effect]) -> Looked:
     """Linearise an effect at its typical values, from each of its starts, and keep the best."""
     frequencies = [run.set_point.frequency_hz for run in problem.simulator.stack.turning]
-    ones = list(candidates(kind, sorted(set(frequencies))))
+    starts = list(candidates(kind, sorted(set(frequencies))))
     if kind.repeats:
-        return best_look(problem, kind.name, [(one, one.start) for one in ones])
-    return _best(problem, kind.name, [partial(_in_time, problem, one) for one in ones])
+        return best_look(problem, kind.name, [(candidate, candidate.start) for candidate in starts])
+    return _best(
+        problem, kind.name, [partial(_in_time, problem, candidate) for candidate in starts]
+    )
 
 
 def best_look(
@@ -75,12 +77,12 @@ def best_look(
 ) -> Looked:
     """Linearise an effect at each of some starts, and keep the best."""
 
-    def seen(one: Candidate, start: FloatArray) -> Fit:
+    def seen(candidate: Candidate, start: FloatArray) -> Fit:
         # elsewhere than where an effect is small it need not be proportional to its size
-        roughly = bool(np.array_equal(start, one.start))
-        return _near(problem, at(problem, (one,), start, roughly=roughly))
+        roughly = bool(np.array_equal(start, candidate.start))
+        return _near(problem, at(problem, (candidate,), start, roughly=roughly))
 
-    return _best(problem, name, [partial(seen, one, start) for one, start in starts])
+    return _best(problem, name, [partial(seen, candidate, start) for candidate, start in starts])
 
 
 def _best(problem: Compared, name: str, ways: Sequence[Callable[[], Fit]]) -> Looked:
@@ -98,36 +100,38 @@ def _best(problem: Compared, name: str, ways: Sequence[Callable[[], Fit]]) -> Lo
     if best is None:
         return Looked(name, None, reason=reason)
     steps = (best.signature, best.columns @ most_probable(best))
-    visible = max(left_over(one, problem.nuisances) for one in steps)
+    visible = max(left_over(step, problem.nuisances) for step in steps)
     return Looked(name, best, most, visible)
 
 
-def _in_time(problem: Problem, one: Candidate) -> Fit:
+def _in_time(problem: Problem, candidate: Candidate) -> Fit:
     """Return a look at an effect that has to be simulated in time, once for each of its sizes.
 
     What has a sign is linear; tiny steps of it would drown in the digitiser's. Powers go with the
     square of a size, and their logarithms are compared: from one record follows what any size
     changes, where a straight line would soon go astray, and the one that leaves least is taken.
     """
-    if one.axes and all(axis.is_size and axis.parameter.low < 0.0 for axis in one.axes):
-        alone = [problem.signature((one,), units) for units in np.diag(one.start)]
-        columns = np.column_stack(alone) / one.start
-        return weighed_at(problem, (one,), one.start, columns, columns @ one.start)
-    if len(one.axes) != 1:
-        return at(problem, (one,), one.start)
+    if candidate.axes and all(axis.is_size and axis.parameter.low < 0.0 for axis in candidate.axes):
+        alone = [problem.signature((candidate,), units) for units in np.diag(candidate.start)]
+        columns = np.column_stack(alone) / candidate.start
+        return weighed_at(
+            problem, (candidate,), candidate.start, columns, columns @ candidate.start
+        )
+    if len(candidate.axes) != 1:
+        return at(problem, (candidate,), candidate.start)
     simulator = problem.simulator
-    change = simulator.predict((one.effect(one.start),)) - simulator.nominal
+    change = simulator.predict((candidate.effect(candidate.start),)) - simulator.nominal
 
     def signature(units: FloatArray) -> FloatArray:
-        share = float(units[0] / one.start[0])
+        share = float(units[0] / candidate.start[0])
         return problem.whitened(grown(simulator.stack.components, change, share))
 
-    found = []
-    for units in (inside((one,), share * one.start) for share in _SIZES):
-        seen = signature(units)
-        slope = (signature((1.0 + STEP) * units) - seen) / (STEP * units[0])
-        found.append(weighed_at(problem, (one,), units, slope[:, None], seen))
-    return min(found, key=lambda fit: fit.cost)
+    fits = []
+    for units in (inside((candidate,), share * candidate.start) for share in _SIZES):
+        base_signature = signature(units)
+        slope = (signature((1.0 + STEP) * units) - base_signature) / (STEP * units[0])
+        fits.append(weighed_at(problem, (candidate,), units, slope[:, None], base_signature))
+    return min(fits, key=lambda fit: fit.cost)
 
 
 def _near(problem: Compared, fit: Fit) -> Fit:
@@ -140,10 +144,10 @@ def _near(problem: Compared, fit: Fit) -> Fit:
     none = null_evidence(problem.residual, problem.nuisances)
     chi_square = misfit(problem.residual, problem.nuisances)
     wanted = math.sqrt(max(chi_square - len(problem.residual), _SEEN))
-    if not any(one.is_size for one in fit.axes):
+    if not any(axis.is_size for axis in fit.axes):
         return _along_any(problem, fit, wanted)
     # Seen from far too large, a phase is known far too well.
-    straight = all(one.is_size for one in fit.axes)
+    straight = all(axis.is_size for axis in fit.axes)
     near = fit
     for _ in range(_APPROACHES):
         ratio = left_over(near.signature, problem.nuisances) / wanted
@@ -165,8 +169,8 @@ def _along_any(problem: Compared, fit: Fit, wanted: float) -> Fit:
         return fit
     ways = [_along(problem, fit, wanted, axis) for axis in range(len(fit.units))]
     return max(
-        (one for one in ways if one is not None),
-        key=lambda one: expected_evidence(problem, one),
+        (way for way in ways if way is not None),
+        key=lambda way: expected_evidence(problem, way),
         default=fit,
     )
 
@@ -205,7 +209,7 @@ def smaller(problem: Compared, fit: Fit, share: float) -> FloatArray:
     """
     weighted = problem.nuisances.whiten(fit.signature)
     slopes = weighted @ fit.columns / max(float(weighted @ fit.signature), 1e-12)
-    sizes = np.array([one.is_size for one in fit.axes], dtype=bool)
+    sizes = np.array([axis.is_size for axis in fit.axes], dtype=bool)
     units = fit.units.copy()
     power = float(slopes[sizes] @ units[sizes])
     if power > _LEAST_POWER:

@@ -54,7 +54,7 @@ class Fit:
     @property
     def names(self) -> tuple[str, ...]:
         """The effects' names."""
-        return tuple(one.name for one in self.candidates)
+        return tuple(candidate.name for candidate in self.candidates)
 
     @property
     def answer(self) -> str:
@@ -64,7 +64,7 @@ class Fit:
     @property
     def stages(self) -> tuple[str, ...]:
         """Where each effect acts."""
-        return tuple(one.stage for one in self.candidates)
+        return tuple(candidate.stage for candidate in self.candidates)
 
     @property
     def log_evidence(self) -> float:
@@ -79,34 +79,34 @@ class Fit:
     @property
     def sizes(self) -> list[BoolArray]:
         """Which parameters are sizes, for each effect, shape ``(p,)``; those share their scale."""
-        sizes = np.array([one.is_size for one in self.axes], dtype=bool)
+        sizes = np.array([axis.is_size for axis in self.axes], dtype=bool)
         return [sizes & (self.whose == number) for number in range(len(self.candidates))]
 
     @property
     def reaches(self) -> list[float]:
         """Largest plausible standard deviation of each effect's sizes, in prior deviations."""
-        return [one.reach for one in self.candidates]
+        return [candidate.reach for candidate in self.candidates]
 
     @property
     def axes(self) -> tuple[Axis, ...]:
         """The free parameters of all effects, in the order of ``units``."""
-        return tuple(axis for one in self.candidates for axis in one.axes)
+        return tuple(axis for candidate in self.candidates for axis in candidate.axes)
 
     @property
     def whose(self) -> NDArray[np.intp]:
         """Number of the effect that each parameter belongs to, shape ``(p,)``."""
-        counts = [len(one.axes) for one in self.candidates]
+        counts = [len(candidate.axes) for candidate in self.candidates]
         return np.repeat(np.arange(len(counts)), counts)
 
     @property
     def repeats(self) -> bool:
         """Whether all effects repeat with the shaft."""
-        return all(one.repeats for one in self.candidates)
+        return all(candidate.repeats for candidate in self.candidates)
 
     @property
     def is_costly(self) -> bool:
         """Whether one of the effects is run in time until it repeats."""
-        return any(one.costly for one in self.candidates)
+        return any(candidate.costly for candidate in self.candidates)
 
     @property
     def effects(self) -> tuple[Any, ...]:
@@ -126,7 +126,7 @@ def inside(parts: Sequence[Candidate], units: FloatArray) -> FloatArray:
 
 def bounds(parts: Sequence[Candidate]) -> FloatArray:
     """Return the plausible ranges of all parameters in prior units, shape ``(2, p)``."""
-    return np.concatenate([np.empty((2, 0)), *(one.bounds for one in parts)], axis=1)
+    return np.concatenate([np.empty((2, 0)), *(part.bounds for part in parts)], axis=1)
 
 
 def most_probable(fit: Fit) -> FloatArray:
@@ -187,7 +187,7 @@ def relinearised(problem: Compared, fit: Fit) -> Fit:
 
 def is_sized(parts: tuple[Candidate, ...], units: FloatArray) -> bool:
     """Tell whether a hypothesis has one parameter, and that one is the size of its signature."""
-    axes = [axis for one in parts for axis in one.axes]
+    axes = [axis for part in parts for axis in part.axes]
     sized = len(axes) == 1 and axes[0].centre == 0.0 and not axes[0].is_log
     return sized and parts[0].repeats and abs(float(units[0])) > STEP
 
@@ -206,11 +206,11 @@ def weighed_at(
     signature: FloatArray,
 ) -> Fit:
     """Weigh a hypothesis whose columns and signature are known."""
-    left = problem.residual - signature
-    found = posterior(left + columns @ units, columns, problem.nuisances)
-    cost = misfit(left, problem.nuisances) + float(units @ units)
+    remainder = problem.residual - signature
+    estimate = posterior(remainder + columns @ units, columns, problem.nuisances)
+    cost = misfit(remainder, problem.nuisances) + float(units @ units)
     shared = problem.nuisances.log_determinant
-    return Fit(parts, units, columns, signature, cost, found, shared, columns[:, :0])
+    return Fit(parts, units, columns, signature, cost, estimate, shared, columns[:, :0])
 
 
 def joined(problem: Compared, first: Fit, second: Fit) -> Fit:
@@ -252,10 +252,10 @@ def _slope(
     for sign in (1.0, -1.0):
         aside = units.copy()
         aside[axis] += sign * step
-        kept = inside(parts, aside)
-        if abs(kept[axis] - units[axis]) > 0.5 * step:
-            change = problem.signature(parts, kept) - base
-            return np.asarray(change / (kept[axis] - units[axis]), np.float64)
+        moved_units = inside(parts, aside)
+        if abs(moved_units[axis] - units[axis]) > 0.5 * step:
+            change = problem.signature(parts, moved_units) - base
+            return np.asarray(change / (moved_units[axis] - units[axis]), np.float64)
     return np.zeros_like(base)
 
 
@@ -270,8 +270,8 @@ def expected_evidence(problem: Compared, fit: Fit) -> float:
 
 def linear_cost(problem: Compared, fit: Fit, units: FloatArray) -> float:
     """Return what a fit would cost at other parameters, to first order."""
-    left = fit.linearised(problem.residual) - fit.columns @ units
-    return misfit(left, problem.nuisances) + float(units @ units)
+    remainder = fit.linearised(problem.residual) - fit.columns @ units
+    return misfit(remainder, problem.nuisances) + float(units @ units)
 
 
 def moved(problem: Compared, fit: Fit, units: FloatArray) -> Fit:

@@ -48,7 +48,7 @@ class Weighed:
     def ranked(self) -> list[Fit]:
         """The named hypotheses, most probable first."""
         shares = self.answers.by_answer
-        return sorted((*self.singles, *self.pairs), key=lambda one: -shares[one.answer])
+        return sorted((*self.singles, *self.pairs), key=lambda fit: -shares[fit.answer])
 
     @property
     def hidden(self) -> Mapping[str, float]:
@@ -58,7 +58,7 @@ class Weighed:
     @property
     def refused(self) -> Mapping[str, str]:
         """Effects that this rig cannot have, with the reason, by name."""
-        return {one.name: one.reason for one in self.looked if one.fit is None}
+        return {look.name: look.reason for look in self.looked if look.fit is None}
 
 
 def weigh(
@@ -85,53 +85,53 @@ def weigh(
     engine = Engine(executor, progress)
     looked = looked_at(problem, worth, engine)
     none = null_evidence(problem.residual, problem.nuisances)
-    seen = [one for one in looked if one.fit and one.visible >= HIDDEN]
-    singles = fitted(problem, seen, none, engine)
-    pairs = _completed(problem, free, paired(problem, singles, seen, none, engine))
-    least = min((one.cost for one in pairs), default=math.inf)
+    looks = [look for look in looked if look.fit and look.visible >= HIDDEN]
+    singles = fitted(problem, looks, none, engine)
+    pairs = _completed(problem, free, paired(problem, singles, looks, none, engine))
+    least = min((fit.cost for fit in pairs), default=math.inf)
     singles = _completed(problem, free, alone_again(problem, singles, pairs), least)
-    singles += _unfitted(seen, singles)
+    singles += _unfitted(looks, singles)
     progress("weighing")
-    sought = np.array([one.is_sought for one in free], dtype=bool)
+    sought = np.array([number.is_sought for number in free], dtype=bool)
     considered = Considered(
-        [hypothesis(problem, one) for one in singles],
-        [hypothesis(problem, one) for one in pairs],
+        [hypothesis(problem, fit) for fit in singles],
+        [hypothesis(problem, fit) for fit in pairs],
         len(kinds),
         len(_hidden(looked)) + len(kinds) - len(worth),
     )
-    found = answers(considered, background(problem, looked, sought))
+    answer_set = answers(considered, background(problem, looked, sought))
     singles, pairs = (
         sorted(
-            (settled(one, found.settled[one.answer]) for one in ones),
-            key=lambda one: -found.by_answer[one.answer],
+            (settled(fit, answer_set.settled[fit.answer]) for fit in fits),
+            key=lambda fit: -answer_set.by_answer[fit.answer],
         )
-        for ones in (singles, pairs)
+        for fits in (singles, pairs)
     )
     skipped = tuple(kind.name for kind in kinds if kind not in worth)
-    return Weighed(problem, tuple(singles), tuple(pairs), tuple(looked), skipped, found)
+    return Weighed(problem, tuple(singles), tuple(pairs), tuple(looked), skipped, answer_set)
 
 
 def _completed(
     problem: Problem, free: Sequence[Free], fits: Sequence[Fit], least: float = math.inf
 ) -> list[Fit]:
     """Give each fit its other forms; fit the leading ones in them, and with the coefficients."""
-    formed = [with_forms(problem, one) for one in fits]
+    formed = [with_forms(problem, fit) for fit in fits]
     moved: list[Fit] = []
-    for one in formed[:LEADERS]:
-        moved.append(together(problem, free, in_form(problem, one, least), least))
+    for fit in formed[:LEADERS]:
+        moved.append(together(problem, free, in_form(problem, fit, least), least))
         least = min(least, moved[-1].cost)
-    ones = [*(with_forms(problem, one) for one in moved), *formed[LEADERS:]]
-    return sorted(ones, key=lambda one: -one.log_evidence)
+    all_fits = [*(with_forms(problem, fit) for fit in moved), *formed[LEADERS:]]
+    return sorted(all_fits, key=lambda fit: -fit.log_evidence)
 
 
-def _unfitted(seen: Sequence[Looked], fits: Sequence[Fit]) -> list[Fit]:
+def _unfitted(looks: Sequence[Looked], fits: Sequence[Fit]) -> list[Fit]:
     """Return the effects that did not promise enough to be fitted, as they were looked at.
 
     They are less probable for that, and not impossible.
     """
-    names = {one.names[0] for one in fits}
-    return [one.fit for one in seen if one.fit is not None and one.name not in names]
+    names = {fit.names[0] for fit in fits}
+    return [look.fit for look in looks if look.fit is not None and look.name not in names]
 
 
 def _hidden(looked: Sequence[Looked]) -> dict[str, float]:
-    return {one.name: one.visible for one in looked if one.fit and one.visible < HIDDEN}
+    return {look.name: look.visible for look in looked if look.fit and look.visible < HIDDEN}

@@ -41,21 +41,23 @@ def together(problem: Problem, free: Sequence[Free], fit: Fit, least: float = ma
     least
         Cost of a rival. What the coefficients cannot bring down to it is simulated once.
     """
-    if _is_dear(fit) or not free or not any(one.repeats for one in fit.candidates):
+    if _is_dear(fit) or not free or not any(candidate.repeats for candidate in fit.candidates):
         return fit
-    whole, count = _Whole(problem, free), len(free)
+    joint_problem, count = _Whole(problem, free), len(free)
     columns = problem.nuisances.columns[:, :count]
     shared = problem.nuisances.fitted(problem.residual - fit.signature)[:count]
     try:
-        found = whole.begun(fit, shared)
+        joint_fit = joint_problem.begun(fit, shared)
     except PmmError:
         return fit
-    beyond = left_over(found.signature - fit.signature - columns @ shared, problem.nuisances)
-    if beyond > _LEVEL and in_reach(found, beyond, least):
-        found = follow(whole, anew(whole, found), _STEPS)
-    own, shared = found.units[:-count], found.units[-count:]
-    signature = found.signature - columns @ shared
-    return weighed_at(problem, fit.candidates, own, found.columns[:, :-count], signature)
+    beyond = left_over(joint_fit.signature - fit.signature - columns @ shared, problem.nuisances)
+    if beyond > _LEVEL and in_reach(joint_fit, beyond, least):
+        joint_fit = follow(joint_problem, anew(joint_problem, joint_fit), _STEPS)
+    effect_units, shared = joint_fit.units[:-count], joint_fit.units[-count:]
+    signature = joint_fit.signature - columns @ shared
+    return weighed_at(
+        problem, fit.candidates, effect_units, joint_fit.columns[:, :-count], signature
+    )
 
 
 def with_numbers(problem: Problem, free: Sequence[Free], fit: Fit) -> Fit:
@@ -68,13 +70,13 @@ def with_numbers(problem: Problem, free: Sequence[Free], fit: Fit) -> Fit:
     free
         The nuisances' first columns.
     """
-    whole = _Whole(problem, free)
+    joint_problem = _Whole(problem, free)
     shared = problem.nuisances.fitted(problem.residual - fit.signature)[: len(free)]
     try:
-        found = whole.begun(fit, shared)
+        joint_fit = joint_problem.begun(fit, shared)
     except PmmError:  # beyond what a rig can be; as it is believed to be it has been simulated
-        found = whole.begun(fit, np.zeros(len(free)))
-    return found if _is_dear(fit) else anew(whole, found)
+        joint_fit = joint_problem.begun(fit, np.zeros(len(free)))
+    return joint_fit if _is_dear(fit) else anew(joint_problem, joint_fit)
 
 
 def _is_dear(fit: Fit) -> bool:
@@ -98,22 +100,22 @@ class _Whole:
 
     @cached_property
     def nuisances(self) -> Nuisances:
-        every, count = self.problem.nuisances, len(self.free)
-        return Nuisances(every.columns[:, count:], every.names[count:], every.always_on)
+        nuisances, count = self.problem.nuisances, len(self.free)
+        return Nuisances(nuisances.columns[:, count:], nuisances.names[count:], nuisances.always_on)
 
     @cached_property
     def numbers(self) -> Candidate:
         """The free numbers, in units of their priors, as what stands beside the effects."""
-        whole = (-math.inf, math.inf)
-        each = (Parameter(one.name, "1", 0.0, *whole, one.name) for one in self.free)
-        axes = tuple(Axis(one, 0.0, 1.0, is_log=False) for one in each)
+        limits = (-math.inf, math.inf)
+        each = (Parameter(number.name, "1", 0.0, *limits, number.name) for number in self.free)
+        axes = tuple(Axis(parameter, 0.0, 1.0, is_log=False) for parameter in each)
         return Candidate(Free, axes, {}, "")
 
     def signature(self, parts: Sequence[Candidate], units: FloatArray) -> FloatArray:
         """Return what the effects and the free numbers change together."""
-        own, shared = units[: -len(self.free)], units[-len(self.free) :]
-        there = FittedRig.of(self.problem, self.free, shared)
-        return there.change(built(parts[:-1], own))
+        effect_units, shared = units[: -len(self.free)], units[-len(self.free) :]
+        rig = FittedRig.of(self.problem, self.free, shared)
+        return rig.change(built(parts[:-1], effect_units))
 
     def begun(self, fit: Fit, shared: FloatArray) -> Fit:
         """Return a fit with the free numbers at some units, each with the slopes that it has.
@@ -149,9 +151,9 @@ class FittedRig:
     def of(cls, problem: Problem, free: Sequence[Free], shared: FloatArray) -> "FittedRig":
         """Return the rig with coefficients and settings in units of their priors, ``(free,)``."""
         settings = tuple(
-            one.effect(float(unit) * one.deviation)
-            for unit, one in zip(shared, free, strict=True)
-            if one.effect
+            number.effect(float(unit) * number.deviation)
+            for unit, number in zip(shared, free, strict=True)
+            if number.effect
         )
         rig = with_coefficients(problem.simulator.rig, free, list(shared))
         return cls(problem, problem.simulator.with_rig(rig), settings)
@@ -165,8 +167,8 @@ class FittedRig:
 
         What has to be simulated in time is taken from the rig as it is believed to be.
         """
-        moving = tuple(one for one in effects if not one.repeats)
-        steady = tuple(one for one in effects if one.repeats)
+        moving = tuple(effect for effect in effects if not effect.repeats)
+        steady = tuple(effect for effect in effects if effect.repeats)
         believed = self.problem.simulator
         beside = believed.predict(moving) - believed.nominal if moving else 0.0
         change = self.simulator.steady((*self.settings, *steady)) - self.problem.steady

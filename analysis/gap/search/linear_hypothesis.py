@@ -21,14 +21,14 @@ _BETTER: Final = 3.0  # log evidence that fitting the form has to promise: it is
 def with_forms(problem: Problem, fit: Fit) -> Fit:
     """Return a fit with what the other forms of its effects change, where they repeat."""
     simulator, effects = problem.simulator, fit.effects
-    others = list(_other_forms(fit))
-    base = simulator.predict(effects) if others else fit.signature
-    found = [np.zeros((len(base), 0))]
-    for number, form in others:
-        rest = [other for at, other in enumerate(effects) if at != number]
+    forms = list(_other_forms(fit))
+    base = simulator.predict(effects) if forms else fit.signature
+    columns = [np.zeros((len(base), 0))]
+    for number, form in forms:
+        rest = [effect for at, effect in enumerate(effects) if at != number]
         changed = simulator.predict((*rest, form))
-        found.append(problem.whitened(changed - base)[:, None])
-    return replace(fit, forms=np.hstack(found))
+        columns.append(problem.whitened(changed - base)[:, None])
+    return replace(fit, forms=np.hstack(columns))
 
 
 def _other_forms(fit: Fit) -> Iterator[tuple[int, Effect]]:
@@ -39,14 +39,14 @@ def _other_forms(fit: Fit) -> Iterator[tuple[int, Effect]]:
     if not fit.repeats or fit.is_costly:
         return
     for number, (candidate, effect) in enumerate(zip(fit.candidates, fit.effects, strict=True)):
-        fitted = {one.parameter.name for one in candidate.axes}
+        fitted = {axis.parameter.name for axis in candidate.axes}
         for form in effect.forms():
             if not set(_changed(effect, form)) <= fitted:
                 yield number, form
 
 
 def _changed(effect: Effect, form: Effect) -> list[str]:
-    names = [one.name for one in effect.parameters()]
+    names = [parameter.name for parameter in effect.parameters()]
     return [name for name in names if getattr(form, name) != getattr(effect, name)]
 
 
@@ -66,17 +66,17 @@ def in_form(problem: Problem, fit: Fit, least: float = math.inf) -> Fit:
     """
     best = fit
     while freed := [
-        one
-        for column, one in zip(best.forms.T, _freed(problem, best), strict=True)
-        if one is not None and in_reach(best, left_over(column, problem.nuisances), least)
+        free_fit
+        for column, free_fit in zip(best.forms.T, _freed(problem, best), strict=True)
+        if free_fit is not None and in_reach(best, left_over(column, problem.nuisances), least)
     ]:
-        start = max(freed, key=lambda one: expected_evidence(problem, one))
+        start = max(freed, key=lambda free_fit: expected_evidence(problem, free_fit))
         if expected_evidence(problem, start) < best.log_evidence + _BETTER:
             break
-        found = refine(problem, follow(problem, start))
-        if found.log_evidence < best.log_evidence + _BETTER:
+        refined = refine(problem, follow(problem, start))
+        if refined.log_evidence < best.log_evidence + _BETTER:
             break
-        best = with_forms(problem, found)
+        best = with_forms(problem, refined)
     return best
 
 
@@ -85,17 +85,21 @@ def _freed(problem: Problem, fit: Fit) -> Iterator[Fit | None]:
     for column, (number, form) in zip(fit.forms.T, _other_forms(fit), strict=True):
         effect = fit.effects[number]
         names = _changed(effect, form)
-        declared = {one.name: one for one in effect.parameters() if one.forms}
+        declared = {
+            parameter.name: parameter for parameter in effect.parameters() if parameter.forms
+        }
         if len(names) != 1 or names[0] not in declared:
             yield None
         else:
-            held, other = getattr(effect, names[0]), getattr(form, names[0])
-            axis = Axis(declared[names[0]], held, abs(other - held), is_log=False, is_form=True)
+            held, form_value = getattr(effect, names[0]), getattr(form, names[0])
+            axis = Axis(
+                declared[names[0]], held, abs(form_value - held), is_log=False, is_form=True
+            )
             parts = list(fit.candidates)
             parts[number] = parts[number].freed(axis)
             behind = int(np.sum(fit.whose <= number))
             units = np.insert(fit.units, behind, 0.0)
-            columns = np.insert(fit.columns, behind, np.sign(other - held) * column, axis=1)
+            columns = np.insert(fit.columns, behind, np.sign(form_value - held) * column, axis=1)
             yield weighed_at(problem, tuple(parts), units, columns, fit.signature)
 
 
@@ -112,7 +116,7 @@ def hypothesis(problem: Compared, fit: Fit) -> Hypothesis:
     )
 
 
-def settled(fit: Fit, found: Evidence) -> Fit:
+def settled(fit: Fit, evidence: Evidence) -> Fit:
     """Return a fit whose parameters are as they are beside what suits it best."""
-    signature = fit.signature + fit.columns @ (found.units - fit.units)
-    return replace(fit, units=found.units, signature=signature, posterior=found.posterior)
+    signature = fit.signature + fit.columns @ (evidence.units - fit.units)
+    return replace(fit, units=evidence.units, signature=signature, posterior=evidence.posterior)

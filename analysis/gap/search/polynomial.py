@@ -35,47 +35,49 @@ def polynomial(problem: Problem, fitted: BoolArray | None = None) -> Fit:
     return _fit(problem, _scaled(problem, problem.simulator.stack, fitted))
 
 
-def polynomial_ahead(problem: Problem, there: Problem) -> FloatArray:
+def polynomial_ahead(problem: Problem, problem_ahead: Problem) -> FloatArray:
     """Return the control's columns at further runs, in the units that it has in the campaign.
 
     Shape ``(observations there, terms)``.
     """
-    return _scaled(problem, there.simulator.stack)
+    return _scaled(problem, problem_ahead.simulator.stack)
 
 
 def _scaled(problem: Problem, stack: Stack, fitted: BoolArray | None = None) -> FloatArray:
     """Return all terms over the runs of a stack, each as wide as its prior in the campaign."""
     rows = np.ones(len(problem.residual), dtype=bool) if fitted is None else fitted
     raw = _raw(problem.simulator.stack, problem.simulator.stack)
-    sizes = np.array([left_over(one, problem.nuisances) for one in raw.T])
+    sizes = np.array([left_over(column, problem.nuisances) for column in raw.T])
     shown = sizes > 1e-6
     unit = raw[:, shown] / sizes[shown]
-    size = max(_SIZES, key=lambda one: log_evidence(problem, one * unit, rows))
+    size = max(_SIZES, key=lambda width: log_evidence(problem, width * unit, rows))
     return np.asarray(size * _raw(problem.simulator.stack, stack)[:, shown] / sizes[shown])
 
 
 def _raw(made: Stack, stack: Stack) -> FloatArray:
     """Return each term's components over a stack in sigma, scaled by the motions that were made."""
-    terms = [one for channel in FORCES for one in _terms(made, stack, channel)]
+    terms = [term for channel in FORCES for term in _terms(made, stack, channel)]
     return np.asarray(np.column_stack(terms) / stack.uncertainty[:, None])
 
 
 def _fit(problem: Problem, columns: FloatArray) -> Fit:
     """Return the hypothesis that the residual is a sum of columns with unit normal weights."""
-    found = posterior(problem.residual, columns, problem.nuisances)
-    signature = columns @ found.mean
+    estimate = posterior(problem.residual, columns, problem.nuisances)
+    signature = columns @ estimate.mean
     cost = misfit(problem.residual - signature, problem.nuisances)
-    cost += float(found.mean @ found.mean)
+    cost += float(estimate.mean @ estimate.mean)
     shared = problem.nuisances.log_determinant
-    return Fit((), found.mean, columns, signature, cost, found, shared, columns[:, :0])
+    return Fit((), estimate.mean, columns, signature, cost, estimate, shared, columns[:, :0])
 
 
 def log_evidence(problem: Problem, columns: FloatArray, rows: BoolArray) -> float:
     """Return the evidence of a sum of columns with unit normal weights, on some observations."""
     part, residual = problem.nuisances.among(rows), problem.residual[rows]
-    found = posterior(residual, columns[rows], part)
-    cost = misfit(residual - columns[rows] @ found.mean, part) + float(found.mean @ found.mean)
-    return -0.5 * (cost + part.log_determinant) + found.log_volume
+    estimate = posterior(residual, columns[rows], part)
+    cost = misfit(residual - columns[rows] @ estimate.mean, part) + float(
+        estimate.mean @ estimate.mean
+    )
+    return -0.5 * (cost + part.log_determinant) + estimate.log_volume
 
 
 def motion(run: GapRun, channel: str) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -100,7 +102,9 @@ def motion(run: GapRun, channel: str) -> tuple[FloatArray, FloatArray, FloatArra
 def scaled_motion(stack: Stack, channel: str, made: Stack | None = None) -> list[Moved]:
     """Return each run's motion over the largest of a campaign, the runs' own by default."""
     usual = [motion(run, channel) for run in (made or stack).runs]
-    scale = [max(float(np.abs(one[at]).max()) for one in usual) or 1.0 for at in range(3)]
+    scale = [
+        max(float(np.abs(run_motion[at]).max()) for run_motion in usual) or 1.0 for at in range(3)
+    ]
     return [
         (x / scale[0], v / scale[1], a / scale[2])
         for x, v, a in (motion(run, channel) for run in stack.runs)
@@ -110,12 +114,12 @@ def scaled_motion(stack: Stack, channel: str, made: Stack | None = None) -> list
 def _terms(made: Stack, stack: Stack, channel: str) -> list[FloatArray]:
     moved = scaled_motion(stack, channel, made)
     laws = [(i, j) for i in range(DEGREE + 1) for j in range(DEGREE + 1 - i) if i + j]
-    found = []
+    terms = []
     for i, j in laws:
         forces = [x**i * v**j for x, v, _ in moved]
-        found.append(components_of(stack, channel, forces))
-    found.append(components_of(stack, channel, [a for _, _, a in moved]))
-    return found
+        terms.append(components_of(stack, channel, forces))
+    terms.append(components_of(stack, channel, [a for _, _, a in moved]))
+    return terms
 
 
 def components_of(stack: Stack, channel: str, forces: Sequence[FloatArray]) -> FloatArray:
@@ -131,20 +135,20 @@ def components_of(stack: Stack, channel: str, forces: Sequence[FloatArray]) -> F
     FloatArray
         Shape ``(observations,)``; 0 in other channels and in what does not repeat.
     """
-    spectra = [np.fft.rfft(one) / len(one) for one in forces]
+    spectra = [np.fft.rfft(force) / len(force) for force in forces]
     return np.array(
         [
-            _part(one, spectra[run]) if one.channel == channel else 0.0
-            for one, run in zip(stack.components, stack.run, strict=True)
+            _part(component, spectra[run]) if component.channel == channel else 0.0
+            for component, run in zip(stack.components, stack.run, strict=True)
         ]
     )
 
 
-def _part(one: Component, spectrum: ComplexArray) -> float:
-    if one.part is Part.MEAN:
+def _part(component: Component, spectrum: ComplexArray) -> float:
+    if component.part is Part.MEAN:
         return float(spectrum[0].real)
-    if one.part is Part.IN_PHASE:
-        return -2.0 * float(spectrum[one.order].imag)
-    if one.part is Part.QUADRATURE:
-        return 2.0 * float(spectrum[one.order].real)
+    if component.part is Part.IN_PHASE:
+        return -2.0 * float(spectrum[component.order].imag)
+    if component.part is Part.QUADRATURE:
+        return 2.0 * float(spectrum[component.order].real)
     return 0.0
