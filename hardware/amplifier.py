@@ -120,14 +120,14 @@ class Amplifier:
         samples = self._samples(cycle.number)
         if not samples:
             return
-        found = [self._look(i) for i in range(len(self._channels))]
+        faults = [self._look(i) for i in range(len(self._channels))]
         valid = [self._is_valid(i) for i in range(len(self._channels))]
         for number, raw in samples:
             values = self._scaled(raw, valid)
             self._recent.append(values)
             tared = tuple(v - z for v, z in zip(values, self._zero, strict=True))
             self._untaken.append((number, tared))
-        self._tell([one for one in found if one is not None])
+        self._tell([fault for fault in faults if fault is not None])
 
     def tare(self) -> None:
         """Take the mean of the last second for zero.
@@ -144,7 +144,7 @@ class Amplifier:
             raise NotReadyError(
                 self.name, "cannot tare: a channel was not valid in the last second"
             )
-        self._zero = [float(one) for one in mean]
+        self._zero = [float(value) for value in mean]
 
     @property
     def zero(self) -> tuple[float, ...]:
@@ -184,11 +184,11 @@ class Amplifier:
                 )
         ready = []
         for number in sorted(self._partial):
-            whole = all(at in self._partial[number] for at in self._values)
-            if not whole and number > newest - _PATIENCE_CYCLES:
+            is_whole = all(at in self._partial[number] for at in self._values)
+            if not is_whole and number > newest - _PATIENCE_CYCLES:
                 break
-            found = self._partial.pop(number)
-            ready.append((number, tuple(found.get(at, math.nan) for at in self._values)))
+            sample = self._partial.pop(number)
+            ready.append((number, tuple(sample.get(at, math.nan) for at in self._values)))
         return ready
 
     def _scaled(self, raw: tuple[int | float, ...], valid: list[bool]) -> tuple[float, ...]:
@@ -206,18 +206,18 @@ class Amplifier:
 
     def _look(self, i: int) -> HardwareError | None:
         """Return what is wrong with a channel now."""
-        one, raw = self._channels[i], self._node.values[self._values[i]]
+        channel, raw = self._channels[i], self._node.values[self._values[i]]
         status = self._state(i)
-        value = raw * one.scale + one.offset
-        if status & _OVERLOADS or abs(value) >= one.full_scale:
+        value = raw * channel.scale + channel.offset
+        if status & _OVERLOADS or abs(value) >= channel.full_scale:
             return BridgeSaturatedError(
                 self.name,
-                f"{one.name} = {value:g} {one.unit} (status 0x{status:02X}); "
-                f"full scale {one.full_scale:g} {one.unit}; reduce amplitude or frequency",
+                f"{channel.name} = {value:g} {channel.unit} (status 0x{status:02X}); "
+                f"full scale {channel.full_scale:g} {channel.unit}; reduce amplitude or frequency",
             )
         if status & _INVALID or not math.isfinite(value):
             return SensorInvalidError(
-                self.name, f"{one.name} is not valid (status 0x{status:02X}); check the gauge"
+                self.name, f"{channel.name} is not valid (status 0x{status:02X}); check the gauge"
             )
         return self._stuck(i, raw)
 
@@ -233,14 +233,14 @@ class Amplifier:
             f"(limit {limit:.0f})",
         )
 
-    def _tell(self, found: list[HardwareError]) -> None:
+    def _tell(self, faults: list[HardwareError]) -> None:
         """Raise the first finding that was not told; forget those that are over."""
-        keys = {(type(one).__name__, str(one).split(" ")[1]): one for one in found}
+        keys = {(type(fault).__name__, str(fault).split(" ")[1]): fault for fault in faults}
         self._told &= set(keys)
-        for key, one in keys.items():
+        for key, fault in keys.items():
             if key not in self._told:
                 self._told.add(key)
-                raise one
+                raise fault
 
 
 def nodes(name: str, settings: AmplifierSettings) -> tuple[NodePlan, ...]:
@@ -254,7 +254,7 @@ def nodes(name: str, settings: AmplifierSettings) -> tuple[NodePlan, ...]:
     tpdos = tuple(tuple(entry(text) for text in tpdo) for tpdo in settings.tpdos)
     if not tpdos:
         dictionary = load(settings.eds, settings.node, name)
-        tpdos = tuple(one for one in default_mapping(dictionary, 0x1A00) if one)
+        tpdos = tuple(tpdo for tpdo in default_mapping(dictionary, 0x1A00) if tpdo)
     mapped = {at for tpdo in tpdos for at in tpdo}
     for channel in settings.channels:
         for text in (channel.object, *((channel.status,) if channel.status else ())):

@@ -120,12 +120,12 @@ class AnalogueLink(AskedLink):
         super().__init__(name, settings)
         self._node = node
         self._inputs = settings.inputs
-        self._outputs = {one.address: entry(one.object) for one in settings.outputs}
+        self._outputs = {output.address: entry(output.object) for output in settings.outputs}
         lost: dict[Entry, int | float] = {}
-        for one in settings.outputs:
-            number, counts = entry(one.object).subindex, signed(one.written(0.0))
+        for output in settings.outputs:
+            number, counts = entry(output.object).subindex, signed(output.written(0.0))
             lost |= {Entry(_ERROR_MODE, number): 1, Entry(_ERROR_VALUE, number): counts}
-            node.put(entry(one.object), counts)  # 0 V is not rest where there is an offset
+            node.put(entry(output.object), counts)  # 0 V is not rest where there is an offset
         present = {at: value for at, value in lost.items() if has(node.dictionary, at)}
         self._objects = present | {entry(at): value for at, value in settings.settings.items()}
 
@@ -139,9 +139,9 @@ class AnalogueLink(AskedLink):
     ) -> tuple[list[Answer], list[HardwareError]]:
         answers: list[Answer] = []
         if any(stream.last == cycle.number for stream in self._node.streams):
-            for one in self._inputs:
-                word = int(self._node.values[entry(one.object)]) & 0xFFFF
-                answers.append((RegisterRequest(READ[one.table], one.address, 1), (word,)))
+            for channel in self._inputs:
+                word = int(self._node.values[entry(channel.object)]) & 0xFFFF
+                answers.append((RegisterRequest(READ[channel.table], channel.address, 1), (word,)))
         request = following()
         if request is not None and request.function == WRITE:
             self._node.put(self._outputs[request.address], signed(request.words))
@@ -157,8 +157,8 @@ def signed(words: Sequence[int]) -> int:
 
 def nodes(name: str, settings: AnalogueSettings) -> tuple[NodePlan, ...]:
     """Return what the module wants of the bus."""
-    read, told = (
-        (tuple(entry(one.object) for one in those),)
-        for those in (settings.inputs, settings.outputs)
+    read, written = (
+        (tuple(entry(channel.object) for channel in channels),)
+        for channels in (settings.inputs, settings.outputs)
     )
-    return (NodePlan(name, settings.node, settings.eds, read, told),)
+    return (NodePlan(name, settings.node, settings.eds, read, written),)

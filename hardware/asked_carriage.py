@@ -182,8 +182,8 @@ class AskedCarriage(AskedDevice):
         self._samples.append((cycle.number, read[: len(self.channels)]))
         if fresh:
             self._pursue()
-            wrong = [one for one in self._beyond() if type(one) not in self._known]
-            self._known |= {type(one) for one in wrong}
+            wrong = [error for error in self._beyond() if type(error) not in self._known]
+            self._known |= {type(error) for error in wrong}
             faults += wrong
         if faults and not self._wants_power:
             self._set(0.0)
@@ -196,11 +196,13 @@ class AskedCarriage(AskedDevice):
 
     def carried(self) -> dict[str, Any]:
         """Return the numbers read last, ``None`` for none; see :mod:`hardware.carry_over`."""
-        return {name: None if math.isnan(one) else one for name, one in self.values.items()}
+        return {name: None if math.isnan(value) else value for name, value in self.values.items()}
 
     def carry_on(self, carried: Mapping[str, Any]) -> None:
         """Go on from there."""
-        self.values = {name: math.nan if one is None else one for name, one in carried.items()}
+        self.values = {
+            name: math.nan if value is None else value for name, value in carried.items()
+        }
         self._link.assume(heard=not math.isnan(self.values["speed"]))
 
     @property
@@ -222,10 +224,10 @@ class AskedCarriage(AskedDevice):
             )
         self._set(speed_m_s, turn_rate_rad_s)
 
-    def _come_to_rest(self, what: str) -> None:
+    def _come_to_rest(self, event: str) -> None:
         """Wait for rest: for as long as the ramp takes from the highest speed."""
         ramp_s = self.speed_m_s.high / self._settings.acceleration_m_s2
-        self.within(RAMP_MARGIN * ramp_s + REST_DEADLINE_S, what)
+        self.within(RAMP_MARGIN * ramp_s + REST_DEADLINE_S, event)
 
     def _set(self, speed_m_s: float, turn_rate_rad_s: float = 0.0) -> None:
         if (speed_m_s, turn_rate_rad_s) != (self._goal_m_s, self._turn_rad_s):
@@ -271,7 +273,7 @@ class AskedCarriage(AskedDevice):
         return self.measured_speed_m_s**2 / (2.0 * self._settings.acceleration_m_s2)
 
     def _beyond(self) -> Iterator[HardwareError]:
-        one, speed, highest = self._settings, self.measured_speed_m_s, self.speed_m_s.high
+        settings, speed, highest = self._settings, self.measured_speed_m_s, self.speed_m_s.high
         if abs(speed) > CARRIAGE_PLAUSIBLE * highest:
             yield SensorInvalidError(
                 self.name,
@@ -283,7 +285,7 @@ class AskedCarriage(AskedDevice):
             return
         if self._says("at_end"):
             yield TrackEndError(self.name, "has run onto the switch at the end of its track")
-        elif self._left_m <= TRACK_MARGIN * self._braking_m + 2.0 * one.answer_s * speed:
+        elif self._left_m <= TRACK_MARGIN * self._braking_m + 2.0 * settings.answer_s * speed:
             yield TrackEndError(
                 self.name,
                 f"{self._left_m:.3g} m of track are left at {speed:.3g} m/s, which brakes in "

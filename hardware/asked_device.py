@@ -76,8 +76,8 @@ class AskedDevice:
     @property
     def heard(self) -> bool:
         """Whether it answers, and has told all that is read."""
-        told = not any(map(math.isnan, self.values.values()))
-        return self._link.is_open and self._link.heard and told
+        is_complete = not any(map(math.isnan, self.values.values()))
+        return self._link.is_open and self._link.heard and is_complete
 
     def reconnect(self) -> None:
         """Open a lost port again, and ask anew; raises as :meth:`reset_fault`."""
@@ -115,9 +115,9 @@ class AskedDevice:
         """Close the port."""
         self._link.close()
 
-    def within(self, seconds: float, what: str) -> None:
+    def within(self, seconds: float, event: str) -> None:
         """Set the deadline for what is waited for; :meth:`done` takes it back."""
-        self._deadline_s, self._waiting_for = self._now_s + seconds, what
+        self._deadline_s, self._waiting_for = self._now_s + seconds, event
 
     def done(self) -> None:
         """Cancel the deadline: what was commanded has been reached."""
@@ -132,8 +132,8 @@ class AskedDevice:
         self._now_s = cycle.time_s
         answers, faults = self._link.exchange(cycle, self._following)
         fresh = [self._take(answer) for answer in answers]
-        wrong = [one for one in self._wrong() if type(one) not in self._known]
-        self._known |= {type(one) for one in wrong}
+        wrong = [error for error in self._wrong() if type(error) not in self._known]
+        self._known |= {type(error) for error in wrong}
         return any(fresh), faults + wrong
 
     def _says(self, name: str) -> bool | None:
@@ -172,10 +172,10 @@ class AskedDevice:
             self._kept[request.address] = (self._untoggled(request.address, words), self._now_s)
             return False
         at = {(request.function, request.address + i): word for i, word in enumerate(words)}
-        for name, one in self._numbers.items():
-            if (READ[one.table], one.address) in at:
-                first = one.address - request.address
-                self.values[name] = one.value(words[first : first + one.count])
+        for name, number in self._numbers.items():
+            if (READ[number.table], number.address) in at:
+                first = number.address - request.address
+                self.values[name] = number.value(words[first : first + number.count])
         if self._status is not None:
             self._word = at.get((READ[self._status.table], self._status.address), self._word)
         if not math.isnan(life := self.values.get("life", math.nan)) and (
@@ -208,9 +208,9 @@ class AskedDevice:
         return None
 
     def _stands(self, address: int, words: tuple[int, ...]) -> bool:
-        kept, since_s = self._kept.get(address, ((), -math.inf))
+        last_words, since_s = self._kept.get(address, ((), -math.inf))
         fresh = self._now_s - since_s < self._refresh_s
-        return fresh and kept == self._untoggled(address, words)
+        return fresh and last_words == self._untoggled(address, words)
 
     def _untoggled(self, address: int, words: tuple[int, ...]) -> tuple[int, ...]:
         """Return words without the bit that changes with every write."""
@@ -222,18 +222,20 @@ class AskedDevice:
 
 def spans(numbers: Iterable[Number], status: Status | None) -> tuple[tuple[Place, int], ...]:
     """Return what is read at once: registers that follow each other in their table."""
-    wanted = {(READ[one.table], one.address + i) for one in numbers for i in range(one.count)}
+    wanted = {
+        (READ[number.table], number.address + i) for number in numbers for i in range(number.count)
+    }
     if status is not None:
         wanted.add((READ[status.table], status.address))
-    found: list[tuple[Place, int]] = []
+    stretches: list[tuple[Place, int]] = []
     for function, address in sorted(wanted):
-        if found:
-            (last, first), count = found[-1]
+        if stretches:
+            (last, first), count = stretches[-1]
             if function == last and address == first + count and count < 120:
-                found[-1] = ((last, first), count + 1)
+                stretches[-1] = ((last, first), count + 1)
                 continue
-        found.append(((function, address), 1))
-    return tuple(found)
+        stretches.append(((function, address), 1))
+    return tuple(stretches)
 
 
 def raise_worst(faults: list[HardwareError]) -> None:

@@ -124,13 +124,13 @@ class AskedLink(ABC):
         """Take the answers of the cycle and ask for what follows; return both, faults once each."""
         now_s = cycle.time_s
         answers, faults = self._asked(cycle, following)
-        refused = any(isinstance(one, ModbusError) for one in faults)
+        refused = any(isinstance(fault, ModbusError) for fault in faults)
         since_s = now_s if answers or refused or self._heard_s is None else self._heard_s
         self._heard_s = since_s
         self._answers = (bool(answers) or self._answers) and not refused
         faults += self._silence(now_s - since_s)
-        fresh = [one for one in faults if type(one) not in self._told]
-        self._told |= {type(one) for one in fresh}
+        fresh = [fault for fault in faults if type(fault) not in self._told]
+        self._told |= {type(fault) for fault in fresh}
         return answers, fresh
 
     def _silence(self, silent_s: float) -> Iterator[HardwareError]:
@@ -214,18 +214,18 @@ def read_once(
     """
     services = Services(time.monotonic, lambda _: None, _LOOKS_HZ)
     link = settings.link(name, services)
-    left = [RegisterRequest(function, address, count) for (function, address), count in places]
-    found, began_s = 0, time.monotonic()
+    requests = [RegisterRequest(function, address, count) for (function, address), count in places]
+    total, began_s = 0, time.monotonic()
     try:
-        while left:
+        while requests:
             cycle = Cycle(0, time.monotonic() - began_s)
-            answers, faults = link.exchange(cycle, partial(next, iter(left), None))
+            answers, faults = link.exchange(cycle, partial(next, iter(requests), None))
             if faults:
                 raise worst(faults)
             for request, words in answers:
-                left = [one for one in left if one != request]
-                found += len(words)
+                requests = [waiting for waiting in requests if waiting != request]
+                total += len(words)
             time.sleep(1.0 / _LOOKS_HZ)
     finally:
         link.close()
-    return found
+    return total

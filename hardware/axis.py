@@ -167,26 +167,28 @@ class DriveAxis:
 
     def objects(self) -> tuple[tuple[Entry, Number], ...]:
         """Return what is written to the drive."""
-        one, per_count = self._settings, abs(self._settings.counts_per_unit)
-        per_unit = per_count * one.velocity_per_count
-        ends = sorted(round(end * one.counts_per_unit) for end in (one.low, one.high))
+        settings, per_count = self._settings, abs(self._settings.counts_per_unit)
+        per_unit = per_count * settings.velocity_per_count
+        ends = sorted(
+            round(end * settings.counts_per_unit) for end in (settings.low, settings.high)
+        )
         return (
             (Entry(0x607D, 1), ends[0]),
             (Entry(0x607D, 2), ends[1]),
-            (Entry(0x607F), round(per_unit * max(one.speed, one.homing_speed))),
-            *motor_speed(one.max_motor_speed_rpm),
-            (Entry(0x6081), round(per_unit * one.speed)),
-            (Entry(0x6083), round(per_unit * one.acceleration)),
-            (Entry(0x6084), round(per_unit * one.acceleration)),
-            (Entry(0x6085), round(per_unit * one.quick_stop)),
-            (Entry(0x6065), round(per_count * one.following_error)),
-            (Entry(0x6066), one.following_error_ms),
-            (Entry(0x6067), round(per_count * one.tolerance)),
-            (Entry(0x607C), round(one.counts_per_unit * one.home_position)),
-            (Entry(0x6098), one.homing_method),
-            (Entry(0x6099, 1), round(per_unit * one.homing_speed)),
-            (Entry(0x6099, 2), round(per_unit * one.homing_speed)),
-            (Entry(0x609A), round(per_unit * one.acceleration)),
+            (Entry(0x607F), round(per_unit * max(settings.speed, settings.homing_speed))),
+            *motor_speed(settings.max_motor_speed_rpm),
+            (Entry(0x6081), round(per_unit * settings.speed)),
+            (Entry(0x6083), round(per_unit * settings.acceleration)),
+            (Entry(0x6084), round(per_unit * settings.acceleration)),
+            (Entry(0x6085), round(per_unit * settings.quick_stop)),
+            (Entry(0x6065), round(per_count * settings.following_error)),
+            (Entry(0x6066), settings.following_error_ms),
+            (Entry(0x6067), round(per_count * settings.tolerance)),
+            (Entry(0x607C), round(settings.counts_per_unit * settings.home_position)),
+            (Entry(0x6098), settings.homing_method),
+            (Entry(0x6099, 1), round(per_unit * settings.homing_speed)),
+            (Entry(0x6099, 2), round(per_unit * settings.homing_speed)),
+            (Entry(0x609A), round(per_unit * settings.acceleration)),
         )
 
     @property
@@ -214,12 +216,12 @@ class DriveAxis:
     def close(self) -> None:
         """Nothing to let go of: the bus is the master's."""
 
-    def _begin(self, mode: Mode, time_s: float, what: str) -> None:
+    def _begin(self, mode: Mode, time_s: float, event: str) -> None:
         check_enabled(self)
         self.settled = False
         self._stale_cycles = 0
         self.drive.mode, self.drive.extra = mode, ControlWord(0)
-        self.drive.within(4 * STEP_CYCLES + RAMP_MARGIN * time_s * self._rate_hz, what)
+        self.drive.within(4 * STEP_CYCLES + RAMP_MARGIN * time_s * self._rate_hz, event)
         self._step = _Step.MODE
 
     def _break_off(self) -> None:

@@ -46,13 +46,13 @@ class CarriageRegisters:
 
     def read(self) -> dict[str, Register]:
         """Return those that are read, by name."""
-        found = {
+        registers = {
             "speed": self.speed,
             "position": self.position,
             "life": self.life,
             "turn_rate": self.turn_rate,
         }
-        return {name: one for name, one in found.items() if one is not None}
+        return {name: register for name, register in registers.items() if register is not None}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,24 +120,24 @@ class AskedCarriageSettings(AskedSettings):
             self.asked.set_speed.written(speed)
 
     def _check_turning(self) -> None:
-        told, read, most = (
+        set_register, read, most = (
             self.asked.set_turn_rate,
             self.asked.turn_rate,
             self.highest_turn_rate_rad_s,
         )
-        if most < 0.0 or len({told is None, read is None, most == 0.0}) > 1:
+        if most < 0.0 or len({set_register is None, read is None, most == 0.0}) > 1:
             raise ConfigurationError(
                 "highest_turn_rate_rad_s (above 0), registers.set_turn_rate and "
                 "registers.turn_rate belong together; give all three, or none"
             )
-        if told is not None and self.track_m is not None:
+        if set_register is not None and self.track_m is not None:
             raise ConfigurationError(
                 "track_m is of a straight way; leave it and registers.position out of a carriage "
                 "that drives circles"
             )
         for rate in (-most, most):
-            if told is not None:
-                told.written(rate)
+            if set_register is not None:
+                set_register.written(rate)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -174,20 +174,20 @@ class CarriageLines:
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def __post_init__(self) -> None:
-        for name, one in (("speed", self.speed), ("position", self.position)):
-            if one is not None and is_told(one):
+        for name, query in (("speed", self.speed), ("position", self.position)):
+            if query is not None and is_told(query):
                 raise ConfigurationError(f"{name} is read: {{value}} stands in its answer")
         if not is_told(self.set_speed):
             raise ConfigurationError("set_speed is set: {value} stands in its line")
-        every = (self.set_speed, self.speed, self.position, self.status, self.command)
-        for number, line in enumerate(every, 1):
+        lines = (self.set_speed, self.speed, self.position, self.status, self.command)
+        for number, line in enumerate(lines, 1):
             if line is not None:
                 line.at(number)
 
     def read(self) -> dict[str, LineNumber]:
         """Return those that are read, by name."""
-        found = {"speed": self.speed, "position": self.position}
-        return {name: one for name, one in found.items() if one is not None}
+        lines = {"speed": self.speed, "position": self.position}
+        return {name: line for name, line in lines.items() if line is not None}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -204,9 +204,9 @@ class LineCarriageSettings(AskedCarriageSettings, LineSettings):
     @property
     def every_line(self) -> tuple[Line, ...]:
         """All that it is asked and told."""
-        one = self.lines
-        every = (one.set_speed, one.speed, one.position, one.status, one.command)
-        return tuple(each for each in every if each is not None)
+        lines = self.lines
+        candidates = (lines.set_speed, lines.speed, lines.position, lines.status, lines.command)
+        return tuple(each for each in candidates if each is not None)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -225,8 +225,8 @@ class CarriageVoltages:
     __pydantic_config__ = UNKNOWN_KEYS_REFUSED
 
     def __post_init__(self) -> None:
-        for number, one in enumerate((self.set_speed, self.speed), 1):
-            one.at(number)
+        for number, voltage in enumerate((self.set_speed, self.speed), 1):
+            voltage.at(number)
 
     def read(self) -> dict[str, AnalogueNumber]:
         """Return those that are read, by name."""

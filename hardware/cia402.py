@@ -114,8 +114,8 @@ def _decoded() -> tuple[DriveState, ...]:
     """Return the state of each pattern of the status word's low seven bits."""
     table = []
     for word in range(0x80):
-        found = [state for state in DriveState if word & state.value[0] == state.value[1]]
-        table.append(found[0] if found else DriveState.NOT_READY_TO_SWITCH_ON)
+        states = [state for state in DriveState if word & state.value[0] == state.value[1]]
+        table.append(states[0] if states else DriveState.NOT_READY_TO_SWITCH_ON)
     return tuple(table)
 
 

@@ -4,12 +4,12 @@ from hardware.errors import LimitError, NotReadyError
 from hardware.roles import PositionAxis, Powered, Shaft
 
 
-def check_position(axis: PositionAxis, position: float, *, told: str = "") -> None:
+def check_position(axis: PositionAxis, position: float, *, remark: str = "") -> None:
     """Refuse a position beyond an axis's limits, or that is no number.
 
     Parameters
     ----------
-    told
+    remark
         What is said besides the value and the limits.
 
     Raises
@@ -21,7 +21,7 @@ def check_position(axis: PositionAxis, position: float, *, told: str = "") -> No
         raise LimitError(
             axis.name,
             f"{position:g} {axis.unit} is outside {axis.limits.low:g} to {axis.limits.high:g} "
-            f"{axis.unit}{told}",
+            f"{axis.unit}{remark}",
         )
 
 
@@ -51,11 +51,11 @@ def check_move(axis: PositionAxis, position: float) -> None:
         raise NotReadyError(axis.name, "is not homed; home it before it moves")
 
 
-def check_speed(shaft: Shaft, frequency_hz: float, *, told: str = "") -> None:
+def check_speed(shaft: Shaft, frequency_hz: float, *, remark: str = "") -> None:
     """Refuse a shaft speed outside its limits, or not above 0; raises LimitError."""
     low, high = shaft.frequency_hz.low, shaft.frequency_hz.high
     if not (frequency_hz > 0.0 and frequency_hz in shaft.frequency_hz):
         raise LimitError(
             shaft.name,
-            f"{frequency_hz:g} Hz is outside {low:g} to {high:g} Hz (and above 0){told}",
+            f"{frequency_hz:g} Hz is outside {low:g} to {high:g} Hz (and above 0){remark}",
         )

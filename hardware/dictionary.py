@@ -47,10 +47,10 @@ def entry(text: str) -> Entry:
     ConfigurationError
         If the text is neither.
     """
-    found = _ENTRY.match(text.strip())
-    if not found:
+    match = _ENTRY.match(text.strip())
+    if not match:
         raise ConfigurationError(f"{text!r} is no object: write it as '6041' or '9130:1'")
-    return Entry(int(found[1], 16), int(found[2] or 0))
+    return Entry(int(match[1], 16), int(match[2] or 0))
 
 
 def load(eds: str, node_id: int, where: str) -> canopen.ObjectDictionary:
@@ -61,12 +61,14 @@ def load(eds: str, node_id: int, where: str) -> canopen.ObjectDictionary:
     ConfigurationError
         If there is no such file, or it is no EDS; the message lists the package's own.
     """
-    own = files("hardware").joinpath("eds")
-    path = Path(str(own / eds)) if (own / eds).is_file() else Path(eds)
+    folder = files("hardware").joinpath("eds")
+    path = Path(str(folder / eds)) if (folder / eds).is_file() else Path(eds)
     if not path.is_file():
-        known = ", ".join(sorted(one.name for one in own.iterdir() if one.name.endswith(".eds")))
+        names = ", ".join(
+            sorted(file.name for file in folder.iterdir() if file.name.endswith(".eds"))
+        )
         raise ConfigurationError(
-            f"{where}.eds = {eds!r}: no such file; give a path, or one of {known}"
+            f"{where}.eds = {eds!r}: no such file; give a path, or one of {names}"
         )
     try:
         dictionary = _parsed(path, node_id, path.stat().st_mtime_ns)
@@ -89,14 +91,14 @@ def variable(dictionary: canopen.ObjectDictionary, at: Entry) -> ODVariable | No
     canopen makes up members of any array; that is right for compact arrays only, whose EDS states
     the first member for all.
     """
-    found = dictionary.get_variable(*at)
+    od_variable = dictionary.get_variable(*at)
     holder = dictionary.get(at.object_index)
     if not isinstance(holder, ODArray) or at.subindex in holder.subindices:
-        return found
-    if found is None or len(holder.subindices) > 2:
+        return od_variable
+    if od_variable is None or len(holder.subindices) > 2:
         return None
-    found.pdo_mappable = holder[1].pdo_mappable
-    return found
+    od_variable.pdo_mappable = holder[1].pdo_mappable
+    return od_variable
 
 
 def has(dictionary: canopen.ObjectDictionary, at: Entry) -> bool:
@@ -121,7 +123,7 @@ class PdoLayout:
     def bits(self) -> tuple[int, ...]:
         """Bits of each entry."""
         formats = self.code.format.lstrip("<")
-        return tuple(8 * struct.calcsize(f"<{one}") for one in formats)
+        return tuple(8 * struct.calcsize(f"<{code}") for code in formats)
 
 
 def layout(
@@ -148,15 +150,18 @@ def layout(
 
 
 def _code(dictionary: canopen.ObjectDictionary, at: Entry, where: str) -> str:
-    found = variable(dictionary, at)
-    if found is None:
+    od_variable = variable(dictionary, at)
+    if od_variable is None:
         raise ConfigurationError(f"{where}: object {at} is not in the EDS")
-    if not found.pdo_mappable:
-        raise ConfigurationError(f"{where}: object {at} ({found.name}) cannot be mapped to a PDO")
-    code = _CODES.get(found.data_type or 0)
+    if not od_variable.pdo_mappable:
+        raise ConfigurationError(
+            f"{where}: object {at} ({od_variable.name}) cannot be mapped to a PDO"
+        )
+    code = _CODES.get(od_variable.data_type or 0)
     if code is None:
         raise ConfigurationError(
-            f"{where}: object {at} ({found.name}) is no number (data type {found.data_type})"
+            f"{where}: object {at} ({od_variable.name}) is no number (data type "
+            f"{od_variable.data_type})"
         )
     return code
 
@@ -165,14 +170,14 @@ def default_mapping(
     dictionary: canopen.ObjectDictionary, first_index: int
 ) -> tuple[tuple[Entry, ...], ...]:
     """Return the mappings that an EDS states from ``first_index`` (1A00 or 1600) on."""
-    found = []
+    mappings = []
     for index in range(first_index, first_index + 4):
         count = variable(dictionary, Entry(index, 0))
         if count is None:
             break
         number = int(count.value if count.value is not None else count.default or 0)
-        found.append(tuple(_mapped(dictionary, index, sub) for sub in range(1, number + 1)))
-    return tuple(found)
+        mappings.append(tuple(_mapped(dictionary, index, sub) for sub in range(1, number + 1)))
+    return tuple(mappings)
 
 
 def _mapped(dictionary: canopen.ObjectDictionary, index: int, sub: int) -> Entry:

@@ -134,23 +134,23 @@ class Drive:
         written = [(at, self._keep(at, value)) for at, value in (*_SAFETY, *settings)]
         self.notes = tuple(
             f"{self.node.name}: the drive lacks object {at}, {_OPTIONAL[at.object_index]}"
-            for at, kept in written
-            if not kept
+            for at, is_kept in written
+            if not is_kept
         )
 
     def _keep(self, at: Entry, value: Number) -> bool:
         """Write an object and read it back; tell whether the drive has it."""
         try:
             self.node.sdo.write(at, value)
-            kept = self.node.sdo.read(at)
+            reading = self.node.sdo.read(at)
         except SdoAbortError as error:
             if error.code not in _ABSENT or at.object_index not in _OPTIONAL:
                 raise
             return False
-        if not isinstance(kept, str) and abs(kept - value) <= READ_BACK_SHARE * abs(value):
+        if not isinstance(reading, str) and abs(reading - value) <= READ_BACK_SHARE * abs(value):
             return True
         raise ConfigurationError(
-            f"{self.node.name}: object {at} was set to {value} and reads {kept} (limit "
+            f"{self.node.name}: object {at} was set to {value} and reads {reading} (limit "
             f"{READ_BACK_SHARE:.0%} off); set the drive's own range, or rig.toml, so that it fits"
         )
 
@@ -166,9 +166,9 @@ class Drive:
         self._machine.reset_fault()
         self._strayed = False
 
-    def within(self, cycles: float, what: str) -> None:
+    def within(self, cycles: float, event: str) -> None:
         """Set the deadline for what the axis waits for; :meth:`done` takes it back."""
-        self._deadline, self._waiting_for = round(cycles), what
+        self._deadline, self._waiting_for = round(cycles), event
 
     def done(self) -> None:
         """Take the deadline back."""
@@ -178,7 +178,7 @@ class Drive:
         """Take the positions of cycle ``number``; return them with their numbers, unwrapped."""
         samples = self.node.streams[0].samples
         return self.motion.take(
-            number, [(one, int(values[_POSITION_AT])) for one, values in samples]
+            number, [(sync, int(values[_POSITION_AT])) for sync, values in samples]
         )
 
     def tick(self) -> None:

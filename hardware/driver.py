@@ -43,17 +43,17 @@ class NodePlan:
             If the EDS is unknown, an object cannot be mapped, or there are more than four PDOs.
         """
         dictionary = load(self.eds, self.node_id, self.name)
-        both = []
-        for what, base, pdos in (("tpdo", 0x180, self.tpdos), ("rpdo", 0x200, self.rpdos)):
+        layouts = []
+        for kind, base, pdos in (("tpdo", 0x180, self.tpdos), ("rpdo", 0x200, self.rpdos)):
             if len(pdos) > 4:
-                raise ConfigurationError(f"{self.name}: {len(pdos)} {what}s; the limit is 4")
-            both.append(
+                raise ConfigurationError(f"{self.name}: {len(pdos)} {kind}s; the limit is 4")
+            layouts.append(
                 tuple(
-                    layout(dictionary, pdo, base + 0x100 * n + self.node_id, f"{self.name} {what}")
+                    layout(dictionary, pdo, base + 0x100 * n + self.node_id, f"{self.name} {kind}")
                     for n, pdo in enumerate(pdos)
                 )
             )
-        return both[0], both[1]
+        return layouts[0], layouts[1]
 
 
 @dataclass(frozen=True)
@@ -143,23 +143,23 @@ def find_driver(name: str, where: str, among: Iterable[EntryPoint] | None = None
     ConfigurationError
         If there is none, or its package cannot be loaded.
     """
-    found = {
+    drivers = {
         entry_point.name: entry_point
         for entry_point in (installed(GROUP) if among is None else among)
     }
-    if name not in found:
-        near = get_close_matches(name, found, n=1, cutoff=0.5)
-        hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(sorted(found))}"
+    if name not in drivers:
+        near = get_close_matches(name, drivers, n=1, cutoff=0.5)
+        hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(sorted(drivers))}"
         raise ConfigurationError(f"{where}.driver = {name!r} is not installed; {hint}")
     try:
-        driver = found[name].load()
+        driver = drivers[name].load()
     except Exception as error:  # a foreign package may raise anything while it is imported
         raise ConfigurationError(
-            f"{where}.driver = {name!r}: {found[name].value} cannot be loaded: {error}"
+            f"{where}.driver = {name!r}: {drivers[name].value} cannot be loaded: {error}"
         ) from error
     if not isinstance(driver, Driver):
         raise ConfigurationError(
-            f"{where}.driver = {name!r}: {found[name].value} is no hardware.driver.Driver"
+            f"{where}.driver = {name!r}: {drivers[name].value} is no hardware.driver.Driver"
         )
     return driver
 
@@ -178,22 +178,20 @@ def read_settings(kind: type[T], table: Mapping[str, object], where: str) -> T:
 
     from pydantic import ValidationError
 
-    known = _keys(kind)
+    keys = _keys(kind)
     faults = [
-        f"{where}.{key} is not a known key; {_hint(key, known)}"
-        for key in table
-        if key not in known
+        f"{where}.{key} is not a known key; {_hint(key, keys)}" for key in table if key not in keys
     ]
-    given = {key: value for key, value in table.items() if key in known}
-    faults += [f"{where}.{dotted(place)} has to be a finite number" for place in not_finite(given)]
+    values = {key: value for key, value in table.items() if key in keys}
+    faults += [f"{where}.{dotted(place)} has to be a finite number" for place in not_finite(values)]
     settings: T | None = None
     try:
-        settings = _adapter(cast("Any", kind)).validate_json(json.dumps(given), strict=True)
+        settings = _adapter(cast("Any", kind)).validate_json(json.dumps(values), strict=True)
     except ValidationError as error:
-        for one in error.errors(include_url=False):
-            place = ".".join(map(str, (where, *one["loc"])))
-            shown = "" if one["type"] == "missing" else f" = {one['input']!r}"
-            faults.append(f"{place}{shown}: {one['msg']}")
+        for fault in error.errors(include_url=False):
+            place = ".".join(map(str, (where, *fault["loc"])))
+            shown = "" if fault["type"] == "missing" else f" = {fault['input']!r}"
+            faults.append(f"{place}{shown}: {fault['msg']}")
     except ConfigurationError as error:
         faults.append(f"{where}: {error}")
     if faults or settings is None:
@@ -207,8 +205,8 @@ def _keys(kind: type) -> dict[str, None]:
     return {field.name: None for field in fields(kind)}
 
 
-def _hint(key: str, known: Iterable[str]) -> str:
-    names = list(known)
+def _hint(key: str, keys: Iterable[str]) -> str:
+    names = list(keys)
     near = get_close_matches(key, names, n=1, cutoff=0.5)
     return f"did you mean {near[0]}?" if near else f"known: {', '.join(names)}"
 

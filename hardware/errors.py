@@ -268,9 +268,9 @@ def as_fault(device: str, error: Exception) -> HardwareError:
     return fault
 
 
-def worst(found: Iterable[HardwareError]) -> HardwareError:
+def worst(faults: Iterable[HardwareError]) -> HardwareError:
     """Return the most severe of some faults, the first of equals; the others are its notes."""
-    one, *others = sorted(found, key=lambda error: -error.reaction)
-    for other in others:
-        one.add_note(f"also: {other}")
-    return one
+    first, *rest = sorted(faults, key=lambda error: -error.reaction)
+    for fault in rest:
+        first.add_note(f"also: {fault}")
+    return first

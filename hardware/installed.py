@@ -10,4 +10,4 @@ def installed(group: str, name: str | None = None) -> tuple[EntryPoint, ...]:
 
     Each look reads the lists of all installed packages.
     """
-    return tuple(one for one in entry_points(group=group) if name in (None, one.name))
+    return tuple(point for point in entry_points(group=group) if name in (None, point.name))

@@ -16,9 +16,9 @@ Faults = Callable[[], Sequence[HardwareError]]
 class _Guarded:
     """Hands everything on to a device, but refuses commands while faults are latched."""
 
-    def __init__(self, inner: Any, others: Sequence[Powered], faults: Faults) -> None:
+    def __init__(self, inner: Any, devices: Sequence[Powered], faults: Faults) -> None:
         self._inner = inner
-        self._others = others
+        self._others = devices
         self._faults = faults
 
     def __getattr__(self, name: str) -> Any:
@@ -29,19 +29,19 @@ class _Guarded:
         self._refuse_in_fault("enable")
         self._inner.enable()
 
-    def _refuse_in_fault(self, what: str) -> None:
+    def _refuse_in_fault(self, command: str) -> None:
         faults = self._faults()
         if faults:
             raise NotReadyError(
-                self._inner.name, f"cannot {what}: reset first what is latched ({faults[0]})"
+                self._inner.name, f"cannot {command}: reset first what is latched ({faults[0]})"
             )
 
-    def _refuse(self, what: str, limit: str) -> None:
-        self._refuse_in_fault(what)
-        moving = [other.name for other in self._others if other.moving]
+    def _refuse(self, command: str, limit: str) -> None:
+        self._refuse_in_fault(command)
+        moving = [device.name for device in self._others if device.moving]
         if moving:
             raise InterlockError(
-                self._inner.name, f"cannot {what} while {' and '.join(moving)} {limit}"
+                self._inner.name, f"cannot {command} while {' and '.join(moving)} {limit}"
             )
 
 

@@ -49,14 +49,14 @@ class LineExchanges:
         LineError
             If so much has come without an ending that it cannot be a reply.
         """
-        *whole, self._rest = (self._rest + data).split(self._ending)
+        *lines, self._rest = (self._rest + data).split(self._ending)
         if len(self._rest) > _LONGEST:
-            seen, self._rest = self._rest[:32], b""
+            start, self._rest = self._rest[:32], b""
             raise LineError(
-                self._name, f"no ending after {_LONGEST} bytes ({seen!r} ...); check port.ending"
+                self._name, f"no ending after {_LONGEST} bytes ({start!r} ...); check port.ending"
             )
-        said = [one for one in whole if one.strip() and one.strip() != self._asked.strip()]
-        return [self._asked + b"\t" + one for one in said[-1:]]
+        said = [line for line in lines if line.strip() and line.strip() != self._asked.strip()]
+        return [self._asked + b"\t" + line for line in said[-1:]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +79,7 @@ class LineLink(PortLink):
     """A link to a panel that is asked and told in lines of text."""
 
     def __init__(self, name: str, settings: LineSettings, services: Services) -> None:
-        self._lines = {one.address: one for one in settings.every_line}
+        self._lines = {line.address: line for line in settings.every_line}
         self._ending = settings.port.ending
         self._sent: dict[str, RegisterRequest] = {}
         super().__init__(name, settings, services.port(name, settings.port))
@@ -91,23 +91,23 @@ class LineLink(PortLink):
 
     def _understood(self, line: bytes) -> Iterator[Answer]:
         asked, _, said = line.decode("ascii", "replace").partition("\t")
-        one = next((one for one in self._reads() if one.text(()) == asked), None)
-        if one is None:  # what was told: the reply alone counts
+        query = next((query for query in self._reads() if query.text(()) == asked), None)
+        if query is None:  # what was told: the reply alone counts
             request = self._sent.get(asked, RegisterRequest(WRITE, _UNKNOWN))
-            told = self._lines.get(request.address)
-            if told is not None and told.words(said) is None:
+            set_line = self._lines.get(request.address)
+            if set_line is not None and set_line.words(said) is None:
                 raise self._unexpected(asked, said)
             yield request, request.words
             return
-        words = one.words(said)
+        words = query.words(said)
         if words is None:
             raise self._unexpected(asked, said)
-        yield RegisterRequest(READ[one.table], one.address, one.count), words
+        yield RegisterRequest(READ[query.table], query.address, query.count), words
 
     def _reads(self) -> Iterator[LineNumber | LineStatus]:
-        for one in self._lines.values():
-            if not isinstance(one, LineCommand) and not is_told(one):
-                yield one
+        for line in self._lines.values():
+            if not isinstance(line, LineCommand) and not is_told(line):
+                yield line
 
     def _unexpected(self, asked: str, said: str) -> LineError:
         return LineError(
@@ -115,6 +115,6 @@ class LineLink(PortLink):
         )
 
 
-def is_told(one: Line) -> bool:
+def is_told(line: Line) -> bool:
     """Whether a line of text sets something, and does not ask."""
-    return isinstance(one, LineCommand) or "{value" in getattr(one, "line", "")
+    return isinstance(line, LineCommand) or "{value" in getattr(line, "line", "")

@@ -97,10 +97,10 @@ class LineNumber(Addressed):
 
     def words(self, said: str) -> tuple[int, ...] | None:
         """Return the number of a reply in words, none for what is set; ``None`` for no reply."""
-        found = pattern_of(self.answer).fullmatch(said.strip())
-        if found is None or not found.groups():
-            return None if found is None else ()
-        return struct.unpack(">4H", struct.pack(">d", float(found[1])))
+        match = pattern_of(self.answer).fullmatch(said.strip())
+        if match is None or not match.groups():
+            return None if match is None else ()
+        return struct.unpack(">4H", struct.pack(">d", float(match[1])))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -142,8 +142,8 @@ class LineStatus(Addressed):
         """Return the states of a reply, a bit each; ``None`` for no reply."""
         if not said.strip().startswith(self.answer):
             return None
-        every = (getattr(self, name) for name in _STATES)
-        return (sum(1 << bit for bit, own in enumerate(every) if own and own in said),)
+        texts = (getattr(self, name) for name in _STATES)
+        return (sum(1 << bit for bit, text in enumerate(texts) if text and text in said),)
 
 
 @dataclass(frozen=True, kw_only=True)

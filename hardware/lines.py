@@ -95,16 +95,16 @@ class Decoder:
 
 def _parsed(raw: bytes) -> SerialLine:
     """Return what a line says; a ValueError tells why it is none."""
-    body, _, given = raw.strip().rpartition(b"*")
-    if not _CHECKSUM.fullmatch(given) or int(given, 16) != checksum(body):
+    body, _, digits = raw.strip().rpartition(b"*")
+    if not _CHECKSUM.fullmatch(digits) or int(digits, 16) != checksum(body):
         raise ValueError(f"has a wrong checksum (its body gives {checksum(body):02X})")
-    found = _BODY.fullmatch(body)
-    if found is None:
+    match = _BODY.fullmatch(body)
+    if match is None:
         raise ValueError("is no line: not kind,sequence,ticks,value in decimal digits")
-    line = SerialLine(LineKind(found[1].decode()), int(found[2]), int(found[3]), float(found[4]))
-    what = _out_of_range(line)
-    if what:
-        raise ValueError(f"is no line: {what}")
+    line = SerialLine(LineKind(match[1].decode()), int(match[2]), int(match[3]), float(match[4]))
+    fault = _out_of_range(line)
+    if fault:
+        raise ValueError(f"is no line: {fault}")
     return line
 
 

@@ -99,12 +99,12 @@ def listen(
     heard, end = heard or Heard(), clock() + seconds
     while clock() < end:
         try:
-            found = port.lines()
+            lines = port.lines()
         except LineError as error:
             heard.refused += 1
             heard.first_refused = heard.first_refused or error.args[0]
-            found = []
-        for raw in found:
+            lines = []
+        for raw in lines:
             heard.take(raw)
         sleep(_POLL_S)
     return heard

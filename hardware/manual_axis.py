@@ -46,15 +46,15 @@ class DialQuestion:
         DialReadingError
             If it is no finite number; the question stays open.
         """
-        given = None if self._text is None else self._prompt(self._text)
-        if given is None:
+        reply = None if self._text is None else self._prompt(self._text)
+        if reply is None:
             return None
         try:
-            value = float(given.strip().replace(",", "."))
+            value = float(reply.strip().replace(",", "."))
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
-            raise DialReadingError(self._name, f"{given!r} is no number; {self._text}")
+            raise DialReadingError(self._name, f"{reply!r} is no number; {self._text}")
         self._text = None
         return value
 
@@ -182,8 +182,8 @@ class ManualAxis:
     def _ask(self, text: str) -> None:
         check_enabled(self)
         self.settled = False
-        one = self._settings
-        self._question.ask(f"{text} [{one.dial_unit}]", self._target, one.dial_per_unit)
+        settings = self._settings
+        self._question.ask(f"{text} [{settings.dial_unit}]", self._target, settings.dial_per_unit)
 
     def _take(self, dial: float) -> None:
         value = dial / self._settings.dial_per_unit

@@ -237,8 +237,8 @@ class Master:
         elif (stream := self._streams.get(identifier)) is not None:
             self._missing -= 1
             stream.take(frame.data)
-        elif (found := self._supervised.get(identifier)) is not None:
-            found[0](found[1], frame.data)
+        elif (handler := self._supervised.get(identifier)) is not None:
+            handler[0](handler[1], frame.data)
         else:
             self._look(frame)
             self.network.notify(identifier, frame.data, frame.timestamp)
@@ -280,8 +280,8 @@ class Master:
         """Number what came, and return what a cycle shows of the bus."""
         for stream in self._streams.values():
             stream.close(number)
-        found = list(self.error_frames.check(self._bus.state))
-        return found + (self._supervisor.check(number) if self._operating else [])
+        faults = list(self.error_frames.check(self._bus.state))
+        return faults + (self._supervisor.check(number) if self._operating else [])
 
     def _drain(self) -> None:
         while (frame := self._receiver.receive(0.0)) is not None:

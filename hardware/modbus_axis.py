@@ -29,8 +29,8 @@ class AxisRegisters:
 
     def read(self) -> dict[str, Register]:
         """Return those that are read, by name."""
-        found = {"position": self.position, "life": self.life}
-        return {name: one for name, one in found.items() if one is not None}
+        registers = {"position": self.position, "life": self.life}
+        return {name: register for name, register in registers.items() if register is not None}
 
 
 @dataclass(frozen=True, kw_only=True)

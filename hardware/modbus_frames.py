@@ -72,19 +72,19 @@ class ModbusFrames:
         """
         torn, self._torn = self._torn, b""
         self._rest += data
-        found: list[bytes] = []
+        exchanges: list[bytes] = []
         while self._rest:
             used, unit, number, answer = self._framer.decode(self._rest)
             if not used:
                 break
-            whole, self._rest = self._rest[:used], self._rest[used:]
+            frame, self._rest = self._rest[:used], self._rest[used:]
             if not answer:
-                raise self._unreadable(whole)
+                raise self._unreadable(frame)
             if not self._tcp or number == int.from_bytes(self._asked[:2], "big"):
-                found.append(self._exchange(unit, answer))
+                exchanges.append(self._exchange(unit, answer))
         if torn or len(self._rest) > _LONGEST:
             raise self._unreadable(torn or self._rest)
-        return found
+        return exchanges
 
     def _exchange(self, unit: int, answer: bytes) -> bytes:
         asked = self._asked[6:] if self._tcp else self._asked[:-2]

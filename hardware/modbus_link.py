@@ -67,23 +67,27 @@ class ModbusLink(PortLink):
             raise LineError(self.name, f"{said.hex()} is no answer; check what is at that address")
         if answer.isError():
             raise self._refusal(asked[1], request.address, answer.exception_code)
-        one = RegisterRequest(asked[1], request.address, request.count, tuple(request.registers))
-        words = one.words or tuple(answer.registers)
-        if answer.function_code != one.function or len(words) != (len(one.words) or one.count):
+        question = RegisterRequest(
+            asked[1], request.address, request.count, tuple(request.registers)
+        )
+        words = question.words or tuple(answer.registers)
+        if answer.function_code != question.function or len(words) != (
+            len(question.words) or question.count
+        ):
             raise LineError(
                 self.name,
                 f"answers {len(words)} registers of function {answer.function_code} where "
-                f"{one.count} of {one.function} were asked for; look who else asks it",
+                f"{question.count} of {question.function} were asked for; look who else asks it",
             )
-        yield one, words
+        yield question, words
 
     def _refusal(self, function: int, address: int, code: int) -> HardwareError:
         if code in _LATER:
             return LineError(self.name, "says that it is busy; ask it less often (refresh_s)")
-        what, remedy = _EXCEPTIONS.get(code, ("unknown to us", "look into the device's manual"))
+        reason, remedy = _EXCEPTIONS.get(code, ("unknown to us", "look into the device's manual"))
         doing = "to write" if function == WRITE else f"to read (function {function})"
         return ModbusError(
-            self.name, f"refuses {doing} register {address}: exception {code}, {what}; {remedy}"
+            self.name, f"refuses {doing} register {address}: exception {code}, {reason}; {remedy}"
         )
 
     def _frame(self, request: RegisterRequest) -> bytes:

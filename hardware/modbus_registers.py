@@ -168,6 +168,6 @@ def check_address(address: int) -> None:
 
 def check_bits(*bits: int | None) -> None:
     """Refuse bits outside 0 to 15, and one given twice; raises ConfigurationError."""
-    known = [bit for bit in bits if bit is not None]
-    if any(not 0 <= bit <= 15 for bit in known) or len(set(known)) < len(known):
-        raise ConfigurationError(f"bits {known}; each is 0 to 15 and stands once")
+    numbers = [bit for bit in bits if bit is not None]
+    if any(not 0 <= bit <= 15 for bit in numbers) or len(set(numbers)) < len(numbers):
+        raise ConfigurationError(f"bits {numbers}; each is 0 to 15 and stands once")

@@ -44,7 +44,7 @@ class EncoderMotion:
         self.sample_rate_hz, self._gap = sample_rate_hz, gap_cycles
         per_cycle = abs(counts_per_unit) * rest_speed / sample_rate_hz
         self._speed_window = max(2, math.ceil(SPEED_WINDOW_S * sample_rate_hz))
-        shortest, longest = (max(2, math.ceil(one * sample_rate_hz)) for one in REST_WINDOW_S)
+        shortest, longest = (max(2, math.ceil(time_s * sample_rate_hz)) for time_s in REST_WINDOW_S)
         window = min(max(shortest, math.ceil((REST_COUNTS + 1) / per_cycle)), longest)
         # A count less than the speed of rest makes: positions are rounded at both ends.
         self._allowed = max(per_cycle * window - 1.0, REST_COUNTS)
@@ -66,8 +66,8 @@ class EncoderMotion:
 
     def near(self, raw: int) -> int:
         """Return the count, never wrapping, of a 32-bit position near the present one."""
-        here = self.counts or 0
-        return here + (raw - here + 2**31) % 2**32 - 2**31
+        counts = self.counts or 0
+        return counts + (raw - counts + 2**31) % 2**32 - 2**31
 
     def disturb(self) -> None:
         """Believe no rest from positions of before now: a motion that was commanded ends."""

@@ -55,9 +55,9 @@ class PdoStream:
         if len(frames) == 1:
             self.samples = [(number, frames[0])]
         else:
-            kept = frames[self.last - number :] if number > self.last else []
-            first = number - len(kept) + 1
-            self.samples = [(first + i, values) for i, values in enumerate(kept)]
+            recent_frames = frames[self.last - number :] if number > self.last else []
+            first = number - len(recent_frames) + 1
+            self.samples = [(first + i, values) for i, values in enumerate(recent_frames)]
         if frames:
             self.last = number
             self._frames = []
@@ -91,7 +91,7 @@ class Node:
         self.node_id = node_id
         self.dictionary = dictionary
         self.sdo = Sdo(name, node_id, dictionary, carrier)
-        self.values: dict[Entry, Number] = {at: 0 for one in (*tpdos, *rpdos) for at in one.entries}
+        self.values: dict[Entry, Number] = {at: 0 for pdo in (*tpdos, *rpdos) for at in pdo.entries}
         self.streams = tuple(PdoStream(tpdo, self) for tpdo in tpdos)
         self.last_beat = 0
         self.cyclic = False

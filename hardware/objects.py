@@ -57,9 +57,11 @@ class MappedObjects:
 
 def _decoded(node: FoundNode, at: Entry, raw: bytes) -> ObjectValue:
     dictionary = _dictionary(node.profile)
-    known = None if dictionary is None else variable(dictionary, at)
-    if known is not None and known.data_type in datatypes.NUMBER_TYPES:
-        return ObjectValue(node.node_id, f"{at} {known.name}", float(known.decode_raw(raw)))
+    od_variable = None if dictionary is None else variable(dictionary, at)
+    if od_variable is not None and od_variable.data_type in datatypes.NUMBER_TYPES:
+        return ObjectValue(
+            node.node_id, f"{at} {od_variable.name}", float(od_variable.decode_raw(raw))
+        )
     return ObjectValue(node.node_id, f"{at}", float(int.from_bytes(raw, "little", signed=True)))
 
 

@@ -74,10 +74,10 @@ class Company:
 
     def _own(self, frame: can.Message) -> bool:
         """Whether it is this controller's own frame, come back."""
-        one = frame.arbitration_id, bytes(frame.data)
-        if not self._awaited[one]:
+        message = frame.arbitration_id, bytes(frame.data)
+        if not self._awaited[message]:
             return False
-        self._awaited[one] -= 1
+        self._awaited[message] -= 1
         return True
 
     def refuse(self) -> None:
@@ -89,9 +89,9 @@ class Company:
             It names what was heard.
         """
         if self._said:
-            one = self._configuration
+            bus = self._configuration
             raise OtherMasterError(
-                f"bus {one.interface}:{one.channel}",
+                f"bus {bus.interface}:{bus.channel}",
                 f"another controller is on it: heard {', '.join(self._said)}; two would command "
                 "the same axes. End it, or take it off the bus, and start again",
             )

@@ -50,8 +50,8 @@ class Owner:
 
     def __str__(self) -> str:
         """Name it as a person would look for it."""
-        there = "" if self.host == platform.node() else f" on {self.host}"
-        return f"process {self.pid}{there} ({self.command}), since {self.since_utc}"
+        place = "" if self.host == platform.node() else f" on {self.host}"
+        return f"process {self.pid}{place} ({self.command}), since {self.since_utc}"
 
 
 @dataclass
@@ -84,14 +84,14 @@ _GUARD: Final = threading.RLock()
 _HELD: Final[dict[Path, Ownership]] = {}
 
 
-def own(path: Path, what: str, *, patience_s: float = PATIENCE_S) -> Ownership:
+def own(path: Path, message: str, *, patience_s: float = PATIENCE_S) -> Ownership:
     """Own what a lock file stands for.
 
     Parameters
     ----------
     path
         The lock file; it is made, and stays when it is let go of, empty.
-    what
+    message
         What is owned, for the message: "out is being written".
     patience_s
         How long to wait for it; 0 in a loop that must not wait.
@@ -104,11 +104,11 @@ def own(path: Path, what: str, *, patience_s: float = PATIENCE_S) -> Ownership:
     """
     with _GUARD:
         if _key(path) in _HELD:
-            raise OwnedElsewhereError(f"{what} by this very process")
-        return _owned(path, what, patience_s, Ownership)
+            raise OwnedElsewhereError(f"{message} by this very process")
+        return _owned(path, message, patience_s, Ownership)
 
 
-def own_together(path: Path, what: str, kind: type[T], *, patience_s: float = PATIENCE_S) -> T:
+def own_together(path: Path, message: str, kind: type[T], *, patience_s: float = PATIENCE_S) -> T:
     """Own as :func:`own`, but together with the other parts of this process; they share one.
 
     Parameters
@@ -119,7 +119,7 @@ def own_together(path: Path, what: str, kind: type[T], *, patience_s: float = PA
     with _GUARD:
         held = _HELD.get(_key(path))
         if not isinstance(held, kind):
-            return _owned(path, what, patience_s, kind)
+            return _owned(path, message, patience_s, kind)
         held._count += 1
         return held
 
@@ -132,14 +132,14 @@ def owner_of(path: Path) -> Owner | None:
     with _GUARD:
         if _key(path) in _HELD:
             return None
-        told = _record(path)
-        if told is None:
+        owner = _record(path)
+        if owner is None:
             return None
         probe = FileLock(path, blocking=False, thread_local=False)
         try:
             probe.acquire()
         except Timeout:
-            return _record(path) or told
+            return _record(path) or owner
         except OSError:
             return None
         probe.release()  # what a process left that was killed
@@ -148,7 +148,7 @@ def owner_of(path: Path) -> Owner | None:
 
 def machine_lock(key: str) -> Path:
     """Return the lock file of something that all users of this machine share, a bus for example."""
-    name = "".join(one if one.isalnum() else "-" for one in key)[-_KEPT_OF_NAME:].strip("-")
+    name = "".join(char if char.isalnum() else "-" for char in key)[-_KEPT_OF_NAME:].strip("-")
     digest = sha256(key.encode()).hexdigest()[:12]
     return Path(tempfile.gettempdir()) / f"pmm-{name}-{digest}.lock"
 
@@ -158,19 +158,19 @@ def own_on_machine(key: str) -> Ownership:
     return own(machine_lock(key), "in use")
 
 
-def _owned(path: Path, what: str, patience_s: float, kind: type[T]) -> T:
-    mine = kind(path, _locked(path, what, patience_s))
+def _owned(path: Path, message: str, patience_s: float, kind: type[T]) -> T:
+    mine = kind(path, _locked(path, message, patience_s))
     _HELD[_key(path)] = mine
     return mine
 
 
-def _locked(path: Path, what: str, patience_s: float) -> FileLock:
+def _locked(path: Path, message: str, patience_s: float) -> FileLock:
     lock = FileLock(path, patience_s, _MODE, thread_local=False, on_acquired=_sign)
     try:
         lock.acquire()
     except Timeout:
         by = _record(path) or "another process"
-        raise OwnedElsewhereError(f"{what} by {by}; wait for it or stop it") from None
+        raise OwnedElsewhereError(f"{message} by {by}; wait for it or stop it") from None
     except OSError as error:
         raise OwnedElsewhereError(
             f"{path}: cannot be locked ({error.strerror or error}), and without a lock two "

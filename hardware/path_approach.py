@@ -45,13 +45,13 @@ class Ramp:
 
     def step(self, period_s: float) -> None:
         """Move on by one cycle of ``period_s``, within speed and acceleration."""
-        left, more = self._way - self.position, self._slope * period_s
+        distance, more = self._way - self.position, self._slope * period_s
         if self._stopping:
             self._speed = max(self._speed - more, 0.0)
         else:
-            braked = math.sqrt(2.0 * self._slope * max(left, 0.0))
+            braked = math.sqrt(2.0 * self._slope * max(distance, 0.0))
             self._speed = min(self._top, self._speed + more, braked)
-        if self._speed * period_s >= left or (not self._stopping and left <= 1e-9):
+        if self._speed * period_s >= distance or (not self._stopping and distance <= 1e-9):
             self.position, self._speed = self._way, 0.0
         else:
             self.position += self._speed * period_s

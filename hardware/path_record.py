@@ -37,10 +37,10 @@ class PathRecord:
 
     def led(self, number: int, angle_rad: float, points_m: FloatArray) -> None:
         """Write down the master angle and the set-points of a SYNC to come, where they are new."""
-        one = (float(angle_rad), *map(float, points_m))
-        if one != self._written:
-            self._written = one
-            self._port.write(" ".join(map(repr, (number, *one))).encode() + b"\n")
+        row = (float(angle_rad), *map(float, points_m))
+        if row != self._written:
+            self._written = row
+            self._port.write(" ".join(map(repr, (number, *row))).encode() + b"\n")
 
     def angle_at(self, number: int) -> float:
         """Return the master angle at a SYNC of the latest; NaN at one that it knows nothing of."""
@@ -58,20 +58,22 @@ class PathRecord:
             The master angle, of SYNCs from before the struts were led.
         """
         for line in self._port.lines():
-            at, *told = line.split()
-            self._led[int(at)] = tuple(map(float, told))
-        for strut, seen in zip(self._struts, self._seen, strict=True):
-            seen |= {n: counts / strut.settings.counts_per_unit for n, counts in strut.positions}
+            at, *numbers = line.split()
+            self._led[int(at)] = tuple(map(float, numbers))
+        for strut, strut_positions in zip(self._struts, self._seen, strict=True):
+            strut_positions |= {
+                n: counts / strut.settings.counts_per_unit for n, counts in strut.positions
+            }
         aft, fore = self._seen
         for number in sorted(aft.keys() & fore.keys()):
             places = (aft.pop(number), fore.pop(number))
             angle, *points = self._at(number) or (angle_rad, *places)
-            own = places if self._encoders else ()
-            self._samples.append((number, (angle, *own, *points)))
-        for kept in (aft, fore):
-            for number in [one for one in kept if one < now - _KEPT_CYCLES]:
-                del kept[number]
-        old = sorted(one for one in self._led if one < now - _KEPT_CYCLES)
+            measured = places if self._encoders else ()
+            self._samples.append((number, (angle, *measured, *points)))
+        for positions in (aft, fore):
+            for number in [number for number in positions if number < now - _KEPT_CYCLES]:
+                del positions[number]
+        old = sorted(number for number in self._led if number < now - _KEPT_CYCLES)
         for number in old[:-1]:  # the last one may hold still
             del self._led[number]
 
@@ -82,11 +84,11 @@ class PathRecord:
 
     def carried(self) -> dict[str, Any]:
         """Return what holds now and at the SYNCs to come; see :mod:`hardware.carry_over`."""
-        return {"led": [[number, *one] for number, one in self._led.items()]}
+        return {"led": [[number, *row] for number, row in self._led.items()]}
 
     def carry_on(self, carried: Mapping[str, Any]) -> None:
         """Go on from there."""
-        self._led = {int(number): tuple(one) for number, *one in carried["led"]}
+        self._led = {int(number): tuple(row) for number, *row in carried["led"]}
 
     def close(self) -> None:
         """Close the port."""
@@ -94,5 +96,5 @@ class PathRecord:
 
     def _at(self, number: int) -> Led | None:
         """Return what holds at a SYNC; ``None`` before the struts were led."""
-        since = [one for one in self._led if one <= number]
+        since = [sync for sync in self._led if sync <= number]
         return self._led[max(since)] if since else None

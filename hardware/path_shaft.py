@@ -53,10 +53,10 @@ class PathShaft:
         self.settings = settings
         self.sample_rate_hz = services.sample_rate_hz
         self.frequency_hz = Range(settings.lowest_frequency_hz, settings.highest_frequency_hz)
-        own = (DISPLACEMENT_AFT, DISPLACEMENT_FORE) if settings.encoders else ()
-        self.channels = (SHAFT_ANGLE, *own, COMMAND_AFT, COMMAND_FORE)
+        encoder_channels = (DISPLACEMENT_AFT, DISPLACEMENT_FORE) if settings.encoders else ()
+        self.channels = (SHAFT_ANGLE, *encoder_channels, COMMAND_AFT, COMMAND_FORE)
         self.struts = tuple(
-            PathStrut(f"{name}.{one}", getattr(settings, one), services) for one in STRUTS
+            PathStrut(f"{name}.{strut}", getattr(settings, strut), services) for strut in STRUTS
         )
         self.eccentricity_m = self.strut_phase_rad = 0.0
         self._lines: tuple[Line, ...] = ()
@@ -290,7 +290,7 @@ class PathShaft:
 def nodes(name: str, settings: PathShaftSettings) -> tuple[NodePlan, ...]:
     """Return what both struts' drives want of the bus."""
     return tuple(
-        plan for one in STRUTS for plan in axis_nodes(f"{name}.{one}", getattr(settings, one))
+        plan for strut in STRUTS for plan in axis_nodes(f"{name}.{strut}", getattr(settings, strut))
     )
 
 

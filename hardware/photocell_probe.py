@@ -132,7 +132,7 @@ class ProbePhotocell:
         missed, self._told = self._told, None
         # The shaft may have stood anywhere: the first pulse of a motion has no neighbour.
         if last is not None:
-            self._compare(self._turns(at - last), self._edges - before, told=missed is not None)
+            self._compare(self._turns(at - last), self._edges - before, is_told=missed is not None)
 
     def _begin_anew(self) -> None:
         self._pulse = self._since = self._told = None
@@ -153,12 +153,12 @@ class ProbePhotocell:
                 self.name, f"no pulse for {turns:.2f} turns (limit {_MISSED_TURNS})"
             )
 
-    def _compare(self, turns: float, edges: int, *, told: bool) -> None:
+    def _compare(self, turns: float, edges: int, *, is_told: bool) -> None:
         if edges > 1 or turns < _EXTRA_TURNS:
             raise PhotocellExtraError(
                 self.name, f"{edges} pulses within {turns:.3f} turns (one in about 1 expected)"
             )
-        if turns > _MISSED_TURNS and not told:
+        if turns > _MISSED_TURNS and not is_told:
             raise PhotocellMissedError(
                 self.name, f"{turns:.3f} turns between pulses (limit {_MISSED_TURNS})"
             )

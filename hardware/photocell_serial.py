@@ -164,13 +164,13 @@ class SerialPhotocell(SerialInstrument):
         if since_s is None or self._period_s is None:
             return
         periods = (at_s - since_s) / self._period_s
-        told = PhotocellMissedError in self._told
+        is_told = PhotocellMissedError in self._told
         self._told -= {PhotocellMissedError, PhotocellDeadError}
         if periods < _EXTRA_PERIODS:
             raise PhotocellExtraError(
                 self.name, f"two pulses {periods:.3f} periods apart (limit {_EXTRA_PERIODS})"
             )
-        if periods > _MISSED_PERIODS and not told:
+        if periods > _MISSED_PERIODS and not is_told:
             raise PhotocellMissedError(
                 self.name, f"{periods:.3f} periods between pulses (limit {_MISSED_PERIODS})"
             )
@@ -189,8 +189,8 @@ class SerialPhotocell(SerialInstrument):
         ):
             if periods > limit_periods and kind not in self._told:
                 self._told |= {kind, PhotocellMissedError}
-                what = f"no pulse for {periods:.2f} periods (limit {limit_periods})"
-                yield kind(self.name, what)
+                message = f"no pulse for {periods:.2f} periods (limit {limit_periods})"
+                yield kind(self.name, message)
 
 
 DRIVER = Driver(Role.PHOTOCELL, TimestamperSettings, SerialPhotocell)

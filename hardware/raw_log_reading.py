@@ -104,8 +104,8 @@ def _objects(data: bytes) -> Iterator[tuple[int, int]]:
     at = 0
     while at + OBJECT.size <= len(data):
         signature, _, _, size, kind = OBJECT.unpack_from(data, at)
-        whole = _SIZES.get(kind)
-        if signature != b"LOBJ" or size != whole or at + size > len(data):
+        full_size = _SIZES.get(kind)
+        if signature != b"LOBJ" or size != full_size or at + size > len(data):
             return
         yield kind, at
         at += size

@@ -21,22 +21,22 @@ def reconnect(devices: Sequence[Device], cycle: Callable[[], object], period_s: 
     PortOpenError
         If a port is still not there after the last try.
     """
-    every = [one for one in devices if isinstance(one, Reconnecting)]
-    for left in reversed(range(RECONNECT_TRIES)):
-        lost = [one for one in every if not one.heard]
+    port_devices = [device for device in devices if isinstance(device, Reconnecting)]
+    for tries in reversed(range(RECONNECT_TRIES)):
+        lost = [device for device in port_devices if not device.heard]
         if not lost:
             return
         try:
-            for one in lost:
-                one.reconnect()
+            for device in lost:
+                device.reconnect()
         except PortOpenError as error:
-            if not left:
+            if not tries:
                 said = str(error).removeprefix(f"{error.device}: ")
                 raise PortOpenError(
                     error.device, f"{said} ({RECONNECT_TRIES} tries); plug in and reset"
                 ) from error
         for _ in range(round(RECONNECT_S / period_s)):
-            if all(one.heard for one in lost):
+            if all(device.heard for device in lost):
                 break
             with suppress(HardwareError):
                 cycle()

@@ -42,8 +42,8 @@ def come_to_rest(rig: Moving) -> None:
     if not any(fault.reaction >= Reaction.QUICK_STOP for fault in rig.faults):
         rig.stop()
         _wait(rig, round(_PROFILE_STOP_S * rate_hz), gently=True)
-    for one in rig.powered():
-        one.disable()
+    for axis in rig.powered():
+        axis.disable()
     _wait(rig, round(REST_DEADLINE_S * rate_hz))
     for _ in range(_LAST_CYCLES):
         if _is_lost(rig):
@@ -54,7 +54,7 @@ def come_to_rest(rig: Moving) -> None:
 def _wait(rig: Moving, cycles: int, *, gently: bool = False) -> None:
     """Wait until nothing moves, or the bus is lost; ``gently`` no longer than to the next fault."""
     for _ in range(cycles):
-        moves = any(one.moving for one in rig.powered())
+        moves = any(axis.moving for axis in rig.powered())
         if not moves or _is_lost(rig) or (not _cycle(rig) and gently):
             return
 

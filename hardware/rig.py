@@ -150,14 +150,14 @@ class Rig:
         late = self._pacer.wait()
         self.number += 1
         cycle = Cycle(self.number, self.number * self._period_s, late)
-        found = self.master.exchange(self.number) if self.master else []
+        errors = self.master.exchange(self.number) if self.master else []
         for device in self._devices.opened:
             try:
                 device.tick(cycle)
             except Exception as error:  # a driver of a lab's own may raise anything
-                found.append(as_fault(device.name, error))
-        found += self._watch.look()
-        fresh = [error for error in found if self._latch(error)]
+                errors.append(as_fault(device.name, error))
+        errors += self._watch.look()
+        fresh = [error for error in errors if self._latch(error)]
         fresh += self._react(fresh)
         if self.master is not None:
             lost = [error for error in self.master.flush() if self._latch(error)]
@@ -166,13 +166,13 @@ class Rig:
             raise worst(fresh)
         return cycle
 
-    def run_until(self, condition: Callable[[], bool], within_cycles: int, what: str) -> int:
+    def run_until(self, condition: Callable[[], bool], within_cycles: int, event: str) -> int:
         """Cycle until a condition holds; return how many cycles it took.
 
         Raises
         ------
         TransitionTimeoutError
-            If it does not hold in time; ``what`` says what was waited for.
+            If it does not hold in time; ``event`` says what was waited for.
         HardwareError
             As :meth:`cycle` does.
         """
@@ -180,7 +180,7 @@ class Rig:
             if condition():
                 return count
             self.cycle()
-        raise TransitionTimeoutError("rig", f"{what}: not within {within_cycles} cycles")
+        raise TransitionTimeoutError("rig", f"{event}: not within {within_cycles} cycles")
 
     def limit(self, limits: WatchLimits) -> None:
         """Watch speed and loads against these limits, in every cycle from now on."""
@@ -188,11 +188,11 @@ class Rig:
 
     def stop(self) -> None:
         """Profile stop of all axes; an axis that refuses does not keep the others from it."""
-        self._each(lambda one: one.stop())
+        self._each(lambda axis: axis.stop())
 
     def quick_stop(self) -> None:
         """Quick stop of all axes; an axis that refuses does not keep the others from it."""
-        self._each(lambda one: one.quick_stop())
+        self._each(lambda axis: axis.quick_stop())
 
     def reset(self) -> None:
         """Forget the latched faults and reset those of the devices: on the operator's demand.
@@ -207,7 +207,7 @@ class Rig:
             If a device cannot be reset (a port is still unplugged); its fault stays latched.
         """
         reconnect(self._devices.opened, self.cycle, self._period_s)
-        moving = [one.name for one in self.powered() if one.moving]
+        moving = [axis.name for axis in self.powered() if axis.moving]
         if moving:
             raise NotReadyError(
                 "rig",
@@ -223,7 +223,9 @@ class Rig:
     @property
     def notes(self) -> tuple[str, ...]:
         """What devices lack and are used without, a sentence each; known once prepared."""
-        return tuple(one for device in self._devices.opened for one in getattr(device, "notes", ()))
+        return tuple(
+            note for device in self._devices.opened for note in getattr(device, "notes", ())
+        )
 
     @property
     def devices(self) -> tuple[Device, ...]:
@@ -240,21 +242,21 @@ class Rig:
 
     def powered(self) -> tuple[Powered, ...]:
         """Return what moves, as far as the rig has it."""
-        drives = tuple(one for one in (self.shaft, self.carriage) if one is not None)
+        drives = tuple(drive for drive in (self.shaft, self.carriage) if drive is not None)
         return (*drives, *self.axes())
 
     def axes(self) -> tuple[PositionAxis, ...]:
         """Return the axes that are set before a run and stay in it."""
-        own = (self.eccentricity, self.phase, *self.angles.values())
-        return tuple(axis for axis in own if axis is not None)
+        axes = (self.eccentricity, self.phase, *self.angles.values())
+        return tuple(axis for axis in axes if axis is not None)
 
     def _each(self, command: Callable[[Powered], None]) -> None:
         failed = []
-        for one in self.powered():
+        for axis in self.powered():
             try:
-                command(one)
+                command(axis)
             except Exception as error:  # whatever it is, the next axis has to stop
-                failed.append(as_fault(one.name, error))
+                failed.append(as_fault(axis.name, error))
         if failed:
             raise worst(failed)
 
@@ -280,15 +282,15 @@ class Rig:
         """Keep a fault that stops the rig; tell whether it is to be raised."""
         if error.reaction < Reaction.PROFILE_STOP:
             return True
-        known = {(type(fault), fault.device) for fault in self.faults}
-        new = (type(error), error.device) not in known
+        keys = {(type(fault), fault.device) for fault in self.faults}
+        new = (type(error), error.device) not in keys
         if new:
             self.faults.append(error)
         return new or error.reaction is Reaction.END_RUN
 
-    def _react(self, found: Sequence[HardwareError]) -> list[HardwareError]:
+    def _react(self, errors: Sequence[HardwareError]) -> list[HardwareError]:
         """Do what faults ask for; return what went wrong in that, which is latched too."""
-        reaction = max((error.reaction for error in found), default=Reaction.REFUSE)
+        reaction = max((error.reaction for error in errors), default=Reaction.REFUSE)
         if reaction is Reaction.END_RUN and self.master is not None:
             self.master.healthy = False
         if reaction < Reaction.PROFILE_STOP:

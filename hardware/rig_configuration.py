@@ -70,16 +70,16 @@ class RigConfiguration:
     @property
     def angles(self) -> dict[str, RigPart]:
         """The axes of static angles that the rig has, by name."""
-        return {key: one for key in ANGLE_KEYS if (one := getattr(self, key)) is not None}
+        return {key: part for key in ANGLE_KEYS if (part := getattr(self, key)) is not None}
 
     def parts(self) -> Iterator[RigPart]:
         """Yield the parts, the shaft first."""
-        for one in (self.shaft, self.eccentricity, self.phase, *self.forces):
-            if one is not None:
-                yield one
-        for one in (self.photocell, self.inclinometer, self.carriage, *self.angles.values()):
-            if one is not None:
-                yield one
+        for part in (self.shaft, self.eccentricity, self.phase, *self.forces):
+            if part is not None:
+                yield part
+        for part in (self.photocell, self.inclinometer, self.carriage, *self.angles.values()):
+            if part is not None:
+                yield part
 
 
 def read_rig(
@@ -98,7 +98,7 @@ def read_rig(
         for key in tables
         if key not in TABLES
     ]
-    found = {
+    parts_by_role = {
         role: _parts(role, tables[role], faults, None if among is None else tuple(among))
         for role in ROLES
         if role in tables
@@ -106,14 +106,14 @@ def read_rig(
     bus = _read(BusConfiguration, tables.get("bus"), "bus", faults)
     if faults:
         raise ConfigurationError("\n".join(faults))
-    single = {role: parts[0] for role, parts in found.items() if role != "forces" and parts}
+    single = {role: parts[0] for role, parts in parts_by_role.items() if role != "forces" and parts}
     rate = tables.get("cycle_rate_hz", 100.0)
     if not isinstance(rate, int | float) or rate is True or not 0.0 < rate <= FASTEST_HZ:
         raise ConfigurationError(
             f"cycle_rate_hz = {rate!r} has to be a number above 0, at most {FASTEST_HZ:g}"
         )
-    rig = RigConfiguration(bus=bus, forces=tuple(found.get("forces", ())), cycle_rate_hz=rate,
-                           **single)  # fmt: skip
+    rig = RigConfiguration(bus=bus, forces=tuple(parts_by_role.get("forces", ())),
+                           cycle_rate_hz=rate, **single)  # fmt: skip
     check(rig)
     return rig
 
@@ -165,13 +165,13 @@ def _parts(
     many = role == "forces"
     tables = table if many and isinstance(table, list) else [table]
     parts = []
-    for i, one in enumerate(tables):
+    for i, part in enumerate(tables):
         where = f"{role}[{i}]" if many else role
-        if not isinstance(one, Mapping):
-            faults.append(f"{where} = {one!r} has to be a table")
+        if not isinstance(part, Mapping):
+            faults.append(f"{where} = {part!r} has to be a table")
             continue
         try:
-            parts.append(_part(where, ROLES[role], one, among))
+            parts.append(_part(where, ROLES[role], part, among))
         except ConfigurationError as error:
             faults.append(str(error))
     return parts
@@ -220,8 +220,8 @@ def _node_faults(plans: list[NodePlan], bus: BusConfiguration | None) -> Iterato
 def _channel_faults(rig: RigConfiguration) -> Iterator[str]:
     names: Counter[str] = Counter()
     for part in rig.forces:
-        for one in getattr(part.settings, "channels", ()):
-            names[getattr(one, "name", str(one))] += 1
+        for channel in getattr(part.settings, "channels", ()):
+            names[getattr(channel, "name", str(channel))] += 1
     for name, count in names.items():
         if count > 1:
             yield f"forces: channel {name!r} is there {count} times; a name has to be unique"

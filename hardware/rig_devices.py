@@ -60,7 +60,7 @@ class RigDevices:
         self.angles: dict[str, PositionAxis] = {}
         self.watch = Watch(None, ())
 
-    def open(self, one: RigConfiguration, services: Services) -> None:
+    def open(self, configuration: RigConfiguration, services: Services) -> None:
         """Open all devices of a configuration.
 
         Raises
@@ -70,24 +70,28 @@ class RigDevices:
         BusOpenError, PortOpenError
             If a port cannot be opened.
         """
-        shaft = cast("Shaft | None", self._device(one.shaft, services))
+        shaft = cast("Shaft | None", self._device(configuration.shaft, services))
         led: object = shaft
         self.path = led if isinstance(led, PathFollower) else None
         services = replace(services, shaft=shaft)
         axes = [
             cast("PositionAxis | None", self._device(part, services))
-            for part in (one.eccentricity, one.phase)
+            for part in (configuration.eccentricity, configuration.phase)
         ]
-        forces = [cast("ForceChannels", self._device(part, services)) for part in one.forces]
+        forces = [
+            cast("ForceChannels", self._device(part, services)) for part in configuration.forces
+        ]
         self.watch = Watch(shaft, forces)
-        self.photocell = cast("Photocell | None", self._device(one.photocell, services))
-        self.inclinometer = cast("Inclinometer | None", self._device(one.inclinometer, services))
-        carriage = cast("Carriage | None", self._device(one.carriage, services))
+        self.photocell = cast("Photocell | None", self._device(configuration.photocell, services))
+        self.inclinometer = cast(
+            "Inclinometer | None", self._device(configuration.inclinometer, services)
+        )
+        carriage = cast("Carriage | None", self._device(configuration.carriage, services))
         towing: object = carriage
         self.follower = towing if isinstance(towing, SpeedFollower) else None
         angles = {
             name: cast("PositionAxis", self._device(part, services))
-            for name, part in one.angles.items()
+            for name, part in configuration.angles.items()
         }
         present = [axis for axis in (*axes, *angles.values()) if axis is not None]
         drives = [drive for drive in (shaft, carriage) if drive is not None]

@@ -55,8 +55,8 @@ class _Client(SdoClient):
     def read_response(self) -> bytes:
         deadline = self._carrier.clock() + self.RESPONSE_TIMEOUT
         while self.responses.empty():
-            left = deadline - self._carrier.clock()
-            frame = self._carrier.receive(left) if left > 0 else None
+            rest_s = deadline - self._carrier.clock()
+            frame = self._carrier.receive(rest_s) if rest_s > 0 else None
             if frame is None:
                 raise SdoCommunicationError("No SDO response received")
             self._carrier.deliver(frame)
@@ -114,27 +114,27 @@ class Sdo:
         self._guarded(at, f"write {value!r} to", lambda: self._client.download(*at, data))
 
     def _variable(self, at: Entry) -> canopen.objectdictionary.ODVariable:
-        found = self._dictionary.get_variable(*at)
-        if found is None:
+        od_variable = self._dictionary.get_variable(*at)
+        if od_variable is None:
             raise SdoAbortError(self._name, f"object {at} is not in the EDS", 0x06020000)
-        return found
+        return od_variable
 
-    def _guarded(self, at: Entry, what: str, transfer: Callable[[], T]) -> T:
+    def _guarded(self, at: Entry, action: str, transfer: Callable[[], T]) -> T:
         if self._carrier.delivering:
             raise SdoInCallbackError(
-                self._name, f"cannot {what} {at} while frames are delivered; do it between cycles"
+                self._name, f"cannot {action} {at} while frames are delivered; do it between cycles"
             )
         with self._carrier.lock:
             try:
                 return transfer()
             except SdoAbortedError as error:
                 raise SdoAbortError(
-                    self._name, f"refused to {what} {at}: {error}", error.code
+                    self._name, f"refused to {action} {at}: {error}", error.code
                 ) from error
             except SdoCommunicationError as error:
                 raise SdoTimeoutError(
                     self._name,
-                    f"could not {what} {at} within {self._client.RESPONSE_TIMEOUT:g} s: {error}",
+                    f"could not {action} {at} within {self._client.RESPONSE_TIMEOUT:g} s: {error}",
                 ) from error
 
 

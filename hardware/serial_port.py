@@ -54,11 +54,11 @@ class LineSplitter:
         LineError
             If so much arrived without a line feed that it cannot be a line.
         """
-        *whole, self._rest = (self._rest + data).split(b"\n")
+        *lines, self._rest = (self._rest + data).split(b"\n")
         if len(self._rest) > _LONGEST_LINE:
-            seen, self._rest = self._rest[:32], b""
-            raise LineError(self._name, f"no line feed after {_LONGEST_LINE} bytes ({seen!r} ...)")
-        return [line for line in whole if line.strip()]
+            start, self._rest = self._rest[:32], b""
+            raise LineError(self._name, f"no line feed after {_LONGEST_LINE} bytes ({start!r} ...)")
+        return [line for line in lines if line.strip()]
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,7 @@ def plugged_ports() -> tuple[PluggedPort, ...]:
             f"usb:{port.serial_number}" if port.serial_number else port.device,
             port.description or "",
         )
-        for port in sorted(list_ports.comports(), key=lambda one: one.device)
+        for port in sorted(list_ports.comports(), key=lambda port: port.device)
     )
 
 
@@ -167,8 +167,8 @@ def resolve(url: str) -> str:
     ports = {port.serial_number: port.device for port in list_ports.comports()}
     number = url.removeprefix("usb:")
     if number not in ports:
-        known = ", ".join(str(one) for one in ports if one) or "none"
-        raise PortOpenError(url, f"no such adapter; plugged in: {known}")
+        numbers = ", ".join(str(key) for key in ports if key) or "none"
+        raise PortOpenError(url, f"no such adapter; plugged in: {numbers}")
     device: str = ports[number]
     return device
 
@@ -280,11 +280,11 @@ class SerialPort:
         """Close the port; may be called twice."""
         port, self._port = self._port, None
         if port is not None:
-            own = getattr(port, "_socket", None)  # pyserial leaves it where its other end is gone
+            link = getattr(port, "_socket", None)  # pyserial leaves it where its other end is gone
             with suppress(OSError):  # an unplugged port has nothing left to close
                 port.close()
-            if own is not None:
-                own.close()
+            if link is not None:
+                link.close()
         self._disown()
 
     def _disown(self) -> None:
@@ -293,8 +293,8 @@ class SerialPort:
         if owned is not None:
             owned.release()
 
-    def _lost(self, what: str, error: OSError) -> UnpluggedError:
+    def _lost(self, action: str, error: OSError) -> UnpluggedError:
         self.close()
         return UnpluggedError(
-            self._name, f"{what} {self._settings.url} failed: {error}; plug in and reset"
+            self._name, f"{action} {self._settings.url} failed: {error}; plug in and reset"
         )

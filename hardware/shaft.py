@@ -224,8 +224,8 @@ class DriveShaft:
 
     def last_two(self, number: int) -> tuple[tuple[int, int], tuple[int, int]]:
         """Return (number, count) at SYNC ``number`` and at the one known before it."""
-        known = [one for one in self._track if one[0] <= number] or [(number, self.counts)]
-        return (known[-2] if len(known) > 1 else known[-1]), known[-1]
+        points = [point for point in self._track if point[0] <= number] or [(number, self.counts)]
+        return (points[-2] if len(points) > 1 else points[-1]), points[-1]
 
     def close(self) -> None:
         """Nothing to let go of: the bus is the master's."""
@@ -237,8 +237,8 @@ class DriveShaft:
     def _cycles(self, target_hz: float) -> float:
         """Return how many cycles a ramp to a speed may take, seen by an encoder."""
         measured_hz = self.measured_frequency_hz
-        known = measured_hz if math.isfinite(measured_hz) else -self.settings.highest_frequency_hz
-        ramp_s = abs(target_hz - known) / self.settings.acceleration_hz_per_s
+        from_hz = measured_hz if math.isfinite(measured_hz) else -self.settings.highest_frequency_hz
+        ramp_s = abs(target_hz - from_hz) / self.settings.acceleration_hz_per_s
         return STEP_CYCLES + RAMP_MARGIN * ramp_s * self.sample_rate_hz
 
     def _aim(self, frequency_hz: float) -> None:

@@ -44,6 +44,6 @@ def simulated_behind(bus: BusConfiguration | None) -> SimulatedTables | None:
     for point in installed("can.interface", bus.interface):
         tell = getattr(point.load(), "tables", None)
         if tell is not None:
-            found = tell(bus.channel)
-            return found if isinstance(found, SimulatedTables) else None
+            tables = tell(bus.channel)
+            return tables if isinstance(tables, SimulatedTables) else None
     return None

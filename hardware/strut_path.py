@@ -43,8 +43,8 @@ class StrutPath:
 
     def peaks(self, times: int) -> Iterator[tuple[float, float]]:
         """Yield each strut's largest derivative by the angle, and at which part of the turn."""
-        for one in np.abs(struts_over_turn(self._lines, times, _INSTANTS)):
-            yield float(one.max()), float(one.argmax()) / len(one)
+        for derivative in np.abs(struts_over_turn(self._lines, times, _INSTANTS)):
+            yield float(derivative.max()), float(derivative.argmax()) / len(derivative)
 
 
 def check_path(
@@ -65,8 +65,8 @@ def check_path(
     for times, key in ((0, "stroke"), (1, "speed"), (2, "acceleration")):
         size = eccentricity_m * (_TURN * rate_hz) ** times
         for strut, (peak, part) in zip(STRUTS, path.peaks(times), strict=True):
-            own = getattr(settings, strut)
-            most = min(-own.low, own.high) if key == "stroke" else getattr(own, key)
+            limits = getattr(settings, strut)
+            most = min(-limits.low, limits.high) if key == "stroke" else getattr(limits, key)
             if size * peak > most * _ROUNDING:
                 raise LimitError(
                     name,

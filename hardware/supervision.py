@@ -97,15 +97,15 @@ class Supervisor:
         state = data[0] & 0x7F if data else -1
         on_its_way = state == _PRE_OPERATIONAL and number - self._started <= self._beat_limit
         if state != OPERATIONAL and not on_its_way:
-            what = "booted" if state == 0 else f"is in state {state}, not operational"
-            self._tell(NodeStateError(node.name, f"node {node_id} {what} during operation"))
+            change = "booted" if state == 0 else f"is in state {state}, not operational"
+            self._tell(NodeStateError(node.name, f"node {node_id} {change} during operation"))
 
     def emergency(self, node_id: int, data: bytes | bytearray) -> None:
         """Take an emergency message; a reset (code 00xx) lets the same one be told again."""
         code, register, vendor = EMCY_STRUCT.unpack(bytes(data[:8]).ljust(8, b"\0"))
         name = self._nodes[node_id].name
         if code & 0xFF00 == 0:
-            self._told = {one for one in self._told if one[1] != name}
+            self._told = {key for key in self._told if key[1] != name}
         elif code == _FOLLOWING_ERROR:
             self._tell(FollowingError(name, f"emergency 0x{code:04X}: outside its window"))
         else:
@@ -127,8 +127,8 @@ class Supervisor:
             for stream in node.streams:
                 if number - stream.last > self._gap:
                     self._tell(self._no_data(node, stream.layout.cob_id, number - stream.last))
-        found, self._found = self._found, []
-        return found
+        errors, self._found = self._found, []
+        return errors
 
     def _no_beat(self, node: Node, number: int) -> HardwareError:
         return HeartbeatLostError(

@@ -57,11 +57,11 @@ class _WatchedForces:
         return _merged(taken)
 
     def _beyond(self, row: int, value: float, limit: float) -> OverloadError:
-        one = self._inner.channels[row]
+        channel = self._inner.channels[row]
         return OverloadError(
-            one.name,
-            f"{value:g} {one.unit} is beyond its safe load, {limit:g} {one.unit}; reduce amplitude "
-            "or frequency, and look at the gauge before the next run",
+            channel.name,
+            f"{value:g} {channel.unit} is beyond its safe load, {limit:g} {channel.unit}; reduce "
+            "amplitude or frequency, and look at the gauge before the next run",
         )
 
 
@@ -83,8 +83,8 @@ class Watch:
 
     def limit(self, limits: WatchLimits) -> None:
         """Set the limits of shaft speed (Hz) and loads (in each channel's unit)."""
-        own = self._shaft.frequency_hz.high if self._shaft is not None else math.inf
-        self._highest_hz = OVERSPEED * min(own, limits.frequency_hz)
+        shaft_hz = self._shaft.frequency_hz.high if self._shaft is not None else math.inf
+        self._highest_hz = OVERSPEED * min(shaft_hz, limits.frequency_hz)
         self._loads = [
             [limits.loads.get(channel.name, math.inf) for channel in force.channels]
             for force in self.forces
@@ -101,21 +101,21 @@ class Watch:
                     self._shaft.name,
                     f"turns at {measured_hz:g} Hz (limit {self._highest_hz:g} Hz either way)",
                 )
-        for one, loads in zip(self._watched, self._loads, strict=True):
-            found = one.look(loads)
-            if found is not None:
-                yield found
+        for force, loads in zip(self._watched, self._loads, strict=True):
+            error = force.look(loads)
+            if error is not None:
+                yield error
 
 
 def _merged(taken: Sequence[SampleBlock]) -> tuple[SampleBlock, ...]:
     """Put blocks that follow each other without a gap into one."""
     stretches: list[list[SampleBlock]] = []
     end = None
-    for one in taken:
-        if one.first != end:
+    for block in taken:
+        if block.first != end:
             stretches.append([])
-        stretches[-1].append(one)
-        end = one.first + one.values.shape[1]
+        stretches[-1].append(block)
+        end = block.first + block.values.shape[1]
     return tuple(
         SampleBlock(parts[0].first, np.concatenate([part.values for part in parts], axis=1))
         for parts in stretches

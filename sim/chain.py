@@ -51,14 +51,14 @@ class Chain:
     inputs: tuple[Signal, ...] = ()
 
     def __post_init__(self) -> None:
-        known = {signal.name for signal in self.inputs}
+        signal_names = {signal.name for signal in self.inputs}
         names: set[str] = set()
         for stage in self.stages:
             _check_name(stage, names)
-            _check_reads(stage, known)
-            _check_writes(stage, known)
+            _check_reads(stage, signal_names)
+            _check_writes(stage, signal_names)
             names.add(stage.name)
-            known |= {signal.name for signal in stage.writes}
+            signal_names |= {signal.name for signal in stage.writes}
 
     @property
     def signals(self) -> tuple[Signal, ...]:
@@ -126,33 +126,35 @@ class Chain:
         DataError
             If a substituted signal has the wrong shape or a value that is not finite.
         """
-        given = self._checked(substitute or {}, count)
+        supply = self._checked(substitute or {}, count)
         block = Block(state.next_sample, count, state.sample_rate_hz)
-        signals: dict[str, FloatArray] = {signal.name: given[signal.name] for signal in self.inputs}
+        signals: dict[str, FloatArray] = {
+            signal.name: supply[signal.name] for signal in self.inputs
+        }
         after: list[Any] = []
         for stage, before in zip(self.stages, state.stages, strict=True):
             fed = {signal.name: signals[signal.name] for signal in stage.reads}
             fed |= {
-                signal.name: given[signal.name] for signal in stage.writes if signal.name in given
+                signal.name: supply[signal.name] for signal in stage.writes if signal.name in supply
             }
             stage_state, written = stage.run(before, block, fed)
             after.append(stage_state)
-            signals |= {name: given.get(name, values) for name, values in written.items()}
+            signals |= {name: supply.get(name, values) for name, values in written.items()}
         return ChainState(block.first + count, state.sample_rate_hz, tuple(after)), signals
 
-    def _checked(self, given: Mapping[str, FloatArray], count: int) -> dict[str, FloatArray]:
+    def _checked(self, supply: Mapping[str, FloatArray], count: int) -> dict[str, FloatArray]:
         """Return the substituted signals as float arrays after all checks."""
-        known = {signal.name: signal for signal in self.signals}
-        for name in given:
-            if name not in known:
-                raise ConfigurationError(_unknown("signal", name, list(known)))
+        signals = {signal.name: signal for signal in self.signals}
+        for name in supply:
+            if name not in signals:
+                raise ConfigurationError(_unknown("signal", name, list(signals)))
         for signal in self.inputs:
-            if signal.name not in given:
+            if signal.name not in supply:
                 raise ConfigurationError(
                     f"signal {signal.name!r} ({signal.unit}) is an input of this chain and has to "
                     f"be supplied for every block"
                 )
-        return {name: _as_signal(known[name], values, count) for name, values in given.items()}
+        return {name: _as_signal(signals[name], values, count) for name, values in supply.items()}
 
 
 def join(parts: Iterable[Signals]) -> dict[str, FloatArray]:
@@ -183,25 +185,25 @@ def _check_name(stage: Stage[Any], taken: set[str]) -> None:
         raise ConfigurationError(f"two stages are called {stage.name!r}; rename one")
 
 
-def _check_reads(stage: Stage[Any], known: set[str]) -> None:
+def _check_reads(stage: Stage[Any], names: set[str]) -> None:
     for signal in stage.reads:
-        if signal.name not in known:
+        if signal.name not in names:
             raise ConfigurationError(
                 f"stage {stage.name!r} reads {signal.name!r}, which nothing before it writes; "
                 f"put the stage that writes it first, or declare it an input of the chain"
             )
 
 
-def _check_writes(stage: Stage[Any], known: set[str]) -> None:
+def _check_writes(stage: Stage[Any], names: set[str]) -> None:
     for signal in stage.writes:
-        if signal.name in known:
+        if signal.name in names:
             raise ConfigurationError(
                 f"stage {stage.name!r} writes {signal.name!r}, which is already there; "
                 f"change the stage that writes it instead"
             )
 
 
-def _unknown(kind: str, name: str, known: list[str]) -> str:
-    near = get_close_matches(name, known, n=3, cutoff=0.4)
+def _unknown(kind: str, name: str, names: list[str]) -> str:
+    near = get_close_matches(name, names, n=3, cutoff=0.4)
     hint = f"; did you mean {', '.join(near)}?" if near else ""
-    return f"the chain has no {kind} {name!r}{hint} ({kind}s: {', '.join(known)})"
+    return f"the chain has no {kind} {name!r}{hint} ({kind}s: {', '.join(names)})"

@@ -70,27 +70,29 @@ def steady_state(
         If a substituted signal is not one of the chain's or has not as many orders, an input of the
         chain is missing, or the points do not resolve the orders.
     """
-    given = _checked(chain, period, substitute or {})
-    spectra: dict[str, ComplexArray] = {signal.name: given[signal.name] for signal in chain.inputs}
+    supply = _checked(chain, period, substitute or {})
+    spectra: dict[str, ComplexArray] = {signal.name: supply[signal.name] for signal in chain.inputs}
     for stage in chain.stages:
         fed = {signal.name: spectra[signal.name] for signal in stage.reads}
-        fed |= {signal.name: given[signal.name] for signal in stage.writes if signal.name in given}
+        fed |= {
+            signal.name: supply[signal.name] for signal in stage.writes if signal.name in supply
+        }
         period, written = steady_of(stage, period, fed)
-        spectra |= {name: given.get(name, values) for name, values in written.items()}
+        spectra |= {name: supply.get(name, values) for name, values in written.items()}
     return SteadyState(period, spectra)
 
 
 def _checked(
-    chain: Chain, period: Period, given: Mapping[str, ComplexArray]
+    chain: Chain, period: Period, supply: Mapping[str, ComplexArray]
 ) -> Mapping[str, ComplexArray]:
     if period.points <= 2 * period.orders or period.points % 2:
         raise ConfigurationError(
             f"points = {period.points} must be even and more than twice the orders "
             f"({period.orders})"
         )
-    known = {signal.name for signal in chain.signals}
-    for name, values in given.items():
-        if name not in known:
+    names = {signal.name for signal in chain.signals}
+    for name, values in supply.items():
+        if name not in names:
             raise ConfigurationError(f"the chain has no signal {name!r}")
         if np.shape(values) != (period.orders + 1,):
             raise ConfigurationError(
@@ -98,11 +100,11 @@ def _checked(
                 f"({period.orders + 1},) is needed: the mean and each order"
             )
     for signal in chain.inputs:
-        if signal.name not in given:
+        if signal.name not in supply:
             raise ConfigurationError(
                 f"signal {signal.name!r} is an input: its harmonics are needed"
             )
-    return given
+    return supply
 
 
 def steady_by_samples(
@@ -136,8 +138,12 @@ def steady_by_samples(
 def steady_of(stage: Stage[Any], period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
     """Return a stage's periodic steady state: its own, or from its samples where it has none."""
     # Not isinstance: that looks through the protocol's members every time.
-    own: Periodic | None = stage if hasattr(stage, "steady") else None  # type: ignore[assignment]
-    return steady_by_samples(stage, period, inputs) if own is None else own.steady(period, inputs)
+    periodic: Periodic | None = stage if hasattr(stage, "steady") else None  # type: ignore[assignment]
+    return (
+        steady_by_samples(stage, period, inputs)
+        if periodic is None
+        else periodic.steady(period, inputs)
+    )
 
 
 def _with_angle(values: dict[str, np.ndarray], angle: np.ndarray) -> Signals:

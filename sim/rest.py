@@ -43,14 +43,14 @@ class Excitation:
     frequency_hz: float
     in_place: bool
 
-    def of(self, there: Mapping[str, ComplexArray]) -> dict[str, ComplexArray]:
-        """Return the signals' harmonics, where ``there`` are those without it."""
-        given = {}
+    def of(self, spectra: Mapping[str, ComplexArray]) -> dict[str, ComplexArray]:
+        """Return the signals' harmonics, where ``spectra`` are those without it."""
+        harmonics = {}
         for name, mean, first in self.forces_n:
-            own = np.zeros(_ORDERS + 1, dtype=np.complex128)
-            own[:2] = mean, first
-            given[name] = own if self.in_place else there[name] + own
-        return given
+            spectrum = np.zeros(_ORDERS + 1, dtype=np.complex128)
+            spectrum[:2] = mean, first
+            harmonics[name] = spectrum if self.in_place else spectra[name] + spectrum
+        return harmonics
 
 
 def check_weight(weight_n: float, fore: bool = False) -> Excitation:
@@ -108,12 +108,14 @@ def state_at_rest(
     turn = replace(set_point, frequency_hz=turn_hz)
     period = Period(turn_hz, _ORDERS, _POINTS)
     still = np.zeros(_ORDERS + 1, dtype=np.complex128)
-    given = {signal.name: still for motion in signals.STRUT_MOTIONS for signal in motion}
+    spectra = {signal.name: still for motion in signals.STRUT_MOTIONS for signal in motion}
     for (displacement, *_), at_m in zip(signals.STRUT_MOTIONS, stands_at_m, strict=True):
-        given[displacement.name] = period.constant(at_m)
+        spectra[displacement.name] = period.constant(at_m)
     turning = replace(rig_at_rest(rig), drive=DriveSettings())  # a period needs a turn
     chain = turning.chain(turn)
-    alone = steady_state(chain, period, given)
+    alone = steady_state(chain, period, spectra)
     return (
-        alone if applied is None else steady_state(chain, period, given | applied.of(alone.spectra))
+        alone
+        if applied is None
+        else steady_state(chain, period, spectra | applied.of(alone.spectra))
     )

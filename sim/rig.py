@@ -142,15 +142,15 @@ class SimulatedRig:
                 reflected_inertia(hull.system.mass, set_point),
             )
             stages = (carriage, Coupled(loaded, mechanism, hull))
-        told = self._told(mechanism, set_point.frequency_hz)
-        behind = (*told, *self._sensed(hull), self.dynamometers, self.acquisition)
-        seen = () if self.photocell is None else (self.photocell,)
-        return (*stages, *behind, *seen)
+        commands = self._told(mechanism, set_point.frequency_hz)
+        behind = (*commands, *self._sensed(hull), self.dynamometers, self.acquisition)
+        pulses = () if self.photocell is None else (self.photocell,)
+        return (*stages, *behind, *pulses)
 
     def _told(self, mechanism: Mechanism, frequency_hz: float) -> tuple["Stage[Any]", ...]:
         """Return the stage of the commands, where they are recorded."""
-        told = recorded(self.acquisition, COMMANDS)
-        return (StrutCommand(mechanism, self.drive, frequency_hz),) if told else ()
+        names = recorded(self.acquisition, COMMANDS)
+        return (StrutCommand(mechanism, self.drive, frequency_hz),) if names else ()
 
     def _sensed(self, hull: Hull) -> tuple["Stage[Any]", ...]:
         """Return the stage of sinkage and trim, where they are recorded."""

@@ -87,7 +87,7 @@ def _of_steering(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
     if steering is not None:
         yield from _of_shaft_and_plane(rig, "steering")
     written = {signal.name for signal in (steering.writes if steering is not None else ())}
-    for name in recorded(rig.acquisition, {one.name for one in STEERING} - written):
+    for name in recorded(rig.acquisition, {signal.name for signal in STEERING} - written):
         yield f"acquisition.{name}, but nothing in [steering] has it"
 
 
@@ -127,7 +127,7 @@ def _of_attitude(rig: "SimulatedRig", _: SetPoint) -> Iterator[str]:
 
 def _of_heel(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
     if rig.heel is None:
-        for name in recorded(rig.acquisition, {one.name for one in HEELING}):
+        for name in recorded(rig.acquisition, {signal.name for signal in HEELING}):
             yield f"acquisition.{name}, but [heel] is missing"
         if set_point.heel_rad or set_point.release_rad:
             yield "a heel angle, but [heel] is missing"

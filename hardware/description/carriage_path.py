@@ -59,8 +59,8 @@ class CarriagePath:
         speed = set_point.carriage_speed_m_s * np.cos(heading) + reach * np.sin(heading) * turning
         parts = 2.0 * np.fft.rfft(speed) / points
         parts[0] /= 2.0
-        kept = np.flatnonzero(np.abs(parts) > _LEAST * np.abs(speed).max())
-        return cls(parts[: kept.max(initial=0) + 1], omega)
+        orders = np.flatnonzero(np.abs(parts) > _LEAST * np.abs(speed).max())
+        return cls(parts[: orders.max(initial=0) + 1], omega)
 
     @property
     def mean_m_s(self) -> float:
@@ -80,8 +80,8 @@ class CarriagePath:
 
     def harmonics(self, orders: int) -> ComplexArray:
         """Return a real mean, and ``H[n]`` of ``sum of Im(H[n] exp(i n theta))`` up to an order."""
-        found = np.zeros(orders + 1, dtype=np.complex128)
+        harmonics = np.zeros(orders + 1, dtype=np.complex128)
         count = min(orders + 1, len(self.parts))
-        found[:count] = 1j * self.parts[:count]
-        found[0] = self.parts[0].real
-        return found
+        harmonics[:count] = 1j * self.parts[:count]
+        harmonics[0] = self.parts[0].real
+        return harmonics

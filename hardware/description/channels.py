@@ -89,8 +89,8 @@ POSITION_FORE = Channel("position_fore", "m")
 
 # A turntable's sway, angle, force and moment stand in the places of the struts', aft first.
 _STRUTS: Final = {
-    one.name: one.unit
-    for one in (DISPLACEMENT_AFT, DISPLACEMENT_FORE, FORCE_AFT, FORCE_FORE, FORCE_X)
+    channel.name: channel.unit
+    for channel in (DISPLACEMENT_AFT, DISPLACEMENT_FORE, FORCE_AFT, FORCE_FORE, FORCE_X)
 }
 _TURNTABLE: Final = _STRUTS | {DISPLACEMENT_FORE.name: "rad", FORCE_FORE.name: "N m"}
 

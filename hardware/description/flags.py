@@ -40,8 +40,10 @@ class Flag:
     @classmethod
     def read(cls, table: Mapping[str, Any]) -> "Flag":
         """Return a flag that a file holds as a table of its fields; older files name no runs."""
-        told = {"runs": (), **table}
-        return cls(**{**told, "severity": Severity(told["severity"]), "runs": tuple(told["runs"])})
+        fields = {"runs": (), **table}
+        return cls(
+            **{**fields, "severity": Severity(fields["severity"]), "runs": tuple(fields["runs"])}
+        )
 
     def of(self, *runs: str) -> "Flag":
         """Return the flag with its runs named; one that names its own keeps them."""

@@ -70,7 +70,7 @@ class Heel:
 
     def __post_init__(self) -> None:
         needed = {"inertia_kg_m2": self.inertia_kg_m2, "gm_m": self.gm_m}
-        missing = [key for key, one in needed.items() if one is None]
+        missing = [key for key, value in needed.items() if value is None]
         if self.held is Held.FREE and missing:
             raise ConfigurationError(
                 f'heel: held = "free" needs {" and ".join(missing)}; a swing and an inclining test '

@@ -129,8 +129,13 @@ class ShuntMotor(Motor):
     constant_v_s: float = 1.1
 
     def _electric(self) -> tuple[float, float, float, float]:
-        own = self.inductance_h
-        return self.constant_v_s, -self.constant_v_s / own, -self.resistance_ohm / own, 1.0 / own
+        inductance_h = self.inductance_h
+        return (
+            self.constant_v_s,
+            -self.constant_v_s / inductance_h,
+            -self.resistance_ohm / inductance_h,
+            1.0 / inductance_h,
+        )
 
 
 @dataclass(frozen=True)

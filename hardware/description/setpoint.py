@@ -93,14 +93,14 @@ class SetPoint:
     @property
     def own_orders(self) -> tuple[int, ...]:
         """Harmonics that each are a frequency of their own; empty for a single one, the shaft's."""
-        own = tuple(line.order for line in self.lines if not line.correction)
-        return () if own == (1,) else own
+        orders = tuple(line.order for line in self.lines if not line.correction)
+        return () if orders == (1,) else orders
 
     @classmethod
     def read(cls, fields: Mapping[str, Any]) -> "SetPoint":
         """Return the set-point of a document's fields, as :func:`dataclasses.asdict` makes them."""
         medium = Medium(fields.get("medium", Medium.WATER))
-        lines = tuple(Line(**one) for one in fields.get("lines", ()))
+        lines = tuple(Line(**line) for line in fields.get("lines", ()))
         return cls(**{**fields, "medium": medium, "lines": lines})
 
 

@@ -28,49 +28,61 @@ def simulation_tables(rig: Mapping[str, Any]) -> dict[str, Any]:
     rig
         The file's tables as they were read; whoever runs the rig has checked them.
     """
-    found: dict[str, Any] = {}
+    tables: dict[str, Any] = {}
     if "oscillator" in rig:
-        found["oscillator"] = with_preset(rig["oscillator"])
+        tables["oscillator"] = with_preset(rig["oscillator"])
     if "model" in rig:
-        found["model"] = {key: one for key, one in rig["model"].items() if key not in DIMENSIONS}
+        tables["model"] = {
+            key: value for key, value in rig["model"].items() if key not in DIMENSIONS
+        }
     if "hull" in rig:
-        found["hull"] = dict(rig["hull"])
+        tables["hull"] = dict(rig["hull"])
     if ranges := _gauge_ranges(rig):
-        found["dynamometers"] = ranges
+        tables["dynamometers"] = ranges
     reference = rig.get("reference", {})
     if cell := {to: reference[key] for key, to in _PHOTOCELL.items() if key in reference}:
-        found["photocell"] = cell
-    return merged(found, rig.get("campaign", {}))
+        tables["photocell"] = cell
+    return merged(tables, rig.get("campaign", {}))
 
 
 def with_preset(oscillator: Mapping[str, Any]) -> dict[str, Any]:
     """Return ``[oscillator]`` with what its preset stands for; the keys beside it win."""
-    own = {key: one for key, one in oscillator.items() if key != "preset"}
+    table = {key: value for key, value in oscillator.items() if key != "preset"}
     preset = PRESETS.get(oscillator.get("preset", ""))
-    return own if preset is None else asdict(preset) | own
+    return table if preset is None else asdict(preset) | table
 
 
 def channels_of(rig: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
     """Return the table of each channel of the amplifiers, by its name."""
-    return {one["name"]: one for part in rig.get("forces", ()) for one in part.get("channels", ())}
+    return {
+        channel["name"]: channel
+        for part in rig.get("forces", ())
+        for channel in part.get("channels", ())
+    }
 
 
 def merged(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
     """Return tables with others over them, key by key; lists are taken whole."""
-    found = dict(base)
-    for key, one in over.items():
-        before = found.get(key)
-        if isinstance(one, Mapping) and isinstance(before, Mapping):
-            found[key] = merged(before, one)
+    tables = dict(base)
+    for key, value in over.items():
+        before = tables.get(key)
+        if isinstance(value, Mapping) and isinstance(before, Mapping):
+            tables[key] = merged(before, value)
         else:
-            found[key] = one
-    return found
+            tables[key] = value
+    return tables
 
 
 def _gauge_ranges(rig: Mapping[str, Any]) -> dict[str, Any]:
     """Return the full scale of the strut gauges: that of ``[[gauges]]``, else of the amplifiers."""
-    ranges = {name: one.get("full_scale") for name, one in channels_of(rig).items()}
+    ranges = {name: channel.get("full_scale") for name, channel in channels_of(rig).items()}
     if "gauges" in rig:
-        ranges = {one["channel"]: one["full_scale_n"] for one in rig["gauges"]}
-    known = ((GAUGES[name], one) for name, one in ranges.items() if name in GAUGES)
-    return {gauge: {"full_scale_n": one} for gauge, one in known if one is not None}
+        ranges = {gauge["channel"]: gauge["full_scale_n"] for gauge in rig["gauges"]}
+    strut_ranges = (
+        (GAUGES[name], full_scale) for name, full_scale in ranges.items() if name in GAUGES
+    )
+    return {
+        gauge: {"full_scale_n": full_scale}
+        for gauge, full_scale in strut_ranges
+        if full_scale is not None
+    }

@@ -74,8 +74,8 @@ def unit(name: str) -> Unit:
     try:
         return _UNITS[_plain(name)]
     except KeyError:
-        known = ", ".join(_UNITS)
-        raise ConfigurationError(f"unknown unit {name!r}; known units: {known}") from None
+        names = ", ".join(_UNITS)
+        raise ConfigurationError(f"unknown unit {name!r}; known units: {names}") from None
 
 
 def is_unit(name: str) -> bool:
@@ -85,7 +85,7 @@ def is_unit(name: str) -> bool:
 
 def units_of(si: str) -> Mapping[str, float]:
     """Return the factors of all units of one quantity by name, for example those of ``"N"``."""
-    return {name: one.factor for name, one in _UNITS.items() if one.si == si}
+    return {name: unit.factor for name, unit in _UNITS.items() if unit.si == si}
 
 
 def _plain(name: str) -> str:

@@ -138,6 +138,6 @@ def delay_weights(delay_s: float, sample_rate_hz: float) -> FloatArray:
     nodes = np.arange(first, first + _NODES, dtype=np.float64)
     weights = np.zeros(first + _NODES)
     for j, node in enumerate(nodes):
-        others = np.delete(nodes, j)
-        weights[first + j] = np.prod((late - others) / (node - others))
+        other_nodes = np.delete(nodes, j)
+        weights[first + j] = np.prod((late - other_nodes) / (node - other_nodes))
     return weights

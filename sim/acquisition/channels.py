@@ -140,8 +140,8 @@ class Acquisition:
         after: list[LineState] = []
         written: dict[str, FloatArray] = {}
         for line, before, out in zip(self.lines, state, self.writes, strict=True):
-            kept, samples = digitise(line.digitiser, before, block, inputs[line.source.name])
-            after.append(kept)
+            line_state, samples = digitise(line.digitiser, before, block, inputs[line.source.name])
+            after.append(line_state)
             written[out.name] = samples
         return tuple(after), written
 

@@ -151,9 +151,9 @@ def _walked(
         return np.cumsum(np.concatenate([[level], steps]))[1:]
     from scipy.signal import lfilter
 
-    kept = math.exp(-rate / sample_rate_hz)
-    steps = how.walk_per_sqrt_s * math.sqrt((1.0 - kept**2) / (2.0 * rate)) * deviates
-    return np.asarray(lfilter([1.0], [1.0, -kept], steps, zi=[kept * level])[0], np.float64)
+    decay = math.exp(-rate / sample_rate_hz)
+    steps = how.walk_per_sqrt_s * math.sqrt((1.0 - decay**2) / (2.0 * rate)) * deviates
+    return np.asarray(lfilter([1.0], [1.0, -decay], steps, zi=[decay * level])[0], np.float64)
 
 
 def _analog(

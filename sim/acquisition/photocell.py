@@ -125,11 +125,11 @@ class PhotocellStage:
     def _pulses(self, passed: int, edges: FloatArray) -> FloatArray:
         """Leave out the pulses that are missed, and add the extra ones."""
         number = passed + 1 + np.arange(edges.size)
-        kept = edges if not self.missed_every else edges[number % self.missed_every != 0]
+        pulses = edges if not self.missed_every else edges[number % self.missed_every != 0]
         if not self.extra_every:
-            return kept
+            return pulses
         extra = edges[number % self.extra_every == 0] + self.extra_after_s
-        return np.sort(np.concatenate([kept, extra]))
+        return np.sort(np.concatenate([pulses, extra]))
 
 
 def _last(shaft: FloatArray) -> tuple[float, float, float] | None:

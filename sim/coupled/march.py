@@ -66,15 +66,15 @@ class CoupledMarch:
         from sim.mechanism.compiled_linkage import linkages_of
         from sim.model.march import march
 
-        told = unladen.motion
-        known = 1 if states is None else 0
-        course = self._course(told, hull_state, known)
+        shaft_motion = unladen.motion
+        start = 1 if states is None else 0
+        course = self._course(shaft_motion, hull_state, start)
         shaft = self._shaft_loop(unladen)
         if states is not None:
             shaft.states[TORQUE_DEGREE - 1] = states
             shaft.torques[:TORQUE_DEGREE] = torques
-        whole = self.hull.mounting.joint is not None
-        outputs = np.empty((self.block.count, OUTPUTS if whole else OUTPUTS - 2))
+        has_joint = self.hull.mounting.joint is not None
+        outputs = np.empty((self.block.count, OUTPUTS if has_joint else OUTPUTS - 2))
         links = linkages_of(self.mechanism)
         bad = march(self.model.model, self.model.table, course, shaft, links, outputs)
         if bad >= 0:
@@ -96,26 +96,26 @@ class CoupledMarch:
                 f"try another sample rate"
             )
 
-    def _course(self, told: ShaftMotion, state: HullState, known: int) -> "Course":
-        struts = self._struts(told)
+    def _course(self, shaft_motion: ShaftMotion, state: HullState, start: int) -> "Course":
+        struts = self._struts(shaft_motion)
         forces = self.hull.forces_over(self.block, self.flow_m_s)
         if not self.hull.system.states:  # a model that remembers nothing
             state = HullState((), (0.0,) * 6, ((0.0,) * 4,) * TORQUE_DEGREE)
         elif state.states is None:
             state = forces.at_first_sample(struts)
-        course = forces.course(state, struts, known)
-        reach = np.hypot(struts[:, :2], self._levers(told)).max()
+        course = forces.course(state, struts, start)
+        reach = np.hypot(struts[:, :2], self._levers(shaft_motion)).max()
         # At no eccentricity nothing has an arm: the torque's rounding then.
         torque = max(2.0 * course.scale[0] * reach, _LEAST_N_M)
         more = np.full(len(self.shaft.system.B.T), torque)
         return course._replace(scale=np.concatenate([course.scale, more]))
 
-    def _struts(self, told: ShaftMotion) -> FloatArray:
-        _, motion = self.mechanism.run(None, self.block, told.signals)
+    def _struts(self, shaft_motion: ShaftMotion) -> FloatArray:
+        _, motion = self.mechanism.run(None, self.block, shaft_motion.signals)
         return np.column_stack([motion[signal.name] for signal in self.hull.reads[:6]])
 
-    def _levers(self, told: ShaftMotion) -> FloatArray:
-        _, motion = self.mechanism.run(None, self.block, told.signals)
+    def _levers(self, shaft_motion: ShaftMotion) -> FloatArray:
+        _, motion = self.mechanism.run(None, self.block, shaft_motion.signals)
         return np.column_stack([motion["lever_aft"], motion["lever_fore"]])
 
     def _shaft_loop(self, unladen: Unladen) -> MarchedShaft:

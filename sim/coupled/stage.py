@@ -100,8 +100,8 @@ class Coupled:
             part = Block(block.first + first, count, block.sample_rate_hz)
             stage, count = self._as_of(part)
             part = replace(part, count=count)
-            given = {name: values[first : first + count] for name, values in inputs.items()}
-            state, out = _Stretch(stage, state, part, given).solve()
+            part_inputs = {name: values[first : first + count] for name, values in inputs.items()}
+            state, out = _Stretch(stage, state, part, part_inputs).solve()
             written.append(out)
             first += count
         if len(written) == 1:
@@ -143,8 +143,8 @@ class Coupled:
     def _settled(self, real: Period, inputs: Spectra) -> Spectra:
         """Return the harmonics of all parts after as many periods as it takes."""
         old = self.drive.settings
-        whole = tuple(tone for tone in old.ripple if float(tone.order).is_integer())
-        steady = replace(old, initial_angle_rad=0.0, start_ramp_s=0.0, stop_at_s=None, ripple=whole)
+        tones = tuple(tone for tone in old.ripple if float(tone.order).is_integer())
+        steady = replace(old, initial_angle_rad=0.0, start_ramp_s=0.0, stop_at_s=None, ripple=tones)
         stage = replace(self, drive=replace(self.drive, settings=steady))
         hull: Any = self.hull
         if hasattr(hull, "repeating"):
@@ -152,11 +152,11 @@ class Coupled:
         fine = fine_enough(real, self.drive.system.A)
         if hasattr(hull, "system") and hull.system.elastic_count:
             fine = fine_enough(fine, hull.system.state_matrix)
-        given = {name: fine.values(values) for name, values in inputs.items()}
+        samples = {name: fine.values(values) for name, values in inputs.items()}
 
         def run(state: Any, turn: int) -> tuple[Any, Signals]:
             rate_hz = fine.points * fine.frequency_hz
-            state, out = stage.run(state, Block(turn * fine.points, fine.points, rate_hz), given)
+            state, out = stage.run(state, Block(turn * fine.points, fine.points, rate_hz), samples)
             turned = fine.omega_rad_s * (fine.time_s + turn / fine.frequency_hz)
             beyond = out[signals.SHAFT_ANGLE.name] - turned
             return state, {**out, signals.SHAFT_ANGLE.name: beyond}
@@ -225,14 +225,14 @@ class _Stretch:
         return after, {signal.name: written[signal.name] for signal in self.stage.writes}
 
     def _parts(self, torque: FloatArray) -> tuple[tuple[Any, Any, Any], dict[str, FloatArray]]:
-        stage, given = self.stage, self.inputs
+        stage, inputs = self.stage, self.inputs
         load = {signals.LOAD_TORQUE.name: torque}
         drive, shaft = stage.drive.run(self.state[0], self.block, load)
-        run: dict[str, FloatArray] = {**shaft, **given}
+        run: dict[str, FloatArray] = {**shaft, **inputs}
         mechanism, motion = stage.mechanism.run(self.state[1], self.block, run)
-        run = {**run, **motion, **given}
+        run = {**run, **motion, **inputs}
         hull, forces = stage.hull.run(self.state[2], self.block, run)
-        run = {**run, **forces, **given}
+        run = {**run, **forces, **inputs}
         run[signals.LOAD_TORQUE.name] = stage.drive.load(run)
         return (drive, mechanism, hull), run
 

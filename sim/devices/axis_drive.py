@@ -128,8 +128,8 @@ class AxisDrive(SimulatedDrive):
 
     def _home(self) -> None:
         self.bits = 0
-        here = int(self.number(_METHOD)) in _HERE
-        goal = self._demand if here else self._reference
+        is_here = int(self.number(_METHOD)) in _HERE
+        goal = self._demand if is_here else self._reference
         self._go(goal, _HOMING_SPEED, _HOMING_ACCELERATION)
 
     def _go(self, goal: float, speed: Entry, acceleration: Entry) -> None:
@@ -145,9 +145,9 @@ class AxisDrive(SimulatedDrive):
             self._demand += self._speed * dt
             return
         way = self._goal - self._demand
-        left = abs(way)
-        fastest = min(self._top, abs(self._speed) + slope * dt, math.sqrt(2.0 * slope * left))
-        if fastest * dt >= left or left < 1e-3 / abs(self._per_unit):
+        distance = abs(way)
+        fastest = min(self._top, abs(self._speed) + slope * dt, math.sqrt(2.0 * slope * distance))
+        if fastest * dt >= distance or distance < 1e-3 / abs(self._per_unit):
             self._demand, self._speed = self._goal, 0.0
         else:
             self._speed = math.copysign(fastest, way)

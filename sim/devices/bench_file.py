@@ -123,10 +123,10 @@ def read_bench(path: Path) -> Bench:
         rig = _load(path.parent / rig)
     if not isinstance(rig, dict):
         raise ConfigurationError(f"{path}: rig = {rig!r} has to be a table or the path of a file")
-    own = {key: tables.pop(key) for key in TABLES if key in tables}
+    own_tables = {key: tables.pop(key) for key in TABLES if key in tables}
     settings = read_settings(BenchSettings, tables, str(path))
     configuration = read_rig({key: table for key, table in rig.items() if key in DEVICES}, DRIVERS)
-    simulated = stated_rig(rig, own, folder, str(path))
+    simulated = stated_rig(rig, own_tables, folder, str(path))
     scene = Scene(
         simulated.rig,
         PlantConditions(settings.carriage_speed_m_s, settings.medium, settings.seed),
@@ -134,7 +134,7 @@ def read_bench(path: Path) -> Bench:
         settings.strut_phase_rad,
         strut_loop=settings.strut_loop,
     )
-    return Bench(configuration, scene, SimulatedTables(str(path), simulated.tables, own))
+    return Bench(configuration, scene, SimulatedTables(str(path), simulated.tables, own_tables))
 
 
 def _load(path: Path) -> dict[str, Any]:
@@ -153,7 +153,7 @@ class StatedRig:
 
 
 def stated_rig(
-    rig_file: Mapping[str, Any], own: Mapping[str, Any], folder: Path, where: str
+    rig_file: Mapping[str, Any], own_tables: Mapping[str, Any], folder: Path, where: str
 ) -> StatedRig:
     """Return the rig that is simulated.
 
@@ -161,7 +161,7 @@ def stated_rig(
     ----------
     rig_file
         The tables of ``rig.toml``.
-    own
+    own_tables
         Tables of the simulated rig's own file.
     folder
         That from which paths in the tables are seen.
@@ -174,14 +174,14 @@ def stated_rig(
         If a key or a value is wrong.
     """
     stated = {key: table for key, table in simulation_tables(rig_file).items() if key in TABLES}
-    own = dict(own)
-    if "oscillator" in own:
-        own["oscillator"] = with_preset(own["oscillator"])
-    oscillator = merged(stated, own).get("oscillator", {})
+    own_tables = dict(own_tables)
+    if "oscillator" in own_tables:
+        own_tables["oscillator"] = with_preset(own_tables["oscillator"])
+    oscillator = merged(stated, own_tables).get("oscillator", {})
     base = _nominal(oscillator.get("plane", Plane.VERTICAL), rig_file)
     for name, table in stated.items():
         base[name] = base[name] | table if name in _BY_SENSOR else table
-    tables = merged(base, own)
+    tables = merged(base, own_tables)
     rig = _built(_none_for_false(tables), folder, where)
     return StatedRig(rig, _as_tables(rig) | {"radiation": tables.get("radiation")})
 

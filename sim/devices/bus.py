@@ -73,9 +73,9 @@ class SimulatedBus(can.BusABC):
         """
         if self._world.bus_off:
             raise can.CanOperationError("bus off")
-        for other in self._world.wire.outlets:
-            if other is not self._frames:
-                other.append(msg)
+        for outlet in self._world.wire.outlets:
+            if outlet is not self._frames:
+                outlet.append(msg)
         self._take(msg)
         if not self._arrived.is_set():
             self._arrived.set()
@@ -106,4 +106,4 @@ class SimulatedBus(can.BusABC):
 
 def _remove(outlets: list[deque[can.Message]], outlet: deque[can.Message]) -> None:
     """Remove a queue by identity: two empty ones are equal."""
-    outlets[:] = [other for other in outlets if other is not outlet]
+    outlets[:] = [queue for queue in outlets if queue is not outlet]

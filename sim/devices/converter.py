@@ -36,18 +36,19 @@ class SimulatedConverter(SimulatedNode):
         self._settings, self._driven, self._runs = settings, driven, runs
         self._ramp_m_s = self._told_m_s = 0.0
         self._out, self._in = (
-            entry(one.object) for one in (settings.voltages.set_speed, settings.voltages.speed)
+            entry(channel.object)
+            for channel in (settings.voltages.set_speed, settings.voltages.speed)
         )
         self.values[self._out] = signed(settings.voltages.set_speed.written(0.0))
         self.tick()
 
     def tick(self) -> None:
         """Go on along the ramp by one sample, and show the speed."""
-        one, volts = self._settings, self._settings.voltages
+        settings, volts = self._settings, self._settings.voltages
         wanted = volts.set_speed.value((int(self._output()) & 0xFFFF,))
-        most = one.acceleration_m_s2 / self.sample_rate_hz
+        most = settings.acceleration_m_s2 / self.sample_rate_hz
         self._ramp_m_s += min(max(wanted - self._ramp_m_s, -most), most)
-        late = abs(self._ramp_m_s - self._told_m_s) >= one.acceleration_m_s2 * _STEP_S
+        late = abs(self._ramp_m_s - self._told_m_s) >= settings.acceleration_m_s2 * _STEP_S
         if self._ramp_m_s != self._told_m_s and (late or self._ramp_m_s == wanted):
             self._told_m_s = self._ramp_m_s
             self._runs(self._ramp_m_s)

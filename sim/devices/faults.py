@@ -133,14 +133,14 @@ def _free(world: World, part: str) -> None:
 
 
 def _channel(world: World, channel: str, change: Callable[[SimulatedAmplifier], None]) -> None:
-    known: list[str] = []
+    channels: list[str] = []
     for node in world.nodes.values():
         if isinstance(node, SimulatedAmplifier):
-            known += node.lines
+            channels += node.lines
             if channel in node.lines:
                 change(node)
                 return
-    raise ConfigurationError(f"no channel {channel!r}; there are {', '.join(known) or 'none'}")
+    raise ConfigurationError(f"no channel {channel!r}; there are {', '.join(channels) or 'none'}")
 
 
 def _stuck(world: World, channel: str) -> None:

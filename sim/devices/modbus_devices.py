@@ -210,26 +210,26 @@ class SimulatedCarriage(Controller):
 
     def move(self, step_s: float) -> None:
         """Go on along the ramp and the track."""
-        one = self._settings
-        wanted = self.number(one.asked.set_speed) if self.driven else 0.0
-        most = one.acceleration_m_s2 * step_s
+        settings = self._settings
+        wanted = self.number(settings.asked.set_speed) if self.driven else 0.0
+        most = settings.acceleration_m_s2 * step_s
         self._ramp_m_s += min(max(wanted - self._ramp_m_s, -most), most)
-        late = abs(self._ramp_m_s - self._told_m_s) >= one.acceleration_m_s2 * _STEP_S
+        late = abs(self._ramp_m_s - self._told_m_s) >= settings.acceleration_m_s2 * _STEP_S
         if self._ramp_m_s != self._told_m_s and (late or self._ramp_m_s == wanted):
             self._told_m_s = self._ramp_m_s
             self._runs(self._ramp_m_s, self._ramp_m_s * self._per_radius(wanted))
         speed, turn = self._really()
         self.position_m += speed * step_s
         if not self.stale:
-            self.show(one.asked.speed, speed)
-            self.show(one.asked.position, self.position_m)
-            self.show(one.asked.turn_rate, turn)
+            self.show(settings.asked.speed, speed)
+            self.show(settings.asked.position, self.position_m)
+            self.show(settings.asked.turn_rate, turn)
 
     def _per_radius(self, wanted_m_s: float) -> float:
         """Return one over the circle's radius; on the ramp down that which it has."""
-        told = self._settings.asked.set_turn_rate
-        if told is not None and wanted_m_s:
-            self._curvature = self.number(told) / wanted_m_s
+        register = self._settings.asked.set_turn_rate
+        if register is not None and wanted_m_s:
+            self._curvature = self.number(register) / wanted_m_s
         return self._curvature
 
 
@@ -252,13 +252,13 @@ class SimulatedAngle(Controller):
 
     def move(self, step_s: float) -> None:
         """Go on towards the angle; the model has it once the table stands."""
-        one = self._settings
-        wanted = self.number(one.registers.set_position) if self.driven else self.angle_rad
-        most = one.speed * step_s
+        settings = self._settings
+        wanted = self.number(settings.registers.set_position) if self.driven else self.angle_rad
+        most = settings.speed * step_s
         way = min(max(wanted - self.angle_rad, -most), most)
         self.angle_rad += way
         if way == 0.0 and not self._arrived:
             self._moved(self.angle_rad)
         self._arrived = way == 0.0
         if not self.stale:
-            self.show(one.registers.position, self.angle_rad)
+            self.show(settings.registers.position, self.angle_rad)

@@ -118,7 +118,7 @@ def _wave(world: World, question: Demand) -> None:
 
 
 def _follow(world: World, question: Demand) -> None:
-    world.plant.surround(lines=tuple(Line(**one) for one in json.loads(str(question.value))))
+    world.plant.surround(lines=tuple(Line(**line) for line in json.loads(str(question.value))))
 
 
 _DOING: Final[dict[str, Callable[[World, Demand], None]]] = {

@@ -23,8 +23,8 @@ class SimulatedPanel(SimulatedCarriage):
 
     def _serve(self) -> None:
         """Answer the lines that are whole."""
-        *whole, self._asked = self._asked.split(self._ending)
-        for line in whole:
+        *lines, self._asked = self._asked.split(self._ending)
+        for line in lines:
             if self.mute or not self.cable.plugged:
                 return
             self._heard_s = self._time_s
@@ -32,31 +32,31 @@ class SimulatedPanel(SimulatedCarriage):
             self.cable.waiting += said.encode()[: -2 if self.torn else None] + self._ending
 
     def _said(self, asked: str) -> str:
-        for one in self._every:
-            if (answer := self._answer_to(one, asked)) is not None:
+        for line in self._every:
+            if (answer := self._answer_to(line, asked)) is not None:
                 return answer
         return "ERROR"
 
-    def _answer_to(self, one: Line, asked: str) -> str | None:
+    def _answer_to(self, line: Line, asked: str) -> str | None:
         """Do what a line says; return the reply, ``None`` where it is not this one."""
-        match one:
+        match line:
             case LineCommand():
-                if asked not in (one.on, one.off, one.clear) or not asked:
+                if asked not in (line.on, line.off, line.clear) or not asked:
                     return None
-                self._words[3, one.address] = int(asked == one.on)
-                self.alarm = self.alarm and asked != one.clear
-                return one.answer
+                self._words[3, line.address] = int(asked == line.on)
+                self.alarm = self.alarm and asked != line.clear
+                return line.answer
             case LineStatus():
-                says = (getattr(one, name) for name, on in self._states().items() if on)
-                return f"{one.answer} {' '.join(says)} " if asked == one.line else None
-            case LineNumber() if is_told(one):
-                found = pattern_of(one.line).fullmatch(asked)
-                if found is None:
+                says = (getattr(line, name) for name, on in self._states().items() if on)
+                return f"{line.answer} {' '.join(says)} " if asked == line.line else None
+            case LineNumber() if is_told(line):
+                groups = pattern_of(line.line).fullmatch(asked)
+                if groups is None:
                     return None
-                for k, word in enumerate(struct.unpack(">4H", struct.pack(">d", float(found[1])))):
-                    self._words[3, one.address + k] = word
-                return one.answer
+                for k, word in enumerate(struct.unpack(">4H", struct.pack(">d", float(groups[1])))):
+                    self._words[3, line.address + k] = word
+                return line.answer
             case LineNumber():
-                words = [self._words.get((3, one.address + k), 0) for k in range(one.count)]
+                words = [self._words.get((3, line.address + k), 0) for k in range(line.count)]
                 (raw,) = struct.unpack(">d", struct.pack(">4H", *words))
-                return _VALUE.sub(f"{raw:.6f}", one.answer) if asked == one.line else None
+                return _VALUE.sub(f"{raw:.6f}", line.answer) if asked == line.line else None

@@ -131,8 +131,8 @@ class SimulatedParts:
             self.nodes[name] = self.shaft
         elif isinstance(settings, PathShaftSettings):
             for number, strut in enumerate(STRUTS):
-                own = getattr(settings, strut)
-                self.nodes[f"{name}.{strut}"] = self._strut(f"{name}.{strut}", own, number)
+                drive = getattr(settings, strut)
+                self.nodes[f"{name}.{strut}"] = self._strut(f"{name}.{strut}", drive, number)
         else:
             self.nodes[name] = self._axis(name, settings)
 

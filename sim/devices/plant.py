@@ -171,29 +171,29 @@ class Plant:
         linkage move nothing.
         """
         names = (signal.name for signal in signals.STRUT_MOTIONS[strut])
-        self._led |= {name: np.array([one]) for name, one in zip(names, motion, strict=True)}
+        self._led |= {name: np.array([value]) for name, value in zip(names, motion, strict=True)}
 
     @property
     def around(self) -> PlantConditions:
         """The conditions outside the rig that hold now."""
         return self._around
 
-    def surround(self, **given: Any) -> None:
+    def surround(self, **changes: Any) -> None:
         """Change what is given of the :class:`PlantConditions`, from the next sample on."""
         before = self._around
-        self._around = replace(before, **given)
+        self._around = replace(before, **changes)
         self._changed = self._changed or self._around != before
 
     def load(self, mass_kg: float, at_m: float = 0.0) -> None:
         """Let the model carry a small mass on its midline besides its own; 0 takes it off."""
-        own = self._body
-        total = own.mass_kg + mass_kg
+        bare_body = self._body
+        total = bare_body.mass_kg + mass_kg
         body = replace(
-            own,
+            bare_body,
             mass_kg=total,
-            inertia_kg_m2=own.inertia_kg_m2 + mass_kg * at_m**2,
-            cg_x_m=(own.mass_kg * own.cg_x_m + mass_kg * at_m) / total,
-            cg_z_m=own.mass_kg * own.cg_z_m / total,
+            inertia_kg_m2=bare_body.inertia_kg_m2 + mass_kg * at_m**2,
+            cg_x_m=(bare_body.mass_kg * bare_body.cg_x_m + mass_kg * at_m) / total,
+            cg_z_m=bare_body.mass_kg * bare_body.cg_z_m / total,
         )
         self._changed = self._changed or body != self._rig.body
         self._rig = replace(self._rig, body=body)
@@ -230,9 +230,9 @@ class Plant:
         eccentricity, phase = self._linkage
         rig = replace(self._rig, drive=following(self._rig.drive, self.profile))
         around = self._around
-        own = SetPoint(0.0, 0.0, lines=around.lines).own_orders
-        any_hz = self._rig.oscillator.frequency_hz.high / max(own, default=1)
-        names = (one.name for one in fields(around) if one.name != "seed")
+        orders = SetPoint(0.0, 0.0, lines=around.lines).own_orders
+        any_hz = self._rig.oscillator.frequency_hz.high / max(orders, default=1)
+        names = (field.name for field in fields(around) if field.name != "seed")
         conditions = {name: getattr(around, name) for name in names}
         return rig.chain(SetPoint(any_hz, eccentricity, phase, **conditions))
 

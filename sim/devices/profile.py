@@ -100,12 +100,12 @@ class Coasting(SpeedProfile):
         tau = self.friction.time_constant_s
         dry = math.copysign(self.friction.deceleration * tau, self.speed_rad_s)
         since = np.minimum(time_s - self.start_s, self.ramp_s)
-        left = np.exp(-since / tau)
+        decay = np.exp(-since / tau)
         coasting = time_s - self.start_s < self.ramp_s
         return ShaftMotion(
-            self.angle_rad + (self.speed_rad_s + dry) * tau * (1.0 - left) - dry * since,
-            np.where(coasting, (self.speed_rad_s + dry) * left - dry, 0.0),
-            np.where(coasting, -(self.speed_rad_s + dry) * left / tau, 0.0),
+            self.angle_rad + (self.speed_rad_s + dry) * tau * (1.0 - decay) - dry * since,
+            np.where(coasting, (self.speed_rad_s + dry) * decay - dry, 0.0),
+            np.where(coasting, -(self.speed_rad_s + dry) * decay / tau, 0.0),
         )
 
 
@@ -117,17 +117,17 @@ class ProfiledDrive(DriveSettings):
 
     def commanded(self, set_hz: float, time_s: FloatArray) -> ShaftMotion:
         """Return the motion that the drive is told to make, its ripple and speed error included."""
-        told, share = self.profile.at(time_s), 1.0 + self.speed_error
+        motion, share = self.profile.at(time_s), 1.0 + self.speed_error
         return self._rippled(
             ShaftMotion(
-                self.initial_angle_rad + share * told.angle,
-                share * told.speed,
-                share * told.acceleration,
+                self.initial_angle_rad + share * motion.angle,
+                share * motion.speed,
+                share * motion.acceleration,
             )
         )
 
 
 def following(settings: DriveSettings, profile: SpeedProfile) -> ProfiledDrive:
     """Return a drive as it is in ``settings``, but told by a profile."""
-    kept = {item.name: getattr(settings, item.name) for item in fields(DriveSettings)}
-    return ProfiledDrive(**kept, profile=profile)
+    values = {item.name: getattr(settings, item.name) for item in fields(DriveSettings)}
+    return ProfiledDrive(**values, profile=profile)

@@ -35,9 +35,9 @@ class Serial(serial.SerialBase):
         talkers = self._world.talkers
         if part not in talkers or not talkers[part].cable.plugged:
             give_back(self._rig)
-            known = ", ".join(name for name, talker in talkers.items() if talker.cable.plugged)
+            names = ", ".join(name for name, talker in talkers.items() if talker.cable.plugged)
             raise serial.SerialException(
-                f"{self._rig} has no serial device {part!r}; plugged in: {known or 'none'}"
+                f"{self._rig} has no serial device {part!r}; plugged in: {names or 'none'}"
             )
         self._cable: SerialCable = talkers[part].cable
         self._world.lookers.append(self)

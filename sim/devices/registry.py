@@ -34,8 +34,8 @@ def take(name: str) -> World:
     """
     if name not in _WORLDS:
         if not name.endswith(".toml"):
-            known = ", ".join(sorted(_WORLDS)) or "none"
-            raise ValueError(f"no simulated rig {name!r} runs in this process; running: {known}")
+            names = ", ".join(sorted(_WORLDS)) or "none"
+            raise ValueError(f"no simulated rig {name!r} runs in this process; running: {names}")
         try:
             _WORLDS[name] = read_bench(Path(name)).world()
         except ConfigurationError as error:

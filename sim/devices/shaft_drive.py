@@ -136,14 +136,14 @@ class ShaftDrive(SimulatedDrive):
         acceleration = deceleration / abs(self._per_rad_s) if deceleration else _AT_ONCE
         if self._forced is not None:
             target_rad_s, acceleration = self._forced[0], _FORCED
-        told = (target_rad_s, acceleration)
-        if target_rad_s == self._demand.target_rad_s and (self._arrived or told == self._told):
+        command = (target_rad_s, acceleration)
+        if target_rad_s == self._demand.target_rad_s and (self._arrived or command == self._told):
             return
-        self._told = told
+        self._told = command
         if self.blocked:
-            self._set_demand(self._demand.then(self._plant.time_s, *told))
+            self._set_demand(self._demand.then(self._plant.time_s, *command))
         else:
-            self._plant.turn(*told)
+            self._plant.turn(*command)
             self._set_demand(self._plant.profile)
 
     def _set_demand(self, profile: SpeedProfile) -> None:
@@ -156,8 +156,8 @@ class ShaftDrive(SimulatedDrive):
         if plant.profile.target_rad_s != 0.0:
             plant.turn(0.0, _AT_ONCE)
         now = plant.time_s
-        there = plant.profile.angle_and_speed(now)[0]
-        self.stray((self._demand.angle_and_speed(now)[0] - there) * self._counts_per_rad)
+        angle_rad = plant.profile.angle_and_speed(now)[0]
+        self.stray((self._demand.angle_and_speed(now)[0] - angle_rad) * self._counts_per_rad)
 
     def unblock(self) -> None:
         """Let the shaft go: the demand begins where it stands, or what forced it ends."""

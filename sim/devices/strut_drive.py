@@ -58,8 +58,8 @@ class PositionLoop:
         rates[1, 2] += ki
         rates[1, 6] -= 1.0 / self.moved_kg
         rates[2] = error
-        whole = expm(rates * period_s)
-        return whole[:3, :3], whole[:3, 3:]
+        exponential = expm(rates * period_s)
+        return exponential[:3, :3], exponential[:3, 3:]
 
 
 class StrutDrive(AxisDrive):
@@ -174,9 +174,9 @@ class StrutDrive(AxisDrive):
         before, self._way = self._way, self._next - self._reference
         self._bend = self._way - before
         speed, gain = (before + self._way) / 2.0 / self._dt, self._bend / self._dt**2
-        given = np.array([self._reference, speed, gain, self._load()])
+        inputs = np.array([self._reference, speed, gain, self._load()])
         speed_before = float(self._moved_to[1])
-        self._moved_to = self._own @ self._moved_to + self._given @ given
+        self._moved_to = self._own @ self._moved_to + self._given @ inputs
         self._reference = self._next
         if self.blocked:
             self._moved_to = np.array([self.position, 0.0, 0.0])

@@ -83,14 +83,14 @@ class CarriageMotion:
         Between samples the speed bends where it is told another: what samples hold of its
         derivative is the mean of the step and of the one before, carried on to the sample.
         """
-        told = (self.mean_m_s, self.mean_turn_rad_s)
-        left = np.subtract(state[:2], told)
-        if not block.count or np.abs(left).max() < _SETTLED:
-            left = np.zeros(2)
+        means = (self.mean_m_s, self.mean_turn_rad_s)
+        deviation = np.subtract(state[:2], means)
+        if not block.count or np.abs(deviation).max() < _SETTLED:
+            deviation = np.zeros(2)
         lag_s = self.settings.lag_s
         after_s = np.arange(1, block.count + 1) / block.sample_rate_hz
         fading = np.exp(-after_s / lag_s) if lag_s else np.zeros(block.count)
-        speed, turn = np.array(told)[:, np.newaxis] + np.outer(left, fading)
+        speed, turn = np.array(means)[:, np.newaxis] + np.outer(deviation, fading)
         steps = np.diff(speed, prepend=state[0]) * block.sample_rate_hz * bool(lag_s)
         gain = 1.5 * steps - 0.5 * np.append(state[2], steps)[:-1]
         state = (float(speed[-1]), float(turn[-1]), float(steps[-1])) if block.count else state

@@ -90,20 +90,20 @@ class LoadedDrive:
                 "out play that friction holds, laws without a compiled form and substituted "
                 "signals, or the gear"
             )
-        told, _, ahead, speeds = self.unladen(state, block)
+        motion, _, ahead, speeds = self.unladen(state, block)
         torque = inputs[signals.LOAD_TORQUE.name]
-        torque = torque + self.reflected_inertia_kg_m2 * told.acceleration
+        torque = torque + self.reflected_inertia_kg_m2 * motion.acceleration
         system = self.system
         hold = self._hold(block.sample_rate_hz)
-        known = 0 if state.states is not None else 1
-        if known:
+        start = 0 if state.states is not None else 1
+        if start:
             zero = (0.0,) * len(system.A)
             state = LoadedState(zero, ((float(torque[0]),),) * TORQUE_DEGREE)
-        joined = np.concatenate([np.array(state.torques)[:, 0], torque[known:]])[:, np.newaxis]
+        joined = np.concatenate([np.array(state.torques)[:, 0], torque[start:]])[:, np.newaxis]
         states = np.empty((block.count, len(system.A)))
-        states[:known] = state.states
-        states[known:] = hold.run(np.array(state.states), joined)
-        shaft = told.beyond(states @ system.C.T + torque[:, np.newaxis] @ system.D.T)
+        states[:start] = state.states
+        states[start:] = hold.run(np.array(state.states), joined)
+        shaft = motion.beyond(states @ system.C.T + torque[:, np.newaxis] @ system.D.T)
         tail = tuple((value,) for value in joined[-TORQUE_DEGREE:, 0].tolist())
         return LoadedState(tuple(states[-1].tolist()), tail, ahead, speeds), shaft.signals
 
@@ -114,24 +114,24 @@ class LoadedDrive:
         a step of a, which no polynomial through samples follows; of the told speed w it is a bend.
         So z = x - B J w is what goes on: z' = A z + A B J w.
         """
-        told = self.settings.commanded(self.frequency_hz, block.time_s)
+        motion = self.settings.commanded(self.frequency_hz, block.time_s)
         system = self._alone.system
         gain = system.B[:, :1] * self._inertia_alone
         driven = LinearSystem(system.A, system.A @ gain, system.C, system.C @ gain)
-        speeds = told.speed[:, np.newaxis]
-        known = 0 if state.speeds else 1
+        speeds = motion.speed[:, np.newaxis]
+        start = 0 if state.speeds else 1
         past = np.array(state.speeds) if state.speeds else np.repeat(speeds[:1], TORQUE_DEGREE, 0)
-        first = np.array(state.ahead) if state.speeds else -gain[:, 0] * told.speed[0]
-        joined = np.concatenate([past, speeds[known:]])
+        first = np.array(state.ahead) if state.speeds else -gain[:, 0] * motion.speed[0]
+        joined = np.concatenate([past, speeds[start:]])
         hold = causal_hold(driven, 1.0 / block.sample_rate_hz, TORQUE_DEGREE)
-        states = np.vstack([np.tile(first, (known, 1)), hold.run(first, joined)])
+        states = np.vstack([np.tile(first, (start, 1)), hold.run(first, joined)])
         direct = system.D[:, :1].T * self._inertia_alone
         moved = (
-            states @ driven.C.T + speeds @ driven.D.T + told.acceleration[:, np.newaxis] @ direct
+            states @ driven.C.T + speeds @ driven.D.T + motion.acceleration[:, np.newaxis] @ direct
         )
-        kept = tuple(tuple(row) for row in joined[-TORQUE_DEGREE:].tolist())
+        tail = tuple(tuple(row) for row in joined[-TORQUE_DEGREE:].tolist())
         opening = moved[:, 3] if moved.shape[1] > 3 else np.zeros(block.count)
-        return Unladen(told.beyond(moved), opening, tuple(states[-1].tolist()), kept)
+        return Unladen(motion.beyond(moved), opening, tuple(states[-1].tolist()), tail)
 
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
         """Return the period that the shaft really has under the load, and its harmonics."""
@@ -139,14 +139,14 @@ class LoadedDrive:
         free_hz = self.settings.frequency_hz(self.frequency_hz)
         lost = 0.0 if self.motor is None else droop(self.motor)
         real = period.at(free_hz + lost * float(torque[0].real) / (2.0 * math.pi))
-        told = self.settings.ripple_over(real)
-        whole = (
+        ripple = self.settings.ripple_over(real)
+        total = (
             torque
             + (self._inertia_alone + self.reflected_inertia_kg_m2)
-            * told[signals.SHAFT_ACCELERATION.name]
+            * ripple[signals.SHAFT_ACCELERATION.name]
         )
-        beyond = told[signals.SHAFT_ANGLE.name].copy()
-        beyond[1:] += self.system.response(real.s[1:])[:, 0, 0] * whole[1:]
+        beyond = ripple[signals.SHAFT_ANGLE.name].copy()
+        beyond[1:] += self.system.response(real.s[1:])[:, 0, 0] * total[1:]
         return real, shaft_over(real, beyond)
 
     def load(self, run: Signals, turned: FloatArray | float = 0.0) -> FloatArray:
@@ -186,8 +186,8 @@ class LoadedDrive:
     @cached_property
     def guides(self) -> tuple[Guides, ...]:
         """Friction of the struts' guides: the drive's, and the motor's own."""
-        own = () if self.motor is None else (self.motor.guides,)
-        return (*own, self.settings.guides)
+        guides = () if self.motor is None else (self.motor.guides,)
+        return (*guides, self.settings.guides)
 
     @property
     def cogging(self) -> tuple[Cogging, ...]:
@@ -223,8 +223,8 @@ class LoadedDrive:
     def _inertia_alone(self) -> float:
         """What the told acceleration has to turn of the drive itself."""
         gear, motor = self.settings.gear, self.motor
-        own = 0.0 if motor is None else motor.shaft_inertia_kg_m2
-        return own if gear is None else gear.crank_inertia_kg_m2
+        inertia_kg_m2 = 0.0 if motor is None else motor.shaft_inertia_kg_m2
+        return inertia_kg_m2 if gear is None else gear.crank_inertia_kg_m2
 
     def _hold(self, sample_rate_hz: float) -> Hold:
         return causal_hold(self.system, 1.0 / sample_rate_hz, TORQUE_DEGREE)

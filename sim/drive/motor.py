@@ -33,8 +33,8 @@ def _closed(plant: Rows, loop: SpeedLoop) -> LinearSystem:
     through = np.zeros((5, 2))
     through[2] = inputs[1]
     controller = control.ss([], [], [], [[-loop.proportional, -loop.integral]])
-    whole = control.ss(rates, inputs, outputs, through).lft(controller)
-    return LinearSystem(*(np.array(matrix, dtype=float) for matrix in control.ssdata(whole)))
+    closed_loop = control.ss(rates, inputs, outputs, through).lft(controller)
+    return LinearSystem(*(np.array(matrix, dtype=float) for matrix in control.ssdata(closed_loop)))
 
 
 @lru_cache(maxsize=128)

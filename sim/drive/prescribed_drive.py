@@ -31,7 +31,7 @@ class ShaftMotion(NamedTuple):
 
     def beyond(self, moved: FloatArray) -> "ShaftMotion":
         """Return it with a deviation of angle, speed and acceleration, shape ``(samples, 3)``."""
-        return ShaftMotion(*(given + more for given, more in zip(self, moved.T[:3], strict=True)))
+        return ShaftMotion(*(value + more for value, more in zip(self, moved.T[:3], strict=True)))
 
 
 @dataclass(frozen=True)

@@ -60,8 +60,8 @@ class AmplifierLag(Effect):
 
     def forms(self) -> tuple[Effect, ...]:
         """Return the plain delay, and filters of other poles with the same lag."""
-        others = [poles for poles in _POLES if poles != self.order]
-        return (*super().forms(), *(self._with_poles(poles) for poles in others))
+        orders = [poles for poles in _POLES if poles != self.order]
+        return (*super().forms(), *(self._with_poles(poles) for poles in orders))
 
     def _with_poles(self, poles: int) -> "AmplifierLag":
         as_late = math.sin(math.pi / (2 * self.order)) / math.sin(math.pi / (2 * poles))
@@ -76,10 +76,10 @@ class AmplifierLag(Effect):
             digitiser = replace(digitiser, delay_s=digitiser.delay_s + delay_s)
             if self.pure == 1.0:
                 return digitiser
-            own = LowPass(cutoff_hz / (1.0 - self.pure), kind, self.order)
+            low_pass = LowPass(cutoff_hz / (1.0 - self.pure), kind, self.order)
             if digitiser.low_pass is None:
-                return replace(digitiser, low_pass=own)
-            both_hz = 1.0 / (1.0 / digitiser.low_pass.cutoff_hz + 1.0 / own.cutoff_hz)
+                return replace(digitiser, low_pass=low_pass)
+            both_hz = 1.0 / (1.0 / digitiser.low_pass.cutoff_hz + 1.0 / low_pass.cutoff_hz)
             return replace(digitiser, low_pass=replace(digitiser.low_pass, cutoff_hz=both_hz))
 
         return with_force_channels(rig, late)

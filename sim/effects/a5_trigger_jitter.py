@@ -39,8 +39,8 @@ class TriggerJitter(Effect):
         if rig.photocell is None:
             return rig
         own_s = self.jitter_rad / (2.0 * math.pi * set_point.frequency_hz)
-        both = math.hypot(rig.photocell.jitter_rms_s, own_s)
-        return replace(rig, photocell=replace(rig.photocell, jitter_rms_s=both))
+        jitter_s = math.hypot(rig.photocell.jitter_rms_s, own_s)
+        return replace(rig, photocell=replace(rig.photocell, jitter_rms_s=jitter_s))
 
     def signature(self, situation: Situation) -> Signature:
         """Return ``(exp(-n^2 sigma^2/2) - 1) H_n`` for every channel."""

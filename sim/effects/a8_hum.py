@@ -69,15 +69,15 @@ class Hum(Effect):
         """
 
         def humming(digitiser: Digitiser, _: int) -> Digitiser:
-            own = self.amplitude_n * np.exp(1j * self.phase_rad)
+            phasor = self.amplitude_n * np.exp(1j * self.phase_rad)
             if digitiser.hum:
                 if digitiser.hum_hz != self.frequency_hz:
                     raise ConfigurationError(
                         f"a force channel hums at {digitiser.hum_hz:g} Hz already, and can have no "
                         f"second line at frequency_hz = {self.frequency_hz:g}; give them the same"
                     )
-                own += digitiser.hum * np.exp(1j * digitiser.hum_phase_rad)
-            size, phase = float(abs(own)), float(np.angle(own))
+                phasor += digitiser.hum * np.exp(1j * digitiser.hum_phase_rad)
+            size, phase = float(abs(phasor)), float(np.angle(phasor))
             return replace(digitiser, hum=size, hum_hz=self.frequency_hz, hum_phase_rad=phase)
 
         return with_force_channels(rig, humming)

@@ -74,10 +74,10 @@ def mismatch(
         keys = [(name, order) for name in names for order in range(highest + 1)]
         simulated = simulated_signature(effect, rig, set_point, keys, orders, points)
         for quantity in {_quantity(name) for name in names}:
-            own = [key for key in keys if _quantity(key[0]) == quantity]
-            stated = np.array([theory.get(key, 0.0) for key in own])
-            gap = np.array([simulated[key] for key in own]) - stated
-            least = SMALLEST * np.linalg.norm([phasor(situation.nominal, *key) for key in own])
+            group = [key for key in keys if _quantity(key[0]) == quantity]
+            stated = np.array([theory.get(key, 0.0) for key in group])
+            gap = np.array([simulated[key] for key in group]) - stated
+            least = SMALLEST * np.linalg.norm([phasor(situation.nominal, *key) for key in group])
             worst = float(np.fmax(worst, np.linalg.norm(gap) / max(np.linalg.norm(stated), least)))
     return worst
 

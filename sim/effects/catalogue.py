@@ -46,10 +46,10 @@ def find(name: str, more: dict[str, type[Effect]] | None = None) -> type[Effect]
     ConfigurationError
         If there is none; the message gives the nearest names.
     """
-    known = catalogue() | (more or {})
-    if name in known:
-        return known[name]
-    near = get_close_matches(name, known, n=3, cutoff=0.4)
+    effects = catalogue() | (more or {})
+    if name in effects:
+        return effects[name]
+    near = get_close_matches(name, effects, n=3, cutoff=0.4)
     hint = f"did you mean {', '.join(near)}?" if near else "pmm effects lists them"
     raise ConfigurationError(f"no effect {name!r}; {hint} (one of your own: name its file)")
 
@@ -81,10 +81,10 @@ def build_from(
 
 
 def _setting(kind: type[Effect], key: str, value: str | float) -> float:
-    known = [parameter.name for parameter in kind.parameters()]
-    if key not in known:
-        near = get_close_matches(key, known, n=1, cutoff=0.4)
-        hint = f"did you mean {near[0]!r}?" if near else f"it has {', '.join(known) or 'none'}"
+    names = [parameter.name for parameter in kind.parameters()]
+    if key not in names:
+        near = get_close_matches(key, names, n=1, cutoff=0.4)
+        hint = f"did you mean {near[0]!r}?" if near else f"it has {', '.join(names) or 'none'}"
         raise ConfigurationError(f"effect {kind.name} has no parameter {key!r}; {hint}")
     try:
         return float(value)

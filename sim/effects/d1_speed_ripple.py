@@ -61,11 +61,11 @@ class SpeedRippleEffect(Effect):
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this ripple on its drive."""
-        own = [SpeedRipple(self.order, self.relative, self.phase_rad)]
+        ripples = [SpeedRipple(self.order, self.relative, self.phase_rad)]
         if self.double:
             twice = self.double * self.relative
-            own.append(SpeedRipple(2.0 * self.order, twice, self.double_phase_rad))
-        return replace(rig, drive=replace(rig.drive, ripple=(*rig.drive.ripple, *own)))
+            ripples.append(SpeedRipple(2.0 * self.order, twice, self.double_phase_rad))
+        return replace(rig, drive=replace(rig.drive, ripple=(*rig.drive.ripple, *ripples)))
 
     def signature(self, situation: Situation) -> Signature:
         """Return the modulated motion and the model's reaction to it; exact to the third power."""

@@ -76,11 +76,11 @@ class TorqueCogging(Effect):
             motor = replace(drive.motor, cogging=(*drive.motor.cogging, *waves))
             return replace(rig, drive=replace(drive, motor=motor))
         omega = 2.0 * np.pi * set_point.frequency_hz
-        own = [
+        ripples = [
             SpeedRipple(wave.order, wave.order * self._angle_rad(wave, omega), wave.phase_rad)
             for wave in waves
         ]
-        return replace(rig, drive=replace(drive, ripple=(*drive.ripple, *own)))
+        return replace(rig, drive=replace(drive, ripple=(*drive.ripple, *ripples)))
 
     def signature(self, situation: Situation) -> Signature:
         """Return the modulated motion and the model's reaction, of a shaft that no load moves."""

@@ -49,8 +49,8 @@ class SpeedDroop(Effect):
         """
         old = rig.drive.motor
         inertia = self.inertia_kg_m2 if old is None else old.shaft_inertia_kg_m2
-        whole = self.droop_rad_s_n_m + (0.0 if old is None else -droop(old))
-        motor = Yielding(inertia, 1.0 / whole).motor()
+        total_droop = self.droop_rad_s_n_m + (0.0 if old is None else -droop(old))
+        motor = Yielding(inertia, 1.0 / total_droop).motor()
         if old is not None:
             motor = replace(motor, guides=old.guides, cogging=old.cogging)
         return replace(rig, drive=replace(rig.drive, motor=motor))

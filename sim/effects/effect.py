@@ -155,17 +155,17 @@ def parameter(
     ConfigurationError
         If a start, or another form, lies outside the plausible range.
     """
-    stated = [*(("start", one) for one in starts), *(("form", one) for one in forms)]
-    for what, value in stated:
+    stated = [*(("start", value) for value in starts), *(("form", value) for value in forms)]
+    for kind, value in stated:
         if not low <= value <= high:
             raise ConfigurationError(
-                f"parameter {meaning!r}: its {what} {value:g} is outside the plausible range "
+                f"parameter {meaning!r}: its {kind} {value:g} is outside the plausible range "
                 f"{low:g} to {high:g}"
             )
-    told = {"unit": unit, "low": low, "high": high, "meaning": meaning}
+    facts = {"unit": unit, "low": low, "high": high, "meaning": meaning}
     sought = {"starts": starts, "held": held or bool(forms), "resonance": resonance}
     signs = {"least": least, "one_sign": one_sign, "forms": forms}
-    return field(default=typical, metadata=told | sought | signs)
+    return field(default=typical, metadata=facts | sought | signs)
 
 
 @dataclass(frozen=True)
@@ -257,10 +257,10 @@ class Effect(ABC):
         size is the first harmonic's at the motion of :mod:`sim.effects.typical`, within a fifth.
         """
         return tuple(
-            replace(self, **{one.name: form})
-            for one in self.parameters()
-            for form in one.forms
-            if form != getattr(self, one.name)
+            replace(self, **{parameter.name: form})
+            for parameter in self.parameters()
+            for form in parameter.forms
+            if form != getattr(self, parameter.name)
         )
 
     def change_set_point(self, set_point: SetPoint, run_index: int) -> SetPoint:

@@ -61,10 +61,10 @@ class Clearances:
 
     def _meet(self, joint: int, inertia: FloatArray, flying: NDArray[np.intp]) -> None:
         """Stop one at its side; its impulse changes the rates of those that still fly."""
-        others = np.array([i for i in flying if i != joint and self.rates[i] != 0.0], dtype=int)
-        if others.size:
-            block = inertia[np.ix_(others, others)]
-            self.rates[others] += np.linalg.solve(block, inertia[others, joint] * self.rates[joint])
+        movers = np.array([i for i in flying if i != joint and self.rates[i] != 0.0], dtype=int)
+        if movers.size:
+            block = inertia[np.ix_(movers, movers)]
+            self.rates[movers] += np.linalg.solve(block, inertia[movers, joint] * self.rates[joint])
         self.places[joint] = min(max(self.places[joint], -self.length), 0.0)
         self.rates[joint] = 0.0
 

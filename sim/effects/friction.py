@@ -34,7 +34,7 @@ def share_at(strut: int, unlike: float) -> float:
 
 
 def power_law(
-    strength: float, exponent: float, other: float, speed: float, drift: float = 0.0
+    strength: float, exponent: float, new_exponent: float, speed: float, drift: float = 0.0
 ) -> Power:
     """Return ``B |v|^n sgn(v)`` with another exponent, and the same first harmonic at a speed.
 
@@ -42,13 +42,13 @@ def power_law(
     ----------
     strength, exponent
         B and n of the law whose place it takes.
-    other
+    new_exponent
         The exponent that it has.
     speed, drift
         Amplitude and mean of the velocity, in its unit.
     """
-    as_large = power_share(exponent) / power_share(other)
-    return Power(strength * speed**exponent * as_large, speed, other, drift)
+    as_large = power_share(exponent) / power_share(new_exponent)
+    return Power(strength * speed**exponent * as_large, speed, new_exponent, drift)
 
 
 def with_damping(

@@ -40,8 +40,8 @@ class CarriageSpeedError(Effect):
         """Return the rig with this error on top of the carriage's own."""
         speed = set_point.carriage_speed_m_s
         fixed = self.steady / speed if speed else 0.0  # a carriage that stands is braked
-        own = self.relative * (1.0 - self.steady + fixed)
-        error = (1.0 + rig.carriage.speed_error) * (1.0 + own) - 1.0
+        relative = self.relative * (1.0 - self.steady + fixed)
+        error = (1.0 + rig.carriage.speed_error) * (1.0 + relative) - 1.0
         return replace(rig, carriage=replace(rig.carriage, speed_error=error))
 
     def signature(self, situation: Situation) -> Signature:

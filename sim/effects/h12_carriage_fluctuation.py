@@ -51,8 +51,8 @@ class CarriageFluctuation(Effect):
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this fluctuation beside those that the carriage has."""
-        own = Fluctuation(self.relative, self.frequency_hz, self.phase_rad)
-        carriage = replace(rig.carriage, fluctuations=(*rig.carriage.fluctuations, own))
+        fluctuation = Fluctuation(self.relative, self.frequency_hz, self.phase_rad)
+        carriage = replace(rig.carriage, fluctuations=(*rig.carriage.fluctuations, fluctuation))
         return replace(rig, carriage=carriage)
 
     def signature(self, situation: Situation) -> Signature:

@@ -51,6 +51,6 @@ class AddedMassError(Effect):
         return load(situation, lambda s: np.complex128(s) * more)
 
     def _more(self, rig: SimulatedRig, set_point: SetPoint) -> FloatArray:
-        own = np.diag(added_mass_at(rig, 2.0 * np.pi * set_point.frequency_hz))
-        more: FloatArray = np.diag(own * (self.translation, self.rotation))
+        added_mass = np.diag(added_mass_at(rig, 2.0 * np.pi * set_point.frequency_hz))
+        more: FloatArray = np.diag(added_mass * (self.translation, self.rotation))
         return more

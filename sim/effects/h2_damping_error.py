@@ -51,6 +51,6 @@ class DampingError(Effect):
         return load(situation, lambda _: more)
 
     def _more(self, rig: SimulatedRig, set_point: SetPoint) -> FloatArray:
-        own = np.diag(damping_at(rig, 2.0 * np.pi * set_point.frequency_hz))
-        more: FloatArray = np.diag(own * (self.translation, self.rotation))
+        damping = np.diag(damping_at(rig, 2.0 * np.pi * set_point.frequency_hz))
+        more: FloatArray = np.diag(damping * (self.translation, self.rotation))
         return more

@@ -62,8 +62,8 @@ class Memory(Effect):
         """Return the rig with this memory, a state for each motion and rate, beside what it has."""
         kernel = np.diag([self.translation_n_m, self.rotation_n_m_rad])
         parts, s = self._parts, 1j * omega_rad_s(rig)
-        whole = sum(share / (rate + s) for rate, share in parts)
-        as_large = 1.0 / (abs(whole) * abs(self.rate_1_s + s))
+        response = sum(share / (rate + s) for rate, share in parts)
+        as_large = 1.0 / (abs(response) * abs(self.rate_1_s + s))
         radiation = radiation_of(rig)
         for rate, share in parts:
             fading = -rate * np.eye(2)

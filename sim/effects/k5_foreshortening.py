@@ -39,11 +39,11 @@ class Foreshortening(Effect):
 
     def signature(self, situation: Situation) -> Signature:
         """Return the leading term: s^3 of the motion, and s^2/2 of the lever."""
-        given = situation.rig.oscillator
-        sign = 1.0 if given.joint is Joint.SLIDES_ON_MODEL else -1.0
-        slide = 1 if given.pivot is Pivot.AFT else 0
+        oscillator = situation.rig.oscillator
+        sign = 1.0 if oscillator.joint is Joint.SLIDES_ON_MODEL else -1.0
+        slide = 1 if oscillator.pivot is Pivot.AFT else 0
         aft, fore = situation.displacement()
-        s = complex(fore - aft) / (2.0 * given.half_spacing_m)
+        s = complex(fore - aft) / (2.0 * oscillator.half_spacing_m)
         if slide == 0:
             s = -s
         force = complex(situation.force()[slide])
@@ -52,7 +52,7 @@ class Foreshortening(Effect):
             3: -(s**2) * force / 8.0,
         }
         moved = {1: 0.75 * abs(s) ** 2 * s, 3: -(s**3) / 4.0}
-        along = np.eye(2)[slide] * given.half_spacing_m
+        along = np.eye(2)[slide] * oscillator.half_spacing_m
         shift = np.eye(2)[slide] - np.eye(2)[1 - slide]
         predicted: dict[tuple[str, int], complex] = {}
         for order, extra in lever.items():

@@ -52,8 +52,8 @@ class DriftArrangement(Effect):
         return replace(rig, oscillator=replace(rig.oscillator, drift_by=self._real(rig)))
 
     def _real(self, rig: SimulatedRig) -> DriftBy:
-        others = [one for one in DriftBy if one is not rig.oscillator.drift_by]
-        return others[round(self.way) - 1]
+        ways = [way for way in DriftBy if way is not rig.oscillator.drift_by]
+        return ways[round(self.way) - 1]
 
     def signature(self, situation: Situation) -> Signature:
         """Return what is of first order in the drift and in the motion."""
@@ -79,21 +79,21 @@ class _Loads:
     """
 
     def __init__(self, situation: Situation) -> None:
-        given = situation.rig.oscillator
-        self._situation, self._given = situation, given
-        self.fixed = 0 if given.pivot is Pivot.AFT else 1
+        oscillator = situation.rig.oscillator
+        self._situation, self._given = situation, oscillator
+        self.fixed = 0 if oscillator.pivot is Pivot.AFT else 1
         aft, fore = situation.displacement()
-        self._line = complex(fore - aft) / (2.0 * given.half_spacing_m)
+        self._line = complex(fore - aft) / (2.0 * oscillator.half_spacing_m)
         self._moved = (complex(situation.displacement()[self.fixed]), complex(aft + fore) / 2.0)
         # As at rest, which gauges are tared of: the weight of a model that hangs.
         rest = situation.system.numbers[AT_REST, :2]
         self._rest = float(rest[1 - self.fixed]), float(rest.sum())
         self._resistance, self._slope = _resistance(situation)
         body = situation.rig.body
-        vertical = given.plane is Plane.VERTICAL
+        vertical = oscillator.plane is Plane.VERTICAL
         self._inertia = -(situation.omega**2) * body.mass_kg
-        self._lever = body.cg_z_m / given.half_spacing_m if vertical else 0.0
-        self._below = self._inertia * self._lever * given.half_spacing_m
+        self._lever = body.cg_z_m / oscillator.half_spacing_m if vertical else 0.0
+        self._below = self._inertia * self._lever * oscillator.half_spacing_m
         self._first = self._phasors()
 
     def _phasors(self) -> tuple[complex, complex, complex]:
@@ -112,9 +112,9 @@ class _Loads:
         if way is DriftBy.RIG_TURNED:
             return np.zeros((2, 3), dtype=np.complex128)
         offset = way is DriftBy.STRUTS_OFFSET
-        found = self._offset() if offset else self._turned()
-        found[1] += self._ahead(self._moved[0 if offset else 1])
-        return found
+        loads = self._offset() if offset else self._turned()
+        loads[1] += self._ahead(self._moved[0 if offset else 1])
+        return loads
 
     def _ahead(self, moved: complex) -> ComplexArray:
         """Return the phasors of a motion that goes ahead by its part along the heading.
@@ -131,22 +131,22 @@ class _Loads:
         slide, over = self._rest
         line, along = self._line, self._resistance
         first_slide, first_over, first_along = self._first
-        found = np.zeros((2, 3), dtype=np.complex128)
+        loads = np.zeros((2, 3), dtype=np.complex128)
         on_rig = self._given.joint is Joint.SLIDES_ON_RIG
         if self._given.gauges is Gauges.MODEL:
             if on_rig:
-                found[1, _ALONG] = -first_slide
+                loads[1, _ALONG] = -first_slide
             else:
-                found[1, :2] = -slide * line, slide * line
+                loads[1, :2] = -slide * line, slide * line
         elif on_rig:
-            found[0, _HELD] = along
-            found[1] = slide * line, first_along - (over + slide) * line, -first_over - along * line
+            loads[0, _HELD] = along
+            loads[1] = slide * line, first_along - (over + slide) * line, -first_over - along * line
         else:
             held = first_over - first_slide
-            found[0, _HELD] = along
+            loads[0, _HELD] = along
             across = first_along + (2.0 * slide - over) * line
-            found[1] = -2.0 * slide * line, across, -held - along * line
-        return found
+            loads[1] = -2.0 * slide * line, across, -held - along * line
+        return loads
 
     def _turned(self) -> ComplexArray:
         """Return the derivative by the angle of the model on its struts: L less by N, N more by L.
@@ -155,15 +155,15 @@ class _Loads:
         """
         over, line, along = self._rest[1], self._line, self._resistance
         _, first_over, first_along = self._first
-        found = np.zeros((2, 3), dtype=np.complex128)
-        found[0, :2] = along / 2.0
-        found[1] = first_along / 2.0, first_along / 2.0, -first_over
+        loads = np.zeros((2, 3), dtype=np.complex128)
+        loads[0, :2] = along / 2.0
+        loads[1] = first_along / 2.0, first_along / 2.0, -first_over
         on_rig = self._given.joint is Joint.SLIDES_ON_RIG
         stays = self._given.gauges is Gauges.RIG
         if stays:
-            found[1, _HELD] -= over * line
-        found[1, _ALONG] -= (int(on_rig) + int(stays)) * along * line / 2.0
-        return found
+            loads[1, _HELD] -= over * line
+        loads[1, _ALONG] -= (int(on_rig) + int(stays)) * along * line / 2.0
+        return loads
 
 
 def _resistance(situation: Situation) -> tuple[float, float]:

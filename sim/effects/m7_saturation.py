@@ -96,5 +96,5 @@ def _excess(size: FloatArray, limit: FloatArray, order: int) -> FloatArray:
         integral: FloatArray = half if k == 0 else np.sin(k * half) / k
         return integral
 
-    both = wave(order - 1) + wave(order + 1) - 2.0 * np.cos(half) * wave(order)
-    return size / np.pi * both * (0.5 if order == 0 else 1.0)
+    waves = wave(order - 1) + wave(order + 1) - 2.0 * np.cos(half) * wave(order)
+    return size / np.pi * waves * (0.5 if order == 0 else 1.0)

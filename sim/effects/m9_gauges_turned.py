@@ -35,20 +35,20 @@ class GaugesTurned(Effect):
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the gauges on the other one."""
-        other = _OTHER[rig.oscillator.gauges]
-        return replace(rig, oscillator=replace(rig.oscillator, gauges=other))
+        gauges = _OTHER[rig.oscillator.gauges]
+        return replace(rig, oscillator=replace(rig.oscillator, gauges=gauges))
 
     def signature(self, situation: Situation) -> Signature:
         """Return the readings turned at each instant of a period, less as they were."""
-        period, given = situation.nominal.period, situation.rig.oscillator
+        period, oscillator = situation.nominal.period, situation.rig.oscillator
         harmonics = [situation.nominal.spectra[name] for name in (*STRUT_DISPLACEMENTS, *_READINGS)]
         aft, fore, *read = period.values(np.stack(harmonics, axis=1)).T
-        part = (fore - aft) / (2.0 * given.half_spacing_m)
-        on_rig = given.joint is Joint.SLIDES_ON_RIG
+        part = (fore - aft) / (2.0 * oscillator.half_spacing_m)
+        on_rig = oscillator.joint is Joint.SLIDES_ON_RIG
         line = np.arcsin(part) if on_rig else np.arctan(part)
         readings = np.stack(read)
-        changed = period.harmonics((_turned(readings, line, given.pivot, given.gauges, on_rig)
-                                    - readings).T)  # fmt: skip
+        changed = period.harmonics((_turned(readings, line, oscillator.pivot, oscillator.gauges,
+                                            on_rig) - readings).T)  # fmt: skip
         changes: dict[tuple[str, int], complex] = {}
         for k, name in enumerate(_READINGS):
             changes[name, 0] = complex(changed[0, k])

@@ -31,7 +31,7 @@ def import_file(path: Path) -> ModuleType:
     return module
 
 
-def refuse_taken(path: str | Path, own: Collection[str], known: Collection[str]) -> None:
+def refuse_taken(path: str | Path, names: Collection[str], reserved: Collection[str]) -> None:
     """Refuse effects of the user's own that are called as the catalogue's are.
 
     Raises
@@ -39,7 +39,7 @@ def refuse_taken(path: str | Path, own: Collection[str], known: Collection[str])
     ConfigurationError
         Naming them.
     """
-    taken = sorted(set(own) & set(known))
+    taken = sorted(set(names) & set(reserved))
     if taken:
         raise ConfigurationError(
             f"{path}: {', '.join(taken)}: the catalogue has an effect of that name; rename yours"

@@ -36,12 +36,12 @@ class StrutTare(Effect):
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the struts' mass in the body, and their drag in water."""
-        body, both = rig.body, 2.0 * self.mass_kg
-        share = body.mass_kg / (body.mass_kg + both)
+        body, struts_kg = rig.body, 2.0 * self.mass_kg
+        share = body.mass_kg / (body.mass_kg + struts_kg)
         heavier = replace(
             body,
-            mass_kg=body.mass_kg + both,
-            inertia_kg_m2=body.inertia_kg_m2 + both * rig.oscillator.half_spacing_m**2,
+            mass_kg=body.mass_kg + struts_kg,
+            inertia_kg_m2=body.inertia_kg_m2 + struts_kg * rig.oscillator.half_spacing_m**2,
             cg_x_m=body.cg_x_m * share,
             cg_z_m=body.cg_z_m * share,
         )

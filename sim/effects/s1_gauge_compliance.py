@@ -38,12 +38,12 @@ class GaugeCompliance(Effect):
         mounting = rig.mounting
         stiffness = in_series(mounting.gauge_stiffness_n_m, self.stiffness_n_m)
         damping = mounting.gauge_damping_n_s_m + self.damping_n_s_m
-        before, own = (1.0 - stiffness / self.stiffness_n_m), stiffness / self.stiffness_n_m
+        before, added = (1.0 - stiffness / self.stiffness_n_m), stiffness / self.stiffness_n_m
         soft = replace(
             mounting,
             gauge_stiffness_n_m=stiffness,
             gauge_damping_n_s_m=damping,
-            gauge_unlike=before * mounting.gauge_unlike + own * self.unlike,
+            gauge_unlike=before * mounting.gauge_unlike + added * self.unlike,
         )
         return replace(rig, mounting=soft)
 

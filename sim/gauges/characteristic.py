@@ -160,5 +160,5 @@ def limited(
     below = np.inf if lowest is None else -lowest
     relative = np.abs(reading) / np.where(reading > 0.0, above, below)
     larger = np.maximum(relative, 1.0)
-    both = (1.0 / larger) ** (1.0 / knee) + (relative / larger) ** (1.0 / knee)
-    return np.asarray(reading / (larger * both**knee), dtype=np.float64)
+    power_sum = (1.0 / larger) ** (1.0 / knee) + (relative / larger) ** (1.0 / knee)
+    return np.asarray(reading / (larger * power_sum**knee), dtype=np.float64)

@@ -94,8 +94,8 @@ class Dynamometer:
 
     @property
     def _all_loops(self) -> tuple[Loop, ...]:
-        own = (PowerLoop(self.hysteresis_1_n / 2.0, 1.0),) if self.hysteresis_1_n else ()
-        return (*own, *self.loops)
+        loops = (PowerLoop(self.hysteresis_1_n / 2.0, 1.0),) if self.hysteresis_1_n else ()
+        return (*loops, *self.loops)
 
     @property
     def _drifts(self) -> bool:
@@ -168,14 +168,14 @@ class Dynamometers:
         return aft, fore
 
     def _written(self, aft: ValuesT, fore: ValuesT) -> dict[str, ValuesT]:
-        return {signal.name: own for signal, own in zip(self.writes, (aft, fore), strict=True)}
+        return {signal.name: value for signal, value in zip(self.writes, (aft, fore), strict=True)}
 
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
         """Return the harmonics of the readings; the drift of the zero is left out."""
         if self.aft.is_straight and self.fore.is_straight:
             felt = self._felt(*(inputs[signal.name] for signal in self.reads))
             gauges = zip((self.aft, self.fore), felt, strict=True)
-            read = (one.gain * force + period.constant(one.offset_n) for one, force in gauges)
+            read = (gauge.gain * force + period.constant(gauge.offset_n) for gauge, force in gauges)
             return period, self._written(*read)
         steady = Dynamometers(
             self.aft.without_drift(),

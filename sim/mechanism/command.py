@@ -32,13 +32,13 @@ class StrutCommand:
 
     def run(self, state: None, block: Block, inputs: Signals) -> tuple[None, Signals]:
         """Return the commands over the block."""
-        told = replace(self.drive, speed_error=0.0, ripple=())
-        return state, self._displacements(told.commanded(self.frequency_hz, block.time_s).angle)
+        drive = replace(self.drive, speed_error=0.0, ripple=())
+        return state, self._displacements(drive.commanded(self.frequency_hz, block.time_s).angle)
 
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
         """Return the harmonics of the commands."""
-        found = self._displacements(period.omega_rad_s * period.time_s)
-        return period, {name: period.harmonics(one) for name, one in found.items()}
+        displacements = self._displacements(period.omega_rad_s * period.time_s)
+        return period, {name: period.harmonics(values) for name, values in displacements.items()}
 
     def _displacements(self, angle: FloatArray) -> dict[str, FloatArray]:
         return {

@@ -171,14 +171,16 @@ class Mechanism:
         setting, phase_rad = self.struts[number]
         if not self.lines:
             return self._linkage(setting, angle + phase_rad)
-        whole = (np.zeros_like(angle), np.zeros_like(angle), np.zeros_like(angle))
+        motion = (np.zeros_like(angle), np.zeros_like(angle), np.zeros_like(angle))
         for line in self.lines:
             ahead = line.phase_rad + number * line.strut_phase_rad
             single = replace(self, eccentricity_m=self.eccentricity_m * line.share, lines=())
-            own = replace(setting, eccentricity_error_m=setting.eccentricity_error_m * line.share)
-            for times, part in enumerate(single._linkage(own, line.order * angle + ahead)):
-                whole[times][...] += line.order**times * part
-        return whole
+            line_setting = replace(
+                setting, eccentricity_error_m=setting.eccentricity_error_m * line.share
+            )
+            for times, part in enumerate(single._linkage(line_setting, line.order * angle + ahead)):
+                motion[times][...] += line.order**times * part
+        return motion
 
     def _linkage(
         self, setting: Setting, angle: FloatArray

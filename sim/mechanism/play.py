@@ -66,7 +66,7 @@ def follow_with_play(
     pushed = ((ends - after >= slack) & (speeds > 0.0)) | ((after - ends >= slack) & (speeds < 0.0))
     carried = np.where(pushed, speeds, 0.0)
     earlier = np.concatenate([[state.velocity], carried[:-1]])
-    whole = pushed & (earlier != 0.0) & ~turning
+    carried_through = pushed & (earlier != 0.0) & ~turning
     still = ~pushed & (earlier == 0.0)
     begun = pushed & (earlier == 0.0)
     jump, fraction = _contact(motion, np.where(begun, before, after), half_play_m, step_s)
@@ -75,13 +75,13 @@ def follow_with_play(
     early = np.where(still & (fraction >= 0.5) & (fraction < 1.0), jump * (1.0 - fraction), 0.0)
     due = np.concatenate([[state.owed], late[:-1]])
     shown = early + due + begins * (1.0 - np.abs(np.clip(fraction, -0.5, 0.5)))
-    smooth = np.where(whole, a, (carried - earlier - begins) / step_s)
+    smooth = np.where(carried_through, a, (carried - earlier - begins) / step_s)
     last = PlayState(float(after[-1]), float(carried[-1]), float(late[-1]))
     return last, Follower(
         np.clip(before, d - half_play_m, d + half_play_m),
-        np.where(whole, v, (after - before) / step_s),
+        np.where(carried_through, v, (after - before) / step_s),
         smooth + shown / step_s,
-        np.where(whole, 1.0, np.where(still, 0.0, 0.5)),
+        np.where(carried_through, 1.0, np.where(still, 0.0, 0.5)),
     )
 
 

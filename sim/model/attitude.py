@@ -56,23 +56,23 @@ class PositionSensors:
 
     def run(self, state: None, block: Block, inputs: Signals) -> tuple[None, Signals]:
         """Return the positions over the block."""
-        return state, self._positions({one.name: inputs[one.name] for one in self.reads})
+        return state, self._positions({signal.name: inputs[signal.name] for signal in self.reads})
 
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
         """Return the harmonics of the positions."""
-        values = {one.name: period.values(inputs[one.name]) for one in self.reads}
-        found = self._positions(values)
-        return period, {name: period.harmonics(one) for name, one in found.items()}
+        values = {signal.name: period.values(inputs[signal.name]) for signal in self.reads}
+        positions = self._positions(values)
+        return period, {name: period.harmonics(position) for name, position in positions.items()}
 
     def _positions(self, inputs: Signals) -> dict[str, FloatArray]:
-        *struts, carriage = (inputs[one.name] for one in self.reads)
+        *struts, carriage = (inputs[signal.name] for signal in self.reads)
         flow = self.hull.flow_factor * carriage
         at = moving(self.hull.system.numbers, np.column_stack(struts), flow)
         if self.hull.plane is Plane.VERTICAL:
             sunk, sine = at.place, -at.tank_sine
         else:
-            own = self.squat
-            sunk = own.z_uu * at.u**2 + own.z_vv * at.v**2
-            sine = np.sin(own.theta_uu * at.u**2 + own.theta_vv * at.v**2)
+            squat = self.squat
+            sunk = squat.z_uu * at.u**2 + squat.z_vv * at.v**2
+            sine = np.sin(squat.theta_uu * at.u**2 + squat.theta_vv * at.v**2)
         places = (self.sensors.aft_x_m, self.sensors.fore_x_m)
         return {signal.name: sunk - x * sine for signal, x in zip(self.writes, places, strict=True)}

@@ -131,38 +131,38 @@ def _per_law(give: ComplexArray, impedance: ComplexArray, s: ComplexArray) -> Co
 
 
 @compile_loop
-def _response(given: tuple[Any, ...]) -> tuple[Any, ...]:
+def _response(setup: tuple[Any, ...]) -> tuple[Any, ...]:
     """Return what :func:`sim.model.law_response.respond` takes, but for its last two arguments.
 
     Parameters
     ----------
-    given
+    setup
         The laws and whether their corners move, the struts, and the period: see
         :class:`LawBalance`.
     """
-    laws, arguments, corners, smooth, smooth_hull, parts, moving, y, give, impedance, s = given[:11]
+    laws, arguments, corners, smooth, smooth_hull, parts, moving, y, give, impedance, s = setup[:11]
     free, by_laws = _unladen(y, give, impedance, s), _per_law(give, impedance, s)
     laws_given = (laws, arguments, corners, smooth, smooth_hull, parts, moving)
-    return (*laws_given, free, by_laws, *given[11:])
+    return (*laws_given, free, by_laws, *setup[11:])
 
 
 @compile_loop
-def _answer(given: tuple[Any, ...], at: FloatArray, answer: FloatArray) -> None:
+def _answer(setup: tuple[Any, ...], at: FloatArray, answer: FloatArray) -> None:
     """Fill in the harmonics that the laws ask for where they are ``at``."""
-    whole: Any = (*_response(given), at, answer)
-    respond(*whole)
+    all_arguments: Any = (*_response(setup), at, answer)
+    respond(*all_arguments)
 
 
 @compile_loop
-def _balance(given: tuple[Any, ...], acts_back: bool, force: ComplexArray) -> bool:
+def _balance(setup: tuple[Any, ...], acts_back: bool, force: ComplexArray) -> bool:
     """Fill in the forces under laws that come back unchanged; tell whether there are any."""
-    response = _response(given)
+    response = _response(setup)
     free, by_laws = response[7], response[8]
-    found = np.zeros((free.shape[0], 2, 3))
-    settled = _settle(response, acts_back, found)
+    harmonics = np.zeros((free.shape[0], 2, 3))
+    settled = _settle(response, acts_back, harmonics)
     for n in range(free.shape[0]):
         for i in range(3):
-            force[n, i] = complex(found[n, 0, i], found[n, 1, i])
+            force[n, i] = complex(harmonics[n, 0, i], harmonics[n, 1, i])
         first, second = force[n, 0], force[n, 1]
         for i in range(2):
             linear = by_laws[n, 6 + i, 0] * first + by_laws[n, 6 + i, 1] * second
@@ -173,25 +173,25 @@ def _balance(given: tuple[Any, ...], acts_back: bool, force: ComplexArray) -> bo
 @compile_loop
 def _largest_linear(free: ComplexArray) -> float:
     """Return the largest harmonic of the linear force, which columns 6 and 7 hold."""
-    found = 0.0
+    size = 0.0
     for n in range(free.shape[0]):
-        found = max(found, abs(free[n, 6]), abs(free[n, 7]))
-    return found
+        size = max(size, abs(free[n, 6]), abs(free[n, 7]))
+    return size
 
 
 @compile_loop
-def _settle(given: tuple[Any, ...], acts_back: bool, laws_found: FloatArray) -> bool:
+def _settle(arguments: tuple[Any, ...], acts_back: bool, laws_found: FloatArray) -> bool:
     """Fill in the laws' harmonics that come back unchanged; tell whether there are any.
 
     Parameters
     ----------
-    given
+    arguments
         The arguments of :func:`sim.model.law_response.respond` but for the last two.
     """
-    answer, flat, free = np.zeros(laws_found.shape), laws_found.reshape(-1), given[7]
+    answer, flat, free = np.zeros(laws_found.shape), laws_found.reshape(-1), arguments[7]
     answered = answer.reshape(-1)
-    whole: Any = (*given, laws_found, answer)
-    respond(*whole)
+    all_arguments: Any = (*arguments, laws_found, answer)
+    respond(*all_arguments)
     copy(answered, flat)
     if not acts_back:
         return True
@@ -200,7 +200,7 @@ def _settle(given: tuple[Any, ...], acts_back: bool, laws_found: FloatArray) -> 
     allowed = TOLERANCE * max(largest(flat), _largest_linear(free), 1e-300)
     best, stalled, count = np.inf, 0, 0
     for _ in range(MOST_SWEEPS):
-        respond(*whole)
+        respond(*all_arguments)
         if count > _DEPTH:
             count = _DEPTH
             for i in range(_DEPTH):

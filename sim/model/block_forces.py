@@ -73,23 +73,23 @@ class BlockForces:
     ) -> tuple[HullState, FloatArray]:
         """Return state and forces where mounting or water remember something."""
         by_motion, by_load = holds
-        known = 0 if state.states is not None else 1
-        if known:
+        start = 0 if state.states is not None else 1
+        if start:
             state = self.at_first_sample(struts)
         if self.marching is not None and self.acts_back:
-            solved = self._marched(self.marching, state, struts, known)
+            solved = self._marched(self.marching, state, struts, start)
             if solved is not None:
                 return solved
-        driven = by_motion.forcing(np.vstack([np.array(state.motion), struts[known:]]))
+        driven = by_motion.forcing(np.vstack([np.array(state.motion), struts[start:]]))
         history = np.array(state.loads)
         by_struts, by_states, by_loads = self.system.model_maps
         rigid = struts @ by_struts
 
         def under(loads: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-            forcing = driven + by_load.forcing(np.vstack([history[known:], loads]))
+            forcing = driven + by_load.forcing(np.vstack([history[start:], loads]))
             states = np.empty((len(struts), self.system.states))
-            states[:known] = state.states
-            states[known:] = follow(by_motion.step, forcing, np.array(state.states))
+            states[:start] = state.states
+            states[start:] = follow(by_motion.step, forcing, np.array(state.states))
             model = rigid + states @ by_states
             model += loads @ by_loads
             return states, model[:, :6], model[:, 6:]
@@ -103,7 +103,7 @@ class BlockForces:
         elif loads.any():
             loads = relax(respond, loads, "hull", self.scale(struts))
         states, motion, linear = under(loads)
-        tail = np.vstack([history[known:], loads])[-LOAD_DEGREE:]
+        tail = np.vstack([history[start:], loads])[-LOAD_DEGREE:]
         after = HullState(_value(states[-1]), _value(struts[-1]), tuple(map(_value, tail)))
         return after, self.whole(motion, linear + loads[:, :2])
 
@@ -117,10 +117,10 @@ class BlockForces:
         return self.instants.speed_m_s - self.system.speed_m_s
 
     def _marched(
-        self, marching: Marching, state: HullState, struts: FloatArray, known: int
+        self, marching: Marching, state: HullState, struts: FloatArray, start: int
     ) -> tuple[HullState, FloatArray] | None:
         """Solve sample by sample; laws that the march does not know are swept around it."""
-        course = self.course(state, struts, known)
+        course = self.course(state, struts, start)
         rest = tuple(acting for acting in self.laws if not has_number(acting.law))
         alone = geometry_only(self.system.numbers)
         outputs = march_model(marching, course)
@@ -160,7 +160,7 @@ class BlockForces:
         at_struts = ModelMotion(motion[:, :2], motion[:, 2:4], motion[:, 4:], linear)
         return law_forces(laws, numbers, self.system, at_struts, self.instants)
 
-    def course(self, state: HullState, struts: FloatArray, known: int) -> "Course":
+    def course(self, state: HullState, struts: FloatArray, start: int) -> "Course":
         """Return what a march over the block starts from and is given."""
         instants = self.instants
         joined, history = np.vstack([np.array(state.motion), struts]), np.array(state.loads)
@@ -175,11 +175,11 @@ class BlockForces:
             self.scale(struts),
         )
         # Of the states before the block only the last counts; a first sample has its own.
-        course.states[LOAD_DEGREE - 1 + known] = state.states
+        course.states[LOAD_DEGREE - 1 + start] = state.states
         course.loads[:LOAD_DEGREE] = history[:, :loads]
         course.instants[:, 1] = self._extra
         course.instants[:, 2] = instants.speed_m_s
-        return course._replace(known=known)
+        return course._replace(known=start)
 
     def at_first_sample(self, struts: FloatArray) -> HullState:
         """Return the state at a run's first sample: mounting and water at rest under the load."""

@@ -49,14 +49,14 @@ def _model_loads(
     gap: FloatArray,
     instants: FloatArray,
     step_s: float,
-    given: FloatArray,
+    base_loads: FloatArray,
     k: int,
     work: FloatArray,
     room: FloatArray,
 ) -> None:
     """Fill in row 0 of ``room``: the loads that belong to the outputs in row 1 of ``work``."""
-    for j in range(given.shape[1]):
-        room[0, j] = given[k, j]
+    for j in range(base_loads.shape[1]):
+        room[0, j] = base_loads[k, j]
     law_force(laws, hull, work, 1, instants[k, 0], step_s, instants[k, 2], room, 0)
     extra = instants[k, 1]
     if extra != 0.0:
@@ -98,7 +98,7 @@ def add_struts(struts: FloatArray, k: int, work: FloatArray, into: int) -> None:
 
 @compile_loop
 def _turn_shaft(
-    told: FloatArray,
+    motion: FloatArray,
     by_torque: FloatArray,
     links: FloatArray,
     struts: FloatArray,
@@ -112,9 +112,9 @@ def _turn_shaft(
         work[2, i] = work[15, i]
         for j in range(unknown.size - first):
             work[2, i] += by_torque[j, i] * unknown[first + j]
-    work[15, 5] = work[2, 3] + told[k, 3]
+    work[15, 5] = work[2, 3] + motion[k, 3]
     for i in range(3):
-        work[2, i] += told[k, i]
+        work[2, i] += motion[k, i]
     strut_motion(links, work, struts, k + 1)
     add_struts(struts, k, work, 1)
 
@@ -127,10 +127,10 @@ def _respond(
     gap: FloatArray,
     instants: FloatArray,
     step_s: float,
-    given: FloatArray,
+    base_loads: FloatArray,
     struts: FloatArray,
     driven: bool,
-    told: FloatArray,
+    motion: FloatArray,
     by_torque: FloatArray,
     numbers: FloatArray,
     cogging: FloatArray,
@@ -142,17 +142,17 @@ def _respond(
     room: FloatArray,
 ) -> None:
     """Fill in row 0 of ``room``: what comes back of the loads and torques at sample k."""
-    loads = given.shape[1]
+    loads = base_loads.shape[1]
     if driven:
-        _turn_shaft(told, by_torque, links, struts, k, unknown, loads, work)
+        _turn_shaft(motion, by_torque, links, struts, k, unknown, loads, work)
     for j in range(work.shape[1]):
         total = work[1, j] if driven else work[0, j]
         for i in range(loads):
             total += unknown[i] * work[9 + i, j]
         work[1, j] = total
-    _model_loads(laws, hull, by_speed, gap, instants, step_s, given, k, work, room)
+    _model_loads(laws, hull, by_speed, gap, instants, step_s, base_loads, k, work, room)
     if driven:
-        rest = numbers[0] * (told[k, 2] - work[2, 2])
+        rest = numbers[0] * (motion[k, 2] - work[2, 2])
         room[0, loads] = _shaft_torque(numbers, cogging, work, room) + rest
         if shaft_gap[1] > 0.0:
             room[0, loads + 1] = joint_return(shaft_gap, work[15, 5])
@@ -207,11 +207,11 @@ def settle(
     gap: FloatArray,
     instants: FloatArray,
     step_s: float,
-    given: FloatArray,
+    base_loads: FloatArray,
     struts: FloatArray,
     scale: FloatArray,
     driven: bool,
-    told: FloatArray,
+    motion: FloatArray,
     by_torque: FloatArray,
     numbers: FloatArray,
     cogging: FloatArray,
@@ -227,7 +227,7 @@ def settle(
     best, stalled = np.inf, 0
     for sweep in range(_MOST):
         _respond(
-            laws, hull, by_speed, gap, instants, step_s, given, struts, driven, told,
+            laws, hull, by_speed, gap, instants, step_s, base_loads, struts, driven, motion,
             by_torque, numbers, cogging, shaft_gap, links, k, unknown, work, room,
         )  # fmt: skip
         largest = _change(scale, unknown, room)

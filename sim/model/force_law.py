@@ -155,8 +155,8 @@ class NumberedLaw(ForceLaw):
     @property
     def parameters(self) -> Parameters:
         """Return the parameters in order, NaN for one that is ``None`` or missing."""
-        given: tuple[Any, ...] = astuple(self)  # type: ignore[call-overload]  # all are dataclasses
-        p, q, r, s, *_ = (math.nan if one is None else one for one in (*given, *[None] * 4))
+        values: tuple[Any, ...] = astuple(self)  # type: ignore[call-overload]  # all are dataclasses
+        p, q, r, s, *_ = (math.nan if value is None else value for value in (*values, *[None] * 4))
         return p, q, r, s
 
     def force(self, motion: LawInput) -> FloatArray:

@@ -117,12 +117,12 @@ def law_harmonics(
     )
     at = moving(numbers, values[:, :6], instants.speed_m_s)
     through = period.harmonics(np.stack([at.v, at.r, at.v_rate], axis=1))
-    for own, part, signals, corners in _cornered(laws, system, np.hstack([waves, through])):
+    for group, part, signals, corners in _cornered(laws, system, np.hstack([waves, through])):
         phase, weight = nodes_between(signals, corners, period.points)
         turned = np.exp(1j * np.outer(phase, np.arange(len(waves))))
         motion = ModelMotion(*np.split((turned @ waves).real, 4, axis=1))
         instants = Instants(phase / period.omega_rad_s, 0.0, np.full(phase.size, speed_m_s))
-        force = law_forces(own, part, system, motion, instants)
+        force = law_forces(group, part, system, motion, instants)
         added = 2.0 * (turned.conj() * weight[:, np.newaxis]).T @ force
         added[0] = added[0].real / 2.0
         harmonics += added

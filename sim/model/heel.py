@@ -66,9 +66,9 @@ class Heeling:
         """
         if not self.free:
             return self._still(len(at.u)), ()
-        own = before[:-1] if before and before[-1] == self.release_rad else ()
+        state = before[:-1] if before and before[-1] == self.release_rad else ()
         first = self.rest_rad + self.release_rad
-        roll, after = march_roll(self._course(at), first, own, step_s)
+        roll, after = march_roll(self._course(at), first, state, step_s)
         return roll, (*after, self.release_rad)
 
     def settled(self, at: BodyMotion, period: Period) -> FloatArray:
@@ -132,15 +132,15 @@ class Heeling:
         inertia, product, spread = self._moments
         arm = self.body.mass_kg * self.body.cg_z_m
         righting = self.righting
-        given = dict(self.terms.by_rolling("K", _motion(at))) if self.in_water else {}
-        added = given.pop(("pdot",), np.zeros(1))
+        moments = dict(self.terms.by_rolling("K", _motion(at))) if self.in_water else {}
+        added = moments.pop(("pdot",), np.zeros(1))
         return RollCourse(
             inertia - float(np.ravel(added)[0]),
             arm * at.across + product * at.r_rate,
             -spread * at.r**2,
             righting,
             float(righting_moment(*righting, self.rest_rad)),
-            given,
+            moments,
         )
 
 

@@ -65,12 +65,12 @@ class HeelTerms:
         motion
             u, v, r, ``vdot`` and ``rdot``, shape ``(n,)`` each.
         """
-        found: dict[tuple[str, ...], FloatArray] = {}
+        products: dict[tuple[str, ...], FloatArray] = {}
         for row, plain, rolling, value in self._parts:
             if row == load:
                 product = value * _product(plain, motion, np.ones_like(motion["u"]))
-                found[rolling] = found.get(rolling, 0.0) + product
-        yield from found.items()
+                products[rolling] = products.get(rolling, 0.0) + product
+        yield from products.items()
 
     def loads(self, motion: Mapping[str, FloatArray], roll: FloatArray) -> FloatArray:
         """Return X, Y, N and K on the hull, shape ``(4, n)``; ``roll`` is phi, p and pdot."""
@@ -86,8 +86,8 @@ class HeelTerms:
         parts = []
         for name, value in self.values:
             factors = _FACTOR.findall(name[2:])
-            plain = tuple(one for one in factors if one.strip("|") in _PLAIN)
-            rolling = tuple(sorted(one for one in factors if one.strip("|") in ROLLING))
+            plain = tuple(factor for factor in factors if factor.strip("|") in _PLAIN)
+            rolling = tuple(sorted(factor for factor in factors if factor.strip("|") in ROLLING))
             parts.append((name[0], plain, rolling, value))
         return tuple(parts)
 
@@ -96,7 +96,7 @@ def _product(
     factors: tuple[str, ...], values: Mapping[str, FloatArray], start: FloatArray
 ) -> FloatArray:
     product = start
-    for one in factors:
-        value = values[one.strip("|")]
-        product = product * (np.abs(value) if "|" in one else value)
+    for factor in factors:
+        value = values[factor.strip("|")]
+        product = product * (np.abs(value) if "|" in factor else value)
     return product

@@ -29,7 +29,7 @@ from sim.stage import Block
 
 __all__ = ["Hull", "HullCoefficients"]
 
-_FIELDS = tuple(one.name for one in fields(ModelParameters))
+_FIELDS = tuple(field.name for field in fields(ModelParameters))
 _FORCES = (signals.FORCE_AFT, signals.FORCE_FORE, signals.FORCE_X)
 _HEELING = (signals.ROLL_MOMENT, signals.HEEL_ANGLE)
 ValueT = TypeVar("ValueT", np.float64, np.complex128)
@@ -103,9 +103,9 @@ class Hull(ModelParameters):
             state, force = self._with_memory(state, struts, instants)
         rows = np.ascontiguousarray(force.T)
         if self.steering is not None:
-            own = steering_loads(self.steering, self.system.numbers, struts, flow)
-            own[:3] += rows
-            rows = own
+            steering_rows = steering_loads(self.steering, self.system.numbers, struts, flow)
+            steering_rows[:3] += rows
+            rows = steering_rows
         if self.heeling is not None:
             at = moving(self.system.numbers, struts, flow)
             roll, rolled = self.heeling.rolling(at, rolled, instants.step_s)
@@ -137,9 +137,9 @@ class Hull(ModelParameters):
         self, heeling: Heeling, rows: FloatArray, at: BodyMotion, roll: FloatArray
     ) -> FloatArray:
         """Return the rows with what heel adds, and its own two behind them."""
-        own = heeling.readings(self.system.numbers, at, roll)
-        rows = np.concatenate((rows, own[3:]))
-        rows[:3] += own[:3]
+        heel_rows = heeling.readings(self.system.numbers, at, roll)
+        rows = np.concatenate((rows, heel_rows[3:]))
+        rows[:3] += heel_rows[:3]
         rows[:2] *= heeling.on_gauges(roll[0])
         return rows
 
@@ -186,10 +186,10 @@ class Hull(ModelParameters):
         while first < len(struts):
             hull, count = self.as_of(instants.time_s[first : first + LONGEST_SWEEP], step_s)
             part = slice(first, first + count)
-            here = instants._replace(
+            part_instants = instants._replace(
                 time_s=instants.time_s[part], speed_m_s=instants.speed_m_s[part]
             )
-            forces_here = hull._over(here, marching_of(hull.laws, hull.system, step_s))
+            forces_here = hull._over(part_instants, marching_of(hull.laws, hull.system, step_s))
             state, force = forces_here.with_memory(state, struts[part], _holds(hull, step_s))
             forces.append(force)
             first += count
@@ -221,8 +221,8 @@ class Hull(ModelParameters):
         if self.heeling is not None:
             at = moving(self.system.numbers, struts, flow)
             roll = self.heeling.settled(at, period)
-            whole = self._heeled(self.heeling, period.values(rows.T).T, at, roll)
-            rows = period.harmonics(whole.T).T
+            values = self._heeled(self.heeling, period.values(rows.T).T, at, roll)
+            rows = period.harmonics(values.T).T
         return period, self._written(rows)
 
     def at_speed(self, inputs: Spectra) -> "Hull":
@@ -233,11 +233,11 @@ class Hull(ModelParameters):
     def _settled(self, period: Period, inputs: Spectra) -> Spectra:
         """Return the harmonics of the forces after as many periods as it takes."""
         hull, fine = self.repeating, fine_enough(period, self.system.state_matrix)
-        given = {signal.name: fine.values(inputs[signal.name]) for signal in self.reads}
+        samples = {signal.name: fine.values(inputs[signal.name]) for signal in self.reads}
 
         def run(state: HullState, turn: int) -> tuple[HullState, Signals]:
             rate_hz = fine.points * fine.frequency_hz
-            return hull.run(state, Block(turn * fine.points, fine.points, rate_hz), given)
+            return hull.run(state, Block(turn * fine.points, fine.points, rate_hz), samples)
 
         names = tuple(signal.name for signal in self.writes)
         settled = partial(_settled_memory, self.system, 1.0 / fine.frequency_hz)
@@ -270,6 +270,6 @@ def _settled_memory(
     from scipy.linalg import expm
 
     began, ended = np.array(before.states), np.array(after.states)
-    left = np.eye(memory) - expm(system.radiation.state_matrix * period_s)
-    ended[first:] = began[first:] + np.linalg.solve(left, (ended - began)[first:])
+    loss = np.eye(memory) - expm(system.radiation.state_matrix * period_s)
+    ended[first:] = began[first:] + np.linalg.solve(loss, (ended - began)[first:])
     return after._replace(states=tuple(ended.tolist()))

@@ -88,8 +88,8 @@ class HullSteady:
             return None
         from sim.model.balance import LawBalance
 
-        given = (table, self.system.parts, self.give, self.impedance)
-        return LawBalance(*given, self.period, self.speed_m_s)
+        arguments = (table, self.system.parts, self.give, self.impedance)
+        return LawBalance(*arguments, self.period, self.speed_m_s)
 
 
 def _mounting_gain(
@@ -99,9 +99,9 @@ def _mounting_gain(
     if not system.elastic_count:
         return None
     shape = system.elastic.shape
-    whole = shape.T @ impedance @ shape + system.mounting_impedance(period.s)
+    total = shape.T @ impedance @ shape + system.mounting_impedance(period.s)
     pull = np.broadcast_to(shape.T.astype(complex), (period.s.size, *shape.T.shape))
-    gain: ComplexArray = -shape @ np.linalg.solve(whole, pull)
+    gain: ComplexArray = -shape @ np.linalg.solve(total, pull)
     return gain
 
 

@@ -51,11 +51,11 @@ def respond(
     _at_points(smooth, smooth_hull, real, imaginary, instants, moving, answer)
     row = 0
     while row < corners.shape[0]:
-        item, own = int(corners[row, 0]), row
+        item, begin = int(corners[row, 0]), row
         while row < corners.shape[0] and int(corners[row, 0]) == item:
             row += 1
         force = (laws, parts, item, step_s * cosine.shape[0], speed_m_s)
-        levels, waves = corners[own:row, 1:], (real, imaginary)
+        levels, waves = corners[begin:row, 1:], (real, imaginary)
         _between_corners(force, arguments[item], levels, waves, cosine, sine, nodes, answer)
     _scale(answer)
 
@@ -164,7 +164,7 @@ def _between_corners(
 def _ask(
     force: tuple[FloatArray, FloatArray, int, float, float],
     phase: float,
-    own: tuple[FloatArray, FloatArray],
+    series: tuple[FloatArray, FloatArray],
     waves: tuple[FloatArray, FloatArray],
     way: FloatArray,
     asked: FloatArray,
@@ -174,8 +174,8 @@ def _ask(
     time_s = phase / (2.0 * math.pi) * period_s
     asked[0, 0] = asked[0, 1] = 0.0
     if item < laws.shape[0] and laws[item, 9] <= 0.0:
-        x, v = value_at(own[0], own[1], 0, way), value_at(own[0], own[1], 1, way)
-        a, load = value_at(own[0], own[1], 2, way), value_at(own[0], own[1], 3, way)
+        x, v = value_at(series[0], series[1], 0, way), value_at(series[0], series[1], 1, way)
+        a, load = value_at(series[0], series[1], 2, way), value_at(series[0], series[1], 3, way)
         asked_force = law_value(laws, item, LawInput(x, v, a, load, time_s, 0.0, speed_m_s))
         asked[0, 0], asked[0, 1] = asked_force * laws[item, 5], asked_force * laws[item, 6]
         asked[0, 2] = 0.0

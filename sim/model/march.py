@@ -93,7 +93,7 @@ def _free_outputs(
     states: FloatArray,
     loads: FloatArray,
     k: int,
-    known: int,
+    start: int,
     work: FloatArray,
 ) -> None:
     """Fill in the state of sample k and its outputs, but for its own struts and loads."""
@@ -101,8 +101,8 @@ def _free_outputs(
     for j in range(columns):
         work[0, j] = 0.0
     for i in range(size):
-        total = states[k + 3, i] if k < known else 0.0
-        if k >= known:
+        total = states[k + 3, i] if k < start else 0.0
+        if k >= start:
             for j in range(size):
                 total += step[i, j] * states[k + 2, j]
             for j in range(6):
@@ -136,7 +136,7 @@ def _free_shaft(
     states: FloatArray,
     torques: FloatArray,
     k: int,
-    known: int,
+    start: int,
     work: FloatArray,
 ) -> None:
     """Fill in the shaft's state and outputs at sample k, but for this sample's torques."""
@@ -144,8 +144,8 @@ def _free_shaft(
     for j in range(4):
         work[15, j] = 0.0
     for i in range(size):
-        total = states[k + 3, i] if k < known else 0.0
-        if k >= known:
+        total = states[k + 3, i] if k < start else 0.0
+        if k >= start:
             for j in range(size):
                 total += step[i, j] * states[k + 2, j]
             for j in range(torques.shape[1]):
@@ -172,14 +172,14 @@ def _keep_model(
     states: FloatArray,
     loads: FloatArray,
     k: int,
-    known: int,
+    start: int,
     unknown: FloatArray,
 ) -> None:
     """Write down the loads of sample k, and its state."""
     count = loads.shape[1]
     for j in range(count):
         loads[k + 3, j] = unknown[j]
-    if k >= known:
+    if k >= start:
         for i in range(after.shape[0]):
             total = states[k + 3, i]
             for j in range(6):
@@ -196,7 +196,7 @@ def _keep_shaft(
     torques: FloatArray,
     motion: FloatArray,
     k: int,
-    known: int,
+    start: int,
     unknown: FloatArray,
     first: int,
     work: FloatArray,
@@ -206,7 +206,7 @@ def _keep_shaft(
         motion[k, j] = work[2, j]
     for j in range(torques.shape[1]):
         torques[k + 3, j] = unknown[first + j]
-        for i in range(states.shape[1] if k >= known else 0):
+        for i in range(states.shape[1] if k >= start else 0):
             states[k + 3, i] += by_inputs[3, i, j] * unknown[first + j]
 
 
@@ -225,9 +225,9 @@ def march(
     both struts; opening of both gauges), shape ``(samples, 8)``, or 10 where
     the gauges have a clearance, and all that the shaft does, if it is driven.
     """
-    struts, states, loads, known = course.struts, course.states, course.loads, course.known
+    struts, states, loads, start = course.struts, course.states, course.loads, course.known
     step, before, after, by_loads = model.step, model.before, model.after, model.by_loads
-    given, driven, told, torques = course.given, shaft.driven, shaft.told, shaft.torques
+    base_loads, driven, motion, torques = course.given, shaft.driven, shaft.told, shaft.torques
     laws, hull, by_speed, gap = table.laws, table.hull, model.by_speed, model.gap
     instants, step_s, scale = course.instants, course.step_s, course.scale
     by_torque, numbers, cogging, shaft_gap = (
@@ -237,32 +237,32 @@ def march(
     unknown, room = np.zeros(first + torques.shape[1]), np.zeros((8, 8))
     slope, work = np.eye(unknown.size), np.zeros((16, outputs.shape[1]))
     for k in range(len(outputs)):
-        if k == 0 or k == known:
-            _maps(model, k >= known, work)
-            if k >= known:
+        if k == 0 or k == start:
+            _maps(model, k >= start, work)
+            if k >= start:
                 by_torque = shaft.by_torque
         _free_outputs(
-            step, before, by_loads, model.from_states, struts, states, loads, k, known, work
+            step, before, by_loads, model.from_states, struts, states, loads, k, start, work
         )
         _guess(loads, k, unknown, 0)
         if driven:
             _free_shaft(
-                shaft.step, shaft.by_inputs, shaft.to_outputs, shaft.states, torques, k, known, work
+                shaft.step, shaft.by_inputs, shaft.to_outputs, shaft.states, torques, k, start, work
             )  # fmt: skip
             _guess(torques, k, unknown, first)
         else:
             add_struts(struts, k, work, 0)
         settled = settle(
-            laws, hull, by_speed, gap, instants, step_s, given, struts, scale, driven, told,
+            laws, hull, by_speed, gap, instants, step_s, base_loads, struts, scale, driven, motion,
             by_torque, numbers, cogging, shaft_gap, links, k, unknown, slope, work, room,
         )  # fmt: skip
         if not settled:
             return k
         for j in range(work.shape[1]):
             outputs[k, j] = work[1, j]
-        _keep_model(after, by_loads, struts, states, loads, k, known, unknown)
+        _keep_model(after, by_loads, struts, states, loads, k, start, unknown)
         if driven:
             _keep_shaft(
-                shaft.by_inputs, shaft.states, torques, shaft.motion, k, known, unknown, first, work
+                shaft.by_inputs, shaft.states, torques, shaft.motion, k, start, unknown, first, work
             )  # fmt: skip
     return -1

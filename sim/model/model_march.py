@@ -32,12 +32,12 @@ class Marching(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def periodic_laws(given: tuple[Acting, ...], system: HullSystem) -> LawTable | None:
+def periodic_laws(all_laws: tuple[Acting, ...], system: HullSystem) -> LawTable | None:
     """Return the laws that repeat as a table; ``None`` where they cannot be in one.
 
     That is without numba, and where a law has no number.
     """
-    laws = tuple(acting for acting in given if acting.law.periodic)
+    laws = tuple(acting for acting in all_laws if acting.law.periodic)
     if not (available() and all(has_number(acting.law) for acting in laws)):
         return None
     return table_of(laws, system)
@@ -45,7 +45,7 @@ def periodic_laws(given: tuple[Acting, ...], system: HullSystem) -> LawTable | N
 
 @lru_cache(maxsize=64)
 def marching_of(
-    given: tuple[Acting, ...], system: HullSystem, step_s: float, needed: bool = False
+    all_laws: tuple[Acting, ...], system: HullSystem, step_s: float, needed: bool = False
 ) -> Marching | None:
     """Return model and laws for the march; ``None`` where sweeps do instead.
 
@@ -59,7 +59,7 @@ def marching_of(
     """
     if not (available() or needed or system.joint):
         return None
-    laws = tuple(acting for acting in given if has_number(acting.law))
+    laws = tuple(acting for acting in all_laws if has_number(acting.law))
     table = table_of(laws, system)
     return Marching(_model(system, step_s), table)
 

@@ -69,7 +69,7 @@ def surging_readings(
         ahead=at.ahead + ahead, across=at.across + across, v_rate=at.v_rate + across
     )
     with_it, without = body_loads(numbers, surging), body_loads(numbers, at)
-    loads = (one - other for one, other in zip(with_it, without, strict=True))
+    loads = (load - rest_load for load, rest_load in zip(with_it, without, strict=True))
     return gauge_readings(numbers, at.cosine, at.sine, *loads)
 
 
@@ -105,14 +105,14 @@ def turns_with(plane: Plane) -> float:
 
 
 def _geometry(hull: ModelParameters) -> tuple[float, ...]:
-    given, angle = hull.arrangement, turns_with(hull.plane) * hull.drift_rad
-    rig, offset, struts = (angle if given.drift_by is by else 0.0 for by in DriftBy)
-    on_model = given.joint is Joint.SLIDES_ON_MODEL
+    arrangement, angle = hull.arrangement, turns_with(hull.plane) * hull.drift_rad
+    rig, offset, struts = (angle if arrangement.drift_by is by else 0.0 for by in DriftBy)
+    on_model = arrangement.joint is Joint.SLIDES_ON_MODEL
     return (
         hull.half_spacing_m,
-        1.0 if given.pivot is Pivot.AFT else -1.0,
+        1.0 if arrangement.pivot is Pivot.AFT else -1.0,
         float(on_model),
-        float(given.gauges is Gauges.MODEL),
+        float(arrangement.gauges is Gauges.MODEL),
         math.tan(offset) if on_model else math.sin(offset),
         math.cos(rig),
         math.sin(rig),
@@ -170,10 +170,10 @@ def _fill_water(numbers: FloatArray, hull: ModelParameters, added_mass: FloatArr
 
 
 def _fill_cross_flow(numbers: FloatArray, hull: ModelParameters, side: float) -> None:
-    given = hull.cross_flow
+    terms = hull.cross_flow
     kinds = (
-        (geometry.CUBIC, None if given is None else given.cubic, (1.0, side, 1.0, side)),
-        (geometry.QUADRATIC, None if given is None else given.quadratic, (1.0, 1.0, side, side)),
+        (geometry.CUBIC, None if terms is None else terms.cubic, (1.0, side, 1.0, side)),
+        (geometry.QUADRATIC, None if terms is None else terms.quadratic, (1.0, 1.0, side, side)),
     )
     for row, rows, signs in kinds:
         if rows is not None:

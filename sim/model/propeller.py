@@ -48,7 +48,7 @@ class OpenWater:
         faults = []
         if not self.diameter_m > 0.0:
             faults.append(f"diameter_m = {self.diameter_m:g} must be above 0")
-        lengths = [len(one) for one in (self.advance, self.thrust, self.torque)]
+        lengths = [len(column) for column in (self.advance, self.thrust, self.torque)]
         if len(set(lengths)) > 1 or lengths[0] < 3:
             faults.append(
                 f"advance, thrust and torque have {lengths[0]}, {lengths[1]} and {lengths[2]} "

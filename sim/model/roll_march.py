@@ -50,16 +50,16 @@ class RollCourse:
         sides = (1.0, -1.0)
         by_heel = [side * self.moment(side * _SMALL, 0.0) for side in sides]
         by_rate = [side * self.moment(0.0, side * _SMALL) for side in sides]
-        stiff, damping = (-np.mean(sum(one)) / (2.0 * _SMALL) for one in (by_heel, by_rate))
+        stiff, damping = (-np.mean(sum(moments)) / (2.0 * _SMALL) for moments in (by_heel, by_rate))
         return float(stiff), float(damping)
 
 
 def rolled(factors: tuple[str, ...], phi: Any, p: Any) -> Any:
     """Return the product of a term's factors, of heel ``phi`` (rad) and its rate ``p`` (rad/s)."""
     product: Any = 1.0
-    for one in factors:
-        value = phi if "phi" in one else p
-        product = product * (abs(value) if "|" in one else value)
+    for factor in factors:
+        value = phi if "phi" in factor else p
+        product = product * (abs(value) if "|" in factor else value)
     return product
 
 
@@ -85,28 +85,28 @@ def march_roll(
     ).tolist()
     of_gm, of_bm = course.righting
 
-    def bent(phi: float, p: float, given: list[float]) -> float:
+    def bent(phi: float, p: float, row: list[float]) -> float:
         cosine, sine = math.cos(phi), math.sin(phi)
-        total = given[0] * cosine + given[1] * sine * cosine + course.at_rest
+        total = row[0] * cosine + row[1] * sine * cosine + course.at_rest
         total -= (of_gm + 0.5 * of_bm * (sine / cosine) ** 2) * sine
-        for key, part in zip(keys, given[2:], strict=True):
+        for key, part in zip(keys, row[2:], strict=True):
             total += part * rolled(key, phi, p)
         return total / course.inertia
 
     phi, p = before[:2] if before else (first_rad, 0.0)
     last = list(before[2:]) if before else None
     rows = []
-    for given in driven:
+    for row in driven:
         if last is not None:
-            middle = [0.5 * (one + two) for one, two in zip(last, given, strict=True)]
-            phi, p = _step(bent, phi, p, (last, middle, given), step_s)
-        rows.append((phi, p, bent(phi, p, given)))
-        last = given
+            middle = [0.5 * (begin + end) for begin, end in zip(last, row, strict=True)]
+            phi, p = _step(bent, phi, p, (last, middle, row), step_s)
+        rows.append((phi, p, bent(phi, p, row)))
+        last = row
     return np.array(rows).T, (phi, p, *(last or ()))
 
 
-def _step(bent: Any, phi: float, p: float, given: Any, step: float) -> tuple[float, float]:
-    first, middle, end = given
+def _step(bent: Any, phi: float, p: float, rows: Any, step: float) -> tuple[float, float]:
+    first, middle, end = rows
     half = 0.5 * step
     a1 = bent(phi, p, first)
     p2 = p + half * a1

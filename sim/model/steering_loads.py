@@ -28,5 +28,5 @@ def steering_loads(
         As :meth:`sim.model.propeller.OpenWater.coefficients` does.
     """
     at = moving(numbers, struts, flow_m_s)
-    loads, own = steering.loads(np.stack((at.u, at.v, at.r)))
-    return np.concatenate((gauge_readings(numbers, at.cosine, at.sine, *-loads), own))
+    loads, written = steering.loads(np.stack((at.u, at.v, at.r)))
+    return np.concatenate((gauge_readings(numbers, at.cosine, at.sine, *-loads), written))

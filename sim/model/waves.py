@@ -90,6 +90,8 @@ class MetWaves:
 
     def at_instants(self, time_s: FloatArray, speed_m_s: float) -> tuple[FloatArray, FloatArray]:
         """Return the loads ahead, across and about, shape ``(3, n)``, and the elevation in m."""
-        phase, own = self.phase_rad(time_s, speed_m_s), self.waves
-        loads = [one.over(phase, self.amplitude_m) for one in (own.ahead, own.across, own.about)]
+        phase, waves = self.phase_rad(time_s, speed_m_s), self.waves
+        loads = [
+            load.over(phase, self.amplitude_m) for load in (waves.ahead, waves.across, waves.about)
+        ]
         return np.stack(loads), np.asarray(self.amplitude_m * np.cos(phase))

@@ -108,11 +108,11 @@ class FreeBody:
     @property
     def writes(self) -> tuple[Signal, ...]:
         """Displacements, rates and accelerations of all coordinates."""
-        every = self.body.coordinates
-        moved = tuple(coordinate.displacement for coordinate in every) + tuple(
-            coordinate.rate for coordinate in every
+        coordinates = self.body.coordinates
+        moved = tuple(coordinate.displacement for coordinate in coordinates) + tuple(
+            coordinate.rate for coordinate in coordinates
         )
-        return moved + tuple(coordinate.acceleration for coordinate in every)
+        return moved + tuple(coordinate.acceleration for coordinate in coordinates)
 
     def start(self, sample_rate_hz: float, seed: int) -> BodyState:
         """Return a body at rest, not yet let go."""
@@ -123,13 +123,13 @@ class FreeBody:
         """Return the motion over the block; it starts where the release's hold ends."""
         from sim.pendulum import kernel
 
-        given = np.stack([inputs[signal.name] for signal in self.reads]).astype(np.float64)
+        samples = np.stack([inputs[signal.name] for signal in self.reads]).astype(np.float64)
         out = np.empty((len(self.writes), block.count))
         sliding = np.array(state.sliding)
         model, tables, steps = _prepared(self.body, block.sample_rate_hz)
         clock = (block.first, block.count, 1.0 / block.sample_rate_hz, steps)
         after, free = kernel.run(
-            model, tables, clock, given, np.array(state.motion), sliding, state.free, out
+            model, tables, clock, samples, np.array(state.motion), sliding, state.free, out
         )
         signals = {signal.name: row for signal, row in zip(self.writes, out, strict=True)}
         return BodyState(tuple(after.tolist()), tuple(sliding.tolist()), bool(free)), signals

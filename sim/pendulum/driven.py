@@ -46,7 +46,7 @@ class PeriodicForce:
 
     def scaled(self, factor: complex) -> "PeriodicForce":
         """Return the force with each harmonic times a factor."""
-        return replace(self, harmonics=tuple(factor * one for one in self.harmonics))
+        return replace(self, harmonics=tuple(factor * harmonic for harmonic in self.harmonics))
 
 
 @dataclass(frozen=True)
@@ -63,8 +63,8 @@ class DrivenBody(Floating):
         """No constant load; the force's frequency, then cosine and sine of each order."""
         row = np.zeros(2 + 2 * ORDERS)
         row[1] = self.force.omega_rad_s
-        for at, one in enumerate(self.force.harmonics):
-            row[2 + 2 * at : 4 + 2 * at] = one.real, -one.imag
+        for at, harmonic in enumerate(self.force.harmonics):
+            row[2 + 2 * at : 4 + 2 * at] = harmonic.real, -harmonic.imag
         return row
 
 
@@ -90,12 +90,12 @@ def settled(body: DrivenBody, orders: int) -> ComplexArray:
     if resistance.linear and not resistance.coulomb:
         return np.pad(linear, (0, max(orders - linear.size, 0)))[:orders]
     moved = _repeating(body, linear)
-    found = 2.0 * np.fft.rfft(moved)[1 : orders + 1] / moved.size
-    if not abs(found[0]) > _CLOSED * abs(linear[0]):
+    harmonics = 2.0 * np.fft.rfft(moved)[1 : orders + 1] / moved.size
+    if not abs(harmonics[0]) > _CLOSED * abs(linear[0]):
         raise ConfigurationError(
             f"friction of {resistance.coulomb:g} holds the body against its force; take less"
         )
-    return np.asarray(found, np.complex128)
+    return np.asarray(harmonics, np.complex128)
 
 
 def _linear(body: DrivenBody) -> ComplexArray:
@@ -132,12 +132,12 @@ def _repeating(body: DrivenBody, linear: ComplexArray) -> FloatArray:
     def opened(at: FloatArray) -> FloatArray:
         return np.asarray(_period(body, at * scale)[:, -1] / scale - at, np.float64)
 
-    found, *_ = fsolve(opened, start, epsfcn=1e-6, full_output=True)  # no warning: it is checked
-    ran = _period(body, found * scale)
-    left = float(np.abs(ran[:, -1] / scale - found).max())
-    if not left < _CLOSED * max(float(np.abs(ran / scale[:, None]).max()), _CLOSED):
+    solution, *_ = fsolve(opened, start, epsfcn=1e-6, full_output=True)  # no warning: it is checked
+    ran = _period(body, solution * scale)
+    gap = float(np.abs(ran[:, -1] / scale - solution).max())
+    if not gap < _CLOSED * max(float(np.abs(ran / scale[:, None]).max()), _CLOSED):
         raise ConfigurationError(
-            f"the body does not settle to a motion of its force's period (it misses by {left:.1e} "
+            f"the body does not settle to a motion of its force's period (it misses by {gap:.1e} "
             "of the motion); make what is not linear smaller"
         )
     return ran[0, :-1]
@@ -145,11 +145,11 @@ def _repeating(body: DrivenBody, linear: ComplexArray) -> FloatArray:
 
 def _period(body: DrivenBody, state: FloatArray) -> FloatArray:
     """Return displacement and rate over a period from a state, shape ``(2, samples + 1)``."""
-    (one,) = body.coordinates
-    rows = (RELEASE_HOLD, one.held, one.kick)
-    given = np.repeat([[0.0], *state[:, None]], _SAMPLES + 1, axis=1)
-    held = {row.name: values for row, values in zip(rows, given, strict=True)}
+    (coordinate,) = body.coordinates
+    rows = (RELEASE_HOLD, coordinate.held, coordinate.kick)
+    signals = np.repeat([[0.0], *state[:, None]], _SAMPLES + 1, axis=1)
+    held = {row.name: values for row, values in zip(rows, signals, strict=True)}
     rate_hz = _SAMPLES * body.force.omega_rad_s / (2.0 * math.pi)
     begun = BodyState((0.0, 0.0), (0.0,), free=False)
     _, run = FreeBody(body).run(begun, Block(0, _SAMPLES + 1, rate_hz), held)
-    return np.stack([run[one.displacement.name], run[one.rate.name]])
+    return np.stack([run[coordinate.displacement.name], run[coordinate.rate.name]])

@@ -72,12 +72,12 @@ class Floating:
     @property
     def truth(self) -> dict[str, float]:
         """Inertia, the water's part, restoring, and the damping coefficients."""
-        own = self.resistance
+        resistance = self.resistance
         return {
             "inertia": self.inertia,
             "added_inertia": self.added_inertia,
             "restoring": self.restoring,
-            "viscous": own.viscous,
-            "quadratic": own.quadratic,
-            "cubic": own.cubic,
+            "viscous": resistance.viscous,
+            "quadratic": resistance.quadratic,
+            "cubic": resistance.cubic,
         }

@@ -194,34 +194,34 @@ def interval(
     if not model[6]:
         return advance(model, tables, t, step, 0, x, sign)
     deepest = tables[3].shape[1] - 2
-    whole = 1 << deepest
+    parts = 1 << deepest
     steps, level = 0, 0
-    while steps < whole:
-        while (whole >> level) > whole - steps:
+    while steps < parts:
+        while (parts >> level) > parts - steps:
             level += 1
-        now = t + step * steps / whole
+        now = t + step * steps / parts
         after = advance(model, tables, now, step, level, x, sign)
         new = turned(model, now + step / 2.0**level, after, sign)
         if new and level < deepest:
             level += 1
             continue
-        steps += whole >> level
+        steps += parts >> level
         x = after
         if new:
             for i in range(n):
                 if x[n + i] * sign[i] < 0.0:
                     x[n + i] = 0.0
-            settle(model, t + step * steps / whole, x, sign)
+            settle(model, t + step * steps / parts, x, sign)
             level = 0
     return x
 
 
 @compile_loop
-def place(given: FloatArray, k: int, x: FloatArray) -> None:
+def place(inputs: FloatArray, k: int, x: FloatArray) -> None:
     """Fill the state with what is given for a sample: at rest while held, else as released."""
     n = x.size // 2
     for i in range(n):
-        x[i], x[n + i] = given[1 + i, k], 0.0 if given[0, k] > 0.0 else given[1 + n + i, k]
+        x[i], x[n + i] = inputs[1 + i, k], 0.0 if inputs[0, k] > 0.0 else inputs[1 + n + i, k]
 
 
 @compile_loop
@@ -229,7 +229,7 @@ def run(
     model: Any,
     tables: Any,
     clock: tuple[int, int, float, int],
-    given: FloatArray,
+    inputs: FloatArray,
     x: FloatArray,
     sign: FloatArray,
     free: bool,
@@ -237,7 +237,7 @@ def run(
 ) -> tuple[FloatArray, bool]:
     """Fill ``out``, shape ``(3 n, count)``, with displacements, velocities and accelerations.
 
-    ``clock``: first sample, samples, sample interval, steps a sample. ``given``: rows of the hold
+    ``clock``: first sample, samples, sample interval, steps a sample. ``inputs``: rows of the hold
     (1 held, 0 free), then held displacement and released velocity of each coordinate.
     """
     first, count, interval_s, steps = clock
@@ -245,9 +245,9 @@ def run(
     step = interval_s / steps
     for k in range(count):
         t = (first + k) * interval_s
-        held = given[0, k] > 0.0
+        held = inputs[0, k] > 0.0
         if held or not free:
-            place(given, k, x)
+            place(inputs, k, x)
         if not held and not free:
             settle(model, t, x, sign)
         free = not held

@@ -88,8 +88,8 @@ class Photogate:
     @property
     def reads(self) -> tuple[Signal, ...]:
         """Displacement, rate and acceleration of each coordinate that moves the flag."""
-        every = [(c.displacement, c.rate, c.acceleration) for c, _ in self.weights]
-        return tuple(signal for three in every for signal in three)
+        motions = [(c.displacement, c.rate, c.acceleration) for c, _ in self.weights]
+        return tuple(signal for three in motions for signal in three)
 
     @property
     def writes(self) -> tuple[Signal, ...]:
@@ -107,14 +107,14 @@ class Photogate:
         """Return the edges up to the block's last sample."""
         flag, first = self._flag(state, block, inputs)
         edges, blocked = self._edges(flag, block.sample_rate_hz)
-        chance, seen, missing = self._seen(state, blocked)
+        chance, is_seen, missing = self._seen(state, blocked)
         jitter, delays = draw_normal(state.jitter, edges.size)
         times = (first + edges) / block.sample_rate_hz + self.jitter_rms_s * delays
         last = state.last
         if flag.shape[1]:
             last = (float(flag[0, -1]), float(flag[1, -1]), float(flag[2, -1]))
         after = PhotogateState(last, missing, chance, jitter)
-        return after, {self.edge_time.name: times[seen], self.blocked.name: blocked[seen]}
+        return after, {self.edge_time.name: times[is_seen], self.blocked.name: blocked[is_seen]}
 
     def _flag(self, state: PhotogateState, block: Block, inputs: Signals) -> tuple[FloatArray, int]:
         """Return position, velocity and acceleration, the last block's end before them."""

@@ -139,8 +139,8 @@ class Pendulum:
     def mass(self) -> FloatArray:
         """Inertia with hanging weights and the air that moves along."""
         hung = sum(weight.mass_kg * weight.lever_m**2 for weight in self.weights)
-        own = self.inertia_kg_m2 * (1.0 + self.air.added_inertia_ratio)
-        return np.array([[own + hung]])
+        body_inertia = self.inertia_kg_m2 * (1.0 + self.air.added_inertia_ratio)
+        return np.array([[body_inertia + hung]])
 
     @property
     def stiffness(self) -> FloatArray:

@@ -92,9 +92,9 @@ def _steps(A: FloatArray, B: FloatArray, steps_s: FloatArray) -> tuple[FloatArra
     large = np.zeros((count, steps_s.size, size + n, size + n))
     large[:, :, :size, :size] = A[:, np.newaxis] * steps_s[:, np.newaxis, np.newaxis]
     large[:, :, :size, size:] = B[:, np.newaxis] * steps_s[:, np.newaxis, np.newaxis]
-    whole = _exponential(large)
-    E = np.ascontiguousarray(whole[:, :, :size, :size])
-    return E, np.ascontiguousarray(whole[:, :, :size, size:])
+    exponential = _exponential(large)
+    E = np.ascontiguousarray(exponential[:, :, :size, :size])
+    return E, np.ascontiguousarray(exponential[:, :, :size, size:])
 
 
 def _exponential(matrices: FloatArray) -> FloatArray:

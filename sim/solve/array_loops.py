@@ -31,54 +31,54 @@ def copy(source: FloatArray, into: FloatArray) -> None:
 
 
 @compile_loop
-def inner(one: FloatArray, other: FloatArray) -> float:
+def inner(first: FloatArray, second: FloatArray) -> float:
     """Return the inner product of two rows."""
     total = 0.0
-    for k in range(one.size):
-        total += one[k] * other[k]
+    for k in range(first.size):
+        total += first[k] * second[k]
     return total
 
 
 @compile_loop
 def largest(row: FloatArray) -> float:
     """Return the largest size of a row's values, NaN where one is not a number."""
-    found = 0.0
+    most = 0.0
     for k in range(row.size):
         size = abs(row[k])
-        if size > found or math.isnan(size):
-            found = size
-    return found
+        if size > most or math.isnan(size):
+            most = size
+    return most
 
 
 @compile_loop
-def product(one: FloatArray, other: FloatArray) -> FloatArray:
+def product(left: FloatArray, right: FloatArray) -> FloatArray:
     """Return the product of two matrices."""
-    found = np.zeros((one.shape[0], other.shape[1]))
-    for i in range(one.shape[0]):
-        for j in range(one.shape[1]):
-            for k in range(other.shape[1]):
-                found[i, k] += one[i, j] * other[j, k]
-    return found
+    result = np.zeros((left.shape[0], right.shape[1]))
+    for i in range(left.shape[0]):
+        for j in range(left.shape[1]):
+            for k in range(right.shape[1]):
+                result[i, k] += left[i, j] * right[j, k]
+    return result
 
 
 @compile_loop
-def _pivot(left: FloatArray, gram: FloatArray, free: BoolArray) -> int:
+def _pivot(residual: FloatArray, gram: FloatArray, free: BoolArray) -> int:
     """Return the free direction of which most is left, or -1 where they all depend on others."""
     best, most = -1, _DEPENDENT
     for i in range(free.size):
-        if free[i] and left[i, i] > most * gram[i, i]:
-            best, most = i, left[i, i] / gram[i, i]
+        if free[i] and residual[i, i] > most * gram[i, i]:
+            best, most = i, residual[i, i] / gram[i, i]
     return best
 
 
 @compile_loop
-def _eliminate(left: FloatArray, rest: FloatArray, free: BoolArray, best: int) -> None:
+def _eliminate(residual: FloatArray, rest: FloatArray, free: BoolArray, best: int) -> None:
     """Take one direction off the others that are free."""
     for i in range(free.size):
         if free[i]:
-            factor = left[i, best] / left[best, best]
+            factor = residual[i, best] / residual[best, best]
             for j in range(free.size):
-                left[i, j] -= factor * left[best, j]
+                residual[i, j] -= factor * residual[best, j]
             rest[i] -= factor * rest[best]
 
 
@@ -89,25 +89,25 @@ def solve(gram: FloatArray, right: FloatArray) -> FloatArray:
     ``gram`` is symmetric without negative eigenvalues.
     """
     size = right.size
-    left, rest = np.empty((size, size)), np.empty(size)
+    residual, rest = np.empty((size, size)), np.empty(size)
     for i in range(size):
-        copy(gram[i], left[i])
+        copy(gram[i], residual[i])
     copy(right, rest)
-    order, found = np.zeros(size, dtype=np.int64), np.zeros(size)
+    order, solution = np.zeros(size, dtype=np.int64), np.zeros(size)
     free = np.ones(size, dtype=np.bool_)
     rank = 0
     for _ in range(size):
-        best = _pivot(left, gram, free)
+        best = _pivot(residual, gram, free)
         if best < 0:
             break
         free[best] = False
         order[rank] = best
         rank += 1
-        _eliminate(left, rest, free, best)
+        _eliminate(residual, rest, free, best)
     for place in range(rank - 1, -1, -1):
         i = order[place]
         total = rest[i]
         for later in range(place + 1, rank):
-            total -= left[i, order[later]] * found[order[later]]
-        found[i] = total / left[i, i]
-    return found
+            total -= residual[i, order[later]] * solution[order[later]]
+        solution[i] = total / residual[i, i]
+    return solution

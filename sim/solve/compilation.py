@@ -55,7 +55,7 @@ def callable_when_compiled(*functions: Callable[..., Any], by: Any = None) -> No
     from numba.extending import overload
 
     for function in functions:
-        overload(function, strict=False)(lambda *_, own=by or function: own)
+        overload(function, strict=False)(lambda *_, stand_in=by or function: stand_in)
 
 
 @cache
@@ -69,13 +69,13 @@ def cache_folder(chosen: str) -> Path:
     chosen
         The folder that the user has chosen for numba; empty for beside the sources.
     """
-    here = Path(__file__).parents[1]
+    folder = Path(__file__).parents[1]
     contents = sha256()
-    for source in sorted(here.rglob("*.py")):
+    for source in sorted(folder.rglob("*.py")):
         text = source.read_bytes()
         if b"compile_loop" in text:
             contents.update(text)
-    return (Path(chosen) if chosen else here / "__pycache__") / f"sim-{contents.hexdigest()[:16]}"
+    return (Path(chosen) if chosen else folder / "__pycache__") / f"sim-{contents.hexdigest()[:16]}"
 
 
 def follow(step: FloatArray, forcing: FloatArray, state: FloatArray) -> FloatArray:

@@ -90,8 +90,8 @@ class Hold:
         driven = np.zeros((z.size, *self.weights.shape[1:]), dtype=np.complex128)
         for j, weight in enumerate(self.weights):
             driven += column ** (j - self.past) * weight
-        kept = np.eye(len(self.step)) - self.step / column
-        return np.linalg.solve(kept, driven).astype(np.complex128)
+        matrix = np.eye(len(self.step)) - self.step / column
+        return np.linalg.solve(matrix, driven).astype(np.complex128)
 
 
 def causal_hold(system: LinearSystem, step_s: float, degree: int) -> Hold:
@@ -143,10 +143,10 @@ def _moments(A: Rows, step_s: float, degree: int) -> tuple[FloatArray, FloatArra
     large[:n, :n] = np.array(A) * step_s
     for m in range(degree + 1):
         large[m * n : (m + 1) * n, (m + 1) * n : (m + 2) * n] = np.eye(n)
-    whole = expm(large)
+    exponential = expm(large)
     scale = [math.factorial(m) * step_s for m in range(degree + 1)]
-    blocks = [whole[:n, (m + 1) * n : (m + 2) * n] * scale[m] for m in range(degree + 1)]
-    return whole[:n, :n], np.array(blocks)
+    blocks = [exponential[:n, (m + 1) * n : (m + 2) * n] * scale[m] for m in range(degree + 1)]
+    return exponential[:n, :n], np.array(blocks)
 
 
 def as_rows(matrix: FloatArray) -> Rows:

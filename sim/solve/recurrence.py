@@ -71,7 +71,7 @@ def last_period(
         Takes the states at both ends of a period; returns the one to begin the next period from.
         What dies out slowly and is linear need not be waited for.
     """
-    state, before, kept = start, None, []
+    state, before, periods = start, None, []
     for turn in range(_MOST_PERIODS):
         after, values = run(state, turn)
         state = ahead(state, after)
@@ -82,5 +82,5 @@ def last_period(
                 return dict(values)
         before = now
         if turn >= _MOST_PERIODS - _AVERAGED:
-            kept.append(values)
-    return {name: np.mean([period[name] for period in kept], axis=0) for name in kept[0]}
+            periods.append(values)
+    return {name: np.mean([period[name] for period in periods], axis=0) for name in periods[0]}

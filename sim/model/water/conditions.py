@@ -36,8 +36,8 @@ def least_squares(
     if conditions is not None and least is not None and least.size:
         matrix = conditions @ back
         start = start + _shortest(matrix, least - matrix @ start)
-    found: FloatArray = back @ start
-    return found
+    solution: FloatArray = back @ start
+    return solution
 
 
 def _shortest(matrix: FloatArray, least: FloatArray) -> FloatArray:

@@ -44,11 +44,11 @@ class FittedMemory:
         """
         rows = slice(int(self.table.omega_rad_s[0] == 0.0), None)
         omega = self.table.omega_rad_s[rows]
-        found = (self.radiation.added_mass(omega), self.radiation.damping(omega))
+        values = (self.radiation.added_mass(omega), self.radiation.damping(omega))
         true = (self.table.added_mass[rows], self.table.damping[rows])
-        scale = [one[rows] for one in scales(self.table, self.floor)]
-        parts = zip(found, true, scale, strict=True)
-        return np.array([(one - other) / size for one, other, size in parts])
+        scale = [matrices[rows] for matrices in scales(self.table, self.floor)]
+        parts = zip(values, true, scale, strict=True)
+        return np.array([(value - true_value) / size for value, true_value, size in parts])
 
     @property
     def error(self) -> float:
@@ -70,8 +70,8 @@ class FittedMemory:
         omega = self.table.omega_rad_s
         at = min(max(omega_rad_s, float(omega[0])), float(omega[-1]))
         sizes = [
-            np.array([[np.interp(at, omega, one[:, i, j]) for j in (0, 1)] for i in (0, 1)])
-            for one in (np.where(np.isfinite(s), s, 0.0) for s in scales(self.table, self.floor))
+            np.array([[np.interp(at, omega, scale[:, i, j]) for j in (0, 1)] for i in (0, 1)])
+            for scale in (np.where(np.isfinite(s), s, 0.0) for s in scales(self.table, self.floor))
         ]
         return relative[0] * sizes[0], relative[1] * sizes[1]
 
@@ -102,8 +102,8 @@ class FittedMemory:
 
     def _lowest_damping(self) -> tuple[float, float]:
         """Return the lowest eigenvalue of the table's damping, relative to the peak, and where."""
-        own = self.table.damping[:, (0, 1), (0, 1)].max(axis=0)
-        size = np.sqrt(np.where(own > 0.0, own, np.inf))
+        diagonal = self.table.damping[:, (0, 1), (0, 1)].max(axis=0)
+        size = np.sqrt(np.where(diagonal > 0.0, diagonal, np.inf))
         values = np.linalg.eigvalsh(self.table.damping / np.outer(size, size))[:, 0]
         lowest = int(values.argmin())
         return float(values[lowest]), float(self.table.omega_rad_s[lowest])
@@ -118,7 +118,7 @@ def scales(table: RadiationTable, floor: float) -> tuple[FloatArray, FloatArray]
 
 
 def _scale(matrices: FloatArray, floor: float) -> FloatArray:
-    own = np.abs(matrices[:, (0, 1), (0, 1)])
-    own = np.maximum(own, floor * own.max(axis=0))
-    own = np.sqrt(np.where(own > 0.0, own, np.inf))
-    return np.asarray(own[:, :, None] * own[:, None, :])
+    diagonal = np.abs(matrices[:, (0, 1), (0, 1)])
+    diagonal = np.maximum(diagonal, floor * diagonal.max(axis=0))
+    diagonal = np.sqrt(np.where(diagonal > 0.0, diagonal, np.inf))
+    return np.asarray(diagonal[:, :, None] * diagonal[:, None, :])

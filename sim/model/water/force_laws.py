@@ -62,8 +62,8 @@ def quadratic_describing_function(harmonic: int, drift_ratio: float = 0.0) -> fl
     e, n = drift_ratio, harmonic
     turn = math.acos(max(-1.0, min(1.0, -e)))
     # u is positive up to the turn and negative from there to pi.
-    whole = 2.0 * _integral(e, n, turn) - _integral(e, n, math.pi)
-    return whole * (1.0 if n == 0 else 2.0) / math.pi
+    integral = 2.0 * _integral(e, n, turn) - _integral(e, n, math.pi)
+    return integral * (1.0 if n == 0 else 2.0) / math.pi
 
 
 def _integral(e: float, n: int, end: float) -> float:

@@ -94,17 +94,17 @@ def _fitted(
         plain, _ = fitted_residues(samples, fitted_poles(samples, count))
         tried.append((_per_freedom(samples, plain), count, plain))
         if tried[-1][0] <= uncertainty:
-            found = passive_fit(samples, plain.poles)
-            if _per_freedom(samples, found) <= uncertainty:
-                return found, _loss(samples, found, plain)
-    fits = [(passive_fit(samples, one.poles), one) for *_, one in sorted(tried)[:2]]
-    found, plain = min(fits, key=lambda pair: _per_freedom(samples, pair[0]))
-    return found, _loss(samples, found, plain)
+            fit = passive_fit(samples, plain.poles)
+            if _per_freedom(samples, fit) <= uncertainty:
+                return fit, _loss(samples, fit, plain)
+    fits = [(passive_fit(samples, plain.poles), plain) for *_, plain in sorted(tried)[:2]]
+    fit, plain = min(fits, key=lambda pair: _per_freedom(samples, pair[0]))
+    return fit, _loss(samples, fit, plain)
 
 
-def _loss(samples: SampledTable, found: PartialFractions, plain: PartialFractions) -> float:
+def _loss(samples: SampledTable, fit: PartialFractions, plain: PartialFractions) -> float:
     misfit = plain.misfit(samples)
-    return found.misfit(samples) / misfit if misfit > 0.0 else 1.0
+    return fit.misfit(samples) / misfit if misfit > 0.0 else 1.0
 
 
 def _per_freedom(samples: SampledTable, fit: PartialFractions) -> float:
@@ -133,11 +133,11 @@ class _Target:
 
     def groups(self) -> Iterator[tuple[int, ...]]:
         """Yield the degrees of freedom that radiate: each alone, or both where they are coupled."""
-        own = [i for i in (0, 1) if self.table.damping[:, i, i].any()]
-        if len(own) == 2 and self.coupling > COUPLING_IS_NOISE:
+        freedoms = [i for i in (0, 1) if self.table.damping[:, i, i].any()]
+        if len(freedoms) == 2 and self.coupling > COUPLING_IS_NOISE:
             yield (0, 1)
             return
-        yield from ((i,) for i in own)
+        yield from ((i,) for i in freedoms)
 
     @property
     def middle(self) -> float:
@@ -155,8 +155,8 @@ class _Target:
     @property
     def coupling(self) -> float:
         """Largest coupling, relative to the diagonal."""
-        both = (self.table.added_mass, self.table.damping)
-        parts = zip(both, scales(self.table, self.floor), strict=True)
+        matrices = (self.table.added_mass, self.table.damping)
+        parts = zip(matrices, scales(self.table, self.floor), strict=True)
         return float(max(np.abs(x[self.rows] / s[self.rows])[:, 0, 1].max() for x, s in parts))
 
     def of(self, dofs: tuple[int, ...]) -> SampledTable:
@@ -171,9 +171,9 @@ class _Target:
         scale_a, scale_b = map(elements, scales(self.table, self.floor))
         values = elements(self.table.added_mass) - 1j * elements(self.table.damping) / omega
         infinite = self.table.added_mass_infinite
-        known = None if infinite is None else infinite[first, second] / unit
+        infinite_mass = None if infinite is None else infinite[first, second] / unit
         weights = np.hstack([1.0 / scale_a, omega / scale_b])
-        return SampledTable(omega / self.middle, values, weights, known)
+        return SampledTable(omega / self.middle, values, weights, infinite_mass)
 
 
 def state_space(
@@ -190,16 +190,16 @@ def state_space(
     """
     state, column = state_matrix(fit.poles), input_column(fit.poles)
     n, m = len(state), len(dofs)
-    residues = np.array([symmetric(one) for one in fit.residues.T])  # (n, m, m)
+    residues = np.array([symmetric(residue) for residue in fit.residues.T])  # (n, m, m)
     residues = residues * unit[np.ix_(dofs, dofs)] * middle
     inputs, outputs = np.zeros((m * n, 2)), np.zeros((2, m * n))
     for j, dof in enumerate(dofs):
-        own = slice(j * n, (j + 1) * n)
+        block = slice(j * n, (j + 1) * n)
         # K = s (M - A_inf), and the residues add up to zero: the output is R A.
         answers = residues[:, :, j].T @ state * middle
         size = math.sqrt(float(np.linalg.norm(answers) / np.linalg.norm(column))) or 1.0
-        inputs[own, dof] = size * column
-        outputs[list(dofs), own] = answers / size
+        inputs[block, dof] = size * column
+        outputs[list(dofs), block] = answers / size
     return np.asarray(np.kron(np.eye(m), state * middle), np.float64), inputs, outputs
 
 

@@ -42,13 +42,13 @@ def passive_fit(samples: SampledTable, poles: ComplexArray) -> PartialFractions:
         units in which both are of the same size.
     """
     none = (np.zeros(0), np.zeros((0, len(samples.values))))
-    found, cuts = _passive(samples, poles, *none)
-    least, stiffness = found.misfit(samples), 1e-2
+    fit, cuts = _passive(samples, poles, *none)
+    least, stiffness = fit.misfit(samples), 1e-2
     size = np.sqrt(2.0 * samples.values.size)
     for _ in range(_STEPS):
         cost = np.sqrt(stiffness) * size * least
-        _, motion = fitted_residues(samples, found.poles, cuts, found.residues, cost)
-        moved = admissible(samples, moved_poles(found.poles, motion))
+        _, motion = fitted_residues(samples, fit.poles, cuts, fit.residues, cost)
+        moved = admissible(samples, moved_poles(fit.poles, motion))
         tried, more = _passive(samples, moved, cuts.omega, cuts.factors)
         misfit = tried.misfit(samples)
         if not misfit < least:
@@ -56,11 +56,11 @@ def passive_fit(samples: SampledTable, poles: ComplexArray) -> PartialFractions:
             if stiffness > _STIFFEST:
                 break
             continue
-        gain, found, cuts = 1.0 - misfit / least, tried, more
+        gain, fit, cuts = 1.0 - misfit / least, tried, more
         least, stiffness = misfit, stiffness / 5.0
         if gain < _SETTLED:
             break
-    return found
+    return fit
 
 
 def _passive(
@@ -74,20 +74,20 @@ def _passive(
         Of cuts to begin with.
     """
     floor = _least_residues(samples, poles)
-    whole = np.array([1.0] if factors.shape[1] == 1 else [1.0, 0.0, 1.0])  # all directions alike
+    identity = np.array([1.0] if factors.shape[1] == 1 else [1.0, 0.0, 1.0])  # all directions alike
     for _ in range(_ROUNDS):
-        cuts = Cuts(omega, factors, 1.5 * (factors @ whole) * (_damping(poles, omega) @ floor))
-        found, _ = fitted_residues(samples, poles, cuts)
+        cuts = Cuts(omega, factors, 1.5 * (factors @ identity) * (_damping(poles, omega) @ floor))
+        fit, _ = fitted_residues(samples, poles, cuts)
         watched = _watched(samples, poles, omega)
         rows = _damping(poles, watched)
-        lowest, directions = _lowest(rows @ found.residues.T / (rows @ floor)[:, None])
+        lowest, directions = _lowest(rows @ fit.residues.T / (rows @ floor)[:, None])
         bad = _minima(lowest)
         if not bad.size:
-            return found, cuts
+            return fit, cuts
         omega = np.concatenate([omega, watched[bad]])
         factors = np.concatenate([factors, _factors(directions[bad])])
     missing = max(0.0, 1.0 - float(lowest.min()))
-    return replace(found, residues=found.residues + missing * np.outer(whole, floor)), cuts
+    return replace(fit, residues=fit.residues + missing * np.outer(identity, floor)), cuts
 
 
 def _damping(poles: ComplexArray, omega: FloatArray) -> FloatArray:

@@ -159,13 +159,13 @@ class Radiation:
         onset_s: float = 0.0,
     ) -> "Radiation":
         """Return the memory with further states beside these: the loads of both add up."""
-        own, added = self.states, np.asarray(state_matrix)
-        both = np.zeros((own + len(added), own + len(added)))
-        both[:own, :own], both[own:, own:] = self.state_matrix, added
+        count, added = self.states, np.asarray(state_matrix)
+        matrix = np.zeros((count + len(added), count + len(added)))
+        matrix[:count, :count], matrix[count:, count:] = self.state_matrix, added
         more = np.full(len(added), onset_s)
         return replace(
             self,
-            state_matrix=both,
+            state_matrix=matrix,
             input_matrix=np.concatenate([self.input_matrix, input_matrix]),
             output_matrix=np.concatenate([self.output_matrix, output_matrix], axis=1),
             onset_s=np.concatenate([self.onset_s, more]),

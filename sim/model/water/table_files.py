@@ -123,8 +123,8 @@ def hull_csv(table: RadiationTable, body: str, comment: str) -> str:
     for k, omega in enumerate(table.omega_rad_s.tolist()):
         for row, force in enumerate(dofs):
             for column, motion in enumerate(dofs):
-                both = (table.added_mass[k, row, column], table.damping[k, row, column])
-                lines.writerow((body, repr(omega), motion, force, *map(repr, map(float, both))))
+                values = (table.added_mass[k, row, column], table.damping[k, row, column])
+                lines.writerow((body, repr(omega), motion, force, *map(repr, map(float, values))))
     return written.getvalue()
 
 
@@ -146,13 +146,13 @@ def read_capytaine(path: Path, plane: Plane, rotation_sign: int = 1) -> Radiatio
     with xr.open_dataset(path, engine="h5netcdf") as dataset:
         _check_capytaine(path, dataset)
         order = ("omega", "influenced_dof", "radiating_dof")
-        both = [
+        matrices = [
             _matrices(path, dataset[name], plane, order) * coupling_signs(rotation_sign)
             for name in ("added_mass", "radiation_damping")
         ]
         omega = np.asarray(dataset["omega"].values, dtype=np.float64)
     rising = np.argsort(omega)
-    omega, (a, b) = omega[rising], (values[rising] for values in both)
+    omega, (a, b) = omega[rising], (values[rising] for values in matrices)
     finite = np.isfinite(omega)
     infinite = a[np.isposinf(omega)]
     return RadiationTable(
@@ -191,10 +191,10 @@ def _matrices(
             f"{', '.join(order)} and one value of anything else: select one before saving"
         )
     for axis in order[1:]:
-        there = [str(label) for label in variable[axis].values]
+        labels = [str(label) for label in variable[axis].values]
         for dof in dofs:
-            if dof not in there:
-                raise DataError(f"{path}: {axis} {dof!r} is not one of {', '.join(there)}")
+            if dof not in labels:
+                raise DataError(f"{path}: {axis} {dof!r} is not one of {', '.join(labels)}")
     chosen = variable.squeeze([d for d in variable.dims if d not in order], drop=True)
     chosen = chosen.sel(influenced_dof=list(dofs), radiating_dof=list(dofs)).transpose(*order)
     return np.asarray(chosen.values, dtype=np.float64)
@@ -232,15 +232,15 @@ def _pair(
 def _rows(path: Path, columns: Iterable[str]) -> list[tuple[int, dict[str, str]]]:
     """Return each row with its line number in the file."""
     lines = path.read_text(encoding="utf-8").splitlines()
-    kept = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and line[0] != "#"]
-    reader = csv.DictReader(line for _, line in kept)
+    numbered = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and line[0] != "#"]
+    reader = csv.DictReader(line for _, line in numbered)
     missing = [name for name in columns if name not in (reader.fieldnames or ())]
     if missing:
         raise DataError(
             f"{path}: no column {', '.join(missing)}; "
             f"there are {', '.join(reader.fieldnames or ())}"
         )
-    rows = list(zip((number for number, _ in kept[1:]), reader, strict=True))
+    rows = list(zip((number for number, _ in numbered[1:]), reader, strict=True))
     if not rows:
         raise DataError(f"{path}: the table has a heading but no rows")
     return rows

@@ -91,13 +91,13 @@ class RadiationTable:
             )
 
     def _check_damping(self) -> None:
-        own = self.damping[:, (0, 1), (0, 1)]
-        worst = np.unravel_index(int(own.argmin()), own.shape)
-        if own[worst] < -_MOST_NEGATIVE * own[:, worst[1]].max(initial=0.0):
+        diagonal = self.damping[:, (0, 1), (0, 1)]
+        worst = np.unravel_index(int(diagonal.argmin()), diagonal.shape)
+        if diagonal[worst] < -_MOST_NEGATIVE * diagonal[:, worst[1]].max(initial=0.0):
             raise DataError(
                 f"{self.name}: the damping of the {('translation', 'rotation')[worst[1]]} is "
-                f"{own[worst]:.4g} at {self.omega_rad_s[worst[0]]:.4g} rad/s, where it cannot be "
-                f"negative; an irregular frequency, or a wrong sign"
+                f"{diagonal[worst]:.4g} at {self.omega_rad_s[worst[0]]:.4g} rad/s, where it cannot "
+                f"be negative; an irregular frequency, or a wrong sign"
             )
 
     def at(self, omega_rad_s: ArrayLike) -> tuple[FloatArray, FloatArray]:
@@ -121,8 +121,8 @@ class RadiationTable:
                 f"{omega.min():.4g} to {omega.max():.4g} rad/s was asked for; extend the table, or "
                 f"use the fitted memory"
             )
-        both = (self.added_mass, self.damping)
-        a, b = (PchipInterpolator(self.omega_rad_s, values)(omega) for values in both)
+        matrices = (self.added_mass, self.damping)
+        a, b = (PchipInterpolator(self.omega_rad_s, values)(omega) for values in matrices)
         return a, b
 
     def asymmetry(self) -> float:
@@ -173,9 +173,9 @@ class RadiationTable:
         ConfigurationError
             If a ratio is not a positive number.
         """
-        for what, ratio in (("length_ratio", length_ratio), ("density_ratio", density_ratio)):
+        for name, ratio in (("length_ratio", length_ratio), ("density_ratio", density_ratio)):
             if not (math.isfinite(ratio) and ratio > 0.0):
-                raise ConfigurationError(f"{what} = {ratio} must be a positive number")
+                raise ConfigurationError(f"{name} = {ratio} must be a positive number")
         mass = density_ratio * length_ratio**3
         larger = self._transformed(np.diag([math.sqrt(mass), math.sqrt(mass) * length_ratio]))
         rate = length_ratio**-0.5

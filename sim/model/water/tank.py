@@ -98,26 +98,26 @@ def with_walls(
     """
     omega = tank.mode_frequencies_rad_s(plane)
     radiated = radiation.damping(omega) + np.asarray(constant_damping)
-    states, every = [], []
+    states, columns = [], []
     for omega_k, damping in zip(omega, radiated, strict=True):
         strength = tank.strength * (omega_k / tank.reference_rad_s) ** -tank.falls
         shapes = _factor(strength * damping)
         gain = math.sqrt(2.0 * tank.damping_ratio * omega_k)
         for shape in shapes:
             states.append([[0.0, omega_k], [-omega_k, -2.0 * tank.damping_ratio * omega_k]])
-            every += [np.zeros(2), gain * shape]
+            columns += [np.zeros(2), gain * shape]
     if not states:
         return radiation
-    inputs = np.array(every)
+    inputs = np.array(columns)
     return radiation.joined(_along_diagonal(np.array(states)), inputs, inputs.T, onset_s)
 
 
 def _along_diagonal(blocks: FloatArray) -> FloatArray:
     """Return blocks of shape ``(k, 2, 2)`` along the diagonal of a matrix, shape ``(2 k, 2 k)``."""
     count = len(blocks)
-    whole = np.zeros((count, 2, count, 2))
-    whole[np.arange(count), :, np.arange(count)] = blocks
-    return whole.reshape(2 * count, 2 * count)
+    matrix = np.zeros((count, 2, count, 2))
+    matrix[np.arange(count), :, np.arange(count)] = blocks
+    return matrix.reshape(2 * count, 2 * count)
 
 
 def _factor(damping: FloatArray) -> list[FloatArray]:

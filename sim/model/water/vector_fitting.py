@@ -55,8 +55,8 @@ class SampledTable:
 
     def weighted(self, element: int, functions: ComplexArray) -> FloatArray:
         """Return real and imaginary parts of ``(k, ...)`` one below the other, weighted."""
-        both = np.concatenate([functions.real, functions.imag])
-        return np.asarray((both.T * self.weights[element]).T, np.float64)
+        parts = np.concatenate([functions.real, functions.imag])
+        return np.asarray((parts.T * self.weights[element]).T, np.float64)
 
     @property
     def sought(self) -> ComplexArray:
@@ -65,9 +65,9 @@ class SampledTable:
 
     def with_ends(self, functions: ComplexArray) -> ComplexArray:
         """Return functions, and beside them those of end value and steady damping fitted along."""
-        ones = np.ones((len(functions), int(self.infinite is None)))
+        end_values = np.ones((len(functions), int(self.infinite is None)))
         falling = (1.0 / (1j * self.omega))[:, None][:, : int(self.steady)]
-        return np.hstack([functions, ones, falling])
+        return np.hstack([functions, end_values, falling])
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,9 +117,9 @@ def basis(
         are the slopes to the poles' real parts, then to their imaginary ones.
     """
     s = np.asarray(1j * omega, np.complex128)[:, None]
-    one, other = strength / (s - poles) ** power, np.conj(strength) / (s - poles.conj()) ** power
+    term, twin = strength / (s - poles) ** power, np.conj(strength) / (s - poles.conj()) ** power
     paired = poles.imag != 0.0
-    return np.hstack([np.where(paired, one + other, one), 1j * (one - other)[:, paired]])
+    return np.hstack([np.where(paired, term + twin, term), 1j * (term - twin)[:, paired]])
 
 
 def pole_slopes(poles: ComplexArray, residues: FloatArray, omega: FloatArray) -> ComplexArray:
@@ -165,14 +165,14 @@ def fitted_poles(samples: SampledTable, count: int) -> ComplexArray:
     poles = admissible(samples, starting_poles(samples, count))
     best, least = poles, np.inf
     for _ in range(_ITERATIONS):
-        found, _ = fitted_residues(samples, poles)
-        misfit = found.misfit(samples)
+        fit, _ = fitted_residues(samples, poles)
+        misfit = fit.misfit(samples)
         if misfit < least:
             best, settled = poles, misfit > (1.0 - _SETTLED) * least
             least = misfit
             if settled:
                 break
-        poles = admissible(samples, _relocated(samples, found))
+        poles = admissible(samples, _relocated(samples, fit))
     return best
 
 
@@ -215,12 +215,13 @@ def fitted_residues(
     """
     elements, free = range(len(samples.values)), sum_free(poles)
     cuts = cuts or Cuts(np.zeros(0), np.zeros((0, len(elements))), np.zeros(0))
-    own = samples.with_ends(basis(poles, samples.omega) @ free)
-    there = np.zeros((cuts.omega.size, own.shape[1]), np.complex128)  # the memory's damping alone
-    there[:, : free.shape[1]] = basis(poles, cuts.omega) @ free
-    system = block_diag(*[samples.weighted(e, own) for e in elements])
+    columns = samples.with_ends(basis(poles, samples.omega) @ free)
+    # The memory's damping alone.
+    damping_columns = np.zeros((cuts.omega.size, columns.shape[1]), np.complex128)
+    damping_columns[:, : free.shape[1]] = basis(poles, cuts.omega) @ free
+    system = block_diag(*[samples.weighted(e, columns) for e in elements])
     target = np.concatenate([samples.weighted(e, samples.sought[e]) for e in elements])
-    conditions = np.hstack([cuts.damping(e, there) for e in elements])
+    conditions = np.hstack([cuts.damping(e, damping_columns) for e in elements])
     if around is not None:
         sizes = np.abs(np.append(poles, poles[poles.imag != 0.0]))
         system = block_diag(system, np.diag(cost / sizes))
@@ -230,8 +231,8 @@ def fitted_residues(
         slopes = [cuts.damping(e, pole_slopes(poles, around[e], cuts.omega)) for e in elements]
         conditions = np.hstack([conditions, np.sum(slopes, axis=0)])
         target = np.append(target, np.zeros(sizes.size))
-    found = least_squares(system, target, conditions, cuts.least)
-    numbers, motion = np.split(found, [own.shape[1] * len(elements)])
+    solution = least_squares(system, target, conditions, cuts.least)
+    numbers, motion = np.split(solution, [columns.shape[1] * len(elements)])
     numbers = numbers.reshape(len(elements), -1)
     own_residues, end, steady = np.split(
         numbers, free.shape[1] + np.array([0, int(samples.infinite is None)]), axis=1
@@ -264,20 +265,20 @@ def admissible(samples: SampledTable, poles: ComplexArray) -> ComplexArray:
     return np.concatenate([-real + 0j, (-rate + 1j * poles.imag)[paired]])
 
 
-def _relocated(samples: SampledTable, found: PartialFractions) -> ComplexArray:
+def _relocated(samples: SampledTable, fit: PartialFractions) -> ComplexArray:
     """Return the zeros of the scaling function: one step of relaxed vector fitting."""
-    functions = basis(found.poles, samples.omega)
-    own = samples.with_ends(functions @ sum_free(found.poles))
+    functions = basis(fit.poles, samples.omega)
+    columns = samples.with_ends(functions @ sum_free(fit.poles))
     scaling = np.column_stack([functions, np.ones(len(functions))])
-    rows = samples.values - found.ends(samples.omega)
-    left = block_diag(*[samples.weighted(e, own) for e in range(len(rows))])
+    rows = samples.values - fit.ends(samples.omega)
+    left = block_diag(*[samples.weighted(e, columns) for e in range(len(rows))])
     right = [samples.weighted(e, -row[:, None] * scaling) for e, row in enumerate(rows)]
     size = math.sqrt(sum(float(np.sum(samples.weighted(e, r) ** 2)) for e, r in enumerate(rows)))
     # Not the scaling's end value but its mean is one: the relaxed form, so that it is not zero.
     relaxed = np.append(np.zeros(left.shape[1]), size * scaling.real.mean(axis=0))
     system = np.vstack([np.hstack([left, np.vstack(right)]), relaxed])
     *moved, end = least_squares(system, np.append(np.zeros(len(left)), size))[left.shape[1] :]
-    return _zeros(found.poles, np.array(moved) / (end if abs(end) > 1e-8 else 1e-8))
+    return _zeros(fit.poles, np.array(moved) / (end if abs(end) > 1e-8 else 1e-8))
 
 
 def _zeros(poles: ComplexArray, residues: FloatArray) -> ComplexArray:

@@ -64,22 +64,22 @@ def read_wamit(
     values = _values(path, first_column)
     modes = [mode + _PER_BODY * (body - 1) for mode in MODES[plane]]
     if not any(key[1] in modes and key[2] in modes for key in values):
-        there = ", ".join(str(one) for one in sorted({key[1] for key in values}))
+        present = ", ".join(str(mode) for mode in sorted({key[1] for key in values}))
         raise DataError(
             f"{path}: no added mass of modes {modes[0]} and {modes[1]}; forces are there in modes "
-            f"{there or 'none'}; state body, or compute these modes"
+            f"{present or 'none'}; state body, or compute these modes"
         )
     omega = np.array(sorted({key[0] for key in values}))
-    both = np.array([
+    matrices = np.array([
         [[values.get((w, i, j), (0.0, 0.0)) for j in modes] for i in modes] for w in omega
     ])  # fmt: skip
     powers = np.array([[1.0, length_m], [length_m, length_m**2]])
     size = density_kg_m3 * length_m**3 * powers * coupling_signs(rotation_sign)
     # What a body of revolution has of yaw, and what else cancels, is the computer's rounding.
-    most = np.abs(both).max(axis=0)
-    both[:, most < _ROUNDING * most.max(axis=(0, 1))] = 0.0
+    most = np.abs(matrices).max(axis=0)
+    matrices[:, most < _ROUNDING * most.max(axis=(0, 1))] = 0.0
     finite = np.isfinite(omega)
-    added, damping = both[..., 0] * size, both[finite, ..., 1] * size
+    added, damping = matrices[..., 0] * size, matrices[finite, ..., 1] * size
     return RadiationTable(
         plane,
         omega[finite],
@@ -108,32 +108,32 @@ def _values(path: Path, first: FirstColumn) -> Values:
 def _row(
     path: Path, number: int, line: str, first: FirstColumn
 ) -> tuple[tuple[float, int, int], tuple[float, float]]:
-    found = _numbers(line.split(), first)
-    if found is None:
+    row = _numbers(line.split(), first)
+    if row is None:
         raise DataError(
             f"{path}, line {number}: {line.strip()!r} is no row of a WAMIT .1 file: {first}, two "
             "modes, added mass and damping"
         )
-    return found
+    return row
 
 
 def _numbers(
     cells: list[str], first: FirstColumn
 ) -> tuple[tuple[float, int, int], tuple[float, float]] | None:
     try:
-        told, a, *b = (float(cell) for cell in (cells[0], *cells[3:]))
+        value, a, *b = (float(cell) for cell in (cells[0], *cells[3:]))
         i, j = (int(cell) for cell in cells[1:3])
     except (ValueError, IndexError):
         return None
-    limit = told <= 0.0 if first is FirstColumn.PERIOD else told == 0.0
+    limit = value <= 0.0 if first is FirstColumn.PERIOD else value == 0.0
     complete = len(b) == 1 or (limit and not b)
-    if not (complete and math.isfinite(told + a + sum(b)) and min(i, j) > 0):
+    if not (complete and math.isfinite(value + a + sum(b)) and min(i, j) > 0):
         return None
-    omega = _omega(told, first)
+    omega = _omega(value, first)
     return None if omega < 0.0 else ((omega, i, j), (a, 0.0 if limit else b[0]))
 
 
-def _omega(told: float, first: FirstColumn) -> float:
+def _omega(value: float, first: FirstColumn) -> float:
     if first is FirstColumn.FREQUENCY:
-        return told
-    return math.inf if told == 0.0 else 2.0 * math.pi / told if told > 0.0 else 0.0
+        return value
+    return math.inf if value == 0.0 else 2.0 * math.pi / value if value > 0.0 else 0.0

@@ -57,10 +57,10 @@ def find(name: str, more: Mapping[str, type[Any]] | None = None) -> type[Any]:
     ConfigurationError
         If there is none; the message gives the nearest names.
     """
-    known = by_name() | dict(more or {})
-    if name not in known:
-        raise ConfigurationError(f"no pendulum effect {name!r}{_near(name, list(known))}")
-    return known[name]
+    effects = by_name() | dict(more or {})
+    if name not in effects:
+        raise ConfigurationError(f"no pendulum effect {name!r}{_near(name, list(effects))}")
+    return effects[name]
 
 
 def by_name() -> dict[str, type[Any]]:
@@ -109,12 +109,12 @@ def user_effects(path: str | Path) -> dict[str, type[Any]]:
         If the file cannot be imported or defines none, or one whose name the catalogue has already.
     """
     module = import_file(Path(path))
-    own = [
+    values = [
         value
         for value in vars(module).values()
         if getattr(value, "__module__", "") == module.__name__
     ]
-    effects = {str(effect.name): effect for effect in own if _is_effect(effect)}
+    effects = {str(effect.name): effect for effect in values if _is_effect(effect)}
     if not effects:
         raise ConfigurationError(
             f"{path}: defines no effect (a dataclass with a name, called with a test)"
@@ -128,6 +128,6 @@ def _is_effect(value: Any) -> bool:
     return called and is_dataclass(value) and isinstance(getattr(value, "name", None), str)
 
 
-def _near(name: str, known: list[str]) -> str:
-    near = get_close_matches(name, known, n=3, cutoff=0.4)
-    return f"; did you mean {', '.join(near)}?" if near else f" (known: {', '.join(known)})"
+def _near(name: str, names: list[str]) -> str:
+    near = get_close_matches(name, names, n=3, cutoff=0.4)
+    return f"; did you mean {', '.join(near)}?" if near else f" (known: {', '.join(names)})"

@@ -43,8 +43,8 @@ def parameter(
     unit: str, low: float, high: float, typical: float, starts: tuple[float, ...] = ()
 ) -> Any:
     """Return a dataclass field with that knowledge; its default is the typical value."""
-    known = Plausible(unit, low, high, typical, starts)
-    return field(default=typical, metadata={"plausible": known})
+    span = Plausible(unit, low, high, typical, starts)
+    return field(default=typical, metadata={"plausible": span})
 
 
 class PendulumEffect(Protocol):
@@ -71,7 +71,7 @@ class PendulumEffect(Protocol):
 def plausible(effect: type[Any]) -> dict[str, Plausible]:
     """Return what is known of each parameter of an effect, by name."""
     ranges = {item.name: item.metadata.get("plausible") for item in fields(effect)}
-    return {name: known for name, known in ranges.items() if known is not None}
+    return {name: span for name, span in ranges.items() if span is not None}
 
 
 def check_plausible(effect: PendulumEffect) -> None:
@@ -82,11 +82,11 @@ def check_plausible(effect: PendulumEffect) -> None:
     ConfigurationError
         Naming effect, parameter, value and range.
     """
-    for name, known in plausible(type(effect)).items():
+    for name, span in plausible(type(effect)).items():
         value = getattr(effect, name)
-        if not known.low <= value <= known.high:
+        if not span.low <= value <= span.high:
             raise ConfigurationError(
-                f"{effect.name}: {name} = {value:g} is outside its plausible range of {known.text}"
+                f"{effect.name}: {name} = {value:g} is outside its plausible range of {span.text}"
             )
 
 
