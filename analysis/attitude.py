@@ -56,9 +56,11 @@ class Attitude:
 
 def common_rest(rests: Sequence[RestPosition]) -> RestPosition:
     """Return the mean of what was read before and after a run."""
-    means = np.mean([one.mean_m for one in rests], axis=0)
-    apart = np.linalg.norm([one.uncertainty_m for one in rests], axis=0) / len(rests)
-    return RestPosition((float(means[0]), float(means[1])), (float(apart[0]), float(apart[1])))
+    means = np.mean([rest.mean_m for rest in rests], axis=0)
+    uncertainty_m = np.linalg.norm([rest.uncertainty_m for rest in rests], axis=0) / len(rests)
+    return RestPosition(
+        (float(means[0]), float(means[1])), (float(uncertainty_m[0]), float(uncertainty_m[1]))
+    )
 
 
 def with_attitude(recording: Recording, sensors: AttitudeSensors, rest: RestPosition) -> Recording:
@@ -70,7 +72,7 @@ def with_attitude(recording: Recording, sensors: AttitudeSensors, rest: RestPosi
         If the positions differ by more than the sensors' distance, which no trim can make.
     """
     aft, fore = (
-        recording.values(name) - own for name, own in zip(POSITIONS, rest.mean_m, strict=True)
+        recording.values(name) - mean_m for name, mean_m in zip(POSITIONS, rest.mean_m, strict=True)
     )
     distance = sensors.fore_x_m - sensors.aft_x_m
     sine = (aft - fore) / distance
@@ -80,11 +82,11 @@ def with_attitude(recording: Recording, sensors: AttitudeSensors, rest: RestPosi
             f"than the {distance:g} m between the sensors; check their units and [attitude]"
         )
     sinkage = aft - (sensors.sinkage_x_m - sensors.aft_x_m) * sine
-    own = recording.samples[0 : len(recording.channels), 0 : recording.sample_count]
+    samples = recording.samples[0 : len(recording.channels), 0 : recording.sample_count]
     return replace(
         recording,
         channels=(*recording.channels, SINKAGE, TRIM),
-        samples=np.vstack([own, sinkage, np.arcsin(sine)]),
+        samples=np.vstack([samples, sinkage, np.arcsin(sine)]),
     )
 
 
@@ -104,18 +106,21 @@ def attitude(
     )
 
 
-def measured(found: Harmonics, name: str) -> AttitudeChannel:
+def measured(harmonics: Harmonics, name: str) -> AttitudeChannel:
     """Return a channel's mean and amplitudes with the resolver's own uncertainties."""
-    row = found.channel_names.index(name)
-    sizes, apart = found.amplitude[row], found.deviations[row]
-    along = [
-        (found.in_phase[row, k] * apart[2 * k + 1] + found.quadrature[row, k] * apart[2 * k + 2])
+    row = harmonics.channel_names.index(name)
+    sizes, deviations = harmonics.amplitude[row], harmonics.deviations[row]
+    projections = [
+        (
+            harmonics.in_phase[row, k] * deviations[2 * k + 1]
+            + harmonics.quadrature[row, k] * deviations[2 * k + 2]
+        )
         / max(sizes[k], np.finfo(float).tiny)
-        for k in range(found.order)
+        for k in range(harmonics.order)
     ]
     return AttitudeChannel(
-        float(found.mean[row]),
-        float(found.standard_uncertainty[row, 0]),
+        float(harmonics.mean[row]),
+        float(harmonics.standard_uncertainty[row, 0]),
         tuple(map(float, sizes)),
-        tuple(float(np.linalg.norm(one)) for one in along),
+        tuple(float(np.linalg.norm(part)) for part in projections),
     )

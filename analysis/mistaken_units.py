@@ -24,21 +24,21 @@ def mistaken_units(si: str) -> dict[float, str]:
         if factor != 1.0:
             units[1.0 / factor].append(f"{name} in place of {si}")
             units[factor].append(f"{si} in place of {name}")
-    return {factor: " or ".join(said) for factor, said in units.items()}
+    return {factor: " or ".join(mixtures) for factor, mixtures in units.items()}
 
 
-def mistaken(factor: float, si: str, near: float) -> str:
+def mistaken(factor: float, si: str, tolerance: float) -> str:
     """Return in words which units were mixed up; empty where none is off by that factor.
 
     Parameters
     ----------
     factor
         What was found over what was expected, positive.
-    near
+    tolerance
         How far it may be from a unit's own factor, in the natural logarithm.
     """
     if not 0.0 < factor < math.inf:
         return ""
-    known = mistaken_units(si)
-    nearest = min(known, key=lambda ratio: abs(math.log(ratio / factor)))
-    return known[nearest] if abs(math.log(nearest / factor)) < near else ""
+    units = mistaken_units(si)
+    nearest = min(units, key=lambda ratio: abs(math.log(ratio / factor)))
+    return units[nearest] if abs(math.log(nearest / factor)) < tolerance else ""

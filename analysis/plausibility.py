@@ -79,11 +79,13 @@ def plausibility_flags(
 
 def _of_displacements(runs: Sequence[RunHarmonics]) -> Iterator[Flag]:
     for name in DISPLACEMENTS:
-        told = [(abs(run.first[name]), run.set_point.eccentricity_m) for run in _with(runs, name)]
-        ratio = _usual([seen / wanted for seen, wanted in told if wanted > 0.0])
-        meant = mistaken(ratio, DISPLACEMENT_AFT.unit, _NEAR)
-        if meant:
-            yield _units(name, f"{ratio:.3g} times the set-points' eccentricity", meant)
+        amplitudes = [
+            (abs(run.first[name]), run.set_point.eccentricity_m) for run in _with(runs, name)
+        ]
+        ratio = _usual([measured / set_m for measured, set_m in amplitudes if set_m > 0.0])
+        unit = mistaken(ratio, DISPLACEMENT_AFT.unit, _NEAR)
+        if unit:
+            yield _units(name, f"{ratio:.3g} times the set-points' eccentricity", unit)
 
 
 def _of_forces(
@@ -92,29 +94,29 @@ def _of_forces(
     units: set[str] = set()
     for name in FORCES if body is not None else ():
         inertial = [_inertia_n(run.set_point, body, half_spacing_m) for run in _with(runs, name)]
-        seen = [abs(run.first[name]) for run in _with(runs, name)]
-        ratio = _median([a / b for a, b in zip(seen, inertial, strict=True) if b > 0.0])
+        measured = [abs(run.first[name]) for run in _with(runs, name)]
+        ratio = _median([a / b for a, b in zip(measured, inertial, strict=True) if b > 0.0])
         if math.isfinite(ratio) and not _PLAUSIBLE[0] < ratio < _PLAUSIBLE[1]:
             units.add(name)
             yield _units(name, f"{ratio:.2g} times the force of the model's inertia", _meant(ratio))
-    both = [run for run in runs if set(FORCES) <= set(run.first)]
-    sizes = [tuple(abs(run.first[name]) for name in FORCES) for run in both]
+    pairs = [run for run in runs if set(FORCES) <= set(run.first)]
+    sizes = [tuple(abs(run.first[name]) for name in FORCES) for run in pairs]
     ratio = _usual([aft / fore for aft, fore in sizes if fore > 0.0])
-    meant = mistaken(ratio, FORCE_AFT.unit, _NEAR)
-    if meant and not units:
-        said = f"{ratio:.3g} times {FORCES[1]} in all runs, on one rigid model"
-        yield _units(FORCES[0], said, f"{meant}, or the reverse in {FORCES[1]}")
+    unit = mistaken(ratio, FORCE_AFT.unit, _NEAR)
+    if unit and not units:
+        ratio_words = f"{ratio:.3g} times {FORCES[1]} in all runs, on one rigid model"
+        yield _units(FORCES[0], ratio_words, f"{unit}, or the reverse in {FORCES[1]}")
 
 
-def _inertia_n(told: SetPoint, body: Body | None, half_spacing_m: float | None) -> float:
+def _inertia_n(set_point: SetPoint, body: Body | None, half_spacing_m: float | None) -> float:
     """Return the amplitude of force on one strut that the body's inertia alone takes."""
     if body is None:
         return 0.0
-    translation = abs(math.cos(0.5 * told.strut_phase_rad))
-    rotation = abs(math.sin(0.5 * told.strut_phase_rad))
+    translation = abs(math.cos(0.5 * set_point.strut_phase_rad))
+    rotation = abs(math.sin(0.5 * set_point.strut_phase_rad))
     turning = body.inertia_kg_m2 / half_spacing_m**2 if half_spacing_m else body.mass_kg / 4.0
     effective_kg = 0.5 * math.hypot(body.mass_kg * translation, turning * rotation)
-    return effective_kg * (2.0 * math.pi * told.frequency_hz) ** 2 * told.eccentricity_m
+    return effective_kg * (2.0 * math.pi * set_point.frequency_hz) ** 2 * set_point.eccentricity_m
 
 
 def _meant(ratio: float) -> str:
@@ -125,12 +127,12 @@ def _meant(ratio: float) -> str:
 
 
 def _of_phase_unit(runs: Sequence[RunHarmonics]) -> Iterator[Flag]:
-    far = [run for run in runs if abs(run.set_point.strut_phase_rad) > 2.0 * math.pi + 1e-9]
-    if far:
-        told = far[0].set_point.strut_phase_rad
+    turned = [run for run in runs if abs(run.set_point.strut_phase_rad) > 2.0 * math.pi + 1e-9]
+    if turned:
+        phase_rad = turned[0].set_point.strut_phase_rad
         message = (
-            f"units look wrong: run {far[0].run} is told a strut phase of {told:g} rad, more than "
-            "a turn; if it is in degrees, write strut_phase_deg"
+            f"units look wrong: run {turned[0].run} is told a strut phase of {phase_rad:g} rad, "
+            "more than a turn; if it is in degrees, write strut_phase_deg"
         )
         yield Flag("units_implausible", Severity.WARNING, message)
 
@@ -138,10 +140,10 @@ def _of_phase_unit(runs: Sequence[RunHarmonics]) -> Iterator[Flag]:
 def _of_strut_signs(runs: Sequence[RunHarmonics]) -> Iterator[Flag]:
     """Aft and fore displacement against the strut phase that was set."""
     aft, fore = DISPLACEMENTS
-    both = [run for run in runs if {aft, fore} <= set(run.first)]
+    pairs = [run for run in runs if {aft, fore} <= set(run.first)]
     turns = [
         _angle(run.first[fore], run.first[aft] * _turned(run.set_point.strut_phase_rad))
-        for run in both
+        for run in pairs
     ]
     if _in_most([abs(turn) > _OPPOSITE_RAD for turn in turns]):
         yield _opposite(fore, f"it moves against {aft} turned by the set-points' strut phase")
@@ -150,19 +152,19 @@ def _of_strut_signs(runs: Sequence[RunHarmonics]) -> Iterator[Flag]:
 def _of_force_signs(runs: Sequence[RunHarmonics]) -> Iterator[Flag]:
     """Each gauge's force per displacement of its strut, which one rigid body makes alike."""
     aft, fore = FORCES
-    both = [run for run in runs if {aft, fore} <= set(run.first)]
-    apart = [abs(_angle(_stiffness(run, aft), _stiffness(run, fore))) for run in both]
-    if _in_most([turn > _OPPOSITE_RAD for turn in apart]):
-        work = {name: _median([_stiffness(run, name).imag for run in both]) for name in FORCES}
+    pairs = [run for run in runs if {aft, fore} <= set(run.first)]
+    angles = [abs(_angle(_stiffness(run, aft), _stiffness(run, fore))) for run in pairs]
+    if _in_most([turn > _OPPOSITE_RAD for turn in angles]):
+        work = {name: _median([_stiffness(run, name).imag for run in pairs]) for name in FORCES}
         wrong = min(work, key=lambda name: work[name])
-        other = fore if wrong == aft else aft
-        yield _opposite(wrong, f"it pushes against {other} in all runs and takes work out")
+        partner = fore if wrong == aft else aft
+        yield _opposite(wrong, f"it pushes against {partner} in all runs and takes work out")
         return
     for name in FORCES:
-        told = [_stiffness(run, name) for run in _with(runs, name)]
-        if _in_most([stiffness.imag < -0.1 * abs(stiffness) for stiffness in told]) and _alone(
-            runs, name
-        ):
+        stiffnesses = [_stiffness(run, name) for run in _with(runs, name)]
+        if _in_most(
+            [stiffness.imag < -0.1 * abs(stiffness) for stiffness in stiffnesses]
+        ) and _alone(runs, name):
             yield _opposite(name, "the water would drive the model")
 
 
@@ -183,16 +185,16 @@ def _turned(phase_rad: float) -> complex:
     return complex(math.cos(phase_rad), math.sin(phase_rad))
 
 
-def _angle(phasor: complex, other: complex) -> float:
-    return float(np.angle(phasor * other.conjugate()))
+def _angle(phasor: complex, reference: complex) -> float:
+    return float(np.angle(phasor * reference.conjugate()))
 
 
 def _with(runs: Sequence[RunHarmonics], name: str) -> list[RunHarmonics]:
     return [run for run in runs if name in run.first]
 
 
-def _in_most(said: Sequence[bool]) -> bool:
-    return len(said) >= _FEW and sum(said) >= _MOST * len(said)
+def _in_most(verdicts: Sequence[bool]) -> bool:
+    return len(verdicts) >= _FEW and sum(verdicts) >= _MOST * len(verdicts)
 
 
 def _median(values: Sequence[float]) -> float:
@@ -212,6 +214,6 @@ def _units(channel: str, apparent: str, meant: str) -> Flag:
     return Flag("units_implausible", Severity.WARNING, message, channel)
 
 
-def _opposite(channel: str, why: str) -> Flag:
-    message = f"its sign is opposite to expectation: {why}; {_SIGN}"
+def _opposite(channel: str, reason: str) -> Flag:
+    message = f"its sign is opposite to expectation: {reason}; {_SIGN}"
     return Flag("sign_opposite", Severity.WARNING, message, channel)

@@ -53,13 +53,13 @@ class ReadingLimits:
         """
         most = int(self.memory_bytes / _BYTES_A_VALUE / (columns + _FOR_TIME))
         if rows > most:
-            what = f"{rows} rows or more of {columns} columns, where the limit is {most} rows"
-            raise self.too_large(where, what)
+            excess = f"{rows} rows or more of {columns} columns, where the limit is {most} rows"
+            raise self.too_large(where, excess)
 
-    def too_large(self, where: str, what: str) -> DataError:
+    def too_large(self, where: str, excess: str) -> DataError:
         """Return the error of a recording beyond a limit."""
         return DataError(
-            f"{where}: too large: {what}, so that reading takes no more than "
+            f"{where}: too large: {excess}, so that reading takes no more than "
             f"{self.memory_bytes / 1e9:g} GB of memory; split the recording, or raise "
             f"{MEMORY_SETTING} (pmm --read-memory GB ...)"
         )

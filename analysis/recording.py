@@ -25,11 +25,11 @@ def sample_numbers(
         Times of samples that are not evenly spaced; between two the numbers run straight, and
         beyond the ends on at the mean rate.
     """
-    asked = np.asarray(time_s, dtype=np.float64)
+    times = np.asarray(time_s, dtype=np.float64)
     if stamps_s is None:
-        return np.asarray((asked - start_s) * sample_rate_hz)
-    beyond = np.minimum(asked - stamps_s[0], 0.0) + np.maximum(asked - stamps_s[-1], 0.0)
-    numbers = np.interp(asked, stamps_s, np.arange(float(stamps_s.size)))
+        return np.asarray((times - start_s) * sample_rate_hz)
+    beyond = np.minimum(times - stamps_s[0], 0.0) + np.maximum(times - stamps_s[-1], 0.0)
+    numbers = np.interp(times, stamps_s, np.arange(float(stamps_s.size)))
     return np.asarray(numbers + beyond * sample_rate_hz)
 
 
@@ -121,8 +121,8 @@ class Recording:
         """
         if name in self.channel_names:
             return self.channel_names.index(name)
-        near = get_close_matches(name, self.channel_names, n=3, cutoff=0.4)
-        hint = f"; did you mean {', '.join(near)}?" if near else ""
+        matches = get_close_matches(name, self.channel_names, n=3, cutoff=0.4)
+        hint = f"; did you mean {', '.join(matches)}?" if matches else ""
         raise DataError(
             f"{self.name}: no channel {name!r}{hint} (channels: {', '.join(self.channel_names)})"
         )
@@ -186,31 +186,31 @@ class Recording:
         if self.stamps_s is None:
             return self
         values = self.samples[:, 0 : self.sample_count]
-        whole = np.isfinite(values).all(axis=0)
-        if whole.all():
+        complete = np.isfinite(values).all(axis=0)
+        if complete.all():
             return self
-        if not whole.any():
+        if not complete.any():
             raise DataError(
                 f"{self.name}: at no time stamp have all of {', '.join(self.channel_names)} a "
                 "value; take fewer channels"
             )
-        stamps_s = self.stamps_s[whole]
+        stamps_s = self.stamps_s[complete]
         return replace(
-            self, samples=values[:, whole], start_s=float(stamps_s[0]), stamps_s=stamps_s
+            self, samples=values[:, complete], start_s=float(stamps_s[0]), stamps_s=stamps_s
         )
 
-    def check_even(self, what: str) -> None:
+    def check_even(self, procedure: str) -> None:
         """Refuse samples that are not evenly spaced, for what cannot do without.
 
         Raises
         ------
         DataError
-            If they are not; the message says that ``what`` needs it.
+            If they are not; the message says that ``procedure`` needs it.
         """
         if self.stamps_s is not None:
             raise DataError(
-                f"{self.name}: {what} needs evenly spaced samples, and the time stamps are not; "
-                "resample the record, or, if only the stamps are wrong, give the sample rate"
+                f"{self.name}: {procedure} needs evenly spaced samples, and the time stamps are "
+                "not; resample the record, or, if only the stamps are wrong, give the sample rate"
             )
 
 
@@ -228,8 +228,8 @@ class _Part:
         return (len(self.rows), self.stop - self.first)
 
     def __getitem__(self, key: tuple[slice | Sequence[int], slice], /) -> FloatArray:
-        chosen, when = key
+        chosen, span = key
         rows = self.rows[chosen] if isinstance(chosen, slice) else [self.rows[i] for i in chosen]
-        start, stop, _ = when.indices(self.shape[1])
+        start, stop, _ = span.indices(self.shape[1])
         within = slice(self.first + start, self.first + stop)
         return np.ascontiguousarray(self.source[list(rows), within])

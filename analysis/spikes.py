@@ -82,12 +82,12 @@ class Pulses:
 
     def _like(self, spike: Spike) -> FloatArray:
         """Return the places of all pulses that bend an eighth as much or more."""
-        like = [
+        starts = [
             pulse.start
             for pulse in self.candidates
             if pulse.curvature * STANDS_OUT >= spike.curvature
         ]
-        return np.array(like, dtype=np.float64)
+        return np.array(starts, dtype=np.float64)
 
 
 def find_spikes(samples: Samples) -> tuple[tuple[Spike, ...], ...]:
@@ -133,7 +133,7 @@ def find_pulses(
             curvature[chunk] = bend  # what was taken out stood here too
             continue
         pulse = _pulse(place, values, count) if 0.0 < bend < np.inf else None
-        if pulse is None or any(_touch(pulse, known) for known in pulses):
+        if pulse is None or any(_touch(pulse, earlier) for earlier in pulses):
             return Pulses(tuple(sorted(pulses, key=lambda item: item.start)), bend)
         pulses.append(pulse)
         if len(pulses) > most:
@@ -205,12 +205,12 @@ def _window(
     place, values = good + first, values[good]
     bend = np.abs(np.diff(values, n=2))
     last = min((chunk + 1) * _CHUNK, until - 1)
-    here = (place[1:-1] > chunk * _CHUNK) & (place[1:-1] <= last)
-    if not here.any():
+    in_chunk = (place[1:-1] > chunk * _CHUNK) & (place[1:-1] <= last)
+    if not in_chunk.any():
         return place, values, 0.0
-    at = 1 + int(np.argmax(np.where(here, bend, -1.0)))
-    around = slice(max(0, at - AROUND), at + AROUND + 1)
-    return place[around], values[around], float(bend[at - 1])
+    at = 1 + int(np.argmax(np.where(in_chunk, bend, -1.0)))
+    window = slice(max(0, at - AROUND), at + AROUND + 1)
+    return place[window], values[window], float(bend[at - 1])
 
 
 def _pulse(place: IntArray, values: FloatArray, count: int) -> Spike | None:
@@ -230,23 +230,23 @@ def _pulse(place: IntArray, values: FloatArray, count: int) -> Spike | None:
             if place[start + length - 1] - place[start] != length - 1:
                 continue  # one side of a gap, not both
             without = values.copy()
-            around = [start - 2, start - 1, start + length, start + length + 1]
-            without[start : start + length] = weights @ values[around]
-            left = float(np.abs(np.diff(without, n=2)).max())
-            trials.append((left, length, start, without))
-    best = min((left for left, *_ in trials), default=np.inf)
+            neighbours = [start - 2, start - 1, start + length, start + length + 1]
+            without[start : start + length] = weights @ values[neighbours]
+            bend_left = float(np.abs(np.diff(without, n=2)).max())
+            trials.append((bend_left, length, start, without))
+    best = min((bend_left for bend_left, *_ in trials), default=np.inf)
     if not bend > STANDS_OUT * best:
         return None
     _, length, start, without = next(trial for trial in trials if trial[0] <= 2.0 * best)
     inside = slice(start, start + length)
-    away = values[inside] - without[inside]
+    height = values[inside] - without[inside]
     first, last = int(place[start]), int(place[start + length - 1]) + 1
     if first < _NEAREST_END or last > count - _NEAREST_END:
         return None
-    beside = place[start - 2 : start + length + 2]
-    whole = int(beside[-1] - beside[0]) == beside.size - 1
-    instead = without[inside].copy() if whole else np.full(length, np.nan)
-    size = float(away[np.argmax(np.abs(away))])
+    pulse_place = place[start - 2 : start + length + 2]
+    unbroken = int(pulse_place[-1] - pulse_place[0]) == pulse_place.size - 1
+    instead = without[inside].copy() if unbroken else np.full(length, np.nan)
+    size = float(height[np.argmax(np.abs(height))])
     return Spike(first, last, size, bend, instead)
 
 
@@ -256,23 +256,23 @@ def cubic(length: int) -> FloatArray:
     places = np.arange(length, dtype=np.float64)
     weights = np.ones((length, 4))
     for k in range(4):
-        for other in np.delete(nodes, k):
-            weights[:, k] *= (places - other) / (nodes[k] - other)
+        for node in np.delete(nodes, k):
+            weights[:, k] *= (places - node) / (nodes[k] - node)
     return weights
 
 
-def _touch(spike: Spike, other: Spike) -> bool:
+def _touch(spike: Spike, neighbour: Spike) -> bool:
     """Whether a pulse stands on what another's cubic rests on: then both are one longer event."""
-    return spike.start - 2 < other.stop + 2 and other.start - 2 < spike.stop + 2
+    return spike.start - 2 < neighbour.stop + 2 and neighbour.start - 2 < spike.stop + 2
 
 
 def _recur(times: FloatArray) -> bool:
     """Whether most pulses follow each other, or the one before the last, at like intervals."""
     intervals = np.diff(times)
-    for apart in (1, 2):
-        ratio = intervals[apart:] / intervals[:-apart]
-        alike = (ratio < SAME_INTERVAL) & (ratio > 1.0 / SAME_INTERVAL)
-        if 2 * np.count_nonzero(alike) > alike.size:
+    for lag in (1, 2):
+        ratio = intervals[lag:] / intervals[:-lag]
+        steady = (ratio < SAME_INTERVAL) & (ratio > 1.0 / SAME_INTERVAL)
+        if 2 * np.count_nonzero(steady) > steady.size:
             return True
     return False
 

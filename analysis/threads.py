@@ -21,8 +21,8 @@ SETTING = "OMP_NUM_THREADS"
 
 def cores() -> int:
     """Return how many cores this process may use."""
-    mine = getattr(os, "sched_getaffinity", None)  # not on every system
-    return len(mine(0)) if mine is not None else os.cpu_count() or 1
+    affinity = getattr(os, "sched_getaffinity", None)  # not on every system
+    return len(affinity(0)) if affinity is not None else os.cpu_count() or 1
 
 
 def thread_count() -> int:

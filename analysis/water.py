@@ -44,13 +44,13 @@ class Water:
     salinity_g_kg: float = 0.0
 
     def __post_init__(self) -> None:
-        for key, value, most, what in (
+        for key, value, most, unit in (
             ("temperature_deg_c", self.temperature_deg_c, _WARMEST_DEG_C, "degrees Celsius"),
             ("salinity_g_kg", self.salinity_g_kg, _SALTIEST_G_KG, "g/kg"),
         ):
             if not 0.0 <= value <= most:
                 raise ConfigurationError(
-                    f"water: {key} = {value:g} is outside 0 to {most:g} {what}, for which density "
+                    f"water: {key} = {value:g} is outside 0 to {most:g} {unit}, for which density "
                     "and viscosity are known; give the water's own"
                 )
         if 0.0 < self.salinity_g_kg < _FRESHEST_G_KG:
@@ -88,7 +88,7 @@ class Water:
 
 
 def _polynomial(x: float, *coefficients: float) -> float:
-    return sum(one * x**power for power, one in enumerate(coefficients))
+    return sum(coefficient * x**power for power, coefficient in enumerate(coefficients))
 
 
 def froude_number(

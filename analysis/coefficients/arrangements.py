@@ -32,7 +32,7 @@ def other_arrangement(
     coefficients: CampaignCoefficients,
     stated: Arrangement,
     key: str,
-    other: str,
+    alternative: str,
     values: FloatArray,
     evidence: float,
 ) -> OtherArrangement:
@@ -45,25 +45,27 @@ def other_arrangement(
     evidence
         Natural logarithm of its likelihood over that of what is stated.
     """
-    own = str(getattr(stated, key))
+    stated_value = str(getattr(stated, key))
     if np.isnan(values).any():
-        text = f"{key} = {other!r} was not compared: it takes force_x, or smaller angles"
-        return OtherArrangement(key, own, other, math.nan, math.nan, (), (), NOT_COMPARED, text)
-    apart, half = np.abs(values - coefficients.values), coefficients.half_widths
-    moved = np.divide(apart, half, out=np.zeros_like(half), where=half > 0.0)
-    order = [int(k) for k in np.argsort(-moved) if moved[k] > 1.0]
+        text = f"{key} = {alternative!r} was not compared: it takes force_x, or smaller angles"
+        return OtherArrangement(
+            key, stated_value, alternative, math.nan, math.nan, (), (), NOT_COMPARED, text
+        )
+    changes, half = np.abs(values - coefficients.values), coefficients.half_widths
+    change_ratios = np.divide(changes, half, out=np.zeros_like(half), where=half > 0.0)
+    order = [int(k) for k in np.argsort(-change_ratios) if change_ratios[k] > 1.0]
     sizes: dict[str, float] = {}
     for k in order:
-        sizes.setdefault(coefficients.entries[k].name, float(moved[k]))
+        sizes.setdefault(coefficients.entries[k].name, float(change_ratios[k]))
     verdict = _verdict(evidence, bool(sizes))
     ratio = math.exp(min(max(evidence, -_LARGEST_LOG), _LARGEST_LOG))
-    largest = float(moved.max(initial=0.0))
-    text = _message(verdict, key, own, other, ratio, largest, sizes)
+    largest = float(change_ratios.max(initial=0.0))
+    text = _message(verdict, key, stated_value, alternative, ratio, largest, sizes)
     moves = (largest, tuple(sizes), tuple(sizes.values()))
-    return OtherArrangement(key, own, other, ratio, *moves, verdict, text)
+    return OtherArrangement(key, stated_value, alternative, ratio, *moves, verdict, text)
 
 
-def arrangement_flags(several: Sequence[OtherArrangement]) -> tuple[Flag, ...]:
+def arrangement_flags(arrangements: Sequence[OtherArrangement]) -> tuple[Flag, ...]:
     """Return a warning for each key that the recordings contradict, a note for each open one."""
     codes = {
         BETTER: ("arrangement_doubted", Severity.WARNING),
@@ -71,7 +73,7 @@ def arrangement_flags(several: Sequence[OtherArrangement]) -> tuple[Flag, ...]:
     }
     return tuple(
         Flag(*codes[arrangement.verdict], arrangement.message)
-        for arrangement in several
+        for arrangement in arrangements
         if arrangement.verdict in codes
     )
 
@@ -86,28 +88,30 @@ def _message(
     verdict: str,
     key: str,
     stated: str,
-    other: str,
+    alternative: str,
     ratio: float,
     largest: float,
     sizes: dict[str, float],
 ) -> str:
     words = [f"{name} by {size:.3g}" for name, size in list(sizes.items())[:_NAMED]]
-    more = [f"{len(sizes) - _NAMED} more"] if len(sizes) > _NAMED else []
-    moved = (
-        f"{', '.join([*words, *more])} half-widths" if sizes else "no coefficient beyond its own"
+    remainder = [f"{len(sizes) - _NAMED} more"] if len(sizes) > _NAMED else []
+    change = (
+        f"{', '.join([*words, *remainder])} half-widths"
+        if sizes
+        else "no coefficient beyond its own"
     )
-    other, stated = f"{key} = {other!r}", f"{key} = {stated!r}"
+    alternative, stated = f"{key} = {alternative!r}", f"{key} = {stated!r}"
     if verdict == BETTER:
         return (
-            f"the recordings fit {other} better than {stated}, which is stated ({times(ratio)} as "
-            f"likely; {DECIDES:g} decides); it would move {moved}: look at the rig, and correct "
-            "[oscillator]"
+            f"the recordings fit {alternative} better than {stated}, which is stated "
+            f"({times(ratio)} as likely; {DECIDES:g} decides); it would move {change}: look at the "
+            "rig, and correct [oscillator]"
         )
     if verdict == WORSE:
-        return f"the recordings bear {stated} out ({times(1.0 / ratio)} as likely as {other})"
+        return f"the recordings bear {stated} out ({times(1.0 / ratio)} as likely as {alternative})"
     if verdict == OPEN:
         return (
-            f"the recordings do not tell {stated} from {other}, which would move {moved}: they "
-            "rest on what is stated; larger angles, more amplitudes or more periods would tell"
+            f"the recordings do not tell {stated} from {alternative}, which would move {change}: "
+            "they rest on what is stated; larger angles, more amplitudes or more periods would tell"
         )
-    return f"{other} moves no coefficient by more than {largest:.2g} of its half-width"
+    return f"{alternative} moves no coefficient by more than {largest:.2g} of its half-width"

@@ -83,13 +83,13 @@ def of_struts(
     """
     channels = len(struts.names) // (orders + 1)
     omega = 2.0 * math.pi * frequency_hz
-    wanted = (*_DRIVEN, *((k, 0) for k in range(2, channels)))
-    maps = per_part(orders + 1, channels, wanted, omega)
+    driven = (*_DRIVEN, *((k, 0) for k in range(2, channels)))
+    maps = per_part(orders + 1, channels, driven, omega)
     parts = struts.real.values
-    given = np.array([[value] for value in _given(geometry)])
-    inputs = np.concatenate((parts @ maps, given * np.ones(maps.shape[-1])))
+    stated = np.array([[value] for value in _given(geometry)])
+    inputs = np.concatenate((parts @ maps, stated * np.ones(maps.shape[-1])))
     values, slope = pointwise(lambda waves: _model(geometry, waves, len(roll)), inputs)
-    gauged = len(wanted)
+    gauged = len(driven)
     by_struts = by_parts(slope[:, :gauged], maps, orders)
     harmonics_of_body = harmonics(values, orders)
     harmonics_of_body[2] -= geometry.drift_rad
@@ -191,8 +191,8 @@ def _by_stated(
     if asked:
         moves["latency_s"] = {_AFT: later * shaped[:, _AFT], _FORE: later * shaped[:, _FORE]}
     if ROLL_MOMENT in roll:
-        own = channels - len(roll) + roll.index(ROLL_MOMENT)
-        moves["roll_gauge_relative"] = {own: shaped[:, own]}
+        place = channels - len(roll) + roll.index(ROLL_MOMENT)
+        moves["roll_gauge_relative"] = {place: shaped[:, place]}
     sensitivity = np.zeros((len(shaped), channels, 2, len(STATED)))
     if HEEL in roll:
         sensitivity[0, channels - 1, 0, STATED.index("heel_rad")] = 1.0

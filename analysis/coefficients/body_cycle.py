@@ -243,13 +243,13 @@ class BodyCycle:
             If the dry run is not one: in water, another frequency or motion.
         """
         self._check_dry(dry)
-        wet, own = self.at_struts, dry.at_struts
-        ratio = np.vdot(own, wet) / np.vdot(own, own)
-        left = np.abs(wet - ratio * own).max() / np.abs(wet).max()
-        if left > _SAME_MOTION or abs(abs(ratio) - 1.0) > 0.1:
+        wet_motion, motion = self.at_struts, dry.at_struts
+        ratio = np.vdot(motion, wet_motion) / np.vdot(motion, motion)
+        deviation = np.abs(wet_motion - ratio * motion).max() / np.abs(wet_motion).max()
+        if deviation > _SAME_MOTION or abs(abs(ratio) - 1.0) > 0.1:
             raise ConfigurationError(
                 f"{self.name}: dry run {dry.name} moved {abs(ratio):.3g} times as far with "
-                f"{100 * left:.2g} % in another motion (limits 0.9 to 1.1 and "
+                f"{100 * deviation:.2g} % in another motion (limits 0.9 to 1.1 and "
                 f"{100 * _SAME_MOTION:g} %); run it with the same set-point"
             )
         scale = np.zeros((len(self.phasors.names), len(dry.phasors.names)), dtype=np.complex128)

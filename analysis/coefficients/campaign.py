@@ -68,8 +68,8 @@ def campaign_coefficients(
     DataError
         If a wanted coefficient is not determined: the message says which run would do it.
     """
-    groups, single, known = planned(cycles, request)
-    return assemble(list(mapped(_Solver(request), groups)), single, known, request)
+    groups, single, repeats = planned(cycles, request)
+    return assemble(list(mapped(_Solver(request), groups)), single, repeats, request)
 
 
 def planned(
@@ -80,16 +80,18 @@ def planned(
     It raises what :func:`campaign_coefficients` raises of the runs.
     """
     check_campaign(cycles)
-    lines = [one for cycle in cycles for one in by_lines(cycle)]
-    known = repeatability(lines)
-    single = tuple(with_repeats(one, known) if one.frequency_hz > 0.0 else one for one in lines)
-    return plan(single, request, [one for one in cycles if one.lines]), single, known
+    lines = [line for cycle in cycles for line in by_lines(cycle)]
+    repeats = repeatability(lines)
+    single = tuple(
+        with_repeats(line, repeats) if line.frequency_hz > 0.0 else line for line in lines
+    )
+    return plan(single, request, [cycle for cycle in cycles if cycle.lines]), single, repeats
 
 
 def assemble(
     blocks: Sequence[GroupCoefficients],
     cycles: Sequence[BodyCycle],
-    known: Repeatability,
+    repeats: Repeatability,
     request: Request,
 ) -> CampaignCoefficients:
     """Put the groups' coefficients together, with all that only the whole campaign tells.
@@ -115,24 +117,24 @@ def assemble(
         uncertain,
         trials,
         choices=tuple(choice for block in blocks for choice in block.choices),
-        outliers=outliers(known),
+        outliers=outliers(repeats),
         missing=_still_missing(blocks, entries),
         flags=tuple(dict.fromkeys(flag for block in blocks for flag in block.flags)),
     )
     _check_wanted(coefficients, cycles, request)
-    whole = with_zero_frequency(coefficients) if request.zero_frequency else coefficients
-    others = tuple(_others(coefficients, whole, blocks, cycles))
+    extended = with_zero_frequency(coefficients) if request.zero_frequency else coefficients
+    alternatives = tuple(_others(coefficients, extended, blocks, cycles))
     return replace(
-        whole,
-        checks=consistency(whole, cycles),
-        arrangements=others,
-        flags=(*whole.flags, *arrangement_flags(others)),
+        extended,
+        checks=consistency(extended, cycles),
+        arrangements=alternatives,
+        flags=(*extended.flags, *arrangement_flags(alternatives)),
     )
 
 
 def _others(
     coefficients: CampaignCoefficients,
-    whole: CampaignCoefficients,
+    extended: CampaignCoefficients,
     blocks: Sequence[GroupCoefficients],
     cycles: Sequence[BodyCycle],
 ) -> Iterator[OtherArrangement]:
@@ -140,20 +142,20 @@ def _others(
 
     Parameters
     ----------
-    coefficients, whole
+    coefficients, extended
         Without and with the values at zero frequency.
     """
     if not all(block.others for block in blocks):
         return
-    for several in zip(*(block.others for block in blocks), strict=True):
-        values = np.concatenate([block.values for block in several])
-        if len(whole.entries) > len(coefficients.entries) and np.isfinite(values).all():
+    for readings in zip(*(block.others for block in blocks), strict=True):
+        values = np.concatenate([reading.values for reading in readings])
+        if len(extended.entries) > len(coefficients.entries) and np.isfinite(values).all():
             uncertain = UncertainValues(values, coefficients.uncertain.contributions)
             values = with_zero_frequency(replace(coefficients, uncertain=uncertain)).values
-        evidence = sum(other.evidence for other in several)
-        first = several[0]
+        evidence = sum(reading.evidence for reading in readings)
+        first = readings[0]
         yield other_arrangement(
-            whole, cycles[0].arrangement, first.key, first.other, values, evidence
+            extended, cycles[0].arrangement, first.key, first.other, values, evidence
         )
 
 
@@ -162,8 +164,8 @@ def _still_missing(
 ) -> tuple[Missing, ...]:
     """Return the coefficients that no group determined."""
     names = {entry.name for entry in entries}
-    every = dict.fromkeys(missing for block in blocks for missing in block.missing)
-    return tuple(missing for missing in every if missing.name not in names)
+    missing_entries = dict.fromkeys(missing for block in blocks for missing in block.missing)
+    return tuple(missing for missing in missing_entries if missing.name not in names)
 
 
 def _check_wanted(
@@ -173,11 +175,13 @@ def _check_wanted(
         _check_name(name, coefficients, request)
         if coefficients.rows(name):
             continue
-        why = [missing.message for missing in coefficients.missing if missing.name == name]
-        if not why and name.startswith("K_") and not all(cycle.has_roll for cycle in cycles):
-            why = [missing_roll_gauge([cycle.name for cycle in cycles if not cycle.has_roll])]
-        known = ", ".join(dict.fromkeys(entry.name for entry in coefficients.entries))
-        raise DataError(why[0] if why else f"{name} is not determined by these runs ({known} are)")
+        reasons = [missing.message for missing in coefficients.missing if missing.name == name]
+        if not reasons and name.startswith("K_") and not all(cycle.has_roll for cycle in cycles):
+            reasons = [missing_roll_gauge([cycle.name for cycle in cycles if not cycle.has_roll])]
+        names = ", ".join(dict.fromkeys(entry.name for entry in coefficients.entries))
+        raise DataError(
+            reasons[0] if reasons else f"{name} is not determined by these runs ({names} are)"
+        )
 
 
 def _check_name(name: str, coefficients: CampaignCoefficients, request: Request) -> None:
@@ -204,13 +208,13 @@ def with_zero_frequency(coefficients: CampaignCoefficients) -> CampaignCoefficie
         rows = coefficients.at_each_frequency(name, speed)
         if len(rows) < 2:
             continue
-        own = coefficients.uncertain.taken(rows)
+        row_values = coefficients.uncertain.taken(rows)
         label = f"{name} at {speed:g} m/s"
         frequencies = [coefficients.entries[k].frequency_hz for k in rows]
-        values.append(extrapolate(label, frequencies, own).uncertain)
+        values.append(extrapolate(label, frequencies, row_values).uncertain)
         entries.append(_at_zero(coefficients, rows))
-    more = len(entries) - len(coefficients.entries)
-    empty = np.full(more, np.nan)
+    added_count = len(entries) - len(coefficients.entries)
+    empty = np.full(added_count, np.nan)
     trials = coefficients.trials
     return replace(
         coefficients,
@@ -226,15 +230,15 @@ def with_zero_frequency(coefficients: CampaignCoefficients) -> CampaignCoefficie
 
 
 def _at_zero(coefficients: CampaignCoefficients, rows: Sequence[int]) -> CoefficientEntry:
-    several = [coefficients.entries[k] for k in rows]
+    frequency_entries = [coefficients.entries[k] for k in rows]
     return replace(
-        several[0],
+        frequency_entries[0],
         method=ZERO_FREQUENCY,
         frequency_hz=0.0,
-        translation_amplitude_m=max(entry.translation_amplitude_m for entry in several),
-        rotation_amplitude_rad=max(entry.rotation_amplitude_rad for entry in several),
-        runs=tuple(dict.fromkeys(run for entry in several for run in entry.runs)),
-        retained=min(entry.retained for entry in several),
+        translation_amplitude_m=max(entry.translation_amplitude_m for entry in frequency_entries),
+        rotation_amplitude_rad=max(entry.rotation_amplitude_rad for entry in frequency_entries),
+        runs=tuple(dict.fromkeys(run for entry in frequency_entries for run in entry.runs)),
+        retained=min(entry.retained for entry in frequency_entries),
         misfit=np.nan,
     )
 

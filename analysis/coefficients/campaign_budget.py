@@ -116,16 +116,18 @@ def budget(coefficients: CampaignCoefficients, row: int) -> CoefficientBudget:
 def _lines(coefficients: CampaignCoefficients, row: int, spread: float) -> tuple[BudgetLine, ...]:
     uncertain = coefficients.uncertain
     parts = uncertain.variances()[:, row]
-    freedom = np.array([one.degrees_of_freedom for one in uncertain.contributions])
+    freedom = np.array(
+        [contribution.degrees_of_freedom for contribution in uncertain.contributions]
+    )
     kinds: dict[str, list[int]] = {}
     for k in np.flatnonzero(parts > 0.0).tolist():
         kinds.setdefault(_source(uncertain.contributions[k].label), []).append(k)
     lines = []
     for source, inputs in kinds.items():
-        own = parts[inputs]
-        variance = float(own.sum())
-        whole = float(effective_freedom(own[:, None], freedom[inputs])[0])
-        lines.append(BudgetLine(source, math.sqrt(variance), variance / spread**2, whole))
+        variances = parts[inputs]
+        variance = float(variances.sum())
+        kind_freedom = float(effective_freedom(variances[:, None], freedom[inputs])[0])
+        lines.append(BudgetLine(source, math.sqrt(variance), variance / spread**2, kind_freedom))
     return tuple(sorted(lines, key=lambda line: -line.share))
 
 

@@ -36,8 +36,8 @@ def consistency(
 ) -> tuple[ConsistencyCheck, ...]:
     """Return all checks that the campaign allows."""
     pairs = [*_two_tests(coefficients), *_static(coefficients), *_single(coefficients)]
-    several = [_compared(coefficients, *pair) for pair in pairs] + restoring_pairs(cycles)
-    return checked(several, coefficients.level)
+    value_pairs = [_compared(coefficients, *pair) for pair in pairs] + restoring_pairs(cycles)
+    return checked(value_pairs, coefficients.level)
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,8 +73,8 @@ def _two_tests(coefficients: CampaignCoefficients) -> Iterator[tuple[str, int, i
             continue
         rows = coefficients.rows(name, method=LINEAR, speed_m_s=speed)
         for first, second in pairwise(rows):
-            entry, other = coefficients.entries[first], coefficients.entries[second]
-            if abs(entry.frequency_hz - other.frequency_hz) <= 5e-3 * entry.frequency_hz:
+            entry, neighbour = coefficients.entries[first], coefficients.entries[second]
+            if abs(entry.frequency_hz - neighbour.frequency_hz) <= 5e-3 * entry.frequency_hz:
                 yield TWO_TESTS, first, second
 
 
@@ -95,9 +95,9 @@ def _single(coefficients: CampaignCoefficients) -> Iterator[tuple[str, int, int]
     """Each run alone against all runs together."""
     by_run: dict[tuple[str, str], list[int]] = {}
     for k in coefficients.rows(method=HIGHER_ORDER):
-        whole = coefficients.entries[k]
-        for run in whole.runs if len(whole.runs) > 1 else ():
-            by_run.setdefault((whole.name, run), []).append(k)
+        joint_entry = coefficients.entries[k]
+        for run in joint_entry.runs if len(joint_entry.runs) > 1 else ():
+            by_run.setdefault((joint_entry.name, run), []).append(k)
     for row in coefficients.rows(method=SINGLE_RUN):
         entry = coefficients.entries[row]
         for k in by_run.get((entry.name, entry.runs[0]), ()):
@@ -105,34 +105,34 @@ def _single(coefficients: CampaignCoefficients) -> Iterator[tuple[str, int, int]
 
 
 def _compared(coefficients: CampaignCoefficients, kind: str, first: int, second: int) -> Pair:
-    entry, other = coefficients.entries[first], coefficients.entries[second]
-    both = coefficients.uncertain.taken([first, second])
-    texts = (_where(entry), _where(other))
-    return Pair(kind, entry.name, entry.unit, texts, both)
+    entry, second_entry = coefficients.entries[first], coefficients.entries[second]
+    values = coefficients.uncertain.taken([first, second])
+    texts = (_where(entry), _where(second_entry))
+    return Pair(kind, entry.name, entry.unit, texts, values)
 
 
 def _check(pair: Pair, level: float) -> ConsistencyCheck:
     """Compare the first of two values with the second."""
-    name, unit, texts, both = pair.name, pair.unit, pair.texts, pair.both
-    difference = both.mapped(np.array([[1.0, -1.0]]))
-    apart, spread = float(difference.values[0]), float(difference.standard_uncertainty[0])
+    name, unit, texts, values = pair.name, pair.unit, pair.texts, pair.both
+    difference = values.mapped(np.array([[1.0, -1.0]]))
+    change, spread = float(difference.values[0]), float(difference.standard_uncertainty[0])
     freedom = float(difference.degrees_of_freedom[0])
     half = float(difference.half_width(level)[0])
-    size = float(np.abs(both.values).max())
-    agrees = abs(apart) <= half + 1e-9 * size
+    size = float(np.abs(values.values).max())
+    agrees = abs(change) <= half + 1e-9 * size
     words = "agree" if agrees else "DIFFER by more than their interval"
     message = (
-        f"{name} from {texts[0]} is {both.values[0]:.5g}, from {texts[1]} {both.values[1]:.5g} "
-        f"{unit}: they {words} ({apart:.3g} +- {half:.3g})"
+        f"{name} from {texts[0]} is {values.values[0]:.5g}, from {texts[1]} {values.values[1]:.5g} "
+        f"{unit}: they {words} ({change:.3g} +- {half:.3g})"
     )
     return ConsistencyCheck(
         pair.kind,
         name,
         unit,
         *texts,
-        float(both.values[0]),
-        float(both.values[1]),
-        apart,
+        float(values.values[0]),
+        float(values.values[1]),
+        change,
         spread,
         freedom,
         agrees,
@@ -141,8 +141,8 @@ def _check(pair: Pair, level: float) -> ConsistencyCheck:
 
 
 def _where(entry: CoefficientEntry) -> str:
-    more = len(entry.runs) - _NAMED
-    names = ", ".join(entry.runs[:_NAMED]) + (f" and {more} more" if more > 0 else "")
+    unnamed = len(entry.runs) - _NAMED
+    names = ", ".join(entry.runs[:_NAMED]) + (f" and {unnamed} more" if unnamed > 0 else "")
     return f"{entry.method} at {entry.frequency_hz:.4g} Hz ({names})"
 
 
@@ -161,8 +161,8 @@ def restoring_pairs(cycles: Sequence[BodyCycle]) -> list[Pair]:
         pure = [cycle for cycle in cycles if _serves(cycle, column)]
         if len({round(cycle.frequency_hz, 4) for cycle in pure}) < 2:
             continue
-        found = (_restoring(pure, row, column) for row in (0, 1))
-        pairs += [pair for pair in found if pair is not None]
+        pairs_of_rows = (_restoring(pure, row, column) for row in (0, 1))
+        pairs += [pair for pair in pairs_of_rows if pair is not None]
     return pairs
 
 
@@ -179,10 +179,10 @@ def _restoring(cycles: Sequence[BodyCycle], row: int, column: int) -> Pair | Non
     intercept = extrapolate(name, [cycle.frequency_hz for cycle in cycles], stiffness)
     if not intercept.checked:
         return None
-    known = UncertainValues(np.array([float(cycles[0].restoring[row, column])]))
-    both = stacked([intercept.uncertain, known])
+    hydrostatic = UncertainValues(np.array([float(cycles[0].restoring[row, column])]))
+    values = stacked([intercept.uncertain, hydrostatic])
     texts = (f"the load in phase of {len(cycles)} runs", "hydrostatics")
-    return Pair(RESTORING, name, ("N/m", "N", "N m")[row + column], texts, both)
+    return Pair(RESTORING, name, ("N/m", "N", "N m")[row + column], texts, values)
 
 
 def _stiffness(cycle: BodyCycle, row: int, column: int) -> UncertainValues:
@@ -193,15 +193,15 @@ def _stiffness(cycle: BodyCycle, row: int, column: int) -> UncertainValues:
     """
     names = (MOTIONS[column], MOTIONS[1 - column], LOADS[row])
     chosen = cycle.phasors.select([at_order(name, 1) for name in names])
-    own, other, load = chosen.values
-    beside = cycle.restoring[row, 1 - column]
-    ratio = (load - beside * other) / own
+    motion, cross_motion, load = chosen.values
+    cross_stiffness = cycle.restoring[row, 1 - column]
+    ratio = (load - cross_stiffness * cross_motion) / motion
     body = cycle.body
     assert body is not None  # noqa: S101 - _serves saw to it
     square = (2.0 * math.pi * cycle.frequency_hz) ** 2
     weight = weight_matrix(body, cycle.plane, cycle.medium)
     taken = weight - square * mass_matrix(body, cycle.plane)
     value = np.array([ratio.real - taken[row, column]])
-    slope = np.array([-ratio / own, -beside / own, 1.0 / own])
+    slope = np.array([-ratio / motion, -cross_stiffness / motion, 1.0 / motion])
     real = np.array([part for z in slope for part in (z.real, -z.imag)])
     return UncertainValues(value, chosen.real.mapped(real[None]).contributions)

@@ -78,8 +78,8 @@ def nonlinear_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
             forms = forms_of(plane, row, motions, cross=cross, angles=angles)
             try_form(of_all, missing, method, of, forms, choice, chosen, request)
         fits += of_all
-        for _, several in of_all[: int(not joint)]:
-            fits += _single_runs(several, row, choice, orders, request)
+        for _, joint_fit in of_all[: int(not joint)]:
+            fits += _single_runs(joint_fit, row, choice, orders, request)
     if all(cycle.has_surge for cycle in cycles):
         _surge(group, cycles, motions, cross, request)
     return group
@@ -87,7 +87,7 @@ def nonlinear_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
 
 def _with_lines(choice: FormChoice, cycles: Sequence[BodyCycle]) -> FormChoice:
     """Return a choice that holds for each line of its runs too."""
-    lines = (name for one in cycles for name in (one.name, *names_of_lines(one)))
+    lines = (name for cycle in cycles for name in (cycle.name, *names_of_lines(cycle)))
     return replace(choice, runs=tuple(dict.fromkeys(lines)))
 
 
@@ -104,14 +104,14 @@ def _moving_heel(
     if sizes == {0.0}:
         return ()
     v, r = tuple(VELOCITY_LETTERS[cycles[0].plane])
-    own = [letter for letter, here in ((v, "v"), (r, "r")) if here in motions]
-    even = [f"{one}{one}phi" for one in own] + ([f"{v}{r}phi"] if cross else [])
-    odd = [f"{one}phiphi" for one in own] if len(sizes) > 1 else []
+    letters = [letter for letter, motion in ((v, "v"), (r, "r")) if motion in motions]
+    even = [f"{letter}{letter}phi" for letter in letters] + ([f"{v}{r}phi"] if cross else [])
+    odd = [f"{letter}phiphi" for letter in letters] if len(sizes) > 1 else []
     return (*(even if 2 in orders else ()), *odd)
 
 
 def _single_runs(
-    several: CycleFit,
+    joint_fit: CycleFit,
     row: int,
     choice: FormChoice,
     orders: tuple[int, ...],
@@ -119,26 +119,28 @@ def _single_runs(
 ) -> list[tuple[str, CycleFit]]:
     """Return each run's own fit; what its other motion does, by the fit of all, is left open."""
     fits: list[tuple[str, CycleFit]] = []
-    for cycle in several.problem.numbers.cycles:
-        own, both = _motions([cycle])
-        forms = forms_of(cycle.plane, row, own, cross=both)
-        alone: list[tuple[str, CycleFit]] = []
-        try_form(alone, [], SINGLE_RUN, [cycle], forms, choice, orders, request)
-        fits += [(method, fit.beside(_LEFT_OUT, _left_out(fit, several))) for method, fit in alone]
+    for cycle in joint_fit.problem.numbers.cycles:
+        motions, cross = _motions([cycle])
+        forms = forms_of(cycle.plane, row, motions, cross=cross)
+        run_fits: list[tuple[str, CycleFit]] = []
+        try_form(run_fits, [], SINGLE_RUN, [cycle], forms, choice, orders, request)
+        fits += [
+            (method, fit.beside(_LEFT_OUT, _left_out(fit, joint_fit))) for method, fit in run_fits
+        ]
     return fits
 
 
-def _left_out(fit: CycleFit, several: CycleFit) -> FloatArray:
+def _left_out(fit: CycleFit, joint_fit: CycleFit) -> FloatArray:
     """Return how a run's coefficients change by the terms that only the fit of all has, (n, 1).
 
     Pure yaw has an incidence of the third order in its angle: at 15 degrees 2 % of its own speed.
     """
-    out = [k for k, name in enumerate(several.names) if name not in fit.names]
+    out = [k for k, name in enumerate(joint_fit.names) if name not in fit.names]
     problem, row = fit.problem, fit.terms[0].row
-    rest = replace(problem, terms=tuple(several.terms[k] for k in out)).nominal[0]
-    load = problem.weighted(rest @ several.values[out, None], row)
-    own = problem.weighted(problem.nominal[0], row)
-    return np.asarray(np.linalg.lstsq(own, load, rcond=None)[0])
+    rest = replace(problem, terms=tuple(joint_fit.terms[k] for k in out)).nominal[0]
+    load = problem.weighted(rest @ joint_fit.values[out, None], row)
+    design = problem.weighted(problem.nominal[0], row)
+    return np.asarray(np.linalg.lstsq(design, load, rcond=None)[0])
 
 
 def _methods(
@@ -175,9 +177,11 @@ def try_form(
         except DataError:
             continue  # these runs alone do not tell its terms
         taken = fits[-1][1]
-        apart = [rival[name] - taken[name] if name in rival.names else 0.0 for name in taken.names]
+        changes = [
+            rival[name] - taken[name] if name in rival.names else 0.0 for name in taken.names
+        ]
         label = f"form of the {choice.load}: {form}"
-        fits[-1] = (method, taken.beside(label, math.sqrt(weight) * np.array(apart)[:, None]))
+        fits[-1] = (method, taken.beside(label, math.sqrt(weight) * np.array(changes)[:, None]))
 
 
 def _try(
@@ -206,7 +210,9 @@ def _motions(cycles: Sequence[BodyCycle]) -> tuple[str, bool]:
     size = np.array(speeds)
     most = size.max()
     motions = "".join(
-        letter for letter, own in zip("vr", size.max(axis=0), strict=True) if own > _MOVES * most
+        letter
+        for letter, size_of_letter in zip("vr", size.max(axis=0), strict=True)
+        if size_of_letter > _MOVES * most
     )
     return motions, bool((size.min(axis=1) > _MOVES * most).any())
 
@@ -225,13 +231,13 @@ def _surge(
     v, r = tuple(VELOCITY_LETTERS[cycles[0].plane])
     means = all(cycle.mean_known for cycle in cycles)
     names = ["X_0"] if means else []
-    names += [f"X_{letter}{letter}" for letter, own in ((v, "v"), (r, "r")) if own in motions]
+    names += [f"X_{letter}{letter}" for letter, motion in ((v, "v"), (r, "r")) if motion in motions]
     names += [f"X_{v}{r}"] if cross else []
     even = (0, 2) if means else (2,)
     orders = (0, 1, 2) if cross and means else even
     if any(map(set_heel_of, cycles)):
-        own = [letter for letter, here in ((v, "v"), (r, "r")) if here in motions]
-        names += [f"X_{letter}phi" for letter in own] + (["X_phiphi"] if means else [])
+        letters = [letter for letter, motion in ((v, "v"), (r, "r")) if motion in motions]
+        names += [f"X_{letter}phi" for letter in letters] + (["X_phiphi"] if means else [])
         orders = tuple(sorted({1, *orders}))
     try_surge(fits, cycles, names, orders, request)
 

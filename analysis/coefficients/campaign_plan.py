@@ -90,9 +90,9 @@ def _other_rig(cycle: BodyCycle, first: BodyCycle) -> Iterator[str]:
     if cycle.plane is not first.plane:
         yield f"{cycle.name} is {cycle.plane}, {first.name} {first.plane}; solve each plane alone"
     for name in ("half_spacing_m", "point_ahead_m"):
-        own, other = getattr(cycle, name), getattr(first, name)
-        if own != other:
-            yield f"{cycle.name} has {name} = {own:g}, {first.name} {other:g}"
+        value, first_value = getattr(cycle, name), getattr(first, name)
+        if value != first_value:
+            yield f"{cycle.name} has {name} = {value:g}, {first.name} {first_value:g}"
 
 
 def _other_bodies(cycles: Sequence[BodyCycle]) -> Iterator[str]:
@@ -131,7 +131,7 @@ def _incomplete(cycle: BodyCycle) -> Iterator[str]:
 
 
 def plan(
-    cycles: Sequence[BodyCycle], request: Request, whole: Sequence[BodyCycle] = ()
+    cycles: Sequence[BodyCycle], request: Request, line_runs: Sequence[BodyCycle] = ()
 ) -> tuple[Group, ...]:
     """Return the groups: by speed, frequency and amplitude; all amplitudes together; static runs.
 
@@ -145,23 +145,29 @@ def plan(
     ----------
     cycles
         Single sines, among them each line by itself, and static runs.
-    whole
+    line_runs
         Runs of many lines.
     """
     groups = []
     for speed in _classes([cycle.speed_m_s for cycle in cycles], _SAME_SPEED, 0.01):
-        here = [cycle for cycle in cycles if _near(cycle.speed_m_s, speed, _SAME_SPEED, 0.01)]
-        static = [cycle for cycle in here if cycle.frequency_hz == 0.0]
+        speed_cycles = [
+            cycle for cycle in cycles if _near(cycle.speed_m_s, speed, _SAME_SPEED, 0.01)
+        ]
+        static = [cycle for cycle in speed_cycles if cycle.frequency_hz == 0.0]
         if static:
             groups.append(Group(GroupKind.STATIC, tuple(static)))
-        moving = [cycle for cycle in here if cycle.frequency_hz > 0.0]
+        moving = [cycle for cycle in speed_cycles if cycle.frequency_hz > 0.0]
         for frequency in _classes([c.frequency_hz for c in moving], _SAME_FREQUENCY, 0.0):
-            same = [c for c in moving if _near(c.frequency_hz, frequency, _SAME_FREQUENCY, 0.0)]
-            groups += _by_amplitude(same, request)
-        lined = [one for one in whole if _near(one.speed_m_s, speed, _SAME_SPEED, 0.01)]
+            frequency_cycles = [
+                c for c in moving if _near(c.frequency_hz, frequency, _SAME_FREQUENCY, 0.0)
+            ]
+            groups += _by_amplitude(frequency_cycles, request)
+        lined = [run for run in line_runs if _near(run.speed_m_s, speed, _SAME_SPEED, 0.01)]
         if lined and request.nonlinear:
-            lines = {name for one in lined for name in names_of_lines(one)}
-            sines = [one for one in moving if one.name not in lines and not set_heel_of(one)]
+            lines = {name for run in lined for name in names_of_lines(run)}
+            sines = [
+                cycle for cycle in moving if cycle.name not in lines and not set_heel_of(cycle)
+            ]
             groups.append(Group(GroupKind.NONLINEAR, (*lined, *sines)))
     return tuple(groups)
 
@@ -176,12 +182,16 @@ def _by_amplitude(cycles: Sequence[BodyCycle], request: Request) -> list[Group]:
         for size in sizes
     ]
     columns = [_told(group, request.form) for group in classes]
-    told = [group for group, own in zip(classes, columns, strict=True) if own]
-    if straight and {0, 1} != {column for own in columns for column in own} and () in columns:
-        told.append(tuple(straight))
-    groups = [Group(GroupKind.LINEAR, group) for group in told]
-    several = len(classes) > 1 or len(straight) < len(cycles)
-    if request.nonlinear and several:
+    amplitude_groups = [group for group, motions in zip(classes, columns, strict=True) if motions]
+    if (
+        straight
+        and {0, 1} != {column for motions in columns for column in motions}
+        and () in columns
+    ):
+        amplitude_groups.append(tuple(straight))
+    groups = [Group(GroupKind.LINEAR, group) for group in amplitude_groups]
+    mixed = len(classes) > 1 or len(straight) < len(cycles)
+    if request.nonlinear and mixed:
         groups.append(Group(GroupKind.NONLINEAR, tuple(cycles)))
     return groups
 

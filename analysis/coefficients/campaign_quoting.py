@@ -37,7 +37,7 @@ class Carried:
 
 
 def quoted(
-    found: CampaignCoefficients, quoting: Quoting, carried: Carried = Carried()
+    coefficients: CampaignCoefficients, quoting: Quoting, carried: Carried = Carried()
 ) -> CampaignCoefficients:
     """Return the campaign as it is quoted; tables beside it were held against what it was.
 
@@ -47,37 +47,43 @@ def quoted(
         If it is in the seakeeping form, which nobody quotes otherwise.
     """
     if quoting == Quoting():
-        return found
-    if found.form is not Form.MANOEUVRING:
+        return coefficients
+    if coefficients.form is not Form.MANOEUVRING:
         raise ConfigurationError(
             "--names and --with-mass are of manoeuvring derivatives; take --form manoeuvring"
         )
-    factors, shifts = _factors(found, quoting), _shifts(found, quoting, carried)
-    uncertain = found.uncertain.scaled(factors)
+    factors, shifts = _factors(coefficients, quoting), _shifts(coefficients, quoting, carried)
+    uncertain = coefficients.uncertain.scaled(factors)
     uncertain = replace(uncertain, values=uncertain.values + shifts)
-    for label, parts in _slopes(found, quoting, carried).items():
+    for label, parts in _slopes(coefficients, quoting, carried).items():
         uncertain = uncertain.plus(label, parts)
     return replace(
-        found,
-        normalisation=found.normalisation + quoting.told(found.plane),
-        entries=tuple(replace(one, name=quoting.name(one.name)) for one in found.entries),
+        coefficients,
+        normalisation=coefficients.normalisation + quoting.told(coefficients.plane),
+        entries=tuple(
+            replace(entry, name=quoting.name(entry.name)) for entry in coefficients.entries
+        ),
         uncertain=uncertain,
-        trials=found.trials.carried(found.uncertain, uncertain, factors),
-        references=tuple(_row(one, found, quoting, carried) for one in found.references),
+        trials=coefficients.trials.carried(coefficients.uncertain, uncertain, factors),
+        references=tuple(
+            _row(row, coefficients, quoting, carried) for row in coefficients.references
+        ),
     )
 
 
-def _factors(found: CampaignCoefficients, quoting: Quoting) -> FloatArray:
-    return np.array([quoting.factor(term_of_entry(found, one)) for one in found.entries])
+def _factors(coefficients: CampaignCoefficients, quoting: Quoting) -> FloatArray:
+    return np.array(
+        [quoting.factor(term_of_entry(coefficients, entry)) for entry in coefficients.entries]
+    )
 
 
-def _shifts(found: CampaignCoefficients, quoting: Quoting, carried: Carried) -> FloatArray:
+def _shifts(coefficients: CampaignCoefficients, quoting: Quoting, carried: Carried) -> FloatArray:
     """Return what is added to each entry, in the table's system."""
     shifts = []
-    for entry in found.entries:
-        term = term_of_entry(found, entry)
+    for entry in coefficients.entries:
+        term = term_of_entry(coefficients, entry)
         shift = quoting.mass_shift(
-            term, found.plane, carried.mass_kg, carried.cg_x_m, entry.speed_m_s
+            term, coefficients.plane, carried.mass_kg, carried.cg_x_m, entry.speed_m_s
         )
         system = _system(carried, entry.speed_m_s)
         shifts.append(shift / system.term_factor(term) if system and shift else shift)
@@ -89,34 +95,36 @@ def _system(carried: Carried, speed_m_s: float) -> Normalisation | None:
 
 
 def _slopes(
-    found: CampaignCoefficients, quoting: Quoting, carried: Carried
+    coefficients: CampaignCoefficients, quoting: Quoting, carried: Carried
 ) -> dict[str, FloatArray]:
     """Return what each stated input does to the shifts, per standard deviation."""
-    stated, shifts = carried.stated, _shifts(found, quoting, carried)
+    stated, shifts = carried.stated, _shifts(coefficients, quoting, carried)
     heavier = replace(carried, mass_kg=carried.mass_kg + stated.mass_kg)
     ahead = replace(carried, cg_x_m=carried.cg_x_m + stated.cg_x_m)
-    speeds = np.array([one.speed_m_s or np.inf for one in found.entries])
+    speeds = np.array([entry.speed_m_s or np.inf for entry in coefficients.entries])
     powers = np.zeros(len(shifts))
     if carried.system is not None:
         powers = np.array(
-            [speed_power(found, one, carried.system(one.speed_m_s)) if shift else 0.0
-             for one, shift in zip(found.entries, shifts, strict=True)]
+            [speed_power(coefficients, entry, carried.system(entry.speed_m_s)) if shift else 0.0
+             for entry, shift in zip(coefficients.entries, shifts, strict=True)]
         )  # fmt: skip
-    own = {
-        "mass_kg": _shifts(found, quoting, heavier) - shifts,
-        "cg_x_m": _shifts(found, quoting, ahead) - shifts,
+    slopes = {
+        "mass_kg": _shifts(coefficients, quoting, heavier) - shifts,
+        "cg_x_m": _shifts(coefficients, quoting, ahead) - shifts,
         "speed_m_s": shifts * (1.0 - powers) / speeds * stated.speed_m_s,
         "density_relative": -shifts * stated.density_relative * (carried.system is not None),
     }
-    return {key: one for key, one in own.items() if one.any()}
+    return {key: slope for key, slope in slopes.items() if slope.any()}
 
 
 def _row(
-    row: ReferenceRow, found: CampaignCoefficients, quoting: Quoting, carried: Carried
+    row: ReferenceRow, coefficients: CampaignCoefficients, quoting: Quoting, carried: Carried
 ) -> ReferenceRow:
-    term = term_of(row.name, found.plane)
+    term = term_of(row.name, coefficients.plane)
     factor = quoting.factor(term)
-    shift = quoting.mass_shift(term, found.plane, carried.mass_kg, carried.cg_x_m, row.speed_m_s)
+    shift = quoting.mass_shift(
+        term, coefficients.plane, carried.mass_kg, carried.cg_x_m, row.speed_m_s
+    )
     if shift and (system := _system(carried, row.speed_m_s)):
         shift /= system.term_factor(term)
     return replace(

@@ -57,10 +57,10 @@ class TrialColumns:
         factors
             Of those before in those after, shape ``(n,)``.
         """
-        own = self.standard_uncertainty * np.abs(factors)
+        scaled = self.standard_uncertainty * np.abs(factors)
         added = after.standard_uncertainty**2 - (before.standard_uncertainty * factors) ** 2
-        spread = np.sqrt(np.maximum(own**2 + added, 0.0))
-        stretch = factors * np.divide(spread, own, out=np.ones_like(own), where=own > 0.0)
+        spread = np.sqrt(np.maximum(scaled**2 + added, 0.0))
+        stretch = factors * np.divide(spread, scaled, out=np.ones_like(scaled), where=scaled > 0.0)
         ends = after.values + stretch * (np.stack((self.low, self.high)) - before.values)
         return TrialColumns(self.count, spread, ends.min(axis=0), ends.max(axis=0))
 
@@ -150,11 +150,11 @@ class CampaignCoefficients:
         """
         rows = self.rows(name, method=method)
         if len(rows) != 1:
-            known = ", ".join(dict.fromkeys(entry.name for entry in self.entries))
-            why = "; ".join(missing.message for missing in self.missing if missing.name == name)
+            names = ", ".join(dict.fromkeys(entry.name for entry in self.entries))
+            reasons = "; ".join(missing.message for missing in self.missing if missing.name == name)
             raise DataError(
-                f"{name} stands {len(rows)} times in the campaign's table (there are: {known})"
-                + (f": {why}" if why else "")
+                f"{name} stands {len(rows)} times in the campaign's table (there are: {names})"
+                + (f": {reasons}" if reasons else "")
             )
         return rows[0]
 
@@ -181,9 +181,11 @@ class CampaignCoefficients:
     def choices_of(self, name: str, runs: Sequence[str]) -> tuple[FormChoice, ...]:
         """Return what was found of the form of a coefficient's load with any of some runs."""
         load = load_of(name)
-        own = set(runs)
+        wanted_runs = set(runs)
         return tuple(
-            choice for choice in self.choices if choice.load == load and own & set(choice.runs)
+            choice
+            for choice in self.choices
+            if choice.load == load and wanted_runs & set(choice.runs)
         )
 
     def shares(self, row: int) -> Mapping[str, float]:

@@ -62,9 +62,9 @@ def _linear(cycles: Sequence[BodyCycle], request: Request) -> GroupCoefficients:
     try:
         linear = linear_fit(cycles, request.form, request.stated)
     except DataError:
-        others = refits(cycles, [], [])
+        alternatives = refits(cycles, [], [])
         return GroupCoefficients(
-            (), UncertainValues(np.zeros(0)), no_trials(0), missing=missing, others=others
+            (), UncertainValues(np.zeros(0)), no_trials(0), missing=missing, others=alternatives
         )
     fit = linear.fit
     entries = tuple(
@@ -78,18 +78,20 @@ def _linear(cycles: Sequence[BodyCycle], request: Request) -> GroupCoefficients:
     )
     fits = [(LINEAR, fit), *_in_roll(cycles, {place.column for place in linear.places}, request)]
     entries += tuple(
-        _fit_entry(LINEAR, one, k) for _, one in fits[1:] for k in range(len(one.names))
+        _fit_entry(LINEAR, roll_fit, k)
+        for _, roll_fit in fits[1:]
+        for k in range(len(roll_fit.names))
     )
     trials = _fits_trials(fits, request)
-    others = refits(cycles, [one for _, one in fits], [])
-    flags = (*linear.flags, *(flag for _, one in fits for flag in run_flags(one)))
+    alternatives = refits(cycles, [cycle_fit for _, cycle_fit in fits], [])
+    flags = (*linear.flags, *(flag for _, cycle_fit in fits for flag in run_flags(cycle_fit)))
     return GroupCoefficients(
         entries,
-        stacked([one.uncertain for _, one in fits]),
+        stacked([cycle_fit.uncertain for _, cycle_fit in fits]),
         trials,
         missing=missing,
         flags=flags,
-        others=others,
+        others=alternatives,
     )
 
 
@@ -99,8 +101,8 @@ def _in_roll(
     """Return the fit of the roll moment where all runs have one, of the motions that are told."""
     if not all(cycle.has_roll for cycle in cycles):
         return []
-    every = linear_terms(cycles[0].plane, (ROLL,))
-    names = [name for name in every if "vr".index(name[2]) in columns]
+    roll_names = linear_terms(cycles[0].plane, (ROLL,))
+    names = [name for name in roll_names if "vr".index(name[2]) in columns]
     return [(LINEAR, fit_cycles(cycles, names, FIRST, stated=request.stated))]
 
 
@@ -117,9 +119,9 @@ def _fits_block(
         *(flag for method, fit in fits if method != SINGLE_RUN for flag in run_flags(fit)),
     )
     trials = _fits_trials(fits, request)
-    others = refits(cycles, [fit for _, fit in fits], group.richest)
+    alternatives = refits(cycles, [fit for _, fit in fits], group.richest)
     return GroupCoefficients(
-        entries, uncertain, trials, tuple(group.choices), tuple(group.missing), flags, others
+        entries, uncertain, trials, tuple(group.choices), tuple(group.missing), flags, alternatives
     )
 
 

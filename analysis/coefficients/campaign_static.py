@@ -52,7 +52,7 @@ def static_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
     if all(cycle.has_surge for cycle in cycles):
         v, r = tuple(VELOCITY_LETTERS[plane])
         turned = any(round(cycle.drift_rad, 6) for cycle in cycles)
-        names = ["X_0", *([f"X_{v}{v}"] if turned else []), *(f"X_{one}" for one in even)]
+        names = ["X_0", *([f"X_{v}{v}"] if turned else []), *(f"X_{factors}" for factors in even)]
         names += [*([f"X_{r}{r}"] if turning else []), *([f"X_{v}{r}"] if cross else [])]
         try_surge(group, cycles, names, STATIC, request)
     return group

@@ -46,7 +46,9 @@ def without_dimensions(
         uncertain = uncertain.plus("density_relative", -uncertain.values * stated.density_relative)
     if stated.speed_m_s > 0.0 and any(system.speed_m_s > 0.0 for system in systems):
         pairs = zip(coefficients.entries, systems, strict=True)
-        powers = np.array([speed_power(coefficients, entry, own) for entry, own in pairs])
+        powers = np.array(
+            [speed_power(coefficients, entry, entry_system) for entry, entry_system in pairs]
+        )
         speeds = np.array([system.speed_m_s or np.inf for system in systems])
         parts = -uncertain.values * powers * stated.speed_m_s / speeds
         uncertain = uncertain.plus("speed_m_s", parts)

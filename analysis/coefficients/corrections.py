@@ -152,8 +152,8 @@ def zero_reading(recording: Recording, at_s: float, names: tuple[str, ...] = FOR
         )
     length = values.shape[1] // ZERO_BLOCKS
     blocks = values[:, : length * ZERO_BLOCKS].reshape(len(names), ZERO_BLOCKS, length).mean(axis=2)
-    left = blocks - blocks.mean(axis=1, keepdims=True)
-    parts = left / np.sqrt(ZERO_BLOCKS * (ZERO_BLOCKS - 1.0))
+    deviations = blocks - blocks.mean(axis=1, keepdims=True)
+    parts = deviations / np.sqrt(ZERO_BLOCKS * (ZERO_BLOCKS - 1.0))
     rows = 2 * np.arange(len(names))  # a mean has no quadrature
     source = Contribution(f"zero run {recording.name}", ZERO_BLOCKS - 1.0, rows, parts)
     units = tuple(recording.channels[recording.index(name)].unit for name in names)

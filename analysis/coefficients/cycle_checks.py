@@ -55,9 +55,9 @@ def _unfit(cycle: BodyCycle, first: BodyCycle) -> Iterator[str]:
     if cycle.plane is not first.plane:
         yield f"{cycle.name} is {cycle.plane}, {first.name} {first.plane}"
     for name in ("half_spacing_m", "point_ahead_m"):
-        own, other = getattr(cycle, name), getattr(first, name)
-        if own != other:
-            yield f"{cycle.name} has {name} = {own:g}, {first.name} {other:g}"
+        value, first_value = getattr(cycle, name), getattr(first, name)
+        if value != first_value:
+            yield f"{cycle.name} has {name} = {value:g}, {first.name} {first_value:g}"
     if cycle.medium is not Medium.WATER:
         yield f"{cycle.name} was run in air; take it off as a dry run"
     if not np.isfinite(cycle.phasors.values).all():
@@ -131,7 +131,7 @@ def _typical(term: Term, problem: CycleProblem) -> float:
     letters = [letter_of(factor) for factor in term.factors]
     turning, rolling = letters.count("r"), letters.count("p")
     sizes = np.abs(problem.numbers.moved).max(axis=(0, 2))
-    laid = math.prod(float(sizes[MOVES.index(one)]) for one in letters if one in ANGLES)
+    laid = math.prod(float(sizes[MOVES.index(letter)]) for letter in letters if letter in ANGLES)
     if rolling:
         laid *= float(sizes[MOVES.index("p")]) ** rolling
     return float(laid * pace ** (term.degree - rolling) * omega**term.rates / half**turning)
@@ -140,9 +140,9 @@ def _typical(term: Term, problem: CycleProblem) -> float:
 def _remedy(terms: Sequence[Term], problem: CycleProblem) -> str:
     """Return which run would tell terms apart, or from nothing."""
     if any(term.angles for term in terms):
-        heeled = any(HEEL_LETTER in letter_of(one) for term in terms for one in term.factors)
+        heeled = any(HEEL_LETTER in letter_of(factor) for term in terms for factor in term.factors)
         return "runs at other " + ("heel angles" if heeled else "angles of the rudder")
-    if any("p" in letter_of(one) for term in terms for one in term.factors):
+    if any("p" in letter_of(factor) for term in terms for factor in term.factors):
         return "a roll decay"
     if not any(cycle.frequency_hz > 0.0 for cycle in problem.numbers.cycles):
         return "static runs at another drift angle"

@@ -77,8 +77,8 @@ class CycleFit:
         freedom
             Degrees of freedom of the input's standard deviation.
         """
-        more = Contribution(label, freedom, np.arange(len(self.values)), parts)
-        return replace(self, more=(*self.more, more))
+        source = Contribution(label, freedom, np.arange(len(self.values)), parts)
+        return replace(self, more=(*self.more, source))
 
     def with_misfit(self, label: str, row: int) -> "CycleFit":
         """Return the fit with what one load's residuals scatter beyond its runs' own scatter.
@@ -153,8 +153,8 @@ def fit_cycles(
     """
     check_cycles(cycles, orders)
     terms = tuple(term_of(name, cycles[0].plane) for name in names)
-    own = tuple(name_of_term(term, cycles[0].plane) for term in terms)
-    return fit_terms(cycles, terms, own, orders, stated=stated)
+    term_names = tuple(name_of_term(term, cycles[0].plane) for term in terms)
+    return fit_terms(cycles, terms, term_names, orders, stated=stated)
 
 
 def fit_terms(
@@ -171,12 +171,12 @@ def fit_terms(
     It raises what :func:`fit_cycles` raises.
     """
     fitted = [_fitted(cycle, orders) for cycle in cycles]
-    every = tuple(sorted(set().union(*fitted)))
+    all_orders = tuple(sorted(set().union(*fitted)))
     highest = max((cycle.orders for cycle in cycles if cycle.lines), default=0)
     highest = highest or min(cycle.orders for cycle in cycles)
-    chosen = np.array([[float(n in own) for n in every] for own in fitted])
+    chosen = np.array([[float(n in cycle_orders) for n in all_orders] for cycle_orders in fitted])
     even = np.repeat(chosen[..., None], len(LOAD_WORDS), axis=2)
-    first = CycleProblem(CycleNumbers(tuple(cycles), highest, form), terms, every, even)
+    first = CycleProblem(CycleNumbers(tuple(cycles), highest, form), terms, all_orders, even)
     check_determined(first)
     problem = first.weighed(_weights(first, first.solve_nominal()))
     nominal = problem.solve_nominal()
@@ -210,19 +210,19 @@ def _weights(problem: CycleProblem, first: FloatArray) -> FloatArray:
     first
         Coefficients of a fit without weights.
     """
-    whole = np.ones_like(problem.weights)
+    variances = np.ones_like(problem.weights)
     for row, _ in problem.rows:
         slope = problem.residual_slopes(first, row)
         for k, cycle in enumerate(problem.numbers.cycles):
-            whole[k, :, row] = residual_variance(problem, cycle, slope[k])
-    if not np.isfinite(whole).all():
+            variances[k, :, row] = residual_variance(problem, cycle, slope[k])
+    if not np.isfinite(variances).all():
         return problem.weights
-    own = np.array([_fewest(cycle) for cycle in problem.numbers.cycles])[:, None, None]
-    there = problem.weights
-    mean = (there * whole).sum(axis=0) / np.maximum(there.sum(axis=0), 1.0)
-    shrunk = trusted(whole, own, mean)
+    periods = np.array([_fewest(cycle) for cycle in problem.numbers.cycles])[:, None, None]
+    present = problem.weights
+    mean = (present * variances).sum(axis=0) / np.maximum(present.sum(axis=0), 1.0)
+    shrunk = trusted(variances, periods, mean)
     floor = 1e-9 * np.abs(problem.numbers.parts).max() + 1e-300
-    return np.asarray(there / np.maximum(np.sqrt(shrunk), floor))
+    return np.asarray(present / np.maximum(np.sqrt(shrunk), floor))
 
 
 def residual_variance(
@@ -274,25 +274,25 @@ def _contributions(fit: CycleFit) -> tuple[Contribution, ...]:
     """Scatter by source, of all cycles that share it, then each stated uncertainty."""
     problem, stated = fit.problem, fit.stated
     slopes = problem.followed(fit.values)
-    everywhere, contributions = np.arange(len(problem.terms)), []
-    by_stated = np.zeros((len(everywhere), len(STATED)))
-    known = [
-        one.label
+    all_rows, contributions = np.arange(len(problem.terms)), []
+    by_stated = np.zeros((len(all_rows), len(STATED)))
+    labels = [
+        source.label
         for cycle in problem.numbers.cycles
-        for one in cycle.hull.phasors.real.contributions
+        for source in cycle.hull.phasors.real.contributions
     ]
-    serves = Counter(known)
+    serves = Counter(labels)
     for slope, share, cycle in zip(slopes, problem.shares, problem.numbers.cycles, strict=True):
         for source in cycle.hull.phasors.real.contributions:
             parts = slope @ problem.numbers.scatter(cycle, source)
             if serves[source.label] == 1:
                 parts += _luck(problem, source.degrees_of_freedom) * (parts - share @ parts)
             contributions.append(
-                Contribution(source.label, source.degrees_of_freedom, everywhere, parts)
+                Contribution(source.label, source.degrees_of_freedom, all_rows, parts)
             )
         by_stated += slope @ problem.numbers.sensitivity(cycle)
     for k, (name, spread) in enumerate(zip(STATED, stated.vector, strict=True)):
         if spread > 0.0:
             column = by_stated[:, k, None] * spread
-            contributions.append(Contribution(name, stated.freedom(name), everywhere, column))
+            contributions.append(Contribution(name, stated.freedom(name), all_rows, column))
     return added(contributions)

@@ -63,8 +63,8 @@ class CycleProblem:
     def weighed(self, weights: FloatArray) -> "CycleProblem":
         """Return the same problem, all that was worked out included, with other weights."""
         problem = replace(self, weights=weights)
-        known = {name: self.__dict__[name] for name in _WORKED_OUT if name in self.__dict__}
-        problem.__dict__.update(known)
+        results = {name: self.__dict__[name] for name in _WORKED_OUT if name in self.__dict__}
+        problem.__dict__.update(results)
         return problem
 
     def solved(self, design: FloatArray, loads: FloatArray) -> FloatArray:
@@ -87,8 +87,8 @@ class CycleProblem:
         squares = np.zeros((*values.shape[:-1], len(LOAD_WORDS)))
         for row, columns in self.rows:
             fitted = np.einsum("...kbc,...c->...kb", design[..., columns], values[..., columns])
-            left = self.weighted((loads[..., row] - fitted)[..., None], row)
-            squares[..., row] = (left**2).sum(axis=(-2, -1))
+            residual = self.weighted((loads[..., row] - fitted)[..., None], row)
+            squares[..., row] = (residual**2).sum(axis=(-2, -1))
         return squares
 
     def weighted(self, values: FloatArray, row: int) -> FloatArray:
@@ -170,13 +170,13 @@ class CycleProblem:
         for row, columns in self.rows:
             weight = self._weight(row)
             matrix = weight[..., None] * design[..., columns]
-            left = weight * loads[..., row] - matrix @ values[columns]
+            residual = weight * loads[..., row] - matrix @ values[columns]
             flat = matrix.reshape(-1, len(columns))
             normal = flat.T @ flat
             scale = 1.0 / np.sqrt(np.diagonal(normal))
             inverse = np.linalg.inv(normal * np.outer(scale, scale)) * np.outer(scale, scale)
             by_terms = self._slopes[:, columns]
-            left_over = (weight * left) @ self.apart.T
+            left_over = (weight * residual) @ self.apart.T
             change = left_over[:, None, None, :] * by_terms
             pulled = (weight[..., None] * matrix).transpose(0, 2, 1)  # (cycles, terms, 2 orders)
             pull = np.einsum("c,kcbt->kbt", values[columns], by_terms)
@@ -198,9 +198,9 @@ class CycleProblem:
             matrix = self._weight(row)[..., None] * design[..., columns]
             scale = 1.0 / np.sqrt((matrix**2).sum(axis=(0, 1)))
             matrix = matrix * scale
-            own = matrix.transpose(0, 2, 1) @ matrix
-            told = np.linalg.solve(own.sum(axis=0), own)
-            shares[np.ix_(range(count), columns, columns)] = scale[:, None] * told / scale
+            normal = matrix.transpose(0, 2, 1) @ matrix
+            part = np.linalg.solve(normal.sum(axis=0), normal)
+            shares[np.ix_(range(count), columns, columns)] = scale[:, None] * part / scale
         return shares
 
     @cached_property

@@ -102,7 +102,7 @@ class CycleNumbers:
         """Channel that each move is of, and how often it is differentiated."""
         across = _ACROSS[self.form]
         first = int(across == _TRANSLATION)
-        found = {
+        sources = {
             "u": (_AHEAD, 0),
             "v": (across, first),
             "r": (_ROTATION, 1),
@@ -111,8 +111,8 @@ class CycleNumbers:
         }
         if HEEL in self.channels:
             heel = self.channels.index(HEEL)
-            found |= {"phi": (heel, 0), "p": (heel, 1), "pdot": (heel, 2)}
-        return found
+            sources |= {"phi": (heel, 0), "p": (heel, 1), "pdot": (heel, 2)}
+        return sources
 
     def moves(self, parts: FloatArray) -> FloatArray:
         """Return :data:`MOVES` over the cycles, shape ``(..., cycles, 6 or 9, instants)``."""
@@ -120,8 +120,8 @@ class CycleNumbers:
         pace = self._omega * (1.0 + parts[..., _PACE])
         moves = {}
         for name, (channel, times) in self._made_of.items():
-            own = shaped[..., channel, :].reshape(*parts.shape[:-1], -1)
-            moves[name] = (pace**times)[..., None] * (own @ basis(self.highest + 1, times))
+            waves = shaped[..., channel, :].reshape(*parts.shape[:-1], -1)
+            moves[name] = (pace**times)[..., None] * (waves @ basis(self.highest + 1, times))
         moves["r"] = moves["r"] + parts[..., _TURN, None]
         rudder = np.array([cycle.rudder_rad for cycle in self.cycles])[:, None]
         moves[RUDDER_LETTER] = np.broadcast_to(rudder, moves["u"].shape)
@@ -144,8 +144,8 @@ class CycleNumbers:
         by_pace = np.zeros(over.shape[:2])
         for name, (channel, times) in self._made_of.items():
             k = MOVES.index(name)
-            own = over[:, :, k] @ basis(count, times).T * (self._omega**times)[:, None, None]
-            slopes[..., channel, :] += own.reshape(*over.shape[:2], count, 2)
+            slope = over[:, :, k] @ basis(count, times).T * (self._omega**times)[:, None, None]
+            slopes[..., channel, :] += slope.reshape(*over.shape[:2], count, 2)
             by_pace += times * np.einsum("kct,kt->kc", over[:, :, k], self.moved[:, k])
         flat = slopes.reshape(*over.shape[:2], -1)
         by_turn = over[:, :, MOVES.index("r")].sum(axis=-1)

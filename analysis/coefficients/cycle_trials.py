@@ -48,17 +48,17 @@ def draw_cycles(fit: CycleFit, count: int, seed: tuple[int, int]) -> FloatArray:
     deviations = fit.stated.drawn(count, generator)
     ways = []
     for cycle in numbers.cycles:
-        own = [
+        cycle_ways = [
             (scatter.of(source), numbers.scatter(cycle, source).T)
             for source in cycle.hull.phasors.real.contributions
         ]
-        ways.append([*own, (deviations, numbers.sensitivity(cycle).T)])
+        ways.append([*cycle_ways, (deviations, numbers.sensitivity(cycle).T)])
     pieces = -(-count * len(numbers.cycles) // _DESIGNS_AT_ONCE)
     cycles = []
-    for some in np.array_split(np.arange(count), pieces):
+    for trials in np.array_split(np.arange(count), pieces):
         parts = [
-            nominal + sum(deviates[some] @ way for deviates, way in own)
-            for nominal, own in zip(numbers.parts, ways, strict=True)
+            nominal + sum(deviates[trials] @ way for deviates, way in cycle_ways)
+            for nominal, cycle_ways in zip(numbers.parts, ways, strict=True)
         ]
         cycles.append(problem.solve(np.stack(parts, axis=1)))
     return np.concatenate(cycles)

@@ -202,8 +202,8 @@ def _long_table(contributions: Sequence[Contribution]) -> dict[str, Any]:
         rows, deviates = np.meshgrid(
             contribution.rows, np.arange(contribution.parts.shape[1]), indexing="ij"
         )
-        whose = np.full(rows.size, k)
-        long_rows.append((rows.ravel(), whose, deviates.ravel(), contribution.parts.ravel()))
+        inputs = np.full(rows.size, k)
+        long_rows.append((rows.ravel(), inputs, deviates.ravel(), contribution.parts.ravel()))
     names = ("of_entry", "of_input", "of_deviate", "part")
     kinds = (np.int64, np.int64, np.int64, np.float64)
     return {
@@ -214,15 +214,15 @@ def _long_table(contributions: Sequence[Contribution]) -> dict[str, Any]:
 
 def _from_long(dataset: "xr.Dataset") -> tuple[Contribution, ...]:
     names = ("of_entry", "of_input", "of_deviate", "part")
-    entry, whose, deviate, part = (dataset[name].values for name in names)
+    entry, owner, deviate, part = (dataset[name].values for name in names)
     labels = dataset["input_label"].values.tolist()
     freedom = dataset["input_degrees_of_freedom"].values
     contributions = []
     for k, label in enumerate(labels):
-        mine = whose == k
-        count = int(deviate[mine].max()) + 1
-        rows = entry[mine].reshape(-1, count)[:, 0]
-        parts = part[mine].reshape(-1, count)
+        of_label = owner == k
+        count = int(deviate[of_label].max()) + 1
+        rows = entry[of_label].reshape(-1, count)[:, 0]
+        parts = part[of_label].reshape(-1, count)
         contributions.append(Contribution(str(label), float(freedom[k]), rows, parts))
     return tuple(contributions)
 

@@ -59,16 +59,16 @@ def forms_of(
     """
     v, r = tuple(VELOCITY_LETTERS[plane])
     load = name_of_term(term_of(linear_terms(plane, (row,))[0], plane), plane)[0]
-    own = [letter for letter, here in ((v, "v"), (r, "r")) if here in motions]
+    letters = [letter for letter, motion in ((v, "v"), (r, "r")) if motion in motions]
     linear = (
-        (f"{load}_0", *(f"{load}_{letter}" for letter in own))
+        (f"{load}_0", *(f"{load}_{letter}" for letter in letters))
         if steady
-        else tuple(name for name in linear_terms(plane, (row,)) if name[2] in own)
+        else tuple(name for name in linear_terms(plane, (row,)) if name[2] in letters)
     )
     linear += tuple(f"{load}_{factors}" for factors in angles)
-    cubic = tuple(f"{load}_{letter * 3}" for letter in own)
-    quadratic = tuple(f"{load}_{letter}|{letter}|" for letter in own)
-    if len(own) == 2 and cross:
+    cubic = tuple(f"{load}_{letter * 3}" for letter in letters)
+    quadratic = tuple(f"{load}_{letter}|{letter}|" for letter in letters)
+    if len(letters) == 2 and cross:
         cubic += (f"{load}_{v}{v}{r}", f"{load}_{v}{r}{r}")
         quadratic += (f"{load}_{v}|{r}|", f"{load}_{r}|{v}|")
     return {
@@ -114,9 +114,9 @@ def choose_form(
     criteria, dispersion, richest = _criteria(fits, row)
     best = min(criteria.values())
     weights = {form: math.exp((best - value) / 2.0) for form, value in criteria.items()}
-    verdict, fitted, ratio, why = _verdict(criteria)
+    verdict, fitted, ratio, reason = _verdict(criteria)
     if dispersion > DESCRIBES:
-        why += (
+        reason += (
             f"; but even the richest leaves {dispersion:.3g} times what scatter explains (limit "
             f"{DESCRIBES:g}): no form describes these runs"
         )
@@ -134,7 +134,7 @@ def choose_form(
         verdict,
         fitted,
         ratio,
-        why,
+        reason,
     )
     return choice, richest
 
@@ -143,10 +143,10 @@ def rival_forms(choice: FormChoice) -> tuple[tuple[str, float], ...]:
     """Return the forms that do about as well as the one taken, each with its Akaike weight."""
     if choice.verdict != NOT_SEPARABLE:
         return ()
-    several = zip(choice.forms, choice.aicc, choice.weights, strict=True)
+    rivals = zip(choice.forms, choice.aicc, choice.weights, strict=True)
     return tuple(
         (form, weight)
-        for form, criterion, weight in several
+        for form, criterion, weight in rivals
         if form != choice.fitted and criterion - min(choice.aicc) < _NEAR
     )
 
@@ -174,9 +174,9 @@ def _verdict(criteria: Mapping[str, float]) -> tuple[str, str, float, str]:
     """Return the verdict, the form taken, the evidence ratio that decided, and words for it."""
     best = min(criteria, key=lambda form: criteria[form])
 
-    def ratio(over: Sequence[str]) -> float:
-        others = [criteria[form] for form in over if form in criteria]
-        return math.exp(min((min(others) - criteria[best]) / 2.0, 700.0)) if others else math.inf
+    def ratio(forms: Sequence[str]) -> float:
+        values = [criteria[form] for form in forms if form in criteria]
+        return math.exp(min((min(values) - criteria[best]) / 2.0, 700.0)) if values else math.inf
 
     if best == LINEAR_FORM:
         verdict = ratio((CUBIC, QUADRATIC, BOTH))
@@ -192,12 +192,12 @@ def _verdict(criteria: Mapping[str, float]) -> tuple[str, str, float, str]:
         taken, close, verdict = LINEAR_FORM, LINEAR_FORM, over_linear
     else:
         taken, close = best, rivals[0]
-    why = (
+    reason = (
         f"{best} is {times(verdict)} as well supported as {close} (evidence ratio; {DECIDES:g} is "
         f"needed): {taken} is fitted, with what the others give in its intervals; to tell them, "
         "take a larger range of amplitudes (or of drift angles, and more sizes), or more periods"
     )
-    return NOT_SEPARABLE, taken, verdict, why
+    return NOT_SEPARABLE, taken, verdict, reason
 
 
 def times(ratio: float) -> str:

@@ -46,8 +46,10 @@ def as_reported(
     speed_m_s, frequency_hz
         Of the carriage and the motion; the manoeuvring form does not depend on them.
     """
-    back = np.linalg.inv(point_matrix(point_ahead_m, plane))
-    added, damped = (back.T @ np.asarray(matrix) @ back for matrix in (added_mass, damping))
+    to_midpoint = np.linalg.inv(point_matrix(point_ahead_m, plane))
+    added, damped = (
+        to_midpoint.T @ np.asarray(matrix) @ to_midpoint for matrix in (added_mass, damping)
+    )
     if form is Form.SEAKEEPING:
         # v = q' + U E q, and q is -q''/omega^2: what goes with q adds to what goes with q''.
         turn = speed_m_s * incidence(plane)

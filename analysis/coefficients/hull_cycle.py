@@ -87,9 +87,11 @@ def on_hull(
     )
     orders = count - 1
     net = HullParts(count, channels)
-    whole = net.with_loads(by_parts(slope[:, : len(inputs)], maps, orders))
-    own = _by_stated(slope, moved, inputs, net, len(parts), body is not None, turn_rate_rad_s)
-    sensitivity = own + whole @ sensitivity
+    parts_slope = net.with_loads(by_parts(slope[:, : len(inputs)], maps, orders))
+    stated_slope = _by_stated(
+        slope, moved, inputs, net, len(parts), body is not None, turn_rate_rad_s
+    )
+    sensitivity = stated_slope + parts_slope @ sensitivity
     changes = net.parts(parts, harmonics(values, orders))
     shift, by_pace, by_speed = to_point(count, channels, point_ahead_m, plane, omega, speed_m_s)
     sensitivity = shift @ sensitivity
@@ -103,7 +105,7 @@ def on_hull(
         Phasors(
             labels(channels, orders),
             tuple(UNIT_OF[name] for name in channels) * count,
-            gross.real.carried(changes, shift @ whole),
+            gross.real.carried(changes, shift @ parts_slope),
         ),
         sensitivity,
     )
@@ -128,18 +130,22 @@ def _by_stated(
         Of the loads at each instant by each input, and the motion's inputs there.
     """
     orders = net.orders
-    own = np.zeros((count, len(STATED)))
-    known = slope[:, len(inputs) : len(inputs) + len(_TAKEN)]  # what comes after is not uncertain
-    for name, column in zip(_TAKEN, np.moveaxis(known, 1, 0), strict=True):
+    stated_slope = np.zeros((count, len(STATED)))
+    taken_slopes = slope[
+        :, len(inputs) : len(inputs) + len(_TAKEN)
+    ]  # what comes after is not uncertain
+    for name, column in zip(_TAKEN, np.moveaxis(taken_slopes, 1, 0), strict=True):
         if has_body or name not in _OF_BODY:
-            own[net.loads, STATED.index(name)] += harmonics(column, orders)
-    own[:, STATED.index("density_relative")] += own[:, STATED.index("restoring_relative")]
+            stated_slope[net.loads, STATED.index(name)] += harmonics(column, orders)
+    stated_slope[:, STATED.index("density_relative")] += stated_slope[
+        :, STATED.index("restoring_relative")
+    ]
     times = np.array([often for _, often in inputs])
     faster = (slope[:, : len(inputs)] * (times[:, None] * moved)).sum(axis=1)
-    own[net.loads, STATED.index("frequency_relative")] += harmonics(faster, orders)
+    stated_slope[net.loads, STATED.index("frequency_relative")] += harmonics(faster, orders)
     steadily = turn_rate_rad_s * harmonics(slope[:, inputs.index(TURNS)], orders)
-    own[net.loads, STATED.index("turn_rate_relative")] += steadily
-    return own
+    stated_slope[net.loads, STATED.index("turn_rate_relative")] += steadily
+    return stated_slope
 
 
 def inputs_of(channels: tuple[str, ...]) -> tuple[tuple[int, int], ...]:
@@ -162,7 +168,7 @@ def stated_at_instants(
     Of mass and m x_G a part, of m z_G a part, less displaced mass and its moments; of a model that
     heels I_xx, product and spread, and its righting moments.
     """
-    known = (
+    body_values = (
         (0.0,) * 4 if body is None else (body.mass_kg, body.cg_x_m, body.cg_z_m, body.inertia_kg_m2)
     )
     borne: tuple[float, ...] = (0.0,) * 5
@@ -174,7 +180,7 @@ def stated_at_instants(
     rolled: tuple[float, ...] = (0.0,) * 5
     if body is not None and heel is not None:
         rolled = (*heel.moments(body), *heel.righting(body))
-    return np.array([[*known, 1.0, drift_rad, heel_rad, *borne, *rolled]]).T
+    return np.array([[*body_values, 1.0, drift_rad, heel_rad, *borne, *rolled]]).T
 
 
 class HullParts:
@@ -183,21 +189,21 @@ class HullParts:
     def __init__(self, count: int, channels: tuple[str, ...]) -> None:
         self.orders = count - 1
         place = np.arange(2 * count * len(channels)).reshape(count, len(channels), 2)
-        own = [k for k, name in enumerate(channels) if name in LOADS]
-        self.loads = place[:, own].ravel()
+        load_places = [k for k, name in enumerate(channels) if name in LOADS]
+        self.loads = place[:, load_places].ravel()
         self.is_load = np.zeros(place.size, dtype=bool)
         self.is_load[self.loads] = True
 
-    def with_loads(self, asked: FloatArray) -> FloatArray:
+    def with_loads(self, asked_slope: FloatArray) -> FloatArray:
         """Return the slope of the hull's parts by the gross ones."""
         signs = np.diag(np.where(self.is_load, -1.0, 1.0))
-        signs[self.loads] += asked
+        signs[self.loads] += asked_slope
         return signs
 
-    def parts(self, gross: FloatArray, asked: FloatArray) -> FloatArray:
+    def parts(self, gross: FloatArray, asked_loads: FloatArray) -> FloatArray:
         """Return the hull's parts, ``(..., 2 n)``, of the gross ones and of what is asked."""
         parts = np.where(self.is_load, -gross, gross)
-        parts[..., self.loads] += asked
+        parts[..., self.loads] += asked_loads
         return parts
 
 
@@ -210,7 +216,7 @@ def loads_asked(
     """
     translation, rotation, u, u_rate, v, v_rate, r, r_rate = np.moveaxis(waves[..., :8, :], -2, 0)
     rolling, taken = waves[..., 8:11, :], np.moveaxis(waves[..., 8 + 3 * heels :, :], -2, 0)
-    mass, ahead, below, turned, factor, drift, resting, whole, under, *rest = taken
+    mass, ahead, below, turned, factor, drift, resting, weight, under, *rest = taken
     lift, rolled = rest[:3], rest[3:]
     state = MotionWaves(
         rotation,
@@ -221,7 +227,7 @@ def loads_asked(
     )
     moments = np.stack((mass, mass * ahead, mass * below, turned), axis=-2)
     loads = np.einsum("...kt,...krt->...rt", moments, inertia_terms(state, plane))
-    parts = np.stack((whole, whole, under), axis=-2)
+    parts = np.stack((weight, weight, under), axis=-2)
     hanging = parts * moments[..., :3, :] - np.stack(lift, axis=-2)
 
     def static(place: Waves, angle: Waves) -> Waves:
@@ -265,19 +271,19 @@ def to_point(
     """
     side = -1.0 if plane is Plane.VERTICAL else 1.0
     arm, names = side * ahead_m, channels
-    whole = np.eye(count * len(names), dtype=np.complex128)
-    by_pace, by_speed = np.zeros_like(whole), np.zeros_like(whole)
+    transfer = np.eye(count * len(names), dtype=np.complex128)
+    by_pace, by_speed = np.zeros_like(transfer), np.zeros_like(transfer)
     for n in range(count):
         place = {name: n * len(names) + k for k, name in enumerate(names)}
         rate = 1j * n * omega
         way, across, turn = place["translation"], place["across"], place["rotation"]
-        whole[across, turn] = by_pace[across, turn] = rate * arm
-        whole[place["moment"], place["force"]] = -arm
-        whole[way, turn] = arm
+        transfer[across, turn] = by_pace[across, turn] = rate * arm
+        transfer[place["moment"], place["force"]] = -arm
+        transfer[way, turn] = arm
         if n:
-            whole[way, way], whole[way, across] = 0.0, 1.0 / rate
+            transfer[way, way], transfer[way, across] = 0.0, 1.0 / rate
             by_speed[way, turn] = side / rate
-            whole[way, turn] += speed_m_s * by_speed[way, turn]
+            transfer[way, turn] += speed_m_s * by_speed[way, turn]
             by_pace[way, across] = -1.0 / rate
             by_pace[way, turn] = -speed_m_s * by_speed[way, turn]
-    return real_form(whole), real_form(by_pace), real_form(by_speed)
+    return real_form(transfer), real_form(by_pace), real_form(by_speed)

@@ -50,8 +50,8 @@ def identifiable_motions(moved: ComplexArray) -> tuple[int, ...]:
         if singular[1] > _APART * singular[0]:
             return (0, 1)
     for column in (0, 1):
-        own, other = np.abs(moved[:, column]).max(), np.abs(moved[:, 1 - column]).max()
-        if other <= ALONE * own:
+        size, other_size = np.abs(moved[:, column]).max(), np.abs(moved[:, 1 - column]).max()
+        if other_size <= ALONE * size:
             return (column,)
     return ()
 
@@ -76,14 +76,17 @@ def missing_run(
 ) -> str:
     """Return why a coefficient is not determined, and which run would do it."""
     words = motion_words(runs[0].plane, form)
-    own, other = np.abs(moved[:, place.column]).max(), np.abs(moved[:, 1 - place.column]).max()
+    size, other_size = (
+        np.abs(moved[:, place.column]).max(),
+        np.abs(moved[:, 1 - place.column]).max(),
+    )
     phase = math.degrees(_phase_for(place.column, runs[0], form))
     return (
         f"{name} cannot be determined from {', '.join(run.name for run in runs)}: "
-        f"{words[place.column]} there is {100.0 * own / other:.2g} % of {words[1 - place.column]} "
-        f"at the struts and not told apart from it; add a run in {words[place.column]} at "
-        f"{runs[0].frequency_hz:g} Hz and {runs[0].speed_m_s:g} m/s, for example with a strut "
-        f"phase of {phase:.4g} deg"
+        f"{words[place.column]} there is {100.0 * size / other_size:.2g} % of "
+        f"{words[1 - place.column]} at the struts and not told apart from it; add a run in "
+        f"{words[place.column]} at {runs[0].frequency_hz:g} Hz and {runs[0].speed_m_s:g} m/s, for "
+        f"example with a strut phase of {phase:.4g} deg"
     )
 
 

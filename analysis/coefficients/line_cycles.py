@@ -34,8 +34,8 @@ def by_lines(cycle: BodyCycle) -> tuple[BodyCycle, ...]:
             f"{cycle.name}: resolved up to harmonic {cycle.orders}, and its highest line is "
             f"{max(cycle.lines)}; resolve as many harmonics"
         )
-    both = zip(names_of_lines(cycle), cycle.lines, strict=True)
-    return tuple(_line(cycle, name, order) for name, order in both)
+    lines = zip(names_of_lines(cycle), cycle.lines, strict=True)
+    return tuple(_line(cycle, name, order) for name, order in lines)
 
 
 def names_of_lines(cycle: BodyCycle) -> tuple[str, ...]:
@@ -46,13 +46,13 @@ def names_of_lines(cycle: BodyCycle) -> tuple[str, ...]:
 def _line(cycle: BodyCycle, name: str, order: int) -> BodyCycle:
     places = [cycle.phasors.index(at_order(name, n)) for n in (0, order) for name in cycle.channels]
     names = labels(cycle.channels, 1)
-    own = cycle.phasors.select([cycle.phasors.names[place] for place in places])
+    line_phasors = cycle.phasors.select([cycle.phasors.names[place] for place in places])
     sensitivity = cycle.sensitivity
-    alone = replace(
+    line_cycle = replace(
         cycle,
         name=name,
         frequency_hz=order * cycle.frequency_hz,
-        phasors=replace(own, names=names),
+        phasors=replace(line_phasors, names=names),
         orders=1,
         lines=(),
         tare=Tare(cycle.tare.place_m, cycle.tare.of_load.mean(axis=-1, keepdims=True)),
@@ -60,14 +60,14 @@ def _line(cycle: BodyCycle, name: str, order: int) -> BodyCycle:
         sensitivity=sensitivity[parts_of(places)] if len(sensitivity) else sensitivity,
         point_ahead_m=0.0,
     )
-    whole = replace(cycle, point_ahead_m=0.0).hull.phasors
-    products = _loads(alone.hull.phasors, alone, 1) - _loads(whole, cycle, order)
-    values = alone.phasors.values.copy()
+    run_phasors = replace(cycle, point_ahead_m=0.0).hull.phasors
+    products = _loads(line_cycle.hull.phasors, line_cycle, 1) - _loads(run_phasors, cycle, order)
+    values = line_cycle.phasors.values.copy()
     loads = [name for name in cycle.channels if name in LOADS]
     values[[names.index(at_order(name, 1)) for name in loads]] += products
-    shifted = replace(alone.phasors.real, values=interleaved(values))
-    phasors = replace(alone.phasors, real=shifted)
-    return replace(alone, phasors=phasors, point_ahead_m=cycle.point_ahead_m)
+    shifted = replace(line_cycle.phasors.real, values=interleaved(values))
+    phasors = replace(line_cycle.phasors, real=shifted)
+    return replace(line_cycle, phasors=phasors, point_ahead_m=cycle.point_ahead_m)
 
 
 def _loads(phasors: Phasors, cycle: BodyCycle, order: int) -> np.ndarray:

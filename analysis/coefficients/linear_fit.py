@@ -115,10 +115,10 @@ def _retained(
         k = int(np.argmax(np.abs(moved[:, place.column])))
         cycle = cycles[k]
         pace = abs(moved[k, place.column]) / (cycle.half_spacing_m if place.column else 1.0)
-        own = abs(float(value)) * pace
-        own *= 2.0 * np.pi * cycle.frequency_hz if place.inertial else 1.0
-        whole = max(abs(cycle.loads[place.row]), *cycle.taken[:, place.row])
-        ratios.append(own / max(own, whole, 1e-300))
+        part = abs(float(value)) * pace
+        part *= 2.0 * np.pi * cycle.frequency_hz if place.inertial else 1.0
+        largest = max(abs(cycle.loads[place.row]), *cycle.taken[:, place.row])
+        ratios.append(part / max(part, largest, 1e-300))
     return np.array(ratios)
 
 
@@ -126,25 +126,25 @@ def _flags(
     fit: CycleFit, places: Sequence[MatrixElement], retained: FloatArray, misfit: float
 ) -> list[Flag]:
     flags = []
-    own = tuple(cycle.name for cycle in fit.problem.numbers.cycles)
+    runs = tuple(cycle.name for cycle in fit.problem.numbers.cycles)
     for name, place, part in zip(fit.names, places, retained, strict=True):
         if part < _DIGIT:
-            what = "gain, mass or restoring" if place.inertial else "phase (in radians)"
+            quantity = "gain, mass or restoring" if place.inertial else "phase (in radians)"
             text = (
                 f"{name} is {100.0 * part:.2g} % of the largest part of the load (limit "
-                f"{100 * _DIGIT:g} %): an error in {what} is {1.0 / max(part, 1e-12):.3g} times "
-                "as large in it"
+                f"{100 * _DIGIT:g} %): an error in {quantity} is {1.0 / max(part, 1e-12):.3g} "
+                "times as large in it"
             )
-            flags.append(Flag("digits_lost", Severity.WARNING, text, name, own))
+            flags.append(Flag("digits_lost", Severity.WARNING, text, name, runs))
     if misfit > DISAGREE:
         text = (
             f"the runs differ {misfit:.2g} times as much as their scatter (limit {DISAGREE:g}): "
             "amplitude, alignment or a force that is not linear; solve them apart"
         )
-        flags.append(Flag("runs_disagree", Severity.WARNING, text, None, own))
+        flags.append(Flag("runs_disagree", Severity.WARNING, text, None, runs))
     if not np.isfinite(fit.uncertain.standard_uncertainty).all():
         text = "a run has too few periods for scatter: no interval can be given"
-        flags.append(Flag("no_interval", Severity.WARNING, text, None, own))
+        flags.append(Flag("no_interval", Severity.WARNING, text, None, runs))
     return flags
 
 
@@ -162,5 +162,5 @@ def _neglected(
         f"{words[1 - column]} of {100 * part:.2g} % of {words[column]} at the struts was left out "
         f"(limit {100 * ALONE:g} %); add a run in {words[1 - column]} to have it taken off"
     )
-    own = tuple(cycle.name for cycle in cycles)
-    return (Flag("other_motion_left_out", Severity.WARNING, text, None, own),)
+    runs = tuple(cycle.name for cycle in cycles)
+    return (Flag("other_motion_left_out", Severity.WARNING, text, None, runs),)

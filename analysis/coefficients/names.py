@@ -84,11 +84,12 @@ def place_of(name: str, plane: Plane, form: Form) -> MatrixElement:
     ConfigurationError
         If this plane and form have none of that name; the message names the nearest.
     """
-    known = {name_of(place, plane, form): place for place in PLACES}
-    if name not in known:
-        near = get_close_matches(name, known, n=3, cutoff=0.4)
-        hint = f"; did you mean {', '.join(near)}?" if near else ""
+    places = {name_of(place, plane, form): place for place in PLACES}
+    if name not in places:
+        matches = get_close_matches(name, places, n=3, cutoff=0.4)
+        hint = f"; did you mean {', '.join(matches)}?" if matches else ""
         raise ConfigurationError(
-            f"no {form} coefficient {name!r} in the {plane} plane{hint} (known: {', '.join(known)})"
+            f"no {form} coefficient {name!r} in the {plane} plane{hint} "
+            f"(known: {', '.join(places)})"
         )
-    return known[name]
+    return places[name]

@@ -122,8 +122,8 @@ def seakeeping(
         gravity_m_s2=gravity_m_s2,
     )
     mass = density_kg_m3 * volume_m3
-    told = f"{name} (rho V, V = {volume_m3:g} m3, L = {length_m:g} m)"
-    return Normalisation(told, length_m, mass, mass * math.sqrt(gravity_m_s2 / length_m))
+    label = f"{name} (rho V, V = {volume_m3:g} m3, L = {length_m:g} m)"
+    return Normalisation(label, length_m, mass, mass * math.sqrt(gravity_m_s2 / length_m))
 
 
 def _positive(**values: float) -> None:

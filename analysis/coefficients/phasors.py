@@ -108,19 +108,21 @@ class Phasors:
         ConfigurationError
             If that phasor is zero and has no phase.
         """
-        own = self[name]
-        if own == 0.0:
+        reference = self[name]
+        if reference == 0.0:
             raise ConfigurationError(f"{name} does not move: its phase cannot be the reference")
-        turn = np.exp(-1j * np.angle(own))
+        turn = np.exp(-1j * np.angle(reference))
         values = self.values * turn
         slope = real_form(np.eye(len(values)) * turn)
         column = 2 * self.index(name)
-        angle = np.zeros(len(slope))  # d(angle) = Im(conj(own) d(own)) / |own|^2
-        angle[column : column + 2] = np.array([-own.imag, own.real]) / abs(own) ** 2
+        angle = np.zeros(len(slope))  # d(angle) = Im(conj(z) d(z)) / |z|^2
+        angle[column : column + 2] = (
+            np.array([-reference.imag, reference.real]) / abs(reference) ** 2
+        )
         slope -= np.outer(interleaved(1j * values), angle)
         return replace(self, real=self.real.carried(interleaved(values), slope))
 
-    def minus(self, other: "Phasors") -> "Phasors":
+    def minus(self, subtrahend: "Phasors") -> "Phasors":
         """Return the difference of phasors of the same names; what they share, cancels.
 
         Raises
@@ -128,13 +130,13 @@ class Phasors:
         ConfigurationError
             If the names differ.
         """
-        if self.names != other.names:
+        if self.names != subtrahend.names:
             raise ConfigurationError(
-                f"{', '.join(other.names)} cannot be taken off {', '.join(self.names)}"
+                f"{', '.join(subtrahend.names)} cannot be taken off {', '.join(self.names)}"
             )
-        own = np.eye(2 * len(self.values))
-        apart = stacked([self.real, other.real]).mapped(np.hstack([own, -own]))
-        return replace(self, real=apart)
+        identity = np.eye(2 * len(self.values))
+        difference = stacked([self.real, subtrahend.real]).mapped(np.hstack([identity, -identity]))
+        return replace(self, real=difference)
 
 
 def joined(first: Phasors, second: Phasors) -> Phasors:

@@ -80,7 +80,7 @@ class Quoting:
 
     def factor(self, term: Term) -> float:
         """Return the quoted coefficient over that of the product."""
-        if self.names is not Names.ABKOWITZ or any("|" in one for one in term.factors):
+        if self.names is not Names.ABKOWITZ or any("|" in factor for factor in term.factors):
             return 1.0
         return float(math.prod(map(math.factorial, Counter(term.factors).values())))
 

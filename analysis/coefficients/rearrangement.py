@@ -58,17 +58,19 @@ class Refits:
     evidence: float
 
 
-def alternatives(given: Arrangement) -> tuple[tuple[str, Arrangement], ...]:
+def alternatives(arrangement: Arrangement) -> tuple[tuple[str, Arrangement], ...]:
     """Return each arrangement that differs in one key, with that key's name.
 
     A turntable is no alternative to two struts, nor they to it: their channels are others.
     """
     arrangements = []
-    table = given.joint is Joint.YAW_TABLE
-    for key in (field.name for field in fields(given) if not (table and field.name in _OF_STRUTS)):
-        stated = getattr(given, key)
+    table = arrangement.joint is Joint.YAW_TABLE
+    for key in (
+        field.name for field in fields(arrangement) if not (table and field.name in _OF_STRUTS)
+    ):
+        stated = getattr(arrangement, key)
         ways = [way for way in type(stated) if way not in (stated, Joint.YAW_TABLE)]
-        arrangements += [(key, replace(given, **{key: way})) for way in ways]
+        arrangements += [(key, replace(arrangement, **{key: way})) for way in ways]
     return tuple(arrangements)
 
 
@@ -87,8 +89,8 @@ def refits(
     """
     if not all(len(cycle.readings) for cycle in cycles):
         return ()
-    given = cycles[0].arrangement
-    ways = alternatives(given)
+    arrangement = cycles[0].arrangement
+    ways = alternatives(arrangement)
     table = _parts(cycles, [way for _, way in ways])
     refitted = [_refitted(fit, table)[0] for fit in fits]
     values = np.concatenate(refitted, axis=1) if fits else np.zeros((len(ways), 0))
@@ -105,25 +107,27 @@ def _parts(cycles: Sequence[BodyCycle], ways: Sequence[Arrangement]) -> dict[str
     for cycle in cycles:
         by_kind.setdefault((cycle.channels, cycle.readings.shape), []).append(cycle)
     parts_of_key: dict[str, FloatArray] = {}
-    for alike in by_kind.values():
-        gross, tares = zip(*(_gross(alike, way) for way in ways), strict=True)
-        parts = _on_hull(np.stack(gross), Tare.stacked(tares), alike)
-        parts_of_key |= {part.name: parts[:, k].T for k, part in enumerate(alike)}
+    for kind_cycles in by_kind.values():
+        gross, tares = zip(*(_gross(kind_cycles, way) for way in ways), strict=True)
+        parts = _on_hull(np.stack(gross), Tare.stacked(tares), kind_cycles)
+        parts_of_key |= {part.name: parts[:, k].T for k, part in enumerate(kind_cycles)}
     return parts_of_key
 
 
 def _gross(cycles: Sequence[BodyCycle], way: Arrangement) -> tuple[FloatArray, Tare]:
     """Return gross parts and ``tare``; NaN where the alternative does not let them be had."""
     speed, drift = np.array([[cycle.speed_m_s, cycle.drift_rad] for cycle in cycles]).T[..., None]
-    own = np.stack([interleaved(cycle.phasors.values) for cycle in cycles])
+    stated_parts = np.stack([interleaved(cycle.phasors.values) for cycle in cycles])
     rests = Tare.stacked([cycle.tare for cycle in cycles])
     stated = cycles[0].arrangement
     if not drift.any() and replace(way, drift_by=stated.drift_by) == stated:
-        return own, rests
+        return stated_parts, rests
     first = cycles[0]
     rolling = len([name for name in first.channels if name in HEELED[len(CHANNELS) :]])
     heeled = first.heel is not None and first.heel.gauges is HeelGauges.HEELED
-    varies = np.stack([one.varies_m_s * np.ones(instants_of(first.orders + 1)) for one in cycles])
+    varies = np.stack(
+        [cycle.varies_m_s * np.ones(instants_of(first.orders + 1)) for cycle in cycles]
+    )
     half = first.half_spacing_m
     geometry = Geometry(first.plane, half, way, speed, drift, heeled, varies)
     omega = np.array([2.0 * np.pi * cycle.frequency_hz for cycle in cycles])
@@ -131,7 +135,7 @@ def _gross(cycles: Sequence[BodyCycle], way: Arrangement) -> tuple[FloatArray, T
     try:
         return parts_of_struts(readings, geometry, omega, rolling)
     except DataError:  # no force_x, or the struts cannot reach
-        return np.full_like(own, np.nan), rests
+        return np.full_like(stated_parts, np.nan), rests
 
 
 def _refitted(fit: CycleFit, table: Mapping[str, FloatArray]) -> tuple[FloatArray, FloatArray]:
@@ -154,8 +158,8 @@ def _evidence(fit: CycleFit, table: Mapping[str, FloatArray]) -> FloatArray:
         return np.zeros(len(squares))
     stated = fit.chi_square[row]
     dispersion = np.maximum(1.0, np.minimum(squares[:, row], stated) / spare)
-    apart = (stated - squares[:, row]) / (2.0 * dispersion)
-    return np.where(dispersion > DESCRIBES, 0.0, apart)
+    difference = (stated - squares[:, row]) / (2.0 * dispersion)
+    return np.where(dispersion > DESCRIBES, 0.0, difference)
 
 
 def _on_hull(gross: FloatArray, tare: Tare, cycles: Sequence[BodyCycle]) -> FloatArray:
@@ -194,8 +198,8 @@ def _on_hull(gross: FloatArray, tare: Tare, cycles: Sequence[BodyCycle]) -> Floa
     )
     restoring = np.stack([cycle.restoring for cycle in cycles])
     waves_in = np.concatenate(inputs, axis=-2)
-    asked = loads_asked(waves_in, plane, tare, restoring, HEEL in channels)[..., loads, :]
-    net = HullParts(count, channels).parts(gross, harmonics(asked, count - 1))
+    asked_waves = loads_asked(waves_in, plane, tare, restoring, HEEL in channels)[..., loads, :]
+    net = HullParts(count, channels).parts(gross, harmonics(asked_waves, count - 1))
     turned = np.empty_like(net)
     for k, cycle in enumerate(cycles):
         pace, speed = float(omega[k]), cycle.speed_m_s

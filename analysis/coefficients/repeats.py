@@ -113,35 +113,35 @@ def outliers(repeating: Repeatability) -> tuple[Outlier, ...]:
 
 
 def _outlier(kind: RepeatedMotion, k: int, load: str, ratio: float, limit: float) -> Outlier:
-    others = tuple(run for run in kind.runs if run != kind.runs[k])
+    partners = tuple(run for run in kind.runs if run != kind.runs[k])
     message = (
         f"{kind.runs[k]}: its {load} stands {ratio:.3g} standard uncertainties from the mean of "
-        f"{', '.join(others)} (limit {limit:.3g}); look at its record, and leave it out if there "
+        f"{', '.join(partners)} (limit {limit:.3g}); look at its record, and leave it out if there "
         "is a reason"
     )
-    return Outlier(kind.runs[k], others, load, ratio, limit, message)
+    return Outlier(kind.runs[k], partners, load, ratio, limit, message)
 
 
 def _distance(
     kinds: Sequence[RepeatedMotion], kind: RepeatedMotion, k: int, row: int
 ) -> tuple[float, float]:
     """Distance of one run from the others' mean over its scale, and that scale's freedom."""
-    others = np.delete(kind.loads[:, row], k)
-    apart = kind.loads[k, row] - others.mean()
-    whole, freedom = 0.0, 0.0
+    partner_loads = np.delete(kind.loads[:, row], k)
+    deviation = kind.loads[k, row] - partner_loads.mean()
+    squares, freedom = 0.0, 0.0
     for kind_of_motion in kinds:
         loads = (
             np.delete(kind_of_motion.loads, k, axis=0)
             if kind_of_motion is kind
             else kind_of_motion.loads
         )
-        whole += float(_squares(loads)[row]) * (kind.size[row] / kind_of_motion.size[row]) ** 2
+        squares += float(_squares(loads)[row]) * (kind.size[row] / kind_of_motion.size[row]) ** 2
         freedom += 2.0 * (len(loads) - 1)
-    between = whole / freedom
+    between = squares / freedom
     within = float(kind.variance[:, row].mean())
     widest = max(between, within)
-    scale = math.sqrt(widest * (1.0 + 1.0 / len(others))) + 1e-12 * float(kind.size[row])
-    largest = max(abs(apart.real), abs(apart.imag))
+    scale = math.sqrt(widest * (1.0 + 1.0 / len(partner_loads))) + 1e-12 * float(kind.size[row])
+    largest = max(abs(deviation.real), abs(deviation.imag))
     return largest / scale, freedom if between >= within else float(kind.freedom[row])
 
 
@@ -161,22 +161,22 @@ def _groups(cycles: Sequence[BodyCycle]) -> list[list[BodyCycle]]:
     return groups
 
 
-def _ratio(first: BodyCycle, other: BodyCycle) -> complex:
-    own, others_own = first.at_struts, other.at_struts
-    return complex(np.vdot(own, others_own) / np.vdot(own, own))
+def _ratio(first: BodyCycle, second: BodyCycle) -> complex:
+    first_motion, second_motion = first.at_struts, second.at_struts
+    return complex(np.vdot(first_motion, second_motion) / np.vdot(first_motion, first_motion))
 
 
-def _same(first: BodyCycle, other: BodyCycle) -> bool:
-    if abs(other.frequency_hz - first.frequency_hz) > _SAME_FREQUENCY * first.frequency_hz:
+def _same(first: BodyCycle, second: BodyCycle) -> bool:
+    if abs(second.frequency_hz - first.frequency_hz) > _SAME_FREQUENCY * first.frequency_hz:
         return False
-    if abs(other.speed_m_s - first.speed_m_s) > 1e-2 * max(abs(first.speed_m_s), 0.01):
+    if abs(second.speed_m_s - first.speed_m_s) > 1e-2 * max(abs(first.speed_m_s), 0.01):
         return False
-    if abs(other.drift_rad - first.drift_rad) > 1e-3:
+    if abs(second.drift_rad - first.drift_rad) > 1e-3:
         return False
-    ratio = _ratio(first, other)
-    left = np.abs(other.at_struts - ratio * first.at_struts).max()
-    alike = abs(abs(ratio) - 1.0) < _SAME_MOTION
-    return bool(alike and left < _SAME_MOTION * np.abs(first.at_struts).max())
+    ratio = _ratio(first, second)
+    deviation = np.abs(second.at_struts - ratio * first.at_struts).max()
+    same_size = abs(abs(ratio) - 1.0) < _SAME_MOTION
+    return bool(same_size and deviation < _SAME_MOTION * np.abs(first.at_struts).max())
 
 
 def _size(cycle: BodyCycle) -> FloatArray:
@@ -186,10 +186,17 @@ def _size(cycle: BodyCycle) -> FloatArray:
 
 def _kind(cycles: Sequence[BodyCycle]) -> RepeatedMotion:
     loads = np.stack([cycle.loads / _ratio(cycles[0], cycle) for cycle in cycles])
-    own = [_loads(cycle.phasors) for cycle in cycles]
-    variance = np.maximum(_variance(own), _variance([_loads(one.hull.phasors) for one in cycles]))
-    each = np.stack([one.degrees_of_freedom.reshape(2, 2).min(axis=1) for one in own])
-    freedom = effective_freedom(variance, each)
+    loads_of_cycles = [_loads(cycle.phasors) for cycle in cycles]
+    variance = np.maximum(
+        _variance(loads_of_cycles), _variance([_loads(cycle.hull.phasors) for cycle in cycles])
+    )
+    freedoms = np.stack(
+        [
+            cycle_loads.degrees_of_freedom.reshape(2, 2).min(axis=1)
+            for cycle_loads in loads_of_cycles
+        ]
+    )
+    freedom = effective_freedom(variance, freedoms)
     names = tuple(cycle.name for cycle in cycles)
     return RepeatedMotion(names, loads, variance, _size(cycles[0]), freedom)
 
@@ -201,7 +208,7 @@ def _loads(phasors: Phasors) -> UncertainValues:
 
 def _variance(loads: Sequence[UncertainValues]) -> FloatArray:
     """Of both loads of each run, the mean of their two parts, shape ``(runs, 2)``."""
-    parts = np.stack([one.standard_uncertainty**2 for one in loads])
+    parts = np.stack([run_loads.standard_uncertainty**2 for run_loads in loads])
     return np.asarray(parts.reshape(-1, 2, 2).mean(axis=2))
 
 

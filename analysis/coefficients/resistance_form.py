@@ -56,11 +56,11 @@ def fit_surge(
     if not any(cycle.frequency_hz for cycle in cycles):
         return fit_terms(cycles, terms, constant.names, orders, stated=stated), None
     try:
-        other = fit_terms(cycles, terms, constant.names, orders, stated=stated)
+        squared = fit_terms(cycles, terms, constant.names, orders, stated=stated)
     except DataError:
         return constant, None
-    squares = (float(other.chi_square[SURGE]), float(constant.chi_square[SURGE]))
-    spare = float(other.data[SURGE]) - len(names)
+    squares = (float(squared.chi_square[SURGE]), float(constant.chi_square[SURGE]))
+    spare = float(squared.data[SURGE]) - len(names)
     dispersion = max(1.0, squares[0] / spare) if spare > 0 else 1.0
     difference = (squares[1] - squares[0]) / dispersion
     ratio = math.exp(min(difference / 2.0, 700.0))
@@ -68,11 +68,11 @@ def fit_surge(
         return constant, None
     count, weight = len(names), 1.0 / (1.0 + 1.0 / ratio)
     criteria = (squares[0] / dispersion + 2.0 * count, squares[1] / dispersion + 2.0 * count)
-    why = (
+    reason = (
         f"a resistance that goes with u^2 as the model turns is {times(ratio)} as well supported "
         "as a constant one: X_0 is that at the carriage's speed"
     )
-    return other, FormChoice(
+    return squared, FormChoice(
         LOAD_WORDS[SURGE],
         tuple(cycle.name for cycle in cycles),
         (BY_SPEED, CONSTANT),
@@ -84,5 +84,5 @@ def fit_surge(
         BY_SPEED,
         BY_SPEED,
         ratio,
-        why,
+        reason,
     )

@@ -93,7 +93,7 @@ def with_decays(
             coefficients,
             entries=(*coefficients.entries, *entries),
             uncertain=stacked([coefficients.uncertain, uncertain]),
-            trials=TrialColumns(trials.count, *(np.append(one, empty) for one in columns)),
+            trials=TrialColumns(trials.count, *(np.append(column, empty) for column in columns)),
         )
     return coefficients
 
@@ -121,8 +121,8 @@ def _of_decay(
         stiff = per_metre * metacentric - of_flow
         return np.stack([-2.0 * ratio * stiff / omega, inertia - stiff / omega**2], axis=-2)
 
-    at = np.array([decay.period_s, decay.damping_ratio, heel.gm_m, heel.inertia_kg_m2, k_phi])
-    values, slopes = (one[..., 0] for one in pointwise(damping_and_added, at[:, np.newaxis]))
+    point = np.array([decay.period_s, decay.damping_ratio, heel.gm_m, heel.inertia_kg_m2, k_phi])
+    values, slopes = (dual[..., 0] for dual in pointwise(damping_and_added, point[:, np.newaxis]))
     stated = {
         f"period of the roll decay at {decay.speed_m_s:g} m/s": (
             decay.u_period_s,
@@ -135,13 +135,14 @@ def _of_decay(
         "gm_m": (decay.u_gm_m, np.inf),
         "inertia_x_kg_m2": (decay.u_inertia_kg_m2, np.inf),
     }
-    both = np.arange(len(NAMES))
+    both_rows = np.arange(len(NAMES))
     contributions = [
-        Contribution(label, freedom, both, spread * slopes[:, [k]])
+        Contribution(label, freedom, both_rows, spread * slopes[:, [k]])
         for k, (label, (spread, freedom)) in enumerate(stated.items())
         if spread > 0.0
     ]
     contributions += [
-        replace(one, rows=both, parts=slopes[:, [-1]] @ one.dense(1)) for one in flow.contributions
+        replace(contribution, rows=both_rows, parts=slopes[:, [-1]] @ contribution.dense(1))
+        for contribution in flow.contributions
     ]
     return UncertainValues(values, tuple(contributions))

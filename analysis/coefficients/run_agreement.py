@@ -23,8 +23,8 @@ _DETERMINED = 1e6  # condition of scaled columns beyond which the others tell no
 def run_flags(fit: CycleFit) -> Iterator[Flag]:
     """Yield ``data_disagree`` for each load with a run that stands out."""
     for row, _ in fit.problem.rows:
-        found = run_agreement(fit, row)
-        yield from (flag.of(*found.stands_out) for flag in found.flags())
+        agreement = run_agreement(fit, row)
+        yield from (flag.of(*agreement.stands_out) for flag in agreement.flags())
 
 
 def run_agreement(fit: CycleFit, row: int) -> Redundancy:
@@ -39,7 +39,7 @@ def run_agreement(fit: CycleFit, row: int) -> Redundancy:
     runs, each = len(problem.numbers.cycles), int(problem.real.sum())
     owner = np.repeat(np.arange(runs), len(target) // runs)
     freedom = int(fit.data[row]) - len(columns)
-    whole = float(fit.chi_square[row])
+    chi_square = float(fit.chi_square[row])
     without = np.full((runs, len(columns)), np.nan)
     chance, departure = np.ones(runs), np.zeros(runs)
     for k in range(runs if freedom > each else 0):
@@ -48,17 +48,17 @@ def run_agreement(fit: CycleFit, row: int) -> Redundancy:
         if solved is None:
             continue
         without[k] = solved
-        left = float(((target[rest] - matrix[rest] @ solved) ** 2).sum())
-        fall, spare = max(whole - left, 0.0), freedom - each
-        by_others = f.sf(fall / each / max(left / spare, 1e-300), each, spare)
+        remaining = float(((target[rest] - matrix[rest] @ solved) ** 2).sum())
+        fall, spare = max(chi_square - remaining, 0.0), freedom - each
+        by_others = f.sf(fall / each / max(remaining / spare, 1e-300), each, spare)
         chance[k] = max(float(by_others), float(chi2.sf(fall, each)))
         departure[k] = min(float(norm.isf(chance[k] / 2.0)), math.sqrt(fall))
     names = tuple(fit.names[k] for k in columns)
     data = tuple(cycle.name for cycle in problem.numbers.cycles)
-    what = f"{LOAD_WORDS[row]} of {len(data)} runs"
+    subject = f"{LOAD_WORDS[row]} of {len(data)} runs"
     values = fit.values[columns]
     return Redundancy(
-        what, names, data, values, without, departure, chance, whole, freedom, math.nan
+        subject, names, data, values, without, departure, chance, chi_square, freedom, math.nan
     )
 
 

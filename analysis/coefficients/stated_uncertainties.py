@@ -97,8 +97,8 @@ class StatedUncertainties:
         """Draw deviations, shape ``(count, len(STATED))``: Student's t where repeats are behind."""
         deviations = generator.standard_normal((count, len(STATED))) * self.vector
         for k, name in enumerate(STATED):
-            own = deviations[None, :, k]
-            deviations[:, k] = shaped(own, Distribution.NORMAL, self.freedom(name), generator)[0]
+            column = deviations[None, :, k]
+            deviations[:, k] = shaped(column, Distribution.NORMAL, self.freedom(name), generator)[0]
         return deviations
 
 

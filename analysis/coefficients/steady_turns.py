@@ -104,9 +104,9 @@ def turn_cycle(turn: SteadyTurn, half_spacing_m: float, body: Body) -> BodyCycle
             f"scatter of {name} in {turn.run}",
             math.inf,
             np.array([2 * channels.index(name)]),
-            np.array([[own]]),
+            np.array([[deviation]]),
         )
-        for name, own in spread.items()
+        for name, deviation in spread.items()
     )
     phasors = Phasors.of(
         labels(channels, 0),
@@ -176,7 +176,7 @@ def of_turns(turns: Sequence[SteadyTurn]) -> StatedUncertainties:
     """Return what is uncertain of the circles themselves: of several runs the largest."""
     return StatedUncertainties(
         turn_rate_relative=max(
-            (one.u_turn_rate_rad_s / abs(one.turn_rate_rad_s) for one in turns), default=0.0
+            (turn.u_turn_rate_rad_s / abs(turn.turn_rate_rad_s) for turn in turns), default=0.0
         ),
-        turn_radius_m=max((one.u_radius_m for one in turns), default=0.0),
+        turn_radius_m=max((turn.u_radius_m for turn in turns), default=0.0),
     )

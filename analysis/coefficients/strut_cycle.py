@@ -92,21 +92,21 @@ class StrutCycle:
     def _mapped(
         self, names: tuple[str, ...], matrix: Callable[[int], ComplexArray | FloatArray]
     ) -> "StrutCycle":
-        whole = np.eye(len(self.phasors.names), dtype=np.complex128)
+        matrices = np.eye(len(self.phasors.names), dtype=np.complex128)
         for n in range(self.orders + 1):
             places = [self.phasors.index(at_order(name, n)) for name in names]
-            whole[np.ix_(places, places)] = matrix(n)
-        return replace(self, phasors=self.phasors.mapped(whole))
+            matrices[np.ix_(places, places)] = matrix(n)
+        return replace(self, phasors=self.phasors.mapped(matrices))
 
     @property
     def geometry(self) -> Geometry:
         """Pivot, joint, gauges, drift, heel and speed of the rig in this run."""
         heeled = self.heel is not None and self.heel.gauges is HeelGauges.HEELED
-        own = replace(Geometry.of(self.oscillator, self.set_point), gauges_heel=heeled)
+        geometry = replace(Geometry.of(self.oscillator, self.set_point), gauges_heel=heeled)
         if self.carriage is None:
-            return own
+            return geometry
         (speed,) = waves(interleaved(self.carriage), 1)
-        return replace(own, varies_m_s=speed - own.speed_m_s)
+        return replace(geometry, varies_m_s=speed - geometry.speed_m_s)
 
     def heeled(self, heel: Heel) -> "StrutCycle":
         """Return it with the heel of its model: as it was set, else as it was measured.
@@ -127,14 +127,14 @@ class StrutCycle:
         names = labels((HEEL_ANGLE.name,), self.orders)
         rest = np.zeros(len(names), dtype=np.complex128)
         rest[0] = self.set_point.heel_rad
-        found = Phasors.of(names, ("rad",) * len(names), rest)
-        others = [name for name in self.phasors.names if name not in names]
-        phasors = self.phasors.select(others)
+        heel_phasors = Phasors.of(names, ("rad",) * len(names), rest)
+        kept_names = [name for name in self.phasors.names if name not in names]
+        phasors = self.phasors.select(kept_names)
         if heel.held is Held.FREE:
-            own = self.phasors.select(names)
-            shifted = own.real.values + found.real.values
-            found = replace(own, real=replace(own.real, values=shifted))
-        return replace(self, phasors=joined(phasors, found), heel=heel)
+            record = self.phasors.select(names)
+            shifted = record.real.values + heel_phasors.real.values
+            heel_phasors = replace(record, real=replace(record.real, values=shifted))
+        return replace(self, phasors=joined(phasors, heel_phasors), heel=heel)
 
     def model(self) -> BodyCycle:
         """Return motion and loads of the model about the midpoint between the struts.
@@ -144,9 +144,9 @@ class StrutCycle:
         point, oscillator = self.set_point, self.oscillator
         geometry = self.geometry
         recorded = [n for n in (FORCE_X.name, *_ROLLING) if at_order(n, 0) in self.phasors.names]
-        more = recorded if self.heel is not None else [n for n in recorded if n not in _ROLLING]
-        inputs = (*DISPLACEMENTS, *FORCES, *more)
-        roll = tuple(_ROLLING[name] for name in more if name in _ROLLING)
+        channels = recorded if self.heel is not None else [n for n in recorded if n not in _ROLLING]
+        inputs = (*DISPLACEMENTS, *FORCES, *channels)
+        roll = tuple(_ROLLING[name] for name in channels if name in _ROLLING)
         ordered = self.phasors.select(labels(inputs, self.orders))
         asked = any(flag.code == MOTION_ASKED.code for flag in self.flags)
         model = of_struts(ordered, geometry, self.frequency_hz, self.orders, asked=asked, roll=roll)

@@ -40,19 +40,19 @@ class Tare:
         """Return that of a rig which moves so, with or without the X gauge (3 or 2)."""
         still = np.zeros((*np.shape(geometry.drift_rad)[:-1], 2, 1))
         at_rest = replace(geometry, varies_m_s=0.0)
-        there = motion(at_rest, DrivenDisplacements(still, still, still))
+        rest_motion = motion(at_rest, DrivenDisplacements(still, still, still))
         line = motion(geometry, moved).line_rad
         if gauges < len(ROWS):
             check_surge_spared(geometry)
-        read = np.linalg.inv(load_matrix(geometry, there.line_rad))[..., :gauges, :]
+        read = np.linalg.inv(load_matrix(geometry, rest_motion.line_rad))[..., :gauges, :]
         turned = (load_matrix(geometry, line)[..., :gauges, :gauges] @ read).swapaxes(-1, -2)
-        return cls(there.across_m[..., 0], np.moveaxis(turned, -3, -1))
+        return cls(rest_motion.across_m[..., 0], np.moveaxis(turned, -3, -1))
 
     @classmethod
-    def stacked(cls, several: Sequence["Tare"]) -> "Tare":
+    def stacked(cls, tares: Sequence["Tare"]) -> "Tare":
         """Return several as one, with an axis before theirs."""
         return cls(
-            np.stack([one.place_m for one in several]), np.stack([one.of_load for one in several])
+            np.stack([tare.place_m for tare in tares]), np.stack([tare.of_load for tare in tares])
         )
 
     def tared(self, load: FloatArray) -> FloatArray:

@@ -39,10 +39,10 @@ def slopes_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
     for k, term in enumerate(terms):
         factors = [_factor(factor, moves) for factor in term.product]
         for n, name in enumerate(term.product):
-            others = _product(factors[:n] + factors[n + 1 :], moves)
+            rest = _product(factors[:n] + factors[n + 1 :], moves)
             place = MOVES.index(name.strip("|"))
-            own = np.sign(moves[..., place, :]) if "|" in name else 1.0
-            slopes[..., k, place, :] += own * others / term.divisor
+            sign = np.sign(moves[..., place, :]) if "|" in name else 1.0
+            slopes[..., k, place, :] += sign * rest / term.divisor
     return slopes
 
 

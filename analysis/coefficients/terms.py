@@ -61,7 +61,7 @@ class Term:
     @property
     def lengths(self) -> int:
         """Powers of length in a system without dimensions: rotations, and one for a moment."""
-        return sum(letter_of(one) in _TURNING for one in self.factors) + self._is_moment
+        return sum(letter_of(factor) in _TURNING for factor in self.factors) + self._is_moment
 
     @property
     def rates(self) -> int:
@@ -76,12 +76,12 @@ class Term:
     @property
     def angles(self) -> int:
         """How often an angle that is set, the rudder's or the heel, is a factor."""
-        return sum(letter_of(one) in ANGLES for one in self.factors)
+        return sum(letter_of(factor) in ANGLES for factor in self.factors)
 
     @property
     def of_roll(self) -> bool:
         """Whether it is of the moment in roll, or by heel or roll."""
-        rolls = {HEEL_LETTER, "p"} & {letter_of(one) for one in self.factors}
+        rolls = {HEEL_LETTER, "p"} & {letter_of(factor) for factor in self.factors}
         return self.row == ROLL or bool(rolls)
 
     @property
@@ -120,7 +120,7 @@ def term_of(name: str, plane: Plane) -> Term:
     velocities = VELOCITY_LETTERS[plane] + AHEAD_LETTER + RUDDER_LETTER
     loads, rolling = _loads(plane), {HEEL_LETTER, "p"} if plane is Plane.HORIZONTAL else set()
     match = _WORD.fullmatch(name)
-    letters = {letter_of(one) for one in _FACTOR.findall(match[2])} if match else set()
+    letters = {letter_of(factor) for factor in _FACTOR.findall(match[2])} if match else set()
     strange = not letters <= {*velocities, *rolling} or (match is not None and "ddot" in match[2])
     if match is None or match[1] not in loads or strange:
         example = "Y_v, Y_vvr, N_r|v|, X_vr" if plane is Plane.HORIZONTAL else "Z_w, Z_w|w|, M_qqq"
@@ -131,8 +131,8 @@ def term_of(name: str, plane: Plane) -> Term:
     row = loads.index(match[1])
     common = dict(zip(velocities, "vr" + AHEAD_LETTER + RUDDER_LETTER, strict=True))
     factors = [
-        one.replace(letter_of(one), common.get(letter_of(one), letter_of(one)), 1)
-        for one in _FACTOR.findall(match[2])
+        factor.replace(letter_of(factor), common.get(letter_of(factor), letter_of(factor)), 1)
+        for factor in _FACTOR.findall(match[2])
     ]
     return Term(row, tuple(factors))
 
@@ -146,8 +146,8 @@ def name_of_term(term: Term, plane: Plane) -> str:
     """Return the name of a term: the inverse of :func:`term_of`."""
     letters = dict(zip("vr", VELOCITY_LETTERS[plane], strict=True))
     factors = [
-        one.replace(letter_of(one), letters.get(letter_of(one), letter_of(one)), 1)
-        for one in term.factors
+        factor.replace(letter_of(factor), letters.get(letter_of(factor), letter_of(factor)), 1)
+        for factor in term.factors
     ]
     return f"{_loads(plane)[term.row]}_{''.join(factors) or '0'}"
 

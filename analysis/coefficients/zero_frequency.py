@@ -79,18 +79,20 @@ def extrapolate(name: str, frequency_hz: Sequence[float], values: UncertainValue
         between += float(np.max((singles - singles[-1]) ** 2))  # nothing checks the highest one
     lack = (dispersion - 1.0) * float((weights @ np.array(fits)) ** 2 @ variance)
     label = f"extrapolation of {name}"
-    whole = value.plus(label, np.array([np.sqrt(between + lack)]))
-    return Extrapolation(whole, tuple(float(weight) for weight in weights), checked)
+    total = value.plus(label, np.array([np.sqrt(between + lack)]))
+    return Extrapolation(total, tuple(float(weight) for weight in weights), checked)
 
 
 def own_variance(values: UncertainValues) -> FloatArray:
     """Return the scatter that the values do not share; stated uncertainty moves them together."""
     by_input = values.variances()
-    own = np.array(
+    scattered = np.array(
         [np.isfinite(contribution.degrees_of_freedom) for contribution in values.contributions],
         dtype=bool,
     )
-    variance = np.asarray(by_input[own].sum(axis=0)) if own.any() else np.zeros(len(values))
+    variance = (
+        np.asarray(by_input[scattered].sum(axis=0)) if scattered.any() else np.zeros(len(values))
+    )
     size = np.abs(values.values).max() + 1e-300
     return np.asarray(np.maximum(np.nan_to_num(variance), (1e-9 * size) ** 2))
 
@@ -109,5 +111,5 @@ def _at_zero(pace: FloatArray, variance: FloatArray, degree: int) -> FloatArray:
 def _chi_square(pace: FloatArray, variance: FloatArray, values: FloatArray, degree: int) -> float:
     root = 1.0 / np.sqrt(variance)
     design = _design(pace, degree) * root[:, None]
-    left = values * root - design @ np.linalg.lstsq(design, values * root, rcond=None)[0]
-    return float(left @ left)
+    residual = values * root - design @ np.linalg.lstsq(design, values * root, rcond=None)[0]
+    return float(residual @ residual)

@@ -27,21 +27,23 @@ def least_lag(
     for _ in range(_TURNS):
         best = _inside(problem, best, period_s)
         limit = _limit(best)
-        beside = [_moved(problem, best, turns * period_s) for turns in (-1.0, 1.0, -0.5, 0.5)]
-        growth = [_growth(best, one) for one in beside]
+        neighbours = [_moved(problem, best, turns * period_s) for turns in (-1.0, 1.0, -0.5, 0.5)]
+        growth = [_growth(best, neighbour) for neighbour in neighbours]
         if min(growth) < -limit:
-            better = beside[int(np.argmin(growth))]
-            if better is None:
+            nearest = neighbours[int(np.argmin(growth))]
+            if nearest is None:
                 break
-            best = better
+            best = nearest
             continue
         model = best.model
         if min(growth[:2]) > limit:
             return model, None
         if model.gains[0] < 0.0 and min(growth[2:]) <= limit:
-            half = beside[2 + int(np.argmin(growth[2:]))]
+            half = neighbours[2 + int(np.argmin(growth[2:]))]
             model = model if half is None else half.model
-        lags = [one.model.alignment.lag_s for one in beside[:2] if one is not None]
+        lags = [
+            neighbour.model.alignment.lag_s for neighbour in neighbours[:2] if neighbour is not None
+        ]
         period_s = (max(lags) - min(lags)) / 2.0 if len(lags) == 2 else period_s  # as it fits best
         turns = round(model.alignment.lag_s / period_s)
         where = replace(model.alignment, lag_s=model.alignment.lag_s - turns * period_s)
@@ -99,13 +101,13 @@ def _moved(problem: ComparisonProblem, best: ComparisonFit, later_s: float) -> C
     where = best.model.alignment
     model = replace(best.model, alignment=replace(where, lag_s=where.lag_s + later_s))
     try:
-        found = fit(problem, model)
+        moved_fit = fit(problem, model)
     except NothingInCommonError:
         return None
-    return found if found.count == best.count else None
+    return moved_fit if moved_fit.count == best.count else None
 
 
-def _growth(best: ComparisonFit, other: ComparisonFit | None) -> float:
-    if other is None:
+def _growth(best: ComparisonFit, rival: ComparisonFit | None) -> float:
+    if rival is None:
         return np.inf
-    return other.squares_under(best.noise, best.stands_out) - best.squares
+    return rival.squares_under(best.noise, best.stands_out) - best.squares

@@ -65,8 +65,8 @@ def find_band(first: FloatArray, second: FloatArray, rates_hz: tuple[float, floa
     first, second
         Without mean and slope.
     """
-    found = [edge_of(values, rate) for values, rate in zip((first, second), rates_hz, strict=True)]
-    motion_hz, edge_hz = min(found, key=lambda one: one[1])
+    edges = [edge_of(values, rate) for values, rate in zip((first, second), rates_hz, strict=True)]
+    motion_hz, edge_hz = min(edges, key=lambda edge: edge[1])
     return Band(motion_hz, edge_hz, min(_HARMONICS * edge_hz, _BELOW_NYQUIST * min(rates_hz)))
 
 
@@ -91,8 +91,8 @@ def without_line(values: FloatArray) -> FloatArray:
     """Return values without their mean and their slope."""
     place = np.linspace(-1.0, 1.0, len(values))
     slope = float(place @ values) / float(place @ place)
-    left: FloatArray = values - values.mean() - slope * place
-    return left
+    residual: FloatArray = values - values.mean() - slope * place
+    return residual
 
 
 def track(
@@ -141,5 +141,5 @@ def _kernels(
     size = 4 * half * _FINE
     turn = 2j * np.pi * np.fft.rfftfreq(size, 1.0 / (_FINE * fine_hz))
     spectrum = np.fft.rfft(low, size)
-    made = (np.fft.irfft(spectrum * turn**order, size) for order in orders)
-    return half, [one[: len(place) : _FINE] for one in made]
+    filters = (np.fft.irfft(spectrum * turn**order, size) for order in orders)
+    return half, [taps[: len(place) : _FINE] for taps in filters]

@@ -69,8 +69,8 @@ def compare(
             "gain and lag explain half of its power; is it the same motion, at the same time? "
             "Allow a larger lag, or state the derivative, the band or the part of the record"
         ) from None
-    found = FittedComparison(problem, best, modulo_s, dead_band, seen=best is not straight)
-    return told(found, leading, following, settings)
+    fitted = FittedComparison(problem, best, modulo_s, dead_band, seen=best is not straight)
+    return told(fitted, leading, following, settings)
 
 
 def _signal(recording: Recording, name: str, from_s: float, to_s: float) -> ComparedSignal:
@@ -93,14 +93,14 @@ def _signal(recording: Recording, name: str, from_s: float, to_s: float) -> Comp
         f"{start_s:.3f} s to {end_s:.3f} s"
     )
     flags = (Flag("longest_stretch", Severity.WARNING, message, name),)
-    kept = without_line(values[start:stop])
-    return ComparedSignal(called, kept, part.sample_rate_hz, float(start_s), unit, flags)
+    stretch_values = without_line(values[start:stop])
+    return ComparedSignal(called, stretch_values, part.sample_rate_hz, float(start_s), unit, flags)
 
 
 def _most_lag(
     leading: ComparedSignal, following: ComparedSignal, settings: ComparisonSettings
 ) -> float:
-    shorter_s = min(len(one.values) / one.rate_hz for one in (leading, following))
+    shorter_s = min(len(signal.values) / signal.rate_hz for signal in (leading, following))
     return settings.most_lag_s or min(_MOST_LAG_S, shorter_s / 4.0)
 
 
@@ -110,15 +110,15 @@ def _problem(
     settings: ComparisonSettings,
     most_lag_s: float,
 ) -> ComparisonProblem:
-    one = leading[0]
-    ends_s = [a.start_s + len(a.values) / a.rate_hz + most_lag_s for a in (one, following)]
-    if not (one.start_s < ends_s[1] and following.start_s < ends_s[0]):
+    lead = leading[0]
+    ends_s = [a.start_s + len(a.values) / a.rate_hz + most_lag_s for a in (lead, following)]
+    if not (lead.start_s < ends_s[1] and following.start_s < ends_s[0]):
         raise DataError(
-            f"{one.name} and {following.name}: the one begins at {one.start_s:.3f} s and the other "
-            f"at {following.start_s:.3f} s, more than the largest lag of {most_lag_s:g} s after "
-            "its end; allow a larger one"
+            f"{lead.name} and {following.name}: the one begins at {lead.start_s:.3f} s and the "
+            f"other at {following.start_s:.3f} s, more than the largest lag of {most_lag_s:g} s "
+            "after its end; allow a larger one"
         )
-    band = find_band(one.values, following.values, (one.rate_hz, following.rate_hz))
+    band = find_band(lead.values, following.values, (lead.rate_hz, following.rate_hz))
     low_hz, high_hz = settings.band_hz or (0.0, band.top_hz)
     if settings.band_hz is not None:
         band = Band(min(band.motion_hz, high_hz), max(high_hz, band.edge_hz), high_hz)
@@ -140,12 +140,12 @@ def _grown(problem: ComparisonProblem, most_lag_s: float) -> ComparisonFit:
     model = Model(guess, np.array([1.0] + [0.0] * (problem.channels - 1)))
     count = problem.second.derivatives.shape[1]
     while True:
-        found = fit(problem, model)
-        model, stretch = found.model, found.model.alignment.stretch
+        stretch_fit = fit(problem, model)
+        model, stretch = stretch_fit.model, stretch_fit.model.alignment.stretch
         if stretch == slice(0, count):
-            return found
-        more = (stretch.stop - stretch.start) // 2 + 1
-        wider = slice(max(0, stretch.start - more), min(count, stretch.stop + more))
+            return stretch_fit
+        margin = (stretch.stop - stretch.start) // 2 + 1
+        wider = slice(max(0, stretch.start - margin), min(count, stretch.stop + margin))
         model = replace(model, alignment=replace(model.alignment, stretch=wider))
 
 
@@ -157,10 +157,10 @@ def _settled(problem: ComparisonProblem, model: Model) -> ComparisonFit:
     covered = np.flatnonzero(problem.first.covers(where.times_s(time_s)))
     if len(covered) < _LEAST_SAMPLES:
         raise NothingInCommonError
-    both = slice(int(covered[0]) + 2, int(covered[-1]) - 1)  # whatever the last digits of the lag
-    mid_s = float(time_s[both].mean())
+    common = slice(int(covered[0]) + 2, int(covered[-1]) - 1)  # whatever the last digits of the lag
+    mid_s = float(time_s[common].mean())
     lag_s = where.lag_s + where.rate * (mid_s - where.mid_s)
-    return fit(problem, replace(model, alignment=Alignment(lag_s, where.rate, mid_s, both)))
+    return fit(problem, replace(model, alignment=Alignment(lag_s, where.rate, mid_s, common)))
 
 
 def _with_dead_band(
@@ -172,10 +172,10 @@ def _with_dead_band(
     """
     half, u = 0.0, straight.noise_spread / abs(straight.model.gains[0])
     with suppress(NothingInCommonError):
-        near = fit(problem, replace(straight.model, half=u), lines=True)
-        half, u = _half(problem, near)
+        narrow_fit = fit(problem, replace(straight.model, half=u), lines=True)
+        half, u = _half(problem, narrow_fit)
         if half >= _SEEN * u:  # its noise is the lowest that there can be
-            bent = fit(problem, near.model)
+            bent = fit(problem, narrow_fit.model)
             half, u = _half(problem, bent)
             if half >= _SEEN * u and _explains(problem, straight, bent):
                 u = math.hypot(u, bent.spread_of(bent.heard) / abs(bent.model.gains[0]))
@@ -192,13 +192,16 @@ def _explains(problem: ComparisonProblem, straight: ComparisonFit, bent: Compari
     if bent.count != straight.count:
         return False
     noise = bent.noise + straight.heard
-    made = np.abs(bent.columns[problem.channels + 2] * bent.model.parameters[-1]) ** 2 > noise
-    before, after = (one.squares_under(noise, made) - 2.0 * made.sum() for one in (straight, bent))
+    bent_bins = np.abs(bent.columns[problem.channels + 2] * bent.model.parameters[-1]) ** 2 > noise
+    before, after = (
+        model_fit.squares_under(noise, bent_bins) - 2.0 * bent_bins.sum()
+        for model_fit in (straight, bent)
+    )
     return bool(before > 0.0 and after < _EXPLAINS * before)
 
 
-def _half(problem: ComparisonProblem, found: ComparisonFit) -> tuple[float, float]:
+def _half(problem: ComparisonProblem, fitted: ComparisonFit) -> tuple[float, float]:
     """Return half a dead band as it was fitted, and its uncertainty, the reversals' noise in it."""
-    u = float(found.uncertainty[problem.channels + 2])
-    spread = 0.5 * found.noise_spread / abs(found.model.gains[0])
-    return float(found.model.half or 0.0), math.hypot(u, spread)
+    u = float(fitted.uncertainty[problem.channels + 2])
+    spread = 0.5 * fitted.noise_spread / abs(fitted.model.gains[0])
+    return float(fitted.model.half or 0.0), math.hypot(u, spread)

@@ -45,13 +45,13 @@ class FittedComparison:
 
 
 def told(
-    found: FittedComparison,
+    fitted: FittedComparison,
     leading: Sequence[ComparedSignal],
     following: ComparedSignal,
     settings: ComparisonSettings,
 ) -> ChannelComparison:
     """Return the comparison; intervals are widened where parts scatter more than they should."""
-    problem, fit = found.problem, found.fit
+    problem, fit = fitted.problem, fitted.fit
     model, u = fit.model, fit.uncertainty
     channels, where = problem.channels, model.alignment
     times, frequencies = over_time(problem, fit), over_frequency(problem, fit)
@@ -61,12 +61,12 @@ def told(
     stretched = (1.0 - where.rate) ** min(settings.order, 0)  # a derivative on the other's clock
     unit = following.unit or "1"
     gains = [
-        _gain(fit, k, gain_wider, stretched, _over(unit, one.unit or "1", settings.order))
-        for k, one in enumerate(leading)
+        _gain(fit, k, gain_wider, stretched, _over(unit, signal.unit or "1", settings.order))
+        for k, signal in enumerate(leading)
     ]
     band = None
-    if found.dead_band is not None:
-        half, half_u = found.dead_band.tolist()
+    if fitted.dead_band is not None:
+        half, half_u = fitted.dead_band.tolist()
         band = Estimate.of(2.0 * half, 2.0 * half_u, leading[0].unit or "1", fit.freedom)
     time_s = problem.second.time_s[fit.start : fit.start + fit.count]
     bins = (np.flatnonzero(fit.stands_out) + fit.first_bin) * problem.second.rate_hz / fit.count
@@ -82,20 +82,20 @@ def told(
         band_hz=(float(bins[0]), float(bins[-1])),
         gain=gains[0],
         lag_s=Estimate.of(where.lag_s, wider * u[channels], "s", fit.freedom),
-        modulo_s=found.modulo_s,
+        modulo_s=fitted.modulo_s,
         clock_rate=Estimate.of(where.rate, in_time * u[channels + 1], "s/s", fit.freedom),
         levers=dict(zip(settings.levers, gains[1:], strict=True)),
         dead_band=band,
-        dead_band_found=found.seen,
+        dead_band_found=fitted.seen,
         over_time=times,
         over_frequency=frequencies,
         trace=_trace(problem, fit, time_s),
         flags=(
-            *(flag for one in (*leading, following) for flag in one.flags),
+            *(flag for signal in (*leading, following) for flag in signal.flags),
             *_unsteady(times, in_time),
             *_by_frequency(frequencies),
             *_in_part(fit, settings.order),
-            *_periodic(found.modulo_s),
+            *_periodic(fitted.modulo_s),
         ),
     )
 
@@ -114,14 +114,14 @@ def _gain(fit: ComparisonFit, row: int, wider: float, stretched: float, unit: st
 
 def _over(second: str, first: str, order: int) -> str:
     """Return the unit of a gain."""
-    shown, feels = _per_second(first, max(order, 0)), _per_second(second, max(-order, 0))
-    return "1" if shown == feels else f"{feels} per {shown}"
+    first_unit, second_unit = _per_second(first, max(order, 0)), _per_second(second, max(-order, 0))
+    return "1" if first_unit == second_unit else f"{second_unit} per {first_unit}"
 
 
 def _per_second(unit: str, order: int) -> str:
     """Return the unit of a derivative."""
-    have = 2 if unit.endswith("/s2") else int(unit.endswith("/s"))
-    bare, total = unit.removesuffix("/s2").removesuffix("/s"), have + order
+    present = 2 if unit.endswith("/s2") else int(unit.endswith("/s"))
+    bare, total = unit.removesuffix("/s2").removesuffix("/s"), present + order
     return f"{bare}/s{total if total > 1 else ''}" if total else bare
 
 
@@ -136,8 +136,8 @@ def _trace(problem: ComparisonProblem, fit: ComparisonFit, time_s: FloatArray) -
     expected = gains @ np.array(leaders)
     line = np.polynomial.Polynomial.fit(time_s, shown - expected, 1)
     highest = 2 * int(np.flatnonzero(fit.stands_out)[-1] + fit.first_bin)
-    both = (_below(one, highest) for one in (shown, expected + line(time_s)))
-    return ComparedTrace(time_s, *both)
+    traces = (_below(wave, highest) for wave in (shown, expected + line(time_s)))
+    return ComparedTrace(time_s, *traces)
 
 
 def _below(values: FloatArray, highest: int) -> FloatArray:
@@ -192,12 +192,12 @@ def _by_frequency(parts: Parts) -> tuple[Flag, ...]:
 
 def _in_part(fit: ComparisonFit, order: int) -> tuple[Flag, ...]:
     """Say where gain and lag explain little, and whether another derivative would explain more."""
-    power, left = np.abs(fit.shape) ** 2, np.abs(fit.residual) ** 2
+    power, residual_power = np.abs(fit.shape) ** 2, np.abs(fit.residual) ** 2
     shown = np.abs(fit.shape + fit.residual)
     frequency = fit.first_bin + np.arange(len(power), dtype=np.float64)
     recorded = power / frequency ** (2 * order)  # a derivative makes noise strong, not the channel
     strong = recorded >= _STRONG * recorded.max()
-    part = float(left[strong].sum() / (shown[strong] ** 2).sum())
+    part = float(residual_power[strong].sum() / (shown[strong] ** 2).sum())
     if part < _UNEXPLAINED:
         return ()
     message = (

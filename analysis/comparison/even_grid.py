@@ -34,14 +34,14 @@ def on_even_grid(recording: Recording, names: Sequence[str]) -> Recording:
     """
     if recording.stamps_s is None:
         return recording
-    whole = recording.select(names).complete()
-    stamps_s, values = whole.time_s(), np.array([whole.values(name) for name in names])
+    record = recording.select(names).complete()
+    stamps_s, values = record.time_s(), np.array([record.values(name) for name in names])
     if stamps_s.size < 2 * _ORDER:
-        return replace(whole, stamps_s=None)
-    rate_hz = whole.sample_count / float(stamps_s[-1] - stamps_s[0])
-    look_s = stamps_s[0] + np.arange(whole.sample_count) / rate_hz
-    looks = (without_line(np.interp(look_s, stamps_s, one)) for one in values)
-    edge_hz = max(edge_of(one, rate_hz)[1] for one in looks)
+        return replace(record, stamps_s=None)
+    rate_hz = record.sample_count / float(stamps_s[-1] - stamps_s[0])
+    look_s = stamps_s[0] + np.arange(record.sample_count) / rate_hz
+    looks = (without_line(np.interp(look_s, stamps_s, channel)) for channel in values)
+    edge_hz = max(edge_of(trace, rate_hz)[1] for trace in looks)
     knots_hz = min(_KNOTS * edge_hz, _FEWER * rate_hz)
     count = int(np.floor((stamps_s[-1] - stamps_s[0]) * knots_hz)) + 1
     grid_s = stamps_s[0] + np.arange(count) / knots_hz
@@ -49,7 +49,7 @@ def on_even_grid(recording: Recording, names: Sequence[str]) -> Recording:
     after = np.clip(np.searchsorted(stamps_s, grid_s), 1, stamps_s.size - 1)
     fitted[:, np.diff(stamps_s)[after - 1] > max(_LONGEST / edge_hz, _LEAST_GAP / rate_hz)] = np.nan
     return replace(
-        whole, samples=fitted, sample_rate_hz=knots_hz, start_s=float(stamps_s[0]), stamps_s=None
+        record, samples=fitted, sample_rate_hz=knots_hz, start_s=float(stamps_s[0]), stamps_s=None
     )
 
 

@@ -55,8 +55,8 @@ def first_guess(
     mid_s = float(time_s[stretch].mean())
     pieces = values[stretch].reshape(count, size)
     before_s = np.arange(-reach, size + reach) / second.rate_hz
-    asked = time_s[stretch].reshape(count, size)[:, :1] + before_s
-    first = warped.values(asked.ravel(), 0).reshape(asked.shape)
+    window_s = time_s[stretch].reshape(count, size)[:, :1] + before_s
+    first = warped.values(window_s.ravel(), 0).reshape(window_s.shape)
     correlation, power = _correlograms(pieces, first)
     from_mid_s = time_s[stretch].reshape(count, size).mean(axis=1) - mid_s
     steps = int(_STEPS * FASTEST * motion_hz * count * size / second.rate_hz / 2.0) + 1
@@ -80,10 +80,10 @@ def _correlograms(pieces: FloatArray, first: FloatArray) -> tuple[FloatArray, Fl
     """Return each piece's correlation with the first channel, and its power, over all places."""
     from scipy.fft import irfft, next_fast_len, rfft
 
-    size, whole = pieces.shape[1], first.shape[1]
-    long = next_fast_len(whole + size, real=True)
+    size, length = pieces.shape[1], first.shape[1]
+    long = next_fast_len(length + size, real=True)
     product = rfft(first, long) * rfft(pieces, long).conj()
-    correlation = irfft(product, long)[:, : whole - size + 1]
+    correlation = irfft(product, long)[:, : length - size + 1]
     total = np.cumsum(np.pad(first**2, ((0, 0), (1, 0))), axis=1)
     return correlation, total[:, size:] - total[:, :-size]
 

@@ -104,9 +104,9 @@ class ComparisonFit:
         free, reach = ~self.stands_out, _reach(self.shape)
         cross = self.residual * self.shape.conj() * free
         size = np.hypot(_around(cross.real, reach), _around(cross.imag, reach))
-        beside = _around(np.abs(self.shape) ** 2 * free, reach)
+        first_power = _around(np.abs(self.shape) ** 2 * free, reach)
         share = np.maximum(_around(free.astype(np.float64), reach), 0.5 / (2 * reach + 1))
-        heard = size**2 / np.maximum(beside, _ROUNDING * self.power.mean()) / share
+        heard = size**2 / np.maximum(first_power, _ROUNDING * self.power.mean()) / share
         return np.asarray(np.minimum(heard, _around(np.abs(self.residual) ** 2, reach)))
 
     def spread_of(self, power: FloatArray) -> float:
@@ -115,9 +115,9 @@ class ComparisonFit:
 
     def knowing(self, row: int, u: float) -> "ComparisonFit":
         """Return the same with a parameter's uncertainty, and what follows of it for the others."""
-        along = self.covariance[row] / self.covariance[row, row]
-        more = (u**2 - self.covariance[row, row]) * np.outer(along, along)
-        return replace(self, covariance=self.covariance + more)
+        slope = self.covariance[row] / self.covariance[row, row]
+        growth = (u**2 - self.covariance[row, row]) * np.outer(slope, slope)
+        return replace(self, covariance=self.covariance + growth)
 
     def squares_under(self, noise: FloatArray, bins: BoolArray) -> float:
         """Return the same under another noise, in other bins."""
@@ -150,8 +150,8 @@ def fit(problem: ComparisonProblem, model: Model, *, lines: bool = False) -> Com
         columns = linear.columns(model.gains, bins)
         theta, inverse = _solved(columns, linear.left(model.gains), noise)
         before, model = model, _moved(model, theta)
-        others = linear.others(before.gains)
-        residual = linear.left(model.gains) - theta[problem.channels :] @ others
+        nuisances = linear.others(before.gains)
+        residual = linear.left(model.gains) - theta[problem.channels :] @ nuisances
         hidden = (columns.conj() * (inverse @ columns)).sum(axis=0).real if step else 0.0
         noise, reach = _smoothed(np.abs(residual) ** 2 + hidden, linear.target, lines=lines)
         power = _around(np.abs(model.gains @ linear.channels) ** 2, 1)
@@ -161,8 +161,8 @@ def fit(problem: ComparisonProblem, model: Model, *, lines: bool = False) -> Com
         taken = np.abs(model.parameters - before.parameters)  # a dead band stays at none
         if step >= _FEWEST and (taken <= _SETTLED * np.sqrt(np.diag(inverse))[: len(taken)]).all():
             break
-    left, shown = (np.abs(one[bins]) ** 2 for one in (residual, linear.target))
-    if left.sum() > _UNEXPLAINED * shown.sum() or abs(model.alignment.rate) > _LOST:
+    residual_power, shown = (np.abs(spectrum[bins]) ** 2 for spectrum in (residual, linear.target))
+    if residual_power.sum() > _UNEXPLAINED * shown.sum() or abs(model.alignment.rate) > _LOST:
         raise NothingInCommonError
     columns = linear.columns(before.gains, bins)
     freedom = max(2.0 * (2 * reach + 1) - len(columns), 1.0)

@@ -80,8 +80,8 @@ class Linear:
 
     def left(self, gains: FloatArray) -> ComplexArray:
         """Return what the channels leave of the second one."""
-        left: ComplexArray = self.target - gains @ self.channels - gains[0] * self.by_play
-        return left
+        residual: ComplexArray = self.target - gains @ self.channels - gains[0] * self.by_play
+        return residual
 
     def columns(self, gains: FloatArray, stands_out: BoolArray) -> ComplexArray:
         """Return the derivatives, without the channels where they are noise."""
@@ -123,15 +123,15 @@ def linearised(problem: ComparisonProblem, model: Model) -> Linear:
     motions = [-problem.first.values(asked_s, 1, k) for k in range(problem.channels)]
     play = play_at(problem, model, time_s)
     if play is not None:
-        motions = [np.where(play.pushed, one, 0.0) for one in motions]
+        motions = [np.where(play.pushed, motion, 0.0) for motion in motions]
     begin = where.stretch.start + start
     return Linear(
         begin,
         taper,
         spectrum(second.derivatives[0][begin : begin + count]),
-        np.array([spectrum(one) for one in values]),
-        np.array([spectrum(one) for one in motions]),
-        np.array([spectrum(one * (time_s - where.mid_s)) for one in motions]),
+        np.array([spectrum(channel) for channel in values]),
+        np.array([spectrum(motion) for motion in motions]),
+        np.array([spectrum(motion * (time_s - where.mid_s)) for motion in motions]),
         spectrum(np.zeros(count) if play is None else play.values - values[0]),
         None if play is None else spectrum(-play.side),
         np.array([spectrum(np.ones(count)), spectrum(np.linspace(-1.0, 1.0, count))]),

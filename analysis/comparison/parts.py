@@ -75,10 +75,10 @@ def over_time(problem: ComparisonProblem, fit: ComparisonFit) -> Parts:
     spectra[:, fit.first_bin : last] = np.where(wide, rows / np.sqrt(fit.noise), 0.0) * scale
     values = irfft(spectra, fit.count)
     edges = np.linspace(0, fit.count, count + 1).astype(int)
-    found = [_part(*values[:, a:b]) for a, b in pairwise(edges)]
+    part_values = [_part(*values[:, a:b]) for a, b in pairwise(edges)]
     times_s = problem.second.time_s[fit.start : fit.start + fit.count]
     middles = [float(times_s[a:b].mean()) for a, b in pairwise(edges)]
-    return _gathered(middles, found)
+    return _gathered(middles, part_values)
 
 
 def over_frequency(problem: ComparisonProblem, fit: ComparisonFit) -> Parts:
@@ -88,23 +88,23 @@ def over_frequency(problem: ComparisonProblem, fit: ComparisonFit) -> Parts:
     groups = np.split(bins, breaks)
     if len(groups) > _GROUPS or len(groups) == 1:
         groups = np.array_split(bins, int(np.clip(len(bins) // 2, 1, _GROUPS)))
-    found, at = [], []
+    part_values, frequencies_hz = [], []
     step_hz = problem.second.rate_hz / fit.count
     motion = fit.columns[problem.channels]
     for group in groups:
         weight = np.sqrt(2.0 / fit.noise[group])
         rows = [
-            np.concatenate((one.real, one.imag))
-            for one in (
+            np.concatenate((column.real, column.imag))
+            for column in (
                 fit.shape[group] * weight,
                 motion[group] * weight,
                 fit.residual[group] * weight,
             )
         ]
-        found.append(_part(*rows))
+        part_values.append(_part(*rows))
         power = np.abs(fit.shape[group]) ** 2
-        at.append(float((group + fit.first_bin) @ power / power.sum()) * step_hz)
-    return _gathered(at, found)
+        frequencies_hz.append(float((group + fit.first_bin) @ power / power.sum()) * step_hz)
+    return _gathered(frequencies_hz, part_values)
 
 
 def _widened(bins: BoolArray, reach: int) -> BoolArray:
@@ -113,15 +113,15 @@ def _widened(bins: BoolArray, reach: int) -> BoolArray:
     return np.asarray(binary_dilation(bins, iterations=reach))
 
 
-def _part(shape: FloatArray, motion: FloatArray, left: FloatArray) -> FloatArray:
+def _part(shape: FloatArray, motion: FloatArray, residual: FloatArray) -> FloatArray:
     """Return change of gain, its uncertainty, change of lag and its uncertainty."""
     columns = np.array([shape, motion])
     inverse = np.linalg.pinv(columns @ columns.T, hermitian=True)
-    gain, lag = inverse @ (columns @ left)
+    gain, lag = inverse @ (columns @ residual)
     spread = np.sqrt(np.diag(inverse))
     return np.array([gain, spread[0], lag, spread[1]])
 
 
-def _gathered(at: list[float], found: list[FloatArray]) -> Parts:
-    gain, gain_u, lag, lag_u = np.array(found).T
-    return Parts(np.array(at), 1.0 + gain, gain_u, lag, lag_u)
+def _gathered(places: list[float], part_values: list[FloatArray]) -> Parts:
+    gain, gain_u, lag, lag_u = np.array(part_values).T
+    return Parts(np.array(places), 1.0 + gain, gain_u, lag, lag_u)

@@ -29,10 +29,10 @@ class Warped:
 
     def __init__(self, *tracks: BandTrack) -> None:
         self._tracks = tracks
-        one = tracks[0]
-        self.rate_hz = one.rate_hz
-        self.start_s = one.start_s + _EDGE / one.rate_hz
-        self.end_s = one.end_s - _EDGE / one.rate_hz
+        track = tracks[0]
+        self.rate_hz = track.rate_hz
+        self.start_s = track.start_s + _EDGE / track.rate_hz
+        self.end_s = track.end_s - _EDGE / track.rate_hz
 
     @cached_property
     def _splines(self) -> FloatArray:
@@ -57,10 +57,10 @@ class Warped:
 
         track = self._tracks[channel]
         places = (time_s - track.start_s) * self.rate_hz
-        found = map_coordinates(
+        samples = map_coordinates(
             self._splines[channel, order], [places], order=_ORDER, mode="mirror", prefilter=False
         )
-        return np.where(self.covers(time_s), found, 0.0)
+        return np.where(self.covers(time_s), samples, 0.0)
 
 
 @dataclass(frozen=True)
@@ -98,13 +98,13 @@ def follow(leader: FloatArray, half: float) -> Play:
     bounds = np.concatenate(([0], runs, [len(leader)]))
     up = rising[bounds[:-1]]
     ends = leader[bounds[1:] - 1] - np.where(up, half, -half)
-    stood = np.empty(len(up))
+    places = np.empty(len(up))
     last = leader[0] - (half if up[0] else -half)
     for k, (goes_up, end) in enumerate(zip(up.tolist(), ends.tolist(), strict=True)):
-        stood[k] = last
+        places[k] = last
         last = max(last, end) if goes_up else min(last, end)
     long = np.diff(bounds)
-    before, way = np.repeat(stood, long), np.where(np.repeat(up, long), 1.0, -1.0)
+    before, way = np.repeat(places, long), np.where(np.repeat(up, long), 1.0, -1.0)
     pushing = leader - way * half
     pushed = way * (pushing - before) > 0.0
     pushed[0] = True

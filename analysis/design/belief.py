@@ -127,12 +127,12 @@ def _read(points: Sequence[SetPoint], belief: Belief) -> ComplexArray:
     """Displacements and gauge readings, aft and fore, shape ``(points, ORDERS + 1, 4)``."""
     oscillator = belief.oscillator
     speed, drift, frequency = np.array(
-        [[one.carriage_speed_m_s, one.drift_rad, one.frequency_hz] for one in points]
+        [[point.carriage_speed_m_s, point.drift_rad, point.frequency_hz] for point in points]
     ).T[..., None]
     geometry = Geometry(
         oscillator.plane, oscillator.half_spacing_m, oscillator.arrangement, speed, drift
     )
-    moved = np.stack([strut_displacements(oscillator, one, ORDERS) for one in points])
+    moved = np.stack([strut_displacements(oscillator, point, ORDERS) for point in points])
     moved[:, 0] = moved[:, 0].imag
     parts = interleaved(moved.reshape(len(points), -1))
     struts = driven(parts, 2.0 * math.pi * frequency[:, 0])
@@ -140,8 +140,8 @@ def _read(points: Sequence[SetPoint], belief: Belief) -> ComplexArray:
     tare = Tare.of(geometry, struts, _LOADS)
     exerted = _asked(moving, points, belief, tare) - _of_water(moving, geometry, belief)
     gauges = readings(geometry, moving.line_rad, exerted)[:, : len(FORCES)]
-    found = from_interleaved(harmonics(gauges, ORDERS))
-    return np.concatenate((moved, found.reshape(*moved.shape[:2], len(FORCES))), axis=2)
+    forces = from_interleaved(harmonics(gauges, ORDERS))
+    return np.concatenate((moved, forces.reshape(*moved.shape[:2], len(FORCES))), axis=2)
 
 
 def _asked(moving: MotionWaves, points: Sequence[SetPoint], belief: Belief, tare: Tare) -> Waves:
@@ -154,12 +154,15 @@ def _asked(moving: MotionWaves, points: Sequence[SetPoint], belief: Belief, tare
             np.stack((moving.across_m, moving.rotation_rad - drift), axis=1),
             rates.reshape(len(points), -1, rates.shape[-1]),
             np.ones(rates.shape[-1])
-            * [stated_at_instants(belief.body, one.drift_rad, plane, one.medium) for one in points],
+            * [
+                stated_at_instants(belief.body, point.drift_rad, plane, point.medium)
+                for point in points
+            ],
         ),
         axis=1,
     )
-    asked = loads_asked(inputs, plane, tare, np.asarray(belief.restoring)[None])
-    return np.asarray(asked[..., :_LOADS, :])
+    loads = loads_asked(inputs, plane, tare, np.asarray(belief.restoring)[None])
+    return np.asarray(loads[..., :_LOADS, :])
 
 
 def _of_water(moving: MotionWaves, geometry: Geometry, belief: Belief) -> Waves:

@@ -66,11 +66,11 @@ def made_up(candidates: Sequence[CandidateRun], belief: Belief, noise: Noise) ->
     """Return the cycles that are expected of runs, named by their place."""
     names = [f"run {k + 1}" for k in range(len(candidates))]
     scatter = [
-        noise.scatter(name, one.point.frequency_hz, one.periods)
-        for name, one in zip(names, candidates, strict=True)
+        noise.scatter(name, candidate.point.frequency_hz, candidate.periods)
+        for name, candidate in zip(names, candidates, strict=True)
     ]
-    points = [one.point for one in candidates]
-    return [noise.repeating(one) for one in believed_cycles(names, points, belief, scatter)]
+    points = [candidate.point for candidate in candidates]
+    return [noise.repeating(cycle) for cycle in believed_cycles(names, points, belief, scatter)]
 
 
 def expected(
@@ -110,23 +110,23 @@ def _rows(
     fit: DesignFit, cycles: Sequence[BodyCycle], belief: Belief, stated: StatedUncertainties
 ) -> Iterator[ExpectedCoefficient]:
     names = list(belief.values)
-    asked = [k for k in fit.places if not fit.wanted or names[k] in fit.wanted]
+    wanted_places = [k for k in fit.places if not fit.wanted or names[k] in fit.wanted]
     try:
-        found, why = fitted(fit, cycles, belief, stated).uncertain, ""
+        uncertain, reason = fitted(fit, cycles, belief, stated).uncertain, ""
     except DataError as error:
-        found, why = None, str(error)
-    for k in asked:
+        uncertain, reason = None, str(error)
+    for k in wanted_places:
         place = fit.places.index(k)
         yield ExpectedCoefficient(
             names[k],
             fit.where,
             belief.terms[k].unit,
             belief.values[names[k]],
-            np.nan if found is None else float(found.values[place]),
+            np.nan if uncertain is None else float(uncertain.values[place]),
             fit.wanted.get(names[k], np.nan),
-            np.inf if found is None else float(found.standard_uncertainty[place]),
-            {} if found is None else _gathered(found.shares(place)),
-            why,
+            np.inf if uncertain is None else float(uncertain.standard_uncertainty[place]),
+            {} if uncertain is None else _gathered(uncertain.shares(place)),
+            reason,
         )
 
 
@@ -134,6 +134,6 @@ def _gathered(shares: Mapping[str, float]) -> dict[str, float]:
     """Return shares with all runs' scatter as one, largest first."""
     total: dict[str, float] = {}
     for label, share in shares.items():
-        name = next((ours for kind, ours in _SOURCES if kind.fullmatch(label)), label)
+        name = next((source for kind, source in _SOURCES if kind.fullmatch(label)), label)
         total[name] = total.get(name, 0.0) + share
     return dict(sorted(total.items(), key=lambda item: -item[1]))

@@ -50,9 +50,12 @@ class Noise:
         """
         order = np.maximum(np.arange(ORDERS + 1), 1)
         density = 2.0 / self.sample_rate_hz * (1.0 + self.corner_hz / (order * frequency_hz))
-        each = np.sqrt(density * frequency_hz / periods)
-        sizes = [self.displacement_m if "displacement" in one else self.force_n for one in CHANNELS]
-        spread = np.repeat(each[:, None] * np.array(sizes), 2, axis=1)
+        deviations = np.sqrt(density * frequency_hz / periods)
+        sizes = [
+            self.displacement_m if "displacement" in channel else self.force_n
+            for channel in CHANNELS
+        ]
+        spread = np.repeat(deviations[:, None] * np.array(sizes), 2, axis=1)
         spread[0] *= np.tile((np.sqrt(0.5), 0.0), len(CHANNELS))
         flat = spread.ravel()
         return Contribution(
@@ -61,5 +64,5 @@ class Noise:
 
     def repeating(self, cycle: BodyCycle) -> BodyCycle:
         """Return a cycle with what its repeats would differ by as one more source."""
-        both = np.full(2, self.repeat_relative)
-        return with_repeats(cycle, Repeatability(both, np.inf, ()))
+        load_spreads = np.full(2, self.repeat_relative)
+        return with_repeats(cycle, Repeatability(load_spreads, np.inf, ()))

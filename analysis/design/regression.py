@@ -153,16 +153,19 @@ class Prospects:
     def _regression(self, fit: DesignFit, like: Sequence[int]) -> Regression:
         names = tuple(list(self.belief.values)[k] for k in fit.places)
         wanted = np.array([fit.wanted.get(name, np.inf) for name in names])
-        own, told = self.motion[fit.members], self.told[fit.row]
+        motions, load_values = self.motion[fit.members], self.told[fit.row]
         numbers = [2 * HIGHER.index(n) + part for n in fit.orders for part in (0, 1)]
-        some = [self.candidates[k] for k in fit.members]
-        time = np.array([one.measured_s for one in some])[:, None]
-        variance = told.after_1_s[own][:, numbers] / time + told.of_repeats[own][:, numbers]
-        freedom = np.array([one.freedom for one in some])[:, None]
+        runs = [self.candidates[k] for k in fit.members]
+        time = np.array([run.measured_s for run in runs])[:, None]
+        variance = (
+            load_values.after_1_s[motions][:, numbers] / time
+            + load_values.of_repeats[motions][:, numbers]
+        )
+        freedom = np.array([run.freedom for run in runs])[:, None]
         place = {candidate: k for k, candidate in enumerate(fit.members)}
-        leant_on = [place[one] for one in like if one in place] or slice(None)
+        leant_on = [place[candidate] for candidate in like if candidate in place] or slice(None)
         weights = 1.0 / trusted(variance, freedom, variance[leant_on].mean(axis=0))
-        columns = told.columns[own][:, numbers][..., list(fit.places)]
+        columns = load_values.columns[motions][:, numbers][..., list(fit.places)]
         weighted = (columns * weights[..., None]).swapaxes(-1, -2)
         spread = (columns * (weights * np.sqrt(variance))[..., None]).swapaxes(-1, -2)
         return Regression(
@@ -170,7 +173,7 @@ class Prospects:
             fit.members,
             weighted @ columns,
             spread @ spread.swapaxes(-1, -2),
-            weighted @ told.slopes[own][:, numbers],
+            weighted @ load_values.slopes[motions][:, numbers],
             wanted,
             fit.where,
         )
@@ -199,24 +202,28 @@ def fits_of(
 
     Without a target all terms of all runs are asked for.
     """
-    whole = {one.name: one.standard_uncertainty for one in targets if one.band_hz is None}
-    if whole or not targets:
-        every = np.arange(len(candidates))
-        yield from _by_load(every, whole, belief, max(term.degree for term in belief.terms))
+    broad_targets = {
+        target.name: target.standard_uncertainty for target in targets if target.band_hz is None
+    }
+    if broad_targets or not targets:
+        places = np.arange(len(candidates))
+        yield from _by_load(
+            places, broad_targets, belief, max(term.degree for term in belief.terms)
+        )
     kinds: dict[tuple[float, float], list[int]] = {}
-    for k, one in enumerate(candidates):
-        if one.point.drift_rad == 0.0:
-            key = (one.point.frequency_hz, one.point.carriage_speed_m_s)
+    for k, candidate in enumerate(candidates):
+        if candidate.point.drift_rad == 0.0:
+            key = (candidate.point.frequency_hz, candidate.point.carriage_speed_m_s)
             kinds.setdefault(key, []).append(k)
     for (frequency, speed), members in sorted(kinds.items()):
-        some = {
-            one.name: one.standard_uncertainty
-            for one in targets
-            if one.band_hz is not None and one.band_hz[0] <= frequency <= one.band_hz[1]
+        band_targets = {
+            target.name: target.standard_uncertainty
+            for target in targets
+            if target.band_hz is not None and target.band_hz[0] <= frequency <= target.band_hz[1]
         }
-        if some:
+        if band_targets:
             where = f"{frequency:g} Hz, {speed:g} m/s"
-            yield from _by_load(np.array(members), some, belief, 1, where)
+            yield from _by_load(np.array(members), band_targets, belief, 1, where)
 
 
 def _by_load(
@@ -242,9 +249,9 @@ def _told(
         for row, piece in _of_cycles(cycles, belief, stated):
             pieces.setdefault(row, []).append(piece)
     return {
-        row: Told(*(np.concatenate([getattr(one, key) for one in some])
+        row: Told(*(np.concatenate([getattr(piece, key) for piece in row_pieces])
                      for key in Told.__dataclass_fields__))
-        for row, some in pieces.items()
+        for row, row_pieces in pieces.items()
     }  # fmt: skip
 
 
@@ -255,7 +262,7 @@ def _of_a_second(points: Sequence[SetPoint], belief: Belief, noise: Noise) -> li
         noise.scatter(name, point.frequency_hz, point.frequency_hz)
         for name, point in zip(names, points, strict=True)
     ]
-    return [noise.repeating(one) for one in believed_cycles(names, points, belief, scatter)]
+    return [noise.repeating(cycle) for cycle in believed_cycles(names, points, belief, scatter)]
 
 
 def _of_cycles(

@@ -146,13 +146,16 @@ class _Search:
         chosen: Sequence[int],
     ) -> None:
         self.time_s = time_s
-        self.alone = np.array([one.cost_s for one in candidates])
-        self.setting = np.array([one.setting_s for one in candidates])
-        settings = [(one.point.eccentricity_m, one.point.strut_phase_rad) for one in candidates]
+        self.alone = np.array([candidate.cost_s for candidate in candidates])
+        self.setting = np.array([candidate.setting_s for candidate in candidates])
+        settings = [
+            (candidate.point.eccentricity_m, candidate.point.strut_phase_rad)
+            for candidate in candidates
+        ]
         self.group = np.unique(np.array(settings), axis=0, return_inverse=True)[1].ravel()
         self.chosen = list(chosen)
-        self.targeted = any(np.isfinite(one.wanted).any() for one in regressions)
-        self.states = [_State(one, len(candidates)) for one in regressions]
+        self.targeted = any(np.isfinite(regression.wanted).any() for regression in regressions)
+        self.states = [_State(regression, len(candidates)) for regression in regressions]
         for candidate in (*made, *chosen):
             self._add(candidate)
 
@@ -163,8 +166,8 @@ class _Search:
     @property
     def costs(self) -> FloatArray:
         """Tank time of one run more: settings that are among the chosen are not set anew."""
-        there = np.isin(self.group, self.group[self.chosen])
-        return np.asarray(self.alone + np.where(there, 0.0, self.setting))
+        already_set = np.isin(self.group, self.group[self.chosen])
+        return np.asarray(self.alone + np.where(already_set, 0.0, self.setting))
 
     @property
     def used_s(self) -> float:
@@ -197,8 +200,8 @@ class _Search:
             if self.targeted and now <= 0.0:
                 continue
             members = state.regression.members
-            own = np.flatnonzero((asked & np.isfinite(self.alone))[members])
-            gains[members[own]] += now - state.losses(own)
+            places = np.flatnonzero((asked & np.isfinite(self.alone))[members])
+            gains[members[places]] += now - state.losses(places)
         return gains
 
     def grow(self) -> None:
@@ -216,14 +219,14 @@ class _Search:
         """Leave out or exchange runs while that saves time or brings the criterion down."""
         for _ in range(_PASSES):
             before = (self.met, self.used_s, self.missing)
-            for candidate in sorted(set(self.chosen), key=lambda one: -self.alone[one]):
+            for candidate in sorted(set(self.chosen), key=lambda run: -self.alone[run]):
                 self._exchanged(candidate)
             if before == (self.met, self.used_s, self.missing):
                 return
 
     def _exchanged(self, candidate: int) -> None:
         """Put in place of one run nothing, or what does better."""
-        was, met = self.missing, self.met
+        missing, met = self.missing, self.met
         self.chosen.remove(candidate)
         self._add(candidate, -1.0)
         if self.met:
@@ -236,20 +239,20 @@ class _Search:
         if met:
             cheap = (after <= 0.0) & (costs < own_s)
             best = int(np.argmin(np.where(cheap, costs, np.inf))) if cheap.any() else best
-        elif after.min() < was - _NOTHING:
+        elif after.min() < missing - _NOTHING:
             best = int(np.argmin(after))
         self.chosen.append(best)
         self._add(best)
 
     def in_order(self) -> list[int]:
         """Return the chosen runs, at each place the one that brings most for its time."""
-        left, self.chosen = list(self.chosen), []
-        for candidate in left:
+        remaining, self.chosen = list(self.chosen), []
+        for candidate in remaining:
             self._add(candidate, -1.0)
-        while left:
-            costs, gains = self.costs, self.gains(np.isin(np.arange(len(self.alone)), left))
-            best = max(left, key=lambda one: (gains[one] / costs[one], -costs[one]))
-            left.remove(best)
+        while remaining:
+            costs, gains = self.costs, self.gains(np.isin(np.arange(len(self.alone)), remaining))
+            best = max(remaining, key=lambda run: (gains[run] / costs[run], -costs[run]))
+            remaining.remove(best)
             self.chosen.append(best)
             self._add(best)
         return self.chosen

@@ -103,7 +103,7 @@ def deliverables_of(
     phasors = _all_phasors(cycle)
     angle = 2.0 * math.pi * np.arange(samples) / samples
     columns = {"t": angle / (2.0 * math.pi * cycle.frequency_hz)}
-    columns |= {name: _wave(own, samples) for name, own in phasors.items()}
+    columns |= {name: _wave(phasor, samples) for name, phasor in phasors.items()}
     columns |= _ahead(cycle, columns)
     return Deliverables(
         cycle.plane,
@@ -112,19 +112,19 @@ def deliverables_of(
         cycle.drift_rad,
         description,
         columns,
-        {name: float(own[0].real) for name, own in phasors.items()},
-        {name: own[1:].real.copy() for name, own in phasors.items()},
-        {name: own[1:].imag.copy() for name, own in phasors.items()},
+        {name: float(phasor[0].real) for name, phasor in phasors.items()},
+        {name: phasor[1:].real.copy() for name, phasor in phasors.items()},
+        {name: phasor[1:].imag.copy() for name, phasor in phasors.items()},
     )
 
 
 def _all_phasors(cycle: BodyCycle) -> dict[str, ComplexArray]:
     """Loads, motion, velocities through the water and accelerations by name, order 0 real."""
-    own = {name: _rows(cycle, name) for name in cycle.channels}
+    rows = {name: _rows(cycle, name) for name in cycle.channels}
     rate = 2j * math.pi * cycle.frequency_hz * np.arange(cycle.orders + 1)
-    turning = rate * own["rotation"]
-    values = (-own["force"], -own["moment"], own["translation"], own["rotation"], own["across"],
-              turning, rate * own["across"], rate * turning)  # fmt: skip
+    turning = rate * rows["rotation"]
+    values = (-rows["force"], -rows["moment"], rows["translation"], rows["rotation"],
+              rows["across"], turning, rate * rows["across"], rate * turning)  # fmt: skip
     phasors = dict(zip(NAMES[cycle.plane], values, strict=True))
     if cycle.has_surge:
         phasors = {"X": -_rows(cycle, SURGE_FORCE), **phasors}
@@ -139,11 +139,11 @@ def _rows(cycle: BodyCycle, name: str) -> ComplexArray:
 def _ahead(cycle: BodyCycle, columns: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
     """Return x, u and du/dt: x of the carriage, the others along the model's own axis."""
     rate = 2j * math.pi * cycle.frequency_hz * np.arange(cycle.orders + 1)
-    own, samples = _rows(cycle, AHEAD_CHANNEL), len(columns["t"])
+    ahead, samples = _rows(cycle, AHEAD_CHANNEL), len(columns["t"])
     return {
         "x": cycle.speed_m_s * columns["t"],
-        "u": _wave(own, samples),
-        "du/dt": _wave(rate * own, samples),
+        "u": _wave(ahead, samples),
+        "du/dt": _wave(rate * ahead, samples),
     }
 
 

@@ -39,9 +39,9 @@ def write_simman(deliverables: Deliverables, folder: Path, *, overwrite: bool = 
     DataError
         If one of them is there and may not be replaced.
     """
-    there = [name for name in _FILES if (folder / name).exists()]
-    if there and not overwrite:
-        raise DataError(f"{folder}: {', '.join(there)} there already; choose another folder")
+    existing = [name for name in _FILES if (folder / name).exists()]
+    if existing and not overwrite:
+        raise DataError(f"{folder}: {', '.join(existing)} there already; choose another folder")
     folder.mkdir(parents=True, exist_ok=True)
     units = _units(deliverables.plane)
     names = [name for name in ("t", *units) if name in deliverables.columns]
@@ -110,8 +110,8 @@ def read_simman(folder: Path) -> Deliverables:
     DataError
         If a file or a column is missing, or a value is not a number; the message names it.
     """
-    said = _read_description(folder / DESCRIPTION_FILE)
-    plane = _plane(folder, said)
+    entries = _read_description(folder / DESCRIPTION_FILE)
+    plane = _plane(folder, entries)
     heads, values, _ = read_table(folder / CYCLE_FILE)
     columns = dict(zip(heads, values.T, strict=True))
     needed = ("t", *NAMES[plane][:4])
@@ -126,10 +126,10 @@ def read_simman(folder: Path) -> Deliverables:
         mean, sine, cosine = fourier(columns)
     return Deliverables(
         plane,
-        _number(folder, said, "frequency_hz"),
-        _number(folder, said, "speed_m_s"),
-        float(said.get("drift_rad", 0.0)),
-        _description(folder, said),
+        _number(folder, entries, "frequency_hz"),
+        _number(folder, entries, "speed_m_s"),
+        float(entries.get("drift_rad", 0.0)),
+        _description(folder, entries),
         columns,
         mean,
         sine,
@@ -156,8 +156,8 @@ def _read_description(path: Path) -> dict[str, str]:
     return {key.strip(): value.strip() for key, _, value in pairs}
 
 
-def _plane(folder: Path, said: Mapping[str, str]) -> Plane:
-    text = said.get("plane", str(Plane.HORIZONTAL))
+def _plane(folder: Path, entries: Mapping[str, str]) -> Plane:
+    text = entries.get("plane", str(Plane.HORIZONTAL))
     try:
         return Plane(text)
     except ValueError:
@@ -166,29 +166,29 @@ def _plane(folder: Path, said: Mapping[str, str]) -> Plane:
         ) from None
 
 
-def _number(folder: Path, said: Mapping[str, str], key: str) -> float:
+def _number(folder: Path, entries: Mapping[str, str], key: str) -> float:
     try:
-        return float(said[key])
+        return float(entries[key])
     except KeyError:
         raise DataError(f"{folder / DESCRIPTION_FILE}: {key} is missing") from None
     except ValueError:
         raise DataError(
-            f"{folder / DESCRIPTION_FILE}: {key} = {said[key]!r} is not a number"
+            f"{folder / DESCRIPTION_FILE}: {key} = {entries[key]!r} is not a number"
         ) from None
 
 
-def _description(folder: Path, said: Mapping[str, str]) -> SimmanDescription:
-    given: dict[str, Any] = {"run": said.get("run", folder.name)}
+def _description(folder: Path, entries: Mapping[str, str]) -> SimmanDescription:
+    values: dict[str, Any] = {"run": entries.get("run", folder.name)}
     for item in fields(SimmanDescription):
-        if item.name not in said or item.name == "run":
+        if item.name not in entries or item.name == "run":
             continue
         if item.name == "campaign":
-            given[item.name] = said[item.name]
+            values[item.name] = entries[item.name]
         elif item.name == "periods":
-            given[item.name] = int(_number(folder, said, item.name))
+            values[item.name] = int(_number(folder, entries, item.name))
         else:
-            given[item.name] = _number(folder, said, item.name)
-    return SimmanDescription(**given)
+            values[item.name] = _number(folder, entries, item.name)
+    return SimmanDescription(**values)
 
 
 def write_table(

@@ -44,8 +44,8 @@ def _answer(reader: str, path: Path, answers: BinaryIO) -> None:
     except MemoryError:
         _say({"memory": True}, answers)
     except Exception as error:  # a library may raise anything over a damaged file
-        what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-        _say({"refused": f"damaged: {what[:500]}"}, answers)
+        reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+        _say({"refused": f"damaged: {reason[:500]}"}, answers)
     else:
         _hand_on(columns, answers)
     answers.flush()

@@ -87,14 +87,18 @@ class _Child:
 
     def __init__(self) -> None:
         paths = [str(_ROOT), os.environ.get("PYTHONPATH", "")]
-        alone = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+        single_thread = {
+            "OPENBLAS_NUM_THREADS": "1",
+            "OMP_NUM_THREADS": "1",
+            "MKL_NUM_THREADS": "1",
+        }
         self._parent, self._was_late = os.getpid(), False
         self._process = subprocess.Popen(  # noqa: S603 - this interpreter and our own module
             _COMMAND,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            env={**os.environ, **alone, "PYTHONPATH": os.pathsep.join(filter(None, paths))},
+            env={**os.environ, **single_thread, "PYTHONPATH": os.pathsep.join(filter(None, paths))},
         )
 
     @property
@@ -140,18 +144,18 @@ class _Child:
         self._was_late = True
         self._process.kill()
 
-    def _death(self, who: str, allowed: ReadingLimits) -> DataError:
+    def _death(self, reader: str, allowed: ReadingLimits) -> DataError:
         """Say how it ended."""
         self._process.kill()
         status = self._process.wait()
         if self._was_late:
             return DataError(
-                f"{who} took longer than {allowed.seconds:g} s and was ended; if the file is "
+                f"{reader} took longer than {allowed.seconds:g} s and was ended; if the file is "
                 f"sound, raise {TIME_SETTING}"
             )
         return DataError(
-            f"{who} was ended by it ({_signal(status)}): the file is damaged; export it again, or "
-            "as CSV"
+            f"{reader} was ended by it ({_signal(status)}): the file is damaged; export it again, "
+            "or as CSV"
         )
 
     def _ask(self, request: dict[str, Any]) -> dict[str, Any]:

@@ -127,8 +127,8 @@ def _law(local: LocalPeriods, power: int) -> tuple[AmplitudeLaw, float, int]:
     whiten = np.linalg.inv(np.linalg.cholesky(local.covariance + rounding))
     rows = _rows(local, power)
     matrix = (whiten @ rows).reshape(-1, rows.shape[2])
-    seen = np.stack([local.phase_rad, local.omega_rad_s], axis=1)[:, :, np.newaxis]
-    data = (whiten @ seen).ravel()
+    measured = np.stack([local.phase_rad, local.omega_rad_s], axis=1)[:, :, np.newaxis]
+    data = (whiten @ measured).ravel()
     covariance = inverse_gram(matrix)
     solved = covariance @ (matrix.T @ data)
     chi2 = float(((data - matrix @ solved) ** 2).sum())
@@ -145,12 +145,12 @@ def _rows(local: LocalPeriods, power: int) -> FloatArray:
     The unknowns are the frequency at no amplitude, its change with ``A^power`` (not for power 0),
     and the phase of each stretch.
     """
-    ones = np.ones(local.time_s.size)
-    columns = [np.stack([local.time_s - local.time_s[0], ones])]
+    unit_column = np.ones(local.time_s.size)
+    columns = [np.stack([local.time_s - local.time_s[0], unit_column])]
     if power:
         columns.append(np.stack([amplitude_integral(local, power), local.amplitude**power]))
     columns += [
-        np.stack([local.stretch == number, 0.0 * ones])
+        np.stack([local.stretch == number, 0.0 * unit_column])
         for number in range(int(local.stretch[-1]) + 1)
     ]
     return np.asarray(np.stack(columns).transpose(2, 1, 0))

@@ -108,16 +108,16 @@ def place_ballast(
         everything[free] = place
         return everything
 
-    hold = _HOLD / (high - low)[free]
+    weight_per_m = _HOLD / (high - low)[free]
 
     def misfit(place: FloatArray) -> FloatArray:
         errors = _errors(_body(base, weights, full(place)), target)
         scaled = [_scaled(key, value, target) for key, value in errors.items()]
-        return np.concatenate([scaled, hold * (place - middle[free])])
+        return np.concatenate([scaled, weight_per_m * (place - middle[free])])
 
     def slope(place: FloatArray) -> FloatArray:
         rows = _slopes(_body(base, weights, full(place)), weights, full(place), target)
-        return np.concatenate([rows[:, free], np.diag(hold)])
+        return np.concatenate([rows[:, free], np.diag(weight_per_m)])
 
     best = middle
     if free.any():
@@ -159,8 +159,8 @@ def _check(weights: Sequence[Weight]) -> None:
 def _body(base: BodyPart, weights: Sequence[Weight], place: FloatArray) -> FloatArray:
     rows = [base.parameters]
     for weight, where in zip(weights, place.reshape(-1, 3), strict=True):
-        own = weight.mass_kg * np.array(weight.gyradii_m) ** 2
-        rows.append(np.concatenate([[weight.mass_kg], where, own, np.zeros(3)]))
+        moments = weight.mass_kg * np.array(weight.gyradii_m) ** 2
+        rows.append(np.concatenate([[weight.mass_kg], where, moments, np.zeros(3)]))
     return combined(np.array(rows), np.ones(len(rows)))
 
 

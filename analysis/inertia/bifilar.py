@@ -105,13 +105,13 @@ def yaw_from_beats(
 
 def resonance_flags(yaw_period_s: float, first_pitch_period_s: float) -> tuple[Flag, ...]:
     """Warn where yaw turns into pitch beats: ``T_y`` within 5 % of ``T_1`` (Kane and Tseng)."""
-    off = yaw_period_s / first_pitch_period_s - 1.0
-    if abs(off) > NEAR_RESONANCE:
+    detuning = yaw_period_s / first_pitch_period_s - 1.0
+    if abs(detuning) > NEAR_RESONANCE:
         return ()
     message = (
-        f"the yaw period {yaw_period_s:.4g} s is {100 * off:+.2g} % from the first pitch mode's "
-        f"{first_pitch_period_s:.4g} s (limit {100 * NEAR_RESONANCE:g} %): yaw and sway together "
-        "turn into pitch and shift the period; change the lines' length or spacing, or excite yaw "
-        "alone"
+        f"the yaw period {yaw_period_s:.4g} s is {100 * detuning:+.2g} % from the first pitch "
+        f"mode's {first_pitch_period_s:.4g} s (limit {100 * NEAR_RESONANCE:g} %): yaw and sway "
+        "together turn into pitch and shift the period; change the lines' length or spacing, or "
+        "excite yaw alone"
     )
     return (Flag("yaw_pitch_resonance", Severity.WARNING, message),)

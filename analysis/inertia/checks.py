@@ -111,10 +111,10 @@ def check_sway_axis(
         If it is off by more than 3 %: another axis (yaw for sway) or another length.
     """
     expected = 2.0 * math.pi * math.sqrt(line_length_m / gravity_m_s2)
-    off = period_s / expected - 1.0
-    if abs(off) > SWAY_TOLERANCE:
+    deviation = period_s / expected - 1.0
+    if abs(deviation) > SWAY_TOLERANCE:
         raise DataError(
-            f"{where}: a period of {period_s:.4g} s is {100 * off:+.1f} % from the "
+            f"{where}: a period of {period_s:.4g} s is {100 * deviation:+.1f} % from the "
             f"{expected:.4g} s of sway on lines of {line_length_m:.4g} m (limit "
             f"{100 * SWAY_TOLERANCE:g} %): a record of the wrong axis (yaw for sway?), or a wrong "
             "line length"
@@ -143,7 +143,7 @@ def check_yaw_axis(
     return (Flag("period_is_sway", Severity.WARNING, message),)
 
 
-def strongest_axis(chosen: Series, others: tuple[Series, ...]) -> tuple[Flag, ...]:
+def strongest_axis(chosen: Series, series: tuple[Series, ...]) -> tuple[Flag, ...]:
     """Flag a channel beside which another of the same unit swings more at the same time.
 
     For records with several axes (a phone's three rates): the wanted axis is the strongest one.
@@ -151,19 +151,19 @@ def strongest_axis(chosen: Series, others: tuple[Series, ...]) -> tuple[Flag, ..
     """
     if chosen.unit not in SWINGING_UNITS:
         return ()
-    own = float(np.nanstd(chosen.values))
+    swing = float(np.nanstd(chosen.values))
     stronger = [
-        other
-        for other in others
-        if other.unit == chosen.unit
-        and other.channel != chosen.channel
-        and float(np.nanstd(other.values)) > own
+        rival
+        for rival in series
+        if rival.unit == chosen.unit
+        and rival.channel != chosen.channel
+        and float(np.nanstd(rival.values)) > swing
     ]
     if not stronger:
         return ()
-    best = max(stronger, key=lambda other: float(np.nanstd(other.values)))
+    best = max(stronger, key=lambda rival: float(np.nanstd(rival.values)))
     message = (
-        f"{chosen.where}: {best.channel} swings {float(np.nanstd(best.values)) / own:.2g} times as "
-        "much; is this the right axis?"
+        f"{chosen.where}: {best.channel} swings {float(np.nanstd(best.values)) / swing:.2g} times "
+        "as much; is this the right axis?"
     )
     return (Flag("weaker_axis", Severity.WARNING, message, chosen.channel),)

@@ -52,7 +52,7 @@ def compound_pendulum(
 def lamboley(
     first_period: Estimate,
     second_period: Estimate,
-    apart: Estimate,
+    distance: Estimate,
     gravity: Estimate,
     *,
     seed: int = 0,
@@ -69,7 +69,7 @@ def lamboley(
     inputs = {
         "first_period_s": first_period,
         "second_period_s": second_period,
-        "apart_m": apart,
+        "apart_m": distance,
         "gravity_m_s2": gravity,
     }
     require_positive("Lamboley", **inputs)

@@ -153,8 +153,8 @@ def fit_damped(
     best = min(rough, key=lambda solution: solution.cost)
     solution = iterate(coarse, best.omega_rad_s, best.decay_1_s)
     if coarse is not problem:
-        near = solution.omega_rad_s, solution.decay_1_s
-        solution = iterate(problem, *near, damping=NEAR_START)
+        start = solution.omega_rad_s, solution.decay_1_s
+        solution = iterate(problem, *start, damping=NEAR_START)
     return _finish(problem, solution, start_s, where)
 
 
@@ -238,14 +238,14 @@ def _flags(
         )
         flags.append(Flag("not_converged", Severity.VOID, message))
     if diagnostics.structured:
-        left = diagnostics.rms / max(mode.amplitude for mode in modes)
+        residual_share = diagnostics.rms / max(mode.amplitude for mode in modes)
         message = (
             f"{where}: the residual is {diagnostics.structure:.3g} times as strong near the "
-            f"oscillation as beside it, and {100.0 * left:.2g} % of the first amplitude: period or "
-            "decay change with amplitude, or another mode is there; extrapolate to zero amplitude, "
-            "fit one mode more, or ask `pmm gap pendulum` which friction or drag it is"
+            f"oscillation as beside it, and {100.0 * residual_share:.2g} % of the first amplitude: "
+            "period or decay change with amplitude, or another mode is there; extrapolate to zero "
+            "amplitude, fit one mode more, or ask `pmm gap pendulum` which friction or drag it is"
         )
-        severity = Severity.WARNING if left > _MATTERS else Severity.NOTE
+        severity = Severity.WARNING if residual_share > _MATTERS else Severity.NOTE
         flags.append(Flag("structured_residual", severity, message))
     if min(mode.decay_1_s for mode in modes) < -1e-9:
         message = f"{where}: an oscillation grows; the record is not a free decay from here on"

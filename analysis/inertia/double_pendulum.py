@@ -154,6 +154,6 @@ def best_line_length(
         return math.log(gyradius_error_per_period(gyradius_m, depth_m, line, gravity_m_s2, reading))
 
     trial = np.linspace(-4.0, 4.0, 81)
-    near = trial[int(np.argmin([error(float(x)) for x in trial]))]
-    minimum = minimize_scalar(error, bounds=(near - 0.2, near + 0.2), method="bounded")
+    coarse = trial[int(np.argmin([error(float(x)) for x in trial]))]
+    minimum = minimize_scalar(error, bounds=(coarse - 0.2, coarse + 0.2), method="bounded")
     return float(depth_m * math.exp(float(minimum.x)))

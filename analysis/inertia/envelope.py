@@ -32,8 +32,8 @@ def _third_differences(stamps_s: FloatArray, values: FloatArray) -> FloatArray:
     """
     count = max(values.size - 3, 0)
     times = np.stack([stamps_s[k : k + count] for k in range(4)])
-    apart = times[:, np.newaxis] - times + np.eye(4)[:, :, np.newaxis]
-    share = 1.0 / apart.prod(axis=1)
+    intervals = times[:, np.newaxis] - times + np.eye(4)[:, :, np.newaxis]
+    share = 1.0 / intervals.prod(axis=1)
     size = np.sqrt((share**2).sum(axis=0))
     third = (share * [values[k : k + count] for k in range(4)]).sum(axis=0) / size
     return np.asarray(third[size >= np.median(size)] if count else third)
@@ -58,7 +58,7 @@ def release(values: FloatArray, envelope: FloatArray, size: int, top: float) -> 
     edge = size // 2 + 1
     if high[0] <= edge:
         return 0
-    near = values[max(high[0] - size, 0) : high[0] + size]
+    swing = values[max(high[0] - size, 0) : high[0] + size]
     centre = float(np.nanmean(values))
-    peak = max(high[0] - size, 0) + int(np.nanargmax(np.abs(near - centre)))
+    peak = max(high[0] - size, 0) + int(np.nanargmax(np.abs(swing - centre)))
     return int(min(peak + size // 2, values.size - 1))

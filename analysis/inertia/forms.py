@@ -48,6 +48,6 @@ def fit_swing_form(
     if form is not SwingForm.F3:
         return fit
     period = fit.modes[0].period_s
-    whole = np.floor((time_s[-1] - time_s[0]) / period) * period
-    chosen = time_s < time_s[0] + whole
-    return fit_damped(time_s[chosen], values[chosen], offset=False, where=where)
+    span_s = np.floor((time_s[-1] - time_s[0]) / period) * period
+    inside = time_s < time_s[0] + span_s
+    return fit_damped(time_s[inside], values[inside], offset=False, where=where)

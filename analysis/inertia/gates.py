@@ -119,9 +119,9 @@ def gate_events(
         raise DataError(f"{name}: {time_s.size} gate event(s); at least 8 are needed (two swings)")
     if not np.isin(states, (0.0, 1.0)).all():
         raise DataError(f"{name}: a gate's state is neither 0 nor 1; is the column the right one?")
-    back = np.flatnonzero(np.diff(time_s) < 0.0)
-    if back.size:
-        k = int(back[0])
+    reversals = np.flatnonzero(np.diff(time_s) < 0.0)
+    if reversals.size:
+        k = int(reversals[0])
         raise DataError(
             f"{name}: time runs backwards at event {k + 2}: {time_s[k + 1]:.9g} s after "
             f"{time_s[k]:.9g} s; sort the events or split the file"
@@ -142,13 +142,15 @@ def passages(events: GateEvents) -> Passages:
         If fewer than eight passages are left.
     """
     flags: list[Flag] = []
-    seen = []
+    gate_passages = []
     for gate, states in zip(events.gates, events.blocked, strict=True):
         middle, width, gate_flags = _one_gate(events.name, gate, events.time_s, states)
         flags += gate_flags
-        seen.append((middle, width))
-    half = _half_period(seen)
-    numbered = [_number(middle, width, half, seen[0][0][0]) for middle, width in seen]
+        gate_passages.append((middle, width))
+    half = _half_period(gate_passages)
+    numbered = [
+        _number(middle, width, half, gate_passages[0][0][0]) for middle, width in gate_passages
+    ]
     common = sorted(set.intersection(*[set(rows) for rows in numbered]))
     all_seen = set.union(*[set(rows) for rows in numbered])
     expected = max(all_seen) - min(all_seen) + 1
@@ -185,8 +187,8 @@ def _one_gate(
     joined = np.concatenate(([True], start[1:] - stop[:-1] > SHORTEST_SHARE * usual))
     start, stop = start[joined], stop[np.append(np.flatnonzero(joined)[1:] - 1, stop.size - 1)]
     width = stop - start
-    near = _running_median(width)
-    good = (width > SHORTEST_SHARE * near) & (width < LONGEST_SHARE * near)
+    usual_width = _running_median(width)
+    good = (width > SHORTEST_SHARE * usual_width) & (width < LONGEST_SHARE * usual_width)
     flags = []
     if not joined.all() or not good.all():
         message = (
@@ -203,9 +205,9 @@ def _running_median(width: FloatArray, reach: int = 7) -> FloatArray:
     return np.asarray(np.median(windows, axis=1))
 
 
-def _half_period(seen: list[tuple[FloatArray, FloatArray]]) -> float:
+def _half_period(gate_passages: list[tuple[FloatArray, FloatArray]]) -> float:
     """Half the usual time from one passage to the next but one, over all gates."""
-    return float(np.median(np.concatenate([m[2:] - m[:-2] for m, _ in seen]))) / 2.0
+    return float(np.median(np.concatenate([m[2:] - m[:-2] for m, _ in gate_passages]))) / 2.0
 
 
 def _number(
@@ -217,9 +219,9 @@ def _number(
     rows[number] = (middle[0], 1.0 / width[0])
     for time, wide in zip(middle[1:], width[1:], strict=True):
         steps = (time - last) / half
-        whole = round(steps)
+        half_swings = round(steps)
         # An off-centre gate makes swings to one side shorter: the tolerance allows for it.
-        if whole >= 1 and abs(steps - whole) <= OFF_BEAT + 0.02 * whole:
-            number, last = number + whole, time
+        if half_swings >= 1 and abs(steps - half_swings) <= OFF_BEAT + 0.02 * half_swings:
+            number, last = number + half_swings, time
             rows[number] = (time, 1.0 / wide)
     return rows

@@ -41,7 +41,7 @@ class HangingCentre:
     redundancy: Redundancy
 
 
-def centre_of_lines(lines: Sequence[PlumbLine], *, what: str = "plumb lines") -> HangingCentre:
+def centre_of_lines(lines: Sequence[PlumbLine], *, subject: str = "plumb lines") -> HangingCentre:
     """Return where plumb lines cross, by least squares.
 
     Raises
@@ -49,25 +49,27 @@ def centre_of_lines(lines: Sequence[PlumbLine], *, what: str = "plumb lines") ->
     DataError
         For fewer than two lines, or lines that are nearly parallel.
     """
-    angles = np.array([one.angle.value for one in lines])
-    apart = np.abs(np.sin(angles[:, None] - angles))
-    if len(lines) < 2 or apart.max() < _SPREAD:
-        at = ", ".join(f"{angle:.3g}" for angle in np.degrees(angles))
+    angles = np.array([line.angle.value for line in lines])
+    crossing_sines = np.abs(np.sin(angles[:, None] - angles))
+    if len(lines) < 2 or crossing_sines.max() < _SPREAD:
+        degrees = ", ".join(f"{angle:.3g}" for angle in np.degrees(angles))
         raise DataError(
-            f"{what}: {len(lines)} lines, at {at} deg; two or more are needed that cross at 6 deg "
-            "or more: hang the body from another point"
+            f"{subject}: {len(lines)} lines, at {degrees} deg; two or more are needed that cross "
+            "at 6 deg or more: hang the body from another point"
         )
-    whole = joint([value for one in lines for value in (one.x, one.z, one.angle)])
-    x, z, _ = whole.values.reshape(-1, 3).T
+    inputs = joint([value for line in lines for value in (line.x, line.z, line.angle)])
+    x, z, _ = inputs.values.reshape(-1, 3).T
     s, c = np.sin(angles), np.cos(angles)
     matrix, crossing = np.column_stack([c, -s]), x * c - z * s
     at_x, at_z = np.linalg.lstsq(matrix, crossing, rcond=None)[0]
-    slope = np.zeros((len(lines), whole.values.size))
+    slope = np.zeros((len(lines), inputs.values.size))
     for k in range(len(lines)):
         below = (at_x - x[k]) * s[k] + (at_z - z[k]) * c[k]
         slope[k, 3 * k : 3 * k + 3] = c[k], -s[k], below
-    seen = whole.carried(crossing, slope)
-    names = [one.name for one in lines]
-    found, agreement = best_fit(matrix, seen, what=what, results=IN_PLANE, data=names)
-    ahead, down = (Estimate(found.taken([k]), "m") for k in (0, 1))
+    crossings = inputs.carried(crossing, slope)
+    names = [line.name for line in lines]
+    crossing_point, agreement = best_fit(
+        matrix, crossings, subject=subject, results=IN_PLANE, data=names
+    )
+    ahead, down = (Estimate(crossing_point.taken([k]), "m") for k in (0, 1))
     return HangingCentre(ahead, down, agreement)

@@ -117,10 +117,10 @@ def local_periods(
 def _others(fit: DampedFit, mode: int, time_s: FloatArray) -> FloatArray:
     total = np.zeros(time_s.shape)
     t = time_s - fit.start_s
-    for k, other in enumerate(fit.modes):
+    for k, neighbour in enumerate(fit.modes):
         if k != mode:
-            angle = 2.0 * np.pi * t / other.period_s + other.phase_rad
-            total += other.amplitude * np.exp(-other.decay_1_s * t) * np.cos(angle)
+            angle = 2.0 * np.pi * t / neighbour.period_s + neighbour.phase_rad
+            total += neighbour.amplitude * np.exp(-neighbour.decay_1_s * t) * np.cos(angle)
     return total
 
 
@@ -131,20 +131,20 @@ def _part(
     inside = (time_s >= low) & (time_s <= high)
     if np.isfinite(values[inside]).mean() < 0.5:
         return None
-    own = fit_damped(time_s[inside], values[inside], start_periods_s=(period_s,))
-    best = own.modes[0]
-    if not own.converged or abs(best.period_s / period_s - 1.0) > STRAYED:
+    part_fit = fit_damped(time_s[inside], values[inside], start_periods_s=(period_s,))
+    mode = part_fit.modes[0]
+    if not part_fit.converged or abs(mode.period_s / period_s - 1.0) > STRAYED:
         return None
     middle = 0.5 * (low + high)
-    t, omega = middle - own.start_s, 2.0 * math.pi / best.period_s
+    t, omega = middle - part_fit.start_s, 2.0 * math.pi / mode.period_s
     # derivative of (phase at the middle, omega) by (period, phase at the start)
-    turn = np.array([[-omega * t / best.period_s, 1.0], [-omega / best.period_s, 0.0]])
-    covariance = turn @ own.covariance[np.ix_([0, 3], [0, 3])] @ turn.T
+    turn = np.array([[-omega * t / mode.period_s, 1.0], [-omega / mode.period_s, 0.0]])
+    covariance = turn @ part_fit.covariance[np.ix_([0, 3], [0, 3])] @ turn.T
     return _Part(
         middle,
-        best.amplitude * math.exp(-best.decay_1_s * t),
-        math.remainder(best.phase_rad + omega * t, 2.0 * math.pi),
-        best.period_s,
+        mode.amplitude * math.exp(-mode.decay_1_s * t),
+        math.remainder(mode.phase_rad + omega * t, 2.0 * math.pi),
+        mode.period_s,
         covariance,
     )
 
@@ -154,9 +154,9 @@ def _counted_through(parts: list[_Part], where: str) -> LocalPeriods:
     phases, stretches, flags = [parts[0].phase_rad], [0], []
     for last, part in pairwise(parts):
         expected = phases[-1] + _advance(last, part)
-        off = math.remainder(part.phase_rad - expected, 2.0 * math.pi)
-        sure = abs(off) + _reach(last, part) < math.pi
-        phases.append(expected + off)
+        phase_error = math.remainder(part.phase_rad - expected, 2.0 * math.pi)
+        sure = abs(phase_error) + _reach(last, part) < math.pi
+        phases.append(expected + phase_error)
         stretches.append(stretches[-1] + (not sure))
         if not sure:
             flags.append(_not_counted(last, part, where))

@@ -71,8 +71,8 @@ class BodyPart:
         for k, value in enumerate(values):
             if value > 0.0:
                 slope[k, [0, 4 + k]] = -0.5 * value / mass, 0.5 / (mass * value)
-        own = self.uncertain.carried(values, slope)
-        roll, pitch, yaw = (Estimate(own.taken([k]), "m") for k in range(3))
+        gyradii = self.uncertain.carried(values, slope)
+        roll, pitch, yaw = (Estimate(gyradii.taken([k]), "m") for k in range(3))
         return roll, pitch, yaw
 
     def _estimate(self, k: int, unit: str) -> Estimate:
@@ -108,11 +108,11 @@ def part(
         raise ConfigurationError(f"part {name!r}: a gyradius below 0; give its magnitude")
     inputs = joint((mass, *position, *gyradii, *products))
 
-    def turn(given: FloatArray) -> FloatArray:
-        return np.concatenate([given[:4], given[0] * given[4:7] ** 2, given[7:]])
+    def turn(numbers: FloatArray) -> FloatArray:
+        return np.concatenate([numbers[:4], numbers[0] * numbers[4:7] ** 2, numbers[7:]])
 
-    at = inputs.values
-    return BodyPart(name, inputs.carried(np.asarray(turn(at)), jacobian(turn, at)))
+    point = inputs.values
+    return BodyPart(name, inputs.carried(np.asarray(turn(point)), jacobian(turn, point)))
 
 
 def combine(name: str, parts: Sequence[BodyPart], *, without: Sequence[BodyPart] = ()) -> BodyPart:
@@ -134,18 +134,19 @@ def combine(name: str, parts: Sequence[BodyPart], *, without: Sequence[BodyPart]
     if not parts:
         raise ConfigurationError(f"{name!r}: no parts to combine; at least one is needed")
     signs = np.array([1.0] * len(parts) + [-1.0] * len(without))
-    whole = stacked([body_part.uncertain for body_part in everything])
-    at = whole.values
-    left = float(signs @ at[::_SIZE])
-    if left <= 0.0:
+    inputs = stacked([body_part.uncertain for body_part in everything])
+    at = inputs.values
+    mass_kg = float(signs @ at[::_SIZE])
+    if mass_kg <= 0.0:
         raise DataError(
-            f"{name!r}: {left:.4g} kg would be left; the parts taken away weigh more than the whole"
+            f"{name!r}: {mass_kg:.4g} kg would be left; the parts taken away weigh more than the "
+            "whole"
         )
 
     def put(rows: FloatArray) -> FloatArray:
         return combined(rows.reshape(-1, _SIZE), signs)
 
-    return BodyPart(name, whole.carried(np.asarray(put(at)), jacobian(put, at)))
+    return BodyPart(name, inputs.carried(np.asarray(put(at)), jacobian(put, at)))
 
 
 def combined(rows: FloatArray, signs: FloatArray) -> FloatArray:
@@ -161,9 +162,9 @@ def combined(rows: FloatArray, signs: FloatArray) -> FloatArray:
     mass = np.einsum("p,p...->p...", signs, rows[:, 0])
     total = mass.sum(axis=0)
     centre = np.einsum("p...,pk...->k...", mass, rows[:, 1:4]) / total
-    own = np.einsum("p,pk...->k...", signs, rows[:, 4:])
-    moved = np.einsum("p...,pk...->k...", mass, _shifted(rows[:, 1:4] - centre))
-    return np.concatenate([total[np.newaxis], centre, own + moved])
+    own_moments = np.einsum("p,pk...->k...", signs, rows[:, 4:])
+    shifted_moments = np.einsum("p...,pk...->k...", mass, _shifted(rows[:, 1:4] - centre))
+    return np.concatenate([total[np.newaxis], centre, own_moments + shifted_moments])
 
 
 def _shifted(place: FloatArray) -> FloatArray:

@@ -98,9 +98,11 @@ def _fit_law(
 ) -> tuple[float, float, FloatArray, float, float]:
     """Return period, its variance, residual, relative change and asymmetry."""
     number = (passages.number - passages.number[0]).astype(np.float64)
-    every = np.arange(number[-1] + 1)
-    along = np.interp(every, number, amplitude) ** power
-    summed = np.concatenate(([0.0], np.cumsum(0.5 * (along[1:] + along[:-1]))))[number.astype(int)]
+    half_swings = np.arange(number[-1] + 1)
+    powers = np.interp(half_swings, number, amplitude) ** power
+    summed = np.concatenate(([0.0], np.cumsum(0.5 * (powers[1:] + powers[:-1]))))[
+        number.astype(int)
+    ]
     sign = np.where(passages.number % 2 == 0, 1.0, -1.0)
     parts = [np.ones(number.size), number, sign] + ([summed] if power else [])
     matrix = np.column_stack(parts)

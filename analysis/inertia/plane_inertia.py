@@ -50,8 +50,8 @@ class PlaneInertia:
         """Return the inertia times a factor that all axes share."""
         values = self.uncertain.values
         slope = np.hstack([factor.value * np.eye(3), values[:, None]])
-        whole = stacked([self.uncertain, factor.uncertain])
-        return replace(self, uncertain=whole.carried(factor.value * values, slope))
+        inputs = stacked([self.uncertain, factor.uncertain])
+        return replace(self, uncertain=inputs.carried(factor.value * values, slope))
 
 
 IN_PLANE = ("ixx_kg_m2", "izz_kg_m2", "ixz_kg_m2")
@@ -81,8 +81,8 @@ def plane_inertia(
             f"plane inertia: {len(about)} inertias about {len(angles)} axes; three or more of "
             "each are needed"
         )
-    whole = stacked([joint(about), joint(angles)])
-    measured, phi = np.split(whole.values, 2)
+    inputs = stacked([joint(about), joint(angles)])
+    measured, phi = np.split(inputs.values, 2)
     s, c = np.sin(phi), np.cos(phi)
     matrix = np.column_stack([s * s, c * c, -2.0 * s * c])
     if np.linalg.cond(matrix) > 1e3:
@@ -93,10 +93,10 @@ def plane_inertia(
         )
     rough = np.linalg.lstsq(matrix, measured, rcond=None)[0]
     slope = 2.0 * s * c * (rough[0] - rough[1]) - 2.0 * rough[2] * (c * c - s * s)
-    seen = whole.carried(measured, np.hstack([np.eye(phi.size), -np.diag(slope)]))
+    about_axes = inputs.carried(measured, np.hstack([np.eye(phi.size), -np.diag(slope)]))
     names = [f"axis at {angle:.4g} deg" for angle in np.degrees(phi)]
     fitted, redundancy = best_fit(
-        matrix, seen, what="inertia in the centre plane", results=results, data=names
+        matrix, about_axes, subject="inertia in the centre plane", results=results, data=names
     )
     return PlaneInertia(fitted, redundancy)
 

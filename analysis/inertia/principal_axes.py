@@ -77,11 +77,11 @@ def principal_axes(
         "axis_angle_rad": axis_angle,
     }
 
-    def first(**given: Value) -> Value:
-        return principal_gyradii(given["roll_m"], given["yaw_m"], principal_angle(**given))[0]
+    def first(**gyradii: Value) -> Value:
+        return principal_gyradii(gyradii["roll_m"], gyradii["yaw_m"], principal_angle(**gyradii))[0]
 
-    def second(**given: Value) -> Value:
-        return principal_gyradii(given["roll_m"], given["yaw_m"], principal_angle(**given))[1]
+    def second(**gyradii: Value) -> Value:
+        return principal_gyradii(gyradii["roll_m"], gyradii["yaw_m"], principal_angle(**gyradii))[1]
 
     return PrincipalAxes(
         assess("psi", principal_angle, inputs, unit="rad", seed=seed),
@@ -130,7 +130,7 @@ def inertia_ellipse(px_m: float, pz_m: float, angle_rad: float, points: int = 18
 
     The radius in a direction is the inverse of the gyradius about it.
     """
-    around = np.linspace(0.0, 2.0 * np.pi, points)
-    turned = around + angle_rad
+    directions = np.linspace(0.0, 2.0 * np.pi, points)
+    turned = directions + angle_rad
     radius = 1.0 / np.hypot(px_m * np.sin(turned), pz_m * np.cos(turned))
-    return np.column_stack([radius * np.sin(around), radius * np.cos(around)])
+    return np.column_stack([radius * np.sin(directions), radius * np.cos(directions)])

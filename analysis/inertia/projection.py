@@ -56,8 +56,8 @@ class ProjectionProblem:
         places = np.rint((t - t[0]) / step).astype(np.int64)
         if places[-1] > 4 * t.size:
             return None
-        off = places * (self.span_s / float(places[-1])) + t[0] - t
-        return places if max(off.max(), -off.min()) < 1e-9 * step else None
+        deviation_s = places * (self.span_s / float(places[-1])) + t[0] - t
+        return places if max(deviation_s.max(), -deviation_s.min()) < 1e-9 * step else None
 
 
 @dataclass(frozen=True)
@@ -104,8 +104,8 @@ def _wave(problem: ProjectionProblem, exponent: complex) -> ComplexArray:
     fine = math.isqrt(size) + 1
     within = np.exp(exponent * step_s * np.arange(fine))
     blocks = step_s * fine * np.arange(-(-size // fine)) + problem.time_s[0]
-    whole = np.multiply.outer(np.exp(exponent * blocks), within).ravel()
-    return np.asarray(whole[:size] if size == places.size else whole[places])
+    wave = np.multiply.outer(np.exp(exponent * blocks), within).ravel()
+    return np.asarray(wave[:size] if size == places.size else wave[places])
 
 
 def project(
@@ -123,9 +123,9 @@ def inverse_gram(matrix: FloatArray) -> FloatArray:
     scale = np.sqrt(np.diag(gram))
     scale[scale == 0.0] = 1.0
     values, vectors = np.linalg.eigh(gram / np.outer(scale, scale))
-    kept = values > 1e-15 * values[-1]
-    turned = vectors[:, kept] / scale[:, np.newaxis]
-    return np.asarray((turned / values[kept]) @ turned.T)
+    usable = values > 1e-15 * values[-1]
+    turned = vectors[:, usable] / scale[:, np.newaxis]
+    return np.asarray((turned / values[usable]) @ turned.T)
 
 
 def derivative(problem: ProjectionProblem, matrix: FloatArray, linear: FloatArray) -> FloatArray:

@@ -72,10 +72,12 @@ def own_decay(local: LocalPeriods) -> OwnDecay:
     columns = [np.ones(time.size)]
     columns += [-amplitude_integral(local, p) / size**p / duration for p in (1, 2)]
     columns += [-(time - time[0]) / duration]
-    (smooth, less), (solved, least) = (
+    (smooth, smooth_residual), (solved, friction_residual) = (
         nnls(np.column_stack(columns[:count]), amplitude / size) for count in (3, 4)
     )
-    if less**2 - least**2 < _SURE**2 * least**2 / max(time.size - 4, 1):
+    if smooth_residual**2 - friction_residual**2 < _SURE**2 * friction_residual**2 / max(
+        time.size - 4, 1
+    ):
         solved = np.append(smooth, 0.0)
     _, viscous, quadratic, friction = (solved / duration).tolist()
     return OwnDecay(friction * size, viscous, quadratic / size)
@@ -175,8 +177,8 @@ def analyse_record(series: Series, *, modes: int = 1, pendulum: bool = False) ->
             message = f"{series.where}: the decay of oscillation {mode + 1} could not be fitted"
             flags.append(Flag("decay_not_converged", Severity.WARNING, message, series.channel))
         rates = own_decay(local)
-        kept = without_lag(local, rates)
-        analyses.append(ModeAnalysis(kept, zero_amplitude_period(kept), decay, rates))
+        lag_free = without_lag(local, rates)
+        analyses.append(ModeAnalysis(lag_free, zero_amplitude_period(lag_free), decay, rates))
     if pendulum and series.unit == "rad":
         local = analyses[0].local
         flags += check_amplitude_effect(
@@ -190,7 +192,7 @@ def from_runs(
     mode: int = 0,
     *,
     known_scatter: KnownScatter | None = None,
-    what: str = "period",
+    subject: str = "period",
 ) -> Repeated:
     """Return the period of several releases with the scatter between them.
 
@@ -203,23 +205,25 @@ def from_runs(
         For no run.
     """
     if len(runs) == 1 and known_scatter is None:
-        only = runs[0].modes[mode]
-        return single_run(only.local, only.at_no_amplitude.period, what=what)
+        analysis = runs[0].modes[mode]
+        return single_run(analysis.local, analysis.at_no_amplitude.period, subject=subject)
     return combine_runs(
         [run.period(mode) for run in runs],
         known_scatter=known_scatter,
-        what=what,
+        subject=subject,
         names=[run.part.series.name for run in runs],
     )
 
 
 def damping_of(records: Sequence[RecordAnalysis]) -> Estimate:
     """Return the damping ratio, the mean over records; one alone has the scatter along it."""
-    ratios = np.array([one.fit.modes[0].damping_ratio for one in records])
+    ratios = np.array([record.fit.modes[0].damping_ratio for record in records])
     if ratios.size > 1:
         spread = float(ratios.std(ddof=1)) / np.sqrt(ratios.size)
         return Estimate.of(float(ratios.mean()), float(spread), "1", float(ratios.size - 1))
     local, mode = records[0].modes[0].local, records[0].fit.modes[0]
     rates = -np.diff(np.log(local.amplitude)) / np.diff(local.time_s)
-    along = rates * mode.period_s / (2.0 * np.pi)
-    return Estimate.of(float(ratios[0]), float(along.std(ddof=1)), "1", float(along.size - 1))
+    local_ratios = rates * mode.period_s / (2.0 * np.pi)
+    return Estimate.of(
+        float(ratios[0]), float(local_ratios.std(ddof=1)), "1", float(local_ratios.size - 1)
+    )

@@ -51,17 +51,17 @@ def amplitudes(series: Series, period: float) -> tuple[FloatArray, FloatArray]:
     time, values = series.time_s, series.values
     half = 0.5 * period
     moments = np.arange(time[0] + half, time[-1] - half, period / _STEPS_A_PERIOD)
-    found = np.full(moments.size, np.nan)
+    sizes = np.full(moments.size, np.nan)
     for k, moment in enumerate(moments):
         low, high = np.searchsorted(time, [moment - half, moment + half])
-        own, angle = values[low:high], 2.0 * np.pi * (time[low:high] - moment) / period
-        good = np.isfinite(own)
-        if good.sum() > max(_WHOLE * own.size, 4):
+        window, angle = values[low:high], 2.0 * np.pi * (time[low:high] - moment) / period
+        good = np.isfinite(window)
+        if good.sum() > max(_WHOLE * window.size, 4):
             matrix = np.column_stack([np.cos(angle), np.sin(angle), np.ones(angle.size)])[good]
-            cosine, sine, _ = np.linalg.lstsq(matrix, own[good], rcond=None)[0]
-            found[k] = np.hypot(cosine, sine)
-    seen = np.isfinite(found)
-    return moments[seen], found[seen]
+            cosine, sine, _ = np.linalg.lstsq(matrix, window[good], rcond=None)[0]
+            sizes[k] = np.hypot(cosine, sine)
+    finite = np.isfinite(sizes)
+    return moments[finite], sizes[finite]
 
 
 def change_of_regime(series: Series, part: UsablePart) -> RegimeChange | None:
@@ -79,17 +79,19 @@ def change_of_regime(series: Series, part: UsablePart) -> RegimeChange | None:
     spare = time.size / _STEPS_A_PERIOD - 8.0
     if spare < 1.0 or time.size < 2 * edge + 4 * _STEPS_A_PERIOD:
         return None
-    left = {at: _step(time, amplitude, at) for at in range(edge, time.size - edge)
+    residuals = {at: _step(time, amplitude, at) for at in range(edge, time.size - edge)
             if at % _STEPS_A_PERIOD == 0 and _whole(time, at)}  # fmt: skip
-    if not left:
+    if not residuals:
         return None
-    rough = min(left, key=lambda at: left[at][0])
-    near = range(rough - _STEPS_A_PERIOD, rough + _STEPS_A_PERIOD + 1)
-    within = (at for at in near if edge <= at < time.size - edge)
+    rough = min(residuals, key=lambda at: residuals[at][0])
+    candidates = range(rough - _STEPS_A_PERIOD, rough + _STEPS_A_PERIOD + 1)
+    within = (at for at in candidates if edge <= at < time.size - edge)
     (least, before, after), best = min((_step(time, amplitude, at), at) for at in within)
-    whole = _left(_own_way(time, amplitude), amplitude)
-    apart = abs(after - before)
-    if whole - least < SURE * least / spare or apart < max(LEAST_STEP * before, part.floor):
+    smooth_residual = _left(_own_way(time, amplitude), amplitude)
+    step = abs(after - before)
+    if smooth_residual - least < SURE * least / spare or step < max(
+        LEAST_STEP * before, part.floor
+    ):
         return None
     return RegimeChange(float(time[best]), before, after)
 
@@ -124,8 +126,8 @@ def _longer(series: Series, part: UsablePart) -> Series:
 
 def _whole(time: FloatArray, at: int) -> bool:
     """Return whether there is no gap in the swings around a moment."""
-    around = np.diff(time[at - 2 * _STEPS_A_PERIOD : at + 2 * _STEPS_A_PERIOD])
-    return bool(around.max() < 2.0 * around.min())
+    steps = np.diff(time[at - 2 * _STEPS_A_PERIOD : at + 2 * _STEPS_A_PERIOD])
+    return bool(steps.max() < 2.0 * steps.min())
 
 
 def _own_way(time: FloatArray, amplitude: FloatArray) -> FloatArray:
@@ -162,6 +164,6 @@ def _step(time: FloatArray, amplitude: FloatArray, at: int) -> tuple[float, floa
         matrix = _own_way(t, a)
         solved = np.linalg.lstsq(matrix, a, rcond=None)[0]
         total += float(((a - matrix @ solved) ** 2).sum())
-        near = slice(-_STEPS_A_PERIOD, None) if inner else slice(0, _STEPS_A_PERIOD)
-        ends.append(float(np.linalg.lstsq(line[near], a[near], rcond=None)[0][0]))
+        ending = slice(-_STEPS_A_PERIOD, None) if inner else slice(0, _STEPS_A_PERIOD)
+        ends.append(float(np.linalg.lstsq(line[ending], a[ending], rcond=None)[0][0]))
     return total, ends[0], ends[1]

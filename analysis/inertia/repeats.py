@@ -57,7 +57,7 @@ def combine_runs(
     runs: Sequence[Estimate],
     *,
     known_scatter: KnownScatter | None = None,
-    what: str = "period",
+    subject: str = "period",
     names: Sequence[str] = (),
 ) -> Repeated:
     """Combine runs of the same set-up.
@@ -78,70 +78,78 @@ def combine_runs(
     """
     if not runs or (len(runs) < 2 and known_scatter is None):
         raise DataError(
-            f"{what}: {len(runs)} run(s); a fit's own error alone is no uncertainty: repeat the "
+            f"{subject}: {len(runs)} run(s); a fit's own error alone is no uncertainty: repeat the "
             "release (three times or more), or hand in the scatter known from earlier repeats"
         )
     values = np.array([run.value for run in runs])
-    own = math.sqrt(float(np.mean([run.uncertainty**2 for run in runs])))
+    fit_u = math.sqrt(float(np.mean([run.uncertainty**2 for run in runs])))
     scatter = float(values.std(ddof=1)) if len(runs) > 1 else math.nan
     spread, freedom = _pooled(scatter, len(runs) - 1, known_scatter)
     mean = Estimate(joint(runs).mapped(np.full((1, len(runs)), 1.0 / len(runs))), runs[0].unit)
     between = Estimate.of(mean.value, spread / math.sqrt(len(runs)), mean.unit, freedom)
-    estimate = mean if own > spread else between
-    found: tuple[Redundancy, ...] = ()
+    estimate = mean if fit_u > spread else between
+    agreements: tuple[Redundancy, ...] = ()
     if len(runs) > 1:
-        agreement = _agreement(runs, known_scatter, what, names)
+        agreement = _agreement(runs, known_scatter, subject, names)
         wide, cause = (
-            (1.0, "") if own > spread else (_over(spread, own), "the scatter between runs")
+            (1.0, "") if fit_u > spread else (_over(spread, fit_u), "the scatter between runs")
         )
-        by_fits = (len(runs) - 1) * _over(scatter, own) ** 2
+        by_fits = (len(runs) - 1) * _over(scatter, fit_u) ** 2
         chi_squared = agreement.chi_squared if known_scatter else by_fits
-        found = (replace(agreement, chi_squared=chi_squared, widening=wide, cause=cause),)
-    flags = (*_scatter_flags(what, spread, own), *(flag for one in found for flag in one.flags()))
-    return Repeated(estimate, tuple(values.tolist()), scatter, own, flags, found)
+        agreements = (replace(agreement, chi_squared=chi_squared, widening=wide, cause=cause),)
+    flags = (
+        *_scatter_flags(subject, spread, fit_u),
+        *(flag for redundancy in agreements for flag in redundancy.flags()),
+    )
+    return Repeated(estimate, tuple(values.tolist()), scatter, fit_u, flags, agreements)
 
 
-def _over(scatter: float, own: float) -> float:
-    return scatter / own if own > 0.0 else math.nan
+def _over(scatter: float, fit_u: float) -> float:
+    return scatter / fit_u if fit_u > 0.0 else math.nan
 
 
 def _agreement(
-    runs: Sequence[Estimate], known: KnownScatter | None, what: str, names: Sequence[str]
+    runs: Sequence[Estimate], known_scatter: KnownScatter | None, subject: str, names: Sequence[str]
 ) -> Redundancy:
     """Return how runs agree: by the scatter known from elsewhere, or by their own."""
     matrix = np.ones((len(runs), 1))
     labels = names or [f"run {k}" for k in range(1, len(runs) + 1)]
     results = ("period_s" if runs[0].unit == "s" else "ratio",)
-    if known is None:
+    if known_scatter is None:
         values = np.array([run.value for run in runs])
-        return scattered_fit(matrix, values, what=what, results=results, data=labels)
-    seen = joint(Estimate.of(one.value, known.value, "s", known.degrees_of_freedom) for one in runs)
-    return best_fit(matrix, seen, what=what, results=results, data=labels)[1]
+        return scattered_fit(matrix, values, subject=subject, results=results, data=labels)
+    run_values = joint(
+        Estimate.of(run.value, known_scatter.value, "s", known_scatter.degrees_of_freedom)
+        for run in runs
+    )
+    return best_fit(matrix, run_values, subject=subject, results=results, data=labels)[1]
 
 
-def _pooled(scatter: float, freedom: int, known: KnownScatter | None) -> tuple[float, float]:
-    if known is None:
+def _pooled(
+    scatter: float, freedom: int, known_scatter: KnownScatter | None
+) -> tuple[float, float]:
+    if known_scatter is None:
         return scatter, float(freedom)
     if freedom < 1:
-        return known.value, known.degrees_of_freedom
-    if math.isinf(known.degrees_of_freedom):
-        return known.value, math.inf
-    total = freedom + known.degrees_of_freedom
-    square = freedom * scatter**2 + known.degrees_of_freedom * known.value**2
+        return known_scatter.value, known_scatter.degrees_of_freedom
+    if math.isinf(known_scatter.degrees_of_freedom):
+        return known_scatter.value, math.inf
+    total = freedom + known_scatter.degrees_of_freedom
+    square = freedom * scatter**2 + known_scatter.degrees_of_freedom * known_scatter.value**2
     return math.sqrt(square / total), total
 
 
-def _scatter_flags(what: str, scatter: float, own: float) -> tuple[Flag, ...]:
-    if own <= 0.0 or scatter < 3.0 * own:
+def _scatter_flags(subject: str, scatter: float, fit_u: float) -> tuple[Flag, ...]:
+    if fit_u <= 0.0 or scatter < 3.0 * fit_u:
         return ()
     message = (
-        f"{what}: runs scatter by {scatter:.3g}, {scatter / own:.3g} times what each fit claims; "
-        "the scatter is what counts (release, stiction, temperature, amplitude)"
+        f"{subject}: runs scatter by {scatter:.3g}, {scatter / fit_u:.3g} times what each fit "
+        "claims; the scatter is what counts (release, stiction, temperature, amplitude)"
     )
     return (Flag("scatter_exceeds_fit", Severity.NOTE, message),)
 
 
-def single_run(local: LocalPeriods, zero: Estimate, *, what: str = "period") -> Repeated:
+def single_run(local: LocalPeriods, zero: Estimate, *, subject: str = "period") -> Repeated:
     """Stand in for repeats with the parts of one run, where there is no other.
 
     The scatter of the parts about their mean is taken for that between runs, undivided: parts of
@@ -149,7 +157,7 @@ def single_run(local: LocalPeriods, zero: Estimate, *, what: str = "period") -> 
     """
     spread = float(local.period_s.std(ddof=1))
     message = (
-        f"{what}: one run only; the scatter between its {local.period_s.size} parts "
+        f"{subject}: one run only; the scatter between its {local.period_s.size} parts "
         f"({spread:.2g} {zero.unit}) stands in for that between runs: repeat the release"
     )
     estimate = zero.widened(spread, float(local.period_s.size - 1))

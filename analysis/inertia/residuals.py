@@ -64,18 +64,18 @@ def diagnose(
     white = variance if variance > 0.0 else 1.0
     step = float(time_s[-1] - time_s[0]) / max(grid.size - 1, 1)
     bins = np.rint(np.abs(frequency_hz) * step * grid.size).astype(int)
-    near = [_density(density, k, 1, _NEAR_BINS) / white for k in bins]
+    inflation = [_density(density, k, 1, _NEAR_BINS) / white for k in bins]
     inside = max((_density(density, k, 0, _STRUCTURE_BINS) for k in bins), default=0.0)
-    beside = min(
+    background = min(
         (_density(density, k, _STRUCTURE_BINS + 1, 4 * _NEAR_BINS) for k in bins), default=1.0
     )
     neighbours = inner(residual[1:], residual[:-1]) / (residual.size * white)
     return ResidualDiagnostics(
         rms=float(np.sqrt(variance)),
         lag1_correlation=neighbours,
-        mode_inflation=np.maximum(np.array(near), 1.0),
+        mode_inflation=np.maximum(np.array(inflation), 1.0),
         offset_inflation=max(_density(density, 0, 1, _NEAR_BINS) / white, 1.0),
-        structure=inside / beside if beside > 0.0 else 1.0,
+        structure=inside / background if background > 0.0 else 1.0,
     )
 
 

@@ -65,21 +65,21 @@ class MassProperties:
 
     def _gyradius(self, axis: str) -> Estimate:
         if axis not in self.gyradii:
-            known = ", ".join(self.gyradii) or "none"
-            raise ConfigurationError(
-                f"{self.name}: no {axis} gyradius was measured (have: {known})"
-            )
+            axes = ", ".join(self.gyradii) or "none"
+            raise ConfigurationError(f"{self.name}: no {axis} gyradius was measured (have: {axes})")
         return self.gyradii[axis]
 
     def numbers(self) -> dict[str, object]:
         """Return everything as JSON takes it."""
-        own = {"mass_kg": self.mass, "cg_x_m": self.cg_x, "cg_z_m": self.cg_z}
-        own |= {f"k_{axis}_m": value for axis, value in self.gyradii.items()}
-        quantities = own | {f"i_{axis}_kg_m2": self.inertia(axis) for axis in self.gyradii}
+        measured = {"mass_kg": self.mass, "cg_x_m": self.cg_x, "cg_z_m": self.cg_z}
+        measured |= {f"k_{axis}_m": value for axis, value in self.gyradii.items()}
+        quantities = measured | {f"i_{axis}_kg_m2": self.inertia(axis) for axis in self.gyradii}
         return {
             "name": self.name,
             "quantities": {key: estimate_numbers(value) for key, value in quantities.items()},
-            "correlations": [{"between": pair, "coefficient": r} for pair, r in _correlations(own)],
+            "correlations": [
+                {"between": pair, "coefficient": r} for pair, r in _correlations(measured)
+            ],
             "budgets": {budget.name: budget_rows(budget) for budget in self.budgets},
             "flags": [
                 {"code": flag.code, "severity": str(flag.severity), "message": flag.message}

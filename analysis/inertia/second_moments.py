@@ -31,24 +31,24 @@ def impossible(body: BodyPart) -> tuple[Flag, ...]:
     for value, (row, column) in zip(products, ((0, 1), (0, 2), (1, 2)), strict=True):
         second[row, column] = second[column, row] = value
     values, vectors = np.linalg.eigh(second)
-    least, along = float(values[0]), vectors[:, 0]
+    least, direction = float(values[0]), vectors[:, 0]
     slope = np.zeros(len(body.parameters))
-    slope[4:7], slope[7:10] = 0.5 - along**2, 2.0 * along[[0, 0, 1]] * along[[1, 2, 2]]
+    slope[4:7], slope[7:10] = 0.5 - direction**2, 2.0 * direction[[0, 0, 1]] * direction[[1, 2, 2]]
     u = math.sqrt(max(float(slope @ body.uncertain.covariance() @ slope), 0.0))
     if least >= -max(_SURE * u, _ROUNDING * moments.sum()):
         return ()
-    large = int(np.argmax(np.abs(along)))
-    one, two = (axis for k, axis in enumerate(_AXES) if k != large)
-    what, first = (
-        f"{_AXES[large]} above {one} + {two}",
+    large = int(np.argmax(np.abs(direction)))
+    first_axis, second_axis = (axis for k, axis in enumerate(_AXES) if k != large)
+    excess, first = (
+        f"{_AXES[large]} above {first_axis} + {second_axis}",
         _first_to_measure(body, large, -2.0 * least),
     )
-    if abs(along[large]) < _STRAIGHT:
-        what, first = "products of inertia so large for its moments", "measure the products first"
+    if abs(direction[large]) < _STRAIGHT:
+        excess, first = "products of inertia so large for its moments", "measure the products first"
     below = f", {-least / u:.2g} standard uncertainties below zero" if u > 0.0 else ""
     message = (
-        f"{body.name}: no body has {what}: sum m n2 would be {least:.3g} kg m2 along "
-        f"({', '.join(f'{part:.2g}' for part in along)}){below}; {first}, then the others"
+        f"{body.name}: no body has {excess}: sum m n2 would be {least:.3g} kg m2 along "
+        f"({', '.join(f'{part:.2g}' for part in direction)}){below}; {first}, then the others"
     )
     return (Flag(CODE, Severity.WARNING, message),)
 
@@ -56,7 +56,7 @@ def impossible(body: BodyPart) -> tuple[Flag, ...]:
 def _first_to_measure(body: BodyPart, large: int, lacks: float) -> str:
     """Say which moment mends it with the fewest of its uncertainties, or the smallest share."""
     moments = body.parameters[4:7]
-    sigmas = np.array([one.uncertainty for one in body.inertia])
+    sigmas = np.array([moment.uncertainty for moment in body.inertia])
     share = lacks / moments
     changes = np.round(lacks / sigmas, 1) if (sigmas > 0.0).all() else share
     wrong = int(np.lexsort((share, changes))[0])

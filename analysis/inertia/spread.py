@@ -31,18 +31,18 @@ _OPPOSITES = {
 }
 
 
-def cause_statement(cause: str, predicts: float, *, told: bool) -> str:
+def cause_statement(cause: str, predicts: float, *, certain: bool) -> str:
     """Return the sentence about the likeliest cause.
 
     Parameters
     ----------
     predicts
         Share of the gap on what was left out of the fit that goes away with it.
-    told
+    certain
         Whether it is the cause.
     """
     share = f"{100.0 * max(predicts, 0.0):.0f} % of what it was not fitted to"
-    if told:
+    if certain:
         return f"the cause: {cause}, which predicts {share}"
     return f"the cause cannot be told; likeliest cause: {cause}, which accounts for {share}"
 
@@ -136,21 +136,23 @@ def compare_geometries(
         raise DataError(f"{len(geometries)} geometry; at least 2 are needed to compare")
     values = np.array([geometry.gyradius.value for geometry in geometries])
     gyradii = joint(geometry.gyradius for geometry in geometries)
-    mean, found = best_fit(
+    mean, agreement = best_fit(
         np.ones((values.size, 1)),
         gyradii,
-        what=f"{result} by several suspensions",
+        subject=f"{result} by several suspensions",
         results=(result,),
         data=[geometry.name for geometry in geometries],
     )
-    if found.agree:
-        return Spread(Estimate(mean, "m"), found, (), ())
-    own = Estimate(mean, "m").uncertainty / found.widening
-    scatter = max(float(values.std(ddof=1)), own)
+    if agreement.agree:
+        return Spread(Estimate(mean, "m"), agreement, (), ())
+    mean_u = Estimate(mean, "m").uncertainty / agreement.widening
+    scatter = max(float(values.std(ddof=1)), mean_u)
     causes = _causes(geometries) if values.size > 2 else ()
     estimate = Estimate.of(float(values.mean()), scatter, "m", float(values.size - 1))
-    wider = replace(found, widening=scatter / own, cause="the spread between the suspensions")
-    return Spread(estimate, wider, causes, (_flag(values, found, causes, scatter),))
+    wider = replace(
+        agreement, widening=scatter / mean_u, cause="the spread between the suspensions"
+    )
+    return Spread(estimate, wider, causes, (_flag(values, agreement, causes, scatter),))
 
 
 def _shapes(d: FloatArray, line: FloatArray, k: float) -> dict[str, tuple[str, FloatArray]]:
@@ -178,16 +180,20 @@ def _causes(geometries: Sequence[SuspensionGyradius]) -> tuple[SpreadCause, ...]
             matrix = np.column_stack([np.ones(d.size), *(0.5 * shapes[n][1] for n in names)])
             target = np.log(values / k) * weight
             solved, *_ = np.linalg.lstsq(matrix * weight[:, None], target, rcond=None)
-            left = target - (matrix * weight[:, None]) @ solved
+            residual = target - (matrix * weight[:, None]) @ solved
             units = tuple(shapes[n][0] for n in names)
             sizes = tuple(solved[1:].tolist())
             if any(
                 size < 0.0 and n not in _OPPOSITES for n, size in zip(names, sizes, strict=True)
             ):
                 continue
-            own = k * math.exp(float(solved[0]))
+            gyradius = k * math.exp(float(solved[0]))
             share = _predicts(matrix, target, weight)
-            causes.append(SpreadCause(names, sizes, units, own, float(left @ left), freedom, share))
+            causes.append(
+                SpreadCause(
+                    names, sizes, units, gyradius, float(residual @ residual), freedom, share
+                )
+            )
     # a second cause has to pay for itself (Akaike)
     return tuple(sorted(causes, key=lambda cause: cause.chi_squared + 2.0 * len(cause.names)))
 
@@ -203,26 +209,27 @@ def _left_out(matrix: FloatArray, target: FloatArray) -> FloatArray:
     """Return each row's departure from what the others let expect, in sigma."""
     ways = []
     for at in range(target.size):
-        others = np.arange(target.size) != at
-        solved, *_ = np.linalg.lstsq(matrix[others], target[others], rcond=None)
+        rest = np.arange(target.size) != at
+        solved, *_ = np.linalg.lstsq(matrix[rest], target[rest], rcond=None)
         ways.append(target[at] - matrix[at] @ solved)
     return np.array(ways)
 
 
 def _flag(
-    values: FloatArray, found: Redundancy, causes: tuple[SpreadCause, ...], scatter: float
+    values: FloatArray, agreement: Redundancy, causes: tuple[SpreadCause, ...], scatter: float
 ) -> Flag:
-    why = ""
+    cause_words = ""
     if causes:
         best = causes[0]
-        why = (
-            f"; {cause_statement(str(best), best.predicts, told=best.predicts >= SURE)} "
+        cause_words = (
+            f"; {cause_statement(str(best), best.predicts, certain=best.predicts >= SURE)} "
             f"(chi-squared {best.chi_squared:.3g} over {best.degrees_of_freedom}, "
             f"gyradius then {best.gyradius_m:.4f} m)"
         )
     message = (
         f"the gyradii range from {values.min():.4f} to {values.max():.4f} m, beyond their "
-        f"uncertainties (chi-squared {found.chi_squared:.4g} over {found.degrees_of_freedom}): an "
-        f"unexplained spread of {scatter:.2g} m, which is taken for the uncertainty{why}"
+        f"uncertainties (chi-squared {agreement.chi_squared:.4g} over "
+        f"{agreement.degrees_of_freedom}): an unexplained spread of {scatter:.2g} m, which is "
+        f"taken for the uncertainty{cause_words}"
     )
     return Flag("unexplained_spread", Severity.WARNING, message)

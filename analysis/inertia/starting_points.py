@@ -71,10 +71,12 @@ def thinned(problem: ProjectionProblem) -> ProjectionProblem:
     block = min(most, int(1.0 / (fastest * step)))
     if block < 2:
         return problem
-    whole = problem.time_s.size // block * block
+    whole_blocks = problem.time_s.size // block * block
 
     def mean(rows: FloatArray) -> FloatArray:
-        return np.asarray(rows[:whole].reshape(whole // block, block, *rows.shape[1:]).mean(axis=1))
+        return np.asarray(
+            rows[:whole_blocks].reshape(whole_blocks // block, block, *rows.shape[1:]).mean(axis=1)
+        )
 
     return ProjectionProblem(
         mean(problem.time_s), mean(problem.values), mean(problem.base), problem.damped

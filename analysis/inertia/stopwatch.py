@@ -25,7 +25,7 @@ def stopwatch_period(
     readings: tuple[StopwatchReading, ...],
     *,
     reaction_s: float = REACTION_S,
-    what: str = "stopwatch",
+    subject: str = "stopwatch",
 ) -> Repeated:
     """Return the period of one swing.
 
@@ -49,25 +49,34 @@ def stopwatch_period(
     periods = np.array([reading.duration_s / reading.swings for reading in readings])
     swings = np.array([float(reading.swings) for reading in readings])
     usual = float(np.median(periods))
-    off = np.abs(periods / usual - 1.0) * swings
-    if off.max() > 0.5:
-        worst = int(np.argmax(off))
+    miscount = np.abs(periods / usual - 1.0) * swings
+    if miscount.max() > 0.5:
+        worst = int(np.argmax(miscount))
         raise DataError(
             f"stopwatch reading {worst + 1}: {periods[worst]:.4g} s a swing against {usual:.4g} s "
-            f"of the others: {off[worst]:.2g} swings over {swings[worst]:.0f}; miscounted?"
+            f"of the others: {miscount[worst]:.2g} swings over {swings[worst]:.0f}; miscounted?"
         )
-    own = [
+    reading_periods = [
         Estimate.of(float(period), reaction_s / count, "s")
         for period, count in zip(periods, swings, strict=True)
     ]
-    mean = Estimate(joint(own).mapped(np.full((1, len(own)), 1.0 / len(own))), "s")
-    if len(own) < 2:
-        return Repeated(mean, (usual,), math.nan, mean.uncertainty)
-    names = [f"reading {k}" for k in range(1, len(own) + 1)]
-    found = scattered_fit(
-        np.ones((len(own), 1)), periods, what=what, results=("period_s",), data=names
+    mean = Estimate(
+        joint(reading_periods).mapped(
+            np.full((1, len(reading_periods)), 1.0 / len(reading_periods))
+        ),
+        "s",
     )
-    reactions = np.array([one.uncertainty for one in own])
+    if len(reading_periods) < 2:
+        return Repeated(mean, (usual,), math.nan, mean.uncertainty)
+    names = [f"reading {k}" for k in range(1, len(reading_periods) + 1)]
+    agreement = scattered_fit(
+        np.ones((len(reading_periods), 1)),
+        periods,
+        subject=subject,
+        results=("period_s",),
+        data=names,
+    )
+    reactions = np.array([period.uncertainty for period in reading_periods])
     chi_squared = float((((periods - mean.value) / reactions) ** 2).sum())
     scatter = float(periods.std(ddof=1))
     between = scatter / math.sqrt(periods.size)
@@ -75,7 +84,12 @@ def stopwatch_period(
     if between > mean.uncertainty:
         estimate = Estimate.of(mean.value, between, "s", float(periods.size - 1))
         wide, cause = between / mean.uncertainty, "the scatter between readings"
-    found = replace(found, chi_squared=chi_squared, widening=wide, cause=cause)
+    agreement = replace(agreement, chi_squared=chi_squared, widening=wide, cause=cause)
     return Repeated(
-        estimate, tuple(periods.tolist()), scatter, own[0].uncertainty, found.flags(), (found,)
+        estimate,
+        tuple(periods.tolist()),
+        scatter,
+        reading_periods[0].uncertainty,
+        agreement.flags(),
+        (agreement,),
     )

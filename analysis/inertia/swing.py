@@ -101,9 +101,9 @@ def model_inertia(
     return total - tare - moment * moment / model_mass_kg
 
 
-def model_gyradius(model_mass_kg: Value, **others: Value) -> Value:
+def model_gyradius(model_mass_kg: Value, **swing_inputs: Value) -> Value:
     """Gyradius of the model about its own centre of gravity, m; inputs of model_inertia."""
-    return sqrt(model_inertia(model_mass_kg=model_mass_kg, **others) / model_mass_kg)
+    return sqrt(model_inertia(model_mass_kg=model_mass_kg, **swing_inputs) / model_mass_kg)
 
 
 @dataclass(frozen=True)
@@ -153,12 +153,12 @@ def model_on_swing(
 
     few = {k: inputs[k] for k in ("tare_moment_kg_m", "total_moment_kg_m", "model_mass_kg")}
     cg = assess("d_M", below, few, unit="m", seed=seed)
-    own = assess("I_M", model_inertia, inputs, unit="kg m2", seed=seed + 1)
-    _refuse_nothing(own.budget.result)
+    inertia = assess("I_M", model_inertia, inputs, unit="kg m2", seed=seed + 1)
+    _refuse_nothing(inertia.budget.result)
     k = assess("k_M", model_gyradius, inputs, unit="m", seed=seed + 2)
     total = pivot_inertia(loaded.period.value, 1.0, loaded.moment.value, loaded.gravity.value)
-    share = own.budget.result.value / total
-    return SwingModel(cg, own, k, share, share_flags(share, k.budget.result))
+    share = inertia.budget.result.value / total
+    return SwingModel(cg, inertia, k, share, share_flags(share, k.budget.result))
 
 
 def _refuse_nothing(inertia: Estimate) -> None:
@@ -236,14 +236,14 @@ def forecast_swing(
     g = tare.gravity.value
     moment = tare.moment.value + model_mass.value * cg_below_pivot_m
     swing = pivot_inertia(tare.period.value, 1.0, tare.moment.value, g)
-    own = model_mass.value * gyradius_m**2
-    total = swing + own + model_mass.value * cg_below_pivot_m**2
+    inertia = model_mass.value * gyradius_m**2
+    total = swing + inertia + model_mass.value * cg_below_pivot_m**2
     period = 2.0 * math.pi * math.sqrt(total / (moment * g))
     loaded_period = Estimate.of(period, period_scatter_relative * period, "s")
     loaded_moment = Estimate.of(moment, moment_relative * moment, "kg m")
     inputs = _difference(tare, loaded_period, loaded_moment, model_mass)
     gyradius = derived("k_M", model_gyradius, "m", **inputs)
-    share = own / total
+    share = inertia / total
     flags = share_flags(share, gyradius)
     return SwingForecast(period, gyradius, share, not flags, flags)
 

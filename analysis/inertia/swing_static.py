@@ -96,10 +96,10 @@ def fit_static(series: Sequence[LeverSeries], *, with_offset: bool = True) -> St
     for levers in series:
         _check(levers)
     pooled = _fit(series, with_offset)
-    alone = tuple(_fit([levers], with_offset) for levers in series)
-    wider, between = _between_levers(pooled, alone)
-    found = (_readings(series, with_offset), *between)
-    return StaticResult(wider, alone, found, _flags(series, found))
+    single_fits = tuple(_fit([levers], with_offset) for levers in series)
+    wider, between = _between_levers(pooled, single_fits)
+    agreements = (_readings(series, with_offset), *between)
+    return StaticResult(wider, single_fits, agreements, _flags(series, agreements))
 
 
 def distance(moment: Estimate, mass_kg: Estimate) -> Estimate:
@@ -169,31 +169,39 @@ def _fit(series: Sequence[LeverSeries], with_offset: bool) -> StaticMoment:
 def _readings(series: Sequence[LeverSeries], with_offset: bool) -> Redundancy:
     """Return how the readings scatter about the pooled fit."""
     matrix, tangent = _columns(series, with_offset)
-    names = [f"{one.name} with {weight:g} kg" for one in series for weight in one.weight_kg]
-    what = f"tilts under weights ({', '.join(one.name for one in series)})"
-    found = scattered_fit(matrix, tangent, what=what, results=_MOMENT, data=names)
-    return found.of(_MOMENT, lambda unknowns: 1.0 / unknowns[..., :1])
+    names = [
+        f"{levers.name} with {weight:g} kg" for levers in series for weight in levers.weight_kg
+    ]
+    subject = f"tilts under weights ({', '.join(levers.name for levers in series)})"
+    agreement = scattered_fit(matrix, tangent, subject=subject, results=_MOMENT, data=names)
+    return agreement.of(_MOMENT, lambda unknowns: 1.0 / unknowns[..., :1])
 
 
 def _between_levers(
-    pooled: StaticMoment, alone: tuple[StaticMoment, ...]
+    pooled: StaticMoment, single_fits: tuple[StaticMoment, ...]
 ) -> tuple[StaticMoment, tuple[Redundancy, ...]]:
     """Let the scatter between levers into the uncertainty, where it is the larger."""
-    if len(alone) < 2:
+    if len(single_fits) < 2:
         return pooled, ()
-    moments = joint(one.moment for one in alone)
-    names = [one.series[0] for one in alone]
-    ones = np.ones((len(alone), 1))
-    _, found = best_fit(ones, moments, what="levers", results=_MOMENT, data=names)
-    between = float(moments.values.std(ddof=1)) / np.sqrt(len(alone))
-    own = pooled.moment
-    wider = between > own.uncertainty
+    moments = joint(single.moment for single in single_fits)
+    names = [single.series[0] for single in single_fits]
+    unit_column = np.ones((len(single_fits), 1))
+    _, agreement = best_fit(unit_column, moments, subject="levers", results=_MOMENT, data=names)
+    between = float(moments.values.std(ddof=1)) / np.sqrt(len(single_fits))
+    pooled_moment = pooled.moment
+    wider = between > pooled_moment.uncertainty
     if wider:
-        moment = Estimate.of(own.value, float(between), own.unit, float(len(alone) - 1))
+        moment = Estimate.of(
+            pooled_moment.value, float(between), pooled_moment.unit, float(len(single_fits) - 1)
+        )
         pooled = replace(pooled, moment=moment)
-    widening = float(between / own.uncertainty) if wider and own.uncertainty > 0.0 else 1.0
+    widening = (
+        float(between / pooled_moment.uncertainty)
+        if wider and pooled_moment.uncertainty > 0.0
+        else 1.0
+    )
     cause = "the scatter between the levers" if wider else ""
-    return pooled, (replace(found, widening=widening, cause=cause),)
+    return pooled, (replace(agreement, widening=widening, cause=cause),)
 
 
 def _flags(series: Sequence[LeverSeries], redundancy: tuple[Redundancy, ...]) -> tuple[Flag, ...]:
@@ -204,5 +212,5 @@ def _flags(series: Sequence[LeverSeries], redundancy: tuple[Redundancy, ...]) ->
             "not be seen (one was by 8 %); measure at a second lever"
         )
         flags.append(Flag("single_lever", Severity.WARNING, message))
-    flags += [flag for one in redundancy for flag in one.flags()]
+    flags += [flag for agreement in redundancy for flag in agreement.flags()]
     return tuple(flags)

@@ -70,7 +70,7 @@ def check_two_pivots(
         return inertia_at_cg(t1, m, d1, g) - inertia_at_cg(t2, m, d2, g)
 
     inputs = {"d1": first.cg_below, "d2": second.cg_below, "h": pivot_distance}
-    apart = derived("distance of the pivots", excess, "m", **inputs)
+    distance = derived("distance of the pivots", excess, "m", **inputs)
     inputs = {
         "t1": first.period,
         "d1": first.cg_below,
@@ -83,9 +83,9 @@ def check_two_pivots(
     from_periods = lamboley_depth(
         first.period.value, second.period.value, pivot_distance.value, gravity.value
     )
-    bad = (_fails(apart), _fails(inertia))
-    reasons = _reasons(bad, apart, from_periods, first, second, pivot_distance)
-    return TwoPivotCheck(apart, inertia, from_periods, not any(bad), reasons)
+    bad = (_fails(distance), _fails(inertia))
+    reasons = _reasons(bad, distance, from_periods, first, second, pivot_distance)
+    return TwoPivotCheck(distance, inertia, from_periods, not any(bad), reasons)
 
 
 def _fails(difference: Estimate) -> bool:
@@ -94,7 +94,7 @@ def _fails(difference: Estimate) -> bool:
 
 def _reasons(
     bad: tuple[bool, bool],
-    apart: Estimate,
+    distance: Estimate,
     from_periods_m: float,
     first: PivotTest,
     second: PivotTest,
@@ -115,7 +115,7 @@ def _reasons(
             "periods agree on (lever, weights, inclinometer moved between the pivots, its scale)"
         )
         reasons.append(
-            f"the distance of the pivots: it would have to be {1e3 * apart.value:+.2g} mm longer"
+            f"the distance of the pivots: it would have to be {1e3 * distance.value:+.2g} mm longer"
         )
     if bad[1] and not bad[0]:
         reasons.append("a period (inclinometer too slow or too far out, few swings), or the mass")

@@ -84,12 +84,12 @@ def next_step(readings: tuple[StepResult, ...]) -> tuple[Step, str] | None:
     return order[len(made)], _PROMPTS[order[len(made)]]
 
 
-def assess_workflow(readings: tuple[StepResult, ...], known: Estimate) -> WorkflowResult:
+def assess_workflow(readings: tuple[StepResult, ...], known_body: Estimate) -> WorkflowResult:
     """Return the result of the four steps.
 
     Parameters
     ----------
-    known
+    known_body
         The known body's, on its certificate.
 
     Raises
@@ -106,15 +106,15 @@ def assess_workflow(readings: tuple[StepResult, ...], known: Estimate) -> Workfl
     # a drift between the tares may have happened at any time: evenly spread over its half
     tare = mean.widened(abs(0.5 * drift.value) / math.sqrt(3.0))
     model, body = difference(test, tare), difference(check, tare)
-    apart = difference(body, known)
-    error = apart.value / apart.half_width()
+    deviation = difference(body, known_body)
+    error = deviation.value / deviation.half_width()
     drifted = abs(drift.value) > drift.half_width()
-    flags = _flags(drift, drifted, error, body, known)
+    flags = _flags(drift, drifted, error, body, known_body)
     return WorkflowResult(tare, drift, model, body, error, abs(error) <= 1.0, flags)
 
 
 def _flags(
-    drift: Estimate, drifted: bool, error: float, body: Estimate, known: Estimate
+    drift: Estimate, drifted: bool, error: float, body: Estimate, known_body: Estimate
 ) -> tuple[Flag, ...]:
     flags = []
     if drifted:
@@ -125,7 +125,7 @@ def _flags(
         flags.append(Flag("tare_drift", Severity.WARNING, message))
     if abs(error) > 1.0:
         message = (
-            f"the known body reads {body.value:.5g} for {known.value:.5g} {known.unit}, "
+            f"the known body reads {body.value:.5g} for {known_body.value:.5g} {known_body.unit}, "
             f"{abs(error):.2g} times the joint interval (limit 1): lever, mass or timing is wrong; "
             "the test's numbers are not to be used before that is found"
         )

@@ -46,5 +46,5 @@ def by_parts(slope: FloatArray, inputs: FloatArray, orders: int) -> FloatArray:
     inputs
         Waves of each input per part, shape ``(k, parts, instants)``.
     """
-    over = np.einsum("mkt,kpt->pmt", slope, inputs, optimize=True)
-    return np.asarray(harmonics(over, orders).T)
+    part_waves = np.einsum("mkt,kpt->pmt", slope, inputs, optimize=True)
+    return np.asarray(harmonics(part_waves, orders).T)

@@ -53,13 +53,13 @@ def check_surge_spared(geometry: Geometry) -> None:
     DataError
         If the gauges stay with the rig, or the model is turned on its struts.
     """
-    what = None
+    cause = None
     if not geometry.gauges_turn:
-        what = 'gauges = "rig": the gauges across read a part of the force along the model'
+        cause = 'gauges = "rig": the gauges across read a part of the force along the model'
     elif np.any(np.real(geometry.turned(DriftBy.MODEL_TURNED)) != 0.0):
-        what = 'drift_by = "model_turned": the force across is partly one along the struts\' line'
-    if what is not None:
-        raise DataError(f"force_x is missing, and with {what}; record force_x as well")
+        cause = 'drift_by = "model_turned": the force across is partly one along the struts\' line'
+    if cause is not None:
+        raise DataError(f"force_x is missing, and with {cause}; record force_x as well")
 
 
 def load_matrix(geometry: Geometry, line_rad: Waves) -> Waves:

@@ -105,12 +105,12 @@ class SubmergedBody:
         """
         (e11, e12), (e21, e22) = self._inertia
         (z_w, z_q), (m_w, m_q) = self._slope
-        whole = e11 * e22 - e12 * e21
+        determinant = e11 * e22 - e12 * e21
         b = e12 * m_w + e21 * z_q - e11 * m_q - e22 * z_w
         c = z_w * m_q - z_q * m_w
         k, d = self.righting_n_m * e11, -self.righting_n_m * z_w
         with np.errstate(divide="ignore", invalid="ignore"):
-            squared = (whole * d - b * k) / (b * c)
+            squared = (determinant * d - b * k) / (b * c)
         return np.asarray(np.where(squared > 0.0, np.sqrt(np.maximum(squared, 0.0)), np.inf))
 
     def root(self, speed_m_s: float) -> FloatArray:

@@ -56,7 +56,7 @@ class HullLoads:
     @property
     def steered(self) -> tuple[str, ...]:
         """Names of the terms that have the rudder's angle."""
-        return tuple(one for one in self.values if term_of(one, Plane.HORIZONTAL).angles)
+        return tuple(term for term in self.values if term_of(term, Plane.HORIZONTAL).angles)
 
     @cached_property
     def _terms(self) -> tuple[tuple[Term, FloatArray], ...]:

@@ -127,8 +127,8 @@ def zigzag(
         ship, approach(ship), side * size, heading_beyond(side * angle, side), longest, steps, track
     )
     if log is not None:
-        for one in track.moments:
-            log.keep(one)
+        for moment in track.moments:
+            log.keep(moment)
     beyond = []
     for _ in range(overshoots):
         now = march(ship, now, -side * size, turning_back(side), longest, steps, log)
@@ -170,5 +170,5 @@ def _turning(ship: Ship, now: ShipState) -> tuple[FloatArray, FloatArray]:
 
 def _way(moments: list[ShipState]) -> FloatArray:
     """Return how far each ship went, m: chords of the track."""
-    places = np.array([one.state[[X, Y]] for one in moments])
+    places = np.array([moment.state[[X, Y]] for moment in moments])
     return np.asarray(np.hypot(*np.diff(places, axis=0).swapaxes(0, 1)).sum(axis=0))

@@ -81,18 +81,18 @@ def march(
         rate = np.sign(way) * math.radians(ship.rudder_rate_deg_s)
         with np.errstate(divide="ignore", invalid="ignore"):
             reach = np.where(way != 0.0, np.abs(way / rate), np.inf)
-        lasts = np.minimum(np.minimum(step_s, reach), ends - now.time_s)
-        lasts = np.where(running, lasts, 0.0)
-        moved = _stepped(ship, now, rate, lasts)
+        durations = np.minimum(np.minimum(step_s, reach), ends - now.time_s)
+        durations = np.where(running, durations, 0.0)
+        moved = _stepped(ship, now, rate, durations)
         if until is not None:
             hit = running & (until(moved) >= 0.0) & (until(now.state) < 0.0)
             if hit.any():
-                lasts = np.where(hit, _when(ship, now, rate, lasts, until), lasts)
-                moved = _stepped(ship, now, rate, lasts)
+                durations = np.where(hit, _when(ship, now, rate, durations, until), durations)
+                moved = _stepped(ship, now, rate, durations)
             running = running & ~hit
-        arrived = lasts == reach
-        rudder = np.where(arrived, order_rad, now.rudder_rad + rate * lasts)
-        now = ShipState(now.time_s + lasts, moved, rudder)
+        arrived = durations == reach
+        rudder = np.where(arrived, order_rad, now.rudder_rad + rate * durations)
+        now = ShipState(now.time_s + durations, moved, rudder)
         late = running & (now.time_s >= ends)
         if until is not None and late.any():
             now = ShipState(
@@ -104,27 +104,27 @@ def march(
     return now
 
 
-def _stepped(ship: Ship, now: ShipState, rate: FloatArray, lasts: FloatArray) -> FloatArray:
+def _stepped(ship: Ship, now: ShipState, rate: FloatArray, durations: FloatArray) -> FloatArray:
     def rates(state: FloatArray, share: float) -> FloatArray:
-        return ship.rates(state, now.rudder_rad + share * lasts * rate)
+        return ship.rates(state, now.rudder_rad + share * durations * rate)
 
     first = rates(now.state, 0.0)
-    second = rates(now.state + 0.5 * lasts * first, 0.5)
-    third = rates(now.state + 0.5 * lasts * second, 0.5)
-    fourth = rates(now.state + lasts * third, 1.0)
-    return np.asarray(now.state + lasts / 6.0 * (first + 2.0 * second + 2.0 * third + fourth))
+    second = rates(now.state + 0.5 * durations * first, 0.5)
+    third = rates(now.state + 0.5 * durations * second, 0.5)
+    fourth = rates(now.state + durations * third, 1.0)
+    return np.asarray(now.state + durations / 6.0 * (first + 2.0 * second + 2.0 * third + fourth))
 
 
 def _when(
-    ship: Ship, now: ShipState, rate: FloatArray, lasts: FloatArray, until: Event
+    ship: Ship, now: ShipState, rate: FloatArray, durations: FloatArray, until: Event
 ) -> FloatArray:
     """Return how long each step lasts until the event, by secants."""
-    before, after = np.zeros_like(lasts), lasts
-    value, last = until(now.state), until(_stepped(ship, now, rate, lasts))
+    before, after = np.zeros_like(durations), durations
+    value, last = until(now.state), until(_stepped(ship, now, rate, durations))
     for _ in range(_SECANTS):
         with np.errstate(divide="ignore", invalid="ignore"):
             better = after - last * (after - before) / (last - value)
-        better = np.where(np.isfinite(better), np.clip(better, 0.0, lasts), after)
+        better = np.where(np.isfinite(better), np.clip(better, 0.0, durations), after)
         before, after, value = after, better, last
         last = until(_stepped(ship, now, rate, after))
     return np.asarray(after)

@@ -71,7 +71,7 @@ class Ship:
     @property
     def count(self) -> int:
         """How many ships."""
-        return max(len(np.atleast_1d(one)) for one in self.hull.values.values())
+        return max(len(np.atleast_1d(value)) for value in self.hull.values.values())
 
     @cached_property
     def rate_hz(self) -> FloatArray:

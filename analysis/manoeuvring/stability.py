@@ -49,7 +49,7 @@ def _slopes(ship: Ship, *, bare: bool) -> FloatArray:
     """Return d(Y, N)/d(v', r') over the hull's own unit, shape ``(2, 2, n)``."""
     length, still = ship.hull.length_m, np.zeros(ship.count)
     unit = 0.5 * ship.hull.density_kg_m3 * ship.hull.area_m2 * ship.approach_m_s**2
-    found = np.zeros((2, 2, ship.count))
+    slopes = np.zeros((2, 2, ship.count))
     for column, (row, scale) in enumerate(
         ((V, ship.approach_m_s), (R, ship.approach_m_s / length))
     ):
@@ -59,8 +59,8 @@ def _slopes(ship: Ship, *, bare: bool) -> FloatArray:
             state[row] = sign * _SMALL * scale
             loads = ship.hull(*state[:3]) if bare else ship.loads(state, still)
             ends.append(loads[1:] / unit / np.array([[1.0], [length]]))
-        found[:, column] = (ends[0] - ends[1]) / (2.0 * _SMALL)
-    return found
+        slopes[:, column] = (ends[0] - ends[1]) / (2.0 * _SMALL)
+    return slopes
 
 
 def _criterion(ship: Ship, slopes: FloatArray) -> FloatArray:

@@ -39,9 +39,9 @@ _SHARE: Final = 2.0 / 3.0  # of the values that a fit may have numbers for
 def fit_measured(measured: MeasuredMatrix) -> MeasuredMemory:
     """Return the memory with the number of states that the values bear best, by the criterion."""
     samples, unit, middle = _scaled(measured)
-    plain = {states: _plain(samples, states) for states in _counts(samples)}
-    orders = {states: _order(samples, one) for states, one in plain.items()}
-    spread = max(1.0, min(one.unconditioned / one.freedom for one in orders.values()))
+    plain_fits = {states: _plain(samples, states) for states in _counts(samples)}
+    orders = {states: _order(samples, fractions) for states, fractions in plain_fits.items()}
+    spread = max(1.0, min(order.unconditioned / order.freedom for order in orders.values()))
     price = math.log(2 * samples.values.size)
 
     def criterion(order: Order, squares: float) -> float:
@@ -49,22 +49,24 @@ def fit_measured(measured: MeasuredMatrix) -> MeasuredMemory:
 
     tried: dict[int, PartialFractions] = {}
     least = math.inf
-    for order in sorted(orders.values(), key=lambda one: criterion(one, one.unconditioned)):
+    for order in sorted(
+        orders.values(), key=lambda order_fit: criterion(order_fit, order_fit.unconditioned)
+    ):
         if criterion(order, order.unconditioned) > least + DOUBTED:
             break  # the condition can only add to it
-        found = tried[order.states] = _conditioned(samples, plain[order.states])
-        squares = _squares(samples, found)
-        told = criterion(order, squares)
-        orders[order.states] = replace(order, chi_square=squares, criterion=told)
-        least = min(least, told)
+        fractions = tried[order.states] = _conditioned(samples, plain_fits[order.states])
+        squares = _squares(samples, fractions)
+        criterion_value = criterion(order, squares)
+        orders[order.states] = replace(order, chi_square=squares, criterion=criterion_value)
+        least = min(least, criterion_value)
     chances = {k: math.exp((least - orders[k].criterion) / 2.0) for k in tried}
     best = max(chances, key=lambda k: chances[k])
-    others = tuple(
+    rivals = tuple(
         (chance / sum(chances.values()), tried[k]) for k, chance in chances.items() if k != best
     )
     chosen = orders[best]
     return MeasuredMemory(
-        measured, tried[best], unit, middle, tuple(orders.values()), chosen, others
+        measured, tried[best], unit, middle, tuple(orders.values()), chosen, rivals
     )
 
 
@@ -81,9 +83,9 @@ def _scaled(measured: MeasuredMatrix) -> tuple[SampledTable, FloatArray, float]:
     values = measured.shaped(measured.uncertain.values)
     spread = measured.shaped(np.sqrt(own_variance(measured.uncertain)))
     root = np.ones(2)
-    for (row, column), own in zip(measured.elements, values, strict=True):
+    for (row, column), element in zip(measured.elements, values, strict=True):
         if row == column:
-            root[row] = math.sqrt(float(np.abs(own[0] - 1j * own[1] / omega).max()) or 1.0)
+            root[row] = math.sqrt(float(np.abs(element[0] - 1j * element[1] / omega).max()) or 1.0)
     unit = np.outer(root, root)
     units = np.array([unit[pair] for pair in measured.elements])[:, None]
     weights = np.hstack([units / spread[:, 0], units * omega / spread[:, 1]])
@@ -108,17 +110,17 @@ def _squares(samples: SampledTable, fit: PartialFractions) -> float:
 
 def _conditioned(samples: SampledTable, plain: PartialFractions) -> PartialFractions:
     """Return the best fit that nowhere gives energy back, from one that may."""
-    found = passive_fit(samples, plain.poles) if plain.poles.size else plain
-    lowest = float(np.linalg.eigvalsh(symmetric(found.steady))[0])
-    return _held(samples, found) if lowest < 0.0 else found
+    passive = passive_fit(samples, plain.poles) if plain.poles.size else plain
+    lowest = float(np.linalg.eigvalsh(symmetric(passive.steady))[0])
+    return _held(samples, passive) if lowest < 0.0 else passive
 
 
-def _held(samples: SampledTable, found: PartialFractions) -> PartialFractions:
+def _held(samples: SampledTable, fractions: PartialFractions) -> PartialFractions:
     """Return the fit with the nearest steady damping that is not negative."""
-    values, vectors = np.linalg.eigh(symmetric(found.steady))
-    whole = vectors @ np.diag(np.maximum(values, 0.0)) @ vectors.T
-    steady = whole[np.triu_indices(len(whole))]
+    values, vectors = np.linalg.eigh(symmetric(fractions.steady))
+    damping = vectors @ np.diag(np.maximum(values, 0.0)) @ vectors.T
+    steady = damping[np.triu_indices(len(damping))]
     rest = samples.values - steady[:, None] / (1j * samples.omega)
     held = replace(samples, values=rest, steady=False)
-    again = passive_fit(held, found.poles) if found.poles.size else _plain(held, 0)
-    return replace(again, steady=steady)
+    refitted = passive_fit(held, fractions.poles) if fractions.poles.size else _plain(held, 0)
+    return replace(refitted, steady=steady)

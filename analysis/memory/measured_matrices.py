@@ -87,7 +87,7 @@ def motions_of(plane: Plane) -> tuple[str, ...]:
     return tuple(name.lower() for name in DEGREES_OF_FREEDOM[plane])
 
 
-def measured_matrices(found: CampaignCoefficients) -> tuple[MeasuredMatrix, ...]:
+def measured_matrices(coefficients: CampaignCoefficients) -> tuple[MeasuredMatrix, ...]:
     """Return what was measured at rest at four frequencies or more.
 
     Both motions together where they share the frequencies, else each by itself. Coupling that was
@@ -96,90 +96,103 @@ def measured_matrices(found: CampaignCoefficients) -> tuple[MeasuredMatrix, ...]
 
     Parameters
     ----------
-    found
+    coefficients
         In SI units.
     """
-    rows = _rows(found)
-    both = _matrix(found, rows, (0, 1))
-    if both is not None:
-        return (both,)
-    return tuple(one for dof in (0, 1) if (one := _matrix(found, rows, (dof,))) is not None)
+    rows = _rows(coefficients)
+    joint = _matrix(coefficients, rows, (0, 1))
+    if joint is not None:
+        return (joint,)
+    return tuple(
+        matrix for dof in (0, 1) if (matrix := _matrix(coefficients, rows, (dof,))) is not None
+    )
 
 
-def _rows(found: CampaignCoefficients) -> _Rows:
+def _rows(coefficients: CampaignCoefficients) -> _Rows:
     """Return where each coefficient at rest stands in the table, by its frequency."""
-    names = {place: name_of(place, found.plane, found.form) for place in PLACES}
+    names = {place: name_of(place, coefficients.plane, coefficients.form) for place in PLACES}
     return {
         place: {
-            round(found.entries[k].frequency_hz, 4): k for k in found.at_each_frequency(name, 0.0)
+            round(coefficients.entries[k].frequency_hz, 4): k
+            for k in coefficients.at_each_frequency(name, 0.0)
         }
         for place, name in names.items()
     }
 
 
 def _matrix(
-    found: CampaignCoefficients, rows: _Rows, dofs: tuple[int, ...]
+    coefficients: CampaignCoefficients, rows: _Rows, dofs: tuple[int, ...]
 ) -> MeasuredMatrix | None:
     """Return what was measured of some degrees of freedom; ``None`` of too few frequencies."""
     pairs = [(dofs[i], dofs[j]) for i, j in _PAIRS[len(dofs)]]
     ways = [[(i, j), (j, i)] if i != j else [(i, j)] for i, j in pairs]
-    told = [
-        [[rows[MatrixElement(*way, inertial)] for way in both] for inertial in (True, False)]
-        for both in ways
+    rows_of_elements = [
+        [[rows[MatrixElement(*way, inertial)] for way in pair_ways] for inertial in (True, False)]
+        for pair_ways in ways
     ]
-    at = [
+    hertz = [
         frequency
-        for frequency in sorted(set().union(*(way for one in told[0] for way in one)))
-        if all(any(frequency in way for way in one) for element in told for one in element)
+        for frequency in sorted(
+            set().union(*(way for readings in rows_of_elements[0] for way in readings))
+        )
+        if all(
+            any(frequency in way for way in readings)
+            for element in rows_of_elements
+            for readings in element
+        )
     ]
-    if len(at) < FEWEST:
+    if len(hertz) < FEWEST:
         return None
-    several = [
-        [way[frequency] for way in one if frequency in way]
-        for element in told
-        for one in element
-        for frequency in at
+    row_groups = [
+        [way[frequency] for way in readings if frequency in way]
+        for element in rows_of_elements
+        for readings in element
+        for frequency in hertz
     ]
-    values = found.uncertain.taken([k for some in several for k in some])
-    values = values.scaled(np.full(len(values), found.form.sign))
-    columns, own = list(_columns(several)), own_variance(values)
-    shift, aside = np.zeros(len(values)), np.zeros((len(several), 2))
-    damping = slice(3 * len(at), 4 * len(at))  # of the coupling, where there is one
-    if len(dofs) == 2 and all(len(one) == 2 for one in columns[damping]):
-        aside[damping] = (1.0, -1.0)
-        shift = _skew(columns[damping], own)
-    mean, apart = np.zeros((len(several), len(values))), []
+    values = coefficients.uncertain.taken([k for group in row_groups for k in group])
+    values = values.scaled(np.full(len(values), coefficients.form.sign))
+    columns, variances = list(_columns(row_groups)), own_variance(values)
+    shift, signs = np.zeros(len(values)), np.zeros((len(row_groups), 2))
+    damping = slice(3 * len(hertz), 4 * len(hertz))  # of the coupling, where there is one
+    if len(dofs) == 2 and all(len(column) == 2 for column in columns[damping]):
+        signs[damping] = (1.0, -1.0)
+        shift = _skew(columns[damping], variances)
+    mean, squares = np.zeros((len(row_groups), len(values))), []
     beta = float(shift @ values.values)
     for row, column in enumerate(columns):
-        weights = 1.0 / own[column]
+        weights = 1.0 / variances[column]
         mean[row, column] = weights / weights.sum()
-        mean[row] -= (aside[row, : len(column)] @ weights / weights.sum()) * shift
+        mean[row] -= (signs[row, : len(column)] @ weights / weights.sum()) * shift
         if len(column) == 2:
-            off = values.values[column[0]] - values.values[column[1]] - 2.0 * aside[row, 0] * beta
-            apart.append(off**2 / float(own[column].sum()))
-    omega = np.array([found.entries[some[0]].frequency_hz for some in several[: len(at)]])
+            difference = (
+                values.values[column[0]] - values.values[column[1]] - 2.0 * signs[row, 0] * beta
+            )
+            squares.append(difference**2 / float(variances[column].sum()))
+    omega = np.array(
+        [coefficients.entries[group[0]].frequency_hz for group in row_groups[: len(hertz)]]
+    )
     return MeasuredMatrix(
-        found.plane,
+        coefficients.plane,
         dofs,
         2.0 * np.pi * omega,
         values.mapped(mean),
         values.mapped(shift[None, :]),
-        float(np.sqrt(np.mean(apart))) if apart else 0.0,
+        float(np.sqrt(np.mean(squares))) if squares else 0.0,
     )
 
 
-def _skew(columns: Sequence[Sequence[int]], own: FloatArray) -> FloatArray:
+def _skew(columns: Sequence[Sequence[int]], variances: FloatArray) -> FloatArray:
     """Return what half the mean difference of both ways is of the values."""
-    shift = np.zeros(own.size)
+    shift = np.zeros(variances.size)
     for first, second in columns:
-        weight = 0.5 / (own[first] + own[second])
+        weight = 0.5 / (variances[first] + variances[second])
         shift[first], shift[second] = weight, -weight
     return np.asarray(shift * 0.5 / shift[shift > 0.0].sum())
 
 
-def _columns(several: Sequence[Sequence[int]]) -> Iterator[list[int]]:
+def _columns(row_groups: Sequence[Sequence[int]]) -> Iterator[list[int]]:
     """Yield where the values of each stand in what was taken."""
     first = 0
-    for some in several:
-        yield list(range(first, first + len(some)))
-        first += len(some)
+    for group in row_groups:
+        yield list(range(first, first + len(group)))
+        first += len(group)

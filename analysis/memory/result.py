@@ -96,9 +96,9 @@ class MeasuredMemory:
         A conjugate pair has the conjugate residue as well.
         """
         count, paired = self.fit.poles.size, self.fit.poles.imag != 0.0
-        found = self.fit.residues[:, :count].astype(np.complex128)
-        found[:, paired] += 1j * self.fit.residues[:, count:]
-        return found * self._units[:, None] * self.middle * self.poles
+        residues = self.fit.residues[:, :count].astype(np.complex128)
+        residues[:, paired] += 1j * self.fit.residues[:, count:]
+        return residues * self._units[:, None] * self.middle * self.poles
 
     @cached_property
     def radiation(self) -> Radiation:
@@ -123,17 +123,18 @@ class MeasuredMemory:
         leaves beyond scatter; beyond the measured band they are extrapolated.
         """
         slope = _real_rows(self._slopes(omega_rad_s), omega_rad_s, self._units)
-        told = self._told(self.fit, omega_rad_s)
-        apart = [
-            weight * (self._told(other, omega_rad_s) - told) ** 2 for weight, other in self.others
+        best_values = self._told(self.fit, omega_rad_s)
+        squares = [
+            weight * (self._told(fit, omega_rad_s) - best_values) ** 2
+            for weight, fit in self.others
         ]
-        known = self._known.carried(told, slope @ self._numbers)
-        return known.plus(STATES, np.sqrt(np.sum(apart, axis=0))) if apart else known
+        curves = self._known.carried(best_values, slope @ self._numbers)
+        return curves.plus(STATES, np.sqrt(np.sum(squares, axis=0))) if squares else curves
 
     def ends(self) -> UncertainValues:
         """Return A_inf and B_0 of each element in turn."""
-        own = self._own_count
-        rows = [e * own + own - 2 + k for e in range(len(self._units)) for k in (0, 1)]
+        count = self._own_count
+        rows = [e * count + count - 2 + k for e in range(len(self._units)) for k in (0, 1)]
         scale = np.stack([self._units, self._units * self.middle], axis=1).ravel()
         values = np.stack([self.infinite, self.steady], axis=1).ravel()
         return self._known.carried(values, scale[:, None] * self._numbers[rows])
@@ -155,12 +156,14 @@ class MeasuredMemory:
         A measured damping is negative by more than three of its standard uncertainties, or the
         condition costs agreement, with evidence of 20 to 1.
         """
-        more = self.chosen.chi_square - self.chosen.unconditioned
-        known = self.measured.uncertain
-        own, spread = map(self.measured.shaped, (known.values, known.standard_uncertainty))
-        pairs = zip(self.measured.elements, own[:, 1] + _SURE * spread[:, 1], strict=True)
+        cost = self.chosen.chi_square - self.chosen.unconditioned
+        uncertain = self.measured.uncertain
+        measured, spread = map(
+            self.measured.shaped, (uncertain.values, uncertain.standard_uncertainty)
+        )
+        pairs = zip(self.measured.elements, measured[:, 1] + _SURE * spread[:, 1], strict=True)
         negative = any(row == column and highest.min() < 0.0 for (row, column), highest in pairs)
-        return negative or more / max(1.0, self.misfit**2) > DOUBTED
+        return negative or cost / max(1.0, self.misfit**2) > DOUBTED
 
     @property
     def misfit(self) -> float:
@@ -190,11 +193,15 @@ class MeasuredMemory:
     def _slopes(self, omega_rad_s: FloatArray) -> ComplexArray:
         """Return how M of each element goes with the fit's numbers, shape ``(e m, p)``."""
         omega, poles = omega_rad_s / self.middle, self.fit.poles
-        ones = np.ones((omega.size, 1))
-        functions = [basis(poles, omega) @ sum_free(poles), ones, ones / (1j * omega[:, None])]
-        own = block_diag(*[np.hstack(functions)] * len(self._units))
-        moved = [pole_slopes(poles, row, omega) for row in self.fit.residues]
-        return np.hstack([own, np.vstack(moved)])
+        constant = np.ones((omega.size, 1))
+        functions = [
+            basis(poles, omega) @ sum_free(poles),
+            constant,
+            constant / (1j * omega[:, None]),
+        ]
+        linear_slopes = block_diag(*[np.hstack(functions)] * len(self._units))
+        pole_parts = [pole_slopes(poles, row, omega) for row in self.fit.residues]
+        return np.hstack([linear_slopes, np.vstack(pole_parts)])
 
     @cached_property
     def _numbers(self) -> FloatArray:
@@ -210,16 +217,16 @@ class MeasuredMemory:
     @cached_property
     def _known(self) -> UncertainValues:
         """What was measured, with what the memory leaves of it beyond scatter."""
-        known, beyond = self.measured.uncertain, self.misfit**2 - 1.0
+        uncertain, beyond = self.measured.uncertain, self.misfit**2 - 1.0
         if beyond <= 0.0:
-            return known
-        parts = np.diag(np.sqrt(beyond * own_variance(known)))
-        more = Contribution(MISFIT, float(self.chosen.freedom), np.arange(len(known)), parts)
-        return replace(known, contributions=(*known.contributions, more))
+            return uncertain
+        parts = np.diag(np.sqrt(beyond * own_variance(uncertain)))
+        misfit = Contribution(MISFIT, float(self.chosen.freedom), np.arange(len(uncertain)), parts)
+        return replace(uncertain, contributions=(*uncertain.contributions, misfit))
 
 
 def _real_rows(slopes: ComplexArray, omega_rad_s: FloatArray, units: FloatArray) -> FloatArray:
     """Return slopes of M ``(e m, p)`` as those of A and B in SI units, ``(2 e m, p)``."""
     split = slopes.reshape(len(units), omega_rad_s.size, -1) * units[:, None, None]
-    both = np.stack([split.real, -split.imag * omega_rad_s[:, None]], axis=1)
-    return np.asarray(both.reshape(-1, slopes.shape[1]))
+    parts = np.stack([split.real, -split.imag * omega_rad_s[:, None]], axis=1)
+    return np.asarray(parts.reshape(-1, slopes.shape[1]))

@@ -15,11 +15,11 @@ _BEYOND: Final = 10.0  # how far the table reaches beyond what was measured, as 
 
 def memory_csv(memories: Sequence[MeasuredMemory]) -> str:
     """Return the curves of all motions without the steady damping, as CSV of a hull."""
-    measured = np.concatenate([one.measured.omega_rad_s for one in memories])
+    measured = np.concatenate([memory.measured.omega_rad_s for memory in memories])
     low, high = float(measured.min()), float(measured.max())
     omega = np.geomspace(low / _BEYOND, high * _BEYOND, _FREQUENCIES)
-    added = np.sum([one.radiation.added_mass(omega) for one in memories], axis=0)
-    damping = np.sum([one.radiation.damping(omega) for one in memories], axis=0)
+    added = np.sum([memory.radiation.added_mass(omega) for memory in memories], axis=0)
+    damping = np.sum([memory.radiation.damping(omega) for memory in memories], axis=0)
     table = RadiationTable(memories[0].measured.plane, omega, added, damping)
     head = f"fitted to values from {low:.4g} to {high:.4g} rad/s, extrapolated beyond"
     return hull_csv(table, "fitted", head)

@@ -91,9 +91,9 @@ def channel_names(dimensions: Mapping[str, tuple[str, ...]], where: str) -> tupl
     if dimensions.get(schema.TIME) != (schema.TIME,):
         raise DataError(f"{where}: the coordinate {schema.TIME!r} over {schema.TIME!r} is missing")
     expected = {schema.EDGE_TIME: (schema.EDGE,)}
-    for name, over in dimensions.items():
-        if over != expected.get(name, (schema.TIME,)):
-            raise DataError(f"{where}: the variable {name!r} is over {over}, not over time")
+    for name, axes in dimensions.items():
+        if axes != expected.get(name, (schema.TIME,)):
+            raise DataError(f"{where}: the variable {name!r} is over {axes}, not over time")
     names = tuple(name for name in dimensions if name not in (schema.TIME, schema.EDGE_TIME))
     if not names:
         raise DataError(f"{where}: there is no channel over {schema.TIME!r}")

@@ -62,8 +62,8 @@ class Sums:
         """
         actual = block_sums(values, block_of(name))
         at = first // block_of(name)
-        same: BoolArray = actual == self.blocks[name][at : at + actual.size]
-        return same
+        agreement: BoolArray = actual == self.blocks[name][at : at + actual.size]
+        return agreement
 
 
 def block_of(name: str) -> int:
@@ -113,7 +113,7 @@ class Summing:
         group.dimension(_VARIABLE, len(blocks))
         group.dimension(_BLOCK, blocks[schema.TIME].size)
         texts = {_NAMES: list(blocks), _COUNTS: self._counts, _ATTRIBUTES: attributes}
-        describe(group.store, {name: json.dumps(one) for name, one in texts.items()})
+        describe(group.store, {name: json.dumps(value) for name, value in texts.items()})
         group.variable(_SUMS, (_VARIABLE, _BLOCK), np.uint32)[:] = np.array(list(blocks.values()))
         if edges is not None:
             group.dimension(_EDGE_BLOCK, edges.size)
@@ -141,17 +141,21 @@ def _read(group: Any) -> Sums:
     blocks = dict(zip(names, np.asarray(group[_SUMS][...], np.uint32), strict=True))
     if _EDGE_SUMS in group:
         blocks[schema.EDGE_TIME] = np.asarray(group[_EDGE_SUMS][...], np.uint32)
-    for name, own in blocks.items():
-        if own.size != -(-counts[name] // block_of(name)):
-            raise ValueError(f"{name}: {own.size} checksums of {counts[name]} values")
+    for name, block_sums in blocks.items():
+        if block_sums.size != -(-counts[name] // block_of(name)):
+            raise ValueError(f"{name}: {block_sums.size} checksums of {counts[name]} values")
     attributes = json.loads(group.attrs[_ATTRIBUTES])
-    return Sums(blocks, counts, {name: dict(own.items()) for name, own in attributes.items()})
+    return Sums(
+        blocks,
+        counts,
+        {name: dict(attribute_sums.items()) for name, attribute_sums in attributes.items()},
+    )
 
 
 def changed_attributes(sums: Sums, actual: AttributeSums) -> Iterator[tuple[str, str]]:
     """Yield variable and name of each attribute that is not what it was, is new or is gone."""
-    for name, told in sums.attributes.items():
+    for name, written in sums.attributes.items():
         now = actual.get(name, {})
-        for key in sorted(told.keys() | now.keys()):
-            if told.get(key) != now.get(key):
+        for key in sorted(written.keys() | now.keys()):
+            if written.get(key) != now.get(key):
                 yield name, key

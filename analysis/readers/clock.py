@@ -59,33 +59,35 @@ class ClockStamp:
     def seconds_since(self, first: Days) -> float:
         """Return the seconds since a day's midnight; of a time alone those since its own."""
         pairs = zip(self.days, first, strict=True)
-        since = [own - day for own, day in pairs if own is not None and day is not None]
-        return DAY_S * min(since, key=abs, default=0) + (self.second or 0.0)
+        offsets = [
+            stamp_day - day for stamp_day, day in pairs if stamp_day is not None and day is not None
+        ]
+        return DAY_S * min(offsets, key=abs, default=0) + (self.second or 0.0)
 
 
 def read_stamp(cell: str) -> ClockStamp | None:
     """Read a cell as a date, a time of day or both; ``None`` where it is none, or no such date."""
-    found = _STAMP.fullmatch(cell) if cell else None
-    if found is None:
+    match = _STAMP.fullmatch(cell) if cell else None
+    if match is None:
         return None
     days = NO_DAY
-    if found["year"]:
-        days = (_day(found["year"], found["month"], found["day"]),) * 2
-    elif found["y"]:
-        day_first = _day(found["y"], found["b"], found["a"])
-        sure = found["sign_between"] == "."
-        days = day_first, day_first if sure else _day(found["y"], found["a"], found["b"])
-    if (found["year"] or found["y"]) and days == NO_DAY:
+    if match["year"]:
+        days = (_day(match["year"], match["month"], match["day"]),) * 2
+    elif match["y"]:
+        day_first = _day(match["y"], match["b"], match["a"])
+        sure = match["sign_between"] == "."
+        days = day_first, day_first if sure else _day(match["y"], match["a"], match["b"])
+    if (match["year"] or match["y"]) and days == NO_DAY:
         return None
-    if not found["hour"]:
+    if not match["hour"]:
         return ClockStamp(days, None)
-    hour = found["hour"]
-    if found["half"]:
-        hour = str(int(hour) % 12 + 12 * (found["half"] in "pP"))
-    second = _seconds(hour, found["minute"], found["second"])
-    if found["sign"]:
-        offset = _seconds(found["zone_hour"], found["zone_minute"], "0")
-        second -= offset if found["sign"] == "+" else -offset
+    hour = match["hour"]
+    if match["half"]:
+        hour = str(int(hour) % 12 + 12 * (match["half"] in "pP"))
+    second = _seconds(hour, match["minute"], match["second"])
+    if match["sign"]:
+        offset = _seconds(match["zone_hour"], match["zone_minute"], "0")
+        second -= offset if match["sign"] == "+" else -offset
     return ClockStamp(days, second)
 
 

@@ -97,8 +97,10 @@ class TomlTable:
         """Note the keys that nobody took, each with the known key it resembles."""
         for key in self.table:
             if key not in self.known:
-                near = get_close_matches(key, self.known, n=1, cutoff=0.5)
-                hint = f"did you mean {near[0]}?" if near else f"known: {', '.join(self.known)}"
+                matches = get_close_matches(key, self.known, n=1, cutoff=0.5)
+                hint = (
+                    f"did you mean {matches[0]}?" if matches else f"known: {', '.join(self.known)}"
+                )
                 self.fault(key, f"is not a known key; {hint}")
 
 
@@ -221,9 +223,9 @@ def _photocell(top: TomlTable) -> PhotocellColumn | None:
         edges_file=table.text("edges_file"),
     )
     table.finish()
-    given = [key for key in ("column", "edges_s", "edges_file") if key in table.table]
-    if len(given) != 1:
-        top.fault("photocell", f"needs one of column, edges_s, edges_file; it has {len(given)}")
+    sources = [key for key in ("column", "edges_s", "edges_file") if key in table.table]
+    if len(sources) != 1:
+        top.fault("photocell", f"needs one of column, edges_s, edges_file; it has {len(sources)}")
     return photocell
 
 

@@ -44,9 +44,9 @@ class WithoutSpikes:
 
     def __getitem__(self, key: tuple[slice | Sequence[int], slice], /) -> FloatArray:
         """Return the values of some channels between two sample numbers."""
-        rows, when = key
-        values = np.array(self.source[rows, when])
-        numbers = np.arange(*when.indices(self.shape[1]))
+        rows, span = key
+        values = np.array(self.source[rows, span])
+        numbers = np.arange(*span.indices(self.shape[1]))
         spikes = self.spikes[rows] if isinstance(rows, slice) else [self.spikes[k] for k in rows]
         for row, in_row in zip(values, spikes, strict=True):
             for spike in in_row:
@@ -88,10 +88,11 @@ def spike_flag(channel: Channel, spikes: Sequence[Spike], time_s: FloatArray) ->
         + (f" ({spike.stop - spike.start} samples)" if spike.stop - spike.start > 1 else "")
         for spike in sorted(largest, key=lambda spike: spike.start)
     )
-    more = f" and {len(spikes) - len(largest)} smaller" if len(spikes) > len(largest) else ""
+    remainder = f" and {len(spikes) - len(largest)} smaller" if len(spikes) > len(largest) else ""
     message = (
         f"{channel.name}: {len(spikes)} spike(s) were taken out and filled by a cubic through two "
-        f"samples on either side: {named}{more} off it; look for a loose connector or a disturbance"
+        f"samples on either side: {named}{remainder} off it; look for a loose connector or a "
+        "disturbance"
     )
     return Flag("spike", Severity.WARNING, message, channel.name)
 
@@ -129,20 +130,20 @@ def _repair(row: FloatArray, name: str) -> list[Flag]:
         return []
     if missing.all():
         return [empty_flag(name)]
-    repaired = left = longest = 0
+    repaired = unrepaired = longest = 0
     for start, stop in runs(missing):
         length = stop - start
-        around = np.array([start - 2, start - 1, stop, stop + 1])
-        good = around[0] >= 0 and around[-1] < row.size and not missing[around].any()
+        neighbours = np.array([start - 2, start - 1, stop, stop + 1])
+        good = neighbours[0] >= 0 and neighbours[-1] < row.size and not missing[neighbours].any()
         if good and length <= LONGEST_REPAIR:
-            row[start:stop] = cubic(length) @ row[around]
+            row[start:stop] = cubic(length) @ row[neighbours]
             repaired += length
         else:
-            left, longest = left + length, max(longest, length)
-    return _missing_flags(name, repaired, left, longest)
+            unrepaired, longest = unrepaired + length, max(longest, length)
+    return _missing_flags(name, repaired, unrepaired, longest)
 
 
-def _missing_flags(name: str, repaired: int, left: int, longest: int) -> list[Flag]:
+def _missing_flags(name: str, repaired: int, unrepaired: int, longest: int) -> list[Flag]:
     flags = []
     if repaired:
         message = (
@@ -150,10 +151,10 @@ def _missing_flags(name: str, repaired: int, left: int, longest: int) -> list[Fl
             "by a cubic through two samples on either side"
         )
         flags.append(Flag("repaired", Severity.WARNING, message, name))
-    if left:
+    if unrepaired:
         message = (
-            f"{name}: {left} sample(s) are missing and left so (longest run {longest}; only runs "
-            f"of up to {LONGEST_REPAIR} within good samples are filled)"
+            f"{name}: {unrepaired} sample(s) are missing and left so (longest run {longest}; only "
+            f"runs of up to {LONGEST_REPAIR} within good samples are filled)"
         )
         flags.append(Flag("missing", Severity.VOID, message, name))
     return flags
@@ -192,12 +193,12 @@ def _flat_tops(row: FloatArray, channel: Channel) -> list[Flag]:
     flags = []
     is_finite = np.isfinite(row)
     finite = row if is_finite.all() else row[is_finite]
-    for what, sign in (("highest", 1.0), ("lowest", -1.0)):
+    for end, sign in (("highest", 1.0), ("lowest", -1.0)):
         count = flat_top(sign * finite) if _many_at_end(finite, sign) else 0
         if count:
-            level = np.nanmax(row) if what == "highest" else np.nanmin(row)
+            level = np.nanmax(row) if end == "highest" else np.nanmin(row)
             message = (
-                f"{channel.name}: {count} samples stand in flat runs at the {what} value, "
+                f"{channel.name}: {count} samples stand in flat runs at the {end} value, "
                 f"{level:.6g} {channel.unit}: cut off, it seems; state full_scale to be sure"
             )
             flags.append(Flag("saturated", Severity.WARNING, message, channel.name))
@@ -242,11 +243,11 @@ def flat_top(values: FloatArray) -> int:
     flat = lengths[lengths >= FLAT_RUN]
     if flat.size < 2:
         return 0
-    near = np.count_nonzero(below < max(FLAT_STEPS * step, FLAT_SHARE * extent))
-    return int(flat.sum()) if near < FLAT_EXCESS * np.count_nonzero(at_top) else 0
+    near_count = np.count_nonzero(below < max(FLAT_STEPS * step, FLAT_SHARE * extent))
+    return int(flat.sum()) if near_count < FLAT_EXCESS * np.count_nonzero(at_top) else 0
 
 
 def _step(levels: FloatArray, extent: float) -> float:
     with np.errstate(over="ignore"):  # of numbers near the largest
-        apart = np.diff(levels)
-    return float(apart[apart > _ROUNDING * extent].min(initial=extent))
+        steps = np.diff(levels)
+    return float(steps[steps > _ROUNDING * extent].min(initial=extent))

@@ -59,11 +59,15 @@ class Damage:
         for name, bad in self.blocks.items():
             count = edges if name == schema.EDGE_TIME else recording.sample_count
             damaged = stretches(bad, block_of(name), count)
-            said = [_said(name, *stretch, recording) for stretch in damaged[:_NAMED]]
-            more = len(damaged) - len(said)
-            places = ", ".join(said) + (f" and {more} more stretches" if more else "")
-            what = f"{places} are not what was written; {_INSTEAD.get(name, _MISSING)}; {_REMEDY}"
-            yield _flag(what, None if name in _INSTEAD else name)
+            stretch_words = [_said(name, *stretch, recording) for stretch in damaged[:_NAMED]]
+            unnamed = len(damaged) - len(stretch_words)
+            places = ", ".join(stretch_words) + (
+                f" and {unnamed} more stretches" if unnamed else ""
+            )
+            message = (
+                f"{places} are not what was written; {_INSTEAD.get(name, _MISSING)}; {_REMEDY}"
+            )
+            yield _flag(message, None if name in _INSTEAD else name)
         yield from self.flags
 
 
@@ -104,10 +108,11 @@ def _compared(file: Any, sums: Sums, names: Sequence[str]) -> Damage:
     for name in sums.blocks:
         if name not in file:
             continue
-        count, told = file[name].shape[0], sums.counts[name]
-        if count != told:
+        count, written = file[name].shape[0], sums.counts[name]
+        if count != written:
             raise DataError(
-                f"{where}: the variable {name!r} has {count} values, {told} were written; {_REMEDY}"
+                f"{where}: the variable {name!r} has {count} values, {written} were written; "
+                f"{_REMEDY}"
             )
         bad = _bad_blocks(file[name], name, sums)
         if bad.any():
@@ -163,12 +168,12 @@ def _bad_blocks(variable: Any, name: str, sums: Sums) -> BoolArray:
 
 
 def _variable_flags(sums: Sums, names: Sequence[str]) -> Iterator[Flag]:
-    told = [name for name in sums.blocks if name not in (schema.TIME, schema.EDGE_TIME)]
-    for name in told:
+    written = [name for name in sums.blocks if name not in (schema.TIME, schema.EDGE_TIME)]
+    for name in written:
         if name not in names:
             yield _flag(f"the channel {name} was written and is not there; {_REMEDY}")
     for name in names:
-        if name not in told:
+        if name not in written:
             yield _flag(f"the channel was not there when the file was written; {_REMEDY}", name)
 
 
@@ -187,8 +192,8 @@ def _said(name: str, start: int, stop: int, recording: Recording) -> str:
     if name == schema.EDGE_TIME:
         return f"photocell pulses {start + 1} to {stop}"
     first_s, last_s = recording.time_s(start, start + 1)[0], recording.time_s(stop - 1, stop)[0]
-    what = "times of samples" if name == schema.TIME else "samples"
-    return f"{what} {start} to {stop - 1} ({first_s:.3f} s to {last_s:.3f} s)"
+    subject = "times of samples" if name == schema.TIME else "samples"
+    return f"{subject} {start} to {stop - 1} ({first_s:.3f} s to {last_s:.3f} s)"
 
 
 def _flag(message: str, channel: str | None = None) -> Flag:

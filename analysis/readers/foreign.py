@@ -57,16 +57,16 @@ def _recording_of(
             f"{path}: no vector of numbers in it; there is nothing to take for a channel"
         )
     length = max(map(len, content.values.values()))
-    kept = {key: values for key, values in content.values.items() if len(values) == length}
-    headers = tuple(_header(k, key, content.units) for k, key in enumerate(kept, 1))
-    table = dict(zip(headers, kept.values(), strict=True))
+    columns_kept = {key: values for key, values in content.values.items() if len(values) == length}
+    headers = tuple(_header(k, key, content.units) for k, key in enumerate(columns_kept, 1))
+    table = dict(zip(headers, columns_kept.values(), strict=True))
     if columns.sample_rate_hz is None and not _has_time(headers, columns):
         columns = replace(columns, sample_rate_hz=content.sample_rate_hz)
     plan = plan_columns(headers, columns, str(path))
     with path.open("rb") as file:
         origin = Origin(path, name, kind, hashlib.file_digest(file, "sha256").hexdigest())
-    left = [key for key in content.values if key not in kept]
-    return from_columns(plan, table, columns, origin, _left_out(left, length))
+    shorter = [key for key in content.values if key not in columns_kept]
+    return from_columns(plan, table, columns, origin, _left_out(shorter, length))
 
 
 def _has_time(headers: tuple[Header, ...], columns: ColumnMap) -> bool:

@@ -70,8 +70,8 @@ def unit_hint(name: str) -> str:
     """Return ``"; did you mean 'kN'?"`` for ``kNN`` or ``KN``, nothing where no unit is near."""
     shorter = [name[:k] + name[k + 1 :] for k in range(len(name))]
     cased = [name.lower(), name.upper(), name[:1].lower() + name[1:].upper(), name.capitalize()]
-    near = next((word for word in (*cased, *shorter) if len(word) > 0 and is_unit(word)), None)
-    return f"; did you mean {near!r}?" if near else ""
+    match = next((word for word in (*cased, *shorter) if len(word) > 0 and is_unit(word)), None)
+    return f"; did you mean {match!r}?" if match else ""
 
 
 def find_header(headers: Sequence[Header], selector: str, where: str) -> Header:
@@ -102,7 +102,7 @@ def find_header(headers: Sequence[Header], selector: str, where: str) -> Header:
                 f"{where}: {len(matching)} columns are {selector!r}; ask for {numbers}"
             )
     texts = {header.name: header.text or header.generic for header in headers}
-    near = [texts[name] for name in get_close_matches(wanted.name, texts, n=3, cutoff=0.5)]
-    hint = f"; did you mean {' or '.join(map(repr, near))}?" if near else ""
-    known = ", ".join(texts.values())
-    raise ConfigurationError(f"{where}: no column {selector!r}{hint} (columns: {known})")
+    matches = [texts[name] for name in get_close_matches(wanted.name, texts, n=3, cutoff=0.5)]
+    hint = f"; did you mean {' or '.join(map(repr, matches))}?" if matches else ""
+    names = ", ".join(texts.values())
+    raise ConfigurationError(f"{where}: no column {selector!r}{hint} (columns: {names})")

@@ -106,14 +106,14 @@ def with_missing_said(recording: Recording) -> Recording:
     gap of all channels at once, and the missing samples of a channel by name.
     """
     survey = _Survey(recording)
-    said = {flag.channel for flag in recording.flags if flag.code in _SAID}
+    flagged_channels = {flag.channel for flag in recording.flags if flag.code in _SAID}
     flags = tuple(
         _missing_flag(channel.name, int(survey.missing[row]), int(survey.longest[row]), recording)
         for row, channel in enumerate(recording.channels)
-        if survey.missing[row] and channel.name not in said
+        if survey.missing[row] and channel.name not in flagged_channels
     )
-    told = _with_beyond_said(recording, survey)
-    return replace(told, flags=(*told.flags, *flags)) if flags else told
+    flagged = _with_beyond_said(recording, survey)
+    return replace(flagged, flags=(*flagged.flags, *flags)) if flags else flagged
 
 
 def _missing_flag(name: str, count: int, longest: int, recording: Recording) -> Flag:

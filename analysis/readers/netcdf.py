@@ -126,11 +126,11 @@ READER: Final = Reader(lambda path, *_: read_netcdf(path), own_channels=True)
 
 def _edges_s(edges: Any, damage: Damage) -> FloatArray:
     """Read the photocell's pulses but for the damaged ones."""
-    kept = [
+    stretches = [
         np.asarray(edges[a:b], dtype=np.float64)
         for a, b in damage.good(schema.EDGE_TIME, int(edges.shape[0]))
     ]
-    return np.concatenate([np.empty(0), *kept])
+    return np.concatenate([np.empty(0), *stretches])
 
 
 def _timed(recording: Recording, time: Any, damage: Damage, where: str) -> Recording:

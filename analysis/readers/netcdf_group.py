@@ -48,10 +48,10 @@ class NetcdfGroup:
         self, name: str, dimensions: tuple[str, ...], dtype: type, chunk: int | None = None
     ) -> Any:
         """Make a variable along dimensions of the group; return it as h5py has it."""
-        shape = tuple(self._scales[one].shape[0] for one in dimensions)
+        shape = tuple(self._scales[dimension].shape[0] for dimension in dimensions)
         made = self._create(name, shape, dtype, chunk and (chunk,))
-        for axis, one in enumerate(dimensions):
-            made.dims[axis].attach_scale(self._scales[one])
+        for axis, dimension in enumerate(dimensions):
+            made.dims[axis].attach_scale(self._scales[dimension])
         self._number(made, dimensions)
         return made
 
@@ -63,7 +63,7 @@ class NetcdfGroup:
         )
 
     def _number(self, variable: Any, dimensions: tuple[str, ...]) -> None:
-        numbers = [self._scales[one].attrs["_Netcdf4Dimid"] for one in dimensions]
+        numbers = [self._scales[dimension].attrs["_Netcdf4Dimid"] for dimension in dimensions]
         variable.attrs["_Netcdf4Coordinates"] = np.array(numbers, np.int32)
         variable.attrs["_Netcdf4Dimid"] = numbers[0]
 
@@ -74,7 +74,7 @@ def _with_scale(scale: Any, name: str | bytes, numbers: Iterator[int]) -> Any:
     return scale
 
 
-def describe(what: Any, attributes: Mapping[str, str | float]) -> None:
+def describe(target: Any, attributes: Mapping[str, str | float]) -> None:
     """Write attributes of a group or variable; a number is a row of one, as NetCDF has it."""
     for name, value in attributes.items():
-        what.attrs[name] = value if isinstance(value, str) else np.atleast_1d(value)
+        target.attrs[name] = value if isinstance(value, str) else np.atleast_1d(value)

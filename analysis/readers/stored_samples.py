@@ -68,9 +68,9 @@ class StoredSamples:
         """
         import h5py
 
-        rows, when = key
+        rows, span = key
         chosen = range(len(self.variables))[rows] if isinstance(rows, slice) else rows
-        start, stop, step = when.indices(self.sample_count)
+        start, stop, step = span.indices(self.sample_count)
         if step < 1:
             raise ValueError(f"samples are read forwards, not by steps of {step}")
         values = np.full((len(chosen), max(0, stop - start)), np.nan)
@@ -87,8 +87,8 @@ class StoredSamples:
     def _good(self, row: int, start: int, stop: int) -> Iterator[tuple[int, int]]:
         """Yield the undamaged stretches of a row between two sample numbers."""
         bad = self.damaged[row]
-        whole = [(0, self.sample_count)]
-        for a, b in whole if bad is None else stretches(~bad, BLOCK_SAMPLES, self.sample_count):
+        full_row = [(0, self.sample_count)]
+        for a, b in full_row if bad is None else stretches(~bad, BLOCK_SAMPLES, self.sample_count):
             if max(a, start) < min(b, stop):
                 yield max(a, start), min(b, stop)
 
@@ -145,15 +145,15 @@ def check_heaps(path: Path) -> None:
 
 def _marks(file: BinaryIO) -> Iterator[int]:
     """Yield where heaps begin, also those that lie across two blocks."""
-    place, kept = 0, b""
+    place, tail = 0, b""
     while block := file.read(_BLOCK):
-        data, at = kept + block, place - len(kept)
+        data, at = tail + block, place - len(tail)
         offset = data.find(_MARK)
         while offset >= 0:
             yield at + offset
             offset = data.find(_MARK, offset + 1)
         place += len(block)
-        kept = data[1 - len(_MARK) :]
+        tail = data[1 - len(_MARK) :]
         file.seek(place)
 
 

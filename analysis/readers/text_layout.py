@@ -213,7 +213,7 @@ def _headed(
     for k, stamp in stamps.items():
         if stamp is not None and k < len(headers):
             headers[k] = replace(headers[k], unit=stamp.unit, unit_is_suffix=False)
-    days = [one.days for one in stamps.values() if one is not None and one.days != NO_DAY]
+    days = [stamp.days for stamp in stamps.values() if stamp is not None and stamp.days != NO_DAY]
     first_day = days[0] if days else NO_DAY
     return FoundLayout(
         tuple(headers), bare.separator, bare.decimal, first_line, bare.missing, first_day

@@ -38,8 +38,8 @@ class ChannelPlan:
         return Channel(self.spec.name, resolved.si, full_scale_si), factor, flags
 
     def _unit(self) -> tuple[Unit, tuple[Flag, ...]]:
-        name, own, stated = self.spec.name, self.spec.unit, self.header.unit
-        chosen = own or stated
+        name, map_unit, stated = self.spec.name, self.spec.unit, self.header.unit
+        chosen = map_unit or stated
         if chosen is None:
             text = f"{name}: no unit is stated; values are kept as they are"
             return Unit("", 1.0), (Flag("unit_missing", Severity.WARNING, text, name),)
@@ -49,10 +49,12 @@ class ChannelPlan:
                 f"{unit_hint(chosen)}"
             )
             return Unit("", 1.0), (Flag("unit_unknown", Severity.WARNING, text, name),)
-        if own and stated and own.strip() != stated:
-            text = f"{name}: the column map says {own!r}, the header {stated!r}; the map is used"
-            return unit(own), (Flag("unit_overridden", Severity.WARNING, text, name),)
-        if not own and self.header.unit_is_suffix:
+        if map_unit and stated and map_unit.strip() != stated:
+            text = (
+                f"{name}: the column map says {map_unit!r}, the header {stated!r}; the map is used"
+            )
+            return unit(map_unit), (Flag("unit_overridden", Severity.WARNING, text, name),)
+        if not map_unit and self.header.unit_is_suffix:
             text = f"{name}: the unit {stated!r} was told from the header {self.header.text!r}"
             return unit(chosen), (Flag("unit_from_suffix", Severity.NOTE, text, name),)
         return unit(chosen), ()
@@ -121,8 +123,8 @@ def _time(
 ) -> tuple[Header | None, Header | None]:
     """Return the time column to read and the one that is there."""
     if columns.time:
-        own = find_header(headers, columns.time.column, where)
-        return own, own
+        time_header = find_header(headers, columns.time.column, where)
+        return time_header, time_header
     by_name = [header for header in headers if header.is_time]
     named = next(iter(by_name + [header for header in headers if header.unit == CLOCK]), None)
     if columns.sample_rate_hz is not None:
@@ -145,17 +147,17 @@ def without_idle(plan: ColumnPlan, table: Mapping[Header, FloatArray], where: st
     DataError
         If no channel is left, or two have the same name.
     """
-    kept, flags = [], list(plan.flags)
+    channels, flags = [], list(plan.flags)
     for channel in plan.channels:
         flag = None if channel.mapped else _idle(channel.header, table[channel.header])
         if flag:
             flags.append(flag)
         else:
-            kept.append(channel)
-    if not kept:
+            channels.append(channel)
+    if not channels:
         raise DataError(f"{where}: no column is left to be a channel, beside time and index")
-    _check_unique(kept, where)
-    return replace(plan, channels=tuple(kept), flags=tuple(flags))
+    _check_unique(channels, where)
+    return replace(plan, channels=tuple(channels), flags=tuple(flags))
 
 
 def _idle(header: Header, values: FloatArray) -> Flag | None:
@@ -175,15 +177,15 @@ def _idle(header: Header, values: FloatArray) -> Flag | None:
 
 
 def _check_unique(channels: Iterable[ChannelPlan], where: str) -> None:
-    seen: dict[str, Header] = {}
+    headers: dict[str, Header] = {}
     for channel in channels:
         name, header = channel.spec.name, channel.header
-        if name in seen:
+        if name in headers:
             raise DataError(
-                f"{where}: {seen[name].generic} and {header.generic} would both be called "
+                f"{where}: {headers[name].generic} and {header.generic} would both be called "
                 f"{name!r}; give them names in the column map"
             )
-        seen[name] = header
+        headers[name] = header
 
 
 def time_factor(
@@ -204,11 +206,11 @@ def time_factor(
         return 1.0, ()
     if name is None:
         counted = _since_1970(stamps)
-        told = f"{counted}, as they count from 1970," if counted else "seconds"
-        other = "s" if counted else "ms"
+        assumed_unit = f"{counted}, as they count from 1970," if counted else "seconds"
+        alternative = "s" if counted else "ms"
         text = (
-            f"the time column {header.text!r} states no unit; {told} are assumed. If they are "
-            f"others, name the unit in the column map: time={header.text}:{other}"
+            f"the time column {header.text!r} states no unit; {assumed_unit} are assumed. If they "
+            f"are others, name the unit in the column map: time={header.text}:{alternative}"
         )
         factor = unit(counted).factor if counted else 1.0
         return factor, (Flag("time_unit_assumed", Severity.WARNING, text),)

@@ -109,8 +109,8 @@ def from_columns(
 def _repaired(read: Recording, samples: FloatArray, where: str) -> Recording:
     """Return a recording without spikes and short gaps, where samples are evenly spaced."""
     if read.stamps_s is not None:
-        told = with_missing_said(read)
-        return replace(told, flags=(*told.flags, *saturation_flags(samples, read.channels)))
+        flagged = with_missing_said(read)
+        return replace(flagged, flags=(*flagged.flags, *saturation_flags(samples, read.channels)))
     recording, channels = without_spikes(without_beyond(read)), read.channels
     for number, row in enumerate(samples):
         row[:] = recording.samples[number : number + 1, 0 : recording.sample_count][0]

@@ -128,8 +128,8 @@ class LineStream:
         self._check_size(len(block))
         return block
 
-    def _check_size(self, more: int) -> None:
-        self._count += more
+    def _check_size(self, count: int) -> None:
+        self._count += count
         most, path = self._limits.text_bytes, str(self._source.path)
         if self._count > most:
             raise self._limits.too_large(path, f"more than {most} bytes of text")

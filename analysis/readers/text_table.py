@@ -25,8 +25,8 @@ class Columns(Mapping[Header, FloatArray]):
 
     def add(self, columns: Iterable[Iterable[FloatArray]]) -> None:
         """Add rows: pieces of each column, in the order of the headers."""
-        for pieces, more in zip(self._pieces.values(), columns, strict=True):
-            pieces.extend(more)
+        for pieces, rows in zip(self._pieces.values(), columns, strict=True):
+            pieces.extend(rows)
 
     def __getitem__(self, header: Header) -> FloatArray:
         return np.concatenate([np.empty(0), *self._pieces[header]])
@@ -126,7 +126,7 @@ def _read_fast(
     import pyarrow as pa
     from pyarrow import csv
 
-    asked = [str(header.number) for header in wanted]
+    columns = [str(header.number) for header in wanted]
     try:
         table = csv.read_csv(
             pa.BufferReader(_one_blank(text) if layout.separator == " " else text),
@@ -136,8 +136,8 @@ def _read_fast(
             ),
             csv.ParseOptions(delimiter=layout.separator),
             csv.ConvertOptions(
-                column_types=dict.fromkeys(asked, pa.float64()),
-                include_columns=asked,
+                column_types=dict.fromkeys(columns, pa.float64()),
+                include_columns=columns,
                 null_values=[*layout.missing, *(f" {cell}" for cell in layout.missing)],
                 decimal_point=layout.decimal,
                 check_utf8=False,

@@ -96,9 +96,9 @@ def _check_increasing(time_s: FloatArray, where: str) -> None:
     if bad.size:
         row = int(bad[0])
         before, after = time_s[row], time_s[row + 1]
-        what = "repeats" if after == before else "runs backwards"
+        fault = "repeats" if after == before else "runs backwards"
         raise DataError(
-            f"{where}: time {what} at data row {row + 2}: {after:.9g} s after {before:.9g} s "
+            f"{where}: time {fault} at data row {row + 2}: {after:.9g} s after {before:.9g} s "
             f"({bad.size} such row(s)); remove or sort these rows, or, if only the stamps are "
             "wrong, give the sample rate in place of the time column"
         )
@@ -113,8 +113,8 @@ def _places(steps: FloatArray) -> tuple[IntArray, float]:
     single = steps[steps < 1.5 * usual]
     interval = float(single.mean())
     # Steps up to 1.5 intervals count as one, so that jitter does not open gaps.
-    whole = np.maximum(np.rint(steps / interval), 1.0)
-    return np.concatenate(([0], np.cumsum(whole))).astype(np.int64), interval
+    intervals = np.maximum(np.rint(steps / interval), 1.0)
+    return np.concatenate(([0], np.cumsum(intervals))).astype(np.int64), interval
 
 
 def _line(x: FloatArray, y: FloatArray) -> tuple[float, float]:
@@ -180,12 +180,12 @@ def _deviation_flags(deviation: FloatArray, rate_hz: float) -> tuple[Flag, ...]:
 def _single_precision_flag(rate_hz: float) -> tuple[Flag, ...]:
     """Say where an even rate is a round one but for single precision (0.0050000002 s stamps)."""
     round_hz = float(f"{rate_hz:.6g}")
-    off = abs(rate_hz / round_hz - 1.0)
-    if not 1e-11 < off <= np.finfo(np.float32).eps:
+    rounding = abs(rate_hz / round_hz - 1.0)
+    if not 1e-11 < rounding <= np.finfo(np.float32).eps:
         return ()
     message = (
-        f"time stamps are even at {rate_hz:.10g} Hz, which is {round_hz:g} Hz but for {off:.1g} of "
-        "it: rounding to single precision, it seems; they are used as they are"
+        f"time stamps are even at {rate_hz:.10g} Hz, which is {round_hz:g} Hz but for "
+        f"{rounding:.1g} of it: rounding to single precision, it seems; they are used as they are"
     )
     return (Flag("time_single_precision", Severity.NOTE, message),)
 

@@ -80,11 +80,11 @@ def analyse(
         or longer than the steady stretch, harmonics beyond the sampling.
     """
     check_settings(settings)
-    asked, settings = settings, with_own_gate(recording, settings)
+    stated_settings, settings = settings, with_own_gate(recording, settings)
     check_opening(recording, settings)
-    fixed = asked is settings
-    told = _reference(recording, choice, settings, fixed=fixed)
-    reference = told.delayed(settings.delay_s)
+    fixed = stated_settings is settings
+    stated_reference = _reference(recording, choice, settings, fixed=fixed)
+    reference = stated_reference.delayed(settings.delay_s)
     names = settings.channels or _default_channels(recording, reference)
     chosen = recording.select(names).complete()
     edges = _edges(chosen, reference, settings, fixed=fixed)
@@ -108,7 +108,7 @@ def analyse(
         + set_point_flags(recording, reference, gates[0], readings[0])
         + frequency_flags(chosen.channel_names, values, reference)
         + flags
-        + reference_flags(recording, told, steady, settings)
+        + reference_flags(recording, stated_reference, steady, settings)
         + saturation_flags(chosen, float(steady.opened_s[0]), float(steady.closed_s[-1])),
     )
 
@@ -210,22 +210,22 @@ def _limit_flags(
     recording: Recording, values: PeriodValues, stretch: Stretch, settings: ResolverSettings
 ) -> tuple[Flag, ...]:
     """Say where one channel alone ends the steady stretch, and how far it strays there."""
-    beside: dict[int, list[str]] = {}
+    faults_of: dict[int, list[str]] = {}
     for limit in limits(values, stretch, settings.steady_tolerance):
         side = "before" if limit.period < stretch.start else "after"
         missing = not np.isfinite(limit.spread)
-        what = "has missing samples" if missing else f"strays by {100.0 * limit.spread:.3g} %"
-        beside.setdefault(limit.channel, []).append(f"{what} in the period {side} it")
+        fault = "has missing samples" if missing else f"strays by {100.0 * limit.spread:.3g} %"
+        faults_of.setdefault(limit.channel, []).append(f"{fault} in the period {side} it")
     return tuple(
         Flag(
             "stretch_limited",
             Severity.NOTE,
             f"this channel ends the steady stretch of {stretch.period_count} of {len(values.ramp)} "
-            f"periods: it {' and '.join(told)} (limit "
+            f"periods: it {' and '.join(faults)} (limit "
             f"{100.0 * settings.steady_tolerance:g} % of its usual amplitude)",
             recording.channel_names[channel],
         )
-        for channel, told in beside.items()
+        for channel, faults in faults_of.items()
     )
 
 

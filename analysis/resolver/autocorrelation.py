@@ -92,14 +92,14 @@ class _Witness:
     degrees: int
 
 
-def widened(left: FloatArray, cycles: FloatArray, gate_periods: int, line: bool) -> FloatArray:
+def widened(residuals: FloatArray, cycles: FloatArray, gate_periods: int, line: bool) -> FloatArray:
     """Return the deviations of some periods, as large as the noise's memory makes them count.
 
-    It is of the same shape; no smaller than ``left``.
+    It is of the same shape; no smaller than ``residuals``.
 
     Parameters
     ----------
-    left
+    residuals
         Each period's coefficients ``[A0, S1, C1, ...]`` about their mean, and the drift's line
         where one was taken out, shape ``(periods, channels, K)``; two periods or more.
     cycles
@@ -109,25 +109,25 @@ def widened(left: FloatArray, cycles: FloatArray, gate_periods: int, line: bool)
     line
         Whether a drift was taken out of the means.
     """
-    count, orders = len(left), left.shape[2] // 2
+    count, orders = len(residuals), residuals.shape[2] // 2
     block = -(-count // _MOST_BLOCKS)
     first = count % block
     numbers = np.rint(cycles[first::block] - cycles[first]).astype(int)
-    asked = tuple(numbers.tolist()), block, gate_periods, orders
-    wider, quiet = left.copy(), []
+    spectrum_key = tuple(numbers.tolist()), block, gate_periods, orders
+    wider, quiet = residuals.copy(), []
     for n in range(1, orders + 1):
-        pair = left[:, :, 2 * n - 1 : 2 * n + 1]
+        pair = residuals[:, :, 2 * n - 1 : 2 * n + 1]
         products = np.einsum("pci,pcj->cij", pair, pair)
         axes = np.linalg.eigh(products)[1]
-        along = np.einsum("pci,cij->pcj", pair, axes)
-        along *= _factors(_blocks(along, block), _spectra(*asked, line=False))
-        wider[:, :, 2 * n - 1 : 2 * n + 1] = np.einsum("pcj,cij->pci", along, axes)
+        components = np.einsum("pci,cij->pcj", pair, axes)
+        components *= _factors(_blocks(components, block), _spectra(*spectrum_key, line=False))
+        wider[:, :, 2 * n - 1 : 2 * n + 1] = np.einsum("pcj,cij->pci", components, axes)
         quiet.append(np.trace(products, axis1=1, axis2=2))
     if len(numbers) > 1 + line:
         # In white noise a part has twice a mean's variance.
         witness = _Witness(np.stack(quiet, axis=1) / 2.0 / block, 2 * (count - 1))
-        means = _blocks(left[:, :, :1], block)
-        wider[:, :, :1] *= _factors(means, _spectra(*asked, line=line), witness)
+        means = _blocks(residuals[:, :, :1], block)
+        wider[:, :, :1] *= _factors(means, _spectra(*spectrum_key, line=line), witness)
     return wider
 
 
@@ -139,14 +139,14 @@ def _blocks(values: FloatArray, block: int) -> FloatArray:
 
 def _factors(blocks: FloatArray, spectra: _Spectra, witness: _Witness | None = None) -> FloatArray:
     """Return the factors of sequences that share a spectrum, shape ``(channels, sequences)``."""
-    seen = np.einsum("bn,bcs->csn", spectra.contrasts, blocks)
-    freedom = seen.shape[-1]
-    white = (seen**2).sum(axis=-1)[:, None]
-    known = white > 0.0
-    white = np.where(known, white, 1.0)
-    squares = (np.einsum("knm,csm->cksn", spectra.whitening, seen) ** 2).sum(axis=-1) / white
+    contrasts = np.einsum("bn,bcs->csn", spectra.contrasts, blocks)
+    freedom = contrasts.shape[-1]
+    white = (contrasts**2).sum(axis=-1)[:, None]
+    varying = white > 0.0
+    white = np.where(varying, white, 1.0)
+    squares = (np.einsum("knm,csm->cksn", spectra.whitening, contrasts) ** 2).sum(axis=-1) / white
     silent = np.exp(-spectra.log_determinant / freedom)[:, None]  # a constant tells no spectrum
-    squares = np.where(known, squares, silent)
+    squares = np.where(varying, squares, silent)
     fit = spectra.log_prior - blocks.shape[2] * spectra.log_determinant / 2.0
     if witness is None:
         fit = fit - freedom / 2.0 * np.log(squares).sum(axis=2)
@@ -170,9 +170,9 @@ def _half_width(weight: FloatArray, scale: FloatArray, freedom: int) -> FloatArr
     """
     from scipy.special import gammaln, stdtr
 
-    alone = float(student_factor(freedom, LEVEL))
+    factor = float(student_factor(freedom, LEVEL))
     log_peak = gammaln((freedom + 1) / 2.0) - gammaln(freedom / 2.0) - np.log(freedom * np.pi) / 2.0
-    half = alone * scale.min(axis=1)
+    half = factor * scale.min(axis=1)
     for _ in range(60):
         reach = half[:, None] / scale
         within = (weight * (2.0 * stdtr(freedom, reach) - 1.0)).sum(axis=1)
@@ -181,7 +181,7 @@ def _half_width(weight: FloatArray, scale: FloatArray, freedom: int) -> FloatArr
         half = half + step
         if np.all(np.abs(step) <= 1e-6 * half):
             break
-    return np.asarray(half / alone)
+    return np.asarray(half / factor)
 
 
 @lru_cache(maxsize=16)
@@ -192,20 +192,20 @@ def _spectra(
     opening = np.array(numbers, dtype=np.float64)
     columns = np.stack((np.ones_like(opening), opening - opening.mean())[: 1 + line], axis=1)
     contrasts = np.linalg.qr(columns, mode="complete")[0][:, 1 + line :]
-    apart = np.abs(np.subtract.outer(opening, opening))
+    distances = np.abs(np.subtract.outer(opening, opening))
     identity = np.eye(contrasts.shape[1])
-    seen, variance, around = [identity], [1.0], [np.ones(orders)]
+    covariances, variance, around = [identity], [1.0], [np.ones(orders)]
     for doubled in _colours(opening[-1] + block):
-        own = contrasts.T @ _averaged(doubled, apart, block) @ contrasts * block
-        share = len(own) / np.trace(own)
+        covariance = contrasts.T @ _averaged(doubled, distances, block) @ contrasts * block
+        share = len(covariance) / np.trace(covariance)
         long = float(_averaged(doubled, np.zeros(1), gate_periods)[0]) * gate_periods
         parts = _parts(doubled, orders)
         for size in _SIZES:
-            seen.append(identity + size * share * own)
+            covariances.append(identity + size * share * covariance)
             variance.append(1.0 + size * share * long)
             around.append(1.0 + size * share * parts)
-    factor = np.linalg.cholesky(np.array(seen))
-    prior = np.full(len(seen), (1.0 - _WHITE) / (len(seen) - 1))
+    factor = np.linalg.cholesky(np.array(covariances))
+    prior = np.full(len(covariances), (1.0 - _WHITE) / (len(covariances) - 1))
     prior[0] = _WHITE
     return _Spectra(
         contrasts,
@@ -249,10 +249,10 @@ def _beat(length: float) -> Doubled:
     return doubled
 
 
-def _averaged(doubled: Doubled, apart: FloatArray, length: float) -> FloatArray:
+def _averaged(doubled: Doubled, distances: FloatArray, length: float) -> FloatArray:
     """Return the covariance of averages over stretches of some length that open so far apart."""
-    beside = doubled(apart + length) + doubled(np.abs(apart - length))
-    return np.asarray((beside - 2.0 * doubled(apart)) / length**2)
+    neighbours = doubled(distances + length) + doubled(np.abs(distances - length))
+    return np.asarray((neighbours - 2.0 * doubled(distances)) / length**2)
 
 
 def _parts(doubled: Doubled, orders: int) -> FloatArray:

@@ -97,11 +97,11 @@ def design_low_pass(
     }
     if decimation > 1:
         limits["the output rate"] = sample_rate_hz / decimation
-    what, lowest_hz = min(limits.items(), key=lambda item: item[1])
+    limit_name, lowest_hz = min(limits.items(), key=lambda item: item[1])
     if ROOM * bandwidth_hz > lowest_hz * (1.0 + 1e-12):
         raise ConfigurationError(
-            f"bandwidth_hz = {bandwidth_hz:g} is too near {what} at {lowest_hz:g} Hz; at most "
-            f"{lowest_hz / ROOM:g} Hz: take a narrower one, or another rate"
+            f"bandwidth_hz = {bandwidth_hz:g} is too near {limit_name} at {lowest_hz:g} Hz; at "
+            f"most {lowest_hz / ROOM:g} Hz: take a narrower one, or another rate"
         )
     return _kaiser(bandwidth_hz / sample_rate_hz, lowest_hz / sample_rate_hz, decimation)
 
@@ -195,10 +195,10 @@ def demodulate(
     samples, detected = _filtered(recording, rows, carrier_hz, low_pass)
     flags, rescaled = [_ends_flag(recording, low_pass)], list(recording.channels)
     for row, signal in zip(rows, detected, strict=True):
-        phase, said = _phase(recording.channels[row].name, signal, carrier_phase_rad)
+        phase, phase_flags = _phase(recording.channels[row].name, signal, carrier_phase_rad)
         samples[row] = (signal * np.exp(-1j * phase)).real / carrier_amplitude
         rescaled[row] = _rescaled(recording.channels[row], carrier_amplitude)
-        flags += said
+        flags += phase_flags
     return replace(
         recording,
         channels=tuple(rescaled),
@@ -244,13 +244,13 @@ def _filtered(
 
 def _phase(name: str, signal: ComplexArray, given_rad: float | None) -> tuple[float, list[Flag]]:
     """Phase of the carrier in one channel, and what is to be said about it."""
-    known = signal[np.isfinite(signal)]
+    finite = signal[np.isfinite(signal)]
     # The square does not care for the sign of E; its mean points at twice the phase.
-    energy, square = float(np.sum(np.abs(known) ** 2)), complex(np.sum(known**2))
+    energy, square = float(np.sum(np.abs(finite) ** 2)), complex(np.sum(finite**2))
     if not energy > 0.0:
         raise DataError(f"{name}: no signal at the carrier; name the channels that ride on it")
     phase = float(np.angle(square)) / 2.0 if given_rad is None else given_rad
-    left = float(np.sqrt(np.sum((known * np.exp(-1j * phase)).imag ** 2) / energy))
+    quadrature_share = float(np.sqrt(np.sum((finite * np.exp(-1j * phase)).imag ** 2) / energy))
     flags = []
     if given_rad is None:
         message = (
@@ -258,14 +258,15 @@ def _phase(name: str, signal: ComplexArray, given_rad: float | None) -> tuple[fl
             "signal is not known: if it comes out reversed, give this phase plus pi"
         )
         flags.append(Flag("carrier_phase_estimated", Severity.NOTE, message, channel=name))
-    if left > QUADRATURE_LIMIT:
+    if quadrature_share > QUADRATURE_LIMIT:
         message = (
-            f"{left:.3g} of the signal stands in quadrature to the carrier phase {phase:.6f} rad, "
-            f"more than {QUADRATURE_LIMIT:g}: noise, or wrong carrier frequency or phase"
+            f"{quadrature_share:.3g} of the signal stands in quadrature to the carrier phase "
+            f"{phase:.6f} rad, more than {QUADRATURE_LIMIT:g}: noise, or wrong carrier frequency "
+            "or phase"
         )
         flags.append(Flag("carrier_quadrature", Severity.WARNING, message, channel=name))
-    if known.size < signal.size:
-        message = f"{signal.size - known.size} of {signal.size} samples lost to missing ones"
+    if finite.size < signal.size:
+        message = f"{signal.size - finite.size} of {signal.size} samples lost to missing ones"
         flags.append(Flag("carrier_gap", Severity.VOID, message, channel=name))
     return phase, flags
 

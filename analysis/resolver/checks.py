@@ -96,15 +96,15 @@ def _transient(values: PeriodValues, result: Harmonics) -> list[Flag]:
     first = values.coefficients[:, :, 1:3]
     time = np.arange(len(first)) - (len(first) - 1) / 2.0
     slope = np.einsum("p,pci->ci", time, first) / (time @ time)
-    left = first - first.mean(axis=0) - time[:, None, None] * slope
-    error = np.sqrt((left**2).sum(axis=0) / (len(first) - 2) / (time @ time))
+    residuals = first - first.mean(axis=0) - time[:, None, None] * slope
+    error = np.sqrt((residuals**2).sum(axis=0) / (len(first) - 2) / (time @ time))
     change = np.abs(slope) * (len(first) - 1)
     amplitude = result.amplitude[:, 0]
     largest = result.amplitude.max(axis=1)
     sure = (np.abs(slope) > _SURE * error) & (change > _NOTABLE * largest[:, None])
     flags = []
-    alone = (result.half_width() / result.widening)[:, 1:3].max(axis=1)  # a trend has memory itself
-    moves = amplitude > alone  # else noise trends by itself
+    limit = (result.half_width() / result.widening)[:, 1:3].max(axis=1)  # a trend has memory itself
+    moves = amplitude > limit  # else noise trends by itself
     for row in np.flatnonzero(sure.any(axis=1) & moves):
         share = 100.0 * change[row].max() / amplitude[row]
         message = (
@@ -120,11 +120,11 @@ def saturation_flags(recording: Recording, opened_s: float, closed_s: float) -> 
 
     A channel that its reader has flagged already is not flagged again.
     """
-    known = {flag.channel for flag in recording.flags if flag.code == "saturated"}
+    flagged = {flag.channel for flag in recording.flags if flag.code == "saturated"}
     rows = [
         row
         for row, channel in enumerate(recording.channels)
-        if channel.full_scale is not None and channel.name not in known
+        if channel.full_scale is not None and channel.name not in flagged
     ]
     if not rows:
         return ()
@@ -170,10 +170,10 @@ def frequency_flags(
     per_period = _turn(phasors[:, row])
     if per_period is None:
         return ()
-    given, fits = reference.frequency_hz, reference.frequency_hz * (1.0 + per_period)
+    stated_hz, fits = reference.frequency_hz, reference.frequency_hz * (1.0 + per_period)
     message = (
         f"the phase turns by {360.0 * per_period:+.3g} degrees a period against the given "
-        f"{given:.6g} Hz: {fits:.6g} Hz fits. The harmonics found are too small; give this "
+        f"{stated_hz:.6g} Hz: {fits:.6g} Hz fits. The harmonics found are too small; give this "
         "frequency, or take the phase from a channel"
     )
     return (Flag("frequency_differs", Severity.WARNING, message, names[row]),)
@@ -195,9 +195,9 @@ def _turn(phasor: ComplexArray) -> float | None:
     turned = np.unwrap(np.angle(phasor)) / (2.0 * np.pi)
     period = np.arange(len(turned)) - (len(turned) - 1) / 2.0
     per_period = float(period @ turned / (period @ period))
-    whole = abs(per_period) * (len(turned) - 1)
-    away = np.abs(turned - turned.mean() - per_period * period).max()
-    return per_period if whole > _NOTABLE_CYCLES and away < _STRAIGHT * whole else None
+    cycles = abs(per_period) * (len(turned) - 1)
+    departure = np.abs(turned - turned.mean() - per_period * period).max()
+    return per_period if cycles > _NOTABLE_CYCLES and departure < _STRAIGHT * cycles else None
 
 
 def reference_flags(
@@ -216,11 +216,11 @@ def reference_flags(
     values = solve_periods(sums).coefficients[:, 0]
     size = np.hypot(values[:, 1], values[:, 2])
     usual = float(np.nanmedian(size)) if np.isfinite(size).any() else np.inf
-    off = np.abs(size - usual)
-    outside = np.flatnonzero(off > settings.steady_tolerance * usual)
+    deviation = np.abs(size - usual)
+    outside = np.flatnonzero(deviation > settings.steady_tolerance * usual)
     if not outside.size:
         return ()
-    worst = int(np.nanargmax(off))
+    worst = int(np.nanargmax(deviation))
     unit = recording.channels[recording.index(name)].unit
     message = (
         f"the amplitude of the reference leaves {usual:.4g} {unit} by more than "

@@ -149,8 +149,8 @@ class RunningAverage:
         self._refuse_missing(values, times_s)
         inputs = products(values, cycles(times_s), self.harmonics)
         shown, memory = self._low_pass(inputs, state.memory)
-        waited = numbers / self.sample_rate_hz >= SETTLED_AFTER * self.time_constant_s
-        needles = NeedleReadings(times_s, shown[:, 0::2], shown[:, 1::2], waited)
+        settled = numbers / self.sample_rate_hz >= SETTLED_AFTER * self.time_constant_s
+        needles = NeedleReadings(times_s, shown[:, 0::2], shown[:, 1::2], settled)
         return AverageState(state.start_s, state.taken + len(numbers), memory), needles
 
     def _refuse_missing(self, values: FloatArray, times_s: FloatArray) -> None:
@@ -169,9 +169,9 @@ class RunningAverage:
         if inputs.shape[-1] == 0:
             return inputs, memory
         step = 1.0 / (self.sample_rate_hz * self.time_constant_s)
-        kept, mean_kept = np.exp(-step), -np.expm1(-step) / step
-        newest, last = 1.0 - mean_kept, mean_kept - kept
+        decay, mean_decay = np.exp(-step), -np.expm1(-step) / step
+        newest, last = 1.0 - mean_decay, mean_decay - decay
         if memory is None:
             memory = -newest * inputs[..., :1]  # the needles start from zero
-        shown, memory = lfilter([newest, last], [1.0, -kept], inputs, zi=memory)
+        shown, memory = lfilter([newest, last], [1.0, -decay], inputs, zi=memory)
         return np.asarray(shown), np.asarray(memory)

@@ -110,17 +110,17 @@ class GatedIntegrator:
 
     def _queue(self, state: IntegratorState, pulses_s: FloatArray) -> IntegratorState:
         new = [pulse for pulse in pulses_s if self._number(state, pulse) >= 0.0]
-        seen = np.append(state.waiting_pulses_s, new)
-        if np.any(np.diff(seen) <= 0.0):
-            at = float(seen[1:][np.diff(seen) <= 0.0][0])
+        waiting_s = np.append(state.waiting_pulses_s, new)
+        if np.any(np.diff(waiting_s) <= 0.0):
+            at = float(waiting_s[1:][np.diff(waiting_s) <= 0.0][0])
             raise DataError(f"the photocell pulse at {at:.6f} s does not come after the last one")
-        if seen.size and self._number(state, float(seen[0])) < state.reached:
+        if waiting_s.size and self._number(state, float(waiting_s[0])) < state.reached:
             raise DataError(
-                f"the photocell pulse at {seen[0]:.6f} s came after samples up to "
+                f"the photocell pulse at {waiting_s[0]:.6f} s came after samples up to "
                 f"{state.start_s + state.reached / self.sample_rate_hz:.6f} s; "
                 "hand pulses over with their samples or before"
             )
-        return replace(state, waiting_pulses_s=tuple(float(pulse) for pulse in seen))
+        return replace(state, waiting_pulses_s=tuple(float(pulse) for pulse in waiting_s))
 
     def _joined(
         self,

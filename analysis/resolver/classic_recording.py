@@ -69,14 +69,14 @@ def running_average(
     )
 
 
-def _thinned(needles: NeedleReadings, every: int) -> NeedleReadings:
+def _thinned(needles: NeedleReadings, stride: int) -> NeedleReadings:
     """Copy, so that what is not kept can be freed."""
-    kept = slice(None, None, every)
+    selection = slice(None, None, stride)
     return NeedleReadings(
-        needles.times_s[kept].copy(),
-        needles.in_phase[..., kept].copy(),
-        needles.quadrature[..., kept].copy(),
-        needles.settled[kept].copy(),
+        needles.times_s[selection].copy(),
+        needles.in_phase[..., selection].copy(),
+        needles.quadrature[..., selection].copy(),
+        needles.settled[selection].copy(),
     )
 
 
@@ -122,10 +122,10 @@ def gated_readings(
     ends = np.ceil(closing - SAMPLE_SLACK).astype(np.intp) + 1
     cuts = np.unique(np.concatenate((ends, np.arange(0, ends[-1], _BLOCK_SAMPLES))))
     state, readings = IntegratorState(recording.start_s, waiting_pulses_s=tuple(pulses)), []
-    nothing = np.empty(0)
+    no_pulses = np.empty(0)
     for start, stop in pairwise(cuts):
         values = recording.samples[:, int(start) : int(stop)]
-        state = mode.advance(state, values, nothing, reference.cycles_at)
+        state = mode.advance(state, values, no_pulses, reference.cycles_at)
         if state.reading is not None:
             readings.append(state.reading)
             state = mode.reset(state)

@@ -152,8 +152,8 @@ def harmonics_by_bins(
 def _interval_source(gate: PeriodSums, stretch: PeriodSums) -> IntervalSource:
     if stretch.period_count < 2:
         return IntervalSource.NONE
-    own = stretch.period_count == gate.period_count
-    return IntervalSource.PERIODS if own else IntervalSource.NEIGHBOURS
+    same_count = stretch.period_count == gate.period_count
+    return IntervalSource.PERIODS if same_count else IntervalSource.NEIGHBOURS
 
 
 def _solve_gate(gate: PeriodSums, slope: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -183,8 +183,8 @@ def fit_drift(gate: PeriodSums, stretch: PeriodSums) -> Drift:
     source, chosen = DriftSource.GATE, gate
     if gate.period_count < 2:
         reach = 1.5 * (gate.closed_s[0] - gate.opened_s[0])  # the next period, not the next but one
-        near = np.abs(stretch.opened_s - gate.opened_s[0]) < reach
-        source, chosen = DriftSource.NEIGHBOURS, stretch[near]
+        adjacent = np.abs(stretch.opened_s - gate.opened_s[0]) < reach
+        source, chosen = DriftSource.NEIGHBOURS, stretch[adjacent]
     if chosen.period_count < 2:
         return no_drift(gate)
     values = solve_periods(chosen)
@@ -201,8 +201,8 @@ def _line(values: PeriodValues) -> tuple[FloatArray, float]:
 
 def _about_line(values: PeriodValues, slope: FloatArray) -> FloatArray:
     """What is left of each period's coefficients without drift and their own mean."""
-    left = values.coefficients - slope[:, None] * values.ramp[:, None, :]
-    return np.asarray(left - left.mean(axis=0))
+    residuals = values.coefficients - slope[:, None] * values.ramp[:, None, :]
+    return np.asarray(residuals - residuals.mean(axis=0))
 
 
 def _scores(stretch: PeriodSums, slope: FloatArray) -> FloatArray:
@@ -215,20 +215,20 @@ def _scores(stretch: PeriodSums, slope: FloatArray) -> FloatArray:
     coefficients, _ = _solve_gate(stretch, slope)
     time = np.linalg.solve(gram.sum(axis=0), stretch.ramp.sum(axis=0))[0]
     drifted = slope[:, None] * (stretch.ramp - time * gram[:, 0])[:, None, :]
-    left = stretch.moment - drifted - coefficients @ gram
+    residuals = stretch.moment - drifted - coefficients @ gram
     return np.asarray(
-        np.linalg.solve(gram.sum(axis=0) / count, left.reshape(-1, gram.shape[-1]).T).T.reshape(
-            left.shape
-        )
+        np.linalg.solve(
+            gram.sum(axis=0) / count, residuals.reshape(-1, gram.shape[-1]).T
+        ).T.reshape(residuals.shape)
     )
 
 
-def _mean_variance(left: FloatArray) -> FloatArray:
+def _mean_variance(residuals: FloatArray) -> FloatArray:
     """Variance of one period's mean about the line, shape ``(channels,)``."""
-    if len(left) > 2:
-        return np.asarray((left[:, :, 0] ** 2).sum(axis=0) / (len(left) - 2))
+    if len(residuals) > 2:
+        return np.asarray((residuals[:, :, 0] ** 2).sum(axis=0) / (len(residuals) - 2))
     # Two means always lie on a line; noise puts half a harmonic part's variance on a mean.
-    return np.asarray((left[:, :, 1:] ** 2).sum(axis=0).mean(axis=1) / 2.0)
+    return np.asarray((residuals[:, :, 1:] ** 2).sum(axis=0).mean(axis=1) / 2.0)
 
 
 def scatter_of(gate: PeriodSums, stretch: PeriodSums, drift: Drift) -> GateScatter:
@@ -237,18 +237,18 @@ def scatter_of(gate: PeriodSums, stretch: PeriodSums, drift: Drift) -> GateScatt
     count, channels, size = values.coefficients.shape
     freedom = np.full(size, max(count - 1.0, 0.0))
     if count < 2:
-        nothing = np.full((count, channels, size), np.nan)
-        return GateScatter(nothing, freedom, np.ones((channels, size)))
+        no_deviations = np.full((count, channels, size), np.nan)
+        return GateScatter(no_deviations, freedom, np.ones((channels, size)))
     drifting = drift.source is not DriftSource.NONE
     slope = _line(values)[0] if drifting else np.zeros(channels)
-    left = _scores(stretch, slope) if stretch.uneven else _about_line(values, slope)
+    residuals = _scores(stretch, slope) if stretch.uneven else _about_line(values, slope)
     if drifting:
         freedom[0] = count - 2.0
-    wider = widened(left, stretch.opened_cycle, gate.period_count, drifting)
-    own, all_told = (left**2).sum(axis=0), (wider**2).sum(axis=0)
-    ratio = np.divide(all_told, own, out=np.ones_like(own), where=own > 0.0)
-    known = np.where(freedom > 0.0, freedom, np.nan) * gate.period_count
-    return GateScatter(wider / np.sqrt(known), freedom, np.sqrt(ratio))
+    wider = widened(residuals, stretch.opened_cycle, gate.period_count, drifting)
+    squares, wider_squares = (residuals**2).sum(axis=0), (wider**2).sum(axis=0)
+    ratio = np.divide(wider_squares, squares, out=np.ones_like(squares), where=squares > 0.0)
+    divisor = np.where(freedom > 0.0, freedom, np.nan) * gate.period_count
+    return GateScatter(wider / np.sqrt(divisor), freedom, np.sqrt(ratio))
 
 
 def _deviations(scatter: GateScatter, drift: Drift, ramp: FloatArray) -> FloatArray:
@@ -276,6 +276,6 @@ def directions(means: FloatArray) -> FloatArray:
     A channel whose means show no scatter has a deviate of its own.
     """
     spread = np.linalg.norm(means, axis=0)
-    seen = spread > 0.0
-    shares = np.divide(means, spread, out=np.zeros_like(means), where=seen)
-    return np.concatenate((shares, np.diag(~seen))).T
+    scattered = spread > 0.0
+    shares = np.divide(means, spread, out=np.zeros_like(means), where=scattered)
+    return np.concatenate((shares, np.diag(~scattered))).T

@@ -24,14 +24,14 @@ def first_harmonics(recording: Recording, analysis: Analysis) -> RunHarmonics | 
     recording
         With all its channels, as it was read.
     """
-    told, reading = recording.set_point, analysis.readings[0]
-    if told is None or told.lines:
+    set_point, reading = recording.set_point, analysis.readings[0]
+    if set_point is None or set_point.lines:
         return None
     first = dict(_first(reading))
     for name in CHECKED:
         if name in recording.channel_names and name not in reading.channel_names:
             first |= _beside(recording, analysis, name)
-    return RunHarmonics(recording.name, told, reading.frequency_hz, first)
+    return RunHarmonics(recording.name, set_point, reading.frequency_hz, first)
 
 
 def _beside(recording: Recording, analysis: Analysis, name: str) -> dict[str, complex]:

@@ -40,11 +40,11 @@ def resolve_hann(
         raise DataError(
             f"{recording.name}: a Hann taper needs {MIN_PERIODS} periods or more, not {periods}"
         )
-    own = np.arange(1.0, harmonics + 1.0)
+    harmonic_orders = np.arange(1.0, harmonics + 1.0)
     bins = noise_bins(periods)
-    beside = (own[:, None] + bins / periods).reshape(-1)
+    bin_orders = (harmonic_orders[:, None] + bins / periods).reshape(-1)
     low = bins[bins > 0] / periods
-    orders = np.concatenate((own, beside, low))
+    orders = np.concatenate((harmonic_orders, bin_orders, low))
 
     def taper(cycles: FloatArray) -> FloatArray:
         turned = (cycles - edges_cycles[0]) / periods
@@ -58,8 +58,8 @@ def resolve_hann(
     gram, moment = gate_sums(sums, drift.slope)
     size = 2 * harmonics + 1
     coefficients = np.asarray(np.linalg.solve(gram[:size, :size], moment[:, :size].T).T, np.float64)
-    left = 2.0 * (moment - coefficients @ gram[:size]) / gram[0, 0]
-    deviations, freedom = _from_bins(left[:, size:], harmonics, len(bins), len(low))
+    residuals = 2.0 * (moment - coefficients @ gram[:size]) / gram[0, 0]
+    deviations, freedom = _from_bins(residuals[:, size:], harmonics, len(bins), len(low))
     return harmonics_by_bins(
         recording, plain, drift, coefficients, deviations, freedom, "Hann taper"
     )
@@ -81,12 +81,12 @@ def _from_bins(
 ) -> tuple[FloatArray, FloatArray]:
     """Deviations and degrees of freedom from the sine and cosine parts of the noise lines."""
     power = (lines**2).reshape(len(lines), -1, 2).mean(axis=2)
-    beside = power[:, : harmonics * bins].reshape(len(lines), harmonics, bins).mean(axis=2)
+    line_power = power[:, : harmonics * bins].reshape(len(lines), harmonics, bins).mean(axis=2)
     variance = np.empty((len(lines), 2 * harmonics + 1))
     # A mean takes half the variance of a sine or cosine part.
     variance[:, 0] = power[:, harmonics * bins :].mean(axis=1) / 2.0
-    variance[:, 1::2] = variance[:, 2::2] = beside
+    variance[:, 1::2] = variance[:, 2::2] = line_power
     freedom = np.full(2 * harmonics + 1, 2.0 * bins)
     freedom[0] = 2.0 * low
-    own = np.diag(np.sqrt(variance).ravel())
-    return own.reshape(*variance.shape, -1), freedom
+    deviations = np.diag(np.sqrt(variance).ravel())
+    return deviations.reshape(*variance.shape, -1), freedom

@@ -112,18 +112,18 @@ def _beside(
 ) -> _Local:
     """Return what the harmonics leave in the bins, their phase counted from the gate's opening."""
     periods, size = len(edges_cycles) - 1, coefficients.shape[1]
-    own, bins = np.arange(1.0, (size - 1) // 2 + 1.0), bins_of(periods)
+    harmonic_orders, bins = np.arange(1.0, (size - 1) // 2 + 1.0), bins_of(periods)
     turned = np.exp(2j * np.pi * bins / periods * edges_cycles[0])
-    found = []
-    for first in range(0, len(own), _AT_ONCE):
-        beside = (own[first : first + _AT_ONCE, None] + bins / periods).reshape(-1)
-        orders = np.concatenate((own, beside))
+    residuals = []
+    for first in range(0, len(harmonic_orders), _AT_ONCE):
+        bin_orders = (harmonic_orders[first : first + _AT_ONCE, None] + bins / periods).reshape(-1)
+        orders = np.concatenate((harmonic_orders, bin_orders))
         sums = period_sums(recording, reference, orders, edges_cycles=edges_cycles)
         gram, moment = gate_sums(sums, slope)
-        left = 2.0 * (moment - coefficients @ gram[:size])[:, size:] / gram[0, 0]
-        phasors = left[:, 0::2] + 1j * left[:, 1::2]
-        found.append(phasors.reshape(len(left), -1, len(bins)) * turned)
-    return _Local(bins, np.concatenate(found, axis=1))
+        remainder = 2.0 * (moment - coefficients @ gram[:size])[:, size:] / gram[0, 0]
+        phasors = remainder[:, 0::2] + 1j * remainder[:, 1::2]
+        residuals.append(phasors.reshape(len(remainder), -1, len(bins)) * turned)
+    return _Local(bins, np.concatenate(residuals, axis=1))
 
 
 def _leaks(local: _Local) -> tuple[ComplexArray, ComplexArray]:
@@ -144,8 +144,8 @@ def _deviations(residuals: ComplexArray, inflation: float, spare: int) -> FloatA
     deviations = np.zeros((channels, 2 * harmonics + 1, (harmonics + 1) * width))
     scale = np.sqrt(inflation / (2.0 * spare))
     for n in range(harmonics):
-        own = residuals[:, n].T  # (bins, channels)
-        parts = np.stack((own, 1j * own)).reshape(-1, channels) * scale
+        residual = residuals[:, n].T  # (bins, channels)
+        parts = np.stack((residual, 1j * residual)).reshape(-1, channels) * scale
         flat = np.stack((parts.real, parts.imag), axis=-1).reshape(len(parts), width)
         root = np.asarray(np.linalg.qr(flat, mode="r")).T.reshape(channels, 2, -1)
         at = (n + 1) * width

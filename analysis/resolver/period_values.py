@@ -45,13 +45,13 @@ def solve_periods(sums: PeriodSums) -> PeriodValues:
 
 def _with_neighbours(gram: FloatArray, right: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Add to periods that are told badly as few of those beside them as it takes."""
-    own, sides, reach = (gram, right), (gram.copy(), right.copy()), 0
+    parts, sides, reach = (gram, right), (gram.copy(), right.copy()), 0
     while (badly := np.flatnonzero(_least_eigenvalue(sides[0]) < LEAST_EIGENVALUE)).size:
         reach += 1
         for k in badly:
-            beside = slice(max(k - reach, 0), k + reach + 1)
-            for whole, part in zip(sides, own, strict=True):
-                whole[k] = part[beside].sum(axis=0)
+            neighbours = slice(max(k - reach, 0), k + reach + 1)
+            for total, part in zip(sides, parts, strict=True):
+                total[k] = part[neighbours].sum(axis=0)
         if reach >= len(gram):
             break
     return sides

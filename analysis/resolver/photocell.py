@@ -76,9 +76,9 @@ def _without_extra(edges: FloatArray) -> tuple[FloatArray, list[float]]:
 
 def _out_of_time(edges: FloatArray, pulse: int, period: float) -> float:
     """How far from whole periods the pulses around one lie, by their median."""
-    near = edges[max(0, pulse - _NEIGHBOURS // 2) : pulse + _NEIGHBOURS // 2 + 1]
-    away = (near[near != edges[pulse]] - edges[pulse]) / period
-    return float(np.median(np.abs(away - np.rint(away))))
+    neighbours = edges[max(0, pulse - _NEIGHBOURS // 2) : pulse + _NEIGHBOURS // 2 + 1]
+    distances = (neighbours[neighbours != edges[pulse]] - edges[pulse]) / period
+    return float(np.median(np.abs(distances - np.rint(distances))))
 
 
 def _turns(edges: FloatArray) -> FloatArray:

@@ -82,11 +82,11 @@ class PhaseReference:
         times_s, cycles = self.times_s, self.cycles
         for _ in range(_SWEEPS):
             line = np.polynomial.Polynomial.fit(times_s, cycles, 1)
-            left = np.abs(cycles - line(times_s))
-            kept = left <= _STRAYS * float(np.median(left))
-            if kept.sum() < max(2, len(self.cycles) // 2):
+            deviations = np.abs(cycles - line(times_s))
+            near_line = deviations <= _STRAYS * float(np.median(deviations))
+            if near_line.sum() < max(2, len(self.cycles) // 2):
                 break
-            times_s, cycles = times_s[kept], cycles[kept]
+            times_s, cycles = times_s[near_line], cycles[near_line]
         return float(line.deriv()(times_s[0]))
 
     @property
@@ -166,7 +166,7 @@ def from_encoder(
             f"the shaft makes {revolutions:.2f} turns; at least one whole one is needed"
         )
     step = max(1, int(len(turns) / revolutions / KNOTS_PER_REVOLUTION))
-    kept = np.append(np.arange(0, len(turns) - 1, step), len(turns) - 1)
-    rising = np.maximum.accumulate(turns[kept])
+    knots = np.append(np.arange(0, len(turns) - 1, step), len(turns) - 1)
+    rising = np.maximum.accumulate(turns[knots])
     moving = np.append(True, np.diff(rising) > 0.0)
-    return PhaseReference(ReferenceSource.ENCODER, times_s[kept][moving], rising[moving], flags)
+    return PhaseReference(ReferenceSource.ENCODER, times_s[knots][moving], rising[moving], flags)

@@ -93,9 +93,9 @@ def _from_channel(
 ) -> PhaseReference:
     if name != SHAFT_ANGLE.name:
         return from_signal(recording, name, holds_s)
-    whole, flags = without_gaps(recording.select([name]), name, holds_s)
+    complete, flags = without_gaps(recording.select([name]), name, holds_s)
     try:
-        encoder = from_encoder(whole.time_s(), whole.values(name), angle_offset_rad)
+        encoder = from_encoder(complete.time_s(), complete.values(name), angle_offset_rad)
     except DataError as error:
         raise NoReferenceError(f"{recording.name}: {error}{gap_in_words(flags)}") from None
     return replace(encoder, channel=name, flags=flags + encoder.flags)

@@ -45,15 +45,15 @@ def phasor_sums(
     samples = samples if samples.strides[-1] == samples.itemsize else np.ascontiguousarray(samples)
     windows = _windows(first, count)
     after = windows.lead + ROW * windows.rows
-    left = count - after
-    places = _places(step, max(ROW, int(left.max())), harmonics)
+    tail = count - after
+    places = _places(step, max(ROW, int(tail.max())), harmonics)
     tables = places.view(np.float64).swapaxes(1, 2)
     begins = np.empty((len(first), 2 + int(windows.rows.max())), dtype=np.int64)
     begins[:, 0], begins[:, 1] = 0, after
     begins[:, 2:] = windows.lead[:, None] + ROW * np.arange(begins.shape[1] - 2)
     parts = np.zeros((*begins.shape, tables.shape[1], len(samples)))
     parts[:, 0] = _sum_strips(samples, first, windows.lead, tables)
-    parts[:, 1] = _sum_strips(samples, first + after, left, tables)
+    parts[:, 1] = _sum_strips(samples, first + after, tail, tables)
     _sum_windows(samples, first + windows.lead, windows, tables[:, :, :ROW], parts[:, 2:])
     rows = phasors(cycle[:, None] + step[:, None] * begins, harmonics)
     turns = rows.view(np.float64).reshape(*rows.shape, 2).transpose(0, 2, 3, 1)
@@ -130,9 +130,9 @@ def _sum_windows(
     """
     for run in windows.runs:
         rows = int(windows.rows[run.start])
-        every = sliding_window_view(samples[:, start[run.start] :], rows * ROW, axis=1)
-        own = every[:, :: windows.spacing][:, : run.stop - run.start]
-        by_row = own.reshape(*own.shape[:2], rows, ROW).transpose(1, 2, 3, 0)
+        windows_of_rows = sliding_window_view(samples[:, start[run.start] :], rows * ROW, axis=1)
+        run_windows = windows_of_rows[:, :: windows.spacing][:, : run.stop - run.start]
+        by_row = run_windows.reshape(*run_windows.shape[:2], rows, ROW).transpose(1, 2, 3, 0)
         np.matmul(tables[run, None], by_row, out=into[run, :rows])
 
 

@@ -38,13 +38,17 @@ def set_point_flags(
     """
     if recording.set_point is None:
         return ()
-    told = recording.set_point.frequency_hz
+    set_hz = recording.set_point.frequency_hz
     flags = []
-    if abs(reading.frequency_hz - told) > _FREQUENCY * told:
-        flags.append(_flag("frequency", told, reading.frequency_hz, "Hz", _FREQUENCY, None))
+    if abs(reading.frequency_hz - set_hz) > _FREQUENCY * set_hz:
+        flags.append(_flag("frequency", set_hz, reading.frequency_hz, "Hz", _FREQUENCY, None))
     line = max(recording.set_point.every_line, key=lambda line: line.share)
-    alike = [one.phasors for one in recording.set_point.every_line if one.order == line.order]
-    told_m = recording.set_point.eccentricity_m * np.abs(np.sum(alike, axis=0))
+    phasors = [
+        same_line.phasors
+        for same_line in recording.set_point.every_line
+        if same_line.order == line.order
+    ]
+    told_m = recording.set_point.eccentricity_m * np.abs(np.sum(phasors, axis=0))
     asked_m = dict(zip(DISPLACEMENTS, told_m.tolist(), strict=True))
     moved = dict(_phasors(recording, reference, gate, reading, line.order))
     for name, phasor_m in moved.items():
@@ -62,9 +66,9 @@ def _phase_flags(told_rad: float, moved: Mapping[str, complex]) -> Iterator[Flag
         return
     off_rad = cmath.phase(fore / aft * cmath.exp(-1j * told_rad))
     if abs(off_rad) > _STRUT_PHASE_RAD:
-        actual, told = math.degrees(told_rad + off_rad), math.degrees(told_rad)
+        actual, set_deg = math.degrees(told_rad + off_rad), math.degrees(told_rad)
         text = (
-            f"the set-point's strut phase is {told:.4g} deg, found are {actual:.5g} deg (limit "
+            f"the set-point's strut phase is {set_deg:.4g} deg, found are {actual:.5g} deg (limit "
             f"{math.degrees(_STRUT_PHASE_RAD):.2g} deg off): is this the recording of that run, "
             "and has each displacement its sign?"
         )
@@ -109,11 +113,12 @@ def _resolved(
 
 
 def _flag(
-    what: str, told: float, actual: float, unit: str, limit: float, channel: str | None
+    quantity: str, set_value: float, actual: float, unit: str, limit: float, channel: str | None
 ) -> Flag:
-    away = "" if not told else f", {100.0 * (actual / told - 1.0):+.1f} %"
+    deviation = "" if not set_value else f", {100.0 * (actual / set_value - 1.0):+.1f} %"
     message = (
-        f"the set-point's {what} is {told:.4g} {unit}, found are {actual:.5g} {unit}{away} (limit "
-        f"{100.0 * limit:g} %): is this the recording of that run, and are unit and scale right?"
+        f"the set-point's {quantity} is {set_value:.4g} {unit}, found are {actual:.5g} "
+        f"{unit}{deviation} (limit {100.0 * limit:g} %): is this the recording of that run, and "
+        "are unit and scale right?"
     )
     return Flag("set_point_differs", Severity.WARNING, message, channel)

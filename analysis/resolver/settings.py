@@ -65,15 +65,15 @@ def check_settings(settings: ResolverSettings) -> None:
 
 def with_own_gate(recording: Recording, settings: ResolverSettings) -> ResolverSettings:
     """Take the gate that run control had, where it closed within the record."""
-    told = recording.provenance
+    provenance = recording.provenance
     if (
         settings.opens_s is not None
         or settings.delay_s
-        or not {GATE_OPENED, GATE_PERIODS} <= set(told)
+        or not {GATE_OPENED, GATE_PERIODS} <= set(provenance)
     ):
         return settings
     try:
-        opened_s, periods = float(told[GATE_OPENED]), int(told[GATE_PERIODS])
+        opened_s, periods = float(provenance[GATE_OPENED]), int(provenance[GATE_PERIODS])
     except ValueError:
         return settings
     if periods < 1 or not recording.start_s <= opened_s <= recording.end_s:

@@ -65,17 +65,17 @@ def _in_whole(signal: Recording, name: str) -> PhaseReference:
         raise _no_reference(signal, name, _no_time_kept(frequency_hz, duration_s))
     # The phase is known at the middle of each period; knots at whole cycles make them straight.
     followed = PhaseReference(ReferenceSource.SIGNAL, middle_s, cycles)
-    whole = np.arange(np.ceil(cycles[0] - 0.5), np.floor(cycles[-1] + 0.5) + 1.0)
-    times_s, flags = followed.times_at(whole), _few_flags(name, len(cycles))
-    return PhaseReference(ReferenceSource.SIGNAL, times_s, whole, flags, name)
+    whole_cycles = np.arange(np.ceil(cycles[0] - 0.5), np.floor(cycles[-1] + 0.5) + 1.0)
+    times_s, flags = followed.times_at(whole_cycles), _few_flags(name, len(cycles))
+    return PhaseReference(ReferenceSource.SIGNAL, times_s, whole_cycles, flags, name)
 
 
-def _few_flags(name: str, kept: int) -> tuple[Flag, ...]:
-    if kept >= _FEW_PERIODS:
+def _few_flags(name: str, periods: int) -> tuple[Flag, ...]:
+    if periods >= _FEW_PERIODS:
         return ()
     message = (
-        f"only {kept} periods of the reference keep time (fewer than {_FEW_PERIODS}): noise may do "
-        "so by chance; make sure that this channel carries the motion, or give the frequency"
+        f"only {periods} periods of the reference keep time (fewer than {_FEW_PERIODS}): noise may "
+        "do so by chance; make sure that this channel carries the motion, or give the frequency"
     )
     return (Flag("few_reference_periods", Severity.WARNING, message, name),)
 
@@ -88,13 +88,11 @@ def _no_period(signal: Recording) -> str:
 
 
 def _no_time_kept(frequency_hz: float, duration_s: float) -> str:
-    nothing = f"nothing that keeps time near {frequency_hz:.3g} Hz"
+    words = f"nothing that keeps time near {frequency_hz:.3g} Hz"
     periods = frequency_hz * duration_s
     if periods > _FEW_PERIODS:
-        return nothing
-    return (
-        f"{nothing}, and {duration_s:.3g} s is too short for more than {periods:.1f} such periods"
-    )
+        return words
+    return f"{words}, and {duration_s:.3g} s is too short for more than {periods:.1f} such periods"
 
 
 def _no_reference(recording: Recording, name: str, available: str) -> NoReferenceError:
@@ -116,8 +114,8 @@ def _roughly_even(signal: Recording, name: str) -> FloatArray:
 def _coarse_frequency_hz(values: FloatArray, sample_rate_hz: float) -> float:
     """Strongest line of the spectrum, between bins by a parabola."""
     step = -(-len(values) // _COARSE_SAMPLES)
-    kept = len(values) // step * step
-    coarse = values[:kept].reshape(-1, step).mean(axis=1)
+    used = len(values) // step * step
+    coarse = values[:used].reshape(-1, step).mean(axis=1)
     time = np.linspace(-1.0, 1.0, len(coarse))
     level = coarse - coarse.mean()
     level -= time * (time @ level) / (time @ time)

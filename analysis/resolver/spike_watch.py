@@ -58,15 +58,15 @@ class SpikeWatch:
     def _of_channel(
         self, values: FloatArray, row: int, bend: FloatArray, first: int, until: int
     ) -> list[LiveSpike]:
-        known, numbers = self._known[row], self._numbers[row]
-        if not bend.max(initial=0.0) > known.rest:
+        pulses_before, numbers = self._known[row], self._numbers[row]
+        if not bend.max(initial=0.0) > pulses_before.rest:
             return []
         most = most_of(first + values.shape[1])
         pulses_now = find_pulses(values, row, bend, most, until)
         new = [pulse for pulse in pulses_now.candidates if pulse.start + first not in numbers]
         numbers += [pulse.start + first for pulse in new]
         pulses = tuple(pulse.moved(first) for pulse in new)
-        now = Pulses(known.candidates + pulses, max(known.rest, pulses_now.rest))
+        now = Pulses(pulses_before.candidates + pulses, max(pulses_before.rest, pulses_now.rest))
         if np.isfinite(now.rest):
             self._known[row] = now
         spikes = [spike for spike in now.spikes() if spike in pulses]

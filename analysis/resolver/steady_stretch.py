@@ -174,7 +174,7 @@ def _first_within(
 
 def _describe(phasors: ComplexArray, start: int, stop: int, size: FloatArray) -> Stretch:
     inside = phasors[start:stop]
-    away = np.abs(inside - inside.mean(axis=0)).max(axis=0) / np.maximum(size, 1e-300)
-    away = np.where(np.isfinite(away), away, np.inf)
-    channel = int(np.argmax(away))
-    return Stretch(start, stop, float(away[channel]), channel)
+    departure = np.abs(inside - inside.mean(axis=0)).max(axis=0) / np.maximum(size, 1e-300)
+    departure = np.where(np.isfinite(departure), departure, np.inf)
+    channel = int(np.argmax(departure))
+    return Stretch(start, stop, float(departure[channel]), channel)

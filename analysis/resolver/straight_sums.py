@@ -79,9 +79,9 @@ def sum_straight(samples: FloatArray, gates: Gates, harmonics: int) -> Sums:
 
 def _edges(gates: Gates) -> tuple[IntArray, FloatArray]:
     """Numbers and weights of the samples around both edges, shapes ``(periods, 12)``."""
-    around = np.arange(1 - REACH, REACH + 1)
+    offsets = np.arange(1 - REACH, REACH + 1)
     below = [np.floor(edge).astype(np.int64) for edge in (gates.opening, gates.closing)]
-    numbers = np.concatenate([edge[:, None] + around for edge in below], axis=1)
+    numbers = np.concatenate([edge[:, None] + offsets for edge in below], axis=1)
     opening = edge_corrections(gates.opening - below[0])
     closing = edge_corrections(gates.closing - below[1])
     return numbers, np.concatenate((opening, -closing), axis=1)
@@ -99,10 +99,10 @@ def phasor_series(
     middle = (first_cycle + step * (count - 1) / 2.0)[:, None] * orders
     turned = np.exp(2j * np.pi * (middle % 1.0))
     half = np.pi * step[:, None] * orders
-    sine, whole = np.sin(half), count[:, None] * half
-    kernel = np.sin(whole) / sine
+    sine, total_angle = np.sin(half), count[:, None] * half
+    kernel = np.sin(total_angle) / sine
     # Its derivative by the angle from one sample to the next.
-    slope = (count[:, None] * np.cos(whole) - kernel * np.cos(half)) / (2.0 * sine)
+    slope = (count[:, None] * np.cos(total_angle) - kernel * np.cos(half)) / (2.0 * sine)
     plain = count[:, None].astype(np.complex128)
     sums = np.concatenate((plain, kernel * turned), axis=1)
     return sums, np.concatenate((0.0 * plain, -1j * slope * turned), axis=1)
@@ -111,8 +111,10 @@ def phasor_series(
 def gram_of(sums: ComplexArray, harmonics: int) -> FloatArray:
     """Turn sums of phasors, shape ``(periods, 2 N + 1)``, into those of ``b b^T``."""
     order = np.arange(-harmonics, harmonics + 1)
-    both = order[:, None] + order
-    phasors = np.where(both >= 0, sums[:, np.abs(both)], sums[:, np.abs(both)].conj())
+    order_sums = order[:, None] + order
+    phasors = np.where(
+        order_sums >= 0, sums[:, np.abs(order_sums)], sums[:, np.abs(order_sums)].conj()
+    )
     mixing = _mixing(harmonics)
     return np.asarray((mixing @ phasors @ mixing.T).real)
 

@@ -193,12 +193,12 @@ def _sum_stretch(general: GeneralSums, gates: Gates, bent: BoolArray) -> Sums:
     """Read the samples of some periods that follow each other, and sum them."""
     first = max(0, int(gates.opening[0]) + 1 - REACH)
     block = general.recording.samples[:, first : int(gates.closing[-1]) + REACH + 1]
-    near = gates.counted_from(first)
+    block_gates = gates.counted_from(first)
     sums = general.empty(len(bent))
     if not bent.all():
-        _put(sums, ~bent, sum_straight(block, near[~bent], len(general.orders)))
+        _put(sums, ~bent, sum_straight(block, block_gates[~bent], len(general.orders)))
     for k in np.flatnonzero(bent):
-        _put(sums, k, general.sum(block, first, near[slice(k, k + 1)]))
+        _put(sums, k, general.sum(block, first, block_gates[slice(k, k + 1)]))
     gram, moment, ramp = sums
     return gram, moment, ramp + gram[:, 0] * first
 

@@ -32,15 +32,17 @@ def _correction_polynomials() -> FloatArray:
     rows = []
     for i, node in enumerate(_NODES):
         lagrange = np.ones(1)
-        for other in np.delete(_NODES, i):
-            lagrange = np.convolve(lagrange, [-other / (node - other), 1.0 / (node - other)])
+        for neighbour in np.delete(_NODES, i):
+            lagrange = np.convolve(
+                lagrange, [-neighbour / (node - neighbour), 1.0 / (node - neighbour)]
+            )
         rows.append(polynomial.polyint(lagrange))
     cut = np.array(rows)
-    whole = cut.sum(axis=1)
+    cell_weights = cut.sum(axis=1)
     # Sample j lies on a node of every cell that starts at or before it; cells before 1 are missing.
-    reached = np.concatenate(([0.0], np.cumsum(whole)[:-1]))
+    reached = np.concatenate(([0.0], np.cumsum(cell_weights)[:-1]))
     corrections = -cut
-    corrections[:, 0] += whole + reached - (_NODES >= 1)
+    corrections[:, 0] += cell_weights + reached - (_NODES >= 1)
     return np.asarray(corrections)
 
 
@@ -63,11 +65,11 @@ def edge_corrections(fractions: FloatArray) -> FloatArray:
 def _extrapolation(distance: int) -> FloatArray:
     """Weights that continue six samples by a polynomial, ``distance`` samples past their end."""
     nodes = np.arange(2 * REACH)
-    others = [np.delete(nodes, i) for i in nodes]
+    node_rests = [np.delete(nodes, i) for i in nodes]
     return np.array(
         [
             np.prod((-distance - rest) / (node - rest))
-            for node, rest in zip(nodes, others, strict=True)
+            for node, rest in zip(nodes, node_rests, strict=True)
         ]
     )
 

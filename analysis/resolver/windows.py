@@ -45,51 +45,53 @@ def analyse_windows(
         resolved.
     """
     delays_s = delays_s or {}
-    whole = analyse(recording, choice, settings)
-    names = whole.recording.channel_names
+    shared = analyse(recording, choice, settings)
+    names = shared.recording.channel_names
     if strange := [name for name in delays_s if name not in names]:
         raise ConfigurationError(
             f"{recording.name}: a delay of {strange[0]!r}, which is not resolved; resolved are "
             f"{', '.join(names)}"
         )
     if not any(delays_s.values()):
-        return _apart(recording, choice, settings, whole)
-    found: list[Analysis] = []
+        return _apart(recording, choice, settings, shared)
+    analyses: list[Analysis] = []
     for delay_s in sorted({delays_s.get(name, 0.0) for name in names}):
-        own = tuple(name for name in names if delays_s.get(name, 0.0) == delay_s)
-        late = replace(settings, channels=own, delay_s=delay_s)
-        found += _apart(recording, choice, late, analyse(recording, choice, late))
-    return tuple(found)
+        delayed_names = tuple(name for name in names if delays_s.get(name, 0.0) == delay_s)
+        late = replace(settings, channels=delayed_names, delay_s=delay_s)
+        analyses += _apart(recording, choice, late, analyse(recording, choice, late))
+    return tuple(analyses)
 
 
 def _apart(
-    recording: Recording, choice: ReferenceChoice, settings: ResolverSettings, whole: Analysis
+    recording: Recording, choice: ReferenceChoice, settings: ResolverSettings, shared: Analysis
 ) -> tuple[Analysis, ...]:
     """Take an analysis apart where one channel spoils the window of another."""
-    names = whole.recording.channel_names
-    if whole.settings.opens_s is not None or len(names) == 1:
-        return (whole,)
-    values = solve_periods(whole.sums)
+    names = shared.recording.channel_names
+    if shared.settings.opens_s is not None or len(names) == 1:
+        return (shared,)
+    values = solve_periods(shared.sums)
     groups = shared_windows(values, settings.steady_tolerance)
     if len(groups) == 1:
-        return (whole,)
-    found = []
+        return (shared,)
+    analyses = []
     for rows in groups:
-        own = tuple(names[row] for row in rows)
-        one = analyse(recording, choice, replace(settings, channels=own))
-        found.append(replace(one, flags=(*one.flags, _own_window(one, whole))))
-    return tuple(found)
+        group_names = tuple(names[row] for row in rows)
+        analysis = analyse(recording, choice, replace(settings, channels=group_names))
+        analyses.append(replace(analysis, flags=(*analysis.flags, _own_window(analysis, shared))))
+    return tuple(analyses)
 
 
-def _own_window(one: Analysis, whole: Analysis) -> Flag:
-    names, steady = ", ".join(one.recording.channel_names), one.steady_sums
-    together = find_steady(solve_periods(whole.sums), one.settings.steady_tolerance).period_count
+def _own_window(analysis: Analysis, shared: Analysis) -> Flag:
+    names, steady = ", ".join(analysis.recording.channel_names), analysis.steady_sums
+    shared_count = find_steady(
+        solve_periods(shared.sums), analysis.settings.steady_tolerance
+    ).period_count
     message = (
         f"{names}: a window of its own, {steady.period_count} periods from "
         f"{steady.opened_s[0]:.3f} s to {steady.closed_s[-1]:.3f} s; all channels together are "
-        f"steady for {together}"
+        f"steady for {shared_count}"
     )
-    return Flag("own_window", Severity.NOTE, message, one.recording.channel_names[0])
+    return Flag("own_window", Severity.NOTE, message, analysis.recording.channel_names[0])
 
 
 def shared_windows(values: PeriodValues, tolerance: float) -> list[list[int]]:
@@ -101,20 +103,20 @@ def shared_windows(values: PeriodValues, tolerance: float) -> list[list[int]]:
     rows = list(range(values.coefficients.shape[1]))
     if _steady(values, rows, tolerance) >= SHORTER * len(values.ramp):
         return [rows]
-    alone = {row: _steady(values, [row], tolerance) for row in rows}
+    own_lengths = {row: _steady(values, [row], tolerance) for row in rows}
     groups: list[list[int]] = []
     while rows:
-        group, left = rows, []
+        group, leavers = rows, []
         while len(group) > 1 and _steady(values, group, tolerance) < SHORTER * max(
-            alone[row] for row in group
+            own_lengths[row] for row in group
         ):
-            without = [[one for one in group if one != row] for row in group]
-            kept = [_steady(values, others, tolerance) for others in without]
-            at = int(np.argmax(kept))
-            left.append(group[at])
+            without = [[member for member in group if member != row] for row in group]
+            lengths = [_steady(values, members, tolerance) for members in without]
+            at = int(np.argmax(lengths))
+            leavers.append(group[at])
             group = without[at]
         groups.append(group)
-        rows = sorted(left)
+        rows = sorted(leavers)
     return sorted(groups, key=len, reverse=True)
 
 

@@ -69,31 +69,31 @@ def distortions(reading: Harmonics, response: FrequencyResponse) -> Iterator[Dis
 
     Even and odd ones are apart only where all lines are odd.
     """
-    every = np.arange(1, reading.order + 1)
-    free = np.setdiff1d(every, response.orders)
+    all_orders = np.arange(1, reading.order + 1)
+    free = np.setdiff1d(all_orders, response.orders)
     at = free - 1
-    beside = response.at(free.astype(np.float64))
+    interpolated = response.at(free.astype(np.float64))
     u, y = phasors_of(reading, response.input)[at], phasors_of(reading, response.output)[at]
-    left = deviates_of(reading, response.output)[at]
-    left = left - beside[:, None] * deviates_of(reading, response.input)[at]
-    found, noise = y - beside * u, (np.abs(left) ** 2).sum(axis=1)
+    deviates = deviates_of(reading, response.output)[at]
+    deviates = deviates - interpolated[:, None] * deviates_of(reading, response.input)[at]
+    excess, noise = y - interpolated * u, (np.abs(deviates) ** 2).sum(axis=1)
     lines = phasors_of(reading, response.output)[np.array(response.orders) - 1]
     linear = float(np.sqrt((np.abs(lines) ** 2).mean()))
     freedom = reading.degrees_of_freedom[1 + 2 * at]
     for degree, parity in ((Degree.ODD, 1), (Degree.EVEN, 0)):
-        own = free % 2 == parity
-        if own.any():
-            power = np.abs(found[own]) ** 2
-            level = float(np.sqrt(max(power.mean() - noise[own].mean(), 0.0)))
+        of_parity = free % 2 == parity
+        if of_parity.any():
+            power = np.abs(excess[of_parity]) ** 2
+            level = float(np.sqrt(max(power.mean() - noise[of_parity].mean(), 0.0)))
             yield Distortion(
                 degree,
-                tuple(free[own].tolist()),
+                tuple(free[of_parity].tolist()),
                 np.sqrt(power),
-                np.sqrt(noise[own]),
+                np.sqrt(noise[of_parity]),
                 level,
-                float(np.sqrt(noise[own].mean() / (2.0 * own.sum()))),
+                float(np.sqrt(noise[of_parity].mean() / (2.0 * of_parity.sum()))),
                 level / linear,
-                _chance(power, noise[own], float(freedom[own].sum())),
+                _chance(power, noise[of_parity], float(freedom[of_parity].sum())),
             )
 
 

@@ -58,11 +58,11 @@ class Following:
 
 def led_struts(recording: Recording) -> tuple[tuple[str, str], ...]:
     """Return set-point and displacement of each strut that has both, in one unit."""
-    units = {one.name: one.unit for one in recording.channels}
-    both = zip(COMMANDS, DISPLACEMENTS, strict=True)
+    units = {channel.name: channel.unit for channel in recording.channels}
+    pairs = zip(COMMANDS, DISPLACEMENTS, strict=True)
     return tuple(
         (command, moved)
-        for command, moved in both
+        for command, moved in pairs
         if {command, moved} <= units.keys() and units[command] == units[moved]
     )
 
@@ -108,26 +108,30 @@ def carriage_following(
     order = 1 + int(np.argmax(np.abs(path.parts[1:])))
     angle = recording.values(SHAFT_ANGLE.name) - path.omega_rad_s * age_s
     waves = np.exp(1j * np.outer(np.arange(len(path.parts)), angle))
-    told = Channel("command_carriage", CARRIAGE_SPEED.unit)
-    both = replace(
+    path_channel = Channel("command_carriage", CARRIAGE_SPEED.unit)
+    pair_record = replace(
         recording.select((SHAFT_ANGLE.name, CARRIAGE_SPEED.name)),
-        channels=(SHAFT_ANGLE, CARRIAGE_SPEED, told),
+        channels=(SHAFT_ANGLE, CARRIAGE_SPEED, path_channel),
         samples=np.vstack([
             recording.values(SHAFT_ANGLE.name),
             recording.values(CARRIAGE_SPEED.name),
             (path.parts @ waves).real,
         ]),
     )  # fmt: skip
-    wanted = replace(settings, channels=(CARRIAGE_SPEED.name, told.name))
-    reading = analyse(both, reference, replace(wanted, harmonics=max(order, settings.harmonics)))
-    return _following(both, reading.readings[0], told.name, CARRIAGE_SPEED.name, order)
+    order_settings = replace(settings, channels=(CARRIAGE_SPEED.name, path_channel.name))
+    reading = analyse(
+        pair_record, reference, replace(order_settings, harmonics=max(order, settings.harmonics))
+    )
+    return _following(
+        pair_record, reading.readings[0], path_channel.name, CARRIAGE_SPEED.name, order
+    )
 
 
 def _following(
     recording: Recording, reading: Harmonics, command: str, moved: str, order: int
 ) -> Following:
     gate = recording.between(reading.opened_s, reading.closed_s)
-    off = gate.values(moved) - gate.values(command)
+    error = gate.values(moved) - gate.values(command)
     response = frequency_response(reading, command, moved, [order])
     gain = complex(response.values[0])
     # Half of the variance lies along the phasor, half across it.
@@ -137,8 +141,8 @@ def _following(
         moved,
         recording.channels[recording.index(moved)].unit,
         order * reading.frequency_hz,
-        float(np.sqrt(np.nanmean(off**2))),
-        float(np.nanmax(np.abs(off))),
+        float(np.sqrt(np.nanmean(error**2))),
+        float(np.nanmax(np.abs(error))),
         abs(gain) - 1.0,
         math.atan2(gain.imag, gain.real),
         spread,

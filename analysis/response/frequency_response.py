@@ -51,8 +51,8 @@ class FrequencyResponse:
 
     def at(self, orders: FloatArray) -> ComplexArray:
         """Return the response at harmonics between the lines, straight from one to the next."""
-        own = (self.values.real, self.values.imag)
-        real, imaginary = (np.interp(orders, self.orders, part) for part in own)
+        parts = (self.values.real, self.values.imag)
+        real, imaginary = (np.interp(orders, self.orders, part) for part in parts)
         return np.asarray(real + 1j * imaginary)
 
 
@@ -70,8 +70,8 @@ def phasors_of(reading: Harmonics, channel: str) -> ComplexArray:
 
 def deviates_of(reading: Harmonics, channel: str) -> ComplexArray:
     """Return the deviates of a channel's phasors, shape ``(N, k)``."""
-    own = reading.deviations[row_of(reading, channel)]
-    return np.asarray(own[1::2] + 1j * own[2::2])
+    deviations = reading.deviations[row_of(reading, channel)]
+    return np.asarray(deviations[1::2] + 1j * deviations[2::2])
 
 
 def row_of(reading: Harmonics, channel: str) -> int:
@@ -125,8 +125,8 @@ def frequency_response(
     if not np.all(np.abs(u) > 0.0):
         raise DataError(f"{reading.run}: {motion} does not move at every line given")
     values = y / u
-    left = deviates_of(reading, output)[at] - values[:, None] * deviates_of(reading, motion)[at]
-    variance = (np.abs(left) ** 2).sum(axis=1)
+    residual = deviates_of(reading, output)[at] - values[:, None] * deviates_of(reading, motion)[at]
+    variance = (np.abs(residual) ** 2).sum(axis=1)
     power = np.abs(y) ** 2
     units = [reading.units[row_of(reading, name)] for name in (output, motion)]
     return FrequencyResponse(

@@ -145,10 +145,10 @@ def lines_of(samples: FloatArray, highest: int, least: float = 1e-3) -> tuple[Li
     spectrum = 2j * np.fft.rfft(samples)[: highest + 1] / len(samples)
     size = np.abs(spectrum)
     size[0] = 0.0
-    kept = np.flatnonzero((size > least * size.max()) & (size > 0.0))
-    if not kept.size:
+    places = np.flatnonzero((size > least * size.max()) & (size > 0.0))
+    if not places.size:
         raise ConfigurationError("the motion given does not move; give one period that does")
-    lines = [Line(int(n), float(size[n]), float(np.angle(spectrum[n]))) for n in kept]
+    lines = [Line(int(n), float(size[n]), float(np.angle(spectrum[n]))) for n in places]
     return with_strut_phases(lines, (0.0,))
 
 

@@ -108,12 +108,12 @@ def _struts(
     order = np.arange(len(spectrum))
     spectrum[1:] /= 1j * order[1:] * omega
     spectrum[0] = 0.0
-    along = speed_m_s * np.fft.irfft(spectrum, _INSTANTS)
+    carriage = speed_m_s * np.fft.irfft(spectrum, _INSTANTS)
     turned = half * (sine if steady_ahead else np.arctanh(sine))
     on_model = oscillator.joint is Joint.SLIDES_ON_MODEL
-    apart = 2.0 * half * (tangent if on_model else sine)
-    held = along - turned if aft_held else along + turned
-    return np.array([held, held + apart] if aft_held else [held - apart, held])
+    spacing = 2.0 * half * (tangent if on_model else sine)
+    held = carriage - turned if aft_held else carriage + turned
+    return np.array([held, held + spacing] if aft_held else [held - spacing, held])
 
 
 def _phasors(struts: FloatArray) -> ComplexArray:
@@ -122,8 +122,8 @@ def _phasors(struts: FloatArray) -> ComplexArray:
     The angle is counted from where the aft strut's first harmonic rises through zero.
     """
     raw = 2j * np.fft.rfft(struts, axis=1).T / _INSTANTS
-    back = cmath.phase(raw[1, 0])
-    return np.asarray(raw * np.exp(-1j * back * np.arange(len(raw)))[:, None])
+    phase = cmath.phase(raw[1, 0])
+    return np.asarray(raw * np.exp(-1j * phase * np.arange(len(raw)))[:, None])
 
 
 def _as_lines(phasors: ComplexArray) -> tuple[Line, ...]:
@@ -131,13 +131,13 @@ def _as_lines(phasors: ComplexArray) -> tuple[Line, ...]:
     aft, fore = phasors[1]
     ahead = cmath.phase(fore / aft) % _TURN
     first = Line(1, float(abs(aft) + abs(fore)) / 2.0, 0.0, ahead)
-    left = phasors.copy()
-    left[1] -= first.share * np.array([1.0, cmath.exp(1j * ahead)])
-    together, apart = left.mean(axis=1), (left[:, 0] - left[:, 1]) / 2.0
+    remainder = phasors.copy()
+    remainder[1] -= first.share * np.array([1.0, cmath.exp(1j * ahead)])
+    mean, half_difference = remainder.mean(axis=1), (remainder[:, 0] - remainder[:, 1]) / 2.0
     rest = [
         Line(n, float(abs(size)), cmath.phase(size), strut_phase_rad, correction=True)
-        for n in range(1, len(left))
-        for size, strut_phase_rad in ((together[n], 0.0), (apart[n], math.pi))
+        for n in range(1, len(remainder))
+        for size, strut_phase_rad in ((mean[n], 0.0), (half_difference[n], math.pi))
         if abs(size) > LEAST_SHARE
     ]
     return first, *rest

@@ -106,14 +106,14 @@ def in_waves(
     names = (WAVE_PROBE.name, *(name for name in _LOADS if name in recording.channel_names))
     time_s = chosen.time_s()
     values = np.stack([chosen.values(name) for name in names])
-    whole = np.isfinite(values).all(axis=0)
-    if whole.mean() < _WHOLE:
+    complete = np.isfinite(values).all(axis=0)
+    if complete.mean() < _WHOLE:
         raise DataError(
-            f"{recording.name}: only {100 * whole.mean():.0f} % of the samples have all of "
+            f"{recording.name}: only {100 * complete.mean():.0f} % of the samples have all of "
             f"{', '.join(names)}, and {100 * _WHOLE:g} % are needed to tell the waves; repeat it"
         )
     for row in values:
-        row[~whole] = np.interp(time_s[~whole], time_s[whole], row[whole])
+        row[~complete] = np.interp(time_s[~complete], time_s[complete], row[complete])
     shaft_hz = point.frequency_hz
     expected = abs(
         encounter_hz(
@@ -121,20 +121,22 @@ def in_waves(
         )
     )
     span_s = time_s[-1] - time_s[0]
-    found = _measured_hz(recording.name, time_s, values[0], expected)
-    lines = _apart(recording.name, found, shaft_hz, span_s)
+    wave_hz = _measured_hz(recording.name, time_s, values[0], expected)
+    lines = _apart(recording.name, wave_hz, shaft_hz, span_s)
     turns = analysis.reference.cycles_at(time_s)
-    own = [_wave(time_s - time_s[0], frequency) for frequency in lines.values()]
+    line_waves = [_wave(time_s - time_s[0], frequency) for frequency in lines.values()]
     harmonics = [_wave(turns, float(n)) for n in range(1, _HARMONICS + 1)]
     trend = np.stack((np.ones_like(time_s), (time_s - time_s.mean()) / span_s))
-    design = np.concatenate((trend, *own, *harmonics)).T
-    solved, *_ = np.linalg.lstsq(design[whole], values.T[whole], rcond=None)
-    left = np.where(whole, values - (design @ solved).T, 0.0)
-    told = tuple(
-        WaveLine(name, hz, solved[2 + 2 * k] - 1j * solved[3 + 2 * k], _noise(left, hz * span_s))
+    design = np.concatenate((trend, *line_waves, *harmonics)).T
+    solved, *_ = np.linalg.lstsq(design[complete], values.T[complete], rcond=None)
+    residual = np.where(complete, values - (design @ solved).T, 0.0)
+    wave_lines = tuple(
+        WaveLine(
+            name, hz, solved[2 + 2 * k] - 1j * solved[3 + 2 * k], _noise(residual, hz * span_s)
+        )
         for k, (name, hz) in enumerate(lines.items())
     )
-    result = InWaves(recording.name, point, expected, found, names, told)
+    result = InWaves(recording.name, point, expected, wave_hz, names, wave_lines)
     return result, _without(recording, result, time_s[0])
 
 
@@ -149,72 +151,75 @@ def _measured_hz(run: str, time_s: FloatArray, probe: FloatArray, expected_hz: f
     step_hz = 1.0 / (since[-1] * (1.0 + 1.0 / (probe.size - 1)))
     power = np.abs(np.fft.rfft(tapered)) ** 2
     lowest = max(1, math.floor((1.0 - _SOUGHT) * expected_hz / step_hz))
-    around = power[lowest : math.ceil((1.0 + _SOUGHT) * expected_hz / step_hz) + 1]
+    band = power[lowest : math.ceil((1.0 + _SOUGHT) * expected_hz / step_hz) + 1]
     heard = max(_HEARD * float(np.median(power[1:])), _STRONG**2 * float(power[1:].max()))
-    if around.size == 0 or not around.max() > heard:
+    if band.size == 0 or not band.max() > heard:
         raise DataError(
             f"{run}: the probe shows no wave within {100 * _SOUGHT:g} % of {expected_hz:.4g} Hz, "
             "the encounter frequency; check wave_frequency_hz, wave_heading_deg, the speed, and "
             f"the channel {WAVE_PROBE.name}"
         )
-    found = float(step_hz * (lowest + int(around.argmax())))
+    wave_hz = float(step_hz * (lowest + int(band.argmax())))
     for _ in range(_SWEEPS):
-        cosine, sine = _wave(since, found)
+        cosine, sine = _wave(since, wave_hz)
         design = np.stack((np.ones_like(since), cosine, sine), axis=1)
         mean_, a, b = np.linalg.lstsq(design, probe, rcond=None)[0]
         slope = 2.0 * math.pi * since * (b * cosine - a * sine)
-        whole = np.column_stack((design, slope))
-        change = np.linalg.lstsq(whole, probe - design @ (mean_, a, b), rcond=None)[0][3]
-        found += float(np.clip(change, -step_hz, step_hz))
-    return found
+        columns = np.column_stack((design, slope))
+        change = np.linalg.lstsq(columns, probe - design @ (mean_, a, b), rcond=None)[0][3]
+        wave_hz += float(np.clip(change, -step_hz, step_hz))
+    return wave_hz
 
 
 def _apart(run: str, wave_hz: float, shaft_hz: float, span_s: float) -> dict[str, float]:
     """Return the frequencies of the lines that can be told from all before them, by name."""
     least_hz = _APART / span_s
-    taken = [0.0, *(n * shaft_hz for n in range(1, _HARMONICS + 1))]
-    near = min(taken, key=lambda one: abs(one - wave_hz))
-    if abs(near - wave_hz) < least_hz:
-        what = f"harmonic {near / shaft_hz:.0f} of the shaft" if near else "the mean"
+    taken_hz = [0.0, *(n * shaft_hz for n in range(1, _HARMONICS + 1))]
+    nearest_hz = min(taken_hz, key=lambda hz_taken: abs(hz_taken - wave_hz))
+    if abs(nearest_hz - wave_hz) < least_hz:
+        taken_by = (
+            f"harmonic {nearest_hz / shaft_hz:.0f} of the shaft" if nearest_hz else "the mean"
+        )
         raise DataError(
-            f"{run}: the encounter frequency of {wave_hz:.4g} Hz cannot be told from {what} "
-            f"({near:.4g} Hz) within {span_s:.3g} s; choose another frequency, or more periods"
+            f"{run}: the encounter frequency of {wave_hz:.4g} Hz cannot be told from {taken_by} "
+            f"({nearest_hz:.4g} Hz) within {span_s:.3g} s; choose another frequency, or more "
+            "periods"
         )
     lines = {ENCOUNTER: wave_hz}
-    taken.append(wave_hz)
+    taken_hz.append(wave_hz)
     for name, hz in (
         (TWICE, 2.0 * wave_hz),
         (SUM, wave_hz + shaft_hz),
         (DIFFERENCE, abs(wave_hz - shaft_hz)),
     ):
-        if min(abs(one - hz) for one in taken) >= least_hz:
+        if min(abs(hz_taken - hz) for hz_taken in taken_hz) >= least_hz:
             lines[name] = hz
-            taken.append(hz)
+            taken_hz.append(hz)
     return lines
 
 
-def _noise(left: FloatArray, cycles: float) -> FloatArray:
+def _noise(residual: FloatArray, cycles: float) -> FloatArray:
     """Return the standard uncertainty of either part of a line by what is left over beside it."""
-    size = left.shape[1]
-    power = np.abs(np.fft.rfft(left, axis=1)) ** 2 / size
+    size = residual.shape[1]
+    power = np.abs(np.fft.rfft(residual, axis=1)) ** 2 / size
     middle = round(cycles)
-    beside = power[:, max(middle - _BESIDE, 1) : middle + _BESIDE + 1]
-    return np.asarray(np.sqrt(2.0 * beside.mean(axis=1) / size))
+    noise_bins = power[:, max(middle - _BESIDE, 1) : middle + _BESIDE + 1]
+    return np.asarray(np.sqrt(2.0 * noise_bins.mean(axis=1) / size))
 
 
-def _without(recording: Recording, found: InWaves, start_s: float) -> Recording:
+def _without(recording: Recording, waves: InWaves, start_s: float) -> Recording:
     """Return the recording with the waves' lines taken off its gauges, over its whole length."""
-    rows = [recording.index(name) for name in found.channels[1:]]
-    every = list(range(len(recording.channels)))
-    values = np.array(recording.samples[every, 0 : recording.sample_count])
+    rows = [recording.index(name) for name in waves.channels[1:]]
+    channel_rows = list(range(len(recording.channels)))
+    values = np.array(recording.samples[channel_rows, 0 : recording.sample_count])
     since = recording.time_s() - start_s
-    for line in found.lines:
+    for line in waves.lines:
         turn = np.exp(2j * math.pi * line.frequency_hz * since)
         values[rows] -= (line.values[1:, None] * turn).real
     return replace(recording, samples=values)
 
 
-def transfer(found: InWaves, name: str, weights: Sequence[float]) -> tuple[complex, float]:
+def transfer(waves: InWaves, name: str, weights: Sequence[float]) -> tuple[complex, float]:
     """Return a load per wave amplitude (squared for a second-order line), and its uncertainty.
 
     Parameters
@@ -225,11 +230,11 @@ def transfer(found: InWaves, name: str, weights: Sequence[float]) -> tuple[compl
     weights
         Of the channels behind the probe.
     """
-    line = next(one for one in found.lines if one.name == name)
+    line = next(candidate for candidate in waves.lines if candidate.name == name)
     weight = np.array(weights)
     value = complex(weight @ line.values[1:])
     spread = float(np.sqrt((weight**2) @ line.uncertainty[1:] ** 2))
-    wave = found.wave
+    wave = waves.wave
     by: complex = wave if name == ENCOUNTER else wave**2
     by = by if name in (ENCOUNTER, TWICE) else complex(abs(wave))
     return value / by, spread / abs(by)

@@ -50,12 +50,12 @@ class SpeedRecord:
     @property
     def corners(self) -> list[tuple[float, float]]:
         """When the trapezoid's acceleration changes, and by how much (rad/s2)."""
-        found, speed = [], self.speed_rad_s
+        corners, speed = [], self.speed_rad_s
         for at_s, target in self.changes:
             slope = math.copysign(self.acceleration_rad_s2, target - speed)
-            found += [(at_s, slope), (at_s + (target - speed) / slope, -slope)]
+            corners += [(at_s, slope), (at_s + (target - speed) / slope, -slope)]
             speed = target
-        return found
+        return corners
 
 
 @dataclass(frozen=True)
@@ -127,8 +127,10 @@ def identified(
     by_delay = np.abs(most.numbers - none.numbers) / math.sqrt(12.0)
     units = ("kg m2", "", "N m s/rad", "s")
     inertia, gain, bearing, latency = (
-        Estimate.of(float(value), float(u), unit, fit.freedom).widened(float(more))
-        for value, u, more, unit in zip(fit.numbers, fit.spread, by_delay, units, strict=True)
+        Estimate.of(float(value), float(u), unit, fit.freedom).widened(float(delay_spread))
+        for value, u, delay_spread, unit in zip(
+            fit.numbers, fit.spread, by_delay, units, strict=True
+        )
     )
     return IdentifiedLoop(
         _with(motor, fit.numbers, delay_s),
@@ -168,19 +170,19 @@ def _fit(record: SpeedRecord, motor: Servo | ShuntMotor, delay_s: float, start: 
     # What the clock of the drive and the place of its zero add: a line, taken off both.
     line = np.stack([np.ones_like(record.time_s), record.time_s - record.time_s.mean()], axis=1)
     basis = np.linalg.qr(line)[0]
-    told = _told(record, 0.0)
+    command_rad = _told(record, 0.0)
 
-    def numbers(found: FloatArray) -> FloatArray:
+    def numbers(scaled: FloatArray) -> FloatArray:
         all_four = start.copy()
-        all_four[free] = found * scale[free]
+        all_four[free] = scaled * scale[free]
         return all_four
 
-    def lag(found: FloatArray) -> FloatArray:
-        return _lag(record, _with(motor, numbers(found), delay_s), numbers(found))
+    def lag(scaled: FloatArray) -> FloatArray:
+        return _lag(record, _with(motor, numbers(scaled), delay_s), numbers(scaled))
 
-    def left(found: FloatArray) -> FloatArray:
-        off = record.angle_rad - told + lag(found)
-        return np.asarray(off - basis @ (basis.T @ off))
+    def left(scaled: FloatArray) -> FloatArray:
+        error = record.angle_rad - command_rad + lag(scaled)
+        return np.asarray(error - basis @ (basis.T @ error))
 
     begin = start / scale
     begin[2] += _BEARING  # off its bound, from which a search hardly leaves

@@ -84,8 +84,8 @@ class ShaftLoop:
             return Margins(math.inf, math.inf, 1.0, math.nan)
         response = self.open_response(_OMEGA)
         degrees = np.degrees(np.unwrap(np.angle(response)))
-        told = control.stability_margins((np.abs(response), degrees, _OMEGA))
-        gain, phase, distance, _, crossover, _ = map(float, told)
+        stated_margins = control.stability_margins((np.abs(response), degrees, _OMEGA))
+        gain, phase, distance, _, crossover, _ = map(float, stated_margins)
         if gain > _UNBOUNDED:
             gain = math.inf
         return Margins(gain, math.radians(phase), 1.0 / distance, crossover / (2.0 * math.pi))
@@ -138,8 +138,8 @@ class ShaftLoop:
 
     def load_response(self, omega_rad_s: FloatArray) -> ComplexArray:
         """Return the speed per load torque at circular frequencies, rad/s per N m."""
-        own = self._motor_response(1j * np.asarray(omega_rad_s, dtype=float))[:, 1]
-        return np.asarray(own / (1.0 + self.open_response(omega_rad_s)))
+        motor = self._motor_response(1j * np.asarray(omega_rad_s, dtype=float))[:, 1]
+        return np.asarray(motor / (1.0 + self.open_response(omega_rad_s)))
 
     def ripple(self, torques_n_m: ComplexArray, omega_rad_s: float) -> ComplexArray:
         """Return how the speed varies over a turn, relative to its mean.
@@ -172,8 +172,8 @@ class ShaftLoop:
         import control
 
         gains = self.controller
-        own = control.ss([[0.0]], [[1.0]], [[gains.integral]], [[gains.proportional]])
-        return control.series(own, _dead_time(self.delay_s))
+        controller = control.ss([[0.0]], [[1.0]], [[gains.integral]], [[gains.proportional]])
+        return control.series(controller, _dead_time(self.delay_s))
 
     @cached_property
     def _open(self) -> "StateSpace":

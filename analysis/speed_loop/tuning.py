@@ -54,13 +54,15 @@ def proposed(
     omega = np.logspace(*_DECADES, _POINTS)
     responses = np.stack(
         [
-            ShaftLoop(motor, SpeedLoop(1.0, 0.0), one, delay_s).open_response(omega)
-            for one in added_inertias_kg_m2
+            ShaftLoop(motor, SpeedLoop(1.0, 0.0), added_kg_m2, delay_s).open_response(omega)
+            for added_kg_m2 in added_inertias_kg_m2
         ]
     )
     scale = 1.0 / np.abs(responses).max()
     gains = np.logspace(math.log10(scale), math.log10(scale) + 8.0, _GAINS)
-    best = max(_with_integral(gains, omega, responses, most), key=lambda one: one.integral)
+    best = max(
+        _with_integral(gains, omega, responses, most), key=lambda gains_pair: gains_pair.integral
+    )
     if not best.integral > 0.0:
         raise ConfigurationError(
             f"no gains keep a largest sensitivity of {most:g}; allow more, or a shorter delay"
@@ -72,14 +74,14 @@ def _with_integral(
     gains: FloatArray, omega: FloatArray, responses: ComplexArray, most: float
 ) -> list[SpeedLoop]:
     """Return the largest integral gain to each proportional one, as far as these go from zero."""
-    integrals, found = responses / (1j * omega), [SpeedLoop()]
+    integrals, loops = responses / (1j * omega), [SpeedLoop()]
     circles = ((1.0, 1.0, 1.0 - 1.0 / most**2), (most**2 - 1.0, most**2, most**2))
     for gain in gains.tolist():
-        largest = min(_largest(gain * responses, integrals, *one) for one in circles)
+        largest = min(_largest(gain * responses, integrals, *circle) for circle in circles)
         if largest < 0.0:
             break
-        found.append(SpeedLoop(gain, largest))
-    return found
+        loops.append(SpeedLoop(gain, largest))
+    return loops
 
 
 def _largest(

@@ -58,7 +58,7 @@ class SteeringParameters:
 
 
 def identified(
-    runs: SteeringRuns, known: Particulars, towing_force_n: float = 0.0
+    runs: SteeringRuns, particulars: Particulars, towing_force_n: float = 0.0
 ) -> SteeringParameters:
     """Return all parameters that the runs tell.
 
@@ -72,26 +72,26 @@ def identified(
     DataError
         If the runs do not tell the factors of the loads, or parameters cannot be told apart.
     """
-    loads, flow = load_factors(runs), inflow(runs, known)
-    ratios = tuple(_ratio(one) for one in (loads, flow))
-    values, slopes, names = _parameters(runs, known, loads, flow, ratios)
+    loads, flow = load_factors(runs), inflow(runs, particulars)
+    ratios = tuple(_ratio(fit) for fit in (loads, flow))
+    values, slopes, names = _parameters(runs, particulars, loads, flow, ratios)
     scaled = runs.followed(slopes)
     wake = _wakes(runs, flow, ratios[1])
     points = tuple(
-        self_propulsion(k, runs, known, loads, flow, max(1.0, *ratios), towing_force_n)
+        self_propulsion(k, runs, particulars, loads, flow, max(1.0, *ratios), towing_force_n)
         for k in runs.straight
     )
     misfits = (ratios[0], ratios[1])
     return SteeringParameters(names, values, scaled @ scaled.T, flow.missing, misfits, wake, points)
 
 
-def _ratio(one: LoadFactors | Inflow) -> float:
-    return float(np.sqrt(one.squares / one.spare)) if one.spare > 0 else np.nan
+def _ratio(fit: LoadFactors | Inflow) -> float:
+    return float(np.sqrt(fit.squares / fit.spare)) if fit.spare > 0 else np.nan
 
 
 def _parameters(
     runs: SteeringRuns,
-    known: Particulars,
+    particulars: Particulars,
     loads: LoadFactors,
     flow: Inflow,
     ratios: tuple[float, ...],
@@ -99,8 +99,8 @@ def _parameters(
     """Return values, their slopes by the measured numbers, and names, in the order of a table."""
     thrust, steered, across, about = loads.values[:4]
     force_increase = across - 1.0
-    place = (about - known.rudder_x_m) / force_increase
-    length = known.length_m
+    place = (about - particulars.rudder_x_m) / force_increase
+    length = particulars.length_m
     by_factors = np.zeros((4, 4))
     by_factors[0, 0], by_factors[1, 1], by_factors[2, 2] = 1.0, -1.0, 1.0
     by_factors[3, 2:] = -place / force_increase / length, 1.0 / force_increase / length
@@ -119,16 +119,16 @@ def _parameters(
             )
         )
     rows += list(zip(OF_LOADS[1:], of_loads[1:], load_slopes[1:], strict=True))
-    for name, told in OF_INFLOW.items():
+    for name, parameter in OF_INFLOW.items():
         if name in flow.names:
             k, unit = flow.names.index(name), length if name == "l_R" else 1.0
-            rows.append((told, flow.values[k] / unit, flow_slopes[k] / unit))
+            rows.append((parameter, flow.values[k] / unit, flow_slopes[k] / unit))
     names, values, slopes = zip(*rows, strict=True)
     return np.array(values), np.array(slopes), tuple(names)
 
 
 def _wakes(runs: SteeringRuns, flow: Inflow, ratio: float) -> FloatArray:
-    own = [flow.names.index(wake_name(k)) for k in range(runs.conditions)]
-    followed = runs.followed(flow.by_data[own])
+    wake_rows = [flow.names.index(wake_name(k)) for k in range(runs.conditions)]
+    followed = runs.followed(flow.by_data[wake_rows])
     u = np.fmax(1.0, ratio) * np.sqrt((followed**2).sum(axis=1))
-    return np.concatenate((runs.motions, [flow.values[own]], [u]))
+    return np.concatenate((runs.motions, [flow.values[wake_rows]], [u]))

@@ -60,7 +60,7 @@ def wake_name(condition: int) -> str:
     return f"w_P {condition}"
 
 
-def inflow(runs: SteeringRuns, known: Particulars) -> Inflow:
+def inflow(runs: SteeringRuns, particulars: Particulars) -> Inflow:
     """Return wakes and inflow of the rudder of all runs.
 
     Raises
@@ -72,81 +72,85 @@ def inflow(runs: SteeringRuns, known: Particulars) -> Inflow:
 
     _check_neutral(runs)
     missing = _missing(runs)
-    wakes = thrust_identity(runs, known)
+    wakes = thrust_identity(runs, particulars)
     # Of one loading the race is a part of epsilon, which then is none to be told.
     free = [k for k, name in enumerate(INFLOW) if name == "epsilon" or name not in missing]
     fixed = np.array(_STARTS)
-    fixed[4] *= known.length_m
+    fixed[4] *= particulars.length_m
     if "kappa" in missing:
         fixed[1] = 0.0
-    scale = np.array([1.0] * runs.conditions + [known.length_m if k == 4 else 1.0 for k in free])
+    scale = np.array(
+        [1.0] * runs.conditions + [particulars.length_m if k == 4 else 1.0 for k in free]
+    )
 
     def model(unknown: FloatArray) -> FloatArray:
-        own = fixed.copy()
-        own[free] = unknown[runs.conditions :]
-        return behind(runs, known, unknown[: runs.conditions][runs.condition], own)
+        values = fixed.copy()
+        values[free] = unknown[runs.conditions :]
+        return behind(runs, particulars, unknown[: runs.conditions][runs.condition], values)
 
     def left(scaled: FloatArray) -> FloatArray:
-        off = (runs.values[3:] - model(scaled * scale)) / runs.uncertainty[3:]
-        return np.asarray(off.ravel())
+        error = (runs.values[3:] - model(scaled * scale)) / runs.uncertainty[3:]
+        return np.asarray(error.ravel())
 
     start = np.concatenate((wakes, fixed[free])) / scale
-    found = least_squares(left, start, method="lm", xtol=1e-12, ftol=1e-12)
-    if not found.success:
-        raise DataError(f"thrust and normal force could not be fitted: {found.message}")
-    jacobian: FloatArray = -np.asarray(found.jac)
+    outcome = least_squares(left, start, method="lm", xtol=1e-12, ftol=1e-12)
+    if not outcome.success:
+        raise DataError(f"thrust and normal force could not be fitted: {outcome.message}")
+    jacobian: FloatArray = -np.asarray(outcome.jac)
     normal = jacobian.T @ jacobian
     size = np.sqrt(np.diagonal(normal)).clip(1e-300)
     if np.linalg.cond(normal / np.outer(size, size)) > _BLIND:
-        several = ", ".join(INFLOW[k] for k in free)
+        unresolved = ", ".join(INFLOW[k] for k in free)
         raise DataError(
-            f"the runs do not tell {several} apart: make oblique tows to both sides with the "
+            f"the runs do not tell {unresolved} apart: make oblique tows to both sides with the "
             "rudder at different angles besides the yaw with rudder"
         )
     gain = scale[:, None] * np.linalg.solve(normal, jacobian.T)
     by_data = np.zeros((len(start), 5, len(runs.names)))
     by_data[:, 3:] = gain.reshape(len(start), 2, -1) / runs.uncertainty[3:]
     names = (*map(wake_name, range(runs.conditions)), *(INFLOW[k] for k in free))
-    told = [k for k, name in enumerate(names) if name not in missing]
+    determined = [k for k, name in enumerate(names) if name not in missing]
     return Inflow(
-        tuple(names[k] for k in told),
-        (found.x * scale)[told],
-        by_data[told],
+        tuple(names[k] for k in determined),
+        (outcome.x * scale)[determined],
+        by_data[determined],
         missing,
-        float((found.fun**2).sum()),
-        found.fun.size - len(start),
+        float((outcome.fun**2).sum()),
+        outcome.fun.size - len(start),
     )
 
 
-def behind(runs: SteeringRuns, known: Particulars, wake: FloatArray, own: FloatArray) -> FloatArray:
+def behind(
+    runs: SteeringRuns, particulars: Particulars, wake: FloatArray, values: FloatArray
+) -> FloatArray:
     """Return thrust and normal force, shape ``(2, n)``.
 
     Parameters
     ----------
     wake
         Of each run, shape ``(n,)``.
-    own
+    values
         :data:`INFLOW`.
     """
-    epsilon, kappa, plus, minus, lever, neutral = own
+    epsilon, kappa, plus, minus, lever, neutral = values
     u, v, r = runs.motion
-    density, diameter = known.density_kg_m3, known.diameter_m
+    density, diameter = particulars.density_kg_m3, particulars.diameter_m
     inflow_p = u * (1.0 - wake)
-    k0, k1, k2 = known.thrust
+    k0, k1, k2 = particulars.thrust
     pace = runs.rate_hz * diameter
     thrust = density * diameter**2 * (k0 * pace**2 + k1 * pace * inflow_p + k2 * inflow_p**2)
     race = inflow_p**2 + 8.0 * thrust / (math.pi * density * diameter**2)
     jet = inflow_p + kappa * (np.sqrt(np.maximum(race, 0.0)) - inflow_p)
-    covered = diameter / known.height_m
+    covered = diameter / particulars.height_m
     along = epsilon * np.sqrt(covered * jet**2 + (1.0 - covered) * inflow_p**2)
     across = runs.speed_m_s * np.arctan2(-v, u) - lever * r
     across = across * np.where(across > 0.0, plus, minus)
     attack = runs.rudder_rad - neutral - np.arctan2(across, along)
-    pressure = 0.5 * density * known.area_m2 * known.slope * (along**2 + across**2)
+    pressure = 0.5 * density * particulars.area_m2 * particulars.slope * (along**2 + across**2)
     return np.stack((thrust, pressure * np.sin(attack)))
 
 
-def thrust_identity(runs: SteeringRuns, known: Particulars) -> FloatArray:
+def thrust_identity(runs: SteeringRuns, particulars: Particulars) -> FloatArray:
     """Return the wake of each condition at which the open-water propeller has the mean thrust.
 
     Raises
@@ -154,19 +158,19 @@ def thrust_identity(runs: SteeringRuns, known: Particulars) -> FloatArray:
     DataError
         If there is none; the message names the run.
     """
-    k0, k1, k2 = known.thrust
-    unit = known.density_kg_m3 * runs.rate_hz**2 * known.diameter_m**4
+    k0, k1, k2 = particulars.thrust
+    unit = particulars.density_kg_m3 * runs.rate_hz**2 * particulars.diameter_m**4
     under = k1**2 - 4.0 * k2 * (k0 - runs.values[3] / unit)
     bad = np.flatnonzero((under < 0.0) | (runs.values[3] / unit > k0))
     if bad.size:
-        one = int(bad[0])
+        run = int(bad[0])
         raise DataError(
-            f"{runs.names[one]}: K_T = {float(runs.values[3, one] / unit[one]):.4g}, which the "
+            f"{runs.names[run]}: K_T = {float(runs.values[3, run] / unit[run]):.4g}, which the "
             f"open-water propeller does not have at any J (it begins at {k0:g}); look at "
             "revolutions, thrust and the propeller's diameter"
         )
     advance = -2.0 * (k0 - runs.values[3] / unit) / (k1 - np.sqrt(under))
-    wakes = 1.0 - advance * runs.rate_hz * known.diameter_m / runs.motion[0]
+    wakes = 1.0 - advance * runs.rate_hz * particulars.diameter_m / runs.motion[0]
     return np.array([wakes[runs.condition == k].mean() for k in range(runs.conditions)])
 
 
@@ -186,13 +190,15 @@ def _missing(runs: SteeringRuns) -> dict[str, str]:
     rates = np.ptp(runs.rate_hz / runs.speed_m_s) / np.max(runs.rate_hz / runs.speed_m_s)
     u, v, r = runs.motion
     drift = np.arctan2(-v, u)
-    found: dict[str, str] = {}
+    remedies: dict[str, str] = {}
     if rates < _RATES_APART:
-        why = "static rudder at two or more rates of revolutions"
-        found |= {"epsilon": why, "kappa": why}
+        remedy = "static rudder at two or more rates of revolutions"
+        remedies |= {"epsilon": remedy, "kappa": remedy}
     for name, side in (("gamma_R+", 1.0), ("gamma_R-", -1.0)):
         if not np.any((side * drift > _DRIFTS) | (side * r > 0.0)):
-            found[name] = f"oblique tow with rudder, bow to {'port' if side < 0 else 'starboard'}"
+            remedies[name] = (
+                f"oblique tow with rudder, bow to {'port' if side < 0 else 'starboard'}"
+            )
     if not r.any():
-        found["l_R"] = "yaw with rudder"
-    return found
+        remedies["l_R"] = "yaw with rudder"
+    return remedies

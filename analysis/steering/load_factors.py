@@ -64,18 +64,18 @@ def load_factors(runs: SteeringRuns) -> LoadFactors:
         covariance = np.einsum("nij,nj,nkj->nik", slopes, behind_spread, slopes)
         covariance[:, range(3), range(3)] += spread
         weight = np.linalg.inv(covariance)
-        left = loads - _design(runs, behind) @ values
+        residual = loads - _design(runs, behind) @ values
         normal = np.einsum("nip,nij,njq->pq", design, weight, design)
         _check(normal)
-        step = np.linalg.solve(normal, np.einsum("nip,nij,nj->p", design, weight, left))
+        step = np.linalg.solve(normal, np.einsum("nip,nij,nj->p", design, weight, residual))
         values = values + step
-        left = loads - _design(runs, behind) @ values
-        likely = behind + behind_spread * np.einsum("nij,nik,nk->nj", slopes, weight, left)
+        residual = loads - _design(runs, behind) @ values
+        likely = behind + behind_spread * np.einsum("nij,nik,nk->nj", slopes, weight, residual)
         if np.abs(step).max() <= _DONE * np.abs(values).max():
             break
     gain = np.einsum("pq,niq,nij->npj", np.linalg.inv(normal), design, weight)
     by_data = np.concatenate((gain, -gain @ slopes), axis=2)
-    squares = float(np.einsum("ni,nij,nj->", left, weight, left))
+    squares = float(np.einsum("ni,nij,nj->", residual, weight, residual))
     return LoadFactors(values, by_data.transpose(1, 2, 0), squares, 3 * count - len(values))
 
 
@@ -113,12 +113,14 @@ _TELLING: Final = (
 
 def _check(normal: FloatArray) -> None:
     """Refuse factors that the runs do not tell apart from the hull's own loads."""
-    own, hull = normal[:4, :4], normal[4:, 4:]
+    factors, hull = normal[:4, :4], normal[4:, 4:]
     cross = normal[:4, 4:]
-    told = np.diagonal(own - cross @ np.linalg.solve(hull, cross.T)) / np.diagonal(own).clip(1e-300)
+    shares = np.diagonal(factors - cross @ np.linalg.solve(hull, cross.T)) / np.diagonal(
+        factors
+    ).clip(1e-300)
     silent = [
         f"{name} (make {how})"
-        for name, how, share in zip(FACTORS, _TELLING, told, strict=True)
+        for name, how, share in zip(FACTORS, _TELLING, shares, strict=True)
         if share < _BLIND
     ]
     if silent:

@@ -78,8 +78,8 @@ class SteeringRuns:
         faults = []
         for k, name in enumerate(self.names):
             lacking = [
-                what
-                for what, value, u in zip(
+                quantity
+                for quantity, value, u in zip(
                     MEASURED, self.values[:, k], self.uncertainty[:, k], strict=True
                 )
                 if not (np.isfinite(value) and u > 0.0)
@@ -102,10 +102,10 @@ class SteeringRuns:
         slopes
             Shape ``(k, 5, n)``; the result ``(k, deviates)``.
         """
-        own = (slopes * self.uncertainty).reshape(len(slopes), -1)
+        scaled = (slopes * self.uncertainty).reshape(len(slopes), -1)
         if self.shared is None:
-            return own
-        return np.concatenate((own, np.einsum("kmn,mnd->kd", slopes, self.shared)), axis=1)
+            return scaled
+        return np.concatenate((scaled, np.einsum("kmn,mnd->kd", slopes, self.shared)), axis=1)
 
     @cached_property
     def speed_m_s(self) -> FloatArray:

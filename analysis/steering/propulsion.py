@@ -45,7 +45,7 @@ class SelfPropulsion:
 def self_propulsion(
     condition: int,
     runs: SteeringRuns,
-    known: Particulars,
+    particulars: Particulars,
     loads: LoadFactors,
     flow: Inflow,
     excess: float,
@@ -64,38 +64,39 @@ def self_propulsion(
         If the towing force leaves the propeller nothing to do.
     """
     hull, wake = 4 + condition, flow.names.index(wake_name(condition))
-    own = np.array([loads.values[0], loads.values[hull], flow.values[wake]])
+    nominal = np.array([loads.values[0], loads.values[hull], flow.values[wake]])
     slopes = np.stack((loads.by_data[0], loads.by_data[hull], flow.by_data[wake]))
     spread = runs.followed(slopes)
     speed = float(runs.motions[0, condition])
-    if towing_force_n >= -own[1] > 0.0:
+    if towing_force_n >= -nominal[1] > 0.0:
         raise DataError(
-            f"towing_force_n = {towing_force_n:g} is not below the resistance of {-own[1]:.4g} N "
-            f"at {speed:.4g} m/s: nothing is left for the propeller; state F_D, the friction's "
+            f"towing_force_n = {towing_force_n:g} is not below the resistance of {-nominal[1]:.4g} "
+            f"N at {speed:.4g} m/s: nothing is left for the propeller; state F_D, the friction's "
             "deduction"
         )
 
     def point(at: FloatArray) -> FloatArray:
         thrust = (-at[1] - towing_force_n) / at[0]
-        return np.array([-at[1], thrust, _rate(thrust, speed * (1.0 - at[2]), known)])
+        return np.array([-at[1], thrust, _rate(thrust, speed * (1.0 - at[2]), particulars)])
 
-    values = point(own)
-    steps = np.diag(_STEP * np.fmax(np.abs(own), _STEP))
+    values = point(nominal)
+    steps = np.diag(_STEP * np.fmax(np.abs(nominal), _STEP))
     by_own = np.stack(
-        [(point(own + step) - point(own - step)) / (2.0 * step.sum()) for step in steps], axis=1
+        [(point(nominal + step) - point(nominal - step)) / (2.0 * step.sum()) for step in steps],
+        axis=1,
     )
     u = excess * np.sqrt(((by_own @ spread) ** 2).sum(axis=1))
-    advance = speed * (1.0 - own[2]) / (values[2] * known.diameter_m)
+    advance = speed * (1.0 - nominal[2]) / (values[2] * particulars.diameter_m)
     (resistance, thrust, rate), (resistance_u, thrust_u, rate_u) = values.tolist(), u.tolist()
     return SelfPropulsion(
         speed, resistance, resistance_u, thrust, thrust_u, rate, rate_u, float(advance)
     )
 
 
-def _rate(thrust_n: float, inflow_m_s: float, known: Particulars) -> float:
+def _rate(thrust_n: float, inflow_m_s: float, particulars: Particulars) -> float:
     """Return the revolutions with a thrust: the larger root of K_T's quadratic in n."""
-    k0, k1, k2 = known.thrust
-    pace = inflow_m_s / known.diameter_m
-    wanted = thrust_n / known.density_kg_m3 / known.diameter_m**4
+    k0, k1, k2 = particulars.thrust
+    pace = inflow_m_s / particulars.diameter_m
+    wanted = thrust_n / particulars.density_kg_m3 / particulars.diameter_m**4
     under = (k1 * pace) ** 2 - 4.0 * k0 * (k2 * pace**2 - wanted)
     return (-k1 * pace + np.sqrt(under)) / (2.0 * k0) if under >= 0.0 and k0 > 0.0 else np.nan

@@ -83,9 +83,9 @@ def linear_budget(
         If the formula gives no finite value at the inputs.
     """
     value, slopes = sensitivities(name, formula, inputs)
-    together = joint(inputs.values())
-    result = Estimate(together.carried(np.array([value]), slopes[None]), unit)
-    return Budget(name, result, _shares(inputs, slopes, together.covariance()))
+    joined = joint(inputs.values())
+    result = Estimate(joined.carried(np.array([value]), slopes[None]), unit)
+    return Budget(name, result, _shares(inputs, slopes, joined.covariance()))
 
 
 def derived(name: str, formula: Formula, unit: str = "1", **inputs: Estimate) -> Estimate:

@@ -74,14 +74,14 @@ class Estimate:
                 f"{degrees_of_freedom:g} degrees of freedom for {value:g} {unit}; "
                 "they must be above 0 (repeat the reading, or state an uncertainty from elsewhere)"
             )
-        own = Contribution(
+        contribution = Contribution(
             label or fresh_label(),
             degrees_of_freedom,
             np.zeros(1, dtype=np.int64),
             np.array([[float(uncertainty)]]),
             distribution,
         )
-        return cls(UncertainValues(np.array([float(value)]), (own,)), unit)
+        return cls(UncertainValues(np.array([float(value)]), (contribution,)), unit)
 
     @property
     def value(self) -> float:

@@ -19,8 +19,8 @@ def effective_freedom(variances: FloatArray, degrees_of_freedom: FloatArray) -> 
         Of the inputs, shape ``(inputs,)`` or ``(inputs, n)``; an input without any counts as known
         for certain.
     """
-    known = np.where(degrees_of_freedom > 0.0, degrees_of_freedom, np.inf)
-    loss = (variances**2 / (known if known.ndim > 1 else known[:, None])).sum(axis=0)
+    freedoms = np.where(degrees_of_freedom > 0.0, degrees_of_freedom, np.inf)
+    loss = (variances**2 / (freedoms if freedoms.ndim > 1 else freedoms[:, None])).sum(axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
         freedom = variances.sum(axis=0) ** 2 / loss
     return np.asarray(np.where(loss > 0.0, freedom, np.where(np.isnan(loss), np.nan, np.inf)))

@@ -113,10 +113,13 @@ def monte_carlo(
             f"{name}: {100 * lost:.1f} % of the trials have no value (limit {100 * _MOST_LOST:g} "
             "%): the inputs' uncertainties reach where the formula ends; measure them better"
         )
-    ends, beside = np.array([0.025, 0.975]), math.sqrt(0.025 * 0.975 / good.size)
+    ends, spread_of_share = np.array([0.025, 0.975]), math.sqrt(0.025 * 0.975 / good.size)
     low, high = np.quantile(good, ends)
     # A share of the trials is binomial, whatever their distribution: no density need be assumed.
-    above, below = np.clip(ends + beside, 0.0, 1.0), np.clip(ends - beside, 0.0, 1.0)
+    above, below = (
+        np.clip(ends + spread_of_share, 0.0, 1.0),
+        np.clip(ends - spread_of_share, 0.0, 1.0),
+    )
     spread = np.quantile(good, above) - np.quantile(good, below)
     mean, deviation = float(good.mean()), float(good.std(ddof=1))
     return MonteCarlo(trials, mean, deviation, float(low), float(high), float(spread.max() / 2.0))

@@ -101,8 +101,8 @@ class Redundancy:
         if not self._departs:
             return (self.data[order[0]],)
         reach = _ALIKE * max(np.nan_to_num(self._rest(square.max())), 1.0)
-        near = [k for k in order if square.max() - square[k] < reach]
-        return () if len(near) == len(self.data) else tuple(self.data[k] for k in near)
+        suspects = [k for k in order if square.max() - square[k] < reach]
+        return () if len(suspects) == len(self.data) else tuple(self.data[k] for k in suspects)
 
     def _rest(self, square: float) -> float:
         """Return chi-squared per degree of freedom without a datum that departs by this square."""
@@ -136,17 +136,19 @@ class Redundancy:
         if not self.stands_out:
             return "; none of them stands out alone"
         first = self.data.index(self.stands_out[0])
-        others = "".join(f" or {name}" for name in self.stands_out[1:])
+        alternatives = "".join(f" or {name}" for name in self.stands_out[1:])
         answer = ", ".join(
-            f"{name} {one:.5g} in place of {whole:.5g}"
-            for name, one, whole in zip(self.results, self.without[first], self.values, strict=True)
+            f"{name} {value:.5g} in place of {joint_value:.5g}"
+            for name, value, joint_value in zip(
+                self.results, self.without[first], self.values, strict=True
+            )
         )
         size = float(abs(self.departure[first]))
         rest = self._rest(size**2)
-        left = "" if math.isnan(rest) else f", and chi-squared {rest:.3g} a degree of freedom"
+        chi_words = "" if math.isnan(rest) else f", and chi-squared {rest:.3g} a degree of freedom"
         return (
-            f"; {self.data[first]}{others} stands {size:.3g} standard uncertainties from what the "
-            f"others let expect: look at it; without it {answer}{left}"
+            f"; {self.data[first]}{alternatives} stands {size:.3g} standard uncertainties from "
+            f"what the others let expect: look at it; without it {answer}{chi_words}"
         )
 
     def _wider(self) -> str:
@@ -159,7 +161,7 @@ def best_fit(
     matrix: FloatArray,
     measured: UncertainValues,
     *,
-    what: str,
+    subject: str,
     results: Sequence[str],
     data: Sequence[str],
 ) -> tuple[UncertainValues, Redundancy]:
@@ -181,27 +183,27 @@ def best_fit(
     exact = (_ROUNDING * np.maximum(np.abs(measured.values), np.abs(measured.values).max())) ** 2
     covariance = measured.covariance() + np.diag(exact + 1e-300)
     basis = np.linalg.svd(matrix)[0][:, unknowns:]
-    apart = np.linalg.inv(basis.T @ covariance @ basis)
-    unseen = basis @ apart @ basis.T
+    weight_matrix = np.linalg.inv(basis.T @ covariance @ basis)
+    unseen = basis @ weight_matrix @ basis.T
     estimator = inverse @ (np.eye(size) - covariance @ unseen)
     fitted = measured.mapped(estimator)
     checked = np.diag(unseen) * np.diag(covariance) > _SEEN
     weight = np.where(checked, np.diag(unseen), np.inf)
-    left = unseen @ measured.values
-    departure = left / np.sqrt(weight)
-    without = fitted.values - np.where(checked, left / weight, np.nan)[:, None] * estimator.T
+    residual = unseen @ measured.values
+    departure = residual / np.sqrt(weight)
+    without = fitted.values - np.where(checked, residual / weight, np.nan)[:, None] * estimator.T
     freedom = size - unknowns
-    chi_squared = max(float(measured.values @ left), 0.0)
-    found = Redundancy(
-        what, tuple(results), tuple(data), fitted.values, without, departure,
+    chi_squared = max(float(measured.values @ residual), 0.0)
+    agreement = Redundancy(
+        subject, tuple(results), tuple(data), fitted.values, without, departure,
         _two_sided(departure, measured.mapped(unseen).degrees_of_freedom),
         chi_squared, freedom, _beyond(chi_squared, freedom, measured, unseen),
     )  # fmt: skip
     ratio = math.sqrt(chi_squared / max(freedom, 1))
-    if found.agree or not ratio > 1.0:
-        return fitted, found
+    if agreement.agree or not ratio > 1.0:
+        return fitted, agreement
     wider = _scattered(fitted, estimator @ covariance @ estimator.T, ratio, freedom)
-    return wider, replace(found, widening=ratio, cause="the scatter of the data (Birge)")
+    return wider, replace(agreement, widening=ratio, cause="the scatter of the data (Birge)")
 
 
 def _scattered(
@@ -210,15 +212,15 @@ def _scattered(
     """Return the values with a covariance that is ``ratio`` squared times as large."""
     size, axes = np.linalg.eigh(covariance)
     parts = axes * np.sqrt(np.maximum(size, 0.0) * (ratio**2 - 1.0))
-    more = Contribution(fresh_label(), float(freedom), np.arange(len(fitted)), parts)
-    return replace(fitted, contributions=(*fitted.contributions, more))
+    scatter = Contribution(fresh_label(), float(freedom), np.arange(len(fitted)), parts)
+    return replace(fitted, contributions=(*fitted.contributions, scatter))
 
 
 def scattered_fit(
     matrix: FloatArray,
     values: FloatArray,
     *,
-    what: str,
+    subject: str,
     results: Sequence[str],
     data: Sequence[str],
 ) -> Redundancy:
@@ -239,15 +241,15 @@ def scattered_fit(
     inverse = np.linalg.pinv(matrix)
     spare = 1.0 - np.einsum("ij,ji->i", matrix, inverse)
     solved = inverse @ values
-    left = values - matrix @ solved
+    residual = values - matrix @ solved
     checked = spare > _SEEN
-    gap = left / np.where(checked, spare, np.inf)
-    others = np.maximum(left @ left - left * gap, 0.0) / max(freedom - 1, 1)
+    gap = residual / np.where(checked, spare, np.inf)
+    variances = np.maximum(residual @ residual - residual * gap, 0.0) / max(freedom - 1, 1)
     floor = (_ROUNDING * np.abs(values).max()) ** 2 + 1e-300
-    departure = gap * np.sqrt(spare.clip(0.0) / (others + floor)) * (freedom > 1)
+    departure = gap * np.sqrt(spare.clip(0.0) / (variances + floor)) * (freedom > 1)
     without = solved - np.where(checked, gap, np.nan)[:, None] * inverse.T
     chance = _two_sided(departure, np.full(size, max(freedom - 1.0, 1.0)))
-    names = (what, tuple(results), tuple(data))
+    names = (subject, tuple(results), tuple(data))
     return Redundancy(*names, solved, without, departure, chance, math.nan, freedom, math.nan)
 
 
@@ -264,10 +266,14 @@ def _beyond(
     if not freedom:
         return 1.0
     loss = 0.0
-    for one in measured.contributions:
-        part = one.dense(len(measured))
-        seen = part.T @ unseen @ part
-        loss += 0.5 * (np.trace(seen @ seen) + np.trace(seen) ** 2) / one.degrees_of_freedom
+    for contribution in measured.contributions:
+        part = contribution.dense(len(measured))
+        part_gram = part.T @ unseen @ part
+        loss += (
+            0.5
+            * (np.trace(part_gram @ part_gram) + np.trace(part_gram) ** 2)
+            / contribution.degrees_of_freedom
+        )
     if loss == 0.0:
         return float(chi2.sf(chi_squared, freedom))
     scale = freedom + 2.0 * loss - 6.0 * loss / (freedom + 2.0)

@@ -162,7 +162,8 @@ class UncertainValues:
     def scaled(self, factors: FloatArray) -> "UncertainValues":
         """Return each value times its factor, shape ``(n,)``, uncertainties and all."""
         contributions = tuple(
-            replace(one, parts=one.parts * factors[one.rows][:, None]) for one in self.contributions
+            replace(contribution, parts=contribution.parts * factors[contribution.rows][:, None])
+            for contribution in self.contributions
         )
         return UncertainValues(self.values * factors, contributions)
 
@@ -172,11 +173,11 @@ class UncertainValues:
 
     def carried(self, values: FloatArray, slope: FloatArray) -> "UncertainValues":
         """Return ``m`` values that follow these with a slope, shape ``(m, n)``, to first order."""
-        everywhere = np.arange(len(slope))
+        all_rows = np.arange(len(slope))
         carried_contributions = (
             replace(
                 contribution,
-                rows=everywhere,
+                rows=all_rows,
                 parts=slope[:, contribution.rows] @ contribution.parts,
             )
             for contribution in self.contributions
@@ -190,8 +191,10 @@ class UncertainValues:
             for contribution in self.contributions
         ]
         drawn = np.repeat(self.values[:, None], trials, axis=1)
-        for contribution, own in zip(self.contributions, normal, strict=True):
-            drawn[contribution.rows] += contribution.parts @ contribution.deviates(own, generator)
+        for contribution, deviates in zip(self.contributions, normal, strict=True):
+            drawn[contribution.rows] += contribution.parts @ contribution.deviates(
+                deviates, generator
+            )
         return drawn
 
     def plus(self, label: str, parts: FloatArray, freedom: float = np.inf) -> "UncertainValues":
@@ -208,7 +211,9 @@ class UncertainValues:
             If the label is that of an input with several deviates.
         """
         column = np.asarray(parts, dtype=np.float64)[:, None]
-        kept = [contribution for contribution in self.contributions if contribution.label != label]
+        contributions = [
+            contribution for contribution in self.contributions if contribution.label != label
+        ]
         for contribution in self.contributions:
             if contribution.label != label:
                 continue
@@ -217,8 +222,8 @@ class UncertainValues:
                     f"{label!r} has {contribution.parts.shape[1]} deviates, not one"
                 )
             column = column + contribution.dense(len(self))
-        kept.append(Contribution(label, freedom, np.arange(len(self)), column))
-        return replace(self, contributions=tuple(kept))
+        contributions.append(Contribution(label, freedom, np.arange(len(self)), column))
+        return replace(self, contributions=tuple(contributions))
 
 
 def added(contributions: Iterable[Contribution]) -> tuple[Contribution, ...]:
@@ -234,7 +239,7 @@ def added(contributions: Iterable[Contribution]) -> tuple[Contribution, ...]:
     return tuple(by_label.values())
 
 
-def stacked(several: Sequence[UncertainValues]) -> UncertainValues:
+def stacked(blocks: Sequence[UncertainValues]) -> UncertainValues:
     """Put values below each other; inputs of the same label are the same input.
 
     Raises
@@ -244,24 +249,28 @@ def stacked(several: Sequence[UncertainValues]) -> UncertainValues:
     """
     gathered: dict[str, list[Contribution]] = {}
     first = 0
-    for values_of_one in several:
-        for part in values_of_one.contributions:
+    for block in blocks:
+        for part in block.contributions:
             moved = replace(part, rows=part.rows + first)
             gathered.setdefault(part.label, []).append(moved)
-        first += len(values_of_one)
-    values = np.concatenate([uncertain.values for uncertain in several]) if several else np.zeros(0)
+        first += len(block)
+    values = np.concatenate([uncertain.values for uncertain in blocks]) if blocks else np.zeros(0)
     return UncertainValues(values, tuple(_one_input(parts) for parts in gathered.values()))
 
 
 def _one_input(parts: Sequence[Contribution]) -> Contribution:
     first = parts[0]
-    for other in parts[1:]:
-        same = (other.degrees_of_freedom, other.distribution, other.parts.shape[1]) == (
+    for contribution in parts[1:]:
+        agreement = (
+            contribution.degrees_of_freedom,
+            contribution.distribution,
+            contribution.parts.shape[1],
+        ) == (
             first.degrees_of_freedom,
             first.distribution,
             first.parts.shape[1],
         )
-        if not same:
+        if not agreement:
             raise ConfigurationError(
                 f"two inputs are called {first.label!r}, and they differ; give runs names that "
                 "differ"

@@ -163,7 +163,7 @@ def _told(offs: Sequence[_Off], tolerances: Tolerances) -> KnownSetting:
     fitted, _ = best_fit(
         matrix,
         joint([off.off for off in offs]),
-        what=name,
+        subject=name,
         results=(name, "added")[: matrix.shape[1]],
         data=[f"run {number + 1}" for number in range(len(offs))],
     )
