@@ -112,21 +112,21 @@ class Table(Generic[Row]):
     @cached_property
     def shown(self) -> Sequence[Column[Row]]:
         """The columns that people see."""
-        seen = [one for one in self.columns if one.heading is not None]
+        columns = [column for column in self.columns if column.heading is not None]
         if not self.filled:
-            return seen
-        return [one for one in seen if any(map(one.text, self.rows))]
+            return columns
+        return [column for column in columns if any(map(column.text, self.rows))]
 
     @property
     def lines(self) -> Iterator[tuple[list[str], str]]:
         """The rows as people read them, under :attr:`shown`, and the grade of each."""
         above: list[str] = []
         for row in self.rows[: self.most or None]:
-            cells = [one.text(row) for one in self.shown]
+            cells = [column.text(row) for column in self.shown]
             yield (
                 [
-                    "" if one.once and above[: k + 1] == cells[: k + 1] else cells[k]
-                    for k, one in enumerate(self.shown)
+                    "" if column.once and above[: k + 1] == cells[: k + 1] else cells[k]
+                    for k, column in enumerate(self.shown)
                 ],
                 self.grade(row),
             )
@@ -145,8 +145,8 @@ class Table(Generic[Row]):
         return [self._told(row) for row in self.rows]
 
     def _told(self, row: Row) -> dict[str, Any]:
-        told = ((one.key, one.value(row)) for one in self.columns if one.key)
-        return {key: value for key, value in told if value is not ABSENT}
+        cells = ((column.key, column.value(row)) for column in self.columns if column.key)
+        return {key: value for key, value in cells if value is not ABSENT}
 
 
 @dataclass(frozen=True)
@@ -213,7 +213,7 @@ class Notes:
     @property
     def data(self) -> list[str]:
         """The notes' texts."""
-        return [one.text for one in self.items]
+        return [note.text for note in self.items]
 
 
 @dataclass(frozen=True)
@@ -286,13 +286,13 @@ class Document:
     @property
     def figures(self) -> Iterator[Figure]:
         """The figures in their order."""
-        return (one for one in self.contents if isinstance(one, Figure))
+        return (content for content in self.contents if isinstance(content, Figure))
 
 
-def pairs(name: str, what: Mapping[str, str], *, titled: bool = False) -> Table[tuple[str, str]]:
+def pairs(name: str, values: Mapping[str, str], *, titled: bool = False) -> Table[tuple[str, str]]:
     """Return a table without headings: names and what they are."""
     columns: Sequence[Column[tuple[str, str]]] = (
         Column("", lambda pair: pair[0]),
         Column("", lambda pair: pair[1]),
     )
-    return Table(name, columns, tuple(what.items()), titled=titled)
+    return Table(name, columns, tuple(values.items()), titled=titled)

@@ -15,7 +15,7 @@ from pmm.document.content import Document
 
 def as_data(document: Document) -> dict[str, Any]:
     """Return what programs get, by key; what is not known is ``None``."""
-    keyed = {one.key: one.data for one in document.contents if one.key}
+    keyed = {content.key: content.data for content in document.contents if content.key}
     return {"schema": document.schema, **{key: plain(value) for key, value in keyed.items()}}
 
 
@@ -27,11 +27,11 @@ def as_json(document: Document) -> str:
 def plain(value: Any) -> Any:
     """Return numbers, texts, lists and tables only; NaN and infinity as ``None``."""
     if is_dataclass(value) and not isinstance(value, type):
-        return {one.name: plain(getattr(value, one.name)) for one in fields(value)}
+        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
     if isinstance(value, Mapping):
-        return {str(key): plain(one) for key, one in value.items()}
+        return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple | np.ndarray):
-        return [plain(one) for one in value]
+        return [plain(item) for item in value]
     if isinstance(value, float | np.floating):
         return float(value) if math.isfinite(value) else None
     if isinstance(value, np.integer | np.bool_):

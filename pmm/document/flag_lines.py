@@ -65,21 +65,21 @@ def flag_notes(flags: Iterable[Flag], options: Mapping[str, str] = NONE) -> list
     """
     return [
         Note(
-            str(one.severity),
-            f"{one.text} ({options[one.code]})" if one.code in options else one.text,
-            one.code,
+            str(line.severity),
+            f"{line.text} ({options[line.code]})" if line.code in options else line.text,
+            line.code,
         )
-        for one in flag_lines(flags)
+        for line in flag_lines(flags)
     ]
 
 
-def _line(alike: Sequence[Flag]) -> FlagLine:
-    first = alike[0]
-    runs = dict.fromkeys(run for flag in alike for run in flag.runs)
-    channels = dict.fromkeys(flag.channel for flag in alike if flag.channel)
+def _line(flags: Sequence[Flag]) -> FlagLine:
+    first = flags[0]
+    runs = dict.fromkeys(run for flag in flags for run in flag.runs)
+    channels = dict.fromkeys(flag.channel for flag in flags if flag.channel)
     where = "; ".join(joined(names) for names in (list(runs), list(channels)) if names)
-    varied = len({_without_names(flag) for flag in alike}) > 1
-    return FlagLine(first.severity, first.code, where, _message(first), len(alike), varied)
+    varied = len({_without_names(flag) for flag in flags}) > 1
+    return FlagLine(first.severity, first.code, where, _message(first), len(flags), varied)
 
 
 def _message(flag: Flag) -> str:

@@ -57,10 +57,10 @@ def between(low: float, high: float) -> str:
         return _minus(f"{low:.{_SIGNIFICANT}g} to {high:.{_SIGNIFICANT}g}")
     places = 1 - math.floor(math.log10(high - low))
     if places <= _PLACES and largest < 10.0**_PLACES:
-        ends = [f"{round(one, places):z.{max(places, 0)}f}" for one in (low, high)]
+        ends = [f"{round(end, places):z.{max(places, 0)}f}" for end in (low, high)]
     else:
         digits = max(2, places + 1 + math.floor(math.log10(largest)))
-        ends = [f"{one:.{digits}g}" for one in (low, high)]
+        ends = [f"{end:.{digits}g}" for end in (low, high)]
     return _minus(" to ".join(ends))
 
 
@@ -69,9 +69,9 @@ def is_open(phase_half_width_deg: float, amplitude: float) -> bool:
     return phase_half_width_deg >= _OPEN_DEG or amplitude == 0.0
 
 
-def counted(number: int, what: str) -> str:
+def counted(number: int, noun: str) -> str:
     """Return ``1 run``, ``2 runs``."""
-    return f"{number} {what}" if number == 1 else f"{number} {what}s"
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
 def joined(names: Sequence[str], most: int = _NAMED) -> str:

@@ -70,7 +70,7 @@ def _prefixed(name: str, value: str, prefix: str) -> str:
         return f"{prefix}-{value}"
     if name == "href" and value.startswith("#"):
         return f"#{prefix}-{value.removeprefix('#')}"
-    return _REFERENCE.sub(lambda found: f"url(#{prefix}-{found[1]})", value)
+    return _REFERENCE.sub(lambda match: f"url(#{prefix}-{match[1]})", value)
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ def write_page(
         "sections": _sections(document),
         "command": command,
         "versions": provenance(),
-        "files": [_file(one) for one in read],
+        "files": [_file(source) for source in read],
     }
     write_template("page.html.jinja", content, path)
 
@@ -135,11 +135,14 @@ def write_template(
 
 def tables_as_html(document: Document) -> str:
     """Return a document's texts, notes and tables as HTML without a style, for a notebook."""
-    told = [
-        replace(one, contents=tuple(part for part in one.contents if not isinstance(part, Figure)))
-        for one in document.sections
+    sections = [
+        replace(
+            section,
+            contents=tuple(part for part in section.contents if not isinstance(part, Figure)),
+        )
+        for section in document.sections
     ]
-    content = _sections(replace(document, sections=tuple(told)))
+    content = _sections(replace(document, sections=tuple(sections)))
     return _templates().get_template("sections.html.jinja").render(sections=content)
 
 
@@ -165,9 +168,9 @@ def _text(name: str, package: str = "pmm.document") -> str:
 
 def _sections(document: Document) -> list[tuple[Section, str, list[_Part]]]:
     return [
-        (one, _anchor(one, place), parts)
-        for place, one in enumerate(document.sections)
-        if (parts := _parts(one))
+        (section, _anchor(section, place), parts)
+        for place, section in enumerate(document.sections)
+        if (parts := _parts(section))
     ]
 
 
@@ -178,9 +181,11 @@ def _anchor(section: Section, place: int) -> str:
 
 def _parts(section: Section) -> list[_Part]:
     return [
-        _Part(type(one).__name__, one, drawn(one) if isinstance(one, Figure) else "")
-        for one in section.contents
-        if not one.empty
+        _Part(
+            type(content).__name__, content, drawn(content) if isinstance(content, Figure) else ""
+        )
+        for content in section.contents
+        if not content.empty
     ]
 
 
@@ -190,5 +195,5 @@ def drawn(figure: Figure) -> str:
 
 
 def _file(path: Path) -> _File:
-    whole = path.read_bytes()
-    return _File(path.name, hashlib.sha256(whole).hexdigest(), whole.decode(errors="replace"))
+    data = path.read_bytes()
+    return _File(path.name, hashlib.sha256(data).hexdigest(), data.decode(errors="replace"))

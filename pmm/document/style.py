@@ -111,14 +111,14 @@ def render(figure: "Figure", kind: str, salt: str) -> bytes:
             f"figures are not written as {kind!r}; choose from {', '.join(_CANVASES)}"
         )
     module, canvas = _CANVASES[kind]
-    written = BytesIO()
+    buffer = BytesIO()
     with drawing():
         mpl.rcParams["svg.hashsalt"] = salt
         figure.dpi = mpl.rcParams["savefig.dpi"]
         _lay_out(figure)
         on = getattr(import_module(f"matplotlib.backends.{module}"), canvas)(figure)
-        getattr(on, f"print_{kind}")(written, metadata=_NO_DATES[kind])
-    return compact(written.getvalue()) if kind == "svg" else written.getvalue()
+        getattr(on, f"print_{kind}")(buffer, metadata=_NO_DATES[kind])
+    return compact(buffer.getvalue()) if kind == "svg" else buffer.getvalue()
 
 
 def _lay_out(figure: "Figure") -> None:
@@ -164,8 +164,8 @@ def write_figures(
         raise ConfigurationError(f"figures cannot be named {stem!r}; give a name without a folder")
     return [
         path
-        for one in figures
-        for path in write_figure(one.draw(), folder, f"{stem}-{one.name}", formats)
+        for figure in figures
+        for path in write_figure(figure.draw(), folder, f"{stem}-{figure.name}", formats)
     ]
 
 

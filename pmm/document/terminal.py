@@ -22,7 +22,7 @@ _STYLES: Final = {
 def print_document(console: "Console", document: Document) -> None:
     """Print a document; its name runs into its first line, or has its own above a table."""
     if document.name:
-        first = next(one for one in document.contents if not one.empty)
+        first = next(content for content in document.contents if not content.empty)
         end = ": " if isinstance(first, Text) else "\n"
         console.print(document.name, style="bold", end=end, soft_wrap=True)
     for section in document.sections:
@@ -31,16 +31,20 @@ def print_document(console: "Console", document: Document) -> None:
 
 def print_section(console: "Console", section: Section) -> None:
     """Print a section, unless all that it has is for a page."""
-    shown = [one for one in section.contents if not (one.empty or isinstance(one, Figure))]
-    if shown and section.title:
+    contents = [
+        content
+        for content in section.contents
+        if not (content.empty or isinstance(content, Figure))
+    ]
+    if contents and section.title:
         console.print(f"\n{section.title}", style="bold")
     above: Content | None = None
-    for one in shown:
+    for content in contents:
         led = above is None or (isinstance(above, Text) and not above.faint)
-        if isinstance(one, Table) and not (led or one.titled):
+        if isinstance(content, Table) and not (led or content.titled):
             console.print()
-        print_content(one, console)
-        above = one
+        print_content(content, console)
+        above = content
 
 
 @singledispatch
@@ -61,11 +65,11 @@ def _(text: Text, console: "Console") -> None:
 def _(notes: Notes, console: "Console") -> None:
     from rich.text import Text as Styled
 
-    for one in notes.items:
+    for note in notes.items:
         line = Styled.assemble(
-            (f"{one.kind.upper():7s} ", _STYLES[one.grade]),
-            one.text,
-            (f" [{one.code}]" if one.code else "", "dim"),
+            (f"{note.kind.upper():7s} ", _STYLES[note.grade]),
+            note.text,
+            (f" [{note.code}]" if note.code else "", "dim"),
         )
         console.print(line, soft_wrap=True)
 
@@ -82,11 +86,11 @@ def grid(table: Table[Any]) -> "Grid":
     from rich.table import Table as Grid
 
     title = f"\n{table.name}" if table.titled else None
-    found = Grid(title=title, title_justify="left", box=None, padding=(0, 1), pad_edge=False)
-    found.show_header = any(one.title for one in table.shown)
+    rich_table = Grid(title=title, title_justify="left", box=None, padding=(0, 1), pad_edge=False)
+    rich_table.show_header = any(column.title for column in table.shown)
     for column in table.shown:
         justify: Literal["left", "right"] = "right" if column.number else "left"
-        found.add_column(column.title, justify=justify, overflow="fold")
+        rich_table.add_column(column.title, justify=justify, overflow="fold")
     for cells, grade in table.lines:
-        found.add_row(*cells, style=_STYLES[grade])
-    return found
+        rich_table.add_row(*cells, style=_STYLES[grade])
+    return rich_table

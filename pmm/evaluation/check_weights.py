@@ -28,15 +28,15 @@ def calibrate(runs: Sequence[RunResult], made: date, valid_days: int) -> Calibra
     size = len(channels)
     matrix, spread = np.zeros((size, size)), np.zeros((size, size))
     hysteresis, nonlinearity = np.zeros(size), np.zeros(size)
-    for j, loaded in enumerate(channels):
-        mine = [(load, means) for load, means in steps if load["channel"] == loaded]
-        forces = np.array([float(load["force_n"]) for load, _ in mine])
-        readings = np.array([[means[name] for name in channels] for _, means in mine])
-        _check_steps(loaded, forces)
+    for j, gauge in enumerate(channels):
+        gauge_steps = [(load, means) for load, means in steps if load["channel"] == gauge]
+        forces = np.array([float(load["force_n"]) for load, _ in gauge_steps])
+        readings = np.array([[means[name] for name in channels] for _, means in gauge_steps])
+        _check_steps(gauge, forces)
         matrix[:, j], spread[:, j], residual = _lines(forces, readings)
         span = float(np.ptp(forces))
         nonlinearity[j] = np.abs(residual[:, j]).max() / span
-        ways = [str(load["direction"]) for load, _ in mine]
+        ways = [str(load["direction"]) for load, _ in gauge_steps]
         hysteresis[j] = _hysteresis(forces, readings[:, j], ways) / span
     expires = made + timedelta(days=valid_days)
     return Calibration(channels, matrix, spread, hysteresis, nonlinearity, made, expires)
@@ -58,21 +58,21 @@ def _check_steps(channel: str, forces: FloatArray) -> None:
 def _lines(forces: FloatArray, readings: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Fit a line through each column: slopes, their standard uncertainty, residuals."""
     basis = np.stack((np.ones_like(forces), forces), axis=1)
-    found, *_ = np.linalg.lstsq(basis, readings, rcond=None)
-    residual = readings - basis @ found
+    lines, *_ = np.linalg.lstsq(basis, readings, rcond=None)
+    residual = readings - basis @ lines
     freedom = max(forces.size - 2, 1)
     variance = (residual**2).sum(axis=0) / freedom
     inverse = np.linalg.inv(basis.T @ basis)
-    return found[1], np.sqrt(inverse[1, 1] * variance), residual
+    return lines[1], np.sqrt(inverse[1, 1] * variance), residual
 
 
 def _hysteresis(forces: FloatArray, readings: FloatArray, ways: Sequence[str]) -> float:
     """Return the largest difference between the ways up and down at one load."""
     worst = 0.0
     for force in np.unique(forces):
-        here = [(r, way) for f, r, way in zip(forces, readings, ways, strict=True) if f == force]
-        up = [reading for reading, way in here if way == "up"]
-        down = [reading for reading, way in here if way == "down"]
+        pairs = [(r, way) for f, r, way in zip(forces, readings, ways, strict=True) if f == force]
+        up = [reading for reading, way in pairs if way == "up"]
+        down = [reading for reading, way in pairs if way == "down"]
         if up and down:
             worst = max(worst, abs(float(np.mean(up) - np.mean(down))))
     return worst

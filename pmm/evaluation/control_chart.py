@@ -83,9 +83,9 @@ def control_charts(runs: Sequence[RunResult]) -> tuple[Chart, ...]:
     charts = []
     for channel in runs[0].forces if runs else ():
         first = np.array([run.first[channel] for run in runs])
-        turned = np.unwrap(np.angle(first))
+        phases = np.unwrap(np.angle(first))
         charts.append(chart(f"{channel} amplitude", "N", names, np.abs(first)))
-        charts.append(chart(f"{channel} phase", "rad", names, turned))
+        charts.append(chart(f"{channel} phase", "rad", names, phases))
     return tuple(charts)
 
 

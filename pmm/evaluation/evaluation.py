@@ -79,9 +79,9 @@ def evaluate(folder: Path, valid_days: int) -> Evaluation:
     """
     results, failed = read_results(folder), list[str]()
 
-    def tried(what: Callable[[], _Found], otherwise: _Found) -> _Found:
+    def tried(test: Callable[[], _Found], otherwise: _Found) -> _Found:
         try:
-            return what()
+            return test()
         except DataError as error:
             failed.append(str(error))
             return otherwise
@@ -91,9 +91,9 @@ def evaluate(folder: Path, valid_days: int) -> Evaluation:
     def mode(run: RunResult) -> tuple[RungMode, ...]:
         return tried(lambda: rung_modes([run]), ())
 
-    modes = [each for run in of_kind(results, "pluck") for each in mode(run)]
+    modes = [rung_mode for run in of_kind(results, "pluck") for rung_mode in mode(run)]
     water = _in_water(folder)
-    failed += [one.message for one in water.failed]
+    failed += [failure.message for failure in water.failed]
     notes = []
     if 0 < len(controls) < LEAST:
         notes.append(
@@ -127,9 +127,9 @@ def _in_water(folder: Path) -> InWater:
 
 
 def _responses(
-    folder: Path, known: Sequence[RunResult], dry: Sequence[RunResult]
+    folder: Path, mass_runs: Sequence[RunResult], dry_runs: Sequence[RunResult]
 ) -> tuple[GaugeResponse, ...]:
-    return known_mass_responses(known, dry, _half_spacing(folder)) if known else ()
+    return known_mass_responses(mass_runs, dry_runs, _half_spacing(folder)) if mass_runs else ()
 
 
 def _half_spacing(folder: Path) -> float:
@@ -139,7 +139,7 @@ def _half_spacing(folder: Path) -> float:
     return oscillator.half_spacing_m
 
 
-def keep(found: Evaluation, folder: Path) -> list[Path]:
+def keep(evaluation: Evaluation, folder: Path) -> list[Path]:
     """Write what later runs use; a campaign that is being recorded may be looked at meanwhile.
 
     Raises
@@ -147,18 +147,18 @@ def keep(found: Evaluation, folder: Path) -> list[Path]:
     DataError
         If there is something to be written and another process is writing into the folder.
     """
-    if found.calibration is None and not found.modes:
+    if evaluation.calibration is None and not evaluation.modes:
         return []
     with own_campaign(folder):
-        return _write(found, folder)
+        return _write(evaluation, folder)
 
 
-def _write(found: Evaluation, folder: Path) -> list[Path]:
-    written = []
-    if found.calibration is not None:
-        written.append(write_calibration(found.calibration, folder / CALIBRATION_FILE))
-    if found.modes:
+def _write(evaluation: Evaluation, folder: Path) -> list[Path]:
+    paths = []
+    if evaluation.calibration is not None:
+        paths.append(write_calibration(evaluation.calibration, folder / CALIBRATION_FILE))
+    if evaluation.modes:
         path = folder / MODES_FILE
-        write_whole(path, modes_text([mode.as_table() for mode in found.modes]))
-        written.append(path)
-    return written
+        write_whole(path, modes_text([mode.as_table() for mode in evaluation.modes]))
+        paths.append(path)
+    return paths

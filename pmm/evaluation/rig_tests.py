@@ -89,20 +89,22 @@ class TowedSpeed:
 
 def towed_speeds(runs: Sequence[RunResult]) -> tuple[TowedSpeed, ...]:
     """Return how the carriage ran, of each tow at one speed that measured it."""
-    found = []
+    speeds = []
     for run in runs:
         point = run.plan["set_point"]
-        asked = float(point.get("carriage_speed_m_s", 0.0))
+        speed_m_s = float(point.get("carriage_speed_m_s", 0.0))
         if (
-            not asked
+            not speed_m_s
             or point.get("steady_ahead")
-            or CARRIAGE_SPEED.name not in (one.name for one in run.header.channels)
+            or CARRIAGE_SPEED.name not in (channel.name for channel in run.header.channels)
         ):
             continue
         recording, gate = run.gate_samples()
         speed = recording.values(CARRIAGE_SPEED.name)[gate]
-        found.append(TowedSpeed(run.name, asked, float(np.nanmean(speed)), float(np.nanstd(speed))))
-    return tuple(found)
+        speeds.append(
+            TowedSpeed(run.name, speed_m_s, float(np.nanmean(speed)), float(np.nanstd(speed)))
+        )
+    return tuple(speeds)
 
 
 def zero_drifts(runs: Sequence[RunResult]) -> tuple[GaugeZeros, ...]:
@@ -130,29 +132,29 @@ def rung_modes(runs: Sequence[RunResult]) -> tuple[RungMode, ...]:
 
 
 def known_mass_responses(
-    known: Sequence[RunResult], dry: Sequence[RunResult], half_spacing_m: float
+    mass_runs: Sequence[RunResult], dry_runs: Sequence[RunResult], half_spacing_m: float
 ) -> tuple[GaugeResponse, ...]:
     """Return each gauge's gain and lag from what a known mass adds to a dry run.
 
     The difference of two runs in air at one set-point is the inertia force of the mass alone, so
     that nothing has to be known of the model.
     """
-    found: list[GaugeResponse] = []
-    for one in known:
-        base = next((other for other in dry if _same_condition(one, other)), None)
+    responses: list[GaugeResponse] = []
+    for run in mass_runs:
+        base = next((dry_run for dry_run in dry_runs if _same_condition(run, dry_run)), None)
         if base is not None:
-            found += _responses(one, base, half_spacing_m)
-    return tuple(found)
+            responses += _responses(run, base, half_spacing_m)
+    return tuple(responses)
 
 
-def _same_condition(one: RunResult, other: RunResult) -> bool:
-    mine, theirs = one.plan["set_point"], other.plan["set_point"]
+def _same_condition(run: RunResult, dry_run: RunResult) -> bool:
+    point, dry_point = run.plan["set_point"], dry_run.plan["set_point"]
     keys = ("frequency_hz", "eccentricity_m", "strut_phase_rad", "medium")
-    return all(mine[key] == theirs[key] for key in keys)
+    return all(point[key] == dry_point[key] for key in keys)
 
 
-def _responses(one: RunResult, base: RunResult, half_m: float) -> list[GaugeResponse]:
-    point, mass = one.plan["set_point"], one.plan["known_mass"]
+def _responses(run: RunResult, base: RunResult, half_m: float) -> list[GaugeResponse]:
+    point, mass = run.plan["set_point"], run.plan["known_mass"]
     frequency_hz = float(point["frequency_hz"])
     omega = 2.0 * math.pi * frequency_hz
     # Displacements as phasors of e sin(theta): in phase is real.
@@ -162,19 +164,19 @@ def _responses(one: RunResult, base: RunResult, half_m: float) -> list[GaugeResp
     place = (aft + fore) / 2.0 + slope * mass["x_m"]
     force = -(omega**2) * mass["mass_kg"] * place
     moment = -(omega**2) * float(_own_inertia(mass)) * slope + force * mass["x_m"]
-    asked = {
+    forces = {
         "force_aft": force / 2.0 - moment / (2.0 * half_m),
         "force_fore": force / 2.0 + moment / (2.0 * half_m),
     }
-    found = []
-    for channel, value in asked.items():
-        if channel not in one.first or not abs(value) > 0.0:
+    responses = []
+    for channel, value in forces.items():
+        if channel not in run.first or not abs(value) > 0.0:
             continue
-        ratio = (one.first[channel] - base.first[channel]) / value
+        ratio = (run.first[channel] - base.first[channel]) / value
         sign = -1.0 if ratio.real < 0.0 else 1.0
         lag_s = -cmath.phase(sign * ratio) / omega
-        found.append(GaugeResponse(one.name, channel, frequency_hz, sign * abs(ratio), lag_s))
-    return found
+        responses.append(GaugeResponse(run.name, channel, frequency_hz, sign * abs(ratio), lag_s))
+    return responses
 
 
 def _own_inertia(mass: dict[str, Any]) -> float:
@@ -188,12 +190,12 @@ def _mode(run: RunResult) -> RungMode:
     best: tuple[float, float, str] = (0.0, 0.0, "")
     for name in run.forces:
         values = recording.values(name)[gate]
-        found = spectrum(values - np.nanmean(values), rate)
-        usable = found.frequency_hz > _LOWEST_CYCLES * rate / values.size
-        level = found.amplitude[usable]
+        force_spectrum = spectrum(values - np.nanmean(values), rate)
+        usable = force_spectrum.frequency_hz > _LOWEST_CYCLES * rate / values.size
+        level = force_spectrum.amplitude[usable]
         peak = int(np.argmax(level))
         times = float(level[peak] / np.median(level))
-        best = max(best, (times, float(found.frequency_hz[usable][peak]), name))
+        best = max(best, (times, float(force_spectrum.frequency_hz[usable][peak]), name))
     times, frequency_hz, channel = best
     if times < _RING_TIMES:
         raise DataError(

@@ -90,10 +90,10 @@ def read_results(folder: Path) -> tuple[RunResult, ...]:
     DataError
         If the folder holds none.
     """
-    found = list(_results(folder))
-    if not found:
+    results = list(_results(folder))
+    if not results:
         raise DataError(f"{folder}: no run of this campaign is complete; `pmm run` makes them")
-    return tuple(sorted(found, key=lambda one: one.header.order))
+    return tuple(sorted(results, key=lambda result: result.header.order))
 
 
 def of_kind(results: Sequence[RunResult], *kinds: str) -> tuple[RunResult, ...]:
@@ -103,12 +103,16 @@ def of_kind(results: Sequence[RunResult], *kinds: str) -> tuple[RunResult, ...]:
 
 def _results(folder: Path) -> Iterator[RunResult]:
     for marker in sorted(folder.glob("*/complete.json")):
-        own = marker.parent
-        outcome = (read_marker(own) or {}).get("outcome")
-        if outcome != "complete" or not (own / RECORDING).exists() or ".try" in own.name:
+        run_folder = marker.parent
+        outcome = (read_marker(run_folder) or {}).get("outcome")
+        if (
+            outcome != "complete"
+            or not (run_folder / RECORDING).exists()
+            or ".try" in run_folder.name
+        ):
             continue
-        header = RunHeader.read(own / HEADER)
-        yield RunResult(own, header, json.loads(header.plan_json), _first(own))
+        header = RunHeader.read(run_folder / HEADER)
+        yield RunResult(run_folder, header, json.loads(header.plan_json), _first(run_folder))
 
 
 def _first(folder: Path) -> dict[str, complex]:

@@ -78,27 +78,29 @@ def in_water(campaign: Campaign, folder: Path) -> InWater:
         If the campaign has such runs and no oscillator, or ``coefficients.toml`` is wrong.
     """
     kinds = (RunKind.RESTORING, RunKind.STATIC_DRIFT, RunKind.STRAIGHT_TOW, RunKind.CIRCLE)
-    planned = {run.kind for run in campaign.runs} | {one.kind for one in campaign.at_rest}
+    planned = {run.kind for run in campaign.runs} | {test.kind for test in campaign.at_rest}
     if not planned & {*kinds, RunKind.FREE_DECAY}:
         return InWater()
     oscillator = oscillator_of(campaign, folder)
     settings, _ = settings_of(folder, None)
     work = work_of(campaign, folder, oscillator, chain_of(settings), harmonics=_HARMONICS)
-    wanted = [run for run in work.runs if run.kind in kinds]
-    used = {name for one in wanted for name in one.zero_names}
-    zeros = [read_zero(zero) for zero in work.zeros if zero.name in used]
-    known = {zero.name: zero.zero for zero in zeros if not isinstance(zero, Failed) and zero.zero}
+    tasks = [run for run in work.runs if run.kind in kinds]
+    zero_names = {name for task in tasks for name in task.zero_names}
+    zeros = [read_zero(zero) for zero in work.zeros if zero.name in zero_names]
+    zeros_by_name = {
+        zero.name: zero.zero for zero in zeros if not isinstance(zero, Failed) and zero.zero
+    }
     failed = [_named(zero) for zero in zeros if isinstance(zero, Failed)]
-    found = _Found(campaign, oscillator, settings, failed)
-    for task in wanted:
-        found.take(task.with_zeros(known))
+    results = _Found(campaign, oscillator, settings, failed)
+    for task in tasks:
+        results.take(task.with_zeros(zeros_by_name))
     decays, torn = decays_of(campaign, folder)
     return InWater(
-        tuple(found.restoring),
-        tuple(found.tracks),
-        tuple(found.tows),
-        found.derivatives(),
-        tuple(found.turns),
+        tuple(results.restoring),
+        tuple(results.tracks),
+        tuple(results.tows),
+        results.derivatives(),
+        tuple(results.turns),
         decays,
         (*failed, *map(_named, torn)),
         settings.ship.within(campaign.water),
@@ -126,46 +128,48 @@ class _Found:
 
     def take(self, task: Task) -> None:
         """Read a run and evaluate it."""
-        done = read_cycle(task)
-        if isinstance(done, Failed):
-            self._failed.append(_named(done))
-        elif done.cycle is not None:
+        recording = read_cycle(task)
+        if isinstance(recording, Failed):
+            self._failed.append(_named(recording))
+        elif recording.cycle is not None:
             try:
-                self._evaluate(task, done, done.cycle)
+                self._evaluate(task, recording, recording.cycle)
             except PmmError as error:
                 self._failed.append(
-                    _named(Failed(task.name, done.file, str(error), error.exit_status))
+                    _named(Failed(task.name, recording.file, str(error), error.exit_status))
                 )
 
     def derivatives(self) -> CampaignCoefficients | None:
         """Return what the tows tell as one campaign, about the midpoint."""
-        cycles = [one.cycle for one in self._towed if one.cycle is not None]
+        cycles = [recording.cycle for recording in self._towed if recording.cycle is not None]
         if not any(cycle.drift_rad for cycle in cycles):
             return None
-        gauges = [one.calibration for one in self._towed if one.calibration is not None]
+        gauges = [
+            recording.calibration for recording in self._towed if recording.calibration is not None
+        ]
         stated = stated_of(self._campaign, self._settings, (), gauges, motion_asked=False)
-        wanted = replace(request_of(self._settings, stated), wanted=())
-        return campaign_coefficients(cycles, wanted)
+        request = replace(request_of(self._settings, stated), wanted=())
+        return campaign_coefficients(cycles, request)
 
-    def _evaluate(self, task: Task, done: ReadRecording, cycle: BodyCycle) -> None:
-        if done.turn is not None:
-            self.turns.append(done.turn)
+    def _evaluate(self, task: Task, recording: ReadRecording, cycle: BodyCycle) -> None:
+        if recording.turn is not None:
+            self.turns.append(recording.turn)
             return
         if task.kind is not RunKind.RESTORING:
-            self._towed.append(done)
+            self._towed.append(recording)
             self.tows.append(tow_of(task.kind, cycle))
             return
         believed = self._campaign.as_recorded(task.name)
         hull = believed.hull
-        one = restoring_of(
+        restoring = restoring_of(
             cycle, believed.model, np.array(hull.added_mass), np.array(hull.restoring)
         )
-        self.restoring.append(one)
-        self.tracks.append(track_of(one, cycle))
+        self.restoring.append(restoring)
+        self.tracks.append(track_of(restoring, cycle))
 
 
-def _named(one: Failed) -> Failed:
+def _named(failure: Failed) -> Failed:
     """Return it with the run's name in its message."""
-    if one.name in one.message:
-        return one
-    return replace(one, message=f"{one.name}: {one.message}")
+    if failure.name in failure.message:
+        return failure
+    return replace(failure, message=f"{failure.name}: {failure.message}")

@@ -10,26 +10,26 @@ from pmm.document.content import Column, Table, data_only, number, word
 
 AGREEMENT: Final[tuple[Column[Redundancy], ...]] = (
     word("data of", "what"),
-    Column("data", lambda one: len(one.data), number=True),
-    Column("chi²", lambda one: one.chi_squared, "chi_squared", lambda x: _written(x, ".3g"),
+    Column("data", lambda row: len(row.data), number=True),
+    Column("chi²", lambda row: row.chi_squared, "chi_squared", lambda x: _written(x, ".3g"),
            number=True),
     number("dof", "degrees_of_freedom"),
-    Column("by chance", lambda one: one.probability, "probability", lambda x: _written(x, ".2g"),
+    Column("by chance", lambda row: row.probability, "probability", lambda x: _written(x, ".2g"),
            number=True),
-    Column("furthest off", lambda one: one.furthest, "furthest", " or ".join),
-    Column("by", lambda one: _departure(one), number=True),
-    Column("agree", lambda one: one.agree, "agree", lambda agree: "yes" if agree else "NO"),
-    Column("without it", lambda one: _without(one)),
-    Column("u widened", lambda one: _wider(one)),
+    Column("furthest off", lambda row: row.furthest, "furthest", " or ".join),
+    Column("by", lambda row: _departure(row), number=True),
+    Column("agree", lambda row: row.agree, "agree", lambda agree: "yes" if agree else "NO"),
+    Column("without it", lambda row: _without(row)),
+    Column("u widened", lambda row: _wider(row)),
     *data_only("stands_out", "widening"),
-    Column(None, lambda one: one.cause, "widened_by"),
-    Column(None, lambda one: [_datum(one, k) for k in range(len(one.data))], "data"),
+    Column(None, lambda row: row.cause, "widened_by"),
+    Column(None, lambda row: [_datum(row, k) for k in range(len(row.data))], "data"),
 )  # fmt: skip
 
 
-def agreement_table(found: Sequence[Redundancy]) -> Table[Redundancy]:
+def agreement_table(redundancies: Sequence[Redundancy]) -> Table[Redundancy]:
     """Return the table; programs get it under ``redundancy``."""
-    return Table("Agreement", AGREEMENT, found, "redundancy", filled=True, notes=_NOTES)
+    return Table("Agreement", AGREEMENT, redundancies, "redundancy", filled=True, notes=_NOTES)
 
 
 _NOTES = (
@@ -38,29 +38,41 @@ _NOTES = (
 )
 
 
-def _datum(one: Redundancy, k: int) -> dict[str, Any]:
+def _datum(redundancy: Redundancy, k: int) -> dict[str, Any]:
     without = {
         name: finite_or_none(float(value))
-        for name, value in zip(one.results, one.without[k], strict=True)
+        for name, value in zip(redundancy.results, redundancy.without[k], strict=True)
     }
-    return {"name": one.data[k], "departure": float(one.departure[k]), "without": without}
+    return {
+        "name": redundancy.data[k],
+        "departure": float(redundancy.departure[k]),
+        "without": without,
+    }
 
 
-def _departure(one: Redundancy) -> str:
-    if not one.furthest:
+def _departure(redundancy: Redundancy) -> str:
+    if not redundancy.furthest:
         return ""
-    return f"{one.departure[one.data.index(one.furthest[0])]:.2g}"
+    return f"{redundancy.departure[redundancy.data.index(redundancy.furthest[0])]:.2g}"
 
 
-def _without(one: Redundancy) -> str:
-    if not one.furthest:
+def _without(redundancy: Redundancy) -> str:
+    if not redundancy.furthest:
         return ""
-    answers = zip(one.results, one.without[one.data.index(one.furthest[0])], strict=True)
+    answers = zip(
+        redundancy.results,
+        redundancy.without[redundancy.data.index(redundancy.furthest[0])],
+        strict=True,
+    )
     return ", ".join(f"{name} {value:.5g}" for name, value in answers)
 
 
-def _wider(one: Redundancy) -> str:
-    return f"{one.widening:.3g} times, by {one.cause}" if one.widening > 1.0 else ""
+def _wider(redundancy: Redundancy) -> str:
+    return (
+        f"{redundancy.widening:.3g} times, by {redundancy.cause}"
+        if redundancy.widening > 1.0
+        else ""
+    )
 
 
 def _written(value: float, form: str) -> str:

@@ -65,10 +65,12 @@ def added_document(added: tuple[AddedFolder, ...], archive: str) -> Document:
         word("", "state"),
         number("runs", "runs"),
         word("computed", "computed", ", ".join),
-        Column(None, lambda one: one.refused, "refused"),
+        Column(None, lambda row: row.refused, "refused"),
     )
     refused = [
-        Note("not found", f"{one.campaign}: {text}") for one in added for text in one.refused
+        Note("not found", f"{folder.campaign}: {text}")
+        for folder in added
+        for text in folder.refused
     ]
     return _document(
         archive, "folders added", Table("Folders", columns, added, "added"), Notes(refused)
@@ -81,12 +83,12 @@ def list_document(rows: list[Row], archive: str) -> Document:
         _cell("campaign", "campaign"),
         _cell("hull", "hull"),
         Column("recorded", itemgetter("recorded_utc"), "recorded_utc", day),
-        Column("runs", lambda one: f"{one['recorded']} of {one['runs']}", number=True),
-        Column("", lambda one: _STATES[bool(one["analysed"])]),
+        Column("runs", lambda row: f"{row['recorded']} of {row['runs']}", number=True),
+        Column("", lambda row: _STATES[bool(row["analysed"])]),
         Column("gap", _gap),
         Column("folder", itemgetter("folder"), "folder", _short),
-        Column(None, lambda one: bool(one["analysed"]), "analysed"),
-        Column(None, lambda one: bool(one["diagnosed"]), "diagnosed"),
+        Column(None, lambda row: bool(row["analysed"]), "analysed"),
+        Column(None, lambda row: bool(row["diagnosed"]), "diagnosed"),
         *_data("runs", "recorded", "sha256", "verdict", "answer", "probability", "changes",
                "refused"),
     )  # fmt: skip
@@ -102,8 +104,8 @@ def list_document(rows: list[Row], archive: str) -> Document:
 def _warnings(rows: list[Row]) -> Iterator[Note]:
     for row in rows:
         if row["changes"]:
-            told = "; ".join(row["changes"])
-            yield Note("changed", f"{row['folder']}: {told}; what is told is of before")
+            changes = "; ".join(row["changes"])
+            yield Note("changed", f"{row['folder']}: {changes}; what is told is of before")
         for text in row["refused"]:
             yield Note("not found", f"{row['campaign']}: {text}")
 
@@ -114,10 +116,10 @@ def day(time_utc: str | None) -> str:
 
 
 def _short(folder: str) -> str:
-    path, here = Path(folder), Path.cwd()
+    path, working_folder = Path(folder), Path.cwd()
     if url := url_of(path):
         return url
-    return str(path.relative_to(here)) if path.is_relative_to(here) else folder
+    return str(path.relative_to(working_folder)) if path.is_relative_to(working_folder) else folder
 
 
 def _gap(row: Row) -> str:
@@ -133,7 +135,7 @@ def find_document(
 ) -> Document:
     """Return the runs that were found, and a harmonic of each where one is asked for."""
     about_run = (_cell("kind", "kind"), _cell("medium", "medium"))
-    shown = (
+    columns = (
         _cell("campaign", "campaign", once=True),
         _cell("hull", "hull", once=True),
         _cell("run", "run"),
@@ -142,17 +144,17 @@ def find_document(
         _cell("U", "carriage_speed_m_s", "m/s", form=".4g"),
         *(about_run if channel is None else _harmonic_cells()),
     )
-    every = RUN_COLUMNS if channel is None else RUN_COLUMNS | HARMONIC_COLUMNS
-    rest = _data(*(name for name in every if name not in {one.key for one in shown}))
-    told = f"{counted(len(rows), 'run' if channel is None else 'value')}: {expression}"
+    names = RUN_COLUMNS if channel is None else RUN_COLUMNS | HARMONIC_COLUMNS
+    rest = _data(*(name for name in names if name not in {column.key for column in columns}))
+    summary = f"{counted(len(rows), 'run' if channel is None else 'value')}: {expression}"
     if channel is not None:
-        told += f"; {channel}, order {order}"
+        summary += f"; {channel}, order {order}"
     cut = f"the first {_MOST} are shown; --json has all" if len(rows) > _MOST else ""
     return _document(
         archive,
         "runs found",
-        Table("Runs", (*shown, *rest), rows, "runs", most=_MOST),
-        Text([told, cut] if cut else [told]),
+        Table("Runs", (*columns, *rest), rows, "runs", most=_MOST),
+        Text([summary, cut] if cut else [summary]),
         Data("expression", expression),
         Data("channel", channel),
         Data("order", None if channel is None else order),
@@ -161,7 +163,7 @@ def find_document(
 
 def coefficients_found_document(rows: list[Row], expression: str, archive: str) -> Document:
     """Return the coefficients that were found, each with its campaign."""
-    shown = (
+    columns = (
         _cell("campaign", "campaign", once=True),
         _cell("hull", "hull", once=True),
         _cell("coefficient", "coefficient"),
@@ -170,14 +172,16 @@ def coefficients_found_document(rows: list[Row], expression: str, archive: str) 
         Column("value", _interval("value", "half_width"), number=True),
         _cell("unit", "unit"),
     )
-    rest = _data(*(name for name in COEFFICIENT_COLUMNS if name not in {one.key for one in shown}))
-    told = [f"{counted(len(rows), 'coefficient')}: {expression}"]
-    told += [f"the first {_MOST} are shown; --json has all"] if len(rows) > _MOST else []
+    rest = _data(
+        *(name for name in COEFFICIENT_COLUMNS if name not in {column.key for column in columns})
+    )
+    lines = [f"{counted(len(rows), 'coefficient')}: {expression}"]
+    lines += [f"the first {_MOST} are shown; --json has all"] if len(rows) > _MOST else []
     return _document(
         archive,
         "coefficients found",
-        Table("Coefficients", (*shown, *rest), rows, "coefficients", most=_MOST),
-        Text(told),
+        Table("Coefficients", (*columns, *rest), rows, "coefficients", most=_MOST),
+        Text(lines),
         Data("expression", expression),
     )
 
@@ -201,9 +205,9 @@ def _interval(key: str, half_width: str) -> Any:
     return told
 
 
-def show_document(found: ShownRun) -> Document:
+def show_document(shown_run: ShownRun) -> Document:
     """Return all that is known of a run."""
-    about = {key: str(value) for key, value in found.run.items() if value not in (None, "")}
+    about = {key: str(value) for key, value in shown_run.run.items() if value not in (None, "")}
     harmonics = (
         _cell("channel", "channel", once=True),
         _cell("order", "order", form="d"),
@@ -211,14 +215,14 @@ def show_document(found: ShownRun) -> Document:
         *_data("in_phase", "quadrature", "in_phase_half_width", "quadrature_half_width"),
     )
     return _document(
-        str(found.run["run"]),
+        str(shown_run.run["run"]),
         "run",
         pairs("Run", about),
-        Data("run", found.run),
-        Table("Harmonics", harmonics, found.harmonics, "harmonics", titled=True,
+        Data("run", shown_run.run),
+        Table("Harmonics", harmonics, shown_run.harmonics, "harmonics", titled=True,
               notes=(f"half-widths of {100 * LEVEL:g} % intervals",)),
-        Text([] if found.harmonics else ["not analysed: pmm archive add FOLDER --analyse"]),
-        Table("Notes", _NOTES, found.notes, "notes", titled=True),
+        Text([] if shown_run.harmonics else ["not analysed: pmm archive add FOLDER --analyse"]),
+        Table("Notes", _NOTES, shown_run.notes, "notes", titled=True),
     )  # fmt: skip
 
 
@@ -230,6 +234,6 @@ def notes_story(folder: Path) -> Iterator[Section]:
     ConfigurationError
         If a line of its file is no note.
     """
-    notes = [asdict(one) for one in read_notes(folder)]
+    notes = [asdict(note) for note in read_notes(folder)]
     if notes:
         yield Section("Notes", (Table("", _NOTES, notes, "notes"),))

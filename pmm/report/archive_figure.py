@@ -12,15 +12,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def trend_figure(found: Trend) -> "Figure":
+def trend_figure(trend: Trend) -> "Figure":
     """Draw a coefficient over time with intervals and limits."""
     from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
 
-    times = np.array([_utc(row["recorded_utc"]) for row in found.rows], "datetime64[s]")
-    values = np.array([row["value"] for row in found.rows])
-    halves = np.array([row["half_width"] or 0.0 for row in found.rows])
-    low, high = np.array([(one.low, one.high) for one in found.chart]).T
-    outside = np.array([one.outside for one in found.chart])
+    times = np.array([_utc(row["recorded_utc"]) for row in trend.rows], "datetime64[s]")
+    values = np.array([row["value"] for row in trend.rows])
+    halves = np.array([row["half_width"] or 0.0 for row in trend.rows])
+    low, high = np.array([(point.low, point.high) for point in trend.chart]).T
+    outside = np.array([point.outside for point in trend.chart])
     with drawn(7.5, 3.6) as figure:
         axes = figure.subplots()
         if np.isfinite(low).any():
@@ -34,13 +34,13 @@ def trend_figure(found: Trend) -> "Figure":
                       fillstyle="none", markersize=9.0)  # fmt: skip
         locator = AutoDateLocator(minticks=2)  # type: ignore[no-untyped-call]
         axes.xaxis.set_major_locator(locator)
-        written = ConciseDateFormatter(locator)  # type: ignore[no-untyped-call]
-        axes.xaxis.set_major_formatter(written)
-        axes.set_ylabel(f"{found.name} ({found.unit})" if found.unit else found.name)
+        formatter = ConciseDateFormatter(locator)  # type: ignore[no-untyped-call]
+        axes.xaxis.set_major_formatter(formatter)
+        axes.set_ylabel(f"{trend.name} ({trend.unit})" if trend.unit else trend.name)
         axes.legend(ncols=4, loc="upper center", bbox_to_anchor=(0.5, -0.12))
-        at = f", {found.frequency_hz:.4g} Hz" if found.frequency_hz else ""
-        hull = f"{found.hull}, " if found.hull else ""
-        figure.suptitle(f"{found.name}: {hull}{found.speed_m_s:.4g} m/s{at}")
+        at = f", {trend.frequency_hz:.4g} Hz" if trend.frequency_hz else ""
+        hull = f"{trend.hull}, " if trend.hull else ""
+        figure.suptitle(f"{trend.name}: {hull}{trend.speed_m_s:.4g} m/s{at}")
     return figure
 
 

@@ -16,76 +16,77 @@ class _TrendRow(NamedTuple):
     point: ChartPoint
 
 
-def trend_document(found: tuple[Trend, ...], probability: float) -> Document:
+def trend_document(trends: tuple[Trend, ...], probability: float) -> Document:
     """Return a coefficient, or a harmonic of a repeated run, over time with its control chart."""
-    name = found[0].name.removesuffix(", in phase")
-    several = len({one.name for one in found}) > 1
+    name = trends[0].name.removesuffix(", in phase")
+    several = len({trend.name for trend in trends}) > 1
     rows = [
         _TrendRow(trend, row, point)
-        for trend in found
+        for trend in trends
         for row, point in zip(trend.rows, trend.chart, strict=True)
     ]
 
     def of_row(heading: str | None, key: str) -> Column[_TrendRow]:
-        return Column(heading, lambda one: one.row[key], key)
+        return Column(heading, lambda entry: entry.row[key], key)
 
     columns: tuple[Column[_TrendRow], ...] = (
         of_row("hull", "hull"),
-        Column("U", lambda one: one.trend.speed_m_s, "speed_m_s", "{:.4g}".format, "m/s",
+        Column("U", lambda entry: entry.trend.speed_m_s, "speed_m_s", "{:.4g}".format, "m/s",
                number=True),
-        Column("f", lambda one: one.trend.frequency_hz, "frequency_hz", "{:.4g}".format, "Hz",
+        Column("f", lambda entry: entry.trend.frequency_hz, "frequency_hz", "{:.4g}".format, "Hz",
                number=True),
-        Column("recorded", lambda one: one.row["recorded_utc"], "recorded_utc", day),
+        Column("recorded", lambda entry: entry.row["recorded_utc"], "recorded_utc", day),
         of_row("campaign", "campaign"),
-        *((of_row("run", "run"),) if "run" in found[0].rows[0] else ()),
-        Column("", lambda one: one.trend.name.rpartition(", ")[2] if several else "", "part"),
+        *((of_row("run", "run"),) if "run" in trends[0].rows[0] else ()),
+        Column("", lambda entry: entry.trend.name.rpartition(", ")[2] if several else "", "part"),
         Column("value" if several else name,
-               lambda one: rounded(one.row["value"], one.row["half_width"] or 0.0),
-               unit=found[0].unit if len({one.unit for one in found}) == 1 else "", number=True),
-        Column("limits", lambda one: f"{one.point.low:.4g} to {one.point.high:.4g}"
-               if one.point.low == one.point.low else NOT_KNOWN, number=True),
-        Column("", lambda one: "outside" if one.point.outside else ""),
+               lambda entry: rounded(entry.row["value"], entry.row["half_width"] or 0.0),
+               unit=trends[0].unit if len({trend.unit for trend in trends}) == 1 else "",
+               number=True),
+        Column("limits", lambda entry: f"{entry.point.low:.4g} to {entry.point.high:.4g}"
+               if entry.point.low == entry.point.low else NOT_KNOWN, number=True),
+        Column("", lambda entry: "outside" if entry.point.outside else ""),
         *(of_row(None, key) for key in ("folder", "unit", "value", "standard_uncertainty",
                                         "half_width")),
-        Column(None, lambda one: one.point.low, "low"),
-        Column(None, lambda one: one.point.high, "high"),
-        Column(None, lambda one: one.point.outside, "outside"),
+        Column(None, lambda entry: entry.point.low, "low"),
+        Column(None, lambda entry: entry.point.high, "high"),
+        Column(None, lambda entry: entry.point.outside, "outside"),
     )  # fmt: skip
     contents = (
         Table("Trend", columns, rows, "trend"),
         Data("name", name),
         Data("probability", probability),
         Notes(list(_outside(rows, probability))),
-        Text(list(_too_few(found)), faint=True),
+        Text(list(_too_few(trends)), faint=True),
     )
-    figures = Section("Figures", tuple(trend_figures(found)))
+    figures = Section("Figures", tuple(trend_figures(trends)))
     return Document(name, "trend", (Section("", contents), figures), f"{SCHEMA}-trend")
 
 
 def _outside(rows: list[_TrendRow], probability: float) -> Iterator[Note]:
-    for one in rows:
-        if one.point.outside:
+    for entry in rows:
+        if entry.point.outside:
             yield Note(
                 "outside",
-                f"{one.row['campaign']} ({day(one.row['recorded_utc'])}): {one.trend.name} "
-                f"{one.row['value']:.4g} "
-                f"is not within {one.point.low:.4g} to {one.point.high:.4g}, where the "
+                f"{entry.row['campaign']} ({day(entry.row['recorded_utc'])}): {entry.trend.name} "
+                f"{entry.row['value']:.4g} "
+                f"is not within {entry.point.low:.4g} to {entry.point.high:.4g}, where the "
                 f"others let it be expected with {100.0 * probability:g} %",
             )
 
 
-def _too_few(found: tuple[Trend, ...]) -> Iterator[str]:
-    few = sum(len(one.rows) < FEWEST for one in found)
+def _too_few(trends: tuple[Trend, ...]) -> Iterator[str]:
+    few = sum(len(trend.rows) < FEWEST for trend in trends)
     if few:
         yield f"limits take {FEWEST} of one hull, speed and frequency"
 
 
-def trend_figures(found: tuple[Trend, ...]) -> Iterator[Figure]:
+def trend_figures(trends: tuple[Trend, ...]) -> Iterator[Figure]:
     """Yield a figure for each hull, speed and frequency."""
     caption = (
         "Each value with its interval, and the limits that the others set for it; what lies "
         "outside is marked."
     )
-    for k, one in enumerate(found, 1):
-        name = f"trend-{k}" if len(found) > 1 else "trend"
-        yield Figure(name, caption, lambda one=one: trend_figure(one))  # type: ignore[misc]
+    for k, trend in enumerate(trends, 1):
+        name = f"trend-{k}" if len(trends) > 1 else "trend"
+        yield Figure(name, caption, lambda trend=trend: trend_figure(trend))  # type: ignore[misc]

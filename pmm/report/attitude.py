@@ -71,27 +71,29 @@ def _told(
     key: str,
     factor: float,
     unit: str,
-    of: Callable[[Any], tuple[float, float] | None],
+    estimate_of: Callable[[Any], tuple[float, float] | None],
 ) -> Column[Any]:
     """Return a column of values with uncertainties of a row's channel, as far as it has them."""
 
     def told(row: _RowOfRun) -> str:
         channel: AttitudeChannel | None = getattr(row, key)
-        found = None if channel is None else of(channel)
-        return NOT_KNOWN if found is None else rounded(factor * found[0], factor * found[1])
+        estimate = None if channel is None else estimate_of(channel)
+        return (
+            NOT_KNOWN if estimate is None else rounded(factor * estimate[0], factor * estimate[1])
+        )
 
     return Column(heading, told, unit=unit, number=True)
 
 
 def _mean(heading: str, key: str, factor: float, unit: str) -> Column[Any]:
-    return _told(heading, key, factor, unit, lambda one: (one.mean, one.mean_u))
+    return _told(heading, key, factor, unit, lambda channel: (channel.mean, channel.mean_u))
 
 
 def _harmonic(heading: str, key: str, order: int, factor: float, unit: str) -> Column[Any]:
-    def amplitude(one: AttitudeChannel) -> tuple[float, float] | None:
-        if len(one.amplitude) < order:
+    def amplitude(channel: AttitudeChannel) -> tuple[float, float] | None:
+        if len(channel.amplitude) < order:
             return None
-        return one.amplitude[order - 1], one.amplitude_u[order - 1]
+        return channel.amplitude[order - 1], channel.amplitude_u[order - 1]
 
     return _told(f"{heading}, harmonic {order}", key, factor, unit, amplitude)
 
@@ -143,13 +145,13 @@ def _table(
     outcome: CampaignOutcome,
     name: str,
     key: str,
-    own: tuple[Column[Any], ...],
+    value_columns: tuple[Column[Any], ...],
     rows: Sequence[_Row],
     note: str,
 ) -> Table[_Row]:
     ship, speed = outcome.settings.ship, attrgetter("speed_m_s")
-    at = condition_columns(speed, ship.length_m, outcome.water, ship.gravity_m_s2)
-    columns = (*_HEAD, *own, *at)
+    conditions = condition_columns(speed, ship.length_m, outcome.water, ship.gravity_m_s2)
+    columns = (*_HEAD, *value_columns, *conditions)
     return Table(name, columns, rows, key, titled=True, notes=(note,), filled=True)
 
 
@@ -169,15 +171,15 @@ def heel_rows(outcome: CampaignOutcome) -> list[HeelRow]:
 
 def _attitudes(outcome: CampaignOutcome) -> Iterator[AttitudeRow]:
     cycles = {cycle.name: cycle for cycle in outcome.cycles}
-    for one in outcome.runs:
-        if one.attitude is not None and one.name in cycles:
-            sensors = one.attitude.sensors
+    for run in outcome.runs:
+        if run.attitude is not None and run.name in cycles:
+            sensors = run.attitude.sensors
             yield AttitudeRow(
-                *_condition(cycles[one.name]),
+                *_condition(cycles[run.name]),
                 str(sensors.heave_and_pitch),
                 sensors.sinkage_x_m,
-                one.attitude.sinkage,
-                one.attitude.trim,
+                run.attitude.sinkage,
+                run.attitude.trim,
             )
 
 
@@ -204,7 +206,7 @@ def _channel(cycle: BodyCycle, phasors: Phasors, name: str) -> AttitudeChannel:
     if cycle.orders < 1:
         return AttitudeChannel(mean, mean_u)
     place = phasors.index(at_order(name, 1))
-    value, apart = phasors.values[place], spread[place]
+    value, value_u = phasors.values[place], spread[place]
     size = abs(value)
-    along = np.hypot(value.real * apart.real, value.imag * apart.imag) / max(size, 1e-300)
+    along = np.hypot(value.real * value_u.real, value.imag * value_u.imag) / max(size, 1e-300)
     return AttitudeChannel(mean, mean_u, (float(size),), (float(along),))

@@ -55,8 +55,8 @@ class _Panel:
             value: AttitudeChannel | None = getattr(row, self.key)
             if value is None:
                 continue
-            own = group(row)
-            colour = PALETTE[groups.index(own) % len(PALETTE)]
+            group_value = group(row)
+            colour = PALETTE[groups.index(group_value) % len(PALETTE)]
             axes.errorbar(
                 _ALONG[self.along](row),
                 self.factor * value.mean,
@@ -64,10 +64,10 @@ class _Panel:
                 fmt="o",
                 color=colour,
                 markerfacecolor="none" if row.frequency_hz else colour,
-                label=None if own in named or not self.group
-                else _LABELS[self.group].format(own),
+                label=None if group_value in named or not self.group
+                else _LABELS[self.group].format(group_value),
             )  # fmt: skip
-            named.add(own)
+            named.add(group_value)
         axes.set_xlabel(self.along)
         axes.set_ylabel(self.name)
         if self.group:
@@ -105,14 +105,19 @@ def heel_figure(rows: Sequence[HeelRow]) -> "Drawing":
     """Draw the roll moment where there is a gauge for it, the heel where the model is free."""
     measured = any(row.moment is not None for row in rows)
     free = any(row.held == Held.FREE for row in rows)
-    several = [*([_OF_MOMENT] if measured else []), *([_OF_HEEL] if free or not measured else [])]
-    return _figure(several, rows, 3.2)
+    panel_rows = [
+        *([_OF_MOMENT] if measured else []),
+        *([_OF_HEEL] if free or not measured else []),
+    ]
+    return _figure(panel_rows, rows, 3.2)
 
 
-def _figure(several: Sequence[Sequence[_Panel]], rows: Sequence[Any], height: float) -> "Drawing":
-    with drawn(10.0, height * len(several)) as figure:
-        panels = figure.subplots(len(several), 2, squeeze=False)
-        for axes_row, two in zip(panels, several, strict=True):
-            for axes, panel in zip(axes_row, two, strict=True):
+def _figure(
+    panel_rows: Sequence[Sequence[_Panel]], rows: Sequence[Any], height: float
+) -> "Drawing":
+    with drawn(10.0, height * len(panel_rows)) as figure:
+        panels = figure.subplots(len(panel_rows), 2, squeeze=False)
+        for axes_row, panel_row in zip(panels, panel_rows, strict=True):
+            for axes, panel in zip(axes_row, panel_row, strict=True):
                 panel.draw(axes, rows)
     return figure

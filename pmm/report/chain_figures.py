@@ -90,13 +90,13 @@ def traces(
     after = edges_s[edges_s >= settled_s]
     origin_s = float(after[0]) if after.size else settled_s
     elapsed_s = time_s - origin_s
-    kept = (elapsed_s > -0.1 * period_s) & (elapsed_s < (_SHOWN_PERIODS + 0.1) * period_s)
+    window = (elapsed_s > -0.1 * period_s) & (elapsed_s < (_SHOWN_PERIODS + 0.1) * period_s)
     values = {
-        signal.name: run[signal.name][kept]
+        signal.name: run[signal.name][window]
         for signal in chain.signals
         if signal.sampled and signal.name in run
     }
-    return Traces(elapsed_s[kept], values, edges_s - origin_s)
+    return Traces(elapsed_s[window], values, edges_s - origin_s)
 
 
 def chain_figure(
@@ -136,7 +136,7 @@ def chain_figure(
 
 def _panels(values: Signals) -> list[_Panel]:
     """Return the rows: what stands still (a carriage at rest) is left out."""
-    recorded = tuple(signals.recorded(one).name for one in (FORCE_AFT, FORCE_FORE))
+    recorded = tuple(signals.recorded(force).name for force in (FORCE_AFT, FORCE_FORE))
     rows = [
         _Panel("drive", "shaft speed", "rad/s", (signals.SHAFT_SPEED.name,)),
         _Panel("carriage", "speed", "m/s", (signals.CARRIAGE_SPEED.name,)),
@@ -159,17 +159,17 @@ def _color(name: str) -> str:
 def _draw_both(
     axes: "Axes", panel: _Panel, nominal: Traces, changed: Traces | None, inside: BoolArray
 ) -> None:
-    shown = display(panel.unit)
+    unit = display(panel.unit)
     time_s = nominal.time_s[inside]
     for name in panel.names:
-        own = shown.factor * nominal.values[name][inside]
+        nominal_values = unit.factor * nominal.values[name][inside]
         if changed is None:
-            axes.plot(time_s, own, color=_color(name), linestyle=_line(name))
+            axes.plot(time_s, nominal_values, color=_color(name), linestyle=_line(name))
             continue
-        axes.plot(time_s, own, color="#BBBBBB", linewidth=2.6)
-        other = shown.factor * changed.at(name, nominal.time_s)[inside]
-        axes.plot(time_s, other, color=_color(name), linestyle=_line(name))
-    axes.set_ylabel(f"{panel.label}\n({shown.label})")
+        axes.plot(time_s, nominal_values, color="#BBBBBB", linewidth=2.6)
+        changed_values = unit.factor * changed.at(name, nominal.time_s)[inside]
+        axes.plot(time_s, changed_values, color=_color(name), linestyle=_line(name))
+    axes.set_ylabel(f"{panel.label}\n({unit.label})")
     axes.set_title(panel.stage, loc="left")
     _draw_edges(axes, (changed or nominal).edges_s)
 
@@ -177,16 +177,16 @@ def _draw_both(
 def _draw_difference(
     axes: "Axes", panel: _Panel, nominal: Traces, changed: Traces, inside: BoolArray
 ) -> None:
-    shown = display(panel.unit)
+    unit = display(panel.unit)
     largest = 0.0
     for name in panel.names:
-        own = nominal.values[name]
-        gap = shown.factor * (changed.at(name, nominal.time_s) - own)[inside]
-        scale = shown.factor * float(np.abs(own).max())
+        nominal_values = nominal.values[name]
+        gap = unit.factor * (changed.at(name, nominal.time_s) - nominal_values)[inside]
+        scale = unit.factor * float(np.abs(nominal_values).max())
         largest = max(largest, float(np.abs(gap).max()) / scale if scale else 0.0)
         axes.plot(nominal.time_s[inside], gap, color=_color(name), linestyle=_line(name))
     axes.set_title(f"difference, {100.0 * largest:.2g} % of the nominal peak", loc="left")
-    axes.set_ylabel(f"({shown.label})")
+    axes.set_ylabel(f"({unit.label})")
     if largest < 1e-9:
         axes.set_ylim(-1.0, 1.0)
         axes.set_yticks([0.0])

@@ -14,13 +14,13 @@ def _known(value: float, uncertainty: float) -> str:
 
 _CIRCLES: Final[tuple[Column[SteadyTurn], ...]] = (
     word("run", "run"),
-    Column("radius", lambda one: _known(one.radius_m, one.u_radius_m), unit="m", number=True),
-    Column("r", lambda one: _known(one.turn_rate_rad_s, one.u_turn_rate_rad_s), unit="rad/s",
+    Column("radius", lambda turn: _known(turn.radius_m, turn.u_radius_m), unit="m", number=True),
+    Column("r", lambda turn: _known(turn.turn_rate_rad_s, turn.u_turn_rate_rad_s), unit="rad/s",
            number=True),
     number("U", "speed_m_s", written(".4g"), "m/s"),
-    Column("drift", lambda one: degrees(one.drift_rad), unit="deg", number=True),
-    Column("force", lambda one: rounded(one.force_n, one.u_force_n), unit="N", number=True),
-    Column("moment", lambda one: rounded(one.moment_n_m, one.u_moment_n_m), unit="N m",
+    Column("drift", lambda turn: degrees(turn.drift_rad), unit="deg", number=True),
+    Column("force", lambda turn: rounded(turn.force_n, turn.u_force_n), unit="N", number=True),
+    Column("moment", lambda turn: rounded(turn.moment_n_m, turn.u_moment_n_m), unit="N m",
            number=True),
     *data_only("radius_m", "u_radius_m", "turn_rate_rad_s", "u_turn_rate_rad_s", "drift_rad",
                "force_n", "u_force_n", "moment_n_m", "u_moment_n_m"),

@@ -47,10 +47,11 @@ _CHECKS: Final[tuple[Column[ConsistencyCheck], ...]] = (
     word("unit", "unit"),
     number("first", "first_value", written(".5g")),
     number("second", "second_value", written(".5g")),
-    Column("difference ± u", lambda one: f"{one.difference:+.2g} ± {one.standard_uncertainty:.2g}",
+    Column("difference ± u",
+           lambda check: f"{check.difference:+.2g} ± {check.standard_uncertainty:.2g}",
            number=True),
-    Column("", lambda one: "agree" if one.agrees else "DIFFER"),
-    Column("of", lambda one: f"{one.first}; {one.second}"),
+    Column("", lambda check: "agree" if check.agrees else "DIFFER"),
+    Column("of", lambda check: f"{check.first}; {check.second}"),
 )  # fmt: skip
 _ARRANGEMENTS: Final[tuple[Column[OtherArrangement], ...]] = (
     word("key", "key"),
@@ -66,32 +67,32 @@ _REFERENCES: Final[tuple[Column[ReferenceRow], ...]] = (
     word("unit", "unit"),
     number("f", "frequency_hz", frequency, "Hz"),
     number("U", "speed_m_s", written("g"), "m/s"),
-    Column("measured", lambda one: rounded(one.measured, one.half_width), number=True),
+    Column("measured", lambda row: rounded(row.measured, row.half_width), number=True),
     number("table", "expected", written(".5g")),
     number("off", "difference", written("+.3g")),
-    Column("", lambda one: "within" if one.within else "OUTSIDE"),
+    Column("", lambda row: "within" if row.within else "OUTSIDE"),
     word("of", "reference"),
 )
 
 
-def findings(found: CampaignCoefficients) -> Iterator[Content]:
+def findings(coefficients: CampaignCoefficients) -> Iterator[Content]:
     """Yield forms, outliers, what is missing, tables beside and checks, where there are any."""
     missing = (word("coefficient", "name"), word("why", "message"))
-    yield Table("Which form the data support", _FORMS, found.choices, titled=True)
-    yield Table("Repeats that stand off", _OUTLIERS, found.outliers, titled=True)
-    yield Table("What these runs do not tell", missing, found.missing, titled=True)
-    yield from beside(found)
-    for kind in dict.fromkeys(check.kind for check in found.checks):
-        rows = [check for check in found.checks if check.kind == kind]
+    yield Table("Which form the data support", _FORMS, coefficients.choices, titled=True)
+    yield Table("Repeats that stand off", _OUTLIERS, coefficients.outliers, titled=True)
+    yield Table("What these runs do not tell", missing, coefficients.missing, titled=True)
+    yield from beside(coefficients)
+    for kind in dict.fromkeys(check.kind for check in coefficients.checks):
+        rows = [check for check in coefficients.checks if check.kind == kind]
         agree = sum(row.agrees for row in rows)
         name = f"Checks in SI units, {kind}: {agree} of {len(rows)} agree"
         yield Table(name, _CHECKS, rows, titled=True, folded=agree == len(rows))
 
 
-def beside(found: CampaignCoefficients) -> tuple[Content, ...]:
+def beside(coefficients: CampaignCoefficients) -> tuple[Content, ...]:
     """Return the values beside other arrangements' and tables' from elsewhere."""
     name = "Other arrangements of the rig"
     return (
-        Table(name, _ARRANGEMENTS, found.arrangements, titled=True, notes=(_LIKELIHOOD,)),
-        Table("Beside tables from elsewhere", _REFERENCES, found.references, titled=True),
+        Table(name, _ARRANGEMENTS, coefficients.arrangements, titled=True, notes=(_LIKELIHOOD,)),
+        Table("Beside tables from elsewhere", _REFERENCES, coefficients.references, titled=True),
     )

@@ -32,10 +32,12 @@ _MARGIN: Final = 0.04  # of the axis, right of the highest frequency
 _BAND: Final = 0.15  # opacity of the recommended value's interval
 
 
-def panels_of(found: CampaignCoefficients, speed_m_s: float) -> dict[str, list[str]]:
+def panels_of(coefficients: CampaignCoefficients, speed_m_s: float) -> dict[str, list[str]]:
     """Return the coefficients of each figure: linear ones together, the rest eight at a time."""
-    names = list(dict.fromkeys(found.entries[k].name for k in found.rows(speed_m_s=speed_m_s)))
-    linear = [name_of(place, found.plane, found.form) for place in PLACES]
+    names = list(
+        dict.fromkeys(coefficients.entries[k].name for k in coefficients.rows(speed_m_s=speed_m_s))
+    )
+    linear = [name_of(place, coefficients.plane, coefficients.form) for place in PLACES]
     first = [name for name in linear if name in names]
     rest = [name for name in names if name not in first]
     groups = {"frequency": first} if first else {}
@@ -46,29 +48,33 @@ def panels_of(found: CampaignCoefficients, speed_m_s: float) -> dict[str, list[s
 
 
 def frequency_figure(
-    found: CampaignCoefficients, speed_m_s: float, names: Sequence[str]
+    coefficients: CampaignCoefficients, speed_m_s: float, names: Sequence[str]
 ) -> "Figure":
     """Draw a panel for each coefficient at one speed, of at most four series."""
-    title = f"Coefficients at {speed_m_s:g} m/s; {found.normalisation}"
+    title = f"Coefficients at {speed_m_s:g} m/s; {coefficients.normalisation}"
     with grid(names, title) as (figure, panels):
-        series = {name: list(_series(found, name, speed_m_s)) for name in names}
-        labels = list(dict.fromkeys(label for own in series.values() for label, _ in own))
-        widest = max(found.entries[k].frequency_hz for k in found.rows(speed_m_s=speed_m_s))
+        series = {name: list(_series(coefficients, name, speed_m_s)) for name in names}
+        labels = list(dict.fromkeys(label for curves in series.values() for label, _ in curves))
+        widest = max(
+            coefficients.entries[k].frequency_hz for k in coefficients.rows(speed_m_s=speed_m_s)
+        )
         for name, panel in zip(names, panels, strict=True):
-            used = []
+            values = []
             for label, rows in series[name]:
                 number = labels.index(label)
-                aside = widest * beside(number, len(labels))
-                at = [found.entries[k].frequency_hz + aside for k in rows]
-                points(panel, found, rows, at, label, number)
-                used += found.values[rows].tolist()
-            _draw_band(panel, found, series[name])
+                offset = widest * beside(number, len(labels))
+                positions = [coefficients.entries[k].frequency_hz + offset for k in rows]
+                points(panel, coefficients, rows, positions, label, number)
+                values += coefficients.values[rows].tolist()
+            _draw_band(panel, coefficients, series[name])
             most = MOST_SERIES - len(series[name])
-            used += _draw_references(panel, found, name, speed_m_s, most)
-            panel.set_ylabel(axis_label(found, name))
-            settle(panel, used)
+            values += _draw_references(panel, coefficients, name, speed_m_s, most)
+            panel.set_ylabel(axis_label(coefficients, name))
+            settle(panel, values)
         _align(panels)
-        label = f"frequency (Hz), series side by side; intervals of {100.0 * found.level:g} %"
+        label = (
+            f"frequency (Hz), series side by side; intervals of {100.0 * coefficients.level:g} %"
+        )
         finish(figure, panels, [label] * len(panels))
     return figure
 
@@ -82,25 +88,25 @@ def _align(panels: Sequence["Axes"]) -> None:
 
 
 def _series(
-    found: CampaignCoefficients, name: str, speed_m_s: float
+    coefficients: CampaignCoefficients, name: str, speed_m_s: float
 ) -> Iterator[tuple[str, list[int]]]:
     """Yield the recommended values, then those of each frequency, then a static test's."""
-    every = found.rows(name, speed_m_s=speed_m_s)
-    chosen = recommended(found)
-    first = [k for k in every if k in chosen]
+    rows = coefficients.rows(name, speed_m_s=speed_m_s)
+    chosen = recommended(coefficients)
+    first = [k for k in rows if k in chosen]
     if first:
         yield RECOMMENDED, first
-    own = [k for k in found.at_each_frequency(name, speed_m_s) if k not in first]
-    if own:
-        yield _label(found, own), own
-    static = [k for k in every if found.entries[k].method == STATIC_DRIFT and k not in first]
+    frequency_rows = [k for k in coefficients.at_each_frequency(name, speed_m_s) if k not in first]
+    if frequency_rows:
+        yield _label(coefficients, frequency_rows), frequency_rows
+    static = [k for k in rows if coefficients.entries[k].method == STATIC_DRIFT and k not in first]
     if static:
         yield STATIC_DRIFT, static
 
 
-def _label(found: CampaignCoefficients, rows: Sequence[int]) -> str:
+def _label(coefficients: CampaignCoefficients, rows: Sequence[int]) -> str:
     """Return the method, with the motion where it is of one amplitude and that is the same."""
-    entries = [found.entries[k] for k in rows]
+    entries = [coefficients.entries[k] for k in rows]
     methods = " or ".join(dict.fromkeys(entry.method for entry in entries))
     motions = {
         amplitudes(entry.translation_amplitude_m, entry.rotation_amplitude_rad).partition(",")[0]
@@ -111,31 +117,31 @@ def _label(found: CampaignCoefficients, rows: Sequence[int]) -> str:
 
 
 def _draw_band(
-    panel: "Axes", found: CampaignCoefficients, series: Sequence[tuple[str, list[int]]]
+    panel: "Axes", coefficients: CampaignCoefficients, series: Sequence[tuple[str, list[int]]]
 ) -> None:
     """Shade the interval of a recommended value of slow motion across all frequencies."""
     rows = dict(series).get(RECOMMENDED, [])
-    if len(rows) == 1 and len(series) > 1 and np.isfinite(found.half_widths[rows[0]]):
-        value, half = float(found.values[rows[0]]), float(found.half_widths[rows[0]])
+    if len(rows) == 1 and len(series) > 1 and np.isfinite(coefficients.half_widths[rows[0]]):
+        value, half = float(coefficients.values[rows[0]]), float(coefficients.half_widths[rows[0]])
         panel.axhspan(value - half, value + half, color=PALETTE[0], alpha=_BAND, lw=0.0)
 
 
 def _draw_references(
-    panel: "Axes", found: CampaignCoefficients, name: str, speed_m_s: float, most: int
+    panel: "Axes", coefficients: CampaignCoefficients, name: str, speed_m_s: float, most: int
 ) -> list[float]:
     """Draw the tables' values at the measured frequencies; return them."""
-    unit = next(entry.unit for entry in found.entries if entry.name == name)
+    unit = next(entry.unit for entry in coefficients.entries if entry.name == name)
     rows = [
         reference
-        for reference in found.references
+        for reference in coefficients.references
         if reference.name == name
         and reference.unit == unit
         and abs(reference.speed_m_s - speed_m_s) < 1e-9
     ]
     tables = list(dict.fromkeys(row.reference for row in rows))[:most]
     for number, table in enumerate(tables):
-        own = sorted({(row.frequency_hz, row.expected) for row in rows if row.reference == table})
-        at, expected = zip(*own, strict=True)
+        pairs = sorted({(row.frequency_hz, row.expected) for row in rows if row.reference == table})
+        frequencies_hz, expected = zip(*pairs, strict=True)
         style = _DASHES[number % len(_DASHES)]
-        panel.plot(at, expected, style, marker="_", color=TRACE, ms=9.0, label=table)
+        panel.plot(frequencies_hz, expected, style, marker="_", color=TRACE, ms=9.0, label=table)
     return [row.expected for row in rows if row.reference in tables]

@@ -67,29 +67,29 @@ def finish(figure: "Figure", panels: Sequence["Axes"], labels: Sequence[str]) ->
         )
 
 
-def axis_label(found: CampaignCoefficients, name: str) -> str:
+def axis_label(coefficients: CampaignCoefficients, name: str) -> str:
     """Return ``name (unit)``; without dimensions the figure's title names the system."""
-    unit = next(entry.unit for entry in found.entries if entry.name == name)
+    unit = next(entry.unit for entry in coefficients.entries if entry.name == name)
     return f"{name}\n({'–' if unit == '1' else unit})"
 
 
 def points(
     panel: "Axes",
-    found: CampaignCoefficients,
+    coefficients: CampaignCoefficients,
     rows: Sequence[int],
-    at: Sequence[float],
+    positions: Sequence[float],
     label: str,
     number: int,
     *,
     joined: bool = True,
 ) -> None:
-    """Draw values with their intervals, in the order of ``at``."""
-    order = np.argsort(at)
-    own = [rows[k] for k in order]
+    """Draw values with their intervals, in the order of ``positions``."""
+    order = np.argsort(positions)
+    sorted_rows = [rows[k] for k in order]
     panel.errorbar(
-        np.asarray(at)[order],
-        found.values[own],
-        found.half_widths[own],
+        np.asarray(positions)[order],
+        coefficients.values[sorted_rows],
+        coefficients.half_widths[sorted_rows],
         fmt=f"{MARKS[number % len(MARKS)]}{'-' if joined else ''}",
         color=PALETTE[number % len(PALETTE)],
         ms=4.0,

@@ -26,17 +26,17 @@ _CAPTIONS: Final = {
 }
 
 
-def figures(found: CampaignCoefficients) -> Iterator[Figure]:
+def figures(coefficients: CampaignCoefficients) -> Iterator[Figure]:
     """Yield every figure that the campaign allows."""
-    for number, speed in enumerate(sorted({entry.speed_m_s for entry in found.entries}), 1):
-        for kind, names in panels_of(found, speed).items():
-            draw = partial(frequency_figure, found, speed, names)
+    for number, speed in enumerate(sorted({entry.speed_m_s for entry in coefficients.entries}), 1):
+        for kind, names in panels_of(coefficients, speed).items():
+            draw = partial(frequency_figure, coefficients, speed, names)
             yield Figure(f"{kind}-{number}", _caption(kind, speed), draw)
-        if has_amplitudes(found, speed):
-            draw = partial(amplitude_figure, found, speed)
+        if has_amplitudes(coefficients, speed):
+            draw = partial(amplitude_figure, coefficients, speed)
             yield Figure(f"amplitude-{number}", _caption("amplitude", speed), draw)
-        if rows := budget_rows(found, speed):
-            draw = partial(budget_figure, found, rows, speed)
+        if rows := budget_rows(coefficients, speed):
+            draw = partial(budget_figure, coefficients, rows, speed)
             yield Figure(f"budget-{number}", _caption("budget", speed), draw)
 
 

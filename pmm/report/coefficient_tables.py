@@ -20,13 +20,13 @@ _SMALL = "An exclamation mark: a small difference of large loads, see the budget
 _FREEDOM = "u: standard uncertainty; ν: its degrees of freedom; k: coverage factor of the interval."
 
 
-def _entry(found: CampaignCoefficients) -> dict[str, Column[int]]:
+def _entry(coefficients: CampaignCoefficients) -> dict[str, Column[int]]:
     """Return the columns that tables of values share, by heading; a row is the value's number."""
-    entries, half = found.entries, found.half_widths
+    entries, half = coefficients.entries, coefficients.half_widths
 
     def value(k: int) -> str:
         small = " !" if entries[k].retained < _FEW_DIGITS else ""
-        return rounded(float(found.values[k]), float(half[k])) + small
+        return rounded(float(coefficients.values[k]), float(half[k])) + small
 
     shared: tuple[Column[int], ...] = (
         Column("coefficient", lambda k: entries[k].name),
@@ -36,24 +36,24 @@ def _entry(found: CampaignCoefficients) -> dict[str, Column[int]]:
         Column("value", value, number=True),
         Column("method", lambda k: entries[k].method),
     )
-    return {str(one.heading): one for one in shared}
+    return {str(column.heading): column for column in shared}
 
 
-def recommended_table(found: CampaignCoefficients) -> Table[int]:
+def recommended_table(coefficients: CampaignCoefficients) -> Table[int]:
     """Return the values to be used first: one a coefficient, with the runs that it rests on."""
-    rows, entries, shared = recommended(found), found.entries, _entry(found)
+    rows, entries, shared = recommended(coefficients), coefficients.entries, _entry(coefficients)
     letters = dict(zip(dict.fromkeys(entries[k].runs for k in rows), _letters(), strict=False))
-    notes = [f"Intervals hold the value with {100.0 * found.level:g} %.", _MISFIT]
+    notes = [f"Intervals hold the value with {100.0 * coefficients.level:g} %.", _MISFIT]
     notes += [_SMALL] if any(entries[k].retained < _FEW_DIGITS for k in rows) else []
     notes += [f"Runs {letter}: {', '.join(runs)}." for runs, letter in letters.items()]
     columns = (
         *(shared[name] for name in ("coefficient", "unit", "value", "U")),
-        Column[int]("how", lambda k: _way(found, k)),
+        Column[int]("how", lambda k: _way(coefficients, k)),
         Column("misfit", lambda k: entries[k].misfit, written=written(".3g"), number=True),
         Column("runs", lambda k: f"{letters[entries[k].runs]} ({len(entries[k].runs)})"),
-        Column("largest input", lambda k: _largest(budget(found, k))),
+        Column("largest input", lambda k: _largest(budget(coefficients, k))),
     )
-    name = f"Recommended values: {found.normalisation}"
+    name = f"Recommended values: {coefficients.normalisation}"
     return Table(name, columns, rows, titled=True, notes=tuple(notes))
 
 
@@ -63,54 +63,56 @@ def _letters() -> Iterator[str]:
         yield from map("".join, product(ascii_uppercase, repeat=size))
 
 
-def _way(found: CampaignCoefficients, k: int) -> str:
-    entry = found.entries[k]
-    at = entry.frequency_hz
-    choices = found.choices_of(entry.name, entry.runs)
+def _way(coefficients: CampaignCoefficients, k: int) -> str:
+    entry = coefficients.entries[k]
+    frequency_hz = entry.frequency_hz
+    choices = coefficients.choices_of(entry.name, entry.runs)
     forms = [choice.fitted for choice in choices if choice.runs == entry.runs]
-    return ", ".join((entry.method, *forms, *([f"{frequency(at)} Hz"] if at > 0.0 else [])))
+    return ", ".join(
+        (entry.method, *forms, *([f"{frequency(frequency_hz)} Hz"] if frequency_hz > 0.0 else []))
+    )
 
 
-def alternatives_tables(found: CampaignCoefficients) -> Iterator[Table[int]]:
+def alternatives_tables(coefficients: CampaignCoefficients) -> Iterator[Table[int]]:
     """Yield what else there is of each method: other amplitudes, frequencies and ways."""
     first, entries, shared, trials = (
-        set(recommended(found)),
-        found.entries,
-        _entry(found),
-        found.trials,
+        set(recommended(coefficients)),
+        coefficients.entries,
+        _entry(coefficients),
+        coefficients.trials,
     )
 
     def motion(k: int) -> str:
         return amplitudes(entries[k].translation_amplitude_m, entries[k].rotation_amplitude_rad)
 
-    drawn = Column[int](
+    trial_column = Column[int](
         f"Monte Carlo, {trials.count}",
         lambda k: _interval(float(trials.low[k]), float(trials.high[k])),
         number=True,
     )
     for method in dict.fromkeys(entry.method for entry in entries):
-        rows = [k for k in found.rows(method=method) if k not in first]
+        rows = [k for k in coefficients.rows(method=method) if k not in first]
         if not rows:
             continue
-        seen = trials.count > 0 and any(math.isfinite(trials.low[k]) for k in rows)
+        has_trials = trials.count > 0 and any(math.isfinite(trials.low[k]) for k in rows)
         columns = (
             *(shared[name] for name in ("coefficient", "unit", "f", "U")),
             Column[int]("motion", motion, number=True),
             shared["value"],
-            *([drawn] if seen else []),
+            *([trial_column] if has_trials else []),
             Column("runs", lambda k: joined(entries[k].runs, 2)),
         )
-        name = f"Alternatives, {method}: {found.normalisation}"
+        name = f"Alternatives, {method}: {coefficients.normalisation}"
         yield Table(name, columns, rows, titled=True, folded=True)
 
 
-def budget_table(found: CampaignCoefficients) -> Table[int]:
+def budget_table(coefficients: CampaignCoefficients) -> Table[int]:
     """Return the budget of every value, largest input first."""
-    shared = _entry(found)
+    shared = _entry(coefficients)
     columns = (
         *(shared[name] for name in ("coefficient", "f", "U", "method")),
         *(
-            Column[int](heading, lambda k, key=key: getattr(budget(found, k), key),  # type: ignore[misc]
+            Column[int](heading, lambda k, key=key: getattr(budget(coefficients, k), key),  # type: ignore[misc]
                         written=form, number=True)
             for heading, key, form in (
                 ("u", "standard_uncertainty", written(".2g")),
@@ -118,28 +120,34 @@ def budget_table(found: CampaignCoefficients) -> Table[int]:
                 ("k", "coverage_factor", written(".2f")),
             )
         ),
-        Column("share of the variance", lambda k: _shares(budget(found, k))),
+        Column("share of the variance", lambda k: _shares(budget(coefficients, k))),
     )  # fmt: skip
-    name = f"Budgets: {found.normalisation}"
-    return Table(name, columns, tuple(found.rows()), titled=True, notes=(_FREEDOM,), folded=True)
+    name = f"Budgets: {coefficients.normalisation}"
+    return Table(
+        name, columns, tuple(coefficients.rows()), titled=True, notes=(_FREEDOM,), folded=True
+    )
 
 
 def _freedom(value: float) -> str:
     return f"{value:.0f}" if value < _MANY else f"over {_MANY}"
 
 
-def _largest(one: CoefficientBudget) -> str:
-    return f"{one.lines[0].source} {100.0 * one.lines[0].share:.0f} %" if one.lines else NOT_KNOWN
+def _largest(budget: CoefficientBudget) -> str:
+    return (
+        f"{budget.lines[0].source} {100.0 * budget.lines[0].share:.0f} %"
+        if budget.lines
+        else NOT_KNOWN
+    )
 
 
-def _shares(one: CoefficientBudget) -> str:
+def _shares(budget: CoefficientBudget) -> str:
     """Return what each kind of input adds; those that add next to nothing are put together."""
-    told = [line for line in one.lines if line.share >= _LITTLE]
-    words = [f"{line.source} {_percent(line.share)}" for line in told]
-    left = sum(line.share for line in one.lines) - sum(line.share for line in told)
-    if left >= _NOTHING:
-        words.append(f"others {_percent(left)}")
-    return ", ".join(words) + (f". {one.digits}" if one.digits else "")
+    lines = [line for line in budget.lines if line.share >= _LITTLE]
+    words = [f"{line.source} {_percent(line.share)}" for line in lines]
+    remainder = sum(line.share for line in budget.lines) - sum(line.share for line in lines)
+    if remainder >= _NOTHING:
+        words.append(f"others {_percent(remainder)}")
+    return ", ".join(words) + (f". {budget.digits}" if budget.digits else "")
 
 
 def _percent(share: float) -> str:

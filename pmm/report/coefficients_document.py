@@ -54,16 +54,16 @@ SCHEMA: Final = "pmm-coefficients-1"
 
 def coefficients_document(outcome: CampaignOutcome) -> Document:
     """Return what ``pmm coefficients`` shows; ``docs/coefficients-command.md`` has the keys."""
-    found = outcome.result
-    used, noticed = counted(len(outcome.cycles), "run"), Notes(flag_notes(outcome.noticed))
+    coefficients = outcome.result
+    run_count, notes = counted(len(outcome.cycles), "run"), Notes(flag_notes(outcome.noticed))
     return Document(
         ", ".join(outcome.names),
         "coefficients",
         (
-            Section("", (Text((f"{used}, {found.plane}, {found.form} form",)),)),
-            Section("", (*conclusion(found), *_conditions(outcome), noticed)),
+            Section("", (Text((f"{run_count}, {coefficients.plane}, {coefficients.form} form",)),)),
+            Section("", (*conclusion(coefficients), *_conditions(outcome), notes)),
             Section("", (*memory_contents(outcome), memory_data(outcome))),
-            Section("", (*beside(found), *alternatives_tables(found))),
+            Section("", (*beside(coefficients), *alternatives_tables(coefficients))),
             Section("", tuple(Data(key, value) for key, value in _data(outcome).items())),
         ),
         SCHEMA,
@@ -78,19 +78,22 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
     stories
         Of campaigns that chose their runs: what was known after each.
     """
-    found = outcome.result
+    coefficients = outcome.result
     flags: Content = Notes(flag_notes(outcome.all_flags))
     return Document(
         ", ".join(outcome.names),
         "coefficients",
         (
             Section("", (pairs("Summary", _summary(outcome)), *_conditions(outcome))),
-            Section("Coefficients", (recommended_table(found), *alternatives_tables(found))),
+            Section(
+                "Coefficients",
+                (recommended_table(coefficients), *alternatives_tables(coefficients)),
+            ),
             *stories,
             Section(
                 "Figures",
                 (
-                    *figures(found),
+                    *figures(coefficients),
                     *circle_figures(outcome),
                     *decay_figures(outcome),
                     *wave_figures(outcome),
@@ -101,9 +104,9 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
             ),
             *line_sections(outcome),
             Section("Memory of the water", tuple(memory_contents(outcome))),
-            Section("What was found", tuple(findings(found))),
+            Section("What was found", tuple(findings(coefficients))),
             Section("What was flagged", (Text(("Nothing.",)) if flags.empty else flags,)),
-            Section("Uncertainty", (_given(outcome), budget_table(found))),
+            Section("Uncertainty", (_given(outcome), budget_table(coefficients))),
             Section(
                 "Runs",
                 (_runs(outcome), circle_table(outcome.turns), decay_table(outcome.decays)),
@@ -114,7 +117,7 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
 
 
 def _conditions(outcome: CampaignOutcome) -> tuple[Content, ...]:
-    speeds = (one.speed_m_s for one in outcome.result.entries)
+    speeds = (entry.speed_m_s for entry in outcome.result.entries)
     conditions = conditions_table(speeds, outcome.settings.ship, outcome.water)
     return (
         conditions,
@@ -125,36 +128,38 @@ def _conditions(outcome: CampaignOutcome) -> tuple[Content, ...]:
     )
 
 
-def conclusion(found: CampaignCoefficients) -> tuple[Content, ...]:
+def conclusion(coefficients: CampaignCoefficients) -> tuple[Content, ...]:
     """Return the values to be used first, and what was found about them."""
     forms: dict[tuple[str, str], list[str]] = {}
-    for choice in found.choices:
+    for choice in coefficients.choices:
         forms.setdefault((choice.load, choice.message), []).extend(choice.runs)
-    lines = [f"form    {load} of {joined(runs)}: {said}" for (load, said), runs in forms.items()]
-    if found.checks:
-        agree = sum(check.agrees for check in found.checks)
-        lines.append(f"checks  {agree} of {len(found.checks)} between runs agree")
-    apart = [check.message for check in found.checks if not check.agrees]
-    apart += [outlier.message for outlier in found.outliers]
+    lines = [
+        f"form    {load} of {joined(runs)}: {message}" for (load, message), runs in forms.items()
+    ]
+    if coefficients.checks:
+        agree = sum(check.agrees for check in coefficients.checks)
+        lines.append(f"checks  {agree} of {len(coefficients.checks)} between runs agree")
+    warnings = [check.message for check in coefficients.checks if not check.agrees]
+    warnings += [outlier.message for outlier in coefficients.outliers]
     return (
-        recommended_table(found),
+        recommended_table(coefficients),
         Text(("", *lines)),
-        Notes([Note("warning", said) for said in apart]),
-        Text([f"missing {one.name}: {one.message}" for one in found.missing]),
+        Notes([Note("warning", message) for message in warnings]),
+        Text([f"missing {gap.name}: {gap.message}" for gap in coefficients.missing]),
     )
 
 
 def _data(outcome: CampaignOutcome) -> dict[str, Any]:
-    found = outcome.result
-    told = ("name", "file", "periods", "sample_rate_hz", "duration_s", "flags")
+    coefficients = outcome.result
+    keys = ("name", "file", "periods", "sample_rate_hz", "duration_s", "flags")
     return {
         "campaigns": outcome.names,
-        "recommended": [row for row in table(found) if row["recommended"]],
-        "coefficients": to_dict(found),
-        "budgets": [budget(found, k) for k in range(len(found.entries))],
+        "recommended": [row for row in table(coefficients) if row["recommended"]],
+        "coefficients": to_dict(coefficients),
+        "budgets": [budget(coefficients, k) for k in range(len(coefficients.entries))],
         "stated": outcome.stated,
         "body": outcome.body,
-        "runs": [{key: getattr(run, key) for key in told} for run in outcome.runs],
+        "runs": [{key: getattr(run, key) for key in keys} for run in outcome.runs],
         "failed": outcome.failed,
         "not_recorded": outcome.not_recorded,
         "left_out": outcome.left_out,
@@ -162,53 +167,61 @@ def _data(outcome: CampaignOutcome) -> dict[str, Any]:
 
 
 def _summary(outcome: CampaignOutcome) -> dict[str, str]:
-    found = outcome.result
-    agree = sum(check.agrees for check in found.checks)
-    outside = sum(not reference.within for reference in found.references)
+    coefficients = outcome.result
+    agree = sum(check.agrees for check in coefficients.checks)
+    outside = sum(not reference.within for reference in coefficients.references)
     rows = {
         "campaign": ", ".join(outcome.names),
         "runs": f"{len(outcome.cycles)} used, {len(outcome.failed)} could not be",
-        "plane and form": f"{found.plane}, {found.form}",
-        "system": found.normalisation,
-        "values": f"{len(recommended(found))} recommended, of {len(found.entries)} in all",
-        "repeats that stand off": str(len(found.outliers)),
+        "plane and form": f"{coefficients.plane}, {coefficients.form}",
+        "system": coefficients.normalisation,
+        "values": f"{len(recommended(coefficients))} recommended, "
+        f"of {len(coefficients.entries)} in all",
+        "repeats that stand off": str(len(coefficients.outliers)),
         "kinds of flags": str(len(flag_lines(outcome.all_flags))),
     }
-    if found.checks:
-        rows["checks between runs"] = f"{agree} of {len(found.checks)} agree"
-    if found.references:
-        rows["beside tables"] = f"{outside} of {len(found.references)} outside"
+    if coefficients.checks:
+        rows["checks between runs"] = f"{agree} of {len(coefficients.checks)} agree"
+    if coefficients.references:
+        rows["beside tables"] = f"{outside} of {len(coefficients.references)} outside"
     return rows
 
 
 def _runs(outcome: CampaignOutcome) -> Table[ReadRecording]:
     """Return the runs that were used, with the hash of each recording."""
-    used = {cycle.name: cycle for cycle in outcome.cycles}
+    cycles = {cycle.name: cycle for cycle in outcome.cycles}
 
-    def cycle(one: ReadRecording) -> BodyCycle | None:
-        return used.get(one.name) or one.cycle
+    def cycle(run: ReadRecording) -> BodyCycle | None:
+        return cycles.get(run.name) or run.cycle
 
-    def medium(one: ReadRecording) -> str:
-        known = cycle(one)
-        return "zero" if known is None else str(known.medium) if one.name in used else "dry"
+    def medium(run: ReadRecording) -> str:
+        body_cycle = cycle(run)
+        return (
+            "zero"
+            if body_cycle is None
+            else str(body_cycle.medium)
+            if run.name in cycles
+            else "dry"
+        )
 
-    def motion(one: ReadRecording) -> str:
-        known = cycle(one)
-        moved = known is not None and known.frequency_hz > 0.0
-        return amplitudes(*known.amplitude.tolist()) if moved else NOT_KNOWN  # type: ignore[union-attr]
+    def motion(run: ReadRecording) -> str:
+        body_cycle = cycle(run)
+        moved = body_cycle is not None and body_cycle.frequency_hz > 0.0
+        return amplitudes(*body_cycle.amplitude.tolist()) if moved else NOT_KNOWN  # type: ignore[union-attr]
 
     columns: tuple[Column[ReadRecording], ...] = (
         word("run", "name"),
         Column("medium", medium),
-        Column("f", lambda one: cycle(one), unit="Hz", number=True,
-               written=lambda one: frequency(one.frequency_hz) if one else NOT_KNOWN),
-        Column("U", lambda one: cycle(one), unit="m/s", number=True,
-               written=lambda one: f"{one.speed_m_s:g}" if one else NOT_KNOWN),
+        Column("f", lambda run: cycle(run), unit="Hz", number=True,
+               written=lambda body_cycle: frequency(body_cycle.frequency_hz) if body_cycle
+               else NOT_KNOWN),
+        Column("U", lambda run: cycle(run), unit="m/s", number=True,
+               written=lambda body_cycle: f"{body_cycle.speed_m_s:g}" if body_cycle else NOT_KNOWN),
         Column("motion", motion, number=True),
-        Column("periods", lambda one: str(one.periods or NOT_KNOWN), number=True),
+        Column("periods", lambda run: str(run.periods or NOT_KNOWN), number=True),
         number("record", "duration_s", written(".1f"), "s"),
         number("rate", "sample_rate_hz", written("g"), "Hz"),
-        Column("SHA-256 begins", lambda one: one.sha256[:16]),
+        Column("SHA-256 begins", lambda run: run.sha256[:16]),
     )  # fmt: skip
     return Table("Recordings", columns, outcome.runs, titled=True)
 
@@ -217,8 +230,8 @@ def _given(outcome: CampaignOutcome) -> Table[tuple[str, str]]:
     """Return what was stated: the body that was taken off and standard uncertainties."""
     body = {} if outcome.body is None else asdict(outcome.body)
     stated = zip(STATED, outcome.stated.vector, strict=True)
-    known = {key: value for key, value in body.items() if value is not None}
-    rows = [(f"model: {key}", f"{value:.6g}") for key, value in known.items()]
+    model_values = {key: value for key, value in body.items() if value is not None}
+    rows = [(f"model: {key}", f"{value:.6g}") for key, value in model_values.items()]
     rows += [(f"u of {key}", f"{value:.3g}") for key, value in stated if value > 0.0]
     columns = (
         Column[tuple[str, str]]("what", lambda row: row[0]),

@@ -50,7 +50,7 @@ _FOUND: Final[tuple[Column[_Row], ...]] = (
 )
 
 
-def comparison_document(found: ChannelComparison, level: float) -> Document:
+def comparison_document(comparison: ChannelComparison, level: float) -> Document:
     """Return what ``pmm compare`` shows; ``docs/comparison.md`` describes the keys.
 
     Parameters
@@ -58,82 +58,116 @@ def comparison_document(found: ChannelComparison, level: float) -> Document:
     level
         Probability of the intervals.
     """
-    shows = f", derivative {found.order}" if found.order else ""
+    shows = f", derivative {comparison.order}" if comparison.order else ""
     about = {
-        "first": f"{found.first}{shows}",
-        "second": found.second,
-        "compared": f"{found.from_s:.3f} s to {found.to_s:.3f} s on the second's clock, "
-        f"{found.band_hz[0]:.3g} Hz to {found.band_hz[1]:.3g} Hz",
+        "first": f"{comparison.first}{shows}",
+        "second": comparison.second,
+        "compared": f"{comparison.from_s:.3f} s to {comparison.to_s:.3f} s on the second's clock, "
+        f"{comparison.band_hz[0]:.3g} Hz to {comparison.band_hz[1]:.3g} Hz",
     }
     caption = "Both channels on one clock, what is left, and lag and gain along the record."
-    figure = Figure("comparison", caption, lambda: comparison_figure(found, level))
-    told: tuple[Content, ...] = (
+    figure = Figure("comparison", caption, lambda: comparison_figure(comparison, level))
+    contents: tuple[Content, ...] = (
         pairs("Channels", about),
-        Table("Found", _FOUND, _rows(found, level)),
-        noticed(found.flags),
+        Table("Found", _FOUND, _rows(comparison, level)),
+        noticed(comparison.flags),
         figure,
-        *_data(found, level),
+        *_data(comparison, level),
     )
-    return Document("", "two channels compared", (Section("", told),), SCHEMA)
+    return Document("", "two channels compared", (Section("", contents),), SCHEMA)
 
 
-def _rows(found: ChannelComparison, level: float) -> Sequence[_Row]:
-    def row(what: str, of: Estimate, meaning: str, factor: float = 1.0, unit: str = "") -> _Row:
-        shown = unit or of.unit.removeprefix("1")
-        return _Row(what, factor * of.value, factor * of.half_width(level), shown, meaning)
+def _rows(comparison: ChannelComparison, level: float) -> Sequence[_Row]:
+    def row(
+        name: str, estimate: Estimate, meaning: str, factor: float = 1.0, unit: str = ""
+    ) -> _Row:
+        label = unit or estimate.unit.removeprefix("1")
+        return _Row(
+            name, factor * estimate.value, factor * estimate.half_width(level), label, meaning
+        )
 
-    modulo = "" if found.modulo_s is None else f", modulo {found.modulo_s:.5g} s"
+    modulo = "" if comparison.modulo_s is None else f", modulo {comparison.modulo_s:.5g} s"
     rows = [
-        row("gain", found.gain, "second over first"),
-        row("lag", found.lag_s, f"of the second, at {found.mid_s:.3f} s{modulo}", _MS, "ms"),
-        row("clock rate", found.clock_rate, "by which the second's clock is fast", _PPM, "ppm"),
-        row("", found.lag_at(found.from_s), f"at {found.from_s:.3f} s, the beginning", _MS, "ms"),
-        row("", found.lag_at(found.to_s), f"at {found.to_s:.3f} s, the end", _MS, "ms"),
-        *(row(f"arm of {name}", arm, "") for name, arm in found.levers.items()),
+        row("gain", comparison.gain, "second over first"),
+        row(
+            "lag",
+            comparison.lag_s,
+            f"of the second, at {comparison.mid_s:.3f} s{modulo}",
+            _MS,
+            "ms",
+        ),
+        row(
+            "clock rate", comparison.clock_rate, "by which the second's clock is fast", _PPM, "ppm"
+        ),
+        row(
+            "",
+            comparison.lag_at(comparison.from_s),
+            f"at {comparison.from_s:.3f} s, the beginning",
+            _MS,
+            "ms",
+        ),
+        row(
+            "",
+            comparison.lag_at(comparison.to_s),
+            f"at {comparison.to_s:.3f} s, the end",
+            _MS,
+            "ms",
+        ),
+        *(row(f"arm of {name}", arm, "") for name, arm in comparison.levers.items()),
     ]
-    if found.dead_band is not None:
-        seen = "that the first goes at a reversal before the second follows"
-        unseen = "not told from none; the other numbers are those without"
-        rows.append(row("dead band", found.dead_band, seen if found.dead_band_found else unseen))
+    if comparison.dead_band is not None:
+        definition = "that the first goes at a reversal before the second follows"
+        remark = "not told from none; the other numbers are those without"
+        rows.append(
+            row(
+                "dead band",
+                comparison.dead_band,
+                definition if comparison.dead_band_found else remark,
+            )
+        )
     return rows
 
 
-def _data(found: ChannelComparison, level: float) -> Sequence[Data]:
-    def both(of: Estimate | None) -> dict[str, object] | None:
-        if of is None:
+def _data(comparison: ChannelComparison, level: float) -> Sequence[Data]:
+    def both(estimate: Estimate | None) -> dict[str, object] | None:
+        if estimate is None:
             return None
-        return {"value": of.value, "half_width": of.half_width(level), "unit": of.unit}
+        return {
+            "value": estimate.value,
+            "half_width": estimate.half_width(level),
+            "unit": estimate.unit,
+        }
 
-    named = {
+    values = {
         "level": level,
-        "first": found.first,
-        "second": found.second,
-        "derivative": found.order,
-        "from_s": found.from_s,
-        "to_s": found.to_s,
-        "mid_s": found.mid_s,
-        "band_hz": found.band_hz,
-        "gain": both(found.gain),
-        "lag": both(found.lag_s),
-        "lag_modulo_s": found.modulo_s,
-        "clock_rate": both(found.clock_rate),
-        "levers": {name: both(arm) for name, arm in found.levers.items()},
-        "dead_band": both(found.dead_band),
-        "dead_band_found": found.dead_band_found,
-        "over_time": _parts(found.over_time, found, level),
-        "over_frequency": _parts(found.over_frequency, found, level),
-        "flags": found.flags,
+        "first": comparison.first,
+        "second": comparison.second,
+        "derivative": comparison.order,
+        "from_s": comparison.from_s,
+        "to_s": comparison.to_s,
+        "mid_s": comparison.mid_s,
+        "band_hz": comparison.band_hz,
+        "gain": both(comparison.gain),
+        "lag": both(comparison.lag_s),
+        "lag_modulo_s": comparison.modulo_s,
+        "clock_rate": both(comparison.clock_rate),
+        "levers": {name: both(arm) for name, arm in comparison.levers.items()},
+        "dead_band": both(comparison.dead_band),
+        "dead_band_found": comparison.dead_band_found,
+        "over_time": _parts(comparison.over_time, comparison, level),
+        "over_frequency": _parts(comparison.over_frequency, comparison, level),
+        "flags": comparison.flags,
     }
-    return [Data(key, value) for key, value in named.items()]
+    return [Data(key, value) for key, value in values.items()]
 
 
-def _parts(parts: Parts, found: ChannelComparison, level: float) -> list[_Part]:
+def _parts(parts: Parts, comparison: ChannelComparison, level: float) -> list[_Part]:
     """Return the parts with the whole's gain and lag in theirs."""
     factor = student_factor(np.array([np.inf]), level)[0]
-    gain = found.gain.value
-    lags_s = parts.lag_s + found.lag_s.value
-    if parts is found.over_time:
-        lags_s = lags_s + found.clock_rate.value * (parts.at - found.mid_s)
+    gain = comparison.gain.value
+    lags_s = parts.lag_s + comparison.lag_s.value
+    if parts is comparison.over_time:
+        lags_s = lags_s + comparison.clock_rate.value * (parts.at - comparison.mid_s)
     rows = zip(
         parts.at,
         gain * parts.gain,

@@ -18,7 +18,7 @@ _PERIODS: Final = 8.0  # that the enlarged part shows
 _POINTS: Final = 4000
 
 
-def comparison_figure(found: ChannelComparison, level: float = 0.95) -> "Figure":
+def comparison_figure(comparison: ChannelComparison, level: float = 0.95) -> "Figure":
     """Draw a comparison.
 
     Above, the second channel over what the first one, with gain, lag and clock rate, makes expect,
@@ -31,12 +31,16 @@ def comparison_figure(found: ChannelComparison, level: float = 0.95) -> "Figure"
         Probability of the intervals.
     """
     factor = float(student_factor(np.array([np.inf]), level)[0])
-    with drawn(10.5, 8.5, f"{shown_name(found.second)} over {shown_name(found.first)}") as figure:
+    with drawn(
+        10.5, 8.5, f"{shown_name(comparison.second)} over {shown_name(comparison.first)}"
+    ) as figure:
         grid = figure.add_gridspec(4, 2)
-        _enlarged(figure.add_subplot(grid[0, :]), found)
-        _left(figure.add_subplot(grid[1, :]), found)
-        times, bins = found.over_time, found.over_frequency
-        line_ms = 1e3 * (found.clock_rate.value * (times.at - found.mid_s) + found.lag_s.value)
+        _enlarged(figure.add_subplot(grid[0, :]), comparison)
+        _left(figure.add_subplot(grid[1, :]), comparison)
+        times, bins = comparison.over_time, comparison.over_frequency
+        line_ms = 1e3 * (
+            comparison.clock_rate.value * (times.at - comparison.mid_s) + comparison.lag_s.value
+        )
         axes = figure.add_subplot(grid[2, 0])
         axes.plot(times.at, line_ms, color=FIT, label="line")
         _bars(axes, times.at, line_ms + 1e3 * times.lag_s, 1e3 * factor * times.lag_uncertainty_s)
@@ -46,10 +50,10 @@ def comparison_figure(found: ChannelComparison, level: float = 0.95) -> "Figure"
         axes.axhline(1.0, color=FIT)
         axes.set_ylabel("gain over its mean")
         axes.set_xlabel("time on the second's clock (s)")
-        lag_ms = 1e3 * (found.lag_s.value + bins.lag_s)
+        lag_ms = 1e3 * (comparison.lag_s.value + bins.lag_s)
         axes = figure.add_subplot(grid[2, 1])
         _bars(axes, bins.at, lag_ms, 1e3 * factor * bins.lag_uncertainty_s)
-        axes.axhline(1e3 * found.lag_s.value, color=FIT)
+        axes.axhline(1e3 * comparison.lag_s.value, color=FIT)
         axes.set_ylabel("lag (ms)")
         axes = figure.add_subplot(grid[3, 1])
         _bars(axes, bins.at, bins.gain, factor * bins.gain_uncertainty)
@@ -59,9 +63,9 @@ def comparison_figure(found: ChannelComparison, level: float = 0.95) -> "Figure"
     return figure
 
 
-def _enlarged(axes: "Axes", found: ChannelComparison) -> None:
-    trace = found.trace
-    half_s = _PERIODS / 2.0 / max(found.motion_hz, 1e-12)
+def _enlarged(axes: "Axes", comparison: ChannelComparison) -> None:
+    trace = comparison.trace
+    half_s = _PERIODS / 2.0 / max(comparison.motion_hz, 1e-12)
     power = trace.shown**2
     middle_s = float(trace.time_s @ power / power.sum())
     near = np.abs(trace.time_s - middle_s) <= half_s
@@ -70,18 +74,18 @@ def _enlarged(axes: "Axes", found: ChannelComparison) -> None:
         trace.time_s[near], trace.expected[near], "--", color=FIT, label="expected of the first"
     )
     axes.legend(loc="upper right", ncols=2)
-    axes.set_ylabel(f"{shown_name(found.second)}\n({found.unit})")
+    axes.set_ylabel(f"{shown_name(comparison.second)}\n({comparison.unit})")
 
 
-def _left(axes: "Axes", found: ChannelComparison) -> None:
-    trace = found.trace
+def _left(axes: "Axes", comparison: ChannelComparison) -> None:
+    trace = comparison.trace
     step = -(-len(trace.time_s) // _POINTS)
     axes.plot(
         trace.time_s[::step], (trace.shown - trace.expected)[::step], color=PALETTE[0], lw=0.6
     )
-    axes.set_ylabel(f"what is left\n({found.unit})")
+    axes.set_ylabel(f"what is left\n({comparison.unit})")
     axes.set_xlabel("time on the second's clock (s)")
 
 
-def _bars(axes: "Axes", at: FloatArray, values: FloatArray, half_width: FloatArray) -> None:
-    axes.errorbar(at, values, half_width, fmt="o", color=TRACE, ms=3.0, capsize=2.0)
+def _bars(axes: "Axes", positions: FloatArray, values: FloatArray, half_width: FloatArray) -> None:
+    axes.errorbar(positions, values, half_width, fmt="o", color=TRACE, ms=3.0, capsize=2.0)

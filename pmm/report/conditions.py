@@ -21,8 +21,8 @@ def conditions_table(
 
     There are no rows where neither the model's length nor the water's depth is known.
     """
-    known = ship.length_m is not None or _depth_m(water) is not None
-    rows = sorted(set(speeds_m_s) - {0.0}) if known else []
+    has_scale = ship.length_m is not None or _depth_m(water) is not None
+    rows = sorted(set(speeds_m_s) - {0.0}) if has_scale else []
     columns: tuple[Column[float], ...] = (
         Column("U", _itself, "speed_m_s", written("g"), "m/s", number=True),
         *condition_columns(_itself, ship.length_m, water, ship.gravity_m_s2),

@@ -21,29 +21,29 @@ _CAPTION: Final = (
 _DEGREES: Final = 180.0 / math.pi
 
 
-def _runs(one: Decay) -> str:
-    return ", ".join(run.name for run in one.runs)
+def _runs(decay: Decay) -> str:
+    return ", ".join(run.name for run in decay.runs)
 
 
-def _power(one: Decay) -> str:
+def _power(decay: Decay) -> str:
     """How fast the decay rate grows with amplitude: 0 for linear damping, 1 for quadratic."""
-    return ", ".join(f"{record.modes[0].decay.beta:.2g}" for record in one.records)
+    return ", ".join(f"{record.modes[0].decay.beta:.2g}" for record in decay.records)
 
 
 _COLUMNS: Final[tuple[Column[Decay], ...]] = (
     Column("runs", _runs),
-    Column("U", lambda one: f"{one.speed_m_s:g}", unit="m/s", number=True),
-    Column("damped period", lambda one: rounded(one.period.value, one.period.uncertainty),
+    Column("U", lambda decay: f"{decay.speed_m_s:g}", unit="m/s", number=True),
+    Column("damped period", lambda decay: rounded(decay.period.value, decay.period.uncertainty),
            unit="s", number=True),
-    Column("damping ratio", lambda one: rounded(one.ratio.value, one.ratio.uncertainty),
+    Column("damping ratio", lambda decay: rounded(decay.ratio.value, decay.ratio.uncertainty),
            number=True),
     Column("power of the decay", _power, number=True),
-    Column(None, lambda one: [run.name for run in one.runs], "runs"),
-    Column(None, lambda one: one.speed_m_s, "speed_m_s"),
-    Column(None, lambda one: one.period.value, "period_s"),
-    Column(None, lambda one: one.period.uncertainty, "u_period_s"),
-    Column(None, lambda one: one.ratio.value, "damping_ratio"),
-    Column(None, lambda one: one.ratio.uncertainty, "u_damping_ratio"),
+    Column(None, lambda decay: [run.name for run in decay.runs], "runs"),
+    Column(None, lambda decay: decay.speed_m_s, "speed_m_s"),
+    Column(None, lambda decay: decay.period.value, "period_s"),
+    Column(None, lambda decay: decay.period.uncertainty, "u_period_s"),
+    Column(None, lambda decay: decay.ratio.value, "damping_ratio"),
+    Column(None, lambda decay: decay.ratio.uncertainty, "u_damping_ratio"),
 )  # fmt: skip
 
 

@@ -72,9 +72,9 @@ _KNOWN: Final[tuple[Column[ExpectedCoefficient], ...]] = (
     word("unit", "unit"),
     number("asked for", "wanted", written(".3g")),
     number("expected", "standard_uncertainty", written(".3g")),
-    Column("of the value", lambda one: _relative(one), written=percent(".3g"), number=True),
-    Column("most of it from", lambda one: next(iter(one.shares), "")),
-    Column("met", lambda one: "" if math.isnan(one.wanted) else "yes" if one.met else "no"),
+    Column("of the value", lambda row: _relative(row), written=percent(".3g"), number=True),
+    Column("most of it from", lambda row: next(iter(row.shares), "")),
+    Column("met", lambda row: "" if math.isnan(row.wanted) else "yes" if row.met else "no"),
 )
 _MEASURED: Final[tuple[Column[ExpectedCoefficient], ...]] = (
     word("coefficient", "name"),
@@ -97,17 +97,17 @@ def design_document(file: DesignFile, design: Design, target: Path | None) -> Do
     rows = [
         _Row(place, step, _buys(before, step.known))
         for place, (before, step) in enumerate(
-            zip((design.now, *(one.known for one in design.steps)), design.steps, strict=False), 1
+            zip((design.now, *(step.known for step in design.steps)), design.steps, strict=False), 1
         )
     ]
-    done = bool(file.cycles) and not design.steps
+    is_complete = bool(file.cycles) and not design.steps
     contents = (
         Text((_said(file, design), "")),
         Table("Known so far", _MEASURED, design.now if file.cycles else (), titled=True),
         Table("Runs", _STEPS, rows),
-        Table("Coefficients", _KNOWN, () if done else design.known, titled=True),
-        Notes([Note("warning", one) for one in design.why], key="unmet"),
-        Notes([Note("note", one) for one in _left_out(file)]),
+        Table("Coefficients", _KNOWN, () if is_complete else design.known, titled=True),
+        Notes([Note("warning", message) for message in design.why], key="unmet"),
+        Notes([Note("note", message) for message in _left_out(file)]),
         Figure("uncertainty", _CAPTION, partial(design_figure, file.name, design)),
         Data("plan", target),
         Data("rig", file.rig_path),
@@ -115,9 +115,9 @@ def design_document(file: DesignFile, design: Design, target: Path | None) -> Do
         Data("candidates", len(file.grid.runs)),
         Data("left_out", file.grid.left_out),
         Data("runs_made", len(file.cycles)),
-        Data("known", [_known_data(one) for one in design.now]),
+        Data("known", [_known_data(coefficient) for coefficient in design.now]),
         Data("steps", [_step_data(step) for step in design.steps]),
-        Data("coefficients", [_known_data(one) for one in design.known]),
+        Data("coefficients", [_known_data(coefficient) for coefficient in design.known]),
     )
     return Document("", "design of a plan", (Section("", contents),), SCHEMA)
 
@@ -143,28 +143,32 @@ def _said(file: DesignFile, design: Design) -> str:
 def _left_out(file: DesignFile) -> list[str]:
     """Return how many runs of the grid are no candidates, by what they are left out for."""
     return [
-        f"{counted(count, 'run')} of the grid left out for the {what}"
-        for what, count in sorted(file.grid.left_out.items(), key=lambda item: -item[1])
+        f"{counted(count, 'run')} of the grid left out for the {reason}"
+        for reason, count in sorted(file.grid.left_out.items(), key=lambda item: -item[1])
     ]
 
 
-def _relative(one: ExpectedCoefficient) -> float:
-    return one.standard_uncertainty / abs(one.believed) if one.believed else math.inf
+def _relative(coefficient: ExpectedCoefficient) -> float:
+    return (
+        coefficient.standard_uncertainty / abs(coefficient.believed)
+        if coefficient.believed
+        else math.inf
+    )
 
 
 def _buys(before: Sequence[ExpectedCoefficient], after: Sequence[ExpectedCoefficient]) -> str:
     """Return the coefficient whose uncertainty a step lowers most, and from what to what."""
-    was = {(one.name, one.where): one.standard_uncertainty for one in before}
+    uncertainties = {(row.name, row.where): row.standard_uncertainty for row in before}
     best, gain = "", 0.0
-    for one in after:
-        old, new = was.get((one.name, one.where), math.inf), one.standard_uncertainty
-        if not math.isfinite(new) or (one.met and old <= one.wanted):
+    for row in after:
+        old, new = uncertainties.get((row.name, row.where), math.inf), row.standard_uncertainty
+        if not math.isfinite(new) or (row.met and old <= row.wanted):
             continue
-        own = math.log(old / new) if math.isfinite(old) else math.log(_FROM_NOTHING)
-        if own > gain:
+        log_ratio = math.log(old / new) if math.isfinite(old) else math.log(_FROM_NOTHING)
+        if log_ratio > gain:
             start = f"{old:.3g}" if math.isfinite(old) else "unknown"
-            where = f" at {one.where}" if one.where else ""
-            best, gain = f"{one.name}{where}: {start} to {new:.3g} {one.unit}", own
+            where = f" at {row.where}" if row.where else ""
+            best, gain = f"{row.name}{where}: {start} to {new:.3g} {row.unit}", log_ratio
     return best
 
 
@@ -180,22 +184,24 @@ def _step_data(step: DesignStep) -> dict[str, Any]:
         "periods": step.run.periods,
         "repeats": step.repeats,
         "time_s": step.time_s,
-        "standard_uncertainties": [_finite(one.standard_uncertainty) for one in step.known],
+        "standard_uncertainties": [
+            _finite(coefficient.standard_uncertainty) for coefficient in step.known
+        ],
     }
 
 
-def _known_data(one: ExpectedCoefficient) -> dict[str, Any]:
+def _known_data(coefficient: ExpectedCoefficient) -> dict[str, Any]:
     return {
-        "name": one.name,
-        "where": one.where,
-        "unit": one.unit,
-        "believed": one.believed,
-        "value": _finite(one.value),
-        "wanted": _finite(one.wanted),
-        "standard_uncertainty": _finite(one.standard_uncertainty),
-        "shares": dict(one.shares),
-        "met": one.met,
-        "message": one.message,
+        "name": coefficient.name,
+        "where": coefficient.where,
+        "unit": coefficient.unit,
+        "believed": coefficient.believed,
+        "value": _finite(coefficient.value),
+        "wanted": _finite(coefficient.wanted),
+        "standard_uncertainty": _finite(coefficient.standard_uncertainty),
+        "shares": dict(coefficient.shares),
+        "met": coefficient.met,
+        "message": coefficient.message,
     }
 
 

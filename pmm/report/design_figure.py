@@ -29,7 +29,7 @@ def design_figure(name: str, design: Design) -> "Figure":
         axes.yaxis.set_major_formatter(_plain)
         axes.yaxis.set_minor_formatter(_plain)
         axes.set_xlabel("tank time [h]")
-        targeted = any(math.isfinite(one.wanted) for one in design.known)
+        targeted = any(math.isfinite(coefficient.wanted) for coefficient in design.known)
         over = "what is asked for" if targeted else "the believed value"
         axes.set_ylabel(f"expected standard uncertainty over {over}")
         if design.known:
@@ -42,11 +42,14 @@ def _plain(value: float, _: float) -> str:
     return f"{value:g}"
 
 
-def _same(known: tuple[ExpectedCoefficient, ...], k: int, last: ExpectedCoefficient) -> bool:
-    return k < len(known) and (known[k].name, known[k].where) == (last.name, last.where)
+def _same(coefficients: tuple[ExpectedCoefficient, ...], k: int, last: ExpectedCoefficient) -> bool:
+    return k < len(coefficients) and (coefficients[k].name, coefficients[k].where) == (
+        last.name,
+        last.where,
+    )
 
 
-def _ratio(one: ExpectedCoefficient) -> float:
-    scale = one.wanted if math.isfinite(one.wanted) else abs(one.believed)
-    ratio = one.standard_uncertainty / scale if scale else math.nan
+def _ratio(coefficient: ExpectedCoefficient) -> float:
+    scale = coefficient.wanted if math.isfinite(coefficient.wanted) else abs(coefficient.believed)
+    ratio = coefficient.standard_uncertainty / scale if scale else math.nan
     return ratio if math.isfinite(ratio) else math.nan

@@ -47,30 +47,30 @@ class _Node:
 
 
 def _of_node(
-    key: str, heading: str | None = None, told: Callable[[Any], str] = str
+    key: str, heading: str | None = None, text: Callable[[Any], str] = str
 ) -> Column[_Node]:
-    return Column(heading, lambda one: getattr(one.node, key), key, told)
+    return Column(heading, lambda row: getattr(row.node, key), key, text)
 
 
 def _pdos(key: str, heading: str) -> Column[_Node]:
     """Return a column of what a node has mapped."""
 
-    def mapped(one: _Node) -> list[dict[str, Any]]:
+    def mapped(row: _Node) -> list[dict[str, Any]]:
         return [
             {
-                "cob_id": each.cob_id,
-                "transmission": each.transmission,
-                "objects": [str(at) for at in each.entries],
+                "cob_id": pdo.cob_id,
+                "transmission": pdo.transmission,
+                "objects": [str(entry) for entry in pdo.entries],
             }
-            for each in getattr(one.node, key)
+            for pdo in getattr(row.node, key)
         ]
 
-    return Column(heading, mapped, key, lambda found: "\n".join(map(_mapping, found)))
+    return Column(heading, mapped, key, lambda pdos: "\n".join(map(_mapping, pdos)))
 
 
-def _mapping(one: Mapping[str, Any]) -> str:
-    objects = " ".join(one["objects"])
-    return f"{one['cob_id']:03X} {objects} ({_transmission(one['transmission'])})"
+def _mapping(pdo: Mapping[str, Any]) -> str:
+    objects = " ".join(pdo["objects"])
+    return f"{pdo['cob_id']:03X} {objects} ({_transmission(pdo['transmission'])})"
 
 
 def _transmission(kind: int) -> str:
@@ -79,16 +79,16 @@ def _transmission(kind: int) -> str:
     return ("SYNC" if kind == 1 else f"SYNC/{kind}") if kind <= 240 else "event"
 
 
-def _identity(one: _Node) -> str:
-    node = one.node
+def _identity(row: _Node) -> str:
+    node = row.node
     parts = (node.vendor, node.product, node.revision, node.serial)
     return " ".join("-" if part is None else f"{part:X}" for part in parts)
 
 
 _NODES: Final[tuple[Column[_Node], ...]] = (
-    Column("node", lambda one: one.node.node_id, "node_id", number=True),
-    Column("part", lambda one: one.part or one.node.name),
-    Column("type", lambda one: one.node.profile, "profile",
+    Column("node", lambda row: row.node.node_id, "node_id", number=True),
+    Column("part", lambda row: row.part or row.node.name),
+    Column("type", lambda row: row.node.profile, "profile",
            lambda profile: f"{profile} {_PROFILES.get(profile, '')}".strip()),
     Column("identity (1018)", _identity),
     _of_node("state", "state", lambda state: state or "not told"),
@@ -123,28 +123,30 @@ def _last(heard: Heard) -> str:
     return ", ".join(lines) or heard.first_refused
 
 
-def scan_document(found: Survey, wrong: Sequence[str]) -> Document:
+def scan_document(survey: Survey, wrong: Sequence[str]) -> Document:
     """Return who answers; ``wrong`` is what is missing or does not fit."""
-    nodes = [_Node(node, found.names.get(node.node_id, "")) for node in found.nodes]
-    heard = Table("Ports", _HEARD, tuple(found.heard.items()), "ports", by=lambda row: row[0])
-    asked = Table("Modbus", _ASKED, tuple(found.asked.items()), "modbus")
+    nodes = [_Node(node, survey.names.get(node.node_id, "")) for node in survey.nodes]
+    heard = Table("Ports", _HEARD, tuple(survey.heard.items()), "ports", by=lambda row: row[0])
+    modbus = Table("Modbus", _ASKED, tuple(survey.asked.items()), "modbus")
     nodes_table = Table("Nodes", _NODES, nodes, "nodes")
-    return _document("scan", nodes_table, heard, asked, Data("wrong", wrong))
+    return _document("scan", nodes_table, heard, modbus, Data("wrong", wrong))
 
 
 _PORTS: Final = (word("device", "device"), word("url", "url"), word("description", "description"))
 
 
-def ports_document(found: Sequence[PluggedPort]) -> Document:
+def ports_document(ports: Sequence[PluggedPort]) -> Document:
     """Return the serial ports of this machine."""
-    none = Text(() if found else ("no serial ports",))
-    return _document("ports", Table("Ports", _PORTS, found, "ports"), none)
+    none = Text(() if ports else ("no serial ports",))
+    return _document("ports", Table("Ports", _PORTS, ports, "ports"), none)
 
 
 _VALUES: Final[tuple[Column[DeviceRow], ...]] = (
-    Column("device", lambda one: one.device, "device", once=True),
+    Column("device", lambda row: row.device, "device", once=True),
     word("what", "what"),
-    number("value", "value", lambda one: one if isinstance(one, str) else written(".6g")(one)),
+    number(
+        "value", "value", lambda value: value if isinstance(value, str) else written(".6g")(value)
+    ),
     word("unit", "unit"),
 )
 
@@ -161,13 +163,13 @@ def values_document(shown: Shown) -> Document:
 
 def move_document(axis: str, wanted: float, unit: str, reading: Reading) -> Document:
     """Return where an axis stands."""
-    said = (
+    message = (
         f"{axis} stands at {reading.value:.6g} ± {reading.standard_uncertainty:.2g} {unit} "
         f"({reading.source}); wanted {wanted:.6g} {unit}"
     )
     return _document(
         "move",
-        Text((said,)),
+        Text((message,)),
         Data("axis", axis),
         Data("wanted", wanted),
         Data("unit", unit),
@@ -185,20 +187,20 @@ _INTERVALS: Final[tuple[Column[Interval], ...]] = (
 )
 
 
-def photocell_document(watched: PhotocellRecord) -> Document:
+def photocell_document(record: PhotocellRecord) -> Document:
     """Return a photocell's pulses and what lies between them."""
     return _document(
         "photocell",
-        Table("Intervals", _INTERVALS, watched.intervals, "intervals"),
-        Data("pulses", watched.pulses),
-        Data("said", watched.said),
-        Data("good", watched.good),
+        Table("Intervals", _INTERVALS, record.intervals, "intervals"),
+        Data("pulses", record.pulses),
+        Data("said", record.said),
+        Data("good", record.good),
     )
 
 
-def gauges_document(found: Sequence[Pushed]) -> Document:
+def gauges_document(gauges: Sequence[Pushed]) -> Document:
     """Return which gauges were pushed, and which way."""
-    return _document("gauges", Data("gauges", found))
+    return _document("gauges", Data("gauges", gauges))
 
 
 def push_line(pushed: Pushed) -> str:

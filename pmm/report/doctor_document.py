@@ -9,24 +9,27 @@ from pmm.document.notation import counted
 
 SCHEMA: Final = "pmm-doctor-1"
 _FINDINGS: Final[tuple[Column[MachineFinding], ...]] = (
-    Column("area", lambda one: one.area, "area", once=True),
+    Column("area", lambda finding: finding.area, "area", once=True),
     word("what", "what"),
     word("", "status"),
-    Column("found", lambda one: f"{one.found}\n-> {one.cure}" if one.cure else one.found),
+    Column(
+        "found",
+        lambda finding: f"{finding.found}\n-> {finding.cure}" if finding.cure else finding.found,
+    ),
     *data_only("found", "cure"),
 )
 
 
-def doctor_document(found: Sequence[MachineFinding]) -> Document:
+def doctor_document(findings: Sequence[MachineFinding]) -> Document:
     """Return what was found of a machine."""
-    faults = sum(one.status is MachineStatus.FAULT for one in found)
-    told = (
-        Table("Findings", _FINDINGS, found, "findings", grade=_grade),
+    faults = sum(finding.status is MachineStatus.FAULT for finding in findings)
+    contents = (
+        Table("Findings", _FINDINGS, findings, "findings", grade=_grade),
         Text((counted(faults, "fault") if faults else "no fault",)),
         Data("faults", faults),
     )
-    return Document("", "what was found of the machine", (Section("", told),), SCHEMA)
+    return Document("", "what was found of the machine", (Section("", contents),), SCHEMA)
 
 
-def _grade(one: MachineFinding) -> str:
-    return "" if one.status is MachineStatus.OK else Note(one.status, "").grade
+def _grade(finding: MachineFinding) -> str:
+    return "" if finding.status is MachineStatus.OK else Note(finding.status, "").grade

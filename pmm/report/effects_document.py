@@ -30,8 +30,8 @@ class EffectAtSetPoint:
 
     def peak(self, channel: str) -> float:
         """Return the largest change of a channel, in theory or simulated."""
-        both = (*self.simulated.items(), *self.theory.items())
-        return max(abs(value) for key, value in both if key[0] == channel)
+        changes = (*self.simulated.items(), *self.theory.items())
+        return max(abs(value) for key, value in changes if key[0] == channel)
 
 
 def catalogue_document(effects: Mapping[str, type[Effect]]) -> Document:
@@ -55,15 +55,16 @@ def catalogue_document(effects: Mapping[str, type[Effect]]) -> Document:
     )
 
 
-def effect_document(shown: EffectAtSetPoint) -> Document:
+def effect_document(case: EffectAtSetPoint) -> Document:
     """Return one effect: what it is, and what it changes of the harmonics and beside them."""
-    effect, at = shown.effect, shown.set_point
+    effect, set_point = case.effect, case.set_point
     where = (
-        f"change of the harmonics at {at.frequency_hz:g} Hz, {1e3 * at.eccentricity_m:g} mm, "
-        f"{math.degrees(at.strut_phase_rad):g} deg, {at.carriage_speed_m_s:g} m/s, "
-        f"{math.degrees(at.drift_rad):g} deg of drift, in {at.medium}"
+        f"change of the harmonics at {set_point.frequency_hz:g} Hz, "
+        f"{1e3 * set_point.eccentricity_m:g} mm, "
+        f"{math.degrees(set_point.strut_phase_rad):g} deg, {set_point.carriage_speed_m_s:g} m/s, "
+        f"{math.degrees(set_point.drift_rad):g} deg of drift, in {set_point.medium}"
     )
-    told = _changed(shown)
+    changes = _changed(case)
     return Document(
         "",
         effect.title,
@@ -73,16 +74,16 @@ def effect_document(shown: EffectAtSetPoint) -> Document:
                 (
                     Text((effect.title, "", _description(type(effect)), "")),
                     Table("Parameters", _values(effect), effect.parameters()),
-                    Text(("", where, *_remarks(shown))),
-                    Table("Signature", _SIGNATURE, told),
+                    Text(("", where, *_remarks(case))),
+                    Table("Signature", _SIGNATURE, changes),
                     Text(
                         (f"parts below {_SMALL:g} of a channel's largest are left out",)
-                        if told
+                        if changes
                         else ("no harmonic of a recorded channel changes here",),
-                        faint=bool(told),
+                        faint=bool(changes),
                     ),
-                    Text([f"beside the harmonics: {line}" for line in _beside(shown.lines)]),
-                    Data("effects", [_data(shown)]),
+                    Text([f"beside the harmonics: {line}" for line in _beside(case.lines)]),
+                    Data("effects", [_data(case)]),
                 ),
             ),
         ),
@@ -116,13 +117,16 @@ _PENDULUMS: Final[tuple[Column[type[Any]], ...]] = (
     Column(None, lambda kind: kind.signature, "signature"),
     Column(
         None,
-        lambda kind: [{"name": key, **asdict(one)} for key, one in plausible(kind).items()],
+        lambda kind: [
+            {"name": key, **asdict(parameter)} for key, parameter in plausible(kind).items()
+        ],
         "parameters",
     ),
     Column(
         "parameters: typical (plausible range)",
         lambda kind: "\n".join(
-            f"{key} = {one.typical:g} ({one.text})" for key, one in plausible(kind).items()
+            f"{key} = {parameter.typical:g} ({parameter.text})"
+            for key, parameter in plausible(kind).items()
         ),
     ),
 )
@@ -131,12 +135,12 @@ _PENDULUMS: Final[tuple[Column[type[Any]], ...]] = (
 def _values(effect: Effect) -> tuple[Column[Any], ...]:
     return (
         word("parameter", "name"),
-        Column("value", lambda one: f"{getattr(effect, one.name):g}", number=True),
+        Column("value", lambda row: f"{getattr(effect, row.name):g}", number=True),
         number("typical", "typical", "{:g}".format),
         word("plausible", "plausible"),
         word("unit", "unit"),
-        Column("meaning", lambda one: f"{one.meaning} ({one.one_sign})" if one.one_sign
-               else one.meaning),
+        Column("meaning", lambda row: f"{row.meaning} ({row.one_sign})" if row.one_sign
+               else row.meaning),
     )  # fmt: skip
 
 
@@ -158,19 +162,19 @@ _SIGNATURE: Final[tuple[Column[_Change], ...]] = (
 )
 
 
-def _changed(shown: EffectAtSetPoint) -> list[_Change]:
+def _changed(case: EffectAtSetPoint) -> list[_Change]:
     """Return the harmonics that are not small beside their channel's largest."""
     rows = [
-        (*key, complex(shown.theory.get(key, 0.0)), complex(found), shown.peak(key[0]))
-        for key, found in shown.simulated.items()
+        (*key, complex(case.theory.get(key, 0.0)), complex(value), case.peak(key[0]))
+        for key, value in case.simulated.items()
     ]
     return [row for row in rows if max(abs(row[2]), abs(row[3])) > _SMALL * row[4]]
 
 
-def _remarks(shown: EffectAtSetPoint) -> Iterator[str]:
-    if not shown.theory:
+def _remarks(case: EffectAtSetPoint) -> Iterator[str]:
+    if not case.theory:
         yield "theory states none here"
-    if not shown.effect.repeats:
+    if not case.effect.repeats:
         yield (
             "it does not repeat with the shaft: theory is what an analysis then finds, the exact "
             "periodic steady state has no part of it"
@@ -180,29 +184,33 @@ def _remarks(shown: EffectAtSetPoint) -> Iterator[str]:
 def _beside(lines: Lines) -> Iterator[str]:
     """Yield the lines of each channel; those of a band as one."""
     for channel in dict.fromkeys(channel for channel, _ in lines):
-        own = {at: abs(value) for (name, at), value in lines.items() if name == channel}
-        if len(own) > _FEW_LINES:
-            power = math.sqrt(0.5 * sum(size**2 for size in own.values()))
+        sizes = {
+            frequency_hz: abs(value)
+            for (name, frequency_hz), value in lines.items()
+            if name == channel
+        }
+        if len(sizes) > _FEW_LINES:
+            power = math.sqrt(0.5 * sum(size**2 for size in sizes.values()))
             yield (
-                f"{channel} {len(own)} lines from {min(own):.4g} to {max(own):.4g} Hz, together "
-                f"{power:.4g} r.m.s. (--json has each)"
+                f"{channel} {len(sizes)} lines from {min(sizes):.4g} to {max(sizes):.4g} Hz, "
+                f"together {power:.4g} r.m.s. (--json has each)"
             )
             continue
-        for at, size in own.items():
-            yield f"{channel} {size:.5g} at {at:.5g} Hz"
+        for frequency_hz, size in sizes.items():
+            yield f"{channel} {size:.5g} at {frequency_hz:.5g} Hz"
 
 
-def _data(shown: EffectAtSetPoint) -> dict[str, Any]:
-    kind = type(shown.effect)
+def _data(case: EffectAtSetPoint) -> dict[str, Any]:
+    kind = type(case.effect)
     return {
         **{effect.key: effect.value(kind) for effect in _EFFECTS if effect.key},
-        "values": asdict(shown.effect),
-        "set_point": shown.set_point,
-        "theory": _orders(shown.theory),
-        "simulated": _orders(shown.simulated),
+        "values": asdict(case.effect),
+        "set_point": case.set_point,
+        "theory": _orders(case.theory),
+        "simulated": _orders(case.simulated),
         "lines": [
             {"channel": channel, "frequency_hz": frequency_hz, **_parts(value)}
-            for (channel, frequency_hz), value in shown.lines.items()
+            for (channel, frequency_hz), value in case.lines.items()
         ],
     }
 

@@ -56,8 +56,8 @@ def tops(x: FloatArray, values: FloatArray, bins: int) -> tuple[FloatArray, Floa
     if len(x) <= bins:
         return x, values
     edges = _edges(len(x), bins)
-    at = np.array([a + int(np.argmax(values[a:b])) for a, b in pairwise(edges)])
-    return x[at], values[at]
+    indices = np.array([a + int(np.argmax(values[a:b])) for a, b in pairwise(edges)])
+    return x[indices], values[indices]
 
 
 def overview(recording: Recording, bins: int) -> Trace:

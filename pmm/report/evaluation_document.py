@@ -40,7 +40,7 @@ _ZEROS: Final[tuple[Column[GaugeZeros], ...]] = (
 )
 _MODES: Final[tuple[Column[RungMode], ...]] = (
     word("test", "name"),
-    Column("f", lambda one: f"{one.frequency_hz:.4g} ± {one.standard_uncertainty_hz:.1g}",
+    Column("f", lambda mode: f"{mode.frequency_hz:.4g} ± {mode.standard_uncertainty_hz:.1g}",
            unit="Hz", number=True),
     *data_only("frequency_hz", "standard_uncertainty_hz"),
     number("damping ratio", "damping_ratio", written(".3g")),
@@ -63,9 +63,9 @@ _SPEEDS: Final[tuple[Column[TowedSpeed], ...]] = (
 )
 
 
-def evaluation_figures(found: Evaluation) -> Iterator[Figure]:
+def evaluation_figures(evaluation: Evaluation) -> Iterator[Figure]:
     """Yield the figures of what was tested."""
-    water, charts = found.water, found.charts
+    water, charts = evaluation.water, evaluation.charts
     if charts:
         yield Figure("control-chart", "The control condition.", lambda: chart_figure(charts))
     if water.restoring:
@@ -84,104 +84,121 @@ def evaluation_figures(found: Evaluation) -> Iterator[Figure]:
         )
 
 
-def evaluation_document(found: Evaluation) -> Document:
+def evaluation_document(evaluation: Evaluation) -> Document:
     """Return what is shown of the tests; ``docs/run-control.md`` describes the keys."""
-    water = found.water
+    water = evaluation.water
     derivatives = water.derivatives
-    told: tuple[Content, ...] = (
-        Table("Zeros", _ZEROS, found.zeros, "zeros", titled=True),
-        *_calibration(found.calibration),
-        Table("Modes", _MODES, found.modes, "modes", titled=True),
-        Table("Known mass", _KNOWN_MASS, found.responses, "known_mass", titled=True),
+    contents: tuple[Content, ...] = (
+        Table("Zeros", _ZEROS, evaluation.zeros, "zeros", titled=True),
+        *_calibration(evaluation.calibration),
+        Table("Modes", _MODES, evaluation.modes, "modes", titled=True),
+        Table("Known mass", _KNOWN_MASS, evaluation.responses, "known_mass", titled=True),
         Table(
             "Carriage, by its own measurement over the gate",
             _SPEEDS,
-            found.speeds,
+            evaluation.speeds,
             "carriage",
             titled=True,
         ),
         _restoring(water.restoring),
         Data("restoring", water.restoring),
         _tows(water.tows),
-        conditions_table((one.speed_m_s for one in water.tows), water.ship, water.water),
+        conditions_table((tow.speed_m_s for tow in water.tows), water.ship, water.water),
         Data("tows", water.tows),
         circle_table(water.turns),
         decay_table(water.decays),
         *(() if derivatives is None else conclusion(derivatives)),
         Data("derivatives", derivatives and to_dict(derivatives)),
-        Text([_verdict(chart) for chart in found.charts]),
-        Data("control", found.charts),
-        Data("in_control", found.in_control),
-        Data("notes", found.notes),
-        Data("failed", found.failed),
-        Text([str(file) for file in found.files], "files"),
+        Text([_verdict(chart) for chart in evaluation.charts]),
+        Data("control", evaluation.charts),
+        Data("in_control", evaluation.in_control),
+        Data("notes", evaluation.notes),
+        Data("failed", evaluation.failed),
+        Text([str(file) for file in evaluation.files], "files"),
     )
-    return Document("", "tests of rig and model", (Section("", told),), SCHEMA)
+    return Document("", "tests of rig and model", (Section("", contents),), SCHEMA)
 
 
-def _calibration(one: Calibration | None) -> Iterator[Content]:
-    yield Data("calibration", None if one is None else as_table(one))
-    if one is None:
+def _calibration(calibration: Calibration | None) -> Iterator[Content]:
+    yield Data("calibration", None if calibration is None else as_table(calibration))
+    if calibration is None:
         return
     columns: tuple[Column[int], ...] = (
-        Column("reading", lambda i: one.channels[i]),
+        Column("reading", lambda i: calibration.channels[i]),
         *(
-            Column(f"per N on {name}", lambda i, k=k: f"{one.matrix[i][k]:.5f}", number=True)  # type: ignore[misc]
-            for k, name in enumerate(one.channels)
+            Column(
+                f"per N on {name}",
+                lambda i, k=k: f"{calibration.matrix[i][k]:.5f}",  # type: ignore[misc]
+                number=True,
+            )
+            for k, name in enumerate(calibration.channels)
         ),
-        Column("hysteresis", lambda i: f"{100 * one.hysteresis[i]:.3f}", unit="%", number=True),
-        Column("nonlinearity", lambda i: f"{100 * one.nonlinearity[i]:.3f}", unit="%", number=True),
+        Column(
+            "hysteresis", lambda i: f"{100 * calibration.hysteresis[i]:.3f}", unit="%", number=True
+        ),
+        Column(
+            "nonlinearity",
+            lambda i: f"{100 * calibration.nonlinearity[i]:.3f}",
+            unit="%",
+            number=True,
+        ),
     )
-    title = f"Calibration of {one.made}, good until {one.expires}"
-    yield Table(title, columns, range(len(one.channels)), titled=True)
+    title = f"Calibration of {calibration.made}, good until {calibration.expires}"
+    yield Table(title, columns, range(len(calibration.channels)), titled=True)
 
 
-def _tows(found: Sequence[Tow]) -> Table[Tow]:
+def _tows(tows: Sequence[Tow]) -> Table[Tow]:
     def load(name: str, key: str, unit: str) -> Column[Tow]:
-        def told(one: Tow) -> str:
-            return _with_width(getattr(one, key), getattr(one, f"{name}_half_width"))
+        def told(tow: Tow) -> str:
+            return _with_width(getattr(tow, key), getattr(tow, f"{name}_half_width"))
 
         return Column(name, told, unit=unit, number=True)
 
     columns = (
         word("run", "run"),
         number("U", "speed_m_s", written("g"), "m/s"),
-        Column[Tow]("drift", lambda one: degrees(one.drift_rad), unit="deg",
+        Column[Tow]("drift", lambda tow: degrees(tow.drift_rad), unit="deg",
                     number=True),
         load("force", "force_n", "N"),
         load("moment", "moment_n_m", "N m"),
         load("resistance", "resistance_n", "N"),
     )  # fmt: skip
     title = "Towed: loads of the water on the model, 95 %"
-    return Table(title, columns, found, titled=True, filled=True)
+    return Table(title, columns, tows, titled=True, filled=True)
 
 
-def _restoring(found: Sequence[Restoring]) -> Table[tuple[str, ...]]:
+def _restoring(tests: Sequence[Restoring]) -> Table[tuple[str, ...]]:
     heads = ("run", "load", "measured", "hydrostatics", "inertia", "bent [%]", "loop [%]")
     columns: tuple[Column[tuple[str, ...]], ...] = tuple(
         Column(head, lambda row, k=k: row[k], number=k > 0)  # type: ignore[misc]
         for k, head in enumerate(heads)
     )
-    rows = [row for one in found for row in _restoring_rows(one)]
+    rows = [row for test in tests for row in _restoring_rows(test)]
     title = "Restoring: load of the struts for a displacement, 95 %"
     return Table(title, columns, rows, titled=True, filled=True)
 
 
-def _restoring_rows(one: Restoring) -> Iterator[tuple[str, ...]]:
+def _restoring_rows(test: Restoring) -> Iterator[tuple[str, ...]]:
     loads = (
-        ("force", one.force, one.force_half_width, one.hydrostatic_force, one.force_inertia),
-        ("moment", one.moment, one.moment_half_width, one.hydrostatic_moment, one.moment_inertia),
+        ("force", test.force, test.force_half_width, test.hydrostatic_force, test.force_inertia),
+        (
+            "moment",
+            test.moment,
+            test.moment_half_width,
+            test.hydrostatic_moment,
+            test.moment_inertia,
+        ),
     )
-    about = (f"{100.0 * one.higher:.2g}", f"{100.0 * one.loop:.2g}")
-    for k, (load, value, width, expected, taken) in enumerate(loads):
-        own = load == ("moment" if one.rotates else "force")
+    about = (f"{100.0 * test.higher:.2g}", f"{100.0 * test.loop:.2g}")
+    for k, (load, value, width, expected, inertia) in enumerate(loads):
+        is_main_load = load == ("moment" if test.rotates else "force")
         yield (
-            "" if k else one.run,
-            f"{load} [{one.units[k]}]",
+            "" if k else test.run,
+            f"{load} [{test.units[k]}]",
             _with_width(value, width),
             "" if expected is None else f"{expected:.6g}",
-            f"{taken:.3g}",
-            *(about if own else ("", "")),
+            f"{inertia:.3g}",
+            *(about if is_main_load else ("", "")),
         )
 
 
@@ -190,12 +207,12 @@ def _with_width(value: float, half_width: float) -> str:
     return "" if math.isnan(value) else rounded(value, half_width)
 
 
-def _verdict(one: Chart) -> str:
-    limits = f"{one.centre:.6g} {one.unit}, limits {one.low:.6g} to {one.high:.6g}"
-    if one.in_control:
-        return f"control {one.quantity}: {limits}; {one.values.size} repeats within them"
-    said = [f"{one.runs[i]} is outside ({one.values[i]:.6g})" for i in one.outside]
-    if one.step_at is not None:
-        before, change = one.step_at
-        said.append(f"a step of {change:+.3g} {one.unit} before {one.runs[before]}")
-    return f"control {one.quantity}: {limits}; {'; '.join(said)}"
+def _verdict(chart: Chart) -> str:
+    limits = f"{chart.centre:.6g} {chart.unit}, limits {chart.low:.6g} to {chart.high:.6g}"
+    if chart.in_control:
+        return f"control {chart.quantity}: {limits}; {chart.values.size} repeats within them"
+    words = [f"{chart.runs[i]} is outside ({chart.values[i]:.6g})" for i in chart.outside]
+    if chart.step_at is not None:
+        before, change = chart.step_at
+        words.append(f"a step of {change:+.3g} {chart.unit} before {chart.runs[before]}")
+    return f"control {chart.quantity}: {limits}; {'; '.join(words)}"

@@ -59,7 +59,7 @@ _CAPTION: Final = (
 
 def following_rows(outcome: CampaignOutcome) -> list[Following]:
     """Return struts and carriage of each run that were led and recorded, by frequency."""
-    rows = [row for one in outcome.runs for row in (*one.following, *one.carriage)]
+    rows = [row for run in outcome.runs for row in (*run.following, *run.carriage)]
     return sorted(rows, key=lambda row: row.frequency_hz)
 
 
@@ -81,17 +81,17 @@ def following_figure(rows: Sequence[Following]) -> "Drawing":
     with drawn(10.0, 3.2) as figure:
         size, gain, phase = figure.subplots(1, 3)
         for name, colour in zip(DISPLACEMENTS, PALETTE, strict=False):
-            own = [row for row in rows if row.channel == name]
-            at = [row.frequency_hz for row in own]
+            strut_rows = [row for row in rows if row.channel == name]
+            frequencies_hz = [row.frequency_hz for row in strut_rows]
             for key, face in (("rms", colour), ("peak", "none")):
-                sizes = [_MILLIONTH * getattr(row, key) for row in own]
-                size.plot(at, sizes, "o", color=colour, markerfacecolor=face)
+                sizes = [_MILLIONTH * getattr(row, key) for row in strut_rows]
+                size.plot(frequencies_hz, sizes, "o", color=colour, markerfacecolor=face)
             for axes, key, factor in (
                 (gain, "amplitude_relative", 100.0), (phase, "phase_rad", _DEGREES),
             ):  # fmt: skip
-                values = [factor * getattr(row, key) for row in own]
-                apart = [2.0 * factor * getattr(row, f"u_{key}") for row in own]
-                axes.errorbar(at, values, apart, fmt="o", color=colour, label=name)
+                values = [factor * getattr(row, key) for row in strut_rows]
+                widths = [2.0 * factor * getattr(row, f"u_{key}") for row in strut_rows]
+                axes.errorbar(frequencies_hz, values, widths, fmt="o", color=colour, label=name)
         units = dict.fromkeys(f"µ{row.unit}" for row in rows)
         labels = (f"following error ({', '.join(units)})", "amplitude error (%)", "phase (°)")
         for axes, label in zip((size, gain, phase), labels, strict=True):

@@ -75,9 +75,9 @@ def gate_figure(analysis: Analysis, reading_index: int = 0) -> "Figure":
             last = place == len(order) - 1
             handles = _draw_record(axes, analysis, reading, curves, row)
             _draw_zoom(zoom, rest, curves, row, display(analysis.recording.channels[row].unit))
-            for each in (axes, rest):
-                each.tick_params(labelbottom=last)
-                each.set_xlabel("time (s)" if last else "")
+            for panel in (axes, rest):
+                panel.tick_params(labelbottom=last)
+                panel.set_xlabel("time (s)" if last else "")
             if place == 0:
                 axes.set_title("whole record", loc="left")
                 zoom.set_title("end of the gate, and residual", loc="left")
@@ -106,17 +106,17 @@ def _zoom(
     first, last = int(np.ceil(start)), int(np.floor(stop)) + 1
     time_s = recording.time_s(first, last)
     values = recording.samples[row : row + 1, first:last]
-    left = values - fitted(analysis, reading, time_s)[row]
+    residual = values - fitted(analysis, reading, time_s)[row]
     smooth_s = np.linspace(begin_s, end_s, 2 * max(_FIT_POINTS_PER_PERIOD, 8 * reading.order) + 1)
     smooth = Trace(smooth_s, fitted(analysis, reading, smooth_s)[row : row + 1])
-    return zigzag(time_s, values, bins), smooth, zigzag(time_s, left, bins)
+    return zigzag(time_s, values, bins), smooth, zigzag(time_s, residual, bins)
 
 
 def _draw_record(
     axes: "Axes", analysis: Analysis, reading: Harmonics, curves: _Curves, row: int
 ) -> list["Artist"]:
     recording, steady = analysis.recording, analysis.steady_sums
-    shown = display(recording.channels[row].unit)
+    unit = display(recording.channels[row].unit)
     window = WINDOWS[window_kind(analysis)]
     axes.set_ylabel(axis_label(recording.channels[row]))
     axes.set_xlim(recording.start_s, recording.end_s)
@@ -131,8 +131,8 @@ def _draw_record(
             (reading.opened_s, reading.closed_s, 0.12, GATE_SHADE, "gate"),
         )
     ]
-    trace = _draw_trace(axes, curves.record, row, shown.factor)
-    fit = _draw_fit(axes, reading, curves.fit, row, shown.factor)
+    trace = _draw_trace(axes, curves.record, row, unit.factor)
+    fit = _draw_fit(axes, reading, curves.fit, row, unit.factor)
     return [trace, fit, *shades, *_draw_ticks(axes, analysis)]
 
 
@@ -177,10 +177,10 @@ def _ticks(
 ) -> "Artist":
     """Draw ticks along an edge, as one path; where there are very many, every so many-th."""
     step = -(-len(times_s) // most)
-    kept = times_s[::step]
+    ticks_s = times_s[::step]
     (line,) = axes.plot(
-        np.repeat(kept, 3),
-        np.tile((*reach, np.nan), len(kept)),
+        np.repeat(ticks_s, 3),
+        np.tile((*reach, np.nan), len(ticks_s)),
         color=PALETTE[0] if reach[0] == 0.0 else "black",
         lw=0.9,
         transform=axes.get_xaxis_transform(),
@@ -189,16 +189,16 @@ def _ticks(
     return line
 
 
-def _draw_zoom(zoom: "Axes", rest: "Axes", curves: _Curves, row: int, shown: Display) -> None:
-    trace, fit, left = curves.zoom[row]
-    _draw_trace(zoom, trace, 0, shown.factor)
-    zoom.plot(fit.time_s, fit.values[0] * shown.factor, color=FIT, lw=1.0)
+def _draw_zoom(zoom: "Axes", rest: "Axes", curves: _Curves, row: int, unit: Display) -> None:
+    trace, fit, residual = curves.zoom[row]
+    _draw_trace(zoom, trace, 0, unit.factor)
+    zoom.plot(fit.time_s, fit.values[0] * unit.factor, color=FIT, lw=1.0)
     zoom.tick_params(labelbottom=False)
     zoom.locator_params(axis="x", nbins=5)
     zoom.set_xlim(fit.time_s[0], fit.time_s[-1])
-    _draw_trace(rest, left, 0, shown.factor)
+    _draw_trace(rest, residual, 0, unit.factor)
     rest.axhline(0.0, color=FIT, lw=0.8)
-    rest.set_ylabel(f"residual\n({shown.label})")
+    rest.set_ylabel(f"residual\n({unit.label})")
 
 
 def reading_of(analysis: Analysis, reading_index: int) -> Harmonics:

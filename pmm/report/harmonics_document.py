@@ -58,7 +58,8 @@ def analysis_document(
         Data("campaigns", [{"file": path, "flags": flags} for path, flags in doubts]),
         Data("not_recorded", not_recorded),
         Data("failed", [
-            {"file": one.file, "message": one.message, "flags": one.flags} for one in failed
+            {"file": failure.file, "message": failure.message, "flags": failure.flags}
+            for failure in failed
         ]),
     )  # fmt: skip
     sections = (
@@ -90,9 +91,11 @@ def run_section(rows: RunRows, level: float) -> Section:
         + (steady if rows.window == "found steady" else ""),
     }
     vibrations = [
-        f"lets through of a vibration at {one.frequency_hz:g} Hz: "
-        + ", ".join(f"{100.0 * part:.2g} % into n = {n}" for n, part in enumerate(one.parts, 1))
-        for one in rows.let_through
+        f"lets through of a vibration at {vibration.frequency_hz:g} Hz: "
+        + ", ".join(
+            f"{100.0 * part:.2g} % into n = {n}" for n, part in enumerate(vibration.parts, 1)
+        )
+        for vibration in rows.let_through
     ]
     return Section(
         rows.file,
@@ -133,7 +136,7 @@ def _page_section(analysis: Analysis, anchor: str) -> Section:
 def _provenance(analysis: Analysis) -> list[tuple[str, str]]:
     """Return where an analysis comes from: the recording, the reference and the settings."""
     recording, reference = analysis.recording, analysis.reference
-    told = [
+    rows = [
         ("recording", recording.name),
         (
             "samples",
@@ -148,12 +151,12 @@ def _provenance(analysis: Analysis) -> list[tuple[str, str]]:
     ]
     point = recording.set_point
     if point is not None:
-        told += [
+        rows += [
             (f"set-point, {field.name}", str(getattr(point, field.name))) for field in fields(point)
         ]
-    told += [(f"recording, {key}", str(value)) for key, value in recording.provenance.items()]
+    rows += [(f"recording, {key}", str(value)) for key, value in recording.provenance.items()]
     settings = analysis.settings
-    return told + [
+    return rows + [
         (f"setting, {field.name}", _plain(getattr(settings, field.name)))
         for field in fields(settings)
     ]

@@ -45,7 +45,7 @@ class _Row:
 
 
 _COLUMNS: Final[tuple[Column[_Row], ...]] = (
-    Column("channel", lambda one: one.channel, once=True),
+    Column("channel", lambda row: row.channel, once=True),
     number("n", "n"),
     number("in phase", "in_phase"),
     number("quadrature", "quadrature"),
@@ -61,19 +61,19 @@ def noticed(flags: Sequence[Flag]) -> Notes:
 
 def gate_tables(rows: RunRows, level: float) -> Iterator[Content]:
     """Yield the table of each gate, loads first, and what was noticed of it."""
-    apart = len({tuple(one.name for one in gate.channels) for gate in rows.gates}) > 1
+    apart = len({tuple(channel.name for channel in gate.channels) for gate in rows.gates}) > 1
     for gate in rows.gates:
-        names = f", {', '.join(plain(one.name) for one in gate.channels)}" if apart else ""
+        names = f", {', '.join(plain(channel.name) for channel in gate.channels)}" if apart else ""
         where = (
             f"Gate {gate.number} of {gate.count}{names}: {counted(gate.periods, 'period')} from "
             f"{gate.opened_s:.3f} s to {gate.closed_s:.3f} s, {gate.frequency_hz:.6g} Hz"
         )
-        told = [row for channel in gate.channels for row in _channel_rows(channel)]
+        harmonics = [row for channel in gate.channels for row in _channel_rows(channel)]
         notes = (
             _rests_on(gate, level),
-            *((_OPEN,) if any(one.phase == "open" for one in told) else ()),
+            *((_OPEN,) if any(row.phase == "open" for row in harmonics) else ()),
         )
-        yield Table(where, _COLUMNS, told, titled=True, notes=notes,
+        yield Table(where, _COLUMNS, harmonics, titled=True, notes=notes,
                     grade=lambda row: "faint" if row.faint else "")  # fmt: skip
         yield noticed(gate.flags)
 
@@ -91,19 +91,19 @@ def _rests_on(gate: GateRows, level: float) -> str:
 
 def _channel_rows(channel: ChannelRows, run: str = "") -> Iterator[_Row]:
     """Yield a channel's mean, its drift if there is one, and its harmonics."""
-    shown = display(channel.unit)
-    name = f"{plain(channel.name)} [{shown.label}]"
+    unit = display(channel.unit)
+    name = f"{plain(channel.name)} [{unit.label}]"
 
     def told(value: Value) -> str:
         return rounded(
-            *floored(value.value * shown.factor, value.half_width * shown.factor,
-                     channel.size * shown.factor)
+            *floored(value.value * unit.factor, value.half_width * unit.factor,
+                     channel.size * unit.factor)
         )  # fmt: skip
 
     yield _Row(run, name, "mean", told(channel.mean))
     if channel.drift_per_s:
         slope, _ = floored(channel.drift_per_s, 0.0, channel.size)
-        yield _Row(run, name, "drift per s", rounded(slope * shown.factor, math.nan))
+        yield _Row(run, name, "drift per s", rounded(slope * unit.factor, math.nan))
     for row in channel.harmonics:
         amplitude, _ = floored(row.amplitude.value, row.amplitude.half_width, channel.size)
         in_phase, quadrature, size = map(told, (row.in_phase, row.quadrature, row.amplitude))
@@ -124,14 +124,14 @@ def classic_tables(rows: Sequence[ClassicRow]) -> Iterator[Content]:
     """Yield what each mode of 1963 reads in the first gate's window, a table for each channel."""
     five = written(".5g")
     for name, group in groupby(rows, attrgetter("channel")):
-        own = list(group)
+        mode_rows = list(group)
         parts: tuple[Column[ClassicRow], ...] = tuple(
             Column(f"{part} {k // 2 + 1}", lambda row, k=k: five(row.parts[k]), number=True)  # type: ignore[misc]
-            for k in range(len(own[0].parts))
+            for k in range(len(mode_rows[0].parts))
             for part in (("in phase", "quadrature")[k % 2],)
         )
-        yield Table(f"{name} [{own[0].unit}] by mode", (word("mode", "mode"), *parts), own,
-                    titled=True)  # fmt: skip
+        yield Table(f"{name} [{mode_rows[0].unit}] by mode", (word("mode", "mode"), *parts),
+                    mode_rows, titled=True)  # fmt: skip
 
 
 def first_harmonics_table(runs: Sequence[RunRows], channels: Sequence[str]) -> Table[_Row]:
@@ -144,5 +144,5 @@ def first_harmonics_table(runs: Sequence[RunRows], channels: Sequence[str]) -> T
         for row in _channel_rows(channel, run.run)
         if row.n == "1" or (row.n.isdigit() and not row.faint)
     ]
-    run: Column[_Row] = Column("run", lambda one: one.run, once=True)
+    run: Column[_Row] = Column("run", lambda row: row.run, once=True)
     return Table("First harmonics", (run, *_COLUMNS), rows)

@@ -31,8 +31,8 @@ def amplitude_figure(runs: PeriodRuns) -> "Figure":
             axes = figure.add_subplot(count, 1, mode + 1)
             for number, run in enumerate(runs.records[:MOST_RUNS]):
                 _draw_run(axes, run, run.modes[mode], PALETTE[number % len(PALETTE)])
-            shown = display(runs.records[0].part.series.unit)
-            axes.set_xlabel(f"amplitude ({shown.label})")
+            unit = display(runs.records[0].part.series.unit)
+            axes.set_xlabel(f"amplitude ({unit.label})")
             axes.set_ylabel("period (s)")
             axes.ticklabel_format(axis="y", useOffset=False)
             axes.set_xlim(left=-0.03 * axes.get_xlim()[1])
@@ -42,8 +42,8 @@ def amplitude_figure(runs: PeriodRuns) -> "Figure":
 
 
 def _title(runs: PeriodRuns, mode: int) -> str:
-    used = runs.periods[mode]
-    return f"used, undamped: {used.value:.6g} s, u = {used.uncertainty:.2g} s"
+    period = runs.periods[mode]
+    return f"used, undamped: {period.value:.6g} s, u = {period.uncertainty:.2g} s"
 
 
 def _draw_run(axes: "Axes", run: RecordAnalysis, mode: ModeAnalysis, color: str) -> None:
@@ -80,9 +80,9 @@ def _add_legend(axes: "Axes", runs: PeriodRuns, mode: int) -> None:
     from matplotlib.lines import Line2D
 
     handles, _ = axes.get_legend_handles_labels()
-    found = [run.modes[mode].at_no_amplitude.laws for run in runs.records]
-    for k, law in enumerate(found[0]):
-        weight = float(np.mean([laws[k].weight for laws in found]))
+    run_laws = [run.modes[mode].at_no_amplitude.laws for run in runs.records]
+    for k, law in enumerate(run_laws[0]):
+        weight = float(np.mean([laws[k].weight for laws in run_laws]))
         label = f"{_LAWS[law.power]}, weight {weight:.2f}"
         handles.append(Line2D([], [], ls=_DASHES[law.power], color=TRACE, label=label))
     handles.append(

@@ -26,39 +26,39 @@ def budget_figure(outcome: Outcome) -> "Figure":
         10.5, 1.0 + sum(sizes), f"{plain(outcome.name)}: where the uncertainty comes from"
     ) as figure:
         grid = figure.add_gridspec(len(rows), 2, width_ratios=(2.2, 1.0), height_ratios=sizes)
-        for place, (one, assessment) in enumerate(rows):
+        for place, (finding, assessment) in enumerate(rows):
             bars, spans = (figure.add_subplot(grid[place, column]) for column in (0, 1))
-            _draw_bars(bars, one, assessment)
+            _draw_bars(bars, finding, assessment)
             _draw_intervals(spans, assessment)
             if place == len(rows) - 1:
                 bars.set_xlabel("share of the variance (%)")
     return figure
 
 
-def _lines(one: Assessment) -> list[tuple[str, float]]:
-    lines = [line for line in one.budget.shares if line.input.uncertainty > 0.0]
-    shown = [(plain(line.name), 100.0 * line.share) for line in lines[:_MOST_BARS]]
+def _lines(assessment: Assessment) -> list[tuple[str, float]]:
+    lines = [line for line in assessment.budget.shares if line.input.uncertainty > 0.0]
+    bars = [(plain(line.name), 100.0 * line.share) for line in lines[:_MOST_BARS]]
     rest = lines[_MOST_BARS:]
     if rest:
-        shown.append((f"{len(rest)} more", 100.0 * sum(line.share for line in rest)))
-    return shown
+        bars.append((f"{len(rest)} more", 100.0 * sum(line.share for line in rest)))
+    return bars
 
 
-def _draw_bars(axes: "Axes", one: Finding, assessment: Assessment) -> None:
+def _draw_bars(axes: "Axes", finding: Finding, assessment: Assessment) -> None:
     lines = _lines(assessment)[::-1]
     bars = axes.barh([name for name, _ in lines], [share for _, share in lines], color=PALETTE[0])
     axes.bar_label(bars, fmt="%.1f", padding=3, fontsize=8.0)
     least = min([0.0, *(share for _, share in lines)])
     axes.set_xlim(1.15 * least, 112.0)
     axes.grid(visible=False, axis="y")
-    value = rounded(one.estimate.value, one.estimate.uncertainty)
-    what = shorten(plain(one.what), _LONGEST, placeholder=" …")
-    axes.set_title(f"{what}: {value} {one.estimate.unit}", loc="left")
+    value = rounded(finding.estimate.value, finding.estimate.uncertainty)
+    title = shorten(plain(finding.what), _LONGEST, placeholder=" …")
+    axes.set_title(f"{title}: {value} {finding.estimate.unit}", loc="left")
 
 
-def _draw_intervals(axes: "Axes", one: Assessment) -> None:
+def _draw_intervals(axes: "Axes", assessment: Assessment) -> None:
     """Draw both intervals of 95 % as differences from the value."""
-    budget, trial = one.budget.result, one.monte_carlo
+    budget, trial = assessment.budget.result, assessment.monte_carlo
     centre, factor, unit = budget.value, 1.0, budget.unit
     if unit == "m":
         factor, unit = 1e3, "mm"
@@ -74,5 +74,5 @@ def _draw_intervals(axes: "Axes", one: Assessment) -> None:
     axes.locator_params(axis="x", nbins=5)
     axes.grid(visible=False, axis="y")
     axes.set_xlabel(f"95 % less the value ({unit})", fontsize=8.0)
-    if not one.linear_good_enough:
+    if not assessment.linear_good_enough:
         axes.set_title("budget not good enough", loc="left", color=PALETTE[1])

@@ -55,8 +55,8 @@ PERIODS: Final[tuple[Column[_Period], ...]] = (
 )
 FITS: Final[tuple[Column[FormFit], ...]] = (
     word("fit of", "record"),
-    Column("form", lambda one: one.form, "form", lambda form: f"{form} {_FORMS[form]}"),
-    Column("T ± u of this fit", lambda one: rounded(one.period_s, one.period_uncertainty_s),
+    Column("form", lambda fit: fit.form, "form", lambda form: f"{form} {_FORMS[form]}"),
+    Column("T ± u of this fit", lambda fit: rounded(fit.period_s, fit.period_uncertainty_s),
            unit="s", number=True),
     number("decay", "decay_1_s", written(".3g"), "1/s"),
     number("offset", "offset", written(".3g")),
@@ -65,20 +65,20 @@ FITS: Final[tuple[Column[FormFit], ...]] = (
 )  # fmt: skip
 FINDINGS: Final[tuple[Column[Finding], ...]] = (
     word("result", "what"),
-    Column("name", lambda one: one.name),
-    Column("value ± u", lambda one: _value(one.estimate), number=True),
-    Column("dof", lambda one: _freedom(one.estimate) if one.estimate.uncertainty else "",
+    Column("name", lambda row: row.name),
+    Column("value ± u", lambda row: _value(row.estimate), number=True),
+    Column("dof", lambda row: _freedom(row.estimate) if row.estimate.uncertainty else "",
            number=True),
-    Column("95 % interval", lambda one: _interval(one), "interval_95",
+    Column("95 % interval", lambda row: _interval(row), "interval_95",
            lambda pair: f"{pair[0]:.5g} to {pair[1]:.5g}" if pair[0] < pair[1] else "",
            number=True),
-    Column("unit", lambda one: one.estimate.unit, "unit"),
+    Column("unit", lambda row: row.estimate.unit, "unit"),
     *(
-        Column(None, lambda one, key=key: estimate_numbers(one.estimate)[key], key)  # type: ignore[misc]
+        Column(None, lambda row, key=key: estimate_numbers(row.estimate)[key], key)  # type: ignore[misc]
         for key in ("value", "standard_uncertainty", "degrees_of_freedom")
     ),
     *(
-        Column(None, lambda one, key=key: _assessment(one.assessment).get(key, ABSENT), key)  # type: ignore[misc]
+        Column(None, lambda row, key=key: _assessment(row.assessment).get(key, ABSENT), key)  # type: ignore[misc]
         for key in ("budget", "linear", "monte_carlo")
     ),
 )  # fmt: skip
@@ -114,7 +114,7 @@ def document(outcome: Outcome, fits: Sequence[FormFit] | None = None) -> Documen
     fits
         Of the records by the forms F1 to F4; ``None`` where they were not asked for.
     """
-    results = Table("Results", FINDINGS, outcome.findings, "results", by=lambda one: one.name)
+    results = Table("Results", FINDINGS, outcome.findings, "results", by=lambda row: row.name)
     return Document(
         f"{outcome.job}: {outcome.name}",
         "mass properties",
@@ -140,14 +140,14 @@ def _fits(fits: Sequence[FormFit] | None) -> Iterator[Content]:
 
 def _periods(periods: Sequence[PeriodRuns]) -> Iterator[Content]:
     rows = tuple(
-        ("", "", period, runs) if number else (one.where, one.how, period, runs)
-        for one in periods
-        for number, period in enumerate(one.periods)
-        for runs in (one.single[number] if number < len(one.single) else (),)
+        ("", "", period, runs) if number else (group.where, group.how, period, runs)
+        for group in periods
+        for number, period in enumerate(group.periods)
+        for runs in (group.single[number] if number < len(group.single) else (),)
     )
     yield Table("Periods", PERIODS, rows)
-    yield Text([_used(run) for one in periods for run in one.records], faint=True)
-    yield Data("periods", [_period(one) for one in periods])
+    yield Text([_used(run) for runs in periods for run in runs.records], faint=True)
+    yield Data("periods", [_period(runs) for runs in periods])
 
 
 def _used(run: Any) -> str:
@@ -159,23 +159,23 @@ def _used(run: Any) -> str:
     return f"used {run.part.series.name}: {run.part.because}; {decays}"
 
 
-def _period(one: PeriodRuns) -> dict[str, Any]:
+def _period(runs: PeriodRuns) -> dict[str, Any]:
     return {
-        "where": one.where,
-        "how": one.how,
-        "periods": [estimate_numbers(period) for period in one.periods],
-        "runs_s": one.single,
-        "used": [run.part.because for run in one.records],
-        "decay": [[_decay(mode.decay) for mode in run.modes] for run in one.records],
+        "where": runs.where,
+        "how": runs.how,
+        "periods": [estimate_numbers(period) for period in runs.periods],
+        "runs_s": runs.single,
+        "used": [run.part.because for run in runs.records],
+        "decay": [[_decay(mode.decay) for mode in run.modes] for run in runs.records],
     }
 
 
-def _decay(one: PowerDecay) -> dict[str, Any]:
+def _decay(decay: PowerDecay) -> dict[str, Any]:
     return {
-        "amplitude": one.amplitude,
-        "time_constant_s": one.time_constant_s,
-        "beta": one.beta,
-        "beta_uncertainty": one.beta_uncertainty,
+        "amplitude": decay.amplitude,
+        "time_constant_s": decay.time_constant_s,
+        "beta": decay.beta,
+        "beta_uncertainty": decay.beta_uncertainty,
     }
 
 
@@ -190,47 +190,49 @@ def _numbers(outcome: Outcome) -> Iterator[Data]:
     yield Data("flags", list(flags))
 
 
-def _tensor(whole: BodyPart) -> dict[str, Any]:
-    own = whole.uncertain
-    return {"names": NAMES, "values": own.values.tolist(), "covariance": own.covariance().tolist()}
+def _tensor(part: BodyPart) -> dict[str, Any]:
+    x = part.uncertain
+    return {"names": NAMES, "values": x.values.tolist(), "covariance": x.covariance().tolist()}
 
 
 def _budgets(outcome: Outcome) -> Iterator[Content]:
-    for finding, one in outcome.budgeted:
-        lines = [line for line in one.budget.shares if line.input.uncertainty > 0.0]
+    for finding, assessment in outcome.budgeted:
+        lines = [line for line in assessment.budget.shares if line.input.uncertainty > 0.0]
         rest = lines[_MOST_LINES:]
         more = f"{len(rest)} more: {100.0 * sum(line.share for line in rest):.1f} %"
         title = f"budget of {finding.name}"
         columns: tuple[Column[BudgetShare], ...] = (Column(title, lambda line: line.name), *BUDGET)
         yield Table(title, columns, lines, most=_MOST_LINES)
-        yield Text([*([more] if rest else []), *_intervals(one)], faint=True)
+        yield Text([*([more] if rest else []), *_intervals(assessment)], faint=True)
 
 
-def _intervals(one: Assessment) -> Iterator[str]:
-    linear, trial = one.budget.result, one.monte_carlo
+def _intervals(assessment: Assessment) -> Iterator[str]:
+    linear, trial = assessment.budget.result, assessment.monte_carlo
     low, high = linear.interval()
     yield (
         f"budget      {low:.6g} to {high:.6g}, u = {linear.uncertainty:#.2g}, "
         f"{_freedom(linear)} degrees of freedom"
     )
-    verdict = "good enough" if one.linear_good_enough else "not good enough, this interval holds"
+    verdict = (
+        "good enough" if assessment.linear_good_enough else "not good enough, this interval holds"
+    )
     yield (
         f"Monte Carlo {trial.low:.6g} to {trial.high:.6g}, {trial.trials} trials: "
         f"the budget is {verdict}"
     )
 
 
-def _assessment(one: Assessment | None) -> dict[str, Any]:
-    if one is None:
+def _assessment(assessment: Assessment | None) -> dict[str, Any]:
+    if assessment is None:
         return {}
-    linear, trial = one.budget.result, one.monte_carlo
+    linear, trial = assessment.budget.result, assessment.monte_carlo
     return {
-        "budget": budget_rows(one.budget),
+        "budget": budget_rows(assessment.budget),
         "linear": {
             "value": linear.value,
             "standard_uncertainty": linear.uncertainty,
             "interval_95": linear.interval(),
-            "good_enough": one.linear_good_enough,
+            "good_enough": assessment.linear_good_enough,
         },
         "monte_carlo": {
             "trials": trial.trials,
@@ -267,7 +269,7 @@ def _checks(outcome: Outcome) -> Iterator[Content]:
     targets = (("quantity", "name"), ("target", "target"), ("tolerance", "tolerance"),
                ("verdict", "verdict"))  # fmt: skip
     rows = [
-        {key: getattr(comparison, own) for key, own in targets}
+        {key: getattr(comparison, attribute) for key, attribute in targets}
         for comparison in outcome.comparisons
     ]
     yield Data("targets", rows)
@@ -286,10 +288,10 @@ def _freedom(estimate: Estimate) -> str:
     return "∞" if math.isinf(value) or value > 1e4 else f"{value:.3g}"
 
 
-def _interval(one: Finding) -> tuple[float, float]:
-    return one.assessment.interval if one.assessment else one.estimate.interval()
+def _interval(finding: Finding) -> tuple[float, float]:
+    return finding.assessment.interval if finding.assessment else finding.estimate.interval()
 
 
 def _few(runs: tuple[float, ...]) -> str:
-    shown = " ".join(f"{run:.5g}" for run in runs[:4])
-    return f"{shown} ..." if len(runs) > 4 else shown
+    text = " ".join(f"{run:.5g}" for run in runs[:4])
+    return f"{text} ..." if len(runs) > 4 else text

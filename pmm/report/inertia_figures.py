@@ -58,25 +58,25 @@ def figures(outcome: Outcome) -> Iterator[content.Figure]:
 
 
 def _records(outcome: Outcome) -> Iterator[content.Figure]:
-    taken: set[str] = set()
-    for at, runs in enumerate(outcome.periods, 1):
-        own = _file_name(runs.where)
-        own = f"{own}-{at}" if own in taken else own
-        taken.add(own)
+    names: set[str] = set()
+    for number, runs in enumerate(outcome.periods, 1):
+        name = _file_name(runs.where)
+        name = f"{name}-{number}" if name in names else name
+        names.add(name)
         if runs.records:
             for kind, (caption, draw) in _RECORDS.items():
                 yield content.Figure(
-                    f"{own}-{kind}", f"{runs.where}. {caption}", partial(draw, runs)
+                    f"{name}-{kind}", f"{runs.where}. {caption}", partial(draw, runs)
                 )
         if runs.gates:
             caption = f"{runs.where}. The gate's passages."
-            yield content.Figure(f"{own}-gates", caption, partial(gates_figure, runs))
+            yield content.Figure(f"{name}-gates", caption, partial(gates_figure, runs))
 
 
 def _file_name(where: str) -> str:
     """Return a place in a file as part of a file's name."""
-    kept = "".join(c if c.isalnum() else " " for c in where.removeprefix("suspensions"))
-    return "-".join(kept.split())
+    text = "".join(c if c.isalnum() else " " for c in where.removeprefix("suspensions"))
+    return "-".join(text.split())
 
 
 def gates_figure(runs: PeriodRuns) -> "Figure":
@@ -84,14 +84,14 @@ def gates_figure(runs: PeriodRuns) -> "Figure":
     with drawn(10.5, 6.0, f"{plain(runs.where)}: light gates") as figure:
         axes = figure.add_subplot(2, 1, 1)
         rest = figure.add_subplot(2, 1, 2, sharex=axes)
-        for number, (seen, fit) in enumerate(runs.gates[:MOST_RUNS]):
+        for number, (gate, fit) in enumerate(runs.gates[:MOST_RUNS]):
             color = PALETTE[number % len(PALETTE)]
-            whole = seen.number[2:] - seen.number[:-2] == 2
-            swing = (seen.time_s[2:] - seen.time_s[:-2])[whole]
-            name = shown_name(seen.name)
-            axes.plot(seen.time_s[1:-1][whole], swing, ".", ms=3.0, color=color, label=name)
+            whole_swings = gate.number[2:] - gate.number[:-2] == 2
+            swing = (gate.time_s[2:] - gate.time_s[:-2])[whole_swings]
+            name = shown_name(gate.name)
+            axes.plot(gate.time_s[1:-1][whole_swings], swing, ".", ms=3.0, color=color, label=name)
             axes.axhline(fit.period.value, color=FIT, lw=0.9)
-            rest.plot(seen.time_s, 1e3 * fit.residual_s, ".", ms=3.0, color=color)
+            rest.plot(gate.time_s, 1e3 * fit.residual_s, ".", ms=3.0, color=color)
         axes.set_title("whole swings; the line is the period at no amplitude", loc="left")
         axes.set_ylabel("period (s)")
         axes.ticklabel_format(axis="y", useOffset=False)
@@ -112,12 +112,12 @@ def line_figure(outcome: Outcome, errors: Mapping[str, Sequence[tuple[float, flo
     errors
         By reading: line length in m, and metres per second.
     """
-    found = {finding.name: finding.estimate.value for finding in outcome.findings}
+    values = {finding.name: finding.estimate.value for finding in outcome.findings}
     with drawn(10.5, 4.6, f"{plain(outcome.name)}: lines for the pitch gyradius") as figure:
         axes = figure.add_subplot()
         for number, (reading, rows) in enumerate(errors.items()):
             line, error = np.array(rows).T
-            best = found[f"bifilar_best_line_{reading}_m"]
+            best = values[f"bifilar_best_line_{reading}_m"]
             color = PALETTE[number]
             label = f"{_WORDS[reading]}: best {best:.2f} m"
             axes.loglog(line, 1e3 * error, color=color, label=label)
@@ -143,14 +143,14 @@ def static_figure(test: StaticTest) -> "Figure":
         grid = figure.add_gridspec(2, 1, height_ratios=(2.0, 1.0))
         axes = figure.add_subplot(grid[0])
         rest = figure.add_subplot(grid[1], sharex=axes)
-        for number, one in enumerate(test.series):
-            pull, tangent = one.weight_kg * one.lever_m, np.tan(one.tilt_rad)
+        for number, series in enumerate(test.series):
+            pull, tangent = series.weight_kg * series.lever_m, np.tan(series.tilt_rad)
             color, marker = PALETTE[number % len(PALETTE)], "osDv^P*"[number % 7]
-            label = f"{shown_name(one.name)}, lever {one.lever_m:g} m"
+            label = f"{shown_name(series.name)}, lever {series.lever_m:g} m"
             axes.plot(pull, tangent, marker, ms=5.0, color=color, label=label)
-            left = 1e3 * (tangent - offset - slope * pull)
-            rest.plot(pull, left, marker, ms=5.0, color=color)
-        furthest = max(float((one.weight_kg * one.lever_m).max()) for one in test.series)
+            residual = 1e3 * (tangent - offset - slope * pull)
+            rest.plot(pull, residual, marker, ms=5.0, color=color)
+        furthest = max(float((series.weight_kg * series.lever_m).max()) for series in test.series)
         axes.plot([0.0, furthest], [offset, offset + slope * furthest], color=TRACE, label="fit")
         axes.set_title(
             f"first moment {pooled.moment.value:.5g} kg m, u of the fit "

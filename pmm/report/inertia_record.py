@@ -27,19 +27,19 @@ _FIT_POINTS_PER_PERIOD = 24
 
 def record_figure(runs: PeriodRuns) -> "Figure":
     """Draw each record with its used part and the fit, and the residual below on its own scale."""
-    shown = runs.records[:MOST_RUNS]
+    records = runs.records[:MOST_RUNS]
     with drawn(
-        10.5, 1.3 + 2.5 * len(shown), f"{plain(runs.where)}: fit over record{_and_more(runs)}"
+        10.5, 1.3 + 2.5 * len(records), f"{plain(runs.where)}: fit over record{_and_more(runs)}"
     ) as figure:
-        grid = figure.add_gridspec(2 * len(shown), 1, height_ratios=(2.0, 1.0) * len(shown))
+        grid = figure.add_gridspec(2 * len(records), 1, height_ratios=(2.0, 1.0) * len(records))
         handles: list[Artist] = []
-        for place, run in enumerate(shown):
+        for place, run in enumerate(records):
             axes = figure.add_subplot(grid[2 * place])
             rest = figure.add_subplot(grid[2 * place + 1], sharex=axes)
             handles = _draw_run(axes, run, runs.whole[place])
             _draw_rest(rest, run)
             axes.tick_params(labelbottom=False)
-            if place == len(shown) - 1:
+            if place == len(records) - 1:
                 rest.set_xlabel("time (s)")
             else:
                 rest.tick_params(labelbottom=True)
@@ -48,38 +48,38 @@ def record_figure(runs: PeriodRuns) -> "Figure":
 
 
 def _and_more(runs: PeriodRuns) -> str:
-    left = len(runs.records) - MOST_RUNS
-    return f" (first {MOST_RUNS} of {len(runs.records)} runs)" if left > 0 else ""
+    surplus = len(runs.records) - MOST_RUNS
+    return f" (first {MOST_RUNS} of {len(runs.records)} runs)" if surplus > 0 else ""
 
 
-def _draw_run(axes: "Axes", run: RecordAnalysis, whole: Series) -> list["Artist"]:
+def _draw_run(axes: "Axes", run: RecordAnalysis, record: Series) -> list["Artist"]:
     series = run.part.series
-    shown = display(series.unit)
-    time_s, values = thin(whole.time_s, whole.values, run.part.period_s)
-    used = axes.axvspan(
+    unit = display(series.unit)
+    time_s, values = thin(record.time_s, record.values, run.part.period_s)
+    span = axes.axvspan(
         float(series.time_s[0]), float(series.time_s[-1]), color=STEADY_SHADE, label="used"
     )
     smooth_s = _smooth(run)
-    smooth_s, fitted = thin(smooth_s, shown.factor * run.fit.values(smooth_s), run.part.period_s)
+    smooth_s, fitted = thin(smooth_s, unit.factor * run.fit.values(smooth_s), run.part.period_s)
     # a wide band behind the record: neither hides the other, however long the record is
     (fit,) = axes.plot(smooth_s, fitted, color=FIT, lw=2.6, alpha=0.55, label="fit")
-    (trace,) = axes.plot(time_s, shown.factor * values, color=TRACE, lw=0.7, label="record")
+    (trace,) = axes.plot(time_s, unit.factor * values, color=TRACE, lw=0.7, label="record")
     axes.set_title(f"{shown_name(series.name)}: {_periods(run)}", loc="left")
-    axes.set_ylabel(f"{shown_name(series.channel)}\n({shown.label})")
-    axes.set_xlim(float(whole.time_s[0]), float(whole.time_s[-1]))
-    return [trace, fit, used]
+    axes.set_ylabel(f"{shown_name(series.channel)}\n({unit.label})")
+    axes.set_xlim(float(record.time_s[0]), float(record.time_s[-1]))
+    return [trace, fit, span]
 
 
 def _draw_rest(axes: "Axes", run: RecordAnalysis) -> None:
-    shown = display(run.part.series.unit)
+    unit = display(run.part.series.unit)
     series = run.part.series
     time_s, values = thin(series.time_s, residual_on_grid(run), run.part.period_s)
-    axes.plot(time_s, shown.factor * values, color=TRACE, lw=0.6)
+    axes.plot(time_s, unit.factor * values, color=TRACE, lw=0.6)
     axes.axhline(0.0, color=FIT, lw=0.8)
-    rms = shown.factor * float(np.sqrt(np.mean(run.fit.residual**2)))
-    axes.set_ylabel(f"residual\n({shown.label})")
+    rms = unit.factor * float(np.sqrt(np.mean(run.fit.residual**2)))
+    axes.set_ylabel(f"residual\n({unit.label})")
     axes.annotate(
-        f"rms {rms:.2g} {shown.label}",
+        f"rms {rms:.2g} {unit.label}",
         (1.0, 1.0),
         xycoords="axes fraction",
         ha="right",
@@ -90,7 +90,7 @@ def _draw_rest(axes: "Axes", run: RecordAnalysis) -> None:
 
 def _periods(run: RecordAnalysis) -> str:
     """Return the fit's periods, and what the tables go on with: undamped, at no amplitude."""
-    fitted, at_none = (", ".join(f"{one:.5g}" for one in periods) for periods in (
+    fitted, at_none = (", ".join(f"{period_s:.5g}" for period_s in periods) for periods in (
         [mode.period_s for mode in run.fit.modes],
         [mode.rates.undamped(run.period(k).value) for k, mode in enumerate(run.modes)],
     ))  # fmt: skip
@@ -108,11 +108,11 @@ def residual_on_grid(run: RecordAnalysis) -> FloatArray:
     """Return the residual on the used part's even samples, NaN where none was recorded."""
     series = run.part.series
     if series.stamps_s is not None:
-        left = replace(series, values=run.fit.residual, stamps_s=run.fit.time_s)
-        return left.roughly_even().values
+        residual = replace(series, values=run.fit.residual, stamps_s=run.fit.time_s)
+        return residual.roughly_even().values
     values = np.full(series.values.size, np.nan)
-    at = (run.fit.time_s - series.start_s) * series.sample_rate_hz
-    values[np.clip(np.rint(at).astype(int), 0, values.size - 1)] = run.fit.residual
+    positions = (run.fit.time_s - series.start_s) * series.sample_rate_hz
+    values[np.clip(np.rint(positions).astype(int), 0, values.size - 1)] = run.fit.residual
     return values
 
 

@@ -18,27 +18,27 @@ _BESIDE: Final = 0.08  # between measures, of the drawing's size
 def setup_figure(name: str, sketches: tuple[Sketch, ...]) -> "Figure":
     """Draw each set-up to its scale, with its measures."""
     with drawn(max(5.0 * len(sketches), 7.0), 5.0, f"{plain(name)}: set-up") as figure:
-        for place, one in enumerate(sketches, 1):
-            _draw(figure.add_subplot(1, len(sketches), place), one)
+        for place, sketch in enumerate(sketches, 1):
+            _draw(figure.add_subplot(1, len(sketches), place), sketch)
     return figure
 
 
-def _draw(axes: "Axes", one: Sketch) -> None:
-    for start, end in one.lines:
+def _draw(axes: "Axes", sketch: Sketch) -> None:
+    for start, end in sketch.lines:
         axes.plot(*zip(start, end, strict=True), color=TRACE, lw=1.0)
-    for start, end in one.bodies:
+    for start, end in sketch.bodies:
         axes.plot(*zip(start, end, strict=True), color=PALETTE[0], lw=6.0, alpha=0.5)
-    for label, at in one.axes.items():
-        axes.plot(*at, "^", color=TRACE, ms=9.0)
-        axes.annotate(label, at, (8, 6), textcoords="offset points")
-    for label, at in one.centres.items():
-        axes.plot(*at, "o", color=PALETTE[1], ms=8.0)
-        axes.annotate(label, at, (-8, -4), textcoords="offset points", ha="right")
-    ends = [end for part in (*one.lines, *one.bodies) for end in part]
+    for label, point in sketch.axes.items():
+        axes.plot(*point, "^", color=TRACE, ms=9.0)
+        axes.annotate(label, point, (8, 6), textcoords="offset points")
+    for label, point in sketch.centres.items():
+        axes.plot(*point, "o", color=PALETTE[1], ms=8.0)
+        axes.annotate(label, point, (-8, -4), textcoords="offset points", ha="right")
+    ends = [end for part in (*sketch.lines, *sketch.bodies) for end in part]
     wide, high = (max(side) - min(side) for side in zip(*ends, strict=True))
     size = max(wide, high)
     rank = {True: 0, False: 0}  # measures that stand, and those that lie
-    for measure in one.dimensions:
+    for measure in sketch.dimensions:
         stands = measure.start[0] == measure.end[0]
         rank[stands] += 1
         beside = rank[stands] * _BESIDE * size
@@ -53,7 +53,7 @@ def _draw(axes: "Axes", one: Sketch) -> None:
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.25)
     axes.axis("off")
-    axes.set_title(plain(one.title), loc="left")
+    axes.set_title(plain(sketch.title), loc="left")
 
 
 def photo_figure(path: Path) -> "Figure":

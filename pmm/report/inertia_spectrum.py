@@ -31,8 +31,8 @@ def spectrum_figure(runs: PeriodRuns) -> "Figure":
     """
     beating = len(runs.records[0].fit.modes) == 2
     with drawn(10.5, 4.2 + 3.0 * beating) as figure:
-        what = "spectrum and beats" if beating else "spectrum"
-        figure.suptitle(f"{plain(runs.where)}: {what}")
+        title = "spectrum and beats" if beating else "spectrum"
+        figure.suptitle(f"{plain(runs.where)}: {title}")
         axes = figure.add_subplot(1 + beating, 1, 1)
         _draw_spectra(axes, runs)
         if beating:
@@ -42,7 +42,7 @@ def spectrum_figure(runs: PeriodRuns) -> "Figure":
 
 def _draw_spectra(axes: "Axes", runs: PeriodRuns) -> None:
     first = runs.records[0]
-    shown = display(first.part.series.unit)
+    unit = display(first.part.series.unit)
     top_hz = _REACH / min(mode.period_s for mode in first.fit.modes)
     for number, run in enumerate(runs.records[:MOST_RUNS]):
         color = PALETTE[number % len(PALETTE)]
@@ -50,9 +50,9 @@ def _draw_spectra(axes: "Axes", runs: PeriodRuns) -> None:
         series = run.part.series.roughly_even()
         rate = series.sample_rate_hz
         hz, amplitude = _lines(series.values, rate, top_hz)
-        axes.semilogy(hz, shown.factor * amplitude, color=color, lw=0.9, label=name)
+        axes.semilogy(hz, unit.factor * amplitude, color=color, lw=0.9, label=name)
         hz, rest = _lines(residual_on_grid(run), rate, top_hz)
-        axes.semilogy(hz, shown.factor * rest, ":", color=color, lw=0.9, label=f"{name}, residual")
+        axes.semilogy(hz, unit.factor * rest, ":", color=color, lw=0.9, label=f"{name}, residual")
     for mode in first.fit.modes:
         axes.axvline(1.0 / mode.period_s, color=FIT, lw=0.8, zorder=0)
         axes.annotate(
@@ -66,7 +66,7 @@ def _draw_spectra(axes: "Axes", runs: PeriodRuns) -> None:
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
     axes.set_xlim(0.0, top_hz)
     axes.set_xlabel("frequency (Hz)")
-    axes.set_ylabel(f"amplitude ({shown.label})")
+    axes.set_ylabel(f"amplitude ({unit.label})")
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
 
 
@@ -82,9 +82,9 @@ def _lines(values: FloatArray, rate_hz: float, top_hz: float) -> tuple[FloatArra
 
 def _draw_beats(axes: "Axes", run: RecordAnalysis) -> None:
     series, (slow, fast) = run.part.series, run.fit.modes
-    shown = display(series.unit)
+    unit = display(series.unit)
     time_s, values = thin(series.time_s, series.values, fast.period_s)
-    axes.plot(time_s, shown.factor * (values - run.fit.offset), color=TRACE, lw=0.8, label="record")
+    axes.plot(time_s, unit.factor * (values - run.fit.offset), color=TRACE, lw=0.8, label="record")
     along = np.linspace(float(time_s[0]), float(time_s[-1]), 800)
     t = along - run.fit.start_s
     first = slow.amplitude * np.exp(-slow.decay_1_s * t)
@@ -94,7 +94,7 @@ def _draw_beats(axes: "Axes", run: RecordAnalysis) -> None:
     envelope = np.abs(first + second * np.exp(-1j * turn))
     label = "envelope of the fit"
     for side in (envelope, -envelope):
-        axes.plot(along, shown.factor * side, color=FIT, lw=1.0, label=label)
+        axes.plot(along, unit.factor * side, color=FIT, lw=1.0, label=label)
         label = ""
     beat = abs(beat_period(slow.period_s, fast.period_s))
     axes.set_title(
@@ -104,5 +104,5 @@ def _draw_beats(axes: "Axes", run: RecordAnalysis) -> None:
     )
     axes.margins(x=0.0)
     axes.set_xlabel("time (s)")
-    axes.set_ylabel(f"{shown_name(series.channel)}\n({shown.label})")
+    axes.set_ylabel(f"{shown_name(series.channel)}\n({unit.label})")
     axes.legend(loc="upper right", ncols=2)

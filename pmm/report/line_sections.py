@@ -22,12 +22,12 @@ _CAPTION: Final = (
 
 def line_sections(outcome: CampaignOutcome) -> Iterator[Section]:
     """Yield a section for each run of many lines whose motion was recorded."""
-    for one in outcome.runs:
-        if one.lines is not None and (motion := _moved(one.lines)) is not None:
-            draw = partial(response_figure, one.lines, motion)
-            rows = response_rows(one.lines, motion, (), outcome.result.level)
-            figure = Figure(f"response-{one.name}", _CAPTION, draw)
-            yield Section(f"Response by lines: {one.name}", (*response_tables(rows), figure))
+    for run in outcome.runs:
+        if run.lines is not None and (motion := _moved(run.lines)) is not None:
+            draw = partial(response_figure, run.lines, motion)
+            rows = response_rows(run.lines, motion, (), outcome.result.level)
+            figure = Figure(f"response-{run.name}", _CAPTION, draw)
+            yield Section(f"Response by lines: {run.name}", (*response_tables(rows), figure))
 
 
 def _moved(reading: "Harmonics") -> str | None:

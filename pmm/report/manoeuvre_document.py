@@ -45,15 +45,15 @@ _UNSTEADY: Final = (
 _SURE: Final = 0.975
 
 
-def manoeuvre_document(found: Prediction) -> Document:
+def manoeuvre_document(prediction: Prediction) -> Document:
     """Return what was predicted; ``docs/manoeuvre.md`` has the keys."""
     return Document(
-        found.file.name,
+        prediction.file.name,
         "manoeuvres",
         (
-            Section("", _contents(found)),
-            Section("Figures", tuple(figures(found))),
-            Section("", (Data("rate_hz", float(found.ship.rate_hz[0])),)),
+            Section("", _contents(prediction)),
+            Section("Figures", tuple(figures(prediction))),
+            Section("", (Data("rate_hz", float(prediction.ship.rate_hz[0])),)),
         ),
         SCHEMA,
     )
@@ -69,19 +69,19 @@ def manoeuvre_story(folder: Path, level: float) -> Iterator[Section]:
         if isinstance(file, SubmergedFile):
             yield Section("Depth keeping", _depth(depth_keeping(file, DRAWS, 0, level)))
             return
-        found = predict(file, DRAWS, 0, level, lambda _: None)
+        prediction = predict(file, DRAWS, 0, level, lambda _: None)
     except PmmError as error:
         yield Section("Manoeuvres", (Notes([Note("warning", str(error))]),))
         return
-    yield Section("Manoeuvres", (*_contents(found), *figures(found)))
+    yield Section("Manoeuvres", (*_contents(prediction), *figures(prediction)))
 
 
-def _contents(found: Prediction) -> tuple[Content, ...]:
-    head = Text(tuple(_head(found)))
-    return head, _doubts(found), _table(found), _criteria(found), _at(found)
+def _contents(prediction: Prediction) -> tuple[Content, ...]:
+    head = Text(tuple(_head(prediction)))
+    return head, _doubts(prediction), _table(prediction), _criteria(prediction), _at(prediction)
 
 
-def figures(found: Prediction) -> Iterator[Figure]:
+def figures(prediction: Prediction) -> Iterator[Figure]:
     """Yield every figure."""
     draws: dict[str, Callable[[Prediction], object]] = {
         "turning": turning_figure,
@@ -89,16 +89,16 @@ def figures(found: Prediction) -> Iterator[Figure]:
         "spiral": spiral_figure,
     }
     for name, draw in draws.items():
-        yield Figure(name, _CAPTIONS[name], partial(draw, found))  # type: ignore[arg-type]
+        yield Figure(name, _CAPTIONS[name], partial(draw, prediction))  # type: ignore[arg-type]
 
 
-def _head(found: Prediction) -> Iterator[str]:
-    file, draws = found.file, found.ship.count - 1
+def _head(prediction: Prediction) -> Iterator[str]:
+    file, draws = prediction.file, prediction.ship.count - 1
     whose = "its" if file.scale == 1.0 else "the model's"
     yield (
         f"approach at {file.speed_m_s:g} m/s, propeller held at "
-        f"{float(found.ship.rate_hz[0]):.4g} 1/s, which keeps that speed with this resistance: "
-        f"{whose} own point of self-propulsion"
+        f"{float(prediction.ship.rate_hz[0]):.4g} 1/s, which keeps that speed with this "
+        f"resistance: {whose} own point of self-propulsion"
     )
     if file.scale != 1.0:
         yield (
@@ -108,47 +108,47 @@ def _head(found: Prediction) -> Iterator[str]:
     yield f"intervals from {counted(draws, 'draw')} of the derivatives; propeller and rudder stated"
 
 
-def _value(one: ManoeuvreQuantity) -> str:
-    return f"{one.value:.4g}"
+def _value(quantity: ManoeuvreQuantity) -> str:
+    return f"{quantity.value:.4g}"
 
 
-def _interval(one: ManoeuvreQuantity) -> str:
-    return between(one.low, one.high)
+def _interval(quantity: ManoeuvreQuantity) -> str:
+    return between(quantity.low, quantity.high)
 
 
-def _full(one: ManoeuvreQuantity) -> str:
-    shown = math.isfinite(one.full_scale)
-    return f"{one.full_scale:.4g} {one.full_scale_unit}" if shown else ""
+def _full(quantity: ManoeuvreQuantity) -> str:
+    shown = math.isfinite(quantity.full_scale)
+    return f"{quantity.full_scale:.4g} {quantity.full_scale_unit}" if shown else ""
 
 
-def depth_document(found: DepthKeeping) -> Document:
+def depth_document(keeping: DepthKeeping) -> Document:
     """Return what was found of a body below the surface."""
-    return Document(found.file.name, "depth keeping", (Section("", _depth(found)),), SCHEMA)
+    return Document(keeping.file.name, "depth keeping", (Section("", _depth(keeping)),), SCHEMA)
 
 
-def _depth(found: DepthKeeping) -> tuple[Content, ...]:
-    file = found.file
+def _depth(keeping: DepthKeeping) -> tuple[Content, ...]:
+    file = keeping.file
     head = (
         f"roots at {file.speed_m_s:g} m/s; weight and buoyancy are taken as equal",
-        f"intervals from {counted(found.draws, 'draw')} of the derivatives",
+        f"intervals from {counted(keeping.draws, 'draw')} of the derivatives",
     )
-    return Text(head), _doubts(found), _table(found), Text(tuple(_said(found))), _at(found)
+    return Text(head), _doubts(keeping), _table(keeping), Text(tuple(_said(keeping))), _at(keeping)
 
 
-def _doubts(found: Prediction | DepthKeeping) -> Notes:
-    return Notes([Note("doubt", one) for one in found.doubts], "doubts")
+def _doubts(result: Prediction | DepthKeeping) -> Notes:
+    return Notes([Note("doubt", doubt) for doubt in result.doubts], "doubts")
 
 
-def _at(found: Prediction | DepthKeeping) -> Table[float]:
+def _at(result: Prediction | DepthKeeping) -> Table[float]:
     """Return the numbers of the approach, of what the file describes."""
-    file = found.file
+    file = result.file
     length_m = file.body.length_m if isinstance(file, SubmergedFile) else file.ship.length_m
     ship = ShipTable(length_m).within(file.water)
     return conditions_table([file.speed_m_s], ship, file.water)
 
 
-def _said(found: DepthKeeping) -> Iterator[str]:
-    index, critical = found.quantities[:2]
+def _said(keeping: DepthKeeping) -> Iterator[str]:
+    index, critical = keeping.quantities[:2]
     if not math.isfinite(critical.value):
         yield "stable at every speed" if index.value > 0.0 else "stable at no speed"
     elif index.value < 0.0:
@@ -157,44 +157,46 @@ def _said(found: DepthKeeping) -> Iterator[str]:
         yield f"stable above {critical.value:.4g} m/s alone"
 
 
-def _table(found: Prediction | DepthKeeping) -> Table[ManoeuvreQuantity]:
+def _table(result: Prediction | DepthKeeping) -> Table[ManoeuvreQuantity]:
     columns: tuple[Column[ManoeuvreQuantity], ...] = (
-        Column("manoeuvre", lambda one: one.manoeuvre, "manoeuvre", once=True),
+        Column("manoeuvre", lambda quantity: quantity.manoeuvre, "manoeuvre", once=True),
         word("quantity", "name"),
         word("unit", "unit"),
-        Column("value", lambda one: one.value, "value", written=written(".4g"), number=True),
-        Column(f"{100.0 * found.level:g} % interval", _interval, number=True),
+        Column(
+            "value", lambda quantity: quantity.value, "value", written=written(".4g"), number=True
+        ),
+        Column(f"{100.0 * result.level:g} % interval", _interval, number=True),
         Column("at full scale", _full, number=True),
         *(
             Column[ManoeuvreQuantity](None, partial(_key, key), key)
             for key in ("low", "high", "full_scale", "full_scale_unit", "limit", "within", "failed")
         ),
     )
-    failed = max(one.failed for one in found.quantities)
-    loop = next((one for one in found.quantities if one.name == LOOP), None)
+    failed = max(quantity.failed for quantity in result.quantities)
+    loop = next((quantity for quantity in result.quantities if quantity.name == LOOP), None)
     unsteady = loop is not None and not math.isfinite(loop.value)
-    left = f"Up to {failed} draws are in no interval: they came to no end, or have no such speed."
-    notes = (*((left,) if failed else ()), *((_UNSTEADY,) if unsteady else ()))
+    note = f"Up to {failed} draws are in no interval: they came to no end, or have no such speed."
+    notes = (*((note,) if failed else ()), *((_UNSTEADY,) if unsteady else ()))
     name = "Manoeuvres"
-    return Table(name, columns, found.quantities, "quantities", titled=True, notes=notes)
+    return Table(name, columns, result.quantities, "quantities", titled=True, notes=notes)
 
 
-def _key(key: str, one: ManoeuvreQuantity) -> object:
-    return getattr(one, key)
+def _key(key: str, quantity: ManoeuvreQuantity) -> object:
+    return getattr(quantity, key)
 
 
-def _criteria(found: Prediction) -> Table[ManoeuvreQuantity]:
+def _criteria(prediction: Prediction) -> Table[ManoeuvreQuantity]:
     columns: tuple[Column[ManoeuvreQuantity], ...] = (
-        Column("criterion", lambda one: f"{one.name}, {one.manoeuvre}"),
+        Column("criterion", lambda quantity: f"{quantity.name}, {quantity.manoeuvre}"),
         word("unit", "unit"),
         Column("value", _value, number=True),
-        Column("limit", lambda one: f"{one.limit:.4g}", number=True),
+        Column("limit", lambda quantity: f"{quantity.limit:.4g}", number=True),
         Column("", _verdict),
-        Column("draws within", lambda one: one.within, written=_share, number=True),
+        Column("draws within", lambda quantity: quantity.within, written=_share, number=True),
     )
-    rows = [one for one in found.quantities if math.isfinite(one.limit)]
+    rows = [quantity for quantity in prediction.quantities if math.isfinite(quantity.limit)]
     notes = (
-        f"L/V = {found.length_over_speed_s:.3g} s at full scale sets the limits of the 10/10 "
+        f"L/V = {prediction.length_over_speed_s:.3g} s at full scale sets the limits of the 10/10 "
         "zig-zag.",
     )
     name = "IMO MSC.137(76)"
@@ -205,9 +207,13 @@ def _share(share: float) -> str:
     return f"{100.0 * share:.1f} %" if math.isfinite(share) else NOT_KNOWN
 
 
-def _verdict(one: ManoeuvreQuantity) -> str:
-    if not math.isfinite(one.value):
+def _verdict(quantity: ManoeuvreQuantity) -> str:
+    if not math.isfinite(quantity.value):
         return "NOT REACHED"
-    sure = not math.isfinite(one.within) or one.within >= _SURE or one.within <= 1.0 - _SURE
-    said = "within" if one.value <= one.limit else "BEYOND"
-    return said if sure else f"{said}, not sure"
+    sure = (
+        not math.isfinite(quantity.within)
+        or quantity.within >= _SURE
+        or quantity.within <= 1.0 - _SURE
+    )
+    verdict = "within" if quantity.value <= quantity.limit else "BEYOND"
+    return verdict if sure else f"{verdict}, not sure"

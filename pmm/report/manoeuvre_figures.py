@@ -17,16 +17,16 @@ if TYPE_CHECKING:
 _FAINT = 0.18
 
 
-def turning_figure(found: Prediction) -> "Figure":
+def turning_figure(prediction: Prediction) -> "Figure":
     """Draw the tracks of both turning circles, advance up and starboard to the right."""
-    length = found.ship.hull.length_m
+    length = prediction.ship.hull.length_m
     with drawn(9.0, 4.6) as figure:
         axes = figure.add_subplot()
         for colour, side in zip(PALETTE, SIDES, strict=False):
-            _, states, _ = _histories(found.logs[side])
+            _, states, _ = _histories(prediction.logs[side])
             across, ahead = states[:, Y] / length, states[:, X] / length
             _lines(axes, across, ahead, colour, side)
-            turn = found.turns[side]
+            turn = prediction.turns[side]
             sign = SIDES[side]
             marks = (sign * turn.transfer[0], sign * turn.tactical_diameter[0])
             heights = (turn.advance[0], np.interp(np.pi, sign * states[:, PSI, 0], ahead[:, 0]))
@@ -35,17 +35,17 @@ def turning_figure(found: Prediction) -> "Figure":
         axes.set_xlabel("to starboard (L)")
         axes.set_ylabel("ahead (L)")
         axes.legend(loc="lower right")
-        figure.suptitle(f"{found.file.name}: turning circles, 35° of rudder")
+        figure.suptitle(f"{prediction.file.name}: turning circles, 35° of rudder")
     return figure
 
 
-def zigzag_figure(found: Prediction) -> "Figure":
+def zigzag_figure(prediction: Prediction) -> "Figure":
     """Draw heading and rudder of both zig-zags that begin to starboard."""
-    unit = found.ship.hull.length_m / found.ship.approach_m_s
+    unit = prediction.ship.hull.length_m / prediction.ship.approach_m_s
     with drawn(9.0, 6.0) as figure:
         for place, angle in enumerate((10, 20), 1):
             axes = figure.add_subplot(2, 1, place)
-            times, states, rudders = _histories(found.logs[f"{angle}"])
+            times, states, rudders = _histories(prediction.logs[f"{angle}"])
             _lines(axes, times / unit, np.degrees(states[:, PSI]), PALETTE[0], "heading")
             rudder = np.degrees(rudders[:, 0])
             axes.plot(times[:, 0] / unit, rudder, "--", color=PALETTE[1], label="rudder")
@@ -53,13 +53,13 @@ def zigzag_figure(found: Prediction) -> "Figure":
             axes.set_ylabel("angle (°)")
             axes.legend(loc="lower left")
         axes.set_xlabel("time (L/U)")
-        figure.suptitle(f"{found.file.name}: zig-zags")
+        figure.suptitle(f"{prediction.file.name}: zig-zags")
     return figure
 
 
-def spiral_figure(found: Prediction) -> "Figure":
+def spiral_figure(prediction: Prediction) -> "Figure":
     """Draw the spiral: both ways of the rudder, with the interval of each angle."""
-    spiral, tail = found.spiral, 0.5 * (1.0 - found.level)
+    spiral, tail = prediction.spiral, 0.5 * (1.0 - prediction.level)
     rudder = np.degrees(spiral.rudder_rad)
     with drawn(7.0, 4.5) as figure:
         axes = figure.add_subplot()
@@ -74,24 +74,24 @@ def spiral_figure(found: Prediction) -> "Figure":
         axes.set_xlabel("rudder (°, positive turns to starboard)")
         axes.set_ylabel("r' = r L / U")
         axes.legend(loc="upper left")
-        figure.suptitle(f"{found.file.name}: spiral")
+        figure.suptitle(f"{prediction.file.name}: spiral")
     return figure
 
 
 def _band(draws: FloatArray, tail: float) -> tuple[float, float]:
     """Return the ends of the interval of the draws that came to a steady turn."""
-    known = draws[np.isfinite(draws)]
-    if not known.size:
+    steady_draws = draws[np.isfinite(draws)]
+    if not steady_draws.size:
         return np.nan, np.nan
-    low, high = np.quantile(known, (tail, 1.0 - tail))
+    low, high = np.quantile(steady_draws, (tail, 1.0 - tail))
     return float(low), float(high)
 
 
 def _histories(log: Log) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return times ``(k, n)``, states ``(k, 6, n)`` and rudder angles ``(k, n)``."""
-    times = np.array([one.time_s for one in log.moments])
-    states = np.array([one.state for one in log.moments])
-    return times, states, np.array([one.rudder_rad for one in log.moments])
+    times = np.array([moment.time_s for moment in log.moments])
+    states = np.array([moment.state for moment in log.moments])
+    return times, states, np.array([moment.rudder_rad for moment in log.moments])
 
 
 def _lines(axes: "Axes", x: FloatArray, y: FloatArray, colour: str, label: str) -> None:

@@ -136,7 +136,7 @@ def _frequency_axis(axes: "Axes", lowest_hz: float, highest_hz: float) -> None:
     axes.set_xscale("log")
     axes.set_xlim(lowest_hz, highest_hz)
     axes.xaxis.set_major_locator(
-        FixedLocator([one * 10.0**power for power in range(-4, 3) for one in (1.0, 2.0, 5.0)])
+        FixedLocator([digit * 10.0**power for power in range(-4, 3) for digit in (1.0, 2.0, 5.0)])
     )
     axes.xaxis.set_minor_locator(NullLocator())
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))

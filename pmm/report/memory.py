@@ -48,85 +48,89 @@ class _End:
 
 def memory_contents(outcome: CampaignOutcome) -> Iterator[Content]:
     """Yield what was found of the memory, where there are enough frequencies at rest."""
-    for one in outcome.memories:
-        yield Text(("", *_said(one)))
-        yield Notes([Note("warning", text) for text in _doubts(one)])
-        yield from _tables(one, outcome.result.level)
+    for memory in outcome.memories:
+        yield Text(("", *_said(memory)))
+        yield Notes([Note("warning", text) for text in _doubts(memory)])
+        yield from _tables(memory, outcome.result.level)
 
 
 def memory_data(outcome: CampaignOutcome) -> Data:
     """Return all of it for programs."""
-    return Data("memory", [_data(one, outcome.result.level) for one in outcome.memories])
+    return Data("memory", [_data(memory, outcome.result.level) for memory in outcome.memories])
 
 
-def _said(one: "MeasuredMemory") -> Iterator[str]:
-    low, high = band_hz(one)
-    where = f"{one.measured.motions} at rest from {low:.3g} to {high:.3g} Hz"
-    if not one.chosen.states:
+def _said(memory: "MeasuredMemory") -> Iterator[str]:
+    low, high = band_hz(memory)
+    where = f"{memory.measured.motions} at rest from {low:.3g} to {high:.3g} Hz"
+    if not memory.chosen.states:
         yield f"memory  {where}: the coefficients do not change with the frequency: no memory"
         return
     yield (
-        f"memory  {where}: {one.chosen.states} states, chi-square {one.chosen.chi_square:.3g} of "
-        f"{one.chosen.freedom}; beyond these frequencies it is extrapolated"
+        f"memory  {where}: {memory.chosen.states} states, "
+        f"chi-square {memory.chosen.chi_square:.3g} of "
+        f"{memory.chosen.freedom}; beyond these frequencies it is extrapolated"
     )
 
 
-def _skew(one: "MeasuredMemory", level: float) -> tuple[str, ...]:
-    skew = one.measured.skew
+def _skew(memory: "MeasuredMemory", level: float) -> tuple[str, ...]:
+    skew = memory.measured.skew
     if not skew.values[0]:
         return ()
-    first = one.measured.names[1][0][1:]
-    told = rounded(float(skew.values[0]), float(skew.half_width(level)[0]))
-    return (f"B_0 of {first} is {told} N s above, that of {first[::-1]} as much below.",)
+    first = memory.measured.names[1][0][1:]
+    text = rounded(float(skew.values[0]), float(skew.half_width(level)[0]))
+    return (f"B_0 of {first} is {text} N s above, that of {first[::-1]} as much below.",)
 
 
-def _doubts(one: "MeasuredMemory") -> Iterator[str]:
-    if one.misfits:
+def _doubts(memory: "MeasuredMemory") -> Iterator[str]:
+    if memory.misfits:
         yield (
-            f"memory of {one.measured.motions}: what is left is {one.misfit:.2g} times what "
+            f"memory of {memory.measured.motions}: what is left is {memory.misfit:.2g} times what "
             f"scatter explains (limit {DISAGREE:g}), and intervals are wider by it: the values "
             "have faults of their own, or the hull is not linear"
         )
-    if one.contradicted:
+    if memory.contradicted:
         yield (
-            f"memory of {one.measured.motions}: no water that only takes energy has added mass and "
-            f"damping as measured (chi-square {one.chosen.chi_square:.3g}, without that condition "
-            f"{one.chosen.unconditioned:.3g}); look for a lag of a channel or a wrong restoring"
+            f"memory of {memory.measured.motions}: no water that only takes energy has added mass "
+            f"and damping as measured (chi-square {memory.chosen.chi_square:.3g}, without that "
+            f"condition {memory.chosen.unconditioned:.3g}); look for a lag of a channel or a wrong "
+            "restoring"
         )
-    if one.measured.coupling_differs:
+    if memory.measured.coupling_differs:
         yield (
-            f"memory of {one.measured.motions}: the coupling of one way is not that of the other "
-            f"({one.measured.unlike:.2g} standard uncertainties), as it is at rest; their mean "
-            "was fitted; look at the point of reference and at the yaw or pitch runs"
+            f"memory of {memory.measured.motions}: the coupling of one way is not that of the "
+            f"other ({memory.measured.unlike:.2g} standard uncertainties), as it is at rest; "
+            "their mean was fitted; look at the point of reference and at the yaw or pitch runs"
         )
 
 
-def band_hz(one: "MeasuredMemory") -> tuple[float, float]:
+def band_hz(memory: "MeasuredMemory") -> tuple[float, float]:
     """Return the lowest and the highest measured frequency, Hz."""
-    omega = one.measured.omega_rad_s / (2.0 * math.pi)
+    omega = memory.measured.omega_rad_s / (2.0 * math.pi)
     return float(omega[0]), float(omega[-1])
 
 
-def _poles(one: "MeasuredMemory", level: float) -> list[_Pole]:
-    poles, halves = one.poles, one.rates().half_width(level)
+def _poles(memory: "MeasuredMemory", level: float) -> list[_Pole]:
+    poles, halves = memory.poles, memory.rates().half_width(level)
     turns = np.zeros(poles.size)
     turns[poles.imag != 0.0] = halves[poles.size :]
-    rows = zip(-poles.real, halves[: poles.size], poles.imag, turns, one.residues.T, strict=True)
+    rows = zip(-poles.real, halves[: poles.size], poles.imag, turns, memory.residues.T, strict=True)
     return [
-        _Pole(float(rate), float(half), float(turn), float(wide), tuple(own.tolist()))
-        for rate, half, turn, wide, own in rows
+        _Pole(float(rate), float(half), float(turn), float(turn_half), tuple(residues.tolist()))
+        for rate, half, turn, turn_half, residues in rows
     ]
 
 
-def _ends(one: "MeasuredMemory", level: float) -> list[_End]:
-    ends, slow = one.ends(), one.curves(np.array([_SLOW * one.middle]))
-    known = [
-        list(zip(own.values.tolist(), own.half_width(level).tolist(), strict=True))
-        for own in (slow, ends)
+def _ends(memory: "MeasuredMemory", level: float) -> list[_End]:
+    ends, slow = memory.ends(), memory.curves(np.array([_SLOW * memory.middle]))
+    values = [
+        list(zip(vector.values.tolist(), vector.half_width(level).tolist(), strict=True))
+        for vector in (slow, ends)
     ]
-    pairs = zip(one.measured.names, one.measured.elements, strict=True)
+    pairs = zip(memory.measured.names, memory.measured.elements, strict=True)
     return [
-        _End(names[0][1:], known[0][2 * k], known[1][2 * k], known[1][2 * k + 1], UNITS[sum(pair)])
+        _End(
+            names[0][1:], values[0][2 * k], values[1][2 * k], values[1][2 * k + 1], UNITS[sum(pair)]
+        )
         for k, (names, pair) in enumerate(pairs)
     ]
 
@@ -148,21 +152,23 @@ _ORDERS: "Final[tuple[Column[Order], ...]]" = (
 )
 
 
-def _tables(one: "MeasuredMemory", level: float) -> Iterator[Content]:
-    title = f"Memory of the water, {one.measured.motions}"
-    if one.chosen.states:
-        yield Table(f"{title}: poles", _pole_columns(one), _poles(one, level), titled=True)
-    notes = _skew(one, level)
-    yield Table(f"{title}: ends", _ENDS, _ends(one, level), titled=True, notes=notes)
-    yield Table(f"{title}: numbers of states", _ORDERS, one.orders, titled=True, notes=(_CHOICE,))
+def _tables(memory: "MeasuredMemory", level: float) -> Iterator[Content]:
+    title = f"Memory of the water, {memory.measured.motions}"
+    if memory.chosen.states:
+        yield Table(f"{title}: poles", _pole_columns(memory), _poles(memory, level), titled=True)
+    notes = _skew(memory, level)
+    yield Table(f"{title}: ends", _ENDS, _ends(memory, level), titled=True, notes=notes)
+    yield Table(
+        f"{title}: numbers of states", _ORDERS, memory.orders, titled=True, notes=(_CHOICE,)
+    )
 
 
-def _pole_columns(one: "MeasuredMemory") -> list[Column[_Pole]]:
+def _pole_columns(memory: "MeasuredMemory") -> list[Column[_Pole]]:
     def turned(row: _Pole) -> str:
         return rounded(row.turn, row.turn_half) if row.turn else NOT_KNOWN
 
     def residue(k: int) -> Column[_Pole]:
-        pair, names = one.measured.elements[k], one.measured.names[k]
+        pair, names = memory.measured.elements[k], memory.measured.names[k]
         return Column(
             f"residue {names[0][1:]}",
             lambda row: _complex(row.residues[k]),
@@ -174,7 +180,7 @@ def _pole_columns(one: "MeasuredMemory") -> list[Column[_Pole]]:
         Column("fades at", lambda row: rounded(row.rate, row.rate_half), unit="1/s", number=True),
         Column("turns at", turned, unit="rad/s", number=True),
         Column("time constant", lambda row: f"{1.0 / row.rate:.3g}", unit="s", number=True),
-        *(residue(k) for k in range(len(one.measured.elements))),
+        *(residue(k) for k in range(len(memory.measured.elements))),
     ]
 
 
@@ -182,10 +188,10 @@ def _complex(value: complex) -> str:
     return f"{value.real:.4g}{value.imag:+.4g}i" if value.imag else f"{value.real:.4g}"
 
 
-def _data(one: "MeasuredMemory", level: float) -> dict[str, Any]:
-    radiation, measured = one.radiation, one.measured
-    curves = one.curves(measured.omega_rad_s)
-    told = {
+def _data(memory: "MeasuredMemory", level: float) -> dict[str, Any]:
+    radiation, measured = memory.radiation, memory.measured
+    curves = memory.curves(measured.omega_rad_s)
+    arrays = {
         "measured": measured.uncertain.values,
         "measured_half_width": measured.uncertain.half_width(level),
         "fitted": curves.values,
@@ -193,18 +199,18 @@ def _data(one: "MeasuredMemory", level: float) -> dict[str, Any]:
     }
     return {
         "motions": measured.motions,
-        "band_hz": band_hz(one),
+        "band_hz": band_hz(memory),
         "frequencies_hz": measured.omega_rad_s / (2.0 * math.pi),
-        "states": one.chosen.states,
-        "orders": one.orders,
+        "states": memory.chosen.states,
+        "orders": memory.orders,
         "poles": [
             {
                 "real_1_s": -row.rate,
                 "imag_rad_s": row.turn,
                 "half_widths": (row.rate_half, row.turn_half),
-                "residues": [(own.real, own.imag) for own in row.residues],
+                "residues": [(residue.real, residue.imag) for residue in row.residues],
             }
-            for row in _poles(one, level)
+            for row in _poles(memory, level)
         ],
         "elements": [
             {
@@ -213,19 +219,19 @@ def _data(one: "MeasuredMemory", level: float) -> dict[str, Any]:
                 "added_mass_infinite": row.infinite,
                 "steady_damping": row.steady,
             }
-            for row in _ends(one, level)
+            for row in _ends(memory, level)
         ],
         "curves": {
-            names[kind]: {key: measured.shaped(values)[k, kind] for key, values in told.items()}
+            names[kind]: {key: measured.shaped(values)[k, kind] for key, values in arrays.items()}
             for k, names in enumerate(measured.names)
             for kind in (0, 1)
         },
         "state_space": {
             "added_mass_infinite": radiation.added_mass_infinite,
-            "steady_damping": one.damping_matrix(),
+            "steady_damping": memory.damping_matrix(),
             "state_matrix": radiation.state_matrix,
             "input_matrix": radiation.input_matrix,
             "output_matrix": radiation.output_matrix,
         },
-        "doubts": list(_doubts(one)),
+        "doubts": list(_doubts(memory)),
     }

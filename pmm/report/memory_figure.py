@@ -29,31 +29,33 @@ _DRAWN_BEYOND: Final = 1.3  # of the highest frequency, as a factor
 
 def memory_figures(outcome: CampaignOutcome) -> Iterator[Figure]:
     """Yield a figure of each fit."""
-    for k, one in enumerate(outcome.memories, 1):
-        yield Figure(f"memory-{k}", _CAPTION, partial(memory_figure, one, outcome.result.level))
+    for k, memory in enumerate(outcome.memories, 1):
+        yield Figure(f"memory-{k}", _CAPTION, partial(memory_figure, memory, outcome.result.level))
 
 
-def memory_figure(one: "MeasuredMemory", level: float) -> "Drawing":
+def memory_figure(memory: "MeasuredMemory", level: float) -> "Drawing":
     """Draw added mass and damping of each element over frequency, measured and fitted."""
-    measured = one.measured
-    low, high = band_hz(one)
-    at = np.linspace(low / 2.0, _DRAWN_BEYOND * high, _POINTS)
-    curves = one.curves(2.0 * math.pi * at)
-    own, half = (
+    measured = memory.measured
+    low, high = band_hz(memory)
+    frequencies_hz = np.linspace(low / 2.0, _DRAWN_BEYOND * high, _POINTS)
+    curves = memory.curves(2.0 * math.pi * frequencies_hz)
+    measured_values, half = (
         measured.shaped(values)
         for values in (measured.uncertain.values, measured.uncertain.half_width(level))
     )
-    fitted, wide = (measured.shaped(values) for values in (curves.values, curves.half_width(level)))
+    fitted, fitted_half = (
+        measured.shaped(values) for values in (curves.values, curves.half_width(level))
+    )
     rows = len(measured.elements)
     with drawn(8.0, 2.2 * rows + 0.8) as figure:
         panels = figure.subplots(rows, 2, squeeze=False, sharex=True)
         for k, (names, pair) in enumerate(zip(measured.names, measured.elements, strict=True)):
             for kind in (0, 1):
                 axes = panels[k][kind]
-                points = (own[k, kind], half[k, kind])
+                points = (measured_values[k, kind], half[k, kind])
                 axes.errorbar(measured.omega_rad_s / (2.0 * math.pi), *points, fmt="o", ms=3.5,
                               capsize=2, color=PALETTE[0], label="measured")  # fmt: skip
-                _draw(axes, at, fitted[k, kind], wide[k, kind], (low, high))
+                _draw(axes, frequencies_hz, fitted[k, kind], fitted_half[k, kind], (low, high))
                 axes.set_ylabel(f"{names[kind]} ({UNITS[sum(pair)][kind]})")
         for axes in panels[-1]:
             axes.set_xlabel("frequency (Hz)")
@@ -62,11 +64,13 @@ def memory_figure(one: "MeasuredMemory", level: float) -> "Drawing":
 
 
 def _draw(
-    axes: "Axes", at: "FloatArray", fitted: "FloatArray", wide: "FloatArray",
+    axes: "Axes", frequencies_hz: "FloatArray", fitted: "FloatArray", half: "FloatArray",
     band: tuple[float, float],
 ) -> None:  # fmt: skip
-    inside = (at >= band[0]) & (at <= band[1])
+    inside = (frequencies_hz >= band[0]) & (frequencies_hz <= band[1])
     colour = PALETTE[1]
-    axes.plot(at, fitted, "--", color=colour, lw=0.9, label="extrapolated")
-    axes.plot(at[inside], fitted[inside], color=colour, lw=1.3, label="fitted")
-    axes.fill_between(at, fitted - wide, fitted + wide, color=colour, alpha=0.15, lw=0.0)
+    axes.plot(frequencies_hz, fitted, "--", color=colour, lw=0.9, label="extrapolated")
+    axes.plot(frequencies_hz[inside], fitted[inside], color=colour, lw=1.3, label="fitted")
+    axes.fill_between(
+        frequencies_hz, fitted - half, fitted + half, color=colour, alpha=0.15, lw=0.0
+    )

@@ -70,17 +70,17 @@ def phasor_figure(analysis: Analysis, reading_index: int = 0) -> "Figure":
     ) as figure:
         parts = figure.subfigures(len(blocks), 1, squeeze=False)[:, 0]
         for part, (rows, orders) in zip(parts, blocks, strict=True):
-            shown = display(reading.units[rows[0]])
+            unit = display(reading.units[rows[0]])
             grid = part.subplots(2, abreast, squeeze=False)
             for column in range(abreast):
                 if column >= len(orders):
                     grid[0, column].remove()
                     grid[1, column].remove()
                     continue
-                own = [phasors[row][orders[column] - 1] for row in rows]
-                _draw_from_origin(grid[0, column], own, orders[column])
-                _draw_scatter(grid[1, column], own)
-            _label(grid[:, : len(orders)], shown)
+                harmonic_phasors = [phasors[row][orders[column] - 1] for row in rows]
+                _draw_from_origin(grid[0, column], harmonic_phasors, orders[column])
+                _draw_scatter(grid[1, column], harmonic_phasors)
+            _label(grid[:, : len(orders)], unit)
             _legend(part, [phasors[row][0] for row in rows], reading)
     return figure
 
@@ -178,11 +178,11 @@ def _frame(axes: "Axes", reach: float) -> None:
     axes.axvline(0.0, color="#888888", lw=0.6, zorder=0.5)
 
 
-def _label(grid: NDArray[np.object_], shown: Display) -> None:
+def _label(grid: NDArray[np.object_], unit: Display) -> None:
     for axes in grid[1]:
-        axes.set_xlabel(f"in phase ({shown.label})")
+        axes.set_xlabel(f"in phase ({unit.label})")
     for axes in grid[:, 0]:
-        axes.set_ylabel(f"quadrature ({shown.label})")
+        axes.set_ylabel(f"quadrature ({unit.label})")
 
 
 def _legend(part: "SubFigure", phasors: list[_Phasor], reading: Harmonics) -> None:
@@ -197,8 +197,8 @@ def _legend(part: "SubFigure", phasors: list[_Phasor], reading: Harmonics) -> No
     handles.append(
         Line2D([], [], ls="", marker=".", ms=6.0, color="#555555", alpha=0.5, label=dots)
     )
-    known = any(phasor.ellipse for phasor in phasors)
-    region = "95 % region of the mean phasor" if known else "no 95 % region: too few periods"
+    has_region = any(phasor.ellipse for phasor in phasors)
+    region = "95 % region of the mean phasor" if has_region else "no 95 % region: too few periods"
     handles.append(
         Line2D([], [], ls="", marker="o", mfc="none", mec="#555555", ms=7.0, label=region)
     )

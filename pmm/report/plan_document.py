@@ -40,62 +40,68 @@ _CONDITIONS: Final = (
 
 
 def check_document(
-    plan: Plan, rig: RigFile, found: Sequence[PlanFinding], *, every: bool
+    plan: Plan, rig: RigFile, findings: Sequence[PlanFinding], *, show_all: bool
 ) -> Document:
     """Return what a check of a plan found.
 
     Parameters
     ----------
-    every
+    show_all
         Whether people see all findings of a kind and not the worst alone.
     """
-    refused = sum(one.verdict is PlanVerdict.REFUSE for one in found)
-    warned = sum(one.verdict is PlanVerdict.WARN for one in found)
-    said = (
+    refused = sum(finding.verdict is PlanVerdict.REFUSE for finding in findings)
+    warned = sum(finding.verdict is PlanVerdict.WARN for finding in findings)
+    summary = (
         f"the rig cannot run it: {counted(refused, 'refusal')}"
         if refused
         else f"the rig can run it, with {counted(warned, 'warning')}"
     )
-    told = (
-        finding_notes(found, every=every),
-        Table("Conditions", _CONDITIONS, () if every else largest_stated(found)),
-        Text((f"{plan.name}: {counted(len(plan.runs), 'run')}; {said}",)),
+    contents = (
+        finding_notes(findings, show_all=show_all),
+        Table("Conditions", _CONDITIONS, () if show_all else largest_stated(findings)),
+        Text((f"{plan.name}: {counted(len(plan.runs), 'run')}; {summary}",)),
         Data("plan", plan.path),
         Data("rig", rig.path),
         Data("runs", len(plan.runs)),
         Data("possible", not refused),
-        Data("findings", found),
+        Data("findings", findings),
     )
-    return Document("", "check of a plan", (Section("", told),), CHECK_SCHEMA)
+    return Document("", "check of a plan", (Section("", contents),), CHECK_SCHEMA)
 
 
-def finding_notes(found: Sequence[PlanFinding], *, every: bool = False) -> Notes:
+def finding_notes(findings: Sequence[PlanFinding], *, show_all: bool = False) -> Notes:
     """Return a note for each finding; of those of one kind the worst, unless all are wanted."""
-    return Notes([_note(one, more) for one, more in _gathered(found, every=every)])
+    return Notes([_note(finding, more) for finding, more in _gathered(findings, show_all=show_all)])
 
 
-def _note(one: PlanFinding, more: int) -> Note:
-    others = f" (and {counted(more, 'other run')} so)" if more else ""
-    run = f"{one.run}: " if one.run else ""
-    return Note(one.verdict, f"{run}{one.message}{others}")
+def _note(finding: PlanFinding, more: int) -> Note:
+    suffix = f" (and {counted(more, 'other run')} so)" if more else ""
+    run = f"{finding.run}: " if finding.run else ""
+    return Note(finding.verdict, f"{run}{finding.message}{suffix}")
 
 
-def _gathered(found: Sequence[PlanFinding], *, every: bool) -> Iterator[tuple[PlanFinding, int]]:
+def _gathered(
+    findings: Sequence[PlanFinding], *, show_all: bool
+) -> Iterator[tuple[PlanFinding, int]]:
     """Yield findings; of those of one kind the one furthest off, and how many there are beside."""
-    if every:
-        yield from ((one, 0) for one in found)
+    if show_all:
+        yield from ((finding, 0) for finding in findings)
         return
     ranks = list(PlanVerdict)
-    found = [one for one in found if not one.is_stated]
+    findings = [finding for finding in findings if not finding.is_stated]
 
-    def kind(one: PlanFinding) -> tuple[int, str, float]:
-        what = one.quantity if one.run else one.message
-        return ranks.index(one.verdict), what, 0.0 if math.isnan(one.limit) else one.limit
+    def kind(finding: PlanFinding) -> tuple[int, str, float]:
+        subject = finding.quantity if finding.run else finding.message
+        return (
+            ranks.index(finding.verdict),
+            subject,
+            0.0 if math.isnan(finding.limit) else finding.limit,
+        )
 
-    for _, group in groupby(sorted(found, key=kind), kind):
+    for _, group in groupby(sorted(findings, key=kind), kind):
         alike = list(group)
-        worst = max(alike, key=lambda one: abs(one.value - kind(one)[2]))
-        yield worst, len({one.run for one in alike}) - 1
+        worst = max(alike, key=lambda finding: abs(finding.value - kind(finding)[2]))
+        yield worst, len({finding.run for finding in alike}) - 1
 
 
 @dataclass(frozen=True)
@@ -122,21 +128,21 @@ class _Row:
 def _turning(heading: str, unit: str, cell: Callable[[_Row], str]) -> Column[_Row]:
     """Return a column that is empty for a run at rest."""
     return Column(
-        heading, lambda one: cell(one) if one.run.oscillates else "", unit=unit, number=True
+        heading, lambda row: cell(row) if row.run.oscillates else "", unit=unit, number=True
     )
 
 
 # Amplitudes are half the stroke.
 _RUNS: Final[tuple[Column[_Row], ...]] = (
     number("", "number"),
-    Column("run", lambda one: _named(one.run)),
-    _turning("f", "Hz", lambda one: f"{one.run.set_point.frequency_hz:g}"),
-    _turning("ampl.", "mm", lambda one: f"{1e3 * one.run.set_point.eccentricity_m:.6g}"),
-    _turning("phase", "deg", lambda one: f"{math.degrees(one.run.set_point.strut_phase_rad):.1f}"),
-    Column("U", lambda one: one.run.set_point.carriage_speed_m_s, unit="m/s", number=True,
+    Column("run", lambda row: _named(row.run)),
+    _turning("f", "Hz", lambda row: f"{row.run.set_point.frequency_hz:g}"),
+    _turning("ampl.", "mm", lambda row: f"{1e3 * row.run.set_point.eccentricity_m:.6g}"),
+    _turning("phase", "deg", lambda row: f"{math.degrees(row.run.set_point.strut_phase_rad):.1f}"),
+    Column("U", lambda row: row.run.set_point.carriage_speed_m_s, unit="m/s", number=True,
            written=lambda speed: f"{speed:g}" if speed else ""),
-    _turning("periods", "", lambda one: _periods(one.run)),
-    _turning("force, est.", "N", lambda one: "" if one.force_n is None else f"{one.force_n:.1f}"),
+    _turning("periods", "", lambda row: _periods(row.run)),
+    _turning("force, est.", "N", lambda row: "" if row.force_n is None else f"{row.force_n:.1f}"),
     number("way", "tank_length_m", lambda way: f"{way:.1f}" if way else "", "m"),
     number("time", "duration_s", clock),
     number("ends at", "ends_at_s", clock),
@@ -153,11 +159,11 @@ def show_document(plan: Plan, rig: RigFile) -> Document:
         )
     ]
     total = math.fsum(times)
-    said = (
+    summary = (
         f"{plan.name}: {counted(len(plan.runs), 'run')}, {clock(total)} at most, without handwork"
     )
-    told = (
-        Text((said, "")),
+    contents = (
+        Text((summary, "")),
         Table("Runs", _RUNS, rows),
         Data("name", plan.name),
         Data("plan", plan.path),
@@ -167,21 +173,21 @@ def show_document(plan: Plan, rig: RigFile) -> Document:
         Data("duration_s", total),
         Data("runs", [{**row.data, **_peaks(row, rig)} for row in rows]),
     )
-    return Document("", "runs of a plan", (Section("", told),), SHOW_SCHEMA)
+    return Document("", "runs of a plan", (Section("", contents),), SHOW_SCHEMA)
 
 
 def _force(run: RunPlan, rig: RigFile) -> float | None:
     return force_peak_n(run, rig) if run.oscillates else None
 
 
-def _peaks(one: _Row, rig: RigFile) -> dict[str, float | None]:
+def _peaks(row: _Row, rig: RigFile) -> dict[str, float | None]:
     """Return the largest of what the struts do, for an oscillation."""
-    if not one.run.oscillates:
+    if not row.run.oscillates:
         return {}
     return {
-        "strut_velocity_m_s": velocity_peak_m_s(one.run, rig.oscillator),
-        "strut_acceleration_m_s2": acceleration_peak_m_s2(one.run, rig.oscillator),
-        "strut_force_estimate_n": one.force_n,
+        "strut_velocity_m_s": velocity_peak_m_s(row.run, rig.oscillator),
+        "strut_acceleration_m_s2": acceleration_peak_m_s2(row.run, rig.oscillator),
+        "strut_force_estimate_n": row.force_n,
     }
 
 

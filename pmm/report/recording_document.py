@@ -57,7 +57,7 @@ def _of_run(key: str, heading: str | None = None) -> Column[Recovery]:
     """Return a column of a number, or of what programs alone get, of what was recovered."""
     return Column(
         heading,
-        lambda one: ABSENT if one.run is None else getattr(one.run, key),
+        lambda row: ABSENT if row.run is None else getattr(row.run, key),
         key,
         lambda value: "0" if value is ABSENT else str(value),
         number=True,
@@ -65,57 +65,59 @@ def _of_run(key: str, heading: str | None = None) -> Column[Recovery]:
 
 
 def _if_any(key: str, name: str) -> Column[Recovery]:
-    return Column(None, lambda one: getattr(one, key) or ABSENT, name)
+    return Column(None, lambda row: getattr(row, key) or ABSENT, name)
 
 
 _RECOVERIES: Final[tuple[Column[Recovery], ...]] = (
-    Column("run", lambda one: one.folder, "folder", lambda folder: folder.name),
+    Column("run", lambda row: row.folder, "folder", lambda folder: folder.name),
     _of_run("samples", "samples"),
     _of_run("missing", "missing"),
     _of_run("frames", "frames"),
-    Column("bytes not whole", lambda one: sum(one.run.lost_tail_bytes.values()) if one.run else 0,
+    Column("bytes not whole", lambda row: sum(row.run.lost_tail_bytes.values()) if row.run else 0,
            number=True),
-    Column("what was done", lambda one: one.done),
+    Column("what was done", lambda row: row.done),
     *(_of_run(key) for key in ("path", "lost_tail_bytes", "was_whole", "flags", "changed")),
     _if_any("error", "error"),
     _if_any("empty", "nothing_written"),
 )  # fmt: skip
 
 
-def recovery_document(found: Sequence[Recovery]) -> Document:
+def recovery_document(recoveries: Sequence[Recovery]) -> Document:
     """Return what came of runs that were to be recovered."""
-    first = Section("", (Table("Runs", _RECOVERIES, found, "runs"),))
+    first = Section("", (Table("Runs", _RECOVERIES, recoveries, "runs"),))
     flagged = (
-        Section(one.folder.name, (Notes(flag_notes(one.run.flags)),)) for one in found if one.run
+        Section(recovery.folder.name, (Notes(flag_notes(recovery.run.flags)),))
+        for recovery in recoveries
+        if recovery.run
     )
     return Document("", "recovered runs", (first, *flagged), "")
 
 
-def replay_document(found: Replay) -> Document:
+def replay_document(replay: Replay) -> Document:
     """Return how far a replay gives what its run had written."""
-    count, told = found.recorded.shape[1], len(found.recorded_readings)
+    count, reading_count = replay.recorded.shape[1], len(replay.recorded_readings)
     counts = {
-        "samples": f"{count}, {found.differing_samples} values differ",
-        "pulses": f"{len(found.recorded_pulses_s)} recorded, {len(found.pulses)} again",
-        "readings": f"{told} recorded, largest difference {found.difference:.2g}",
+        "samples": f"{count}, {replay.differing_samples} values differ",
+        "pulses": f"{len(replay.recorded_pulses_s)} recorded, {len(replay.pulses)} again",
+        "readings": f"{reading_count} recorded, largest difference {replay.difference:.2g}",
     }
     contents: tuple[Content, ...] = (
         pairs("Replay", counts),
-        *_last_reading(found),
-        Text([f"reported again: {fault}" for fault in found.faults], faint=True),
-        Data("same", found.same),
+        *_last_reading(replay),
+        Text([f"reported again: {fault}" for fault in replay.faults], faint=True),
+        Data("same", replay.same),
         Data("samples", count),
-        Data("differing_values", found.differing_samples),
-        Data("pulses", len(found.pulses)),
-        Data("recorded_pulses", len(found.recorded_pulses_s)),
-        Data("readings", [reading and reading["coefficients"] for reading in found.readings]),
+        Data("differing_values", replay.differing_samples),
+        Data("pulses", len(replay.pulses)),
+        Data("recorded_pulses", len(replay.recorded_pulses_s)),
+        Data("readings", [reading and reading["coefficients"] for reading in replay.readings]),
         Data(
             "recorded_readings",
-            [recorded_reading["coefficients"] for recorded_reading in found.recorded_readings],
+            [recorded_reading["coefficients"] for recorded_reading in replay.recorded_readings],
         ),
-        Data("largest_difference", found.difference),
-        Data("faults", found.faults),
-        Data("changed", found.changed),
+        Data("largest_difference", replay.difference),
+        Data("faults", replay.faults),
+        Data("changed", replay.changed),
     )
     return Document("", "a replay beside its run", (Section("", contents),), REPLAY_SCHEMA)
 
@@ -131,24 +133,27 @@ class _Beside:
     quadrature_again: float
 
 
-def _last_reading(found: Replay) -> Iterator[Table[_Beside]]:
+def _last_reading(replay: Replay) -> Iterator[Table[_Beside]]:
     """Yield the last reading of both."""
-    if not found.recorded_readings:
+    if not replay.recorded_readings:
         return
-    told, again = found.recorded_readings[-1], found.readings[-1]
-    nine = written(".9g")
+    recorded_reading, replayed_reading = replay.recorded_readings[-1], replay.readings[-1]
+    form = written(".9g")
     columns = (
         word("channel", "channel"),
-        number("in phase 1", "in_phase", nine),
-        number("quadrature 1", "quadrature", nine),
-        number("in phase 1 again", "in_phase_again", nine),
-        number("quadrature 1 again", "quadrature_again", nine),
+        number("in phase 1", "in_phase", form),
+        number("quadrature 1", "quadrature", form),
+        number("in phase 1 again", "in_phase_again", form),
+        number("quadrature 1 again", "quadrature_again", form),
     )
     rows = [
-        _Beside(channel, *_first(told, i), *_first(again, i))
-        for i, channel in enumerate(told["channels"])
+        _Beside(channel, *_first(recorded_reading, i), *_first(replayed_reading, i))
+        for i, channel in enumerate(recorded_reading["channels"])
     ]
-    name = f"Last reading: {told['periods']} periods to {told['closed_s']:.3f} s"
+    name = (
+        f"Last reading: {recorded_reading['periods']} periods "
+        f"to {recorded_reading['closed_s']:.3f} s"
+    )
     yield Table(name, columns, rows, titled=True)
 
 

@@ -70,8 +70,8 @@ def ellipses(reading: Harmonics, level: float = 0.95) -> list[list[Ellipse | Non
     """Return the ellipse of each channel (outer list) and harmonic (inner list) of a reading."""
     blocks = reading.phasor_covariance()
     freedom = reading.degrees_of_freedom[1:].reshape(reading.order, 2).min(axis=1)
-    one = reading.interval_source is IntervalSource.BINS
-    factors = [region_factor(float(nu), level, one_variance=one) for nu in freedom]
+    one_variance = reading.interval_source is IntervalSource.BINS
+    factors = [region_factor(float(nu), level, one_variance=one_variance) for nu in freedom]
     return [
         [confidence_ellipse(block, factor) for block, factor in zip(row, factors, strict=True)]
         for row in blocks

@@ -55,24 +55,31 @@ def _column(
     gain, phase, coherence, lines = panels
     response = frequency_response(reading, motion, output, orders)
     size, half = np.abs(response.values), _SURE * np.sqrt(response.variance / 2.0)
-    at = response.frequencies_hz
-    gain.errorbar(at, size, half, fmt="o-", ms=3, color=PALETTE[0])
+    frequencies_hz = response.frequencies_hz
+    gain.errorbar(frequencies_hz, size, half, fmt="o-", ms=3, color=PALETTE[0])
     gain.set_title(f"{shown_name(output)} on {shown_name(motion)}")
     gain.set_ylabel(f"gain ({response.unit})")
-    turned = np.degrees(np.unwrap(np.angle(response.values)))
-    wide = np.degrees(np.minimum(half / np.maximum(size, 1e-300), np.pi))
-    phase.errorbar(at, turned, wide, fmt="o-", ms=3, color=PALETTE[0])
+    phase_deg = np.degrees(np.unwrap(np.angle(response.values)))
+    phase_half_deg = np.degrees(np.minimum(half / np.maximum(size, 1e-300), np.pi))
+    phase.errorbar(frequencies_hz, phase_deg, phase_half_deg, fmt="o-", ms=3, color=PALETTE[0])
     phase.set_ylabel("phase (deg)")
-    coherence.plot(at, response.coherence, "o-", ms=3, color=PALETTE[0])
+    coherence.plot(frequencies_hz, response.coherence, "o-", ms=3, color=PALETTE[0])
     coherence.set_ylim(min(0.9, 0.9 * float(response.coherence.min())), 1.01)
     coherence.set_ylabel("coherence")
-    own = np.abs(phasors_of(reading, output)[np.array(response.orders) - 1])
-    lines.semilogy(at, own, "o", ms=4, color=PALETTE[0], label="excited")
-    for one in distortions(reading, response):
-        where = np.array(one.orders) * reading.frequency_hz
-        color, mark = _MARKS[one.degree]
-        lines.semilogy(where, one.amplitudes, mark, ms=4, color=color, label=str(one.degree))
-        lines.semilogy(where, one.noise, "_", color=TRACE)
+    amplitudes = np.abs(phasors_of(reading, output)[np.array(response.orders) - 1])
+    lines.semilogy(frequencies_hz, amplitudes, "o", ms=4, color=PALETTE[0], label="excited")
+    for distortion in distortions(reading, response):
+        distortion_hz = np.array(distortion.orders) * reading.frequency_hz
+        color, mark = _MARKS[distortion.degree]
+        lines.semilogy(
+            distortion_hz,
+            distortion.amplitudes,
+            mark,
+            ms=4,
+            color=color,
+            label=str(distortion.degree),
+        )
+        lines.semilogy(distortion_hz, distortion.noise, "_", color=TRACE)
     lines.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
     lines.set_ylabel(f"amplitude ({response.unit.rpartition('/')[0]})")
     lines.set_xlabel("frequency (Hz)")

@@ -36,25 +36,25 @@ _STYLES: Final = ("-", "--", ":", "-.")
 
 _TARGETS: Final[tuple[Column[KnownTarget], ...]] = (
     word("target", "name"),
-    Column("value", lambda one: _number(one.value), written=written(".4g"), number=True),
+    Column("value", lambda row: _number(row.value), written=written(".4g"), number=True),
     Column(
         "standard uncertainty",
-        lambda one: _number(one.standard_uncertainty),
+        lambda row: _number(row.standard_uncertainty),
         written=written(".3g"),
         number=True,
     ),
     number("asked for", "wanted", written(".3g")),
     word("unit", "unit"),
     word("most of it from", "mostly"),
-    Column("met", lambda one: "yes" if one.met else "no"),
+    Column("met", lambda row: "yes" if row.met else "no"),
 )
 _STEPS: Final[tuple[Column[Decision], ...]] = (
-    Column("runs", lambda one: len(one.runs), number=True),
-    Column("last", lambda one: one.runs[-1] if one.runs else ""),
+    Column("runs", lambda row: len(row.runs), number=True),
+    Column("last", lambda row: row.runs[-1] if row.runs else ""),
     number("tank time", "time_s", clock),
-    Column("met", lambda one: f"{_met(one.known)} of {len(one.known)}" if one.known else ""),
-    Column("least known", lambda one: _least(one.known)),
-    Column("then", lambda one: _then(one)),
+    Column("met", lambda row: f"{_met(row.known)} of {len(row.known)}" if row.known else ""),
+    Column("least known", lambda row: _least(row.known)),
+    Column("then", lambda row: _then(row)),
     word("approved by", "approved"),
 )
 
@@ -62,30 +62,30 @@ _STEPS: Final[tuple[Column[Decision], ...]] = (
 _CAUSES: Final[tuple[Column[KnownCause], ...]] = (
     word("cause", "name"),
     number("probability", "probability", "{:.3f}".format),
-    Column("alike in these runs", lambda one: ", ".join(one.alike)),
-    Column("known", lambda one: "yes" if one.met else "no"),
+    Column("alike in these runs", lambda row: ", ".join(row.alike)),
+    Column("known", lambda row: "yes" if row.met else "no"),
 )
 _PURSUED: Final[tuple[Column[Decision], ...]] = (
     *_STEPS[:3],
-    Column("most probable", lambda one: one.causes[0].name if one.causes else ""),
-    Column("probability", lambda one: _probability(one), written="{:.3f}".format, number=True),
+    Column("most probable", lambda row: row.causes[0].name if row.causes else ""),
+    Column("probability", lambda row: _probability(row), written="{:.3f}".format, number=True),
     *_STEPS[-2:],
 )
 
 
 def look_lines(look: Look) -> Iterator[str]:
     """Yield what an operator is told after a run: what is known, and what is to be made."""
-    made = f"after {counted(len(look.runs), 'run')}, {clock(look.time_s)}"
-    causes = [f"{one.name} {one.probability:.3f}" for one in look.causes]
-    known = "; ".join([*map(_in_words, look.known), *causes]) or "nothing is known yet"
-    yield f"{made}: {known}"
+    heading = f"after {counted(len(look.runs), 'run')}, {clock(look.time_s)}"
+    causes = [f"{cause.name} {cause.probability:.3f}" for cause in look.causes]
+    words = "; ".join([*map(_in_words, look.known), *causes]) or "nothing is known yet"
+    yield f"{heading}: {words}"
     yield from look.notes
     if look.ending is not None:
         yield f"{look.ending}{f': {look.remark}' if look.remark else ''}"
     elif look.proposed:
         yield f"new plan ({look.remark}), {clock(look.left_s)}:"
-        for k, (one, why) in enumerate(zip(look.proposed, look.whys, strict=True), 1):
-            yield f"  {k}. {in_words(one)}{f' ({why})' if why else ''}"
+        for k, (run, why) in enumerate(zip(look.proposed, look.whys, strict=True), 1):
+            yield f"  {k}. {in_words(run)}{f' ({why})' if why else ''}"
     else:
         yield f"as planned: {counted(len(look.kept), 'run')} more, {clock(look.left_s)}"
 
@@ -101,7 +101,7 @@ def sequential_document(
         What recordings are waited for, in a sentence; empty where none are.
     """
     last = decisions[-1]
-    told = (
+    contents = (
         Text([waiting or _said(name, last)]),
         *_contents(name, decisions),
         Data("folder", folder),
@@ -110,7 +110,7 @@ def sequential_document(
         Data("runs", last.runs),
         Data("decisions", decisions),
     )
-    return Document("", "a campaign that chose its runs", (Section("", told),), SCHEMA)
+    return Document("", "a campaign that chose its runs", (Section("", contents),), SCHEMA)
 
 
 def story(folder: Path, name: str) -> Iterator[Section]:
@@ -124,16 +124,16 @@ def story(folder: Path, name: str) -> Iterator[Section]:
 def _contents(name: str, decisions: Sequence[Decision]) -> tuple[Content, ...]:
     """Return tables and figure of what was known after each run."""
     last = decisions[-1]
-    if any(one.causes for one in decisions):
+    if any(decision.causes for decision in decisions):
         return (
             Table("Causes", _CAUSES, last.causes, titled=True),
             Table("What was known after each run", _PURSUED, decisions, titled=True),
-            Notes([Note("note", one) for one in last.notes]),
+            Notes([Note("note", note) for note in last.notes]),
         )
     return (
         Table("Targets", _TARGETS, last.known, titled=True),
         Table("What was known after each run", _STEPS, decisions, titled=True),
-        Notes([Note("note", one) for one in last.notes]),
+        Notes([Note("note", note) for note in last.notes]),
         Figure(f"{name}-run-after-run", _CAPTION, partial(sequential_figure, name, decisions)),
     )
 
@@ -142,10 +142,10 @@ def sequential_figure(name: str, decisions: Sequence[Decision]) -> "Drawing":
     """Draw a line for each target: uncertainty over what is asked for, run by run."""
     with drawn(7.2, 4.2) as figure:
         axes = figure.subplots()
-        hours = [one.time_s / 3600.0 for one in decisions]
-        names = dict.fromkeys(target.name for one in decisions for target in one.known)
+        hours = [decision.time_s / 3600.0 for decision in decisions]
+        names = dict.fromkeys(target.name for decision in decisions for target in decision.known)
         for k, target in enumerate(names):
-            ratios = [_ratio(one.known, target) for one in decisions]
+            ratios = [_ratio(decision.known, target) for decision in decisions]
             colour, style = PALETTE[k % len(PALETTE)], _STYLES[k // len(PALETTE) % len(_STYLES)]
             axes.plot(hours, ratios, style, color=colour, marker="o", markersize=3.5, label=target)
         axes.axhline(1.0, color=TRACE, linewidth=1.4)
@@ -166,43 +166,46 @@ def _said(name: str, last: Decision) -> str:
     return f"{name}: {counted(len(last.runs), 'run')}, {clock(last.time_s)}; {ending}{remark}"
 
 
-def _in_words(one: KnownTarget) -> str:
-    if one.standard_uncertainty is None:
-        return f"{one.name} unknown"
-    told = "met" if one.met else f"{one.wanted:.3g} asked"
-    return f"{one.name} {one.value:.4g} ± {one.standard_uncertainty:.3g} {one.unit} ({told})"
+def _in_words(target: KnownTarget) -> str:
+    if target.standard_uncertainty is None:
+        return f"{target.name} unknown"
+    verdict = "met" if target.met else f"{target.wanted:.3g} asked"
+    return (
+        f"{target.name} {target.value:.4g} ± {target.standard_uncertainty:.3g} {target.unit} "
+        f"({verdict})"
+    )
 
 
-def _met(known: Sequence[KnownTarget]) -> int:
-    return sum(one.met for one in known)
+def _met(targets: Sequence[KnownTarget]) -> int:
+    return sum(target.met for target in targets)
 
 
-def _least(known: Sequence[KnownTarget]) -> str:
-    short = [one for one in known if not one.met]
-    if not short:
+def _least(targets: Sequence[KnownTarget]) -> str:
+    unmet = [target for target in targets if not target.met]
+    if not unmet:
         return ""
-    ratios = {one.name: _number(one.standard_uncertainty) / one.wanted for one in short}
-    worst = max(ratios, key=lambda one: math.inf if math.isnan(ratios[one]) else ratios[one])
+    ratios = {target.name: _number(target.standard_uncertainty) / target.wanted for target in unmet}
+    worst = max(ratios, key=lambda name: math.inf if math.isnan(ratios[name]) else ratios[name])
     if math.isnan(ratios[worst]):
         return f"{worst}: unknown"
     return f"{worst}: {ratios[worst]:.3g} times what is asked"
 
 
-def _then(one: Decision) -> str:
-    if one.ending:
-        return one.ending
-    if one.added:
-        return f"{counted(len(one.added), 'run')} planned ({one.remark})"
-    return f"as planned, {counted(len(one.kept), 'run')} more"
+def _then(decision: Decision) -> str:
+    if decision.ending:
+        return decision.ending
+    if decision.added:
+        return f"{counted(len(decision.added), 'run')} planned ({decision.remark})"
+    return f"as planned, {counted(len(decision.kept), 'run')} more"
 
 
-def _ratio(known: Sequence[KnownTarget], name: str) -> float:
-    found = next((one for one in known if one.name == name), None)
-    return math.nan if found is None else _number(found.standard_uncertainty) / found.wanted
+def _ratio(targets: Sequence[KnownTarget], name: str) -> float:
+    target = next((target for target in targets if target.name == name), None)
+    return math.nan if target is None else _number(target.standard_uncertainty) / target.wanted
 
 
-def _probability(one: Decision) -> float:
-    return one.causes[0].probability if one.causes else math.nan
+def _probability(decision: Decision) -> float:
+    return decision.causes[0].probability if decision.causes else math.nan
 
 
 def _number(value: float | None) -> float:

@@ -32,7 +32,7 @@ _RANGE: Final = (0.5, 1.5)  # of the set-point's frequency
 _ROWS: Final = 4
 _HIGHEST: Final = 5
 _NOTHING: Final = 1e-9  # of the nominal signal: no change but rounding
-_RECORDED: Final = tuple(recorded(one).name for one in (FORCE_AFT, FORCE_FORE))
+_RECORDED: Final = tuple(recorded(force).name for force in (FORCE_AFT, FORCE_FORE))
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,29 +70,31 @@ def signature_grid(effect: Effect, rig: SimulatedRig, set_point: SetPoint) -> Si
     shape = (amplitudes.size, frequencies.size)
     channels = channels_of(effect, rig, set_point)
     keys = [(name, order) for name in channels for order in range(_HIGHEST + 1)]
-    found, stated = ({key: np.zeros(shape, dtype=np.complex128) for key in keys} for _ in range(2))
+    simulated, stated = (
+        {key: np.zeros(shape, dtype=np.complex128) for key in keys} for _ in range(2)
+    )
     size = dict.fromkeys(channels, 0.0)
     for place in np.ndindex(shape):
-        here = replace(
+        grid_point = replace(
             set_point,
             frequency_hz=float(frequencies[place[1]]),
             eccentricity_m=float(amplitudes[place[0]]),
         )
-        situation = Situation.of(rig, here)
-        changed = steady_run(*switch_on((effect,), rig, here))
+        situation = Situation.of(rig, grid_point)
+        changed = steady_run(*switch_on((effect,), rig, grid_point))
         theory = effect.signature(situation)
         for key in keys:
-            own = phasor(situation.nominal, *key)
-            size[key[0]] = max(size[key[0]], abs(own))
-            found[key][place] = phasor(changed, *key) - own
+            nominal = phasor(situation.nominal, *key)
+            size[key[0]] = max(size[key[0]], abs(nominal))
+            simulated[key][place] = phasor(changed, *key) - nominal
             stated[key][place] = theory.get(key, 0.0)
-    kept = [key for key in keys if _is_there(found[key], stated[key], size[key[0]])]
+    drawn_keys = [key for key in keys if _is_there(simulated[key], stated[key], size[key[0]])]
     signals = {signal.name: signal.unit for signal in rig.chain(set_point).signals}
     return SignatureGrid(
         frequencies,
         amplitudes,
-        {key: found[key] for key in kept},
-        {key: stated[key] for key in kept},
+        {key: simulated[key] for key in drawn_keys},
+        {key: stated[key] for key in drawn_keys},
         {name: signals[name] for name in channels},
     )
 
@@ -100,12 +102,12 @@ def signature_grid(effect: Effect, rig: SimulatedRig, set_point: SetPoint) -> Si
 def channels_of(effect: Effect, rig: SimulatedRig, set_point: SetPoint) -> tuple[str, ...]:
     """Return the channels that theory names, forces first; recorded forces if it names none."""
     theory = effect.signature(Situation.of(rig, set_point))
-    named = sorted({name for name, _ in theory}, key=lambda name: ("force" not in name, name))
-    return tuple(named) or _RECORDED
+    names = sorted({name for name, _ in theory}, key=lambda name: ("force" not in name, name))
+    return tuple(names) or _RECORDED
 
 
-def _is_there(found: ComplexArray, stated: ComplexArray, size: float) -> bool:
-    return float(max(np.abs(found).max(), np.abs(stated).max())) > _NOTHING * size
+def _is_there(simulated: ComplexArray, stated: ComplexArray, size: float) -> bool:
+    return float(max(np.abs(simulated).max(), np.abs(stated).max())) > _NOTHING * size
 
 
 def signature_figure(effect: Effect, grid: SignatureGrid, title: str) -> "Figure":
@@ -130,8 +132,8 @@ def _largest(grid: SignatureGrid) -> list[Key]:
     """Return the parts to draw, forces first; the strut that does not differ is left out."""
     keys = [key for key in grid.simulated if not _is_twin(key, grid)]
     for channel in dict.fromkeys(name for name, _ in keys):
-        own = [key for key in keys if key[0] == channel]
-        peak = max(_peak(grid, key) for key in own)
+        channel_keys = [key for key in keys if key[0] == channel]
+        peak = max(_peak(grid, key) for key in channel_keys)
         keys = [key for key in keys if key[0] != channel or _peak(grid, key) > 1e-3 * peak]
     by_size = sorted(keys, key=lambda key: ("force" not in key[0], -_peak(grid, key)))
     order = list(grid.units)
@@ -144,16 +146,16 @@ def _peak(grid: SignatureGrid, key: Key) -> float:
 
 def _is_twin(key: Key, grid: SignatureGrid) -> bool:
     name, order = key
-    other = (name.replace("_fore", "_aft"), order)
-    if not name.endswith("_fore") or other not in grid.simulated:
+    twin = (name.replace("_fore", "_aft"), order)
+    if not name.endswith("_fore") or twin not in grid.simulated:
         return False
-    gap = np.abs(grid.simulated[key] - grid.simulated[other]).max()
+    gap = np.abs(grid.simulated[key] - grid.simulated[twin]).max()
     return bool(gap < 0.02 * _peak(grid, key))
 
 
 def _draw_row(row: Sequence["Axes"], key: Key, grid: SignatureGrid, *, circles: bool) -> None:
     name, order = key
-    shown = display(grid.units[name])
+    unit = display(grid.units[name])
     parts = ("mean", "") if order == 0 else (f"in phase {order}", f"quadrature {order}")
     for axes, part, take in zip(row, parts, (np.real, np.imag), strict=True):
         if not part:
@@ -161,16 +163,16 @@ def _draw_row(row: Sequence["Axes"], key: Key, grid: SignatureGrid, *, circles: 
             continue
         for number in range(grid.amplitudes_m.size):
             color = PALETTE[number % len(PALETTE)]
-            theory = shown.factor * take(grid.theory[key][number])
-            found = shown.factor * take(grid.simulated[key][number])
+            theory = unit.factor * take(grid.theory[key][number])
+            simulated = unit.factor * take(grid.simulated[key][number])
             axes.plot(grid.frequencies_hz, theory, color=color)
             if circles:
                 axes.plot(
-                    grid.frequencies_hz, found, "o", color=color, markersize=4, fillstyle="none"
+                    grid.frequencies_hz, simulated, "o", color=color, markersize=4, fillstyle="none"
                 )
         axes.set_title(f"{shown_name(name)}: {part}", loc="left")
-        axes.set_ylabel(f"change ({shown.label})")
-        _widen(axes, shown.factor * _peak(grid, key))
+        axes.set_ylabel(f"change ({unit.label})")
+        _widen(axes, unit.factor * _peak(grid, key))
 
 
 def _widen(axes: "Axes", peak: float) -> None:
@@ -206,8 +208,9 @@ def save_signature_figure(
     if not grid.simulated:
         return []
     values = ", ".join(
-        f"{own.name} = {getattr(effect, own.name):g}{'' if own.unit == '1' else f' {own.unit}'}"
-        for own in effect.parameters()
+        f"{parameter.name} = {getattr(effect, parameter.name):g}"
+        f"{'' if parameter.unit == '1' else f' {parameter.unit}'}"
+        for parameter in effect.parameters()
     )
     figure = signature_figure(effect, grid, values)
     return write_figure(figure, folder, f"{effect.name}-signature")

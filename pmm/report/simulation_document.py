@@ -25,33 +25,33 @@ from sim.effects.effect import Effect
 SCHEMA: Final = "pmm-simulation-1"
 _G: Final = written("g")
 _RUNS: Final[tuple[Column[SimulatedRun], ...]] = (
-    Column("run", lambda one: one.run, "run", lambda run: run.name),
-    Column("f", lambda one: _G(one.run.frequency_hz), unit="Hz", number=True),
-    Column("e", lambda one: _G(1e3 * one.run.eccentricity_m), unit="mm", number=True),
-    Column("phase", lambda one: _G(math.degrees(one.run.strut_phase_rad)), unit="deg", number=True),
-    Column("U", lambda one: _G(one.run.carriage_speed_m_s), unit="m/s", number=True),
-    Column("periods", lambda one: one.run.periods, number=True),
+    Column("run", lambda row: row.run, "run", lambda run: run.name),
+    Column("f", lambda row: _G(row.run.frequency_hz), unit="Hz", number=True),
+    Column("e", lambda row: _G(1e3 * row.run.eccentricity_m), unit="mm", number=True),
+    Column("phase", lambda row: _G(math.degrees(row.run.strut_phase_rad)), unit="deg", number=True),
+    Column("U", lambda row: _G(row.run.carriage_speed_m_s), unit="m/s", number=True),
+    Column("periods", lambda row: row.run.periods, number=True),
     number("samples", "samples"),
     word("recording", "file"),
     *data_only("seed", "sample_rate_hz", "flags"),
 )
 
 
-def simulation_document(planned: PlannedSimulation, done: SimulatedCampaign) -> Document:
+def simulation_document(simulation: PlannedSimulation, campaign: SimulatedCampaign) -> Document:
     """Return what was simulated of a campaign."""
-    memory = planned.campaign.memory
-    told = (
-        Text((f"{planned.campaign.name}: {counted(len(done.runs), 'run')}", "")),
-        Table("Runs", _RUNS, done.runs, "runs"),
+    memory = simulation.campaign.memory
+    contents = (
+        Text((f"{simulation.campaign.name}: {counted(len(campaign.runs), 'run')}", "")),
+        Table("Runs", _RUNS, campaign.runs, "runs"),
         Text([f"memory of the water, {memory}"] if memory else []),
-        Text([f"at rest: {file}" for file in done.at_rest]),
-        Text([f"effect {one.name}: {_parameters(one)}" for one in planned.effects]),
-        Notes(flag_notes(flag for one in done.runs for flag in one.flags)),
-        Data("folder", planned.folder),
-        Data("effects", effect_rows(planned.effects)),
-        Data("at_rest", done.at_rest),
+        Text([f"at rest: {file}" for file in campaign.at_rest]),
+        Text([f"effect {effect.name}: {_parameters(effect)}" for effect in simulation.effects]),
+        Notes(flag_notes(flag for run in campaign.runs for flag in run.flags)),
+        Data("folder", simulation.folder),
+        Data("effects", effect_rows(simulation.effects)),
+        Data("at_rest", campaign.at_rest),
     )
-    return Document("", "simulated runs", (Section("", told),), SCHEMA)
+    return Document("", "simulated runs", (Section("", contents),), SCHEMA)
 
 
 def _parameters(effect: Effect) -> str:

@@ -87,8 +87,8 @@ def gate_spectrum(analysis: Analysis, reading: Harmonics) -> tuple[FloatArray, F
     if recording.stamps_s is not None:
         part = recording.between(float(opened_s), float(closed_s))
         amplitude = _lines_beside(analysis, reading, part, lines / float(closed_s - opened_s))
-        kept = np.arange(1, min(reading.order, len(lines) // periods) + 1)
-        amplitude[:, kept * periods - 1] = reading.amplitude[:, kept - 1]
+        orders = np.arange(1, min(reading.order, len(lines) // periods) + 1)
+        amplitude[:, orders * periods - 1] = reading.amplitude[:, orders - 1]
     else:
         amplitude = _lines(recording, reading, float(opening), float(closing), len(lines))
     return lines / float(closed_s - opened_s), amplitude, periods
@@ -102,11 +102,11 @@ def _lines_beside(
     The fit is taken off first: on such samples a strong line leaks into all others.
     """
     time_s = part.time_s()
-    left = part.samples[:, 0 : part.sample_count] - fitted(analysis, reading, time_s)
-    there = np.isfinite(left)
-    left = np.where(there, left, 0.0)
-    lines = [left @ np.exp(-2j * np.pi * hz * time_s) for hz in lines_hz]
-    return np.asarray(2.0 * np.abs(np.stack(lines, axis=1)) / there.sum(axis=1)[:, None])
+    residual = part.samples[:, 0 : part.sample_count] - fitted(analysis, reading, time_s)
+    mask = np.isfinite(residual)
+    residual = np.where(mask, residual, 0.0)
+    lines = [residual @ np.exp(-2j * np.pi * hz * time_s) for hz in lines_hz]
+    return np.asarray(2.0 * np.abs(np.stack(lines, axis=1)) / mask.sum(axis=1)[:, None])
 
 
 def _lines(

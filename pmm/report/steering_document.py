@@ -68,11 +68,11 @@ class _Wake(NamedTuple):
     standard_uncertainty: float
 
 
-def steering_document(found: CampaignSteering, level: float) -> Document:
+def steering_document(steering: CampaignSteering, level: float) -> Document:
     """Return what was identified; ``docs/steering.md`` has the keys."""
-    figures = Section("Figures", tuple(steering_figures(found)))
-    content = Section("", _contents(found, level))
-    return Document(found.name, "propeller and rudder", (content, figures), SCHEMA)
+    figures = Section("Figures", tuple(steering_figures(steering)))
+    content = Section("", _contents(steering, level))
+    return Document(steering.name, "propeller and rudder", (content, figures), SCHEMA)
 
 
 def steering_story(folder: Path, level: float) -> Iterator[Section]:
@@ -80,47 +80,55 @@ def steering_story(folder: Path, level: float) -> Iterator[Section]:
     if not (folder / SETTINGS_FILE).exists():
         return
     try:
-        found = steering_of(folder)
+        steering = steering_of(folder)
     except PmmError as error:
         yield Section("Propeller and rudder", (Notes([Note("warning", str(error))]),))
         return
-    failed = Notes([Note("warning", one.message) for one in found.failed])
-    contents = (*_contents(found, level), failed, *steering_figures(found))
+    failed = Notes([Note("warning", failure.message) for failure in steering.failed])
+    contents = (*_contents(steering, level), failed, *steering_figures(steering))
     yield Section("Propeller and rudder", contents)
 
 
-def _contents(found: CampaignSteering, level: float) -> tuple[Content, ...]:
-    told, factor = found.parameters, NormalDist().inv_cdf(0.5 + 0.5 * level)
+def _contents(steering: CampaignSteering, level: float) -> tuple[Content, ...]:
+    parameters, factor = steering.parameters, NormalDist().inv_cdf(0.5 + 0.5 * level)
     rows = [
         _Parameter(name, value, u, value - factor * u, value + factor * u)
         for name, value, u in zip(
-            told.names, told.values.tolist(), told.standard_uncertainty.tolist(), strict=True
+            parameters.names,
+            parameters.values.tolist(),
+            parameters.standard_uncertainty.tolist(),
+            strict=True,
         )
     ]
     return (
         _parameters(rows, level),
-        Notes([Note("doubt", one) for one in doubts(told, found.runs, found.known)], "doubts"),
-        Notes([Note("missing", f"{_plain(key)}: {how}") for key, how in told.missing.items()]),
-        Data("missing", told.missing),
-        Data("covariance", told.covariance.tolist()),
-        Text(list(_fit(found))),
-        Data("misfit", dict(zip(("loads", "inflow"), told.misfit, strict=True))),
-        _propulsion(found, factor),
-        _wakes(found, factor),
-        _tows(found, factor),
-        Data("failed", [one.message for one in found.failed]),
-        Notes(flag_notes(found.left_out)),
-        Data("left_out", found.left_out),
+        Notes(
+            [Note("doubt", doubt) for doubt in doubts(parameters, steering.runs, steering.known)],
+            "doubts",
+        ),
+        Notes(
+            [Note("missing", f"{_plain(key)}: {how}") for key, how in parameters.missing.items()]
+        ),
+        Data("missing", parameters.missing),
+        Data("covariance", parameters.covariance.tolist()),
+        Text(list(_fit(steering))),
+        Data("misfit", dict(zip(("loads", "inflow"), parameters.misfit, strict=True))),
+        _propulsion(steering, factor),
+        _wakes(steering, factor),
+        _tows(steering, factor),
+        Data("failed", [failure.message for failure in steering.failed]),
+        Notes(flag_notes(steering.left_out)),
+        Data("left_out", steering.left_out),
     )
 
 
-def steering_figures(found: CampaignSteering) -> Iterator[Figure]:
+def steering_figures(steering: CampaignSteering) -> Iterator[Figure]:
     """Yield the figures."""
     caption = (
         "Left: the rudder's normal force over its angle, with the fit. Right: force along the "
         "model over thrust on straight course, the rudder amidships; its slope is 1 - t_P."
     )
-    yield Figure("steering", caption, lambda: steering_figure(found))
+    yield Figure("steering", caption, lambda: steering_figure(steering))
 
 
 def _plain(name: str) -> str:
@@ -130,12 +138,12 @@ def _plain(name: str) -> str:
 def _parameters(rows: list[_Parameter], level: float) -> Table[_Parameter]:
     columns: tuple[Column[_Parameter], ...] = (
         word("parameter", "name"),
-        Column("", lambda one: _MEANS[one.name]),
+        Column("", lambda row: _MEANS[row.name]),
         number("value", "value", written(".4g")),
         number("u", "standard_uncertainty", written(".2g")),
         Column(
             f"{100.0 * level:g} % interval",
-            lambda one: between(one.low, one.high),
+            lambda row: between(row.low, row.high),
             number=True,
         ),
         *data_only("low", "high"),
@@ -143,8 +151,8 @@ def _parameters(rows: list[_Parameter], level: float) -> Table[_Parameter]:
     return Table("Propeller and rudder", columns, rows, "parameters", titled=True)
 
 
-def _fit(found: CampaignSteering) -> Iterator[str]:
-    loads, inflow = found.parameters.misfit
+def _fit(steering: CampaignSteering) -> Iterator[str]:
+    loads, inflow = steering.parameters.misfit
     yield (
         f"residuals over their stated scatter: {loads:.3g} for the loads, {inflow:.3g} for thrust "
         "and normal force"
@@ -157,11 +165,11 @@ def _fit(found: CampaignSteering) -> Iterator[str]:
     )
 
 
-def _propulsion(found: CampaignSteering, factor: float) -> Table[SelfPropulsion]:
+def _propulsion(steering: CampaignSteering, factor: float) -> Table[SelfPropulsion]:
     def told(heading: str, key: str, unit: str, u: str) -> Column[SelfPropulsion]:
         return Column(
             heading,
-            lambda one: rounded(getattr(one, key), factor * getattr(one, u)),
+            lambda point: rounded(getattr(point, key), factor * getattr(point, u)),
             unit=unit,
             number=True,
         )
@@ -172,25 +180,25 @@ def _propulsion(found: CampaignSteering, factor: float) -> Table[SelfPropulsion]
         told("thrust", "thrust_n", "N", "thrust_u"),
         told("revolutions", "rate_hz", "1/s", "rate_u"),
         number("J", "advance", written(".4g")),
-        *_conditions(found),
+        *_conditions(steering),
         *data_only("resistance_n", "resistance_u", "thrust_n", "thrust_u", "rate_hz", "rate_u"),
     )
-    rows = found.parameters.self_propulsion
+    rows = steering.parameters.self_propulsion
     return Table(
         "Self-propulsion point", columns, rows, "self_propulsion", titled=True, filled=True,
         notes=(NOTE,),
     )  # fmt: skip
 
 
-def _conditions(found: CampaignSteering) -> Iterator[Column[Any]]:
-    return condition_columns(attrgetter("speed_m_s"), found.settings.length_m, found.water)
+def _conditions(steering: CampaignSteering) -> Iterator[Column[Any]]:
+    return condition_columns(attrgetter("speed_m_s"), steering.settings.length_m, steering.water)
 
 
-def _wakes(found: CampaignSteering, factor: float) -> Table[_Wake]:
-    u, v, r, wake, spread = found.parameters.wakes
+def _wakes(steering: CampaignSteering, factor: float) -> Table[_Wake]:
+    u, v, r, wake, spread = steering.parameters.wakes
     rows = [
-        _Wake(*one)
-        for one in np.stack(
+        _Wake(*values)
+        for values in np.stack(
             (np.hypot(u, v), np.round(np.degrees(np.arctan2(-v, u)), 9), r, wake, spread), axis=1
         ).tolist()
     ]
@@ -198,54 +206,54 @@ def _wakes(found: CampaignSteering, factor: float) -> Table[_Wake]:
         number("U", "speed_m_s", written(".4g"), "m/s"),
         number("drift", "drift_deg", written("z.3g"), "deg"),
         number("r", "turning_rad_s", written(".3g"), "rad/s"),
-        Column("w_P", lambda one: rounded(one.wake, factor * one.standard_uncertainty),
+        Column("w_P", lambda row: rounded(row.wake, factor * row.standard_uncertainty),
                number=True),
-        *_conditions(found),
+        *_conditions(steering),
         *data_only("wake", "standard_uncertainty"),
     )  # fmt: skip
     return Table("Wake by thrust identity", columns, rows, "wakes", titled=True, filled=True)
 
 
-def _tows(found: CampaignSteering, factor: float) -> Table[SteeredRun]:
+def _tows(steering: CampaignSteering, factor: float) -> Table[SteeredRun]:
     def load(heading: str, row: int, unit: str) -> Column[SteeredRun]:
         return Column(
             heading,
-            lambda one: rounded(one.loads[row], factor * one.loads_u[row]),
+            lambda run: rounded(run.loads[row], factor * run.loads_u[row]),
             unit=unit,
             number=True,
         )
 
-    def unit(one: SteeredRun) -> float:
+    def unit(run: SteeredRun) -> float:
         """Return rho n² D⁵, by which a torque becomes K_Q."""
-        return found.known.density_kg_m3 * one.rate_hz**2 * found.known.diameter_m**5
+        return steering.known.density_kg_m3 * run.rate_hz**2 * steering.known.diameter_m**5
 
     columns: tuple[Column[SteeredRun], ...] = (
         word("run", "run"),
-        Column("drift", lambda one: degrees(one.drift_rad), unit="deg",
+        Column("drift", lambda run: degrees(run.drift_rad), unit="deg",
                number=True),
-        Column("r", lambda one: f"{one.motion[2]:.3g}", unit="rad/s", number=True),
-        Column("rudder", lambda one: degrees(one.rudder_rad), unit="deg",
+        Column("r", lambda run: f"{run.motion[2]:.3g}", unit="rad/s", number=True),
+        Column("rudder", lambda run: degrees(run.rudder_rad), unit="deg",
                number=True),
         number("n", "rate_hz", written(".4g"), "1/s"),
         load("X", 0, "N"),
         load("Y", 1, "N"),
         load("N", 2, "N m"),
-        Column("thrust", lambda one: rounded(one.thrust_n, factor * one.thrust_u), unit="N",
+        Column("thrust", lambda run: rounded(run.thrust_n, factor * run.thrust_u), unit="N",
                number=True),
-        Column("F_N", lambda one: rounded(one.normal_n, factor * one.normal_u), unit="N",
+        Column("F_N", lambda run: rounded(run.normal_n, factor * run.normal_u), unit="N",
                number=True),
-        Column("Q", lambda one: _if_read(one, rounded(one.torque_n_m, factor * one.torque_u)),
+        Column("Q", lambda run: _if_read(run, rounded(run.torque_n_m, factor * run.torque_u)),
                unit="N m", number=True),
-        Column("10 K_Q", lambda one: _if_read(one, f"{10.0 * one.torque_n_m / unit(one):.4g}"),
+        Column("10 K_Q", lambda run: _if_read(run, f"{10.0 * run.torque_n_m / unit(run):.4g}"),
                number=True),
         *data_only("motion", "loads", "loads_u", "rudder_rad", "thrust_n", "thrust_u", "normal_n",
                    "normal_u", "torque_n_m", "torque_u"),
     )  # fmt: skip
     return Table(
-        "Runs with propeller and rudder", columns, found.tows, "tows", titled=True, folded=True,
+        "Runs with propeller and rudder", columns, steering.tows, "tows", titled=True, folded=True,
         filled=True,
     )  # fmt: skip
 
 
-def _if_read(one: SteeredRun, text: str) -> str:
-    return text if math.isfinite(one.torque_n_m) else ""
+def _if_read(run: SteeredRun, text: str) -> str:
+    return text if math.isfinite(run.torque_n_m) else ""

@@ -20,30 +20,30 @@ _POINTS = 61
 _MARKS = (("o", "-"), ("s", "--"), ("^", ":"), ("D", "-."))
 
 
-def steering_figure(found: CampaignSteering) -> "Figure":
+def steering_figure(steering: CampaignSteering) -> "Figure":
     """Draw normal force over rudder angle, and force ahead over thrust."""
     with drawn(10.0, 4.4) as figure:
         left, right = figure.subplots(1, 2)
-        _normal_force(left, found)
-        _load_variation(right, found)
-        figure.suptitle(f"{found.name}: propeller and rudder")
+        _normal_force(left, steering)
+        _load_variation(right, steering)
+        figure.suptitle(f"{steering.name}: propeller and rudder")
     return figure
 
 
-def _normal_force(axes: "Axes", found: CampaignSteering) -> None:
-    runs, drawn = found.runs, _groups(found.runs)
+def _normal_force(axes: "Axes", steering: CampaignSteering) -> None:
+    runs, groups = steering.runs, _groups(steering.runs)
     for (colour, mark, line), ((condition, rate), rows) in zip(
-        _looks(), drawn.items(), strict=False
+        _looks(), groups.items(), strict=False
     ):
         u, v, r = runs.motions[:, condition]
-        drift, turning = degrees(np.arctan2(-v, u)), r * found.known.length_m / np.hypot(u, v)
+        drift, turning = degrees(np.arctan2(-v, u)), r * steering.known.length_m / np.hypot(u, v)
         angles = np.degrees(runs.rudder_rad[rows])
         axes.errorbar(
             angles, runs.values[4, rows], 2.0 * runs.uncertainty[4, rows], fmt=mark, color=colour,
             markersize=3.5,
             label=f"{drift}°, {round(turning, 6):z.2g}, {rate:.3g} 1/s",
         )  # fmt: skip
-        if (curve := _fitted(found, condition, rate, angles)) is not None:
+        if (curve := _fitted(steering, condition, rate, angles)) is not None:
             axes.plot(*curve, line, color=colour)
     axes.set_xlabel("rudder angle (°)")
     axes.set_ylabel("normal force (N)")
@@ -51,10 +51,10 @@ def _normal_force(axes: "Axes", found: CampaignSteering) -> None:
 
 
 def _groups(runs: SteeringRuns) -> dict[tuple[int, float], list[int]]:
-    found: dict[tuple[int, float], list[int]] = {}
+    groups: dict[tuple[int, float], list[int]] = {}
     for k, condition in enumerate(runs.condition.tolist()):
-        found.setdefault((condition, round(float(runs.rate_hz[k]), 3)), []).append(k)
-    return found
+        groups.setdefault((condition, round(float(runs.rate_hz[k]), 3)), []).append(k)
+    return groups
 
 
 def _looks() -> Iterator[tuple[str, str, str]]:
@@ -65,29 +65,32 @@ def _looks() -> Iterator[tuple[str, str, str]]:
 
 
 def _fitted(
-    found: CampaignSteering, condition: int, rate_hz: float, angles: FloatArray
+    steering: CampaignSteering, condition: int, rate_hz: float, angles: FloatArray
 ) -> tuple[FloatArray, FloatArray] | None:
     """Return the fitted curve of one motion and rate; ``None`` where the fit does not tell it."""
-    told = found.parameters
-    if "epsilon" not in told.names:
+    parameters = steering.parameters
+    if "epsilon" not in parameters.names:
         return None
-    length, known = found.known.length_m, dict(zip(told.names, told.values, strict=True))
-    own = np.array([known.get(name, 0.0) for name in INFLOW])
-    own[INFLOW.index("l_R")] = length * known.get("l_R'", 0.0)
+    length, values = (
+        steering.known.length_m,
+        dict(zip(parameters.names, parameters.values, strict=True)),
+    )
+    inflow = np.array([values.get(name, 0.0) for name in INFLOW])
+    inflow[INFLOW.index("l_R")] = length * values.get("l_R'", 0.0)
     over = np.radians(np.linspace(angles.min(), angles.max(), _POINTS))
-    motion = np.repeat(found.runs.motions[:, [condition]], _POINTS, axis=1)
+    motion = np.repeat(steering.runs.motions[:, [condition]], _POINTS, axis=1)
     unit = np.ones((5, _POINTS))
     runs = SteeringRuns(("",) * _POINTS, motion, over, np.full(_POINTS, rate_hz), unit, unit)
-    wake = np.full(_POINTS, told.wakes[3, condition])
-    return np.degrees(over), behind(runs, found.known, wake, own)[1]
+    wake = np.full(_POINTS, parameters.wakes[3, condition])
+    return np.degrees(over), behind(runs, steering.known, wake, inflow)[1]
 
 
-def _load_variation(axes: "Axes", found: CampaignSteering) -> None:
-    runs, slope = found.runs, found.parameters["1-t_P"]
+def _load_variation(axes: "Axes", steering: CampaignSteering) -> None:
+    runs, slope = steering.runs, steering.parameters["1-t_P"]
     for mark, condition in zip("osD^v", runs.straight, strict=False):
         rows = runs.condition == condition
-        turned = np.abs(runs.rudder_rad[rows]) < np.radians(0.5)
-        thrust, along = runs.values[3, rows][turned], runs.values[0, rows][turned]
+        amidships = np.abs(runs.rudder_rad[rows]) < np.radians(0.5)
+        thrust, along = runs.values[3, rows][amidships], runs.values[0, rows][amidships]
         if not len(thrust):
             continue
         speed = runs.motions[0, condition]

@@ -29,7 +29,9 @@ class _Number:
 def _of(
     heading: str, key: str, value: Callable[[ShaftLoop], float], unit: str = ""
 ) -> Column[LoopSetting]:
-    return Column(heading, lambda one: value(one.loop), key, written(".4g"), unit, number=True)
+    return Column(
+        heading, lambda setting: value(setting.loop), key, written(".4g"), unit, number=True
+    )
 
 
 _SETTINGS: Final[tuple[Column[LoopSetting], ...]] = (
@@ -44,37 +46,37 @@ _SETTINGS: Final[tuple[Column[LoopSetting], ...]] = (
 )  # fmt: skip
 _NUMBERS: Final[tuple[Column[_Number], ...]] = (
     word("found", "what"),
-    Column("", lambda one: rounded(one.of.value, one.half_width), number=True),
-    Column("", lambda one: one.of.unit, "unit"),
-    Column(None, lambda one: one.of.value, "value"),
-    Column(None, lambda one: one.half_width, "half_width"),
+    Column("", lambda row: rounded(row.of.value, row.half_width), number=True),
+    Column("", lambda row: row.of.unit, "unit"),
+    Column(None, lambda row: row.of.value, "value"),
+    Column(None, lambda row: row.half_width, "half_width"),
 )
 
 
-def tune_document(told: Tuning) -> Document:
+def tune_document(tuning: Tuning) -> Document:
     """Return what is told of a speed loop; ``docs/devices.md`` describes the keys."""
-    contents: list[Content] = [Data("job", "tune"), Text(_answer(told), strong=True)]
-    if told.found is not None and told.record is not None:
-        found, record = told.found, told.record
+    contents: list[Content] = [Data("job", "tune"), Text(_answer(tuning), strong=True)]
+    if tuning.found is not None and tuning.record is not None:
+        loop, record = tuning.found, tuning.record
         contents += [
-            Table("Found", _NUMBERS, _numbers(found, told), "found"),
+            Table("Found", _NUMBERS, _numbers(loop, tuning), "found"),
             Figure("lag", "What the ramps make of the shaft's angle, measured and of the loop "
-                   "found.", lambda: record_figure(record, found)),
+                   "found.", lambda: record_figure(record, loop)),
         ]  # fmt: skip
     contents += [
-        Table("Gains", _SETTINGS, told.settings, "settings", notes=(f"gains in {told.unit}",)),
+        Table("Gains", _SETTINGS, tuning.settings, "settings", notes=(f"gains in {tuning.unit}",)),
         Figure("bode", "The open loop and how it answers a load.",
-               lambda: bode_figure(told.settings)),
+               lambda: bode_figure(tuning.settings)),
         Figure("step", "The speed after a step of its set-point, and after one of the load.",
-               lambda: step_figure(told.settings)),
-        Table("Speed ripple", _ripple_columns(told), told.ripples, "ripples", titled=True),
+               lambda: step_figure(tuning.settings)),
+        Table("Speed ripple", _ripple_columns(tuning), tuning.ripples, "ripples", titled=True),
     ]  # fmt: skip
     return Document("", "speed loop", (Section("", tuple(contents)),), SCHEMA)
 
 
-def _answer(told: Tuning) -> list[str]:
+def _answer(tuning: Tuning) -> list[str]:
     """Return the answer in three sentences at most."""
-    now, best = told.settings[0].loop, told.settings[-1].loop
+    now, best = tuning.settings[0].loop, tuning.settings[-1].loop
     lines = []
     if now.closed and not now.stable:
         lines.append("The stated gains make the loop unstable.")
@@ -89,24 +91,28 @@ def _answer(told: Tuning) -> list[str]:
     return lines
 
 
-def _numbers(found: IdentifiedLoop, told: Tuning) -> list[_Number]:
-    named = {
-        "inertia at the shaft": found.inertia,
-        "proportional gain": found.proportional,
-        "viscous bearing": found.bearing,
-        "latency": found.latency_s,
+def _numbers(loop: IdentifiedLoop, tuning: Tuning) -> list[_Number]:
+    estimates = {
+        "inertia at the shaft": loop.inertia,
+        "proportional gain": loop.proportional,
+        "viscous bearing": loop.bearing,
+        "latency": loop.latency_s,
     }
-    return [_Number(what, of, told.level) for what, of in named.items() if of is not None]
+    return [
+        _Number(name, estimate, tuning.level)
+        for name, estimate in estimates.items()
+        if estimate is not None
+    ]
 
 
-def _ripple_columns(told: Tuning) -> Sequence[Column[RunRipple]]:
+def _ripple_columns(tuning: Tuning) -> Sequence[Column[RunRipple]]:
     def part(index: int) -> Column[RunRipple]:
         return Column(
-            told.settings[index].name,
-            lambda one: one.relative[index],
-            told.settings[index].name,
+            tuning.settings[index].name,
+            lambda ripple: ripple.relative[index],
+            tuning.settings[index].name,
             lambda value: f"{value:.2%}",
             number=True,
         )
 
-    return (word("run", "run"), *map(part, range(len(told.settings))))
+    return (word("run", "run"), *map(part, range(len(tuning.settings))))

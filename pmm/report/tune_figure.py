@@ -35,12 +35,12 @@ def bode_figure(settings: Sequence[Named]) -> "Figure":
     omega = 2.0 * np.pi * frequency_hz
     with drawn(9.0, 8.0) as figure:
         magnitude, phase, load = figure.subplots(3, 1, sharex=True)
-        for one, color in zip(settings, PALETTE, strict=False):
-            load.loglog(frequency_hz, np.abs(one.loop.load_response(omega)), color=color)
-            if not one.loop.closed:
+        for setting, color in zip(settings, PALETTE, strict=False):
+            load.loglog(frequency_hz, np.abs(setting.loop.load_response(omega)), color=color)
+            if not setting.loop.closed:
                 continue
-            response = one.loop.open_response(omega)
-            magnitude.loglog(frequency_hz, np.abs(response), color=color, label=one.name)
+            response = setting.loop.open_response(omega)
+            magnitude.loglog(frequency_hz, np.abs(response), color=color, label=setting.name)
             phase.semilogx(frequency_hz, np.degrees(np.unwrap(np.angle(response))), color=color)
         magnitude.axhline(1.0, color=FIT, lw=0.6)
         phase.axhline(-180.0, color=FIT, lw=0.6)
@@ -59,18 +59,20 @@ def step_figure(settings: Sequence[Named]) -> "Figure":
     """Draw the speed after a step of the set-point, and after a load of 1 N m."""
     import control  # type: ignore[import-untyped]
 
-    closed = [one for one in settings if one.loop.closed and one.loop.stable]
-    slowest = min((one.loop.margins.crossover_hz for one in closed), default=1.0)
+    stable_settings = [
+        setting for setting in settings if setting.loop.closed and setting.loop.stable
+    ]
+    slowest = min((setting.loop.margins.crossover_hz for setting in stable_settings), default=1.0)
     time_s = np.linspace(0.0, _SPANS / slowest, _POINTS)
     with drawn(9.0, 5.5) as figure:
         setpoint, load = figure.subplots(2, 1, sharex=True)
-        for one, color in zip(settings, PALETTE, strict=False):
-            if one in closed:
-                _, speed = control.step_response(one.loop.speed_per_setpoint, time_s)
-                setpoint.plot(time_s, speed, color=color, label=one.name)
-            if one in closed or not one.loop.closed:
-                _, given = control.step_response(one.loop.speed_per_load, time_s)
-                load.plot(time_s, 1e3 * given, color=color)
+        for setting, color in zip(settings, PALETTE, strict=False):
+            if setting in stable_settings:
+                _, speed = control.step_response(setting.loop.speed_per_setpoint, time_s)
+                setpoint.plot(time_s, speed, color=color, label=setting.name)
+            if setting in stable_settings or not setting.loop.closed:
+                _, response = control.step_response(setting.loop.speed_per_load, time_s)
+                load.plot(time_s, 1e3 * response, color=color)
         setpoint.axhline(1.0, color=FIT, lw=0.6)
         setpoint.set_ylabel("speed per set-point")
         load.set_ylabel("speed after 1 N m\n(mrad/s)")
@@ -79,16 +81,16 @@ def step_figure(settings: Sequence[Named]) -> "Figure":
     return figure
 
 
-def record_figure(record: SpeedRecord, found: IdentifiedLoop) -> "Figure":
+def record_figure(record: SpeedRecord, loop: IdentifiedLoop) -> "Figure":
     """Draw by how much the shaft is behind its trapezoid, and what the loop found leaves."""
     since = record.time_s - record.time_s[0]
     with drawn(9.0, 5.0) as figure:
-        lag, left = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-        lag.plot(since, 1e3 * found.lag_rad, color=TRACE, label="measured")
-        lag.plot(since, 1e3 * found.fitted_rad, "--", color=FIT, label="loop found")
+        lag, residual = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+        lag.plot(since, 1e3 * loop.lag_rad, color=TRACE, label="measured")
+        lag.plot(since, 1e3 * loop.fitted_rad, "--", color=FIT, label="loop found")
         lag.set_ylabel("behind the trapezoid (mrad)")
         lag.legend()
-        left.plot(since, 1e3 * (found.lag_rad - found.fitted_rad), color=PALETTE[0], lw=0.6)
-        left.set_ylabel("left (mrad)")
-        left.set_xlabel("time (s)")
+        residual.plot(since, 1e3 * (loop.lag_rad - loop.fitted_rad), color=PALETTE[0], lw=0.6)
+        residual.set_ylabel("left (mrad)")
+        residual.set_xlabel("time (s)")
     return figure

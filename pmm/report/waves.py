@@ -59,56 +59,56 @@ class WaveRow:
 
 def wave_rows(outcome: CampaignOutcome) -> tuple[WaveRow, ...]:
     """Return the loads of all runs in waves."""
-    return tuple(row for one in outcome.waves for row in _rows(one))
+    return tuple(row for run in outcome.waves for row in _rows(run))
 
 
-def _rows(one: WaveRun) -> Iterator[WaveRow]:
-    found = one.waves
-    head = (found.run, found.frequency_hz, found.expected_hz, abs(found.wave))
-    for load, weights in _weights(one):
-        for line in found.lines:
-            value, spread = transfer(found, line.name, weights)
+def _rows(run: WaveRun) -> Iterator[WaveRow]:
+    waves = run.waves
+    head = (waves.run, waves.frequency_hz, waves.expected_hz, abs(waves.wave))
+    for load, weights in _weights(run):
+        for line in waves.lines:
+            value, spread = transfer(waves, line.name, weights)
             lead = cmath.phase(value) if line.name in (ENCOUNTER, TWICE) else math.nan
             unit = _UNITS[load] + _PER[line.name]
             yield WaveRow(*head, load, line.name, line.frequency_hz, abs(value), spread, unit, lead)
-        if one.calm is not None:
-            yield WaveRow(*head, load, _MEAN, 0.0, *_mean(one, load), _UNITS[load] + _PER[_MEAN])
+        if run.calm is not None:
+            yield WaveRow(*head, load, _MEAN, 0.0, *_mean(run, load), _UNITS[load] + _PER[_MEAN])
 
 
-def _weights(one: WaveRun) -> Iterator[tuple[str, list[float]]]:
+def _weights(run: WaveRun) -> Iterator[tuple[str, list[float]]]:
     """Yield each load of the water by the gauges, which read what the struts do."""
-    half = one.cycle.half_spacing_m * (-1.0 if one.cycle.plane is Plane.VERTICAL else 1.0)
+    half = run.cycle.half_spacing_m * (-1.0 if run.cycle.plane is Plane.VERTICAL else 1.0)
     shares = {
         "force": {FORCE_AFT.name: -1.0, FORCE_FORE.name: -1.0},
         "moment": {FORCE_AFT.name: half, FORCE_FORE.name: -half},
         "surge": {FORCE_X.name: -1.0},
     }
-    for load, own in shares.items():
-        if set(own) <= set(one.waves.channels):
-            yield load, [own.get(name, 0.0) for name in one.waves.channels[1:]]
+    for load, gauges in shares.items():
+        if set(gauges) <= set(run.waves.channels):
+            yield load, [gauges.get(name, 0.0) for name in run.waves.channels[1:]]
 
 
-def _mean(one: WaveRun, load: str) -> tuple[float, float]:
+def _mean(run: WaveRun, load: str) -> tuple[float, float]:
     """Return what the waves add to a mean, and its uncertainty, per amplitude squared."""
-    assert one.calm is not None  # noqa: S101 - the caller looks
+    assert run.calm is not None  # noqa: S101 - the caller looks
     name = at_order(_ROWS[load], 0)
-    both = [cycle.phasors.select([name]).real for cycle in (one.cycle, one.calm)]
-    square = abs(one.waves.wave) ** 2
-    spread = math.hypot(*(float(part.standard_uncertainty[0]) for part in both))
-    return float(both[1].values[0] - both[0].values[0]) / square, spread / square
+    means = [cycle.phasors.select([name]).real for cycle in (run.cycle, run.calm)]
+    square = abs(run.waves.wave) ** 2
+    spread = math.hypot(*(float(part.standard_uncertainty[0]) for part in means))
+    return float(means[1].values[0] - means[0].values[0]) / square, spread / square
 
 
 _COLUMNS: Final[tuple[Column[WaveRow], ...]] = (
     word("run", "run"),
-    Column("e", lambda one: f"{one.encounter_hz:.4g}", unit="Hz", number=True),
-    Column("e expected", lambda one: f"{one.expected_hz:.4g}", unit="Hz", number=True),
-    Column("amplitude", lambda one: f"{1e3 * one.amplitude_m:.4g}", unit="mm", number=True),
+    Column("e", lambda row: f"{row.encounter_hz:.4g}", unit="Hz", number=True),
+    Column("e expected", lambda row: f"{row.expected_hz:.4g}", unit="Hz", number=True),
+    Column("amplitude", lambda row: f"{1e3 * row.amplitude_m:.4g}", unit="mm", number=True),
     word("load", "load"),
     word("line", "line"),
-    Column("load per wave", lambda one: rounded(one.value, one.value_u), number=True),
+    Column("load per wave", lambda row: rounded(row.value, row.value_u), number=True),
     word("unit", "unit"),
-    Column("lead over the crest", lambda one: NOT_KNOWN if math.isnan(one.lead_rad)
-           else f"{math.degrees(one.lead_rad):.1f}", unit="deg", number=True),
+    Column("lead over the crest", lambda row: NOT_KNOWN if math.isnan(row.lead_rad)
+           else f"{math.degrees(row.lead_rad):.1f}", unit="deg", number=True),
     *data_only("encounter_hz", "expected_hz", "amplitude_m", "frequency_hz", "value", "value_u",
                "lead_rad"),
 )  # fmt: skip
@@ -130,21 +130,21 @@ def wave_figure(runs: Sequence[WaveRun]) -> "Drawing":
     """Draw force and moment over the lines' frequencies, a colour for each run."""
     with drawn(6.8, 5.2) as figure:
         panels = figure.subplots(2, 1, sharex=True)
-        for k, one in enumerate(runs):
-            weighed = dict(_weights(one))
+        for k, run in enumerate(runs):
+            weights = dict(_weights(run))
             for axes, load in zip(panels, ("force", "moment"), strict=True):
-                _draw(axes, one.waves, weighed[load], PALETTE[k % len(PALETTE)])
+                _draw(axes, run.waves, weights[load], PALETTE[k % len(PALETTE)])
                 axes.set_ylabel(f"{load} amplitude ({_UNITS[load]})")
         panels[0].legend(loc="best", fontsize=7.5)
         panels[1].set_xlabel("frequency (Hz)")
     return figure
 
 
-def _draw(axes: "Axes", found: InWaves, weights: Sequence[float], colour: str) -> None:
-    for line in found.lines:
+def _draw(axes: "Axes", waves: InWaves, weights: Sequence[float], colour: str) -> None:
+    for line in waves.lines:
         size = abs(sum(w * v for w, v in zip(weights, line.values[1:], strict=True)))
         spread = math.hypot(*(w * u for w, u in zip(weights, line.uncertainty[1:], strict=True)))
-        label = found.run if line.name == ENCOUNTER else None
+        label = waves.run if line.name == ENCOUNTER else None
         axes.errorbar(line.frequency_hz, size, 2.0 * spread, fmt="o", ms=4, color=colour,
                       capsize=2, label=label)  # fmt: skip
         axes.vlines(line.frequency_hz, 0.0, size, color=colour, lw=1.0)
