@@ -137,40 +137,40 @@ class PageActions:
         act: Callable[[P, Who], Awaitable[ActionReply]],
     ) -> Response:
         who = who_asks(request)
-        given, present = "", None
+        text, present = "", None
         try:
             body = await body_of(request, _LARGEST.get(kind, LARGEST_REQUEST))
-            given = body[:_LOGGED].decode("utf-8", "replace")
-            done = await act(kind.model_validate_json(body), who)
-            status, found, present = 200, done.answer(), done.present
+            text = body[:_LOGGED].decode("utf-8", "replace")
+            reply = await act(kind.model_validate_json(body), who)
+            status, answer, present = 200, reply.answer(), reply.present
         except ValidationError as error:
-            status, found = 422, {"error": _said(error)}
+            status, answer = 422, {"error": _said(error)}
         except NotInControlError as error:
-            status, found = 403, {"error": str(error)}
+            status, answer = 403, {"error": str(error)}
         except RefusedError as error:
-            status, found, present = 409, {"error": str(error)}, error.present
+            status, answer, present = 409, {"error": str(error)}, error.present
         except PmmError as error:
-            status, found = 409, {"error": str(error)}
+            status, answer = 409, {"error": str(error)}
         if action != "check":
-            await self.log(who, action, given, found, self.folder(present), taken=status == 200)
-        return Response(encode_answer(found), status, media_type="application/json")
+            await self.log(who, action, text, answer, self.folder(present), taken=status == 200)
+        return Response(encode_answer(answer), status, media_type="application/json")
 
     async def log(
         self,
         who: Who,
         action: str,
-        given: str,
-        found: dict[str, Any],
+        text: str,
+        answer: dict[str, Any],
         folder: Path | None = None,
         *,
         taken: bool,
     ) -> None:
         """Keep what was asked and what was answered, in the present campaign's folder or that."""
-        said = str(found.get("said", found.get("error", "")))
+        said = str(answer.get("said", answer.get("error", "")))
         session = who.session[:_SHOWN]
         name, role = who.visitor.name, str(who.visitor.role)
         record = CommandRecord(
-            self._utc(), name, role, who.address, session, action, given, taken, said
+            self._utc(), name, role, who.address, session, action, text, taken, said
         )
         self._hub.tell_done(asdict(record))
         try:
@@ -197,31 +197,31 @@ class PageActions:
         """Keep what would be done, once it is checked that it could be."""
         self._proposals.require_room()
         name, picture = await self.changes.try_out(posted)
-        one = self._proposals.add(action, posted, name, who.visitor, self._utc())
+        proposal = self._proposals.add(action, posted, name, who.visitor, self._utc())
         self.changes.tell_proposals()
-        said = f"proposal {one.number}, {one.text}: whoever has control decides"
+        said = f"proposal {proposal.number}, {proposal.text}: whoever has control decides"
         return await self.changes.kept(ActionReply(said, picture))
 
     async def _approve(self, posted: DecisionPosted, who: Who) -> ActionReply:
         self._require_control(who)
-        one = self._proposals.take(posted.number)
+        proposal = self._proposals.take(posted.number)
         try:
-            done = await self.changes.carry_out(one.action, one.posted)
+            reply = await self.changes.carry_out(proposal.action, proposal.posted)
         except BaseException:  # it waits on, whatever has happened
-            self._proposals.waiting[one.number] = one
+            self._proposals.waiting[proposal.number] = proposal
             raise
         self.changes.tell_proposals()
-        said = f"{one.text}, proposed by {one.visitor.name!r}: {done.said}"
-        return await self.changes.kept(replace(done, said=said))
+        said = f"{proposal.text}, proposed by {proposal.visitor.name!r}: {reply.said}"
+        return await self.changes.kept(replace(reply, said=said))
 
     async def _refuse(self, posted: DecisionPosted, who: Who) -> ActionReply:
-        one = self._proposals.waiting.get(posted.number)
-        own = one is not None and one.visitor is who.visitor
-        if not own:
+        proposal = self._proposals.waiting.get(posted.number)
+        is_own = proposal is not None and proposal.visitor is who.visitor
+        if not is_own:
             self._require_control(who)
-        one = self._proposals.take(posted.number)
+        proposal = self._proposals.take(posted.number)
         self.changes.tell_proposals()
-        said = f"{one.text}, proposed by {one.visitor.name!r}: {_ENDED[own]}"
+        said = f"{proposal.text}, proposed by {proposal.visitor.name!r}: {_ENDED[is_own]}"
         return await self.changes.kept(ActionReply(said))
 
     async def _command(self, posted: CommandPosted, who: Who) -> ActionReply:
@@ -236,8 +236,8 @@ class PageActions:
 
     async def _check(self, posted: PlanPosted, who: Who) -> ActionReply:
         worker = self._workers.for_whom(in_control=self._hub.desk.holder == who.session)
-        found = await worker.run(check_plan_text, self._plans, posted.name, posted.text)
-        return ActionReply("", found)
+        picture = await worker.run(check_plan_text, self._plans, posted.name, posted.text)
+        return ActionReply("", picture)
 
     async def _note(self, posted: NotePosted, who: Who) -> ActionReply:
         who.visitor.require(VisitorRole.PROPOSE)
@@ -250,8 +250,8 @@ class PageActions:
 
     async def audit(self, _request: Request) -> Response:
         """Return who did what with the present campaign, from its folder."""
-        found = await run_sync(latest, self.folder())
-        return Response(encode_answer({"audit": found}), media_type="application/json")
+        records = await run_sync(latest, self.folder())
+        return Response(encode_answer({"audit": records}), media_type="application/json")
 
     def _require_control(self, who: Who) -> None:
         who.visitor.require(VisitorRole.OPERATE)
@@ -266,6 +266,6 @@ class PageActions:
 
 def _said(error: ValidationError) -> str:
     return "; ".join(
-        f"{'.'.join(map(str, one['loc'])) or 'body'}: {one['msg']}"
-        for one in error.errors(include_url=False, include_input=False)
+        f"{'.'.join(map(str, fault['loc'])) or 'body'}: {fault['msg']}"
+        for fault in error.errors(include_url=False, include_input=False)
     )

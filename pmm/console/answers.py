@@ -18,8 +18,8 @@ class BrowserAnswers:
     def __call__(self, question: str) -> str | None:
         """Return the answer, once there is one."""
         self._asked = str(question)
-        given, self._answer = self._answer, None
-        return given[1] if given is not None and given[0] == self._asked else None
+        answer, self._answer = self._answer, None
+        return answer[1] if answer is not None and answer[0] == self._asked else None
 
     def give(self, question: str, answer: str) -> bool:
         """Answer; tell whether this question was being asked."""

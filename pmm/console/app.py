@@ -134,14 +134,14 @@ class Console:
         left_s = ceil(self._lockout.wait_s(who.address))  # nothing is awaited until it is counted
         if left_s:
             return JSONResponse({"error": _WAIT.format(left_s)}, 429, {"retry-after": str(left_s)})
-        found = self.door.log_in(posted.token, posted.name.strip())
-        if found is None:
+        login = self.door.log_in(posted.token, posted.name.strip())
+        if login is None:
             said, shut_out = self._lockout.wrong(who.address)
             if shut_out:
                 self.actions.alarm(said)
             await self.actions.log(who, "log in", "", {"error": said}, taken=False)
             return JSONResponse({"error": "this is not the token"}, 401)
-        cookie, visitor = found
+        cookie, visitor = login
         who = replace(who, visitor=visitor)
         self._lockout.right(who.address)
         await self.actions.log(who, "log in", "", {"said": "welcome"}, taken=True)
@@ -157,7 +157,7 @@ class Console:
 
     async def listed(self, request: Request) -> Response:
         """Return the pages that the campaigns' folders hold."""
-        return await self._seen(lambda _, found: {"pages": self.pages.listed(found)})
+        return await self._seen(lambda _, folders: {"pages": self.pages.listed(folders)})
 
     async def _seen(
         self, show: Callable[[list[str], dict[Path, list[str]]], dict[str, Any]]

@@ -66,12 +66,12 @@ def latest(folder: Path) -> list[dict[str, Any]]:
             lines = deque(file, MOST)
     except OSError:
         return []
-    return [one for one in map(_read, lines) if one is not None]
+    return [record for record in map(_read, lines) if record is not None]
 
 
 def _read(line: str) -> dict[str, Any] | None:
     try:
-        found = json.loads(line)
+        record = json.loads(line)
     except ValueError:
         return None
-    return found if isinstance(found, dict) else None
+    return record if isinstance(record, dict) else None

@@ -82,16 +82,16 @@ class Client:
 
     def take(self) -> list[str]:
         """Return the messages that wait; they wait no more."""
-        found = list(self._waiting)
+        texts = list(self._waiting)
         self._waiting.clear()
-        return found
+        return texts
 
-    def begin(self, texts: list[str], done: Callable[[], None]) -> None:
-        """Begin to send; ``done`` is called where something waits when these are taken."""
+    def begin(self, texts: list[str], taken: Callable[[], None]) -> None:
+        """Begin to send; ``taken`` is called where something waits when these are taken."""
 
         def sent(_: object) -> None:
             if self._waits:
-                done()
+                taken()
 
         self._sending = asyncio.ensure_future(self._send_all(texts))
         self._sending.add_done_callback(sent)

@@ -43,9 +43,9 @@ class Finished:
     async def _work(self) -> None:
         while self._again:
             self._again = False
-            given = tuple(self._folders), self._earlier, self._reference
+            arguments = tuple(self._folders), self._earlier, self._reference
             try:
-                figures = await self._worker.run(figures_of, *given)
+                figures = await self._worker.run(figures_of, *arguments)
             except NotWorkedOutError as error:
                 figures = {"points": [], "problems": [str(error)]}
             except (ArithmeticError, LookupError, TypeError, ValueError) as error:

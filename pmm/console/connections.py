@@ -27,30 +27,30 @@ class Crowd:
         self._open: dict[Connection, None] = {}  # the one that was heard of longest ago is first
         self._half: dict[Connection, asyncio.TimerHandle] = {}  # the oldest is first
 
-    def heard(self, one: "Connection", *, complete: bool) -> None:
+    def heard(self, connection: "Connection", *, complete: bool) -> None:
         """Note that something came, and whether that completed the request."""
-        self._open.pop(one, None)
-        self._open[one] = None
+        self._open.pop(connection, None)
+        self._open[connection] = None
         if complete:
-            self._whole(one)
-        elif one not in self._half:
-            self._half[one] = one.loop.call_later(REQUEST_S, one.refuse, _LATE)
+            self._whole(connection)
+        elif connection not in self._half:
+            self._half[connection] = connection.loop.call_later(REQUEST_S, connection.refuse, _LATE)
         while len(self._half) > MOST_HALF_SENT and self._is_old(next(iter(self._half))):
             next(iter(self._half)).refuse(_CROWDED)
         if len(self._open) > MOST_CONNECTIONS:
             next(iter(self._open)).give_way()
 
-    def gone(self, one: "Connection") -> None:
+    def gone(self, connection: "Connection") -> None:
         """Forget a connection that ended, or became a page's stream."""
-        self._open.pop(one, None)
-        self._whole(one)
+        self._open.pop(connection, None)
+        self._whole(connection)
 
-    def _is_old(self, one: "Connection") -> bool:
+    def _is_old(self, connection: "Connection") -> bool:
         """Whether one had the time to send: many pages may come at once, each on its own."""
-        return self._half[one].when() - one.loop.time() < REQUEST_S - YOUNG_S
+        return self._half[connection].when() - connection.loop.time() < REQUEST_S - YOUNG_S
 
-    def _whole(self, one: "Connection") -> None:
-        timer = self._half.pop(one, None)
+    def _whole(self, connection: "Connection") -> None:
+        timer = self._half.pop(connection, None)
         if timer is not None:
             timer.cancel()
 
@@ -61,8 +61,8 @@ class Connection(H11Protocol):
     It is there from the moment it is accepted: a TLS handshake is a part of the first request.
     """
 
-    def __init__(self, crowd: Crowd, *given: Any, **named: Any) -> None:
-        super().__init__(*given, **named)
+    def __init__(self, crowd: Crowd, *arguments: Any, **named: Any) -> None:
+        super().__init__(*arguments, **named)
         self._crowd = crowd
         self._accepting = asyncio.current_task()  # of the event loop; it goes on to the handshake
         if self._accepting is not None:

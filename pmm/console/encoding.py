@@ -94,16 +94,18 @@ def frame_picture(frame: Frame) -> dict[str, Any]:
     }
 
 
-def campaign_picture(told: CampaignLook) -> dict[str, Any]:
+def campaign_picture(campaign: CampaignLook) -> dict[str, Any]:
     """Return what a campaign that chooses its runs knows, and what it proposes."""
-    look = told.look
+    look = campaign.look
     keys = ("name", "unit", "value", "standard_uncertainty", "wanted", "met", "mostly")
     return {
-        "plan": told.plan,
+        "plan": campaign.plan,
         "runs": len(look.runs),
         "time": clock(look.time_s),
-        "known": [{key: _plain(getattr(one, key)) for key in keys} for one in look.known],
-        "causes": [{**asdict(one), "met": one.met} for one in look.causes],
+        "known": [
+            {key: _plain(getattr(coefficient, key)) for key in keys} for coefficient in look.known
+        ],
+        "causes": [{**asdict(cause), "met": cause.met} for cause in look.causes],
         "proposed": [
             {"what": in_words(run), "time": clock(cost_s), "why": why}
             for run, cost_s, why in zip(look.proposed, look.costs_s, look.whys, strict=True)

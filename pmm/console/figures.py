@@ -35,7 +35,10 @@ def figures_of(
     points: list[dict[str, Any]] = []
     problems: list[str] = []
     result: CampaignCoefficients | None = None
-    for folder, of in [*((one, "now") for one in folders), *((one, "earlier") for one in earlier)]:
+    for folder, of in [
+        *((path, "now") for path in folders),
+        *((path, "earlier") for path in earlier),
+    ]:
         try:
             if of == "earlier" or _has_runs(folder):
                 result = _result(folder)

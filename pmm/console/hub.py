@@ -125,14 +125,14 @@ class Hub:
 
     def tell_live(self, outlets: Sequence[OutletStatus]) -> None:
         """Keep and hand on how the outlets of live values are; trouble is an alarm once."""
-        for one in outlets:
-            before = self._live.get(one.name)
-            if one.trouble and (before is None or not before.trouble):
-                self.say("alarm", f"{one.name}: {one.trouble}")
-            elif before is not None and before.trouble and one.connected:
-                self.say("live", f"{one.name}: connected")
+        for outlet in outlets:
+            before = self._live.get(outlet.name)
+            if outlet.trouble and (before is None or not before.trouble):
+                self.say("alarm", f"{outlet.name}: {outlet.trouble}")
+            elif before is not None and before.trouble and outlet.connected:
+                self.say("live", f"{outlet.name}: connected")
         if outlets:
-            self._live = {one.name: one for one in outlets}
+            self._live = {outlet.name: outlet for outlet in outlets}
             self._tell(f'{{"type":"live","live":{self._live_picture()}}}')
 
     def join(self, client: Client) -> None:
@@ -191,7 +191,7 @@ class Hub:
 
     def _snapshot(self, session: str, desk: str) -> str:
         """Return everything that a page needs to begin, or to go on after a gap."""
-        own = encode({"type": "snapshot", "session": session})
+        snapshot = encode({"type": "snapshot", "session": session})
         if not self._common:
             self._common = (
                 f'"began":{encode(self._began)},"connected":{encode(self._connected)},'
@@ -201,10 +201,10 @@ class Hub:
                 f'"audit":[{",".join(self._done)}],"plans":{self._plans},"proposals":{self._proposals},"live":{self._live_picture()},"finished":[{",".join(self._finished)}],'
                 f'"figures":{self._figures},"campaign":{self._campaign}'
             )
-        return f'{own[:-1]},{self._common},"desk":{desk}}}'
+        return f'{snapshot[:-1]},{self._common},"desk":{desk}}}'
 
     def _live_picture(self) -> str:
-        return encode([asdict(one) for one in self._live.values()])
+        return encode([asdict(outlet) for outlet in self._live.values()])
 
     def _begin(self, hello: Hello) -> None:
         self._hello, self._connected = encode(hello_picture(hello)), True

@@ -41,8 +41,8 @@ class Link(Generic[T]):
         self._wake = threading.Event()
         self._closed = threading.Event()
         self._threads = [
-            threading.Thread(target=one, name=f"console {name}", daemon=True)
-            for name, one in (("sender", self._send), ("receiver", self._receive))
+            threading.Thread(target=target, name=f"console {name}", daemon=True)
+            for name, target in (("sender", self._send), ("receiver", self._receive))
         ]
         for thread in self._threads:
             thread.start()
@@ -72,12 +72,12 @@ class Link(Generic[T]):
 
     def orders(self) -> list[T]:
         """Return what has come since the last call."""
-        found = []
+        orders = []
         while True:
             try:
-                found.append(self._orders.get_nowait())
+                orders.append(self._orders.get_nowait())
             except queue.Empty:
-                return found
+                return orders
 
     def close(self) -> None:
         """Send what is left and let go of the pipe."""

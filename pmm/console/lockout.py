@@ -69,11 +69,11 @@ class Lockout:
 def _network(address: str) -> str:
     """Return what one person may hold: an IPv4 address, or a network of IPv6."""
     try:
-        found = ip_address(address.partition("%")[0])
+        host = ip_address(address.partition("%")[0])
     except ValueError:
         return address
-    if not isinstance(found, IPv6Address):
-        return str(found)
-    if found.ipv4_mapped is not None:
-        return str(found.ipv4_mapped)
-    return f"{IPv6Address(int(found) >> _IPV6_HOSTS << _IPV6_HOSTS)}/{_IPV6_HOSTS}"
+    if not isinstance(host, IPv6Address):
+        return str(host)
+    if host.ipv4_mapped is not None:
+        return str(host.ipv4_mapped)
+    return f"{IPv6Address(int(host) >> _IPV6_HOSTS << _IPV6_HOSTS)}/{_IPV6_HOSTS}"

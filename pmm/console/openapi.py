@@ -57,7 +57,7 @@ def description() -> dict[str, Any]:
     """Return the description: paths, bodies, answers."""
     models = [(model, "validation") for model in {model for model, *_ in POSTS.values()}]
     _, schemas = models_json_schema(
-        sorted(models, key=lambda one: one[0].__name__),  # type: ignore[arg-type]
+        sorted(models, key=lambda pair: pair[0].__name__),  # type: ignore[arg-type]
         ref_template=_MODEL,
     )
     return {
@@ -102,9 +102,11 @@ def _post(model: type[Posted], does: str, needs_control: bool) -> dict[str, Any]
 
 def _get(does: str, key: str) -> dict[str, Any]:
     content = {"application/json": {"schema": {"type": "object", "required": [key]}}}
-    refused = {code: one for code, one in _refusals().items() if code in ("401", "409", "421")}
-    told = {"description": does, "content": content}
-    return {"summary": does, "responses": {"200": told, **refused}}
+    refused = {
+        code: refusal for code, refusal in _refusals().items() if code in ("401", "409", "421")
+    }
+    answer = {"description": does, "content": content}
+    return {"summary": does, "responses": {"200": answer, **refused}}
 
 
 def _refusals() -> dict[str, Any]:
@@ -117,8 +119,8 @@ def _answer(text: str, model: str) -> dict[str, Any]:
 
 
 def _object(properties: dict[str, str | None]) -> dict[str, Any]:
-    told = {
+    fields = {
         name: {"type": "object"} if text is None else {"type": "string", "description": text}
         for name, text in properties.items()
     }
-    return {"type": "object", "properties": told}
+    return {"type": "object", "properties": fields}

@@ -35,33 +35,33 @@ class Pages:
         """Return where to look for pages: there, and in the folders directly in them."""
         return (self._beside, *self._campaigns())
 
-    def listed(self, found: Mapping[Path, Sequence[str]]) -> list[dict[str, Any]]:
+    def listed(self, pages: Mapping[Path, Sequence[str]]) -> list[dict[str, Any]]:
         """Return the pages of the folders with their addresses.
 
         Each folder keeps its number, so that an address stays good.
         """
-        for folder in found:
+        for folder in pages:
             self._numbers.setdefault(folder, len(self._numbers))
         return [
             {"name": name, "folder": folder.name, "address": f"/pages/{number}/{name}"}
             for folder, number in self._numbers.items()
-            for name in found.get(folder, ())
+            for name in pages.get(folder, ())
         ]
 
     async def page(self, request: Request) -> Response:
         """Serve a page in one of the folders that were listed; no other file."""
         number, name = request.path_params["folder"], request.path_params["name"]
-        folder = next((one for one, n in self._numbers.items() if n == number), None)
-        found = None if folder is None else await run_sync(_page, folder, name)
-        if found is None:
+        folder = next((path for path, n in self._numbers.items() if n == number), None)
+        page = None if folder is None else await run_sync(_page, folder, name)
+        if page is None:
             return PlainTextResponse("no such page", 404)
-        return FileResponse(found, headers={"content-security-policy": _POLICY})
+        return FileResponse(page, headers={"content-security-policy": _POLICY})
 
 
 def pages_in(folders: Iterable[Path]) -> dict[Path, list[str]]:
     """Return the names of the pages in folders and in the folders directly in them."""
-    every = dict.fromkeys(one for folder in folders for one in (folder, *_within(folder)))
-    return {folder: [page.name for page in _pages(folder)] for folder in every}
+    places = dict.fromkeys(place for folder in folders for place in (folder, *_within(folder)))
+    return {folder: [page.name for page in _pages(folder)] for folder in places}
 
 
 def _page(folder: Path, name: str) -> Path | None:

@@ -76,7 +76,7 @@ def axes_of(rig: Rig) -> tuple[tuple[str, str, float], ...]:
 
 def allowed(control: RunControl) -> tuple[str, ...]:
     """Return the commands that the present state takes."""
-    return tuple(str(one) for one in Command if is_allowed(one, control.state))
+    return tuple(str(command) for command in Command if is_allowed(command, control.state))
 
 
 def present_run(control: RunControl, status: RunStatus) -> RunPlan | None:

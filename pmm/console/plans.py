@@ -76,8 +76,8 @@ class Plans:
 
     def names(self) -> list[str]:
         """Return the files in the folder that hold a plan, by their names."""
-        found = sorted(self.folder.glob("*.toml"))
-        return [one.name for one in found if _size(one) <= LARGEST_PLAN and is_plan(one)]
+        paths = sorted(self.folder.glob("*.toml"))
+        return [path.name for path in paths if _size(path) <= LARGEST_PLAN and is_plan(path)]
 
     def check(self, name: str, text: str) -> CheckedPlan:
         """Read and check a plan: one of the folder's files, or the text of one.
@@ -140,28 +140,28 @@ class Plans:
         findings: tuple[PlanFinding, ...] = ()
         if isinstance(posted, EditPosted):
             settings = posted.model_dump(exclude={"number", "run"}, exclude_none=True)
-            (run,) = (one for one in runs if one.name == posted.run)
+            (run,) = (run for run in runs if run.name == posted.run)
             now = edited(run, settings, plan.plan)
             findings = require_possible(replace(plan.plan, runs=(now,)), rig, _today())
-            runs = tuple(now if one is run else one for one in runs)
+            runs = tuple(now if planned_run is run else planned_run for planned_run in runs)
         elif isinstance(posted, MovePosted):
             runs = moved(runs, posted.run, posted.by)
         elif isinstance(posted, HoldPosted):
             names = {posted.run} if posted.run else {run.name for run in runs}
             held = held | names if posted.held else held - names
-        made = {one.name for one in plan.runs}
-        left = tuple(one for one in runs if one.name in made)
-        waiting = replace(plan, plan=replace(plan.plan, runs=runs), runs=left, held=held)
-        return CheckedPlan(waiting, rig, findings, duration_rows(left, rig))
+        made = {run.name for run in plan.runs}
+        rest = tuple(run for run in runs if run.name in made)
+        waiting = replace(plan, plan=replace(plan.plan, runs=runs), runs=rest, held=held)
+        return CheckedPlan(waiting, rig, findings, duration_rows(rest, rig))
 
     def _check_rig(self, path: Path) -> None:
         """Hold the plan's rig against this console's; no file of another name is opened."""
         named = read_toml(path).get("rig", "rig.toml")
         if named not in self.rigs:
-            known = " or ".join(f'rig = "{rig}"' for rig in self.rigs)
-            given = str(named)[:_SHOWN]
+            choices = " or ".join(f'rig = "{rig}"' for rig in self.rigs)
+            rig_name = str(named)[:_SHOWN]
             raise ConfigurationError(
-                f"{path}: rig = {given!r} is no rig of this console; write {known}"
+                f"{path}: rig = {rig_name!r} is no rig of this console; write {choices}"
             )
 
     def _check_unchanged(self, rig: RigFile) -> None:
@@ -173,16 +173,16 @@ class Plans:
             )
 
     def _possible(self, path: Path) -> CheckedPlan:
-        found = self._read(path)
-        if not found.waiting.chooses:
-            require_possible(found.waiting.plan, found.rig, _today())
-        return found
+        checked = self._read(path)
+        if not checked.waiting.chooses:
+            require_possible(checked.waiting.plan, checked.rig, _today())
+        return checked
 
     def _known(self, name: str) -> Path:
         names = self.names()
         if name not in names:
-            known = ", ".join(names) or "none"
-            raise ConfigurationError(f"{self.folder}: no plan {name!r}; there are: {known}")
+            choices = ", ".join(names) or "none"
+            raise ConfigurationError(f"{self.folder}: no plan {name!r}; there are: {choices}")
         return self.folder / name
 
     @contextmanager
@@ -224,23 +224,23 @@ class Plans:
         return CheckedPlan(QueuedPlan(0, plan, folder, (), chooses=True), file.rig, (), ())
 
 
-def plan_picture(found: CheckedPlan) -> dict[str, Any]:
+def plan_picture(checked: CheckedPlan) -> dict[str, Any]:
     """Return a plan for the browser."""
-    one = found.waiting
+    plan = checked.waiting
     return {
-        "name": one.plan.name,
-        "file": one.plan.path.name,
-        "folder": str(one.folder),
-        "runs": [_run(run, s) for run, s in zip(one.runs, found.durations_s, strict=True)],
-        "chooses": one.chooses,
-        "held": sorted(one.held),
-        "complete": len(one.plan.runs) - len(one.runs),
-        "refused": found.refused,
+        "name": plan.plan.name,
+        "file": plan.plan.path.name,
+        "folder": str(plan.folder),
+        "runs": [_run(run, s) for run, s in zip(plan.runs, checked.durations_s, strict=True)],
+        "chooses": plan.chooses,
+        "held": sorted(plan.held),
+        "complete": len(plan.plan.runs) - len(plan.runs),
+        "refused": checked.refused,
         "findings": [
             {"verdict": str(f.verdict), "run": f.run, "message": f.message}
             for f in (
-                *(finding for finding in found.findings if not finding.is_stated),
-                *largest_stated(found.findings),
+                *(finding for finding in checked.findings if not finding.is_stated),
+                *largest_stated(checked.findings),
             )
         ],
     }

@@ -24,7 +24,7 @@ class PlansInHand:
     @property
     def ready(self) -> bool:
         """Whether a plan that waits has runs that are not held."""
-        return any(one.ready for one in self.waiting)
+        return any(plan.ready for plan in self.waiting)
 
     def take_next(self, ended: Collection[str]) -> QueuedPlan:
         """Make the first plan that is ready the present one, and return it.
@@ -37,7 +37,7 @@ class PlansInHand:
             Names of the present plan's runs that have ended.
         """
         before = self.present
-        now = self.present = next(one for one in self.waiting if one.ready)
+        now = self.present = next(plan for plan in self.waiting if plan.ready)
         self.waiting.remove(now)
         if before is not None and not before.chooses:
             held = tuple(run for run in before.runs if run.name not in ended)
@@ -52,10 +52,10 @@ class PlansInHand:
         RunStateError
             If none of that number does.
         """
-        found = [one for one in self.waiting if one.number == number]
-        if not found:
+        plans = [plan for plan in self.waiting if plan.number == number]
+        if not plans:
             raise RunStateError(f"no plan {number} waits")
-        return found[0]
+        return plans[0]
 
     def require_room(self, plan: QueuedPlan) -> None:
         """Refuse one more plan where as many wait as may.
@@ -97,13 +97,13 @@ class PlansInHand:
         """
         present = self.present
         is_present = present is not None and present.number == plan.number
-        own = present if is_present and present is not None else self.waits(plan.number)
-        known = {run.name for run in own.runs}
-        now = replace(plan, runs=tuple(run for run in plan.runs if run.name in known))
-        if (now.runs, now.held) == (own.runs, own.held):
+        before = present if is_present and present is not None else self.waits(plan.number)
+        names = {run.name for run in before.runs}
+        now = replace(plan, runs=tuple(run for run in plan.runs if run.name in names))
+        if (now.runs, now.held) == (before.runs, before.held):
             raise RunStateError(UNCHANGED)
         if is_present:
             self.present = now
         else:
-            self.waiting[self.waiting.index(own)] = now
+            self.waiting[self.waiting.index(before)] = now
         return now

@@ -53,8 +53,10 @@ class ProposedChange:
         posted, plan = self.posted, self.plan
         about = f"{posted.run} of {plan}" if isinstance(posted, RunPosted) and posted.run else plan
         if isinstance(posted, EditPosted):
-            given = posted.model_dump(exclude={"number", "run"}, exclude_none=True)
-            return f"edit {about}: " + ", ".join(f"{key} {one:g}" for key, one in given.items())
+            settings = posted.model_dump(exclude={"number", "run"}, exclude_none=True)
+            return f"edit {about}: " + ", ".join(
+                f"{key} {value:g}" for key, value in settings.items()
+            )
         if isinstance(posted, MovePosted):
             return f"move {about} by {posted.by:+d}"
         if isinstance(posted, HoldPosted):
@@ -98,9 +100,9 @@ class Proposals:
         """Keep one more change that waits for approval; raises if there is no room."""
         self.require_room()
         self.count += 1
-        found = ProposedChange(self.count, action, posted, plan, visitor, utc)
-        self.waiting[found.number] = found
-        return found
+        proposal = ProposedChange(self.count, action, posted, plan, visitor, utc)
+        self.waiting[proposal.number] = proposal
+        return proposal
 
     def take(self, number: int) -> ProposedChange:
         """Take one out that is decided on.
@@ -110,11 +112,11 @@ class Proposals:
         ConfigurationError
             If there is none of that number.
         """
-        found = self.waiting.pop(number, None)
-        if found is None:
-            known = ", ".join(map(str, self.waiting)) or "none"
-            raise ConfigurationError(f"no proposal {number} waits; there are: {known}")
-        return found
+        proposal = self.waiting.pop(number, None)
+        if proposal is None:
+            numbers = ", ".join(map(str, self.waiting)) or "none"
+            raise ConfigurationError(f"no proposal {number} waits; there are: {numbers}")
+        return proposal
 
     def restore(self, proposals: Iterable[ProposedChange], numbers: Mapping[int, int]) -> None:
         """Take in those of a console before.
@@ -124,15 +126,15 @@ class Proposals:
         numbers
             Of the plans now, by those of before; what is about a plan that is gone is left out.
         """
-        for one in proposals:
-            number = numbers.get(getattr(one.posted, "number", 0), 0)
+        for proposal in proposals:
+            number = numbers.get(getattr(proposal.posted, "number", 0), 0)
             if number:
-                posted = one.posted.model_copy(update={"number": number})
-                self.waiting[one.number] = replace(one, posted=posted)
-            elif isinstance(one.posted, PlanPosted):
-                self.waiting[one.number] = one
+                posted = proposal.posted.model_copy(update={"number": number})
+                self.waiting[proposal.number] = replace(proposal, posted=posted)
+            elif isinstance(proposal.posted, PlanPosted):
+                self.waiting[proposal.number] = proposal
         self.count = max((self.count, *self.waiting))
 
     def pictures(self) -> list[dict[str, Any]]:
         """Return what the page shows of the proposals that wait, the oldest first."""
-        return [one.picture() for one in self.waiting.values()]
+        return [proposal.picture() for proposal in self.waiting.values()]

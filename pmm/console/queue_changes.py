@@ -52,7 +52,7 @@ class ActionReply:
     def answer(self) -> dict[str, Any]:
         """Return the fields that the page gets, without those that say nothing."""
         parts = {"said": self.said or None, "plan": self.plan}
-        return {key: one for key, one in parts.items() if one is not None}
+        return {key: value for key, value in parts.items() if value is not None}
 
 
 def of_reply(reply: Reply, plan: EncodedText | None = None) -> ActionReply:
@@ -106,8 +106,8 @@ class QueueChanges:
         """Return the plan's name and its picture as it would be; raises as carrying out does."""
         worker = self._workers.for_whom(in_control=False)
         if isinstance(posted, PlanPosted):
-            found = await worker.run(possible_plan, self._plans, posted.name, posted.text)
-            return found.packed.bare.plan.name, found.picture
+            ready = await worker.run(possible_plan, self._plans, posted.name, posted.text)
+            return ready.packed.bare.plan.name, ready.picture
         number: int = getattr(posted, "number", 0)
         plan = self.queued.plan(number)
         picture = self.queued.pictures()[str(number)]
@@ -118,13 +118,13 @@ class QueueChanges:
     async def _queue(self, posted: PlanPosted) -> ActionReply:
         worker = self._workers.for_whom(in_control=True)
         async with self._changing:
-            found = await worker.run(ready_plan, self._plans, posted.name, posted.text)
-            reply = await self._add(found)
+            ready = await worker.run(ready_plan, self._plans, posted.name, posted.text)
+            reply = await self._add(ready)
         self._tell_plans()
-        return of_reply(reply, found.picture)
+        return of_reply(reply, ready.picture)
 
-    async def _add(self, found: ReadyPlan, changes: tuple[RunPosted, ...] = ()) -> Reply:
-        number = self.queued.add(found, changes)
+    async def _add(self, ready: ReadyPlan, changes: tuple[RunPosted, ...] = ()) -> Reply:
+        number = self.queued.add(ready, changes)
         try:
             return await self._loop.order(OrderKind.QUEUE, plan=self.queued.plan(number))
         except PmmError:
@@ -150,11 +150,11 @@ class QueueChanges:
         worker = self._workers.for_whom(in_control=True)
         async with self._changing:  # each change begins with what the one before has made
             before = self.queued.plan(posted.number)
-            found = await worker.run(changed_plan, self._plans, before, posted)
-            reply = await self._loop.order(OrderKind.CHANGE, plan=found.packed)
-            self.queued.change(found, posted)
+            ready = await worker.run(changed_plan, self._plans, before, posted)
+            reply = await self._loop.order(OrderKind.CHANGE, plan=ready.packed)
+            self.queued.change(ready, posted)
         self._tell_plans()
-        return of_reply(reply, found.picture)
+        return of_reply(reply, ready.picture)
 
     def seen(self, frame: int, numbers: tuple[int, ...]) -> None:
         """Take the order of the queue as the latest frame tells it."""
@@ -169,26 +169,26 @@ class QueueChanges:
         """Queue again what was in the queue when the console before ended; nothing moves by it."""
         async with self._changing:
             try:
-                kept = self._keeper.read()
+                queue = self._keeper.read()
             except PmmError as error:
                 self._hub.say("alarm", str(error))
-                kept = KeptQueue()
-            numbers = {plan.number: await self._again(plan) for plan in kept.plans}
-            self._proposals.restore(kept.proposals, numbers)
+                queue = KeptQueue()
+            numbers = {plan.number: await self._again(plan) for plan in queue.plans}
+            self._proposals.restore(queue.proposals, numbers)
             self._tell_plans()
             self.tell_proposals()
             self._keeper.begin()
 
-    async def _again(self, kept: KeptPlan) -> int:
+    async def _again(self, plan: KeptPlan) -> int:
         """Queue a plan again; return its number now, 0 if nothing of it is left to be made."""
         worker = self._workers.for_whom(in_control=True)
         try:
-            found = await worker.run(restored_plan, self._plans, kept)
-            if found is None:
+            ready = await worker.run(restored_plan, self._plans, plan)
+            if ready is None:
                 return 0
-            await self._add(found, kept.changes)
+            await self._add(ready, plan.changes)
         except PmmError as error:
-            self._hub.say("alarm", f"{kept.name} is not in the queue again: {error}")
+            self._hub.say("alarm", f"{plan.name} is not in the queue again: {error}")
             return 0
         return self.queued.count
 

@@ -35,7 +35,7 @@ class KeptPlan:
 
     def record(self) -> dict[str, Any]:
         """Return the plan, and what was changed in it, as the journal keeps it."""
-        changes = [{"action": _action(one), **one.model_dump()} for one in self.changes]
+        changes = [{"action": _action(change), **change.model_dump()} for change in self.changes]
         return {"number": self.number, "plan": self.name, "changes": changes}
 
 
@@ -66,8 +66,8 @@ class QueueJournal:
         content = {
             "schema": _SCHEMA,
             "rig": self._rig,
-            "plans": [one.record() for one in queue.plans],
-            "proposals": [one.record() for one in queue.proposals],
+            "plans": [plan.record() for plan in queue.plans],
+            "proposals": [proposal.record() for proposal in queue.proposals],
         }
         self.path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(self.path, json.dumps(content, ensure_ascii=False, indent=1) + "\n")

@@ -43,9 +43,9 @@ class QuickStop:
     def take(self) -> bool:
         """Whether one was asked for since the last look. Only the loop looks."""
         pressed = self.pressed
-        found = pressed != self._taken.value
+        is_new = pressed != self._taken.value
         self._taken.value = pressed
-        return found
+        return is_new
 
     async def taken(self, number: int) -> None:
         """Wait until the loop has taken one.

@@ -67,7 +67,7 @@ class ConsoleRequest:
                 f"--speed {self.speed:g}: {rig_file.path} is no simulated rig; only those run "
                 "faster or slower than the clock"
             )
-        folders = [("--plans", self.plans), *(("--earlier", one) for one in self.earlier)]
+        folders = [("--plans", self.plans), *(("--earlier", folder) for folder in self.earlier)]
         for option, name in folders:
             if name is not None and not Path(name).is_dir():
                 raise ConfigurationError(f"{option} {name}: no such folder")
@@ -117,13 +117,13 @@ class ConsoleRequest:
         """
         family = AF_INET6 if ":" in self.host else AF_INET
         try:
-            found = listen((self.host, self.port), family=family)
+            listener = listen((self.host, self.port), family=family)
         except OSError as error:
             raise ConfigurationError(
                 f"--host {self.host} --port {self.port}: {_not_listening(error)}"
             ) from error
-        with found:
-            yield found
+        with listener:
+            yield listener
 
     def settings(self, rig_file: RigFile, port: int) -> ConsoleSettings:
         """Return how the console is set up; it listens on ``port``."""
@@ -133,8 +133,8 @@ class ConsoleRequest:
             _token("--watch-token-file", self.watch_token_file),
             _token("--propose-token-file", self.propose_token_file),
         )
-        given = [one for one in tokens if one]
-        if len(set(given)) < len(given):
+        stated_tokens = [token for token in tokens if token]
+        if len(set(stated_tokens)) < len(stated_tokens):
             raise ConfigurationError(
                 "--token-file, --watch-token-file, --propose-token-file: two hold the same token, "
                 "whose holder's rights would be unclear; make another"
@@ -146,7 +146,7 @@ class ConsoleRequest:
             output=output,
             log_folder=output or rig_file.path.parent / rig_file.recorder.folder,
             door=Door(self.host, port, tokens[0], self.certificate is not None, *tokens[1:]),
-            earlier=tuple(Path(one) for one in self.earlier),
+            earlier=tuple(Path(folder) for folder in self.earlier),
             reference=None if self.reference is None else Path(self.reference),
             live=self._live(rig_file),
         )
@@ -190,7 +190,7 @@ def _token(option: str, file: str | None) -> str:
 def _not_listening(error: OSError) -> str:
     """Say why an address cannot be listened on, and what to do."""
     no_host = "no such host is known; give an address of this machine, such as 127.0.0.1"
-    known = {
+    reasons = {
         EAI_NONAME: no_host,
         EAI_AGAIN: no_host,
         errno.EADDRINUSE: "the port is taken; is a console running already? --port 0 takes a free "
@@ -198,4 +198,4 @@ def _not_listening(error: OSError) -> str:
         errno.EADDRNOTAVAIL: "not an address of this machine; give one of its own, or 127.0.0.1",
         errno.EACCES: "this port needs more rights; take one above 1023, or --port 0",
     }
-    return known.get(error.errno or 0, str(error))
+    return reasons.get(error.errno or 0, str(error))

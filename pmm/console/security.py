@@ -104,12 +104,12 @@ class Door:
 
     def log_in(self, token: str, name: str = "") -> tuple[str, Visitor] | None:
         """Return a cookie's value and who has it, for a right token."""
-        known = (
+        roles = (
             (self.token, VisitorRole.OPERATE),
             (self.propose_token, VisitorRole.PROPOSE),
             (self.watch_token, VisitorRole.WATCH),
         )
-        fit = [role for one, role in known if one and _same(token, one)]
+        fit = [role for secret, role in roles if secret and _same(token, secret)]
         if not fit:
             return None
         value, visitor = secrets.token_urlsafe(32), Visitor(fit[0], name)
@@ -176,8 +176,8 @@ class Guard:
         return None
 
 
-def _same(one: str, other: str) -> bool:
-    return hmac.compare_digest(one.encode(), other.encode())
+def _same(text: str, reference: str) -> bool:
+    return hmac.compare_digest(text.encode(), reference.encode())
 
 
 def _is_open(path: str) -> bool:
@@ -186,17 +186,17 @@ def _is_open(path: str) -> bool:
 
 def _cookie(headers: dict[str, str]) -> str:
     try:
-        found = SimpleCookie(headers.get("cookie", "")).get(COOKIE)
+        cookie = SimpleCookie(headers.get("cookie", "")).get(COOKIE)
     except CookieError:
         return ""
-    return found.value if found is not None else ""
+    return cookie.value if cookie is not None else ""
 
 
 def _with_headers(send: Send) -> Send:
     async def sent(message: MutableMapping[str, Any]) -> None:
         if message["type"] == "http.response.start":
-            there = {key for key, _ in message.get("headers", ())}
-            more = [header for header in _HEADERS if header[0] not in there]
+            names = {key for key, _ in message.get("headers", ())}
+            more = [header for header in _HEADERS if header[0] not in names]
             message["headers"] = [*message.get("headers", ()), *more]
         await send(message)
 

@@ -71,9 +71,9 @@ class ChoosingCampaign:
         if self._next is None or not (self._agreed or self._yes(_BEGIN)):
             return None
         self._agreed = True
-        found, self._next = self._next, None
+        plan, self._next = self._next, None
         self._made = True
-        return found
+        return plan
 
     def _yes(self, question: str) -> bool:
         return (self._answers(question) or "")[:1].lower() == "y"

@@ -66,14 +66,14 @@ def station_of(request: ConsoleRequest, rig_file: RigFile, tell: Tell) -> Iterat
 
 def run_loop(station: Station, interrupts: Interrupts, tell: Tell) -> None:
     """Step until Ctrl-C, and then until everything rests."""
-    told = False
+    is_told = False
     while True:
         station.step()
         interrupts.hand_on(station.control.request)
         if interrupts.heard and station.at_rest:
             return
-        if station.deserted and not told:
-            told = True
+        if station.deserted and not is_told:
+            is_told = True
             tell("the web server has ended; the rig runs on. Ctrl-C stops it")
 
 
@@ -89,7 +89,7 @@ def _server(
     settings = request.settings(rig_file, listening.getsockname()[1])
     context = get_context("spawn")
     ours, theirs = context.Pipe()
-    files = [None if one is None else Path(one) for one in (request.certificate, request.key)]
+    files = [None if name is None else Path(name) for name in (request.certificate, request.key)]
     process = context.Process(
         target=serve, args=(settings, listening, theirs, quick_stop, *files), name="console server"
     )
@@ -136,18 +136,18 @@ def _station(
         )  # fmt: skip
         link.tell(replace(station.hello(), priority=str(priority)))
         yield station
-        for one in station.close():
-            tell(one)
+        for line in station.close():
+            tell(line)
 
 
 def _priority(stack: ExitStack, speed: float, tell: Tell) -> Priority:
     """Put the loop first; one that runs faster than the clock would leave nothing to others."""
     if speed != 1.0:
         return Priority.ORDINARY
-    found = keep_time(stack)
-    if found.advice:
-        tell(found.advice)
-    return found.priority
+    timing = keep_time(stack)
+    if timing.advice:
+        tell(timing.advice)
+    return timing.priority
 
 
 def serve(

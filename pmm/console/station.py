@@ -132,8 +132,10 @@ class Station:
         if plan is None:
             return
         self._plans.present = plan
-        again = {run.name for run in plan.runs} & {one.run for one in self.control.outcomes}
-        if self.control.state is State.DONE and self._recording is not None and not again:
+        repeats = {run.name for run in plan.runs} & {
+            outcome.run for outcome in self.control.outcomes
+        }
+        if self.control.state is State.DONE and self._recording is not None and not repeats:
             self._recording.plan = plan.plan
             self.control.replan((*self.control.runs, *plan.runs))
             return
@@ -166,10 +168,10 @@ class Station:
 
     def _carry_out(self, order: LoopOrder) -> Reply:
         try:
-            done, text = True, self._obey(order)
+            carried_out, text = True, self._obey(order)
         except (PmmError, ValueError) as error:
-            done, text = False, str(error)
-        return Reply(order.number, done, text, self._plans.number, self._view.next_frame)
+            carried_out, text = False, str(error)
+        return Reply(order.number, carried_out, text, self._plans.number, self._view.next_frame)
 
     def _obey(self, order: LoopOrder) -> str:
         if order.quick_stops < self._quick_stop.pressed:
@@ -202,8 +204,8 @@ class Station:
         self._plans.require_room(plan)
         self._writer.begin(plan)
         self._plans.waiting.append(plan)
-        what = "runs to be chosen" if plan.chooses else counted(len(plan.runs), "run")
-        self._view.notice("queue", f"{plan.plan.name}: {what}, queued")
+        runs = "runs to be chosen" if plan.chooses else counted(len(plan.runs), "run")
+        self._view.notice("queue", f"{plan.plan.name}: {runs}, queued")
         self._take_turns()
         return f"{plan.plan.name} is queued"
 
@@ -262,7 +264,7 @@ class Station:
         goes_on = goes_on and self._plans.present is not None
         if self._left and self._plans.present is not None:
             return
-        plan = self._plans.take_next({one.run for one in self.control.outcomes})
+        plan = self._plans.take_next({outcome.run for outcome in self.control.outcomes})
         self._anew(plan.runs)
         if plan.chooses:
             self._campaign = ChoosingCampaign(plan, self._answers, self._link.tell, self._executor)

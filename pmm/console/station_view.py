@@ -112,7 +112,7 @@ class StationView:
             number=self._ticks,
             status=status,
             plan=self._plans.present.number if self._plans.present is not None else 0,
-            queue=tuple(one.number for one in self._plans.waiting),
+            queue=tuple(plan.number for plan in self._plans.waiting),
             set_point=run.set_point if run is not None else None,
             opened_s=gate.opened_s if gate is not None else float("nan"),
             closed_s=gate.closed_s if gate is not None else float("nan"),

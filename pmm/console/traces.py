@@ -49,10 +49,10 @@ class TraceBuffer:
     def take(self) -> SignalTrace:
         """Return the points that are complete."""
         bucket = self._each if self._each == 1 else 2 * self._each
-        whole = self._rest.shape[1] // bucket * bucket
-        done, self._rest = self._rest[:, :whole], self._rest[:, whole:]
-        first = (self._next or 0) - self._rest.shape[1] - whole
-        return SignalTrace(first // self._each, first / self._rate_hz, self._thin(done))
+        count = self._rest.shape[1] // bucket * bucket
+        samples, self._rest = self._rest[:, :count], self._rest[:, count:]
+        first = (self._next or 0) - self._rest.shape[1] - count
+        return SignalTrace(first // self._each, first / self._rate_hz, self._thin(samples))
 
     def _thin(self, samples: FloatArray) -> FloatArray:
         if self._each == 1 or not samples.size:

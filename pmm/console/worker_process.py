@@ -65,13 +65,13 @@ class WorkerProcess:
         What it does, for messages.
     """
 
-    def __init__(self, what: str, bounds: WorkLimits) -> None:
-        self._what, self._bounds = what, bounds
+    def __init__(self, name: str, bounds: WorkLimits) -> None:
+        self._what, self._bounds = name, bounds
         self._waiting, self._closed = 0, False
         self._thread: ThreadPoolExecutor | None = None
         self._child: tuple[SpawnProcess, Connection] | None = None
 
-    async def run(self, work: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
+    async def run(self, work: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
         """Return what a function of a module returns, or raise what it raises.
 
         Raises
@@ -89,11 +89,11 @@ class WorkerProcess:
             self._thread = ThreadPoolExecutor(1, thread_name_prefix=self._what)
         self._waiting += 1
         asked = asyncio.get_running_loop().run_in_executor(
-            self._thread, self._ask, work, given, named
+            self._thread, self._ask, work, arguments, named
         )
         asked.add_done_callback(self._done)
-        found: T = await asyncio.shield(asked)
-        return found
+        result: T = await asyncio.shield(asked)
+        return result
 
     def close(self) -> None:
         """End the process, whatever it is at."""
@@ -112,20 +112,20 @@ class WorkerProcess:
         if not asked.cancelled():
             asked.exception()  # whoever asked may have gone
 
-    def _ask(self, work: Callable[..., T], given: Any, named: Any) -> T:
+    def _ask(self, work: Callable[..., T], arguments: Any, named: Any) -> T:
         """Ask the process; in the thread, which waits for it."""
         process, connection = self._child = self._child or _started(self._bounds)
         try:
             if self._closed:  # while it was being started
                 process.kill()
-            connection.send((work, given, named))
+            connection.send((work, arguments, named))
             if not connection.poll(BY_THE_CLOCK * self._bounds.seconds):
                 self._end()
                 raise NotWorkedOutError(
                     f"{self._what} took longer than {BY_THE_CLOCK * self._bounds.seconds:g} s and "
                     "was ended"
                 )
-            found, error = connection.recv()
+            value, error = connection.recv()
         except (EOFError, OSError) as lost:
             process.join(_GONE_S)
             self._end()
@@ -140,7 +140,7 @@ class WorkerProcess:
             )
         if error is not None:
             raise error
-        result: T = found
+        result: T = value
         return result
 
     def _end(self) -> None:
@@ -186,18 +186,18 @@ def _work(connection: Connection, bounds: WorkLimits) -> None:
     clock.start()
     while True:
         try:
-            work, given, named = connection.recv()
+            work, arguments, named = connection.recv()
         except EOFError:
             return
-        found, error = None, None
+        result, error = None, None
         clock.began_s = time.process_time()
         try:
-            found = work(*given, **named)
+            result = work(*arguments, **named)
         except Exception as raised:
             error = raised.with_traceback(None)
         clock.began_s = None
         try:
-            connection.send((found, error))
+            connection.send((result, error))
         except (TypeError, AttributeError, ValueError) as raised:  # it cannot be pickled
             connection.send((None, NotWorkedOutError(f"{error!r}: {raised}")))
 
@@ -251,8 +251,8 @@ class Workers:
 
     def close(self) -> None:
         """End all worker processes."""
-        for one in (self._control, self._watchers, self.around, self.figures):
-            one.close()
+        for worker in (self._control, self._watchers, self.around, self.figures):
+            worker.close()
 
 
 class Shared(Generic[T]):

@@ -45,7 +45,7 @@ def possible_plan(plans: Plans, name: str, text: str) -> ReadyPlan:
     return _ready(plans.possible(name, text))
 
 
-def restored_plan(plans: Plans, kept: KeptPlan) -> ReadyPlan | None:
+def restored_plan(plans: Plans, plan: KeptPlan) -> ReadyPlan | None:
     """Return a plan as it was in the queue, or nothing if all its runs are complete.
 
     Raises
@@ -53,15 +53,15 @@ def restored_plan(plans: Plans, kept: KeptPlan) -> ReadyPlan | None:
     ConfigurationError, PlanRefusedError
         If its file is wrong by now, or the rig cannot run it any more.
     """
-    found = plans.queue(kept.name, "")
-    for change in kept.changes:
-        found = plans.changed(found.waiting, change)
-    waiting = found.waiting
-    return _ready(found) if waiting.runs or waiting.chooses else None
+    checked = plans.queue(plan.name, "")
+    for change in plan.changes:
+        checked = plans.changed(checked.waiting, change)
+    waiting = checked.waiting
+    return _ready(checked) if waiting.runs or waiting.chooses else None
 
 
-def _ready(found: CheckedPlan) -> ReadyPlan:
-    return ReadyPlan(pack(found.waiting), EncodedText(encode(plan_picture(found))))
+def _ready(checked: CheckedPlan) -> ReadyPlan:
+    return ReadyPlan(pack(checked.waiting), EncodedText(encode(plan_picture(checked))))
 
 
 def changed_plan(plans: Plans, packed: PackedPlan, posted: RunPosted) -> ReadyPlan:
@@ -128,11 +128,11 @@ class Queued:
 
     def kept(self) -> tuple[KeptPlan, ...]:
         """Return what is to be queued again after a restart, in the order of the queue."""
-        later = [one for one in self._plans if one not in self._order]
+        later = [number for number in self._plans if number not in self._order]
         return tuple(
-            KeptPlan(one, self._plans[one].packed.bare.plan.path.name, self._changes[one])
-            for one in (*self._order, *later)
-            if one in self._plans
+            KeptPlan(number, self._plans[number].packed.bare.plan.path.name, self._changes[number])
+            for number in (*self._order, *later)
+            if number in self._plans
         )
 
     def drop(self, number: int) -> None:
@@ -147,11 +147,11 @@ class Queued:
         ConfigurationError
             If there is none of that number.
         """
-        found = self._plans.get(number)
-        if found is None:
-            known = ", ".join(map(str, self._plans)) or "none"
-            raise ConfigurationError(f"no plan {number} is in the queue; there are: {known}")
-        return found.packed
+        ready = self._plans.get(number)
+        if ready is None:
+            numbers = ", ".join(map(str, self._plans)) or "none"
+            raise ConfigurationError(f"no plan {number} is in the queue; there are: {numbers}")
+        return ready.packed
 
     def change(self, plan: ReadyPlan, posted: RunPosted) -> None:
         """Keep a plan as it is from now on, if it is still at hand."""
@@ -172,8 +172,8 @@ class Queued:
 
     def folder(self, number: int) -> Path | None:
         """Return the folder of a plan that is at hand."""
-        found = self._plans.get(number)
-        return None if found is None else found.packed.bare.folder
+        ready = self._plans.get(number)
+        return None if ready is None else ready.packed.bare.folder
 
     def folders(self) -> list[Path]:
         """Return the folders of all campaigns that were queued, each once."""

@@ -74,10 +74,10 @@ class Writer:
 
     def failures(self) -> list[str]:
         """Return what went wrong since the last call."""
-        done = [one for one in self._pending if one.done()]
-        self._pending = [one for one in self._pending if one not in done]
-        found = [one.exception() for one in done]
-        return [f"the campaign is not written: {error}" for error in found if error is not None]
+        ended = [task for task in self._pending if task.done()]
+        self._pending = [task for task in self._pending if task not in ended]
+        errors = [task.exception() for task in ended]
+        return [f"the campaign is not written: {error}" for error in errors if error is not None]
 
     def close(self) -> list[str]:
         """Wait for what is being written and let go of the folders; return what went wrong."""
@@ -87,6 +87,6 @@ class Writer:
         return self.failures()
 
     def _write(self, plan: QueuedPlan, tell: Callable[[Notice], None]) -> None:
-        done = finished_runs(plan.folder, plan.plan, self._rig_file)
-        write_campaign(plan.folder, plan.plan, self._rig_file, done)
+        runs = finished_runs(plan.folder, plan.plan, self._rig_file)
+        write_campaign(plan.folder, plan.plan, self._rig_file, runs)
         tell(Notice(WRITTEN, 0.0, plan.plan.name, plan=plan.number, folder=plan.folder))

@@ -57,74 +57,74 @@ class FinishedRun:
     recorded_with: Mapping[str, Any] | None = None
 
 
-def write_campaign(folder: Path, plan: Plan, rig: RigFile, done: Sequence[FinishedRun]) -> Path:
+def write_campaign(folder: Path, plan: Plan, rig: RigFile, runs: Sequence[FinishedRun]) -> Path:
     """Write the campaign file of the runs made so far, in their order; the old one is replaced.
 
     The file is whole at every moment: it is written beside and moved into place.
     """
     target = folder / _NAME
-    write_whole(target, "\n".join(_tables(folder, plan, rig, done)))
+    write_whole(target, "\n".join(_tables(folder, plan, rig, runs)))
     return target
 
 
-def _tables(folder: Path, plan: Plan, rig: RigFile, done: Sequence[FinishedRun]) -> Iterator[str]:
+def _tables(folder: Path, plan: Plan, rig: RigFile, runs: Sequence[FinishedRun]) -> Iterator[str]:
     yield f"# Written by pmm run from {plan.path.name} and {rig.path.name}: docs/campaigns.md\n" + (
         f"name = {toml_value(plan.name)}\n"
         + ("" if rig.hardware.photocell else "photocell = false\n")
     )
     yield toml_table("oscillator", asdict(rig.oscillator))
     if rig.model is not None:
-        body = {key: one for key, one in asdict(rig.model).items() if key not in DIMENSIONS}
+        body = {key: value for key, value in asdict(rig.model).items() if key not in DIMENSIONS}
         yield toml_table("model", body)
     if rig.hull is not None:
         yield toml_table("hull", asdict(rig.hull))
     if plan.water is not None:
         depth = None if rig.tank is None else rig.tank.depth_m
         yield toml_table("water", {**asdict(plan.water), "depth_m": depth})
-    offset = {key: one for key, one in asdict(rig.reference).items() if one}
+    offset = {key: value for key, value in asdict(rig.reference).items() if value}
     if offset:
         yield toml_table("reference", offset)
-    yield from _handed_on(folder, rig, done)
-    names = {one.plan.name for one in done}
-    for place, one in enumerate(done, 1):
-        array = "runs" if one.plan.oscillates else "at_rest"
-        keys = _turning(one, rig) if one.plan.oscillates else _resting(one.plan)
-        yield toml_table(array, keys | _common(one, names, one.number or place), array=True)
+    yield from _handed_on(folder, rig, runs)
+    names = {run.plan.name for run in runs}
+    for place, run in enumerate(runs, 1):
+        array = "runs" if run.plan.oscillates else "at_rest"
+        keys = _turning(run, rig) if run.plan.oscillates else _resting(run.plan)
+        yield toml_table(array, keys | _common(run, names, run.number or place), array=True)
 
 
-def _handed_on(folder: Path, rig: RigFile, done: Sequence[FinishedRun]) -> Iterator[str]:
+def _handed_on(folder: Path, rig: RigFile, runs: Sequence[FinishedRun]) -> Iterator[str]:
     """Yield what the rig's file hands on, with what the runs tell of sensors and sampling."""
-    for name, table in {**rig.campaign, **_known(rig, done)}.items():
+    for name, table in {**rig.campaign, **_known(rig, runs)}.items():
         if name == "radiation" and isinstance(table, Mapping) and "file" in table:
             file = os.path.relpath(rig.path.resolve().parent / table["file"], folder.resolve())
             yield toml_table(name, {**table, "file": Path(file).as_posix()})
         elif isinstance(table, Mapping):
             yield toml_table(name, table)
         elif isinstance(table, list):
-            yield from (toml_table(name, one, array=True) for one in table)
+            yield from (toml_table(name, row, array=True) for row in table)
 
 
-def _known(rig: RigFile, done: Sequence[FinishedRun]) -> dict[str, Any]:
+def _known(rig: RigFile, runs: Sequence[FinishedRun]) -> dict[str, Any]:
     simulation = rig.campaign.get("simulation", {})
-    found: dict[str, Any] = {"simulation": {**simulation, "sample_rate_hz": rig.sample_rate_hz}}
+    tables: dict[str, Any] = {"simulation": {**simulation, "sample_rate_hz": rig.sample_rate_hz}}
     if dynamometers := dynamometers_table(rig):
-        found["dynamometers"] = dynamometers
-    recorded = {channel.name: channel for one in done for channel in one.channels}
+        tables["dynamometers"] = dynamometers
+    recorded = {channel.name: channel for run in runs for channel in run.channels}
     if recorded:
-        noise = [one.noise_rms for one in done if one.noise_rms and one.outcome == "complete"]
-        found["acquisition"] = acquisition_table(rig, tuple(recorded.values()), noise)
+        noise = [run.noise_rms for run in runs if run.noise_rms and run.outcome == "complete"]
+        tables["acquisition"] = acquisition_table(rig, tuple(recorded.values()), noise)
     if rig.hardware.photocell is None:
-        found["photocell"] = None
-    return found
+        tables["photocell"] = None
+    return tables
 
 
-def _common(one: FinishedRun, names: set[str], number: int) -> dict[str, Any]:
+def _common(finished_run: FinishedRun, names: set[str], number: int) -> dict[str, Any]:
     """Return what runs and records at rest share; a zero that is not yet made is left out."""
-    run = one.plan
+    run = finished_run.plan
     point = run.set_point
     return {
         "kind": run.kind,
-        "file": one.recording,
+        "file": finished_run.recording,
         "carriage_speed_m_s": point.carriage_speed_m_s,
         "medium": point.medium,
         "drift_rad": point.drift_rad,
@@ -134,9 +134,9 @@ def _common(one: FinishedRun, names: set[str], number: int) -> dict[str, Any]:
         "zero_before": run.zero_before if run.zero_before in names else None,
         "zero_after": run.zero_after if run.zero_after in names else None,
         "number": number,
-        "outcome": one.outcome,
-        "differs": one.differs or None,
-        "recorded_with": one.recorded_with,
+        "outcome": finished_run.outcome,
+        "differs": finished_run.differs or None,
+        "recorded_with": finished_run.recorded_with,
     }
 
 
@@ -145,25 +145,25 @@ def _set_besides(point: SetPoint) -> dict[str, Any]:
     keys = ["rudder_angle_rad", "revolutions_hz", "heel_rad", "turn_rate_rad_s", "release_rad"]
     if point.wave_frequency_hz:
         keys += ["wave_frequency_hz", "wave_amplitude_m", "wave_heading_rad"]
-    found: dict[str, Any] = {key: getattr(point, key) for key in keys}
-    found["steady_ahead"] = point.steady_ahead
-    found["lines"] = [asdict(line) for line in point.lines]
-    return {key: value for key, value in found.items() if value}
+    settings: dict[str, Any] = {key: getattr(point, key) for key in keys}
+    settings["steady_ahead"] = point.steady_ahead
+    settings["lines"] = [asdict(line) for line in point.lines]
+    return {key: value for key, value in settings.items() if value}
 
 
-def _turning(one: FinishedRun, rig: RigFile) -> dict[str, Any]:
+def _turning(run: FinishedRun, rig: RigFile) -> dict[str, Any]:
     """Return the set-point as it was measured or read, else as it was planned."""
-    point = one.plan.set_point
+    point = run.plan.set_point
     keys: dict[str, Any] = {
-        "name": one.plan.name,
-        "motion": one.plan.motion,
+        "name": run.plan.name,
+        "motion": run.plan.motion,
         "frequency_hz": point.frequency_hz,
         "eccentricity_m": point.eccentricity_m,
         "strut_phase_rad": point.strut_phase_rad,
-        "periods": one.plan.periods,
+        "periods": run.plan.periods,
     }
     for axis, key in (("eccentricity", "eccentricity_m"), ("phase", "strut_phase_rad")):
-        reading = one.readings.get(axis)
+        reading = run.readings.get(axis)
         if reading is not None:
             keys[key] = reading.value
             keys[f"u_{key}"] = reading.standard_uncertainty

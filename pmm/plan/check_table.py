@@ -292,5 +292,5 @@ CALIBRATION: Final = Check(
     "nothing: the date is the laboratory's",
 )
 
-CHECKS: Final = tuple(one for one in tuple(vars().values()) if isinstance(one, Check))
+CHECKS: Final = tuple(check for check in tuple(vars().values()) if isinstance(check, Check))
 """In the order of the page."""

@@ -28,7 +28,7 @@ def check_plan(plan: Plan, rig: RigFile, today: date | None = None) -> tuple[Pla
     today
         On which the plan is to be run: whether the gauges' calibration is still good then.
     """
-    found = [
+    findings = [
         *bus_finding(rig),
         *departure_findings(plan, rig),
         *_expired(rig, today),
@@ -36,13 +36,13 @@ def check_plan(plan: Plan, rig: RigFile, today: date | None = None) -> tuple[Pla
         *_not_checked(plan, rig),
     ]
     for run in plan.runs:
-        found += [
+        findings += [
             *limit_findings(run, rig),
             *field_findings(run, rig),
             *condition_findings(run, rig, plan.water),
         ]
     ranks = list(PlanVerdict)
-    return tuple(sorted(found, key=lambda one: ranks.index(one.verdict)))
+    return tuple(sorted(findings, key=lambda finding: ranks.index(finding.verdict)))
 
 
 def require_possible(
@@ -55,28 +55,28 @@ def require_possible(
     PlanRefusedError
         If it cannot; the message gives every run with its value and its limit.
     """
-    found = check_plan(plan, rig, today)
-    refused = [one for one in found if one.verdict is PlanVerdict.REFUSE]
+    findings = check_plan(plan, rig, today)
+    refused = [finding for finding in findings if finding.verdict is PlanVerdict.REFUSE]
     if refused:
-        lines = "\n  ".join(f"{one.run or 'plan'}: {one.message}" for one in refused)
+        lines = "\n  ".join(f"{finding.run or 'plan'}: {finding.message}" for finding in refused)
         raise PlanRefusedError(f"{plan.path}: the rig cannot run this plan\n  {lines}")
-    return found
+    return findings
 
 
 def _expired(rig: RigFile, today: date | None) -> Iterator[PlanFinding]:
-    one = rig.calibration
-    if one is not None and today is not None and one.is_expired(today):
-        late = float((today - one.expires).days)
-        text = expiry_text(one, today)
+    calibration = rig.calibration
+    if calibration is not None and today is not None and calibration.is_expired(today):
+        late = float((today - calibration.expires).days)
+        text = expiry_text(calibration, today)
         yield PlanFinding(PlanVerdict.WARN, CALIBRATION.quantity, late, 0.0, "", text)
 
 
 def _unrecorded(plan: Plan, rig: RigFile) -> Iterator[PlanFinding]:
     """Yield channels that runs of the plan are analysed by, and that no device records."""
     names = {
-        getattr(one, "name", "")
+        getattr(channel, "name", "")
         for part in rig.hardware.forces
-        for one in getattr(part.settings, "channels", ())
+        for channel in getattr(part.settings, "channels", ())
     }
     for channel, runs in (
         (WAVE_PROBE, [run for run in plan.runs if run.set_point.wave_frequency_hz]),
@@ -106,7 +106,7 @@ def _not_checked(plan: Plan, rig: RigFile) -> Iterator[PlanFinding]:
         yield PlanFinding(PlanVerdict.NOTE, "not checked", math.nan, math.nan, "", message)
     turning = any(run.oscillates for run in plan.runs)
     paths = any(run.set_point.lines for run in plan.runs)
-    for absent, table, what in (
+    for absent, table, subject in (
         (turning and model is None, "[model]", "forces are"),
         (model is not None and rig.hull is None, "[hull]", "the water's part of the force is"),
         (
@@ -136,5 +136,5 @@ def _not_checked(plan: Plan, rig: RigFile) -> Iterator[PlanFinding]:
         (rig.limits.acceleration_m_s2 is None, "limits.acceleration_m_s2", "acceleration is"),
     ):
         if absent:
-            message = f"{rig.path.name} has no {table}: {what} not checked"
+            message = f"{rig.path.name} has no {table}: {subject} not checked"
             yield PlanFinding(PlanVerdict.NOTE, "not checked", math.nan, math.nan, "", message)

@@ -57,21 +57,31 @@ def condition_findings(
         return
     words = _WORDS[rig.oscillator.plane]
     made = motion_of(run, rig)
-    for one in (
+    for condition in (
         *_of_motion(run, made),
         *_of_speed(run, rig, water),
         *_of_waves(run, rig, made),
         *_of_depth(run, rig),
         *_of_room(rig, made),
     ):
-        if abs(one.value) < _NOTHING:
+        if abs(condition.value) < _NOTHING:
             continue
-        check, quantity = one.check, one.check.quantity.format(**words)
-        limit = f"limit {one.limit:.4g}" if math.isfinite(one.limit) else "no limit stated"
-        text = f"{quantity} = {one.value:.4g} ({limit}, {check.source})"
-        if one.verdict is not PlanVerdict.NOTE:
+        check, quantity = condition.check, condition.check.quantity.format(**words)
+        limit = (
+            f"limit {condition.limit:.4g}" if math.isfinite(condition.limit) else "no limit stated"
+        )
+        text = f"{quantity} = {condition.value:.4g} ({limit}, {check.source})"
+        if condition.verdict is not PlanVerdict.NOTE:
             text += f": {check.reason}"
-        yield PlanFinding(one.verdict, quantity, one.value, one.limit, run.name, text, check.source)
+        yield PlanFinding(
+            condition.verdict,
+            quantity,
+            condition.value,
+            condition.limit,
+            run.name,
+            text,
+            check.source,
+        )
 
 
 def motion_of(run: RunPlan, rig: RigFile) -> MotionWaves:

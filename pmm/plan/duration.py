@@ -18,9 +18,9 @@ def shaft_ramp_s(run: RunPlan, rig: RigFile) -> float:
 
 def carriage_ramp_s(run: RunPlan, rig: RigFile) -> float:
     """Return how long the carriage takes to come to speed, or to stop."""
-    own = _setting(rig.hardware.carriage, "acceleration_m_s2")
+    drive_m_s2 = _setting(rig.hardware.carriage, "acceleration_m_s2")
     stated = None if rig.tank is None else rig.tank.carriage_acceleration_m_s2
-    accelerations = [one for one in (own, stated) if one]
+    accelerations = [acceleration for acceleration in (drive_m_s2, stated) if acceleration]
     return run.set_point.carriage_speed_m_s / min(accelerations) if accelerations else 0.0
 
 

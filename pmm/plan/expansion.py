@@ -103,8 +103,10 @@ def expand(
     repeats = range(1, 1 + first_of(entry.repeats, defaults.repeats))
     if entry.kind is RunKind.RESTORING and not entry.frequencies_hz:
         entry = replace(entry, frequencies_hz=(oscillator.frequency_hz.low,))
-    lists = [getattr(entry, one.key) or (one.absent,) for one in _LISTS]
-    return [_run(entry, defaults, oscillator, one) for one in combine([repeats, *lists])]
+    lists = [getattr(entry, listed.key) or (listed.absent,) for listed in _LISTS]
+    return [
+        _run(entry, defaults, oscillator, combination) for combination in combine([repeats, *lists])
+    ]
 
 
 def run_count(entry: PlanEntry, defaults: Defaults, channels: Sequence[str]) -> int:
@@ -112,13 +114,15 @@ def run_count(entry: PlanEntry, defaults: Defaults, channels: Sequence[str]) -> 
     repeats = first_of(entry.repeats, defaults.repeats)
     if entry.kind in (RunKind.CHECK_WEIGHT, RunKind.PUSH):
         return repeats * len(entry.channels or channels) * len(entry.loads_n)
-    return repeats * math.prod(max(1, len(getattr(entry, one.key))) for one in _LISTS)
+    return repeats * math.prod(max(1, len(getattr(entry, listed.key))) for listed in _LISTS)
 
 
 def _run(
-    entry: PlanEntry, defaults: Defaults, oscillator: Oscillator, one: tuple[Any, ...]
+    entry: PlanEntry, defaults: Defaults, oscillator: Oscillator, combination: tuple[Any, ...]
 ) -> RunPlan:
-    repeat, speed, rate, heel, drift, rudder, radius, release, phase, amplitude, frequency = one
+    repeat, speed, rate, heel, drift, rudder, radius, release, phase, amplitude, frequency = (
+        combination
+    )
     motion = entry.motion or Motion.NONE
     if motion is not Motion.PHASE:
         phase = strut_phase_of(motion, frequency, speed, oscillator.half_spacing_m)
@@ -145,7 +149,7 @@ def _run(
         steady = entry.steady_ahead and motion in _PHASED
         set_point = replace(set_point, strut_phase_rad=0.0, lines=lines, steady_ahead=steady)
     return RunPlan(
-        name=_name(entry, one),
+        name=_name(entry, combination),
         kind=entry.kind,
         motion=motion,
         set_point=set_point,
@@ -218,12 +222,12 @@ def _prefix(entry: PlanEntry) -> str:
     return f"{entry.kind}-{entry.motion}" if entry.motion else str(entry.kind)
 
 
-def _name(entry: PlanEntry, one: tuple[Any, ...]) -> str:
+def _name(entry: PlanEntry, combination: tuple[Any, ...]) -> str:
     """Return ``heave-f0.5-a20-u1.2-r2``: mm and degrees; what the entry does not vary is left out.
 
     Frequency and amplitude always stand there.
     """
-    repeat, *values = one
+    repeat, *values = combination
     amplitude, frequency = values[-2:]
     parts = [entry.name or _prefix(entry)]
     if frequency and entry.kind is not RunKind.CONTROL:

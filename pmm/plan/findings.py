@@ -49,13 +49,13 @@ class PlanFinding:
         return bool(self.source) and self.verdict is PlanVerdict.NOTE
 
 
-def largest_stated(found: Sequence[PlanFinding]) -> tuple[PlanFinding, ...]:
+def largest_stated(findings: Sequence[PlanFinding]) -> tuple[PlanFinding, ...]:
     """Return the numbers that only state the runs' conditions, each at its largest, by name."""
     largest: dict[str, PlanFinding] = {}
-    for one in found:
-        if one.is_stated and one.value >= largest.get(one.quantity, one).value:
-            largest[one.quantity] = one
-    return tuple(one for _, one in sorted(largest.items()))
+    for finding in findings:
+        if finding.is_stated and finding.value >= largest.get(finding.quantity, finding).value:
+            largest[finding.quantity] = finding
+    return tuple(finding for _, finding in sorted(largest.items()))
 
 
 class PlanRefusedError(PmmError):

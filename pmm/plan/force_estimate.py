@@ -89,8 +89,8 @@ def force_peak_n(run: RunPlan, rig: RigFile) -> float | None:
 
     It is ``None`` where the rig's file describes no model.
     """
-    found = [force_estimate(one, rig) for one in single_sines(run)]
-    sizes = [np.abs(one.forces) for one in found if one is not None]
+    estimates = [force_estimate(sine, rig) for sine in single_sines(run)]
+    sizes = [np.abs(estimate.forces) for estimate in estimates if estimate is not None]
     if not sizes:
         return None
     return float(np.sum(sizes, axis=0).max()) * rod_factor(run, rig.oscillator)
@@ -126,13 +126,13 @@ def expected_readings(run: RunPlan, rig: RigFile) -> dict[str, Expected]:
     in_water = run.set_point.medium is Medium.WATER
     unknown = in_water and (rig.hull is None or "radiation" in rig.campaign)
     unknown = unknown or bool(run.set_point.lines)
-    found = None if unknown or not run.oscillates else force_estimate(run, rig)
-    if found is None:
+    estimate = None if unknown or not run.oscillates else force_estimate(run, rig)
+    if estimate is None:
         return {}
     gauges = _gauges(rig)
-    readings, parts = gauges @ found.forces, found.parts @ gauges.T
-    own = READING_UNCERTAINTY * np.abs(readings)
-    spread = np.sqrt((np.abs(parts) ** 2).sum(axis=0) + own**2)
+    readings, parts = gauges @ estimate.forces, estimate.parts @ gauges.T
+    reading_u = READING_UNCERTAINTY * np.abs(readings)
+    spread = np.sqrt((np.abs(parts) ** 2).sum(axis=0) + reading_u**2)
     return {
         name: Expected(float(abs(reading)), float(u))
         for name, reading, u in zip(FORCES, readings, spread, strict=True)
@@ -142,12 +142,12 @@ def expected_readings(run: RunPlan, rig: RigFile) -> dict[str, Expected]:
 def _gauges(rig: RigFile) -> FloatArray:
     """Return the readings of the strut gauges for a newton on each, shape ``(2, 2)``."""
     matrix = np.eye(2)
-    one = rig.calibration
-    if one is not None:
-        known = [name for name in FORCES if name in one.channels]
-        rows = [one.channels.index(name) for name in known]
-        places = [FORCES.index(name) for name in known]
-        matrix[np.ix_(places, places)] = one.matrix[np.ix_(rows, rows)]
+    calibration = rig.calibration
+    if calibration is not None:
+        names = [name for name in FORCES if name in calibration.channels]
+        rows = [calibration.channels.index(name) for name in names]
+        places = [FORCES.index(name) for name in names]
+        matrix[np.ix_(places, places)] = calibration.matrix[np.ix_(rows, rows)]
     return matrix
 
 
@@ -180,5 +180,5 @@ def _laden(model: Body, run: RunPlan) -> Body:
         return model
     mass = model.mass_kg + added.mass_kg
     moment = model.mass_kg * model.cg_x_m + added.mass_kg * added.x_m
-    own = added.own_inertia_kg_m2 + added.mass_kg * added.x_m**2
-    return Body(mass, model.inertia_kg_m2 + own, moment / mass)
+    inertia_kg_m2 = added.own_inertia_kg_m2 + added.mass_kg * added.x_m**2
+    return Body(mass, model.inertia_kg_m2 + inertia_kg_m2, moment / mass)

@@ -41,16 +41,21 @@ class _Bound(NamedTuple):
 
 def limit_findings(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
     """Yield what the rig cannot do, and forces that come near their limit."""
-    for one in (*_turning(run, rig), *_setting(run, rig), *_towing(run, rig), *_loading(run, rig)):
-        if not one.low <= one.value <= one.high:
-            limit = one.low if one.value < one.low else one.high
-            side = "below" if one.value < one.low else "above"
-            quantity = one.check.quantity.format(channel=one.channel)
+    for bound in (
+        *_turning(run, rig),
+        *_setting(run, rig),
+        *_towing(run, rig),
+        *_loading(run, rig),
+    ):
+        if not bound.low <= bound.value <= bound.high:
+            limit = bound.low if bound.value < bound.low else bound.high
+            side = "below" if bound.value < bound.low else "above"
+            quantity = bound.check.quantity.format(channel=bound.channel)
             text = (
-                f"{quantity} = {one.value:.4g} is {side} {limit:.4g} ({one.where}): "
-                f"{one.check.reason}"
+                f"{quantity} = {bound.value:.4g} is {side} {limit:.4g} ({bound.where}): "
+                f"{bound.check.reason}"
             )
-            yield PlanFinding(PlanVerdict.REFUSE, quantity, one.value, limit, run.name, text)
+            yield PlanFinding(PlanVerdict.REFUSE, quantity, bound.value, limit, run.name, text)
     yield from not_led(run, rig)
     yield from _near_full_scale(run, rig)
     yield from _many_turns(run)
@@ -94,11 +99,11 @@ def _led(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
     for times, check in enumerate((table.STROKE, table.VELOCITY, table.ACCELERATION)):
         size = 2.0 * e if times == 0 else omega**times * e
         over = size * np.abs(struts_over_turn(run.set_point.every_line, times, _INSTANTS))
-        for name, one in zip(STRUTS, over, strict=True):
-            strut, at_s = getattr(settings, name), one.argmax() / len(one) / omega * 2.0 * math.pi
+        for name, turn in zip(STRUTS, over, strict=True):
+            strut, at_s = getattr(settings, name), turn.argmax() / len(turn) / omega * 2.0 * math.pi
             most = (2.0 * min(-strut.low, strut.high), strut.speed, strut.acceleration)[times]
             where = f"shaft.{name}: {at_s:.3g} s into the period"
-            yield _Bound(check, float(one.max()), 0.0, most * _ROUNDING, where)
+            yield _Bound(check, float(turn.max()), 0.0, most * _ROUNDING, where)
 
 
 def _setting(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
@@ -165,7 +170,7 @@ def _loading(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
             yield _Bound(table.LOAD, load, 0.0, most, "its full scale", gauge.channel)
     force = force_peak_n(run, rig) if run.oscillates else None
     if force is not None and rig.gauges:
-        least = min(one.full_scale_n for one in rig.gauges)
+        least = min(gauge.full_scale_n for gauge in rig.gauges)
         yield _Bound(table.GAUGE_FORCE, force, 0.0, least, "full scale of the gauges")
 
 
@@ -216,8 +221,8 @@ def led_peaks(run: RunPlan, rig: RigFile) -> Iterator[Peak]:
         return
     settings = None if rig.hardware.carriage is None else rig.hardware.carriage.settings
     most = [
-        min((one for one in (getattr(settings, own, None), stated) if one), default=math.inf)
-        for own, stated in (
+        min((limit for limit in (getattr(settings, key, None), stated) if limit), default=math.inf)
+        for key, stated in (
             ("highest_speed_m_s", getattr(rig.tank, "highest_speed_m_s", None)),
             ("acceleration_m_s2", getattr(rig.tank, "carriage_acceleration_m_s2", None)),
         )

@@ -42,8 +42,8 @@ def in_order(entries: Sequence[Sequence[RunPlan]], order: OrderTable) -> list[Ru
     """
     chance = random.Random(order.seed)  # noqa: S311  # an order, not a secret
     runs: list[RunPlan] = []
-    for ordered, block in groupby(entries, lambda one: bool(one) and one[0].kind in _ORDERED):
-        parts = [list(one) for one in block]
+    for ordered, block in groupby(entries, lambda entry: bool(entry) and entry[0].kind in _ORDERED):
+        parts = [list(entry) for entry in block]
         if ordered and order.scheme is Scheme.RANDOM:
             if order.across_entries:
                 parts = [[run for part in parts for run in part]]
@@ -53,11 +53,11 @@ def in_order(entries: Sequence[Sequence[RunPlan]], order: OrderTable) -> list[Ru
     return runs
 
 
-def with_control(runs: Sequence[RunPlan], control: RunPlan, every: int) -> list[RunPlan]:
+def with_control(runs: Sequence[RunPlan], control: RunPlan, interval: int) -> list[RunPlan]:
     """Repeat the control condition before, after every so many, and after the last oscillation."""
     total = sum(run.kind is RunKind.OSCILLATION for run in runs)
     result: list[RunPlan] = []
-    done = repeats = 0
+    count = repeats = 0
 
     def repeat() -> None:
         nonlocal repeats
@@ -68,11 +68,11 @@ def with_control(runs: Sequence[RunPlan], control: RunPlan, every: int) -> list[
         if run.kind is not RunKind.OSCILLATION:
             result.append(run)
             continue
-        if done == 0:
+        if count == 0:
             repeat()
         result.append(run)
-        done += 1
-        if done % every == 0 or done == total:
+        count += 1
+        if count % interval == 0 or count == total:
             repeat()
     return result
 
@@ -98,7 +98,7 @@ def with_zeros(runs: Sequence[RunPlan], zero: ZeroTable) -> list[RunPlan]:
             result += some[1:]
             linked = len(some)
             result[-linked:] = [
-                replace(one, zero_before=before, zero_after=after) for one in result[-linked:]
+                replace(run, zero_before=before, zero_after=after) for run in result[-linked:]
             ]
         count += 1
         result.append(_zero_run(f"zero-{count:02d}", part[-1], zero, ()))

@@ -91,20 +91,20 @@ def read_plan_and_rig(path: str | Path) -> tuple[Plan, RigFile]:
     """
     path = Path(path)
     original, content = read_toml_and_bytes(path)
-    found = examine_plan(original, path)
-    faults, tables, rig = list(found.faults), found.tables, found.rig.rig
+    reading = examine_plan(original, path)
+    faults, tables, rig = list(reading.faults), reading.tables, reading.rig.rig
     runs: tuple[RunPlan, ...] = ()
     if tables is not None and not faults and rig is not None:
-        runs = runs_of(tables, rig.oscillator, found.channels)
+        runs = runs_of(tables, rig.oscillator, reading.channels)
         faults += _name_faults(runs)
     errors = [as_error(path, faults, original)] if faults else []
-    errors += [found.rig.error] if found.rig.error is not None else []
+    errors += [reading.rig.error] if reading.rig.error is not None else []
     if errors or tables is None or rig is None:
         raise ConfigurationError("\n".join(map(str, errors)))
     sha256 = hashlib.sha256(content).hexdigest()
     name = tables.name or path.resolve().parent.name
-    kept = (tables.operator, sha256, content, tables.water, tables.grows)
-    return Plan(name, path, found.rig_path, runs, *kept), rig
+    details = (tables.operator, sha256, content, tables.water, tables.grows)
+    return Plan(name, path, reading.rig_path, runs, *details), rig
 
 
 @dataclass(frozen=True)
@@ -146,11 +146,11 @@ def examine_plan(original: dict[str, Any], path: Path) -> PlanReading:
     faults += read_recorded(table, path.parent)
     tables = validate(PlanTables, table, faults, EXTRA_KEYS)
     rig_path = _rig_path(path, table)
-    found = examine_rig(rig_path)
-    faults += _faults(table, found)
-    if tables is not None and not faults and found.rig is not None:
-        faults += _size_faults(tables, found.channels or ())
-    return PlanReading(tables, rig_path, found, tuple(faults))
+    rig_reading = examine_rig(rig_path)
+    faults += _faults(table, rig_reading)
+    if tables is not None and not faults and rig_reading.rig is not None:
+        faults += _size_faults(tables, rig_reading.channels or ())
+    return PlanReading(tables, rig_path, rig_reading, tuple(faults))
 
 
 def _rig_path(path: Path, table: dict[str, Any]) -> Path:
@@ -158,7 +158,7 @@ def _rig_path(path: Path, table: dict[str, Any]) -> Path:
     return path.parent / (rig if isinstance(rig, str) else "rig.toml")
 
 
-def _faults(table: dict[str, Any], found: RigFileReading) -> Iterator[Fault]:
+def _faults(table: dict[str, Any], rig_reading: RigFileReading) -> Iterator[Fault]:
     """Yield what is wrong with tables that are right key by key; each is looked at by itself."""
     yield from limit_faults(table)
     yield from campaign_name_faults(table)
@@ -169,29 +169,33 @@ def _faults(table: dict[str, Any], found: RigFileReading) -> Iterator[Fault]:
     for number, run in enumerate(runs if isinstance(runs, list) else []):
         entry = validate(PlanEntry, run, []) if isinstance(run, dict) else None
         if entry is not None:
-            yield from _entry_faults(run, entry, defaults, found, ("runs", number))
-    yield from _table_faults(table, found)
+            yield from _entry_faults(run, entry, defaults, rig_reading, ("runs", number))
+    yield from _table_faults(table, rig_reading)
 
 
 def _entry_faults(
-    table: dict[str, Any], entry: PlanEntry, defaults: Defaults, found: RigFileReading, place: Place
+    table: dict[str, Any],
+    entry: PlanEntry,
+    defaults: Defaults,
+    rig_reading: RigFileReading,
+    place: Place,
 ) -> Iterator[Fault]:
     fault = no_file_name(entry.name) if entry.name else None
     if fault is not None:
         yield Fault((*place, "name"), f"= {entry.name!r} {fault}")
     yield from entry_faults(table, entry, place)
     yield from end_faults(entry, defaults, place)
-    yield from rig_faults(entry.motion, found.oscillator, place)
-    yield from path_faults(entry, found.oscillator, place)
-    yield from circle_faults(entry, found.oscillator, place)
-    yield from channel_faults(entry, found.channels, place)
+    yield from rig_faults(entry.motion, rig_reading.oscillator, place)
+    yield from path_faults(entry, rig_reading.oscillator, place)
+    yield from circle_faults(entry, rig_reading.oscillator, place)
+    yield from channel_faults(entry, rig_reading.channels, place)
     for key, angles in (("heels_deg", entry.heels_rad), ("releases_deg", entry.releases_rad)):
-        if any(angles) and found.rig is not None and "heel" not in found.rig.campaign:
+        if any(angles) and rig_reading.rig is not None and "heel" not in rig_reading.rig.campaign:
             text = "needs [campaign.heel] in the rig's file: how the model is held in roll"
             yield Fault((*place, key), text)
 
 
-def _table_faults(table: dict[str, Any], found: RigFileReading) -> Iterator[Fault]:
+def _table_faults(table: dict[str, Any], rig_reading: RigFileReading) -> Iterator[Fault]:
     """Yield what is wrong with the tables beside the runs."""
     defaults = _part(Defaults, table, "defaults")
     if defaults is not None:
@@ -199,7 +203,7 @@ def _table_faults(table: dict[str, Any], found: RigFileReading) -> Iterator[Faul
     control = _part(ControlTable, table, "control")
     if control is not None:
         yield from control_faults(control, ("control",))
-        yield from rig_faults(control.motion, found.oscillator, ("control",))
+        yield from rig_faults(control.motion, rig_reading.oscillator, ("control",))
 
 
 def _part(kind: type[T], table: dict[str, Any], key: str) -> T | None:
@@ -252,15 +256,16 @@ def _samples(path: Path) -> list[float]:
     if not path.is_file():
         raise ValueError(f"{path}: no such file; give one number a line, over one base period")
     said = (line.partition("#")[0].strip() for line in path.read_text("utf-8-sig").splitlines())
-    found = []
+    values = []
     for number, text in enumerate(said, 1):
         if text:
             try:
-                found.append(float(text))
+                values.append(float(text))
             except ValueError:
                 raise ValueError(f"{path}, line {number}: {text!r} is not one number") from None
-    if len(found) < _FEWEST or len(set(found)) == 1:
+    if len(values) < _FEWEST or len(set(values)) == 1:
         raise ValueError(
-            f"{path}: {len(found)} numbers that do not move; give {_FEWEST} or more over one period"
+            f"{path}: {len(values)} numbers that do not move; give {_FEWEST} or more over one "
+            "period"
         )
-    return found
+    return values

@@ -135,9 +135,9 @@ def _line_faults(entry: PlanEntry, place: Place) -> Iterator[Fault]:
         yield Fault((*place, key), f"and {several[0]} are both given; one is enough")
 
 
-def gate_faults(one: PlanEntry | Defaults, place: Place) -> Iterator[Fault]:
+def gate_faults(entry: PlanEntry | Defaults, place: Place) -> Iterator[Fault]:
     """Yield a target that cannot be reached."""
-    target = one.target_relative
+    target = entry.target_relative
     if target is not None and not 0.0 < target < 1.0:
         yield Fault((*place, "target_relative"), f"= {target:g} should be between 0 and 1")
 
@@ -174,8 +174,8 @@ def _motion_faults(entry: PlanEntry, place: Place) -> Iterator[Fault]:
     if motion is Motion.PHASE and not phases:
         yield Fault(place, 'needs strut_phases_deg for the motion "phase"')
     elif phases and motion is not Motion.PHASE:
-        what = "follows from the motion" if motion else "goes with a motion"
-        yield Fault((*place, "strut_phases_deg"), f'{what}; give it with motion = "phase"')
+        reason = "follows from the motion" if motion else "goes with a motion"
+        yield Fault((*place, "strut_phases_deg"), f'{reason}; give it with motion = "phase"')
     drifts = bool(entry.drifts_rad)
     if motion is Motion.YAW_DRIFT and not drifts:
         yield Fault(place, 'needs drifts_deg for the motion "yaw-drift"')
@@ -196,11 +196,11 @@ def rig_faults(
     """Yield a motion that the rig's plane does not have."""
     plane = _PLANES.get(motion) if motion is not None else None
     if oscillator is not None and plane is not None and plane is not oscillator.plane:
-        own = ", ".join(one for one, its in _PLANES.items() if its is oscillator.plane)
+        motions = ", ".join(name for name, its in _PLANES.items() if its is oscillator.plane)
         yield Fault(
             (*place, "motion"),
             f'= "{motion}" is a motion of the {plane} oscillator; the rig\'s is '
-            f"{oscillator.plane}: {own}, phase",
+            f"{oscillator.plane}: {motions}, phase",
         )
 
 

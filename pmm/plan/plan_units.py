@@ -73,7 +73,7 @@ def _expand(
         if si_key in table:
             faults.append(Fault((*place, key), f"and {si_key} are both given; one is enough"))
         elif isinstance(value, list) and units is _LISTS and all(map(is_number, value)):
-            table[si_key] = [one * factor for one in value]
+            table[si_key] = [number * factor for number in value]
         elif is_number(value):
             table[si_key] = value * factor
         else:

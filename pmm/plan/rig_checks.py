@@ -35,25 +35,23 @@ def _handed_on_faults(table: dict[str, Any]) -> Iterator[Fault]:
         if key not in HANDED_ON:
             place = ("campaign", key)
             yield Fault(place, unknown(place, HANDED_ON))
-    own: list[Fault] = []
-    take_uncertainty(campaign, own)  # of the copy; the campaign's file gets it as it is
+    inner: list[Fault] = []
+    take_uncertainty(campaign, inner)  # of the copy; the campaign's file gets it as it is
     analysis = campaign.get("analysis", {})
     if isinstance(analysis, dict):
-        own += _analysis_faults(analysis)
-    yield from (Fault(("campaign", *one.place), one.message) for one in own)
+        inner += _analysis_faults(analysis)
+    yield from (Fault(("campaign", *fault.place), fault.message) for fault in inner)
 
 
 def _analysis_faults(table: dict[str, Any]) -> Iterator[Fault]:
     """Yield what the analysis would refuse, while there is time to change it."""
     from analysis.resolver.settings import ResolverSettings
 
-    known = tuple(ResolverSettings.__dataclass_fields__)
-    yield from (
-        Fault(("analysis", key), unknown((key,), known)) for key in table if key not in known
-    )
+    keys = tuple(ResolverSettings.__dataclass_fields__)
+    yield from (Fault(("analysis", key), unknown((key,), keys)) for key in table if key not in keys)
     inner: list[Fault] = []
     validate(ResolverSettings, table, inner)
-    yield from (Fault(("analysis", *one.place), one.message) for one in inner)
+    yield from (Fault(("analysis", *fault.place), fault.message) for fault in inner)
 
 
 def point_at_simulation(devices: dict[str, Any], path: Path) -> None:
@@ -67,43 +65,43 @@ def point_at_simulation(devices: dict[str, Any], path: Path) -> None:
     channel = bus.get("channel")
     if not isinstance(channel, str) or not channel.endswith(".toml"):
         return
-    whole = (path.parent / channel).resolve().as_posix()
-    bus["channel"] = whole
+    full_path = (path.parent / channel).resolve().as_posix()
+    bus["channel"] = full_path
     for part in devices.values():
         port = part.get("port") if isinstance(part, dict) else None
         url = port.get("url") if isinstance(port, dict) else None
         if isinstance(port, dict) and isinstance(url, str):
-            port["url"] = url.replace(f"sim://{channel}/", f"sim://{whole}/")
+            port["url"] = url.replace(f"sim://{channel}/", f"sim://{full_path}/")
 
 
 def channels_of(hardware: RigConfiguration) -> tuple[str, ...]:
     """Return the names of the channels that measure forces."""
     return tuple(
-        getattr(one, "name", str(one))
+        getattr(channel, "name", str(channel))
         for part in hardware.forces
-        for one in getattr(part.settings, "channels", ())
-        if getattr(one, "unit", "N") == "N"
+        for channel in getattr(part.settings, "channels", ())
+        if getattr(channel, "unit", "N") == "N"
     )
 
 
 def gauges_of(hardware: RigConfiguration) -> tuple[Gauge, ...]:
     """Return the amplifiers' own ranges of their force channels."""
     return tuple(
-        Gauge(one.name, one.full_scale)
+        Gauge(channel.name, channel.full_scale)
         for part in hardware.forces
-        for one in getattr(part.settings, "channels", ())
-        if getattr(one, "unit", None) == "N" and hasattr(one, "full_scale")
+        for channel in getattr(part.settings, "channels", ())
+        if getattr(channel, "unit", None) == "N" and hasattr(channel, "full_scale")
     )
 
 
-def carriage_faults(own: RigTables, hardware: RigConfiguration) -> Iterator[Fault]:
+def carriage_faults(tables: RigTables, hardware: RigConfiguration) -> Iterator[Fault]:
     """Yield what is asked of carriage and angles that their drivers or the rig do not do."""
     settings = None if hardware.carriage is None else hardware.carriage.settings
     for key, limit in (
         ("carriage_acceleration_m_s2", "acceleration_m_s2"),
         ("highest_speed_m_s", "highest_speed_m_s"),
     ):
-        asked, most = getattr(own.tank, key, None), getattr(settings, limit, None)
+        asked, most = getattr(tables.tank, key, None), getattr(settings, limit, None)
         if asked is not None and most is not None and asked > most:
             yield Fault(
                 ("tank", key),
@@ -112,7 +110,7 @@ def carriage_faults(own: RigTables, hardware: RigConfiguration) -> Iterator[Faul
     for name, part in hardware.angles.items():
         if (unit := getattr(part.settings, "unit", "rad")) != "rad":
             yield Fault((name, "unit"), f'= {unit!r}: {name} is an angle; say "rad"')
-    if "drift" in hardware.angles and own.oscillator.drift_by is DriftBy.STRUTS_OFFSET:
+    if "drift" in hardware.angles and tables.oscillator.drift_by is DriftBy.STRUTS_OFFSET:
         yield Fault(
             ("drift",),
             "sets an angle, and oscillator.drift_by = 'struts_offset' sets the struts apart; leave "
@@ -120,10 +118,10 @@ def carriage_faults(own: RigTables, hardware: RigConfiguration) -> Iterator[Faul
         )
 
 
-def gauge_faults(own: RigTables, hardware: RigConfiguration) -> Iterator[Fault]:
+def gauge_faults(tables: RigTables, hardware: RigConfiguration) -> Iterator[Fault]:
     """Yield gauges that the rig does not have, and safe loads below the range."""
     names = channels_of(hardware)
-    for number, gauge in enumerate(own.gauges):
+    for number, gauge in enumerate(tables.gauges):
         if gauge.channel not in names:
             place = ("gauges", number, "channel")
             said = unknown((gauge.channel,), names).replace("a known key", "a force channel")

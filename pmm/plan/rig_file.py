@@ -70,8 +70,10 @@ class RigFile(RigTables):
     @property
     def hashes(self) -> dict[str, str]:
         """SHA-256 of the rig's file, and of its calibration's where it names one."""
-        one = self.calibration
-        return {"rig": self.sha256} | ({} if one is None else {"calibration": one.sha256})
+        calibration = self.calibration
+        return {"rig": self.sha256} | (
+            {} if calibration is None else {"calibration": calibration.sha256}
+        )
 
     @property
     def watched(self) -> WatchLimits:
@@ -115,10 +117,10 @@ def read_rig_file(path: str | Path) -> RigFile:
         beyond their limits, and devices that do not fit together: all errors of the file in one
         message, each with its place in the file.
     """
-    found = examine_rig(Path(path))
-    if found.rig is None:
-        raise found.error or ConfigurationError(f"{path}: cannot be read")
-    return found.rig
+    reading = examine_rig(Path(path))
+    if reading.rig is None:
+        raise reading.error or ConfigurationError(f"{path}: cannot be read")
+    return reading.rig
 
 
 def examine_rig(path: Path) -> RigFileReading:
@@ -132,28 +134,28 @@ def examine_rig(path: Path) -> RigFileReading:
     devices = {key: table.pop(key) for key in TABLES if key in table}
     faults += [*limit_faults(table), *table_faults(table)]
     expand_preset(table, faults)
-    own = validate(RigTables, table, faults)
+    tables = validate(RigTables, table, faults)
     point_at_simulation(devices, path)
     hardware = _read_devices(devices, faults)
-    if own is not None and hardware is not None:
-        faults += [*gauge_faults(own, hardware), *carriage_faults(own, hardware)]
-    modes = _more_modes(own, path, faults)
-    calibration = _calibration(own, hardware, path, faults)
+    if tables is not None and hardware is not None:
+        faults += [*gauge_faults(tables, hardware), *carriage_faults(tables, hardware)]
+    modes = _more_modes(tables, path, faults)
+    calibration = _calibration(tables, hardware, path, faults)
     oscillator = validate(Oscillator, table.get("oscillator", {}), [])
-    handed_on = own.campaign if own is not None else {}
-    found = attitude_faults(oscillator, handed_on, own=True)
-    faults += [Fault(("campaign", *one.place), one.message) for one in found]
+    handed_on = tables.campaign if tables is not None else {}
+    inner = attitude_faults(oscillator, handed_on, own=True)
+    faults += [Fault(("campaign", *fault.place), fault.message) for fault in inner]
     channels = None if hardware is None else channels_of(hardware)
-    if faults or own is None or hardware is None:
+    if faults or tables is None or hardware is None:
         return RigFileReading(None, oscillator, channels, as_error(path, faults, original))
     free = is_simulated(hardware)
     # As written: a table that is read again elsewhere is handed on untouched.
-    kept = MappingProxyType(dict(original.get("campaign", {})))
+    campaign = MappingProxyType(dict(original.get("campaign", {})))
     more = {
-        "gauges": own.gauges or gauges_of(hardware),
-        "modes": own.modes + modes,
-        "realtime": not free if own.realtime is None else own.realtime,
-        "campaign": kept,
+        "gauges": tables.gauges or gauges_of(hardware),
+        "modes": tables.modes + modes,
+        "realtime": not free if tables.realtime is None else tables.realtime,
+        "campaign": campaign,
     }
     rig = RigFile(
         path=path,
@@ -163,56 +165,56 @@ def examine_rig(path: Path) -> RigFileReading:
         calibration=calibration,
         tables=MappingProxyType(original),
         content=content,
-        **(vars(own) | more),
+        **(vars(tables) | more),
     )
     return RigFileReading(rig, oscillator, channels)
 
 
 def _more_modes(
-    own: RigTables | None, path: Path, faults: list[Fault]
+    tables: RigTables | None, path: Path, faults: list[Fault]
 ) -> tuple[StructuralMode, ...]:
     """Read the pluck test's file, if one is named."""
-    if own is None or own.modes_file is None:
+    if tables is None or tables.modes_file is None:
         return ()
-    file = path.parent / own.modes_file
+    file = path.parent / tables.modes_file
     inner: list[Fault] = []
     try:
         table = read_toml(file)
     except ConfigurationError as error:
-        faults.append(Fault(("modes_file",), f"= {own.modes_file!r}: {error}"))
+        faults.append(Fault(("modes_file",), f"= {tables.modes_file!r}: {error}"))
         return ()
-    found = validate(ModesFile, table, inner)
+    content = validate(ModesFile, table, inner)
     inner += limit_faults(table)
-    if found is None or inner:
+    if content is None or inner:
         faults.append(
-            Fault(("modes_file",), f"= {own.modes_file!r}: {as_error(file, inner, table)}")
+            Fault(("modes_file",), f"= {tables.modes_file!r}: {as_error(file, inner, table)}")
         )
         return ()
-    return found.modes
+    return content.modes
 
 
 def _calibration(
-    own: RigTables | None, hardware: RigConfiguration | None, path: Path, faults: list[Fault]
+    tables: RigTables | None, hardware: RigConfiguration | None, path: Path, faults: list[Fault]
 ) -> Calibration | None:
     """Read the check weights' file, if one is named; its channels have to be the rig's gauges."""
-    if own is None or own.calibration_file is None:
+    if tables is None or tables.calibration_file is None:
         return None
     try:
-        found = read_calibration(path.parent / own.calibration_file)
+        calibration = read_calibration(path.parent / tables.calibration_file)
     except ConfigurationError as error:
-        faults.append(Fault(("calibration_file",), f"= {own.calibration_file!r}: {error}"))
+        faults.append(Fault(("calibration_file",), f"= {tables.calibration_file!r}: {error}"))
         return None
-    known = found.channels if hardware is None else channels_of(hardware)
+    channels = calibration.channels if hardware is None else channels_of(hardware)
     faults += [
         Fault(
             ("calibration_file",),
-            f"= {own.calibration_file!r}: of {name!r}, which is no gauge of this rig "
-            f"(channels: {', '.join(known)})",
+            f"= {tables.calibration_file!r}: of {name!r}, which is no gauge of this rig "
+            f"(channels: {', '.join(channels)})",
         )
-        for name in found.channels
-        if name not in known
+        for name in calibration.channels
+        if name not in channels
     ]
-    return found
+    return calibration
 
 
 def is_simulated(hardware: RigConfiguration) -> bool:

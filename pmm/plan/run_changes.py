@@ -41,22 +41,24 @@ def edited(run: RunPlan, settings: Mapping[str, float], plan: Plan) -> RunPlan:
             f"{run.name}: only oscillations of one frequency are edited; drop the plan, edit its "
             "file and queue it anew"
         )
-    own = asdict(run.set_point)
+    before = asdict(run.set_point)
     if run.motion is not Motion.PHASE:  # the motion says it
-        del own["strut_phase_rad"]
-    point = {key: settings.get(key, own.get(key)) for key in _KEYS}
+        del before["strut_phase_rad"]
+    point = {key: settings.get(key, before.get(key)) for key in _KEYS}
     entry: dict[str, Any] = {
         "motion": str(run.motion),
         "periods": settings.get("periods", run.periods),
         "settling_periods": run.settling_periods,
         **{_KEYS[k]: value for k, value in point.items() if value or k in settings},
     }
-    found = _read(entry, plan)
+    edited_run = _read(entry, plan)
     now = replace(
         run,
-        set_point=replace(run.set_point, **{key: getattr(found.set_point, key) for key in _KEYS}),
-        periods=found.periods,
-        max_periods=max(found.periods, 0 if run.target_relative is None else run.max_periods),
+        set_point=replace(
+            run.set_point, **{key: getattr(edited_run.set_point, key) for key in _KEYS}
+        ),
+        periods=edited_run.periods,
+        max_periods=max(edited_run.periods, 0 if run.target_relative is None else run.max_periods),
     )
     return replace(now, changed=(*run.changed, *_told(run, now)))
 
@@ -86,17 +88,22 @@ def moved(runs: Sequence[RunPlan], name: str, by: int) -> tuple[RunPlan, ...]:
         pause_before_s=max(run.pause_before_s, before.pause_before_s if before else 0.0),
     )
     if now != run:
-        now = replace(now, changed=(*(one for one in run.changed if one != _MOVED), _MOVED))
+        now = replace(
+            now, changed=(*(change for change in run.changed if change != _MOVED), _MOVED)
+        )
     return (*rest[:to], now, *rest[to:])
 
 
 def _nearest(runs: Sequence[RunPlan], run: RunPlan) -> RunPlan:
     """Return the first zero run that was made as a run needs it."""
     like = (run.set_point.medium, run.known_mass, run.set_point.heel_rad)
-    for one in runs:
-        point = one.set_point
-        if one.kind is RunKind.ZERO and (point.medium, one.known_mass, point.heel_rad) == like:
-            return one
+    for candidate in runs:
+        point = candidate.set_point
+        if (
+            candidate.kind is RunKind.ZERO
+            and (point.medium, candidate.known_mass, point.heel_rad) == like
+        ):
+            return candidate
     raise ConfigurationError(
         f"{run.name}: no zero run of its conditions would stand beside it there; move it less far"
     )
@@ -104,12 +111,12 @@ def _nearest(runs: Sequence[RunPlan], run: RunPlan) -> RunPlan:
 
 def _read(entry: Mapping[str, Any], plan: Plan) -> RunPlan:
     table = {"rig": str(plan.rig_path.resolve()), "runs": [entry]}
-    found = examine_plan(table, plan.path)
-    if found.faults or found.tables is None or found.rig.rig is None:
-        if found.rig.error is not None:
-            raise found.rig.error
-        raise as_error(plan.path, found.faults, table)
-    return runs_of(found.tables, found.rig.rig.oscillator, found.channels)[0]
+    reading = examine_plan(table, plan.path)
+    if reading.faults or reading.tables is None or reading.rig.rig is None:
+        if reading.rig.error is not None:
+            raise reading.rig.error
+        raise as_error(plan.path, reading.faults, table)
+    return runs_of(reading.tables, reading.rig.rig.oscillator, reading.channels)[0]
 
 
 def _told(before: RunPlan, now: RunPlan) -> list[str]:

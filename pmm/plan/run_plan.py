@@ -108,9 +108,9 @@ class RunPlan:
         """
         faults: list[Fault] = []
         try:
-            found = validate(cls, json.loads(text), faults)
+            run = validate(cls, json.loads(text), faults)
         except (ValueError, TypeError, ConfigurationError) as error:
             raise DataError(f"{where}: damaged plan of the run: {error!r}") from error
-        if found is None:
+        if run is None:
             raise DataError(str(as_error(Path(where), faults, {})))
-        return found
+        return run

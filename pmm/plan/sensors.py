@@ -46,43 +46,49 @@ def acquisition_table(
     noise_rms
         Of each record at rest, by channel (:func:`pmm.recorder.recording.white_noise_rms`).
     """
-    channels = {one.name: one for one in recorded}
+    channels = {channel.name: channel for channel in recorded}
     steps = resolutions(rig.hardware)
     noise = _noise(noise_rms, steps, rig.calibration)
     gauges = rig.calibration.channels if rig.calibration is not None else ()
     stated = rig.campaign.get("acquisition", {})
-    found: dict[str, Any] = {}
-    for name in (one.name for one in STANDARD):
+    tables: dict[str, Any] = {}
+    for name in (channel.name for channel in STANDARD):
         if name not in channels:
-            found[name] = False
+            tables[name] = False
             continue
-        known = {"noise_rms": noise.get(name)}
+        settings = {"noise_rms": noise.get(name)}
         if name not in gauges:
-            known |= {"resolution": steps.get(name), "full_scale": channels[name].full_scale}
-        own = {key: one for key, one in known.items() if one is not None}
-        found[name] = merged(own, stated.get(name) or {})
-    return found
+            settings |= {"resolution": steps.get(name), "full_scale": channels[name].full_scale}
+        table = {key: value for key, value in settings.items() if value is not None}
+        tables[name] = merged(table, stated.get(name) or {})
+    return tables
 
 
 def resolutions(hardware: RigConfiguration) -> dict[str, float]:
     """Return the step of each channel whose device counts, in the channel's unit."""
-    found = {one.name: abs(one.scale) for part in hardware.forces for one in _counting(part)}
+    steps = {
+        channel.name: abs(channel.scale) for part in hardware.forces for channel in _counting(part)
+    }
     settings = None if hardware.shaft is None else hardware.shaft.settings
     counts = getattr(settings, "counts_per_turn", None)
     if counts:
-        found[SHAFT_ANGLE.name] = 2.0 * math.pi / abs(counts)
+        steps[SHAFT_ANGLE.name] = 2.0 * math.pi / abs(counts)
     for strut, name in zip(STRUTS, DISPLACEMENTS, strict=True):
-        if getattr(settings, "encoders", False) and name not in found:
-            found[name] = 1.0 / abs(getattr(settings, strut).counts_per_unit)
-    return found
+        if getattr(settings, "encoders", False) and name not in steps:
+            steps[name] = 1.0 / abs(getattr(settings, strut).counts_per_unit)
+    return steps
 
 
 def _counting(part: RigPart) -> Iterator[Any]:
     """Yield the channels of an amplifier whose objects are whole numbers."""
-    whole = set(_whole_numbers(part))
-    for one in getattr(part.settings, "channels", ()):
-        if hasattr(one, "scale") and hasattr(one, "object") and entry(one.object) in whole:
-            yield one
+    integers = set(_whole_numbers(part))
+    for channel in getattr(part.settings, "channels", ()):
+        if (
+            hasattr(channel, "scale")
+            and hasattr(channel, "object")
+            and entry(channel.object) in integers
+        ):
+            yield channel
 
 
 def _whole_numbers(part: RigPart) -> Iterator[Entry]:
@@ -95,19 +101,27 @@ def _whole_numbers(part: RigPart) -> Iterator[Entry]:
 
 
 def _noise(
-    seen: Sequence[Mapping[str, float]], steps: Mapping[str, float], one: Calibration | None
+    records: Sequence[Mapping[str, float]],
+    steps: Mapping[str, float],
+    calibration: Calibration | None,
 ) -> dict[str, float]:
     """Return the usual noise of each channel without its rounding; what is below that is left."""
-    names = dict.fromkeys(name for record in seen for name in record)
-    found: dict[str, float] = {}
+    names = dict.fromkeys(name for record in records for name in record)
+    noise: dict[str, float] = {}
     for name in names:
         squares = [
-            record[name] ** 2 for record in seen if math.isfinite(record.get(name, math.nan))
+            record[name] ** 2 for record in records if math.isfinite(record.get(name, math.nan))
         ]
         rounding = steps.get(name, 0.0) ** 2 / 12.0
-        if squares and (own := float(np.median(squares)) - rounding) > rounding:
-            found[name] = math.sqrt(own)
-    if one is None or not set(one.channels) <= set(found):
-        return {name: rms for name, rms in found.items() if one is None or name not in one.channels}
-    forces = np.sqrt(np.linalg.inv(one.matrix) ** 2 @ [found[name] ** 2 for name in one.channels])
-    return found | dict(zip(one.channels, map(float, forces), strict=True))
+        if squares and (variance := float(np.median(squares)) - rounding) > rounding:
+            noise[name] = math.sqrt(variance)
+    if calibration is None or not set(calibration.channels) <= set(noise):
+        return {
+            name: rms
+            for name, rms in noise.items()
+            if calibration is None or name not in calibration.channels
+        }
+    forces = np.sqrt(
+        np.linalg.inv(calibration.matrix) ** 2 @ [noise[name] ** 2 for name in calibration.channels]
+    )
+    return noise | dict(zip(calibration.channels, map(float, forces), strict=True))

@@ -54,11 +54,11 @@ def motor_of(rig: RigFile) -> ShuntMotor | Servo | None:
     if not isinstance(drive, dict) or "motor" not in drive:
         return None
     faults: list[Fault] = []
-    found = validate(_Drive, {"motor": drive["motor"]}, faults)
-    if found is None:
-        placed = [Fault(("campaign", "drive", *one.place), one.message) for one in faults]
+    drive_table = validate(_Drive, {"motor": drive["motor"]}, faults)
+    if drive_table is None:
+        placed = [Fault(("campaign", "drive", *fault.place), fault.message) for fault in faults]
         raise as_error(rig.path, placed, dict(rig.tables))
-    return found.motor
+    return drive_table.motor
 
 
 def shaft_load(run: RunPlan, rig: RigFile, motor: ShuntMotor | Servo) -> ShaftLoad | None:
@@ -67,20 +67,23 @@ def shaft_load(run: RunPlan, rig: RigFile, motor: ShuntMotor | Servo) -> ShaftLo
     Struts that follow lines have drives of their own: the shaft bears nothing of them.
     """
     bears = run.oscillates and not run.set_point.lines
-    found = force_estimate(run, rig) if bears else None
-    if found is None:
+    estimate = force_estimate(run, rig) if bears else None
+    if estimate is None:
         return None
     point = run.set_point
     moved = point.eccentricity_m * np.exp(1j * np.array([0.0, point.strut_phase_rad]))
     turn = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, _STEPS, endpoint=False))
     lever = (1j * np.outer(moved, turn)).real  # of a strut: its way per angle of the shaft
-    force = np.outer(found.forces, turn).real
+    force = np.outer(estimate.forces, turn).real
     velocity = omega_of(run) * lever
     guides = motor.guides
     force = force + guides.viscous_n_s_m * velocity + guides.coulomb_n * np.sign(velocity)
     torque = (force * lever).sum(axis=0)
-    for one in motor.cogging:
-        torque = torque + one.torque_n_m * (turn**one.order * np.exp(1j * one.phase_rad)).imag
-    inertia = -float((found.forces @ np.conj(moved)).real) / (2.0 * omega_of(run) ** 2)
+    for cogging in motor.cogging:
+        torque = (
+            torque
+            + cogging.torque_n_m * (turn**cogging.order * np.exp(1j * cogging.phase_rad)).imag
+        )
+    inertia = -float((estimate.forces @ np.conj(moved)).real) / (2.0 * omega_of(run) ** 2)
     phasors = 2.0 * np.fft.rfft(torque)[1 : _ORDERS + 1] / _STEPS
     return ShaftLoad(phasors, max(inertia, 0.0))

@@ -81,7 +81,7 @@ def departure_findings(plan: Plan, rig: RigFile) -> Iterator[PlanFinding]:
         return
     if simulated is None:
         return
-    rough = [one.name for one in plan.runs if one.set_point.wave_frequency_hz]
+    rough = [run.name for run in plan.runs if run.set_point.wave_frequency_hz]
     if rough and not simulated.rig.get("waves"):
         file = Path(simulated.file).name
         yield _refused(
@@ -89,26 +89,33 @@ def departure_findings(plan: Plan, rig: RigFile) -> Iterator[PlanFinding]:
             f"{rig.path.name}, or in [waves] of {file}, what they do to the model",
             rough[0],
         )
-    for one in _departing(rig, simulated):
-        verdict = PlanVerdict.WARN if one.contradicts else PlanVerdict.NOTE
-        yield PlanFinding(verdict, _QUANTITY, _number(one.simulated), _number(one.stated), "",
-                          one.message)  # fmt: skip
+    for departure in _departing(rig, simulated):
+        verdict = PlanVerdict.WARN if departure.contradicts else PlanVerdict.NOTE
+        yield PlanFinding(verdict, _QUANTITY, _number(departure.simulated),
+                          _number(departure.stated), "", departure.message)  # fmt: skip
 
 
 def _refused(text: str, run: str = "") -> PlanFinding:
     return PlanFinding(PlanVerdict.REFUSE, _QUANTITY, math.nan, math.nan, run, text)
 
 
-def departure_flag(found: tuple[Departure, ...]) -> Iterator[Flag]:
+def departure_flag(departures: tuple[Departure, ...]) -> Iterator[Flag]:
     """Yield the flag that a recording gets; nothing where the rig is that of its file."""
-    if found:
-        severity = Severity.WARNING if any(one.contradicts for one in found) else Severity.NOTE
-        yield Flag(CODE, severity, "; ".join(one.message for one in found))
+    if departures:
+        severity = (
+            Severity.WARNING
+            if any(departure.contradicts for departure in departures)
+            else Severity.NOTE
+        )
+        yield Flag(CODE, severity, "; ".join(departure.message for departure in departures))
 
 
-def provenance_of_departures(found: tuple[Departure, ...]) -> dict[str, str]:
+def provenance_of_departures(departures: tuple[Departure, ...]) -> dict[str, str]:
     """Return what a recording's provenance keeps of it."""
-    rows = {one.key: {"stated": one.stated, "simulated": one.simulated} for one in found}
+    rows = {
+        departure.key: {"stated": departure.stated, "simulated": departure.simulated}
+        for departure in departures
+    }
     return {PROVENANCE: json.dumps(rows)} if rows else {}
 
 
@@ -116,28 +123,30 @@ def _departures(
     stated: Mapping[str, Any], simulated: SimulatedTables, name: str
 ) -> Iterator[Departure]:
     file = Path(simulated.file).name
-    own = dict(simulated.own)
-    if "oscillator" in own:
-        own["oscillator"] = with_preset(own["oscillator"])
+    own_tables = dict(simulated.own)
+    if "oscillator" in own_tables:
+        own_tables["oscillator"] = with_preset(own_tables["oscillator"])
     for key, value in _leaves(stated):
         if key.partition(".")[0] in simulated.rig and not _agree(value, _at(simulated.rig, key)):
-            there = _at(simulated.rig, key)
+            simulated_value = _at(simulated.rig, key)
             text = (
-                f"{key} = {_shown(there)} is simulated, {name} states {_shown(value)}; take it out "
-                f"of {file} unless it is meant"
+                f"{key} = {_shown(simulated_value)} is simulated, {name} states {_shown(value)}; "
+                f"take it out of {file} unless it is meant"
             )
-            yield Departure(key, value, there, text)
+            yield Departure(key, value, simulated_value, text)
     said = {key for key, _ in _leaves(stated)}
-    for key, value in _leaves(own):
+    for key, value in _leaves(own_tables):
         if key not in said:
             text = f"{key} = {_shown(value)} is simulated as {file} states; {name} has no such key"
             yield Departure(key, None, value, text)
-    yield from _unstated(stated, own, name)
+    yield from _unstated(stated, own_tables, name)
 
 
-def _unstated(stated: Mapping[str, Any], own: Mapping[str, Any], name: str) -> Iterator[Departure]:
+def _unstated(
+    stated: Mapping[str, Any], own_tables: Mapping[str, Any], name: str
+) -> Iterator[Departure]:
     for table in _NEEDED:
-        if table not in stated and table not in own:
+        if table not in stated and table not in own_tables:
             text = f"{name} has no [{table}]: that of a nominal model of 2.5 m is simulated"
             yield Departure(table, None, "nominal", text)
     for table in _NEVER:
@@ -148,25 +157,25 @@ def _unstated(stated: Mapping[str, Any], own: Mapping[str, Any], name: str) -> I
 
 def _leaves(table: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:
     """Yield the keys that hold values, with their paths; lists are values."""
-    for key, one in table.items():
-        if isinstance(one, Mapping):
-            yield from _leaves(one, f"{path}{key}.")
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            yield from _leaves(value, f"{path}{key}.")
         else:
-            yield f"{path}{key}", one
+            yield f"{path}{key}", value
 
 
 def _at(table: Mapping[str, Any], path: str) -> Any:
-    found: Any = table
+    value: Any = table
     for key in path.split("."):
-        found = found.get(key) if isinstance(found, Mapping) else None
-    return found
+        value = value.get(key) if isinstance(value, Mapping) else None
+    return value
 
 
 def _agree(stated: Any, simulated: Any) -> bool:
     """Whether all that is stated is simulated; ``false`` says that there is no such thing."""
     if isinstance(stated, Mapping):
         return isinstance(simulated, Mapping) and all(
-            _agree(one, simulated.get(key)) for key, one in stated.items()
+            _agree(value, simulated.get(key)) for key, value in stated.items()
         )
     if isinstance(stated, list | tuple):
         return (

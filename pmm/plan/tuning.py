@@ -98,25 +98,29 @@ def tuned(
     ConfigurationError
         If the record tells no loop, or no gains keep the margins.
     """
-    found: IdentifiedLoop | None = None
+    identified_loop: IdentifiedLoop | None = None
     loops = {"stated": stated}
     if record is not None:
-        found = identified(record, stated.motor, stated.delay_s)
-        loops["found"] = found.loop
-    own = list(loops.values())[-1]
+        identified_loop = identified(record, stated.motor, stated.delay_s)
+        loops["found"] = identified_loop.loop
+    last_loop = list(loops.values())[-1]
     loads = {run.name: (run, load) for run in runs if (load := shaft_load(run, rig, stated.motor))}
     added = [0.0, *(load.added_inertia_kg_m2 for _, load in loads.values())]
-    ends = sorted({own.added_inertia_kg_m2 + min(added), own.added_inertia_kg_m2 + max(added)})
+    ends = sorted(
+        {last_loop.added_inertia_kg_m2 + min(added), last_loop.added_inertia_kg_m2 + max(added)}
+    )
     most = LARGEST_SENSITIVITY if sensitivity is None else sensitivity
-    best = proposed(own.motor, ends, stated.delay_s, most)
-    loops["proposed"] = ShaftLoop(own.motor, best, own.added_inertia_kg_m2, stated.delay_s)
+    best = proposed(last_loop.motor, ends, stated.delay_s, most)
+    loops["proposed"] = ShaftLoop(
+        last_loop.motor, best, last_loop.added_inertia_kg_m2, stated.delay_s
+    )
     ripples = [
         RunRipple(name, tuple(_ripple(loop, load, run) for loop in loops.values()))
         for name, (run, load) in loads.items()
     ]
     named = tuple(LoopSetting(name, loop) for name, loop in loops.items())
     unit = "A s/rad and A/rad" if isinstance(stated.motor, Servo) else "V s/rad and V/rad"
-    return Tuning(named, unit, record, found, ripples)
+    return Tuning(named, unit, record, identified_loop, ripples)
 
 
 def _ripple(loop: ShaftLoop, load: ShaftLoad, run: RunPlan) -> float:

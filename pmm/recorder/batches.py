@@ -50,15 +50,15 @@ class Batch:
 
 def checksum(columns: Iterable[NDArray[Any]], before: int) -> int:
     """Return the checksum of a batch's columns behind that of the batch before."""
-    found = crc32(before.to_bytes(_WORD, "little"))
+    crc = crc32(before.to_bytes(_WORD, "little"))
     for column in columns:
-        found = crc32(np.ascontiguousarray(column).data, found)
-    return found
+        crc = crc32(np.ascontiguousarray(column).data, crc)
+    return crc
 
 
-def metadata(own: int, before: int) -> dict[bytes, bytes]:
+def metadata(crc: int, before: int) -> dict[bytes, bytes]:
     """Return what a batch carries."""
-    return {KEY: _TEXT.format(own, before).encode()}
+    return {KEY: _TEXT.format(crc, before).encode()}
 
 
 def read_batches(path: Path, schema: Any, start: int) -> Iterator[Batch]:
@@ -78,10 +78,10 @@ def read_batches(path: Path, schema: Any, start: int) -> Iterator[Batch]:
     buffer, tagged = pa.py_buffer(data), (schema.metadata or {}).get(KEY) == KIND
     at: int | None = start
     while at is not None and at < len(data):
-        found = _batch(data, buffer, at, schema, tagged=tagged)
-        if found is not None:
-            yield found
-            at = found.end
+        batch = _batch(data, buffer, at, schema, tagged=tagged)
+        if batch is not None:
+            yield batch
+            at = batch.end
         else:
             at = _next_message(data, at + 1) if tagged else None
 
@@ -122,7 +122,7 @@ def _batch(data: mmap.mmap, buffer: Any, at: int, schema: Any, *, tagged: bool) 
     sync = columns[0]
     if not (len(sync) and sync[0] > 0 and np.all(np.diff(sync) > 0)):
         return None
-    own, before = (int(tag[1], 16), int(tag[2], 16)) if tag else (None, None)
-    if before is not None and checksum(columns, before) != own:
+    crc, before = (int(tag[1], 16), int(tag[2], 16)) if tag else (None, None)
+    if before is not None and checksum(columns, before) != crc:
         return None
-    return Batch(batch, sync, own, before, at + source.tell())
+    return Batch(batch, sync, crc, before, at + source.tell())

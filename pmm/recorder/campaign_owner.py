@@ -51,8 +51,8 @@ def own_campaign(folder: Path, *, patience_s: float = PATIENCE_S) -> CampaignOwn
         If another process is writing into it; the message names it.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    what = f"{folder}: is being written"
-    return own_together(folder / LOCK, what, CampaignOwnership, patience_s=patience_s)
+    message = f"{folder}: is being written"
+    return own_together(folder / LOCK, message, CampaignOwnership, patience_s=patience_s)
 
 
 @contextmanager
@@ -61,15 +61,15 @@ def own_new_campaign(folder: Path) -> Iterator[CampaignOwnership]:
 
     Folders that were made for it are removed if the block fails before it has written anything.
     """
-    made = [one for one in (folder, *folder.parents) if not one.exists()]
+    made = [path for path in (folder, *folder.parents) if not path.exists()]
     try:
         with own_campaign(folder) as ownership:
             yield ownership
     except BaseException:
-        if made and [one.name for one in folder.iterdir()] == [LOCK]:
+        if made and [path.name for path in folder.iterdir()] == [LOCK]:
             (folder / LOCK).unlink()
-            for one in made:
-                one.rmdir()
+            for path in made:
+                path.rmdir()
         raise
 
 
@@ -82,7 +82,7 @@ def _numbers(folder: Path) -> Iterator[int]:
     """Yield the number of each run, 0 for one without."""
     for path in folder.glob(_HEADERS):
         try:
-            found = json.loads(path.read_text(encoding="utf-8")).get("number", 0)
+            number = json.loads(path.read_text(encoding="utf-8")).get("number", 0)
         except (OSError, ValueError, AttributeError):
-            found = 0
-        yield found if isinstance(found, int) else 0
+            number = 0
+        yield number if isinstance(number, int) else 0

@@ -19,19 +19,21 @@ def changed_files(run: RunData) -> dict[str, str]:
     Files are those that the marker of a closed run names, or of which a recovery made others;
     of a run that was not closed, those that carry checksums of their own.
     """
-    found = {name: _difference(run.folder / name, told) for name, told in written(run).items()}
-    if run.samples and run.samples.changes and found.get(SAMPLES) in (None, "", _OTHER):
-        found[SAMPLES] = "; ".join(run.samples.changes)
+    changes = {
+        name: _difference(run.folder / name, contents) for name, contents in written(run).items()
+    }
+    if run.samples and run.samples.changes and changes.get(SAMPLES) in (None, "", _OTHER):
+        changes[SAMPLES] = "; ".join(run.samples.changes)
     if (
         run.samples
         and run.samples.is_headed
         and _differs(run.folder / HEADER, run.samples.header_text)
     ):
-        found[HEADER] = f"is not the header that {SAMPLES} carries"
+        changes[HEADER] = f"is not the header that {SAMPLES} carries"
     if (run.folder / MARKER).exists() and not marker_is_whole(run.marker):
-        found[MARKER] = "is not what its checksum says"
-    found[RECORDING] = recording_damage(run.folder / RECORDING)
-    return {name: words for name, words in found.items() if words}
+        changes[MARKER] = "is not what its checksum says"
+    changes[RECORDING] = recording_damage(run.folder / RECORDING)
+    return {name: words for name, words in changes.items() if words}
 
 
 def text_flags(folder: Path) -> tuple[Flag, ...]:
@@ -39,11 +41,13 @@ def text_flags(folder: Path) -> tuple[Flag, ...]:
 
     They are short, so that whoever opens the recording may look at them as well.
     """
-    told = (read_marker(folder) or {}).get("files", {}) | files_recovered(folder)
-    found = {name: _difference(folder / name, told[name]) for name in TEXTS if name in told}
+    contents = (read_marker(folder) or {}).get("files", {}) | files_recovered(folder)
+    changes = {
+        name: _difference(folder / name, contents[name]) for name in TEXTS if name in contents
+    }
     return tuple(
         Flag(DAMAGED, Severity.WARNING, f"{name}: {words}")
-        for name, words in found.items()
+        for name, words in changes.items()
         if words
     )
 
@@ -58,8 +62,8 @@ def change_flags(changed: Mapping[str, str]) -> tuple[Flag, ...]:
 
 def written(run: RunData) -> dict[str, dict[str, Any]]:
     """Return size and hash of each file as it was written, by the run or by a recovery."""
-    told = dict(run.marker["files"]) if run.marker else {}
-    return told | files_recovered(run.folder)
+    contents = dict(run.marker["files"]) if run.marker else {}
+    return contents | files_recovered(run.folder)
 
 
 def files_recovered(folder: Path) -> dict[str, dict[str, Any]]:
@@ -81,12 +85,12 @@ def recording_damage(path: Path) -> str:
     return ""
 
 
-def _difference(path: Path, told: Mapping[str, Any]) -> str:
+def _difference(path: Path, contents: Mapping[str, Any]) -> str:
     """Say what of a file is not what was written; nothing where it is whole."""
     size = path.stat().st_size if path.exists() else 0
-    if not path.exists() or size < told["bytes"]:
-        return f"has {size} of {told['bytes']} bytes; it was cut after the run"
-    return "" if contents_of(path) == told else _OTHER
+    if not path.exists() or size < contents["bytes"]:
+        return f"has {size} of {contents['bytes']} bytes; it was cut after the run"
+    return "" if contents_of(path) == contents else _OTHER
 
 
 def _differs(path: Path, header: str) -> bool:

@@ -40,10 +40,10 @@ def check_empty(folder: Path) -> None:
     RunExistsError
         If it does; the message names what is there.
     """
-    there = [name for name in _OURS if (folder / name).exists()]
-    if there:
+    names = [name for name in _OURS if (folder / name).exists()]
+    if names:
         raise RunExistsError(
-            f"{folder}: holds a run already ({', '.join(there)}); it is never overwritten. Record "
+            f"{folder}: holds a run already ({', '.join(names)}); it is never overwritten. Record "
             "to another folder, or move this one away"
         )
 

@@ -121,20 +121,22 @@ class RunHeader:
         try:
             fields = json.loads(text)
             point = fields["set_point"]
-            found = cls(
+            header = cls(
                 **{
                     **fields,
-                    "channels": tuple(Channel(**one) for one in fields["channels"]),
+                    "channels": tuple(Channel(**channel) for channel in fields["channels"]),
                     "set_point": point and SetPoint.read(point),
-                    "readings": {key: Reading(**one) for key, one in fields["readings"].items()},
+                    "readings": {
+                        key: Reading(**reading) for key, reading in fields["readings"].items()
+                    },
                     "live": LiveSettings(**fields["live"]),
                 }
             )
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
             raise DataError(f"{where}: damaged run header: {error!r}") from error
-        if wrong := [name for name, right in _KINDS.items() if not right(getattr(found, name))]:
+        if wrong := [name for name, right in _KINDS.items() if not right(getattr(header, name))]:
             raise DataError(f"{where}: damaged run header: {', '.join(wrong)} cannot be so")
-        return found
+        return header
 
 
 def _is_text(value: object) -> bool:
@@ -169,7 +171,7 @@ _KINDS: Final[Mapping[str, Callable[[object], bool]]] = {
 def _plain(value: Any) -> Any:
     """Return what JSON can hold."""
     if isinstance(value, Mapping):
-        return {key: _plain(one) for key, one in value.items()}
+        return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, tuple | list):
-        return [_plain(one) for one in value]
+        return [_plain(item) for item in value]
     return asdict(value) if hasattr(value, "__dataclass_fields__") else value

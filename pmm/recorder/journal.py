@@ -33,10 +33,10 @@ class _Stream:
 
     def append(self, data: bytes) -> None:
         """Append all of the data, or nothing."""
-        left = memoryview(data)
+        rest = memoryview(data)
         try:
-            while left:
-                left = left[os.write(self.handle, left) :]
+            while rest:
+                rest = rest[os.write(self.handle, rest) :]
         except OSError:
             os.ftruncate(self.handle, self.size)
             os.lseek(self.handle, self.size, os.SEEK_SET)

@@ -42,8 +42,8 @@ def rebuild(
     try:
         taken, _ = decode(run, drivers)
     except DataError as error:
-        what = "lost samples" if run.samples else "no whole sample, and none"
-        raise DataError(f"{run.folder}: holds {what} can be decoded: {error}") from error
+        words = "lost samples" if run.samples else "no whole sample, and none"
+        raise DataError(f"{run.folder}: holds {words} can be decoded: {error}") from error
     first, values = _with_whole(run, run.header.first_sync, _samples(run, taken))
     _check_room(run.folder, values)
     set_aside(run.folder / SAMPLES)
@@ -69,17 +69,17 @@ def _with_whole(run: RunData, first: int, decoded: FloatArray) -> tuple[int, Flo
     """Return the first SYNC and all samples, those of the journal where they are whole."""
     if run.samples is None:
         return first, decoded
-    told = run.marker if run.marker is not None and marker_is_whole(run.marker) else {}
+    marker = run.marker if run.marker is not None and marker_is_whole(run.marker) else {}
     samples = run.samples
     last = samples.first_sync + samples.sample_count - 1
-    begin = told.get("first_sync", min(first, samples.first_sync))
-    end = told.get("last_sync", max(first + decoded.shape[1] - 1, last))
+    begin = marker.get("first_sync", min(first, samples.first_sync))
+    end = marker.get("last_sync", max(first + decoded.shape[1] - 1, last))
     values = np.full((decoded.shape[0], end - begin + 1), np.nan)
     for start, part in ((first, decoded), (samples.first_sync, samples[:, :])):
         skipped = max(begin - start, 0)
-        there = part[:, skipped : end + 1 - start]
-        place = values[:, start + skipped - begin :][:, : there.shape[1]]
-        np.copyto(place, there, where=~np.isnan(there))
+        overlap = part[:, skipped : end + 1 - start]
+        place = values[:, start + skipped - begin :][:, : overlap.shape[1]]
+        np.copyto(place, overlap, where=~np.isnan(overlap))
     return begin, values
 
 
@@ -94,8 +94,8 @@ def _samples(run: RunData, taken: Sequence[Taken]) -> FloatArray:
 def _write_samples(run: RunData, first: int, values: FloatArray) -> None:
     """Write the stream so that it is there whole or not at all; a SYNC without values is a gap."""
     writer = SampleWriter(run.header)
-    there = np.flatnonzero(~np.isnan(values).all(axis=0))
-    stretches = np.split(there, np.flatnonzero(np.diff(there) > 1) + 1)
+    places = np.flatnonzero(~np.isnan(values).all(axis=0))
+    stretches = np.split(places, np.flatnonzero(np.diff(places) > 1) + 1)
     part = run.folder / f".{SAMPLES}.part"
     with part.open("wb") as file:
         file.write(writer.head())
@@ -107,7 +107,7 @@ def _write_samples(run: RunData, first: int, values: FloatArray) -> None:
 
 def _write_pulses(folder: Path, taken: Sequence[Taken]) -> None:
     lines = []
-    for one in (pulse for each in taken for pulse in each.pulses):
-        angle = None if np.isnan(one.shaft_angle_rad) else one.shaft_angle_rad
-        lines.append(as_line([one.number, one.time_s, angle]).decode())
+    for pulse in (pulse for each in taken for pulse in each.pulses):
+        angle = None if np.isnan(pulse.shaft_angle_rad) else pulse.shaft_angle_rad
+        lines.append(as_line([pulse.number, pulse.time_s, angle]).decode())
     write_whole(folder / PULSES, "".join(lines))

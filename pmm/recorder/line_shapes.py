@@ -37,7 +37,7 @@ def _row(*shapes: Shape) -> Shape:
         return (
             isinstance(value, list)
             and len(value) == len(shapes)
-            and all(shape(one) for shape, one in zip(shapes, value, strict=True))
+            and all(shape(item) for shape, item in zip(shapes, value, strict=True))
         )
 
     return fits
@@ -75,7 +75,7 @@ def _text(value: Any) -> bool:
 
 
 def _bytes(value: Any) -> bool:
-    return isinstance(value, str) and all(ord(one) < 256 for one in value)
+    return isinstance(value, str) and all(ord(character) < 256 for character in value)
 
 
 def _finite_or_none(value: Any) -> bool:
@@ -83,7 +83,7 @@ def _finite_or_none(value: Any) -> bool:
 
 
 def _reading(value: Any) -> bool:
-    return _READING(value) and [len(one) for one in value["coefficients"]] == len(
+    return _READING(value) and [len(row) for row in value["coefficients"]] == len(
         value["channels"]
     ) * [len(value["coefficients"][0]) if value["coefficients"] else 0]
 
@@ -146,28 +146,30 @@ def read_lines(path: Path) -> tuple[list[Any], int]:
 
 def read_marker(folder: Path) -> dict[str, Any] | None:
     """Return what a run's marker says; ``None`` where there is none, or it cannot be one."""
-    found = _read(folder / MARKER)
-    return found if found is not None and is_marker(found) and _are_flags(found["flags"]) else None
+    marker = _read(folder / MARKER)
+    return (
+        marker if marker is not None and is_marker(marker) and _are_flags(marker["flags"]) else None
+    )
 
 
 def read_recovered(folder: Path) -> dict[str, Any]:
     """Return what an earlier recovery wrote; nothing where there was none, or it is damaged."""
-    found = _read(folder / RECOVERED)
-    whole = found is not None and is_recovered(found) and _are_flags(found["flags"])
-    return found if found is not None and whole else {}
+    recovered = _read(folder / RECOVERED)
+    is_whole = recovered is not None and is_recovered(recovered) and _are_flags(recovered["flags"])
+    return recovered if recovered is not None and is_whole else {}
 
 
 def _read(path: Path) -> dict[str, Any] | None:
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
+        content = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):
         return None
-    return found if isinstance(found, dict) else None
+    return content if isinstance(content, dict) else None
 
 
-def _are_flags(told: list[Mapping[str, Any]]) -> bool:
+def _are_flags(flags: list[Mapping[str, Any]]) -> bool:
     try:
-        tuple(map(Flag.read, told))
+        tuple(map(Flag.read, flags))
     except (ValueError, TypeError, KeyError):
         return False
     return True

@@ -45,7 +45,7 @@ class Taken:
 
 def joined(taken: Sequence[Taken], channels: int) -> FloatArray:
     """Return the samples of consecutive cycles, shape ``(channels, n)``."""
-    return np.concatenate([np.empty((channels, 0)), *(one.values for one in taken)], axis=1)
+    return np.concatenate([np.empty((channels, 0)), *(cycle.values for cycle in taken)], axis=1)
 
 
 @dataclass
@@ -60,23 +60,23 @@ class _Source:
 
     def listen(self, number: int) -> None:
         """Take what has come by cycle ``number``."""
-        for one in (taken := self.device.take()):
+        for piece in (taken := self.device.take()):
             if self.offset is None:
                 off = number - _last(taken[-1])
                 self.offset = 0 if abs(off) <= PATIENCE_CYCLES else off
-            block = SampleBlock(one.first + self.offset, one.values)
+            block = SampleBlock(piece.first + self.offset, piece.values)
             self.waiting.append(block)
             self.last = _last(block)
 
     def write(self, first: int, values: FloatArray) -> None:
         """Write what lies in samples from ``first`` on, and keep what lies beyond."""
         end = first + values.shape[1]
-        for one in self.waiting:
-            a, b = max(one.first, first), min(_last(one) + 1, end)
+        for block in self.waiting:
+            a, b = max(block.first, first), min(_last(block) + 1, end)
             if a < b:
-                part = one.values[:, a - one.first : b - one.first]
+                part = block.values[:, a - block.first : b - block.first]
                 values[self.rows, a - first : b - first] = part
-        self.waiting = [one for one in self.waiting if _last(one) >= end]
+        self.waiting = [block for block in self.waiting if _last(block) >= end]
 
 
 class LivePath:

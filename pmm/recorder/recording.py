@@ -90,8 +90,8 @@ def read_run(folder: Path) -> RunData:
     for name in TEXTS:
         texts[name], tails[name] = read_lines(folder / name)
     if (folder / SAMPLES).exists():
-        whole = samples.whole_bytes if samples else 0
-        tails[SAMPLES] = (folder / SAMPLES).stat().st_size - whole
+        whole_bytes = samples.whole_bytes if samples else 0
+        tails[SAMPLES] = (folder / SAMPLES).stat().st_size - whole_bytes
     return RunData(folder, _header(folder, samples), samples, texts, tails, read_marker(folder))
 
 
@@ -132,7 +132,7 @@ def as_recording(run: RunData, flags: Sequence[Flag] = ()) -> Recording:
     if samples is None:
         raise DataError(f"{run.folder}: holds no whole sample; there is nothing to make of it")
     edges, unordered = _edges(run)
-    told = map(Flag.read, _told(run))
+    stored_flags = map(Flag.read, _told(run))
     return Recording(
         name=header.run_name,
         channels=header.channels,
@@ -142,7 +142,7 @@ def as_recording(run: RunData, flags: Sequence[Flag] = ()) -> Recording:
         photocell_edges_s=edges if header.photocell else None,
         set_point=header.set_point,
         provenance=_provenance(run),
-        flags=(*told, *_gaps(run), *unordered, *flags),
+        flags=(*stored_flags, *_gaps(run), *unordered, *flags),
     )
 
 
@@ -150,16 +150,16 @@ def marker_text(
     run: RunData, outcome: str, flags: Sequence[Flag], contents: Mapping[str, Any], frames: int
 ) -> str:
     """Return the completion marker: what the run's files have to hold."""
-    found: dict[str, Any] = {"outcome": str(outcome), "frames": frames}
-    found |= counts(run.samples) if run.samples else {"samples": 0}
+    marker: dict[str, Any] = {"outcome": str(outcome), "frames": frames}
+    marker |= counts(run.samples) if run.samples else {"samples": 0}
     for name, key in ((PULSES, "pulses"), (EVENTS, "events"), (HARMONICS, "harmonics")):
-        found[key] = len(run.texts[name])
-    found["lines"] = len(run.texts[LINES])
-    found["cycles"] = asdict(run.cycles) if run.cycles else None
-    found["flags"] = [asdict(flag) for flag in flags]
-    found |= _noise_at_rest(run)
-    found |= {"files": contents}
-    return json.dumps({**found, _SUM: _sum(found)}, indent=1)
+        marker[key] = len(run.texts[name])
+    marker["lines"] = len(run.texts[LINES])
+    marker["cycles"] = asdict(run.cycles) if run.cycles else None
+    marker["flags"] = [asdict(flag) for flag in flags]
+    marker |= _noise_at_rest(run)
+    marker |= {"files": contents}
+    return json.dumps({**marker, _SUM: _sum(marker)}, indent=1)
 
 
 def marker_is_whole(marker: Mapping[str, Any] | None) -> bool:
@@ -178,9 +178,9 @@ def _noise_at_rest(run: RunData) -> dict[str, Any]:
     """Return what a zero run tells of the channels' noise; another record shows more than noise."""
     if run.header.kind != RunKind.ZERO or run.samples is None:
         return {}
-    found = white_noise_rms(run.samples[:, :])
+    noise_rms = white_noise_rms(run.samples[:, :])
     names = (channel.name for channel in run.header.channels)
-    pairs = zip(names, found, strict=True)
+    pairs = zip(names, noise_rms, strict=True)
     return {NOISE: {name: float(rms) for name, rms in pairs if np.isfinite(rms)}}
 
 
@@ -209,11 +209,11 @@ def _edges(run: RunData) -> tuple[FloatArray, list[Flag]]:
     """Return the pulses' times, each later than the one before, and what was left out."""
     times = run.pulses_s
     latest = np.maximum.accumulate(np.concatenate([[-np.inf], times]))[:-1]
-    kept = times > latest
-    left_out = int(np.sum(~kept))
+    is_later = times > latest
+    left_out = int(np.sum(~is_later))
     message = f"{left_out} pulse(s) that came no later than one before are left out"
     flags = [Flag("pulse_order", Severity.WARNING, message)] if left_out else []
-    return times[kept], flags
+    return times[is_later], flags
 
 
 def _gaps(run: RunData) -> list[Flag]:
@@ -221,7 +221,7 @@ def _gaps(run: RunData) -> list[Flag]:
     if not gaps:
         return []
     missing = sum(count for _, count in gaps)
-    at, longest = max(gaps, key=lambda one: one[1])
+    at, longest = max(gaps, key=lambda gap: gap[1])
     message = (
         f"{missing} sample(s) are missing in {len(gaps)} gap(s), the longest {longest} from "
         f"{at / run.header.sample_rate_hz:.3f} s (SYNC {at}); they are NaN"
@@ -231,7 +231,7 @@ def _gaps(run: RunData) -> list[Flag]:
 
 def _provenance(run: RunData) -> dict[str, str]:
     header = run.header
-    found = dict(header.provenance) | {
+    provenance = dict(header.provenance) | {
         "recorder": "pmm",
         "started_utc": header.started_utc,
         "kind": header.kind,
@@ -242,7 +242,7 @@ def _provenance(run: RunData) -> dict[str, str]:
             {name: asdict(reading) for name, reading in header.readings.items()}
         ),
     }
-    return found | _gate(run) | (run.cycles.as_text() if run.cycles else {})
+    return provenance | _gate(run) | (run.cycles.as_text() if run.cycles else {})
 
 
 def _gate(run: RunData) -> dict[str, str]:
@@ -280,9 +280,9 @@ def white_noise_rms(samples: FloatArray) -> FloatArray:
         Shape ``(channels, n)``.
     """
     steps = np.diff(samples, axis=1) ** 2
-    known = np.isfinite(steps)
-    count = known.sum(axis=1)
-    total = np.where(known, steps, 0.0).sum(axis=1)
-    found = np.full(len(samples), np.nan)
-    np.divide(total, 2.0 * count, out=found, where=count > 0)
-    return np.asarray(np.sqrt(found))
+    is_finite = np.isfinite(steps)
+    count = is_finite.sum(axis=1)
+    total = np.where(is_finite, steps, 0.0).sum(axis=1)
+    variance = np.full(len(samples), np.nan)
+    np.divide(total, 2.0 * count, out=variance, where=count > 0)
+    return np.asarray(np.sqrt(variance))

@@ -98,10 +98,12 @@ def runs_in(place: Path) -> tuple[Path, ...]:
     """
     if is_run(place):
         return (place,)
-    found = sorted(one for one in place.iterdir() if is_run(one)) if place.is_dir() else []
-    if not found:
+    folders = (
+        sorted(folder for folder in place.iterdir() if is_run(folder)) if place.is_dir() else []
+    )
+    if not folders:
         raise DataError(f"{place}: holds no run: no {SAMPLES}, {BUS} or header in it or below it")
-    return tuple(found)
+    return tuple(folders)
 
 
 def recover(folder: Path, drivers: Iterable[EntryPoint] | None = None) -> RecoveredRun:
@@ -171,8 +173,8 @@ def _rebuilt(
             raise
         text = f"what {SAMPLES} has lost cannot be decoded again: {error}"
         return run, (*flags, Flag("samples_lost", Severity.WARNING, text)), dict(made)
-    again = {name: contents_of(run.folder / name) for name in names}
-    return read_run(run.folder), (*flags, flag), {**made, **again}
+    contents = {name: contents_of(run.folder / name) for name in names}
+    return read_run(run.folder), (*flags, flag), {**made, **contents}
 
 
 def _torn(run: RunData, log: LogState) -> tuple[Flag, ...]:
@@ -196,11 +198,11 @@ def _outcome(
     was_whole: bool,
     changed: tuple[str, ...] = (),
 ) -> RecoveredRun:
-    found = counts(run.samples) if run.samples else {"samples": 0, "missing": 0}
+    totals = counts(run.samples) if run.samples else {"samples": 0, "missing": 0}
     return RecoveredRun(
         run.folder / RECORDING,
-        found["samples"],
-        found["missing"],
+        totals["samples"],
+        totals["missing"],
         log.frames,
         {name: size for name, size in {**run.tails, BUS: log.tail_bytes}.items() if size},
         was_whole,

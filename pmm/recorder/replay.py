@@ -107,21 +107,21 @@ def _compare(
     run: RunData, samples: JournalSamples, taken: list[Taken], faults: list[str]
 ) -> Replay:
     recorded = samples[:, 0 : samples.sample_count]
-    again = np.full(recorded.shape, np.nan)
+    replayed = np.full(recorded.shape, np.nan)
     skipped = samples.first_sync - run.header.first_sync
     decoded = joined(taken, recorded.shape[0])[:, skipped : skipped + samples.sample_count]
-    again[:, : decoded.shape[1]] = decoded
-    differing = ~((again == recorded) | (np.isnan(again) & np.isnan(recorded)))
-    told, again_read = tuple(run.texts[HARMONICS]), resolve_again(run, taken)
+    replayed[:, : decoded.shape[1]] = decoded
+    differing = ~((replayed == recorded) | (np.isnan(replayed) & np.isnan(recorded)))
+    records, again_read = tuple(run.texts[HARMONICS]), resolve_again(run, taken)
     return Replay(
-        again,
+        replayed,
         recorded,
         int(np.sum(differing)),
         tuple(pulse for each in taken for pulse in each.pulses),
         run.pulses_s,
         again_read,
-        told,
-        largest_difference(told, again_read),
+        records,
+        largest_difference(records, again_read),
         tuple(faults),
         changed_files(run),
     )
@@ -133,28 +133,28 @@ def resolve_again(run: RunData, taken: Sequence[Taken]) -> tuple[Reading | None,
     A reading is over a gate of so many periods that a resolver had found since it was armed: so one
     is armed at the same SYNC again, with as many periods, and the reading over that gate taken.
     """
-    told = run.texts[HARMONICS]
-    found: dict[tuple[int, int], dict[tuple[float, float], Reading]] = {}
-    again = []
-    for one in told:
-        start = _start_of(one, run)
-        key = (start, int(one["periods"]))
-        if key not in found:
-            found[key] = dict(_gates(run, taken, *key))
-        again.append(found[key].get((one["opened_s"], one["closed_s"])))
-    return tuple(again)
+    records = run.texts[HARMONICS]
+    readings_from: dict[tuple[int, int], dict[tuple[float, float], Reading]] = {}
+    readings = []
+    for record in records:
+        start = _start_of(record, run)
+        key = (start, int(record["periods"]))
+        if key not in readings_from:
+            readings_from[key] = dict(_gates(run, taken, *key))
+        readings.append(readings_from[key].get((record["opened_s"], record["closed_s"])))
+    return tuple(readings)
 
 
-def largest_difference(told: Sequence[Reading], again: Sequence[Reading | None]) -> float:
+def largest_difference(records: Sequence[Reading], readings: Sequence[Reading | None]) -> float:
     """Return the largest difference of a coefficient over the largest of its channel.
 
     Infinite where a reading did not come again.
     """
     largest = 0.0
-    for one, other in zip(told, again, strict=True):
-        if other is None:
+    for record, reading in zip(records, readings, strict=True):
+        if reading is None:
             return float("inf")
-        before, after = (np.array(each["coefficients"], float) for each in (one, other))
+        before, after = (np.array(each["coefficients"], float) for each in (record, reading))
         scale = np.max(np.abs(before), axis=1, keepdims=True)
         off = np.abs(after - before) / np.where(scale > 0.0, scale, 1.0)
         largest = max(largest, float(np.max(off, initial=0.0)))
@@ -179,15 +179,15 @@ def _gates(
     header = run.header
     rate_hz, settings = header.sample_rate_hz, replace(header.live, periods=periods)
     until_s = min((n / rate_hz for n in _armed(run) if n > start), default=np.inf)
-    again = GateResolver(header.channels, rate_hz, settings, start)
+    gate_resolver = GateResolver(header.channels, rate_hz, settings, start)
     for each in taken:
-        found = again.push(each)
+        readings = gate_resolver.push(each)
         for pulse in each.pulses:
-            if again.takes(pulse) and pulse.time_s < until_s:
+            if gate_resolver.takes(pulse) and pulse.time_s < until_s:
                 with suppress(DataError):  # it had the run's gate armed anew
-                    found += again.resolver.pulse(pulse.time_s)
-        yield from ((_gate(one), as_record(one)) for one in found)
-    yield from ((_gate(one), as_record(one)) for one in again.resolver.finish())
+                    readings += gate_resolver.resolver.pulse(pulse.time_s)
+        yield from ((_gate(reading), as_record(reading)) for reading in readings)
+    yield from ((_gate(reading), as_record(reading)) for reading in gate_resolver.resolver.finish())
 
 
 def _gate(reading: Harmonics) -> tuple[float, float]:

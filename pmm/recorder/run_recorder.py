@@ -174,8 +174,8 @@ class RunRecorder:
     def pulse(self, pulse: Pulse) -> None:
         """Take a pulse of the photocell."""
         angle = pulse.shaft_angle_rad
-        known = None if np.isnan(angle) else angle
-        self._say(PULSES, [pulse.number, pulse.time_s, known])
+        angle_rad = None if np.isnan(angle) else angle
+        self._say(PULSES, [pulse.number, pulse.time_s, angle_rad])
 
     def event(self, cycle: int, time_s: float, kind: str, text: str) -> None:
         """Take an event: a change of state, an alarm, what the operator answered."""
@@ -284,9 +284,9 @@ class RunRecorder:
         texts, self._texts = self._texts, {}
         for name, lines in texts.items():
             pieces.append((name, partial(b"".join, lines)))
-        found = self._late.statistics()
-        if found.cycles:
-            line = as_line([found.cycles, found.p50_s, found.p99_s, found.worst_s, found.late])
+        delays = self._late.statistics()
+        if delays.cycles:
+            line = as_line([delays.cycles, delays.p50_s, delays.p99_s, delays.worst_s, delays.late])
             pieces.append((CYCLES, lambda: line))
         self._journal.hand_over(pieces, then)
 

@@ -57,10 +57,10 @@ class SampleWriter:
             [np.arange(first, first + values.shape[1], dtype=np.int64) for first, values in pieces]
         )
         values = np.ascontiguousarray(np.concatenate([values for _, values in pieces], axis=1))
-        columns = [self._column(one) for one in (sync, *values)]
+        columns = [self._column(column) for column in (sync, *values)]
         batch = self._arrow.RecordBatch.from_arrays(columns, schema=self._schema)
-        own = batches.checksum((sync, *values), self._before)
-        about, self._before = batches.metadata(own, self._before), own
+        crc = batches.checksum((sync, *values), self._before)
+        about, self._before = batches.metadata(crc, self._before), crc
         return self._message(batch, about)
 
     def _message(self, batch: Any, about: dict[bytes, bytes]) -> bytes:
@@ -124,14 +124,14 @@ class JournalSamples:
         chosen = range(self.shape[0])[rows] if isinstance(rows, slice) else rows
         start, stop, step = when.indices(self.sample_count)
         low, high = self.first_sync + start, self.first_sync + stop
-        found = np.full((len(chosen), max(0, stop - start)), np.nan)
+        values = np.full((len(chosen), max(0, stop - start)), np.nan)
         earliest = bisect_left(self.syncs, low, key=lambda sync: sync[-1])
         for k in range(earliest, bisect_left(self.syncs, high, key=lambda sync: sync[0])):
             a, b = np.searchsorted(self.syncs[k], (low, high))
             at = self.syncs[k][a:b] - low
-            for row, channel in zip(found, chosen, strict=True):
+            for row, channel in zip(values, chosen, strict=True):
                 row[at] = self.batches[k].column(channel + 1).to_numpy()[a:b]
-        return found[:, ::step]
+        return values[:, ::step]
 
 
 def read_header(path: Path) -> RunHeader | None:
@@ -146,49 +146,52 @@ def read_samples(path: Path) -> JournalSamples | None:
     if opened is None:
         return None
     header, head_sum = opened.header, opened.checksum
-    found = list(batches.read_batches(path, opened.schema, opened.end))
-    kept = _in_order(found)
-    if not kept:
+    stored_batches = list(batches.read_batches(path, opened.schema, opened.end))
+    ordered_batches = _in_order(stored_batches)
+    if not ordered_batches:
         return None
-    first, last = int(kept[0].sync[0]), int(kept[-1].sync[-1])
-    syncs = tuple(one.sync for one in kept)
-    changes = tuple(_changes(found, kept, head_sum, header))
+    first, last = int(ordered_batches[0].sync[0]), int(ordered_batches[-1].sync[-1])
+    syncs = tuple(batch.sync for batch in ordered_batches)
+    changes = tuple(_changes(stored_batches, ordered_batches, head_sum, header))
     return JournalSamples(
         header,
         opened.text,
         first,
         last - first + 1,
         _gaps(syncs),
-        max(one.end for one in found),
+        max(batch.end for batch in stored_batches),
         changes,
-        kept[0].before == head_sum,
-        tuple(one.content for one in kept),
+        ordered_batches[0].before == head_sum,
+        tuple(batch.content for batch in ordered_batches),
         syncs,
     )
 
 
-def _in_order(found: Sequence[batches.Batch]) -> list[batches.Batch]:
+def _in_order(stored_batches: Sequence[batches.Batch]) -> list[batches.Batch]:
     """Return batches by their SYNCs, but for those that come again."""
-    kept: list[batches.Batch] = []
-    for one in sorted(found, key=lambda one: int(one.sync[0])):
-        if not kept or one.sync[0] > kept[-1].sync[-1]:
-            kept.append(one)
-    return kept
+    ordered_batches: list[batches.Batch] = []
+    for batch in sorted(stored_batches, key=lambda batch: int(batch.sync[0])):
+        if not ordered_batches or batch.sync[0] > ordered_batches[-1].sync[-1]:
+            ordered_batches.append(batch)
+    return ordered_batches
 
 
 def _changes(
-    found: Sequence[batches.Batch], kept: Sequence[batches.Batch], head_sum: int, header: RunHeader
+    stored_batches: Sequence[batches.Batch],
+    ordered_batches: Sequence[batches.Batch],
+    head_sum: int,
+    header: RunHeader,
 ) -> Iterator[str]:
     """Say what is not what was written, in words."""
-    if kept[0].own is None:
+    if ordered_batches[0].own is None:
         return
-    if list(found) != list(kept):
+    if list(stored_batches) != list(ordered_batches):
         yield "its batches are not in the order in which they were written"
-    if kept[0].before != head_sum:
+    if ordered_batches[0].before != head_sum:
         yield "its beginning, or its first batch, is damaged or missing"
-    for one, after in pairwise(kept):
-        if after.before != one.own:
-            lost = int(one.sync[-1]) + 1, int(after.sync[0]) - 1
+    for batch, after in pairwise(ordered_batches):
+        if after.before != batch.own:
+            lost = int(batch.sync[-1]) + 1, int(after.sync[0]) - 1
             times = " to ".join(f"{at / header.sample_rate_hz:.3f} s" for at in lost)
             yield f"what lay between is damaged or missing: SYNC {lost[0]} to {lost[1]} ({times})"
 
@@ -222,14 +225,14 @@ def _open(path: Path) -> _Beginning | None:
 
 def _gaps(syncs: Sequence[IntArray]) -> tuple[tuple[int, int], ...]:
     """Return the first missing SYNC and the count of each gap."""
-    found = []
+    gaps = []
     before = int(syncs[0][0]) - 1
     for sync in syncs:
         steps = np.diff(sync, prepend=before)
         at = np.flatnonzero(steps > 1)
-        found += [(int(sync[i] - steps[i] + 1), int(steps[i] - 1)) for i in at]
+        gaps += [(int(sync[i] - steps[i] + 1), int(steps[i] - 1)) for i in at]
         before = int(sync[-1])
-    return tuple(found)
+    return tuple(gaps)
 
 
 def counts(samples: JournalSamples) -> Mapping[str, int]:

@@ -65,13 +65,13 @@ def _wanted_runs(
 ) -> tuple[RunPlan, ...]:
     wanted = tuple(run for run in plan.runs if not only or run.name in only)
     if resume:
-        done = done_runs(folder, wanted)
-        return tuple(one for one in wanted if one.name not in done)
-    there = [one.name for one in wanted if is_run(folder / one.name)]
-    if there:
+        done_names = done_runs(folder, wanted)
+        return tuple(run for run in wanted if run.name not in done_names)
+    names = [run.name for run in wanted if is_run(folder / run.name)]
+    if names:
         raise ConfigurationError(
-            f"{folder}: holds {len(there)} of these runs already ({', '.join(there[:3])}"
-            f"{', ...' if len(there) > 3 else ''}); --resume makes those that are not complete, "
+            f"{folder}: holds {len(names)} of these runs already ({', '.join(names[:3])}"
+            f"{', ...' if len(names) > 3 else ''}); --resume makes those that are not complete, "
             "--output records to another folder"
         )
     return wanted
@@ -100,17 +100,17 @@ def finished_runs(folder: Path, plan: Plan, rig: RigFile) -> tuple[FinishedRun, 
     DataError
         If a header is damaged.
     """
-    found, now = [], Sources(folder, plan, rig)
+    rows, now = [], Sources(folder, plan, rig)
     for path in folder.glob(f"*/{HEADER}"):
-        own = path.parent
-        if not (own / RECORDING).exists():
+        run_folder = path.parent
+        if not (run_folder / RECORDING).exists():
             continue
         header = RunHeader.read(path)
-        if header.run_name != own.name:
+        if header.run_name != run_folder.name:
             continue
         run = RunPlan.from_json(header.plan_json, str(path))
-        marker, made = read_marker(own) or {}, now.made(header, run)
-        one = FinishedRun(
+        marker, made = read_marker(run_folder) or {}, now.made(header, run)
+        finished_run = FinishedRun(
             run,
             f"{run.name}/{RECORDING}",
             header.readings,
@@ -121,8 +121,8 @@ def finished_runs(folder: Path, plan: Plan, rig: RigFile) -> tuple[FinishedRun, 
             made.differs,
             made.recorded_with,
         )
-        found.append((header.order, one))
-    return tuple(one for _, one in sorted(found, key=lambda each: each[0]))
+        rows.append((header.order, finished_run))
+    return tuple(finished_run for _, finished_run in sorted(rows, key=lambda each: each[0]))
 
 
 def _outcome(folder: Path) -> str:
@@ -141,9 +141,9 @@ def check_names(plan: Plan, only: Sequence[str]) -> None:
     """
     from difflib import get_close_matches
 
-    known = [run.name for run in plan.runs]
+    names = [run.name for run in plan.runs]
     for name in only:
-        if name not in known:
-            near = get_close_matches(name, known, n=3, cutoff=0.4)
-            hint = f"did you mean {', '.join(near)}?" if near else f"runs: {', '.join(known)}"
+        if name not in names:
+            near = get_close_matches(name, names, n=3, cutoff=0.4)
+            hint = f"did you mean {', '.join(near)}?" if near else f"runs: {', '.join(names)}"
             raise ConfigurationError(f"{plan.path}: no run {name!r}; {hint}")

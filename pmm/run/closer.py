@@ -46,17 +46,17 @@ class Closing:
 
     def result(self) -> RunOutcome:
         """Return how the run ended; waits until the recording is closed."""
-        one, run = self._measurement, self._run
+        measurement, run = self._measurement, self._run
         file = self._file if self._future is None else self._future.result()
         return RunOutcome(
             run.name,
             str(run.kind),
             str(self._outcome),
             file,
-            one.gate.periods,
+            measurement.gate.periods,
             self._rows,
-            tuple(one.flags),
-            one.journal.statistics(),
+            tuple(measurement.flags),
+            measurement.journal.statistics(),
             self._reason,
         )
 

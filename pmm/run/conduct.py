@@ -153,7 +153,7 @@ class Conduct:
     @property
     def moving(self) -> bool:
         """Whether any axis moves."""
-        return any(one.moving for one in self.rig.powered())
+        return any(axis.moving for axis in self.rig.powered())
 
     @property
     def ramp_s(self) -> float:
@@ -235,11 +235,11 @@ def check_speed(c: Conduct) -> None:
         return
     speed, rate = c.carriage_speed_m_s(), point.turn_rate_rad_s
     of_speed = CARRIAGE_SHARE * speed + carriage.tolerance_m_s
-    kept = [(carriage.measured_speed_m_s, speed, of_speed, "runs", "m/s")]
+    checks = [(carriage.measured_speed_m_s, speed, of_speed, "runs", "m/s")]
     if rate:  # as far off as the speed may be where the radius is right
         turned, allowed = carriage.measured_turn_rate_rad_s, abs(rate) * of_speed / speed
-        kept.append((turned, rate, allowed, "turns", "rad/s"))
-    off = [one for one in kept if not abs(one[0] - one[1]) <= one[2]]
+        checks.append((turned, rate, allowed, "turns", "rad/s"))
+    off = [check for check in checks if not abs(check[0] - check[1]) <= check[2]]
     c.off_speed = c.off_speed + 1 if off else 0
     if c.off_speed > CARRIAGE_S * c.rate_hz:
         measured, wanted, allowed, does, unit = off[0]

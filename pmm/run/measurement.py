@@ -86,7 +86,7 @@ class Measurement:
         self._forces = [i for i, c in enumerate(self.channels) if c.unit in ("N", "N m")]
         self._resolving: GateResolver | None = None
         self._judged = 0
-        names = [one.name for one in self.channels]
+        names = [channel.name for channel in self.channels]
         self._towed = names.index(CARRIAGE_SPEED.name) if CARRIAGE_SPEED.name in names else None
         self._speeds: list[FloatArray] = []
         self._means = Means(self.channels)
@@ -189,9 +189,9 @@ class Measurement:
             return
         self._heard(self._resolving.resolver.finish())
         self.reading = self._resolving.resolver.so_far()
-        found = 0 if self.reading is None else self.reading.periods
-        if found != self.gate.periods:
-            text = f"{found} of the gate's {self.gate.periods} periods have all their samples"
+        periods = 0 if self.reading is None else self.reading.periods
+        if periods != self.gate.periods:
+            text = f"{periods} of the gate's {self.gate.periods} periods have all their samples"
             self.note("gate_short", Severity.WARNING, text)
         for row in self.rows():
             if row.far:
@@ -216,8 +216,8 @@ class Measurement:
             resolver = self._resolving.resolver
             if resolver.finished > max(self.reading.periods if self.reading else 0, 1):
                 self.reading = resolver.so_far()
-            found = needles(self.channels, resolver.provisional(), self.reading)
-            return beside(found, self._expected)
+            rows = needles(self.channels, resolver.provisional(), self.reading)
+            return beside(rows, self._expected)
         return self._means.rows()
 
     def _pulse(self, pulse: Pulse) -> None:
@@ -225,7 +225,7 @@ class Measurement:
         if self._resolving is None or not listening or not self._resolving.takes(pulse):
             return
         try:
-            found = self._resolving.resolver.pulse(pulse.time_s)
+            readings = self._resolving.resolver.pulse(pulse.time_s)
         except DataError as error:
             self.void(str(error))
             return
@@ -233,7 +233,7 @@ class Measurement:
         self.gate.pulse(pulse.time_s)
         if self.gate.state is not before:
             self.event("gate", f"{self.gate.state} at {pulse.time_s:.6f} s")
-        self._heard(found)
+        self._heard(readings)
 
     def _heard(self, readings: Sequence[Harmonics]) -> None:
         if self._resolving is not None:
@@ -274,12 +274,16 @@ class Measurement:
         target = self.run.target_relative
         if target is None or self.gate.state is not GateState.OPEN:
             return
-        done = resolver.finished
-        if done <= self._judged or done < max(self.run.periods, 2) or done != self.gate.periods:
+        periods = resolver.finished
+        if (
+            periods <= self._judged
+            or periods < max(self.run.periods, 2)
+            or periods != self.gate.periods
+        ):
             return
-        self._judged = done
+        self._judged = periods
         self.reading = resolver.so_far()
         if self.reading is not None and worst_relative(self.reading, self._forces) <= target:
             self.gate.hold_at_last()
             self._keep(self.reading)
-            self.event("gate", f"held: target {target:g} met after {done} periods")
+            self.event("gate", f"held: target {target:g} met after {periods} periods")

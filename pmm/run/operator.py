@@ -99,15 +99,15 @@ class Interrupts:
             **dict.fromkeys(_known(_STOPS), self._take),
             **dict.fromkeys(_known(_HALTS), signal.SIG_IGN),
         }
-        for one in _known(_HANGS_UP):
-            if signal.getsignal(one) is not signal.SIG_IGN:
-                handlers[one] = self._hang_up
-        before = {one: signal.signal(one, handler) for one, handler in handlers.items()}
+        for signum in _known(_HANGS_UP):
+            if signal.getsignal(signum) is not signal.SIG_IGN:
+                handlers[signum] = self._hang_up
+        before = {signum: signal.signal(signum, handler) for signum, handler in handlers.items()}
         try:
             yield
         finally:
-            for one, handler in before.items():
-                signal.signal(one, handler)
+            for signum, handler in before.items():
+                signal.signal(signum, handler)
 
 
 def _known(names: Sequence[str]) -> list[signal.Signals]:

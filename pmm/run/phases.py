@@ -21,15 +21,15 @@ _HOLD_CYCLES: Final = REACH + 2 * PATIENCE_CYCLES + 4  # for the samples beyond 
 
 
 def _enter_homing(c: Conduct) -> None:
-    for one in c.rig.powered():
-        one.enable()
+    for axis in c.rig.powered():
+        axis.enable()
 
 
 def _homing(c: Conduct) -> State | None:
     """Home the axes that are not, one after the other as the operator or the drive goes."""
     check_standing(c, c.ramp_s)
     turns = c.rig.shaft is not None and c.rig.shaft.moving
-    if turns or not all(one.enabled for one in c.rig.powered()):
+    if turns or not all(axis.enabled for axis in c.rig.powered()):
         return None
     axes = c.rig.axes()
     if not c.told:
@@ -46,15 +46,15 @@ def _enter_setting(c: Conduct) -> None:
     if c.rig.path is not None:
         by_axis.add("lines")
     c.questions.ask(c.surroundings.before(c.present, oscillator, by_axis))
-    for one in c.rig.powered():
-        if not one.enabled:
-            one.enable()
+    for axis in c.rig.powered():
+        if not axis.enabled:
+            axis.enable()
 
 
 def _setting(c: Conduct) -> State | None:
     """Set the axes, after the operator has done what is asked."""
     check_standing(c)
-    if not c.questions.done() or not all(one.enabled for one in c.rig.powered()):
+    if not c.questions.done() or not all(axis.enabled for axis in c.rig.powered()):
         return None
     if not c.told:
         c.told = True
@@ -205,7 +205,7 @@ def _by_pulses(c: Conduct) -> bool:
     return c.present.oscillates and c.rig.photocell is not None
 
 
-def _check_overdue(c: Conduct, what: str) -> None:
+def _check_overdue(c: Conduct, action: str) -> None:
     """End a run whose pulses have stopped; the resolver would keep all samples for ever."""
     if not _by_pulses(c) or c.recording.gate.state is GateState.HELD:
         return
@@ -215,7 +215,7 @@ def _check_overdue(c: Conduct, what: str) -> None:
     if waited_s * frequency_hz > _OVERDUE_TURNS:
         raise PulseOverdueError(
             "photocell",
-            f"no pulse to {what} the gate for {waited_s * frequency_hz:.2f} periods "
+            f"no pulse to {action} the gate for {waited_s * frequency_hz:.2f} periods "
             f"(limit {_OVERDUE_TURNS}); check lamp, slot and cable",
         )
 

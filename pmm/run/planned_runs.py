@@ -49,7 +49,7 @@ class PlannedRuns:
         RunStateError
             If one that has begun would be another, or nothing changes.
         """
-        begun = {one.name: one for one in self.runs if one == under_way or self._ended(one)}
+        begun = {run.name: run for run in self.runs if run == under_way or self._ended(run)}
         for run in runs:
             if begun.get(run.name, run) != run:
                 raise RunStateError(f"{run.name} has begun; only runs still to be made are changed")

@@ -46,14 +46,14 @@ class PushRecord:
         rest, pushed = (np.hstack(part) if part else np.empty((0, 0)) for part in self._parts[:2])
         names = [channel.name for channel in self._channels]
         try:
-            found = judge(
+            push = judge(
                 self._channels,
                 dict(zip(names, rest, strict=True)),
                 dict(zip(names, pushed, strict=True)),
             )
         except (PushError, ValueError) as error:
             raise PushRefusedError(asked.channel, f"push test: {error}") from error
-        wrong = faults(found, asked.channel, 1 if asked.force_n >= 0.0 else -1)
+        wrong = faults(push, asked.channel, 1 if asked.force_n >= 0.0 else -1)
         if wrong:
             raise PushRefusedError(asked.channel, f"push test: {'; '.join(wrong)}")
-        return f"{found.channel} {found.change:+.4g} {found.unit}, as asked for"
+        return f"{push.channel} {push.change:+.4g} {push.unit}, as asked for"

@@ -85,14 +85,14 @@ def beside(
     rows: Sequence[ChannelReading], expected: Mapping[str, Expected]
 ) -> tuple[ChannelReading, ...]:
     """Return the rows with what the plan estimates; without an interval yet none is far."""
-    found = []
+    compared_rows = []
     for row in rows:
-        one = expected.get(row.channel)
-        if one is not None:
-            far = math.isfinite(row.half_width) and one.is_far(row.amplitude)
-            row = replace(row, expected=one.amplitude_n, far=far)
-        found.append(row)
-    return tuple(found)
+        estimate = expected.get(row.channel)
+        if estimate is not None:
+            far = math.isfinite(row.half_width) and estimate.is_far(row.amplitude)
+            row = replace(row, expected=estimate.amplitude_n, far=far)
+        compared_rows.append(row)
+    return tuple(compared_rows)
 
 
 def far_text(row: ChannelReading) -> str:

@@ -149,8 +149,8 @@ class RecorderFactory:
 
     def _readings(self) -> dict[str, Reading]:
         axes = {"eccentricity": self.rig.eccentricity, "phase": self.rig.phase}
-        found = {name: axis.reading for name, axis in axes.items() if axis is not None}
-        return {name: one for name, one in found.items() if one is not None}
+        readings = {name: axis.reading for name, axis in axes.items() if axis is not None}
+        return {name: reading for name, reading in readings.items() if reading is not None}
 
 
 def plan_provenance(plan: Plan) -> dict[str, str]:

@@ -227,7 +227,7 @@ class RunControl:
         if not self._stopper.at_rest():
             return None
         self._closer.close(c, c.ending)
-        if c.leaves_plan or all(one.name == c.present.name for one in self.planned.left):
+        if c.leaves_plan or all(run.name == c.present.name for run in self.planned.left):
             self._stopper.power_off()
         return State.STOPPED if c.leaves_plan else State.DONE
 

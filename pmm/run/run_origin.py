@@ -67,30 +67,30 @@ class Sources:
         run
             Its plan, as its header has it.
         """
-        told = [*self._plan_changes(run), *_calibration_changes(header, self._rig)]
+        changes = [*self._plan_changes(run), *_calibration_changes(header, self._rig)]
         hashed = header.configuration_sha256.get("rig", "")
         if hashed == self._rig.sha256:
-            return RunOrigin(tuple(told))
+            return RunOrigin(tuple(changes))
         name, before = self._rig.path.name, self._copies.get(hashed)
         if before is None:
             text = (
                 f"{name} was another file (sha256 {hashed[:12] or 'unknown'}), of which "
                 f"{self._folder / KEPT} has no copy"
             )
-            return RunOrigin((*told, text))
-        told += _changes(name, before, dict(self._rig.tables))
-        return RunOrigin(tuple(told), _tables_before(before, self._rig.tables) or None)
+            return RunOrigin((*changes, text))
+        changes += _changes(name, before, dict(self._rig.tables))
+        return RunOrigin(tuple(changes), _tables_before(before, self._rig.tables) or None)
 
     @cached_property
     def _copies(self) -> dict[str, dict[str, Any]]:
         """The copies of rig and plan that can be read, by their hashes."""
-        found = {}
+        copies = {}
         for path in sorted((self._folder / KEPT).glob("*.toml")):
             try:
-                found[hashlib.sha256(path.read_bytes()).hexdigest()] = read_toml(path)
+                copies[hashlib.sha256(path.read_bytes()).hexdigest()] = read_toml(path)
             except (OSError, ConfigurationError):
                 continue  # then there is no copy of that file
-        return found
+        return copies
 
     def _plan_changes(self, run: RunPlan) -> Iterator[str]:
         now, name = self._planned.get(run.name), self._plan.path.name
@@ -102,7 +102,7 @@ class Sources:
             yield from _changes(name, _plain(asdict(run)), _plain(asdict(now)))
 
 
-def check_unchanged(folder: Path, kept: Sequence[FinishedRun], plan: Plan) -> None:
+def check_unchanged(folder: Path, runs: Sequence[FinishedRun], plan: Plan) -> None:
     """Refuse to add to runs that plan, rig, model and calibration say something else of now.
 
     Raises
@@ -110,12 +110,12 @@ def check_unchanged(folder: Path, kept: Sequence[FinishedRun], plan: Plan) -> No
     ConfigurationError
         Naming each run with what changed.
     """
-    told = change_lines(kept)
-    if told:
-        shown = told[:_MOST_RUNS]
-        more = f"\n  ... and {len(told) - len(shown)} runs more" if len(told) > len(shown) else ""
+    lines = change_lines(runs)
+    if lines:
+        shown = lines[:_MOST_RUNS]
+        more = f"\n  ... and {len(lines) - len(shown)} runs more" if len(lines) > len(shown) else ""
         raise ConfigurationError(
-            f"{folder}: {len(told)} of its runs were recorded with other values than {plan.path} "
+            f"{folder}: {len(lines)} of its runs were recorded with other values than {plan.path} "
             "and its rig have now:\n  " + "\n  ".join(shown) + f"{more}\nput the values back "
             f"(copies of the files are in {folder / KEPT}), record to another folder with "
             "--output, or go on with `pmm run --accept-changes`: each run then keeps the values "
@@ -123,27 +123,27 @@ def check_unchanged(folder: Path, kept: Sequence[FinishedRun], plan: Plan) -> No
         )
 
 
-def change_lines(kept: Sequence[FinishedRun]) -> list[str]:
+def change_lines(runs: Sequence[FinishedRun]) -> list[str]:
     """Return a line for each run that was recorded with other values than those of now."""
-    return [f"{one.plan.name}: {'; '.join(one.differs)}" for one in kept if one.differs]
+    return [f"{run.plan.name}: {'; '.join(run.differs)}" for run in runs if run.differs]
 
 
 def _calibration_changes(header: RunHeader, rig: RigFile) -> Iterator[str]:
     try:
-        kept = dict(json.loads(header.provenance.get(CARRIED, "{}")))
+        calibration = dict(json.loads(header.provenance.get(CARRIED, "{}")))
     except (ValueError, TypeError) as error:
         raise DataError(f"{header.run_name}: its calibration cannot be read: {error}") from error
-    before = {key: one for key, one in kept.items() if key not in ("file", "sha256")}
-    if kept.get("sha256", "") != (rig.calibration.sha256 if rig.calibration else ""):
+    before = {key: value for key, value in calibration.items() if key not in ("file", "sha256")}
+    if calibration.get("sha256", "") != (rig.calibration.sha256 if rig.calibration else ""):
         now = as_table(rig.calibration) if rig.calibration else {}
-        file = rig.calibration.file if rig.calibration else kept.get("file", "")
+        file = rig.calibration.file if rig.calibration else calibration.get("file", "")
         yield from _changes(file or "calibration", before, now)
 
 
 def _tables_before(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str, Any]:
     """Return the campaign's tables that a rig's file told otherwise; what it left open is left."""
     old, new = _campaign_tables(before), _campaign_tables(now)
-    return {key: one for key, one in old.items() if one is not None and one != new[key]}
+    return {key: value for key, value in old.items() if value is not None and value != new[key]}
 
 
 def _campaign_tables(rig: Mapping[str, Any]) -> dict[str, Any]:
@@ -151,35 +151,35 @@ def _campaign_tables(rig: Mapping[str, Any]) -> dict[str, Any]:
     table = deepcopy(dict(rig))
     expand_preset(table, [])
     handed_on = table.get("campaign", {})
-    found = {key: table.get(key, handed_on.get(key)) for key in _TABLES}
-    found["reference"] = asdict(PhotocellOffset()) | table.get("reference", {})
+    tables = {key: table.get(key, handed_on.get(key)) for key in _TABLES}
+    tables["reference"] = asdict(PhotocellOffset()) | table.get("reference", {})
     for name in ("model", "model_uncertainty"):  # what is infinite there is so by default
-        if found[name] is not None:
-            own = found[name].items()
-            found[name] = {
-                key: one for key, one in own if key not in DIMENSIONS and one != math.inf
+        if tables[name] is not None:
+            pairs = tables[name].items()
+            tables[name] = {
+                key: value for key, value in pairs if key not in DIMENSIONS and value != math.inf
             }
-    return found
+    return tables
 
 
 def _changes(where: str, before: Any, now: Any) -> list[str]:
     """Return in words where two files differ, key by key."""
     old, new = dict(_leaves(before)), dict(_leaves(now))
     places = [key for key in {**old, **new} if old.get(key, _UNSET) != new.get(key, _UNSET)]
-    told = [
+    lines = [
         f"{where} {place_text(key, now if key in new else before)}"
         f"{_was(old.get(key, _UNSET), new.get(key, _UNSET))}"
         for key in places[:_MOST]
     ]
     more = len(places) - _MOST
-    return [*told, f"{where} {more} keys more"] if more > 0 else told
+    return [*lines, f"{where} {more} keys more"] if more > 0 else lines
 
 
 def _leaves(value: Any, place: Place = ()) -> Iterator[tuple[Place, Any]]:
     if isinstance(value, Mapping | list) and value:
         pairs = value.items() if isinstance(value, Mapping) else enumerate(value)
-        for key, one in pairs:
-            yield from _leaves(one, (*place, key))
+        for key, item in pairs:
+            yield from _leaves(item, (*place, key))
     else:
         yield place, value
 

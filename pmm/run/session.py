@@ -169,9 +169,9 @@ def carry_out(
         taps = Taps()
         rig = stack.enter_context(tapped_rig(job.rig_file, _pacer(job), answers, taps))
         executor = stack.enter_context(thread_beside("closing", keeps_time=job.real_time))
-        kept = {"program": program(), **plan_provenance(job.plan)}
+        provenance = {"program": program(), **plan_provenance(job.plan)}
         recording = stack.enter_context(
-            RecorderFactory(rig, job.rig_file, job.plan, job.folder, utc_now, taps, kept)
+            RecorderFactory(rig, job.rig_file, job.plan, job.folder, utc_now, taps, provenance)
         )
         control = RunControl(
             rig, job.rig_file, job.runs, recording.begin, time.monotonic, shown, executor
@@ -257,8 +257,8 @@ class _Loop:
 
 def write_made(job: RunJob) -> None:
     """Write the campaign file of the runs that were made so far."""
-    done = finished_runs(job.folder, job.plan, job.rig_file)
-    write_campaign(job.folder, job.plan, job.rig_file, done)
+    runs = finished_runs(job.folder, job.plan, job.rig_file)
+    write_campaign(job.folder, job.plan, job.rig_file, runs)
 
 
 def tapped_rig(rig_file: RigFile, pacer: Pacer, prompt: Prompt, taps: Taps) -> Rig:

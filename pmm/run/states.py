@@ -210,9 +210,9 @@ class RunStateMachine:
         RunStateError
             If the table has no such step.
         """
-        known = set(STATES[self.state].follows) | ({State.FAULT} - {self.state})
-        if state not in known:
-            steps = ", ".join(sorted(known))
+        targets = set(STATES[self.state].follows) | ({State.FAULT} - {self.state})
+        if state not in targets:
+            steps = ", ".join(sorted(targets))
             raise RunStateError(f"no step from {self.state} to {state}; there are {steps}")
         self.state = state
 
@@ -225,5 +225,5 @@ class RunStateMachine:
             If the state does not allow it; the message says which ones do.
         """
         if not is_allowed(command, self.state):
-            known = ", ".join(sorted(one for one in State if is_allowed(command, one)))
-            raise RunStateError(f"{command} is refused in state {self.state}; possible in {known}")
+            states = ", ".join(sorted(state for state in State if is_allowed(command, state)))
+            raise RunStateError(f"{command} is refused in state {self.state}; possible in {states}")

@@ -28,8 +28,8 @@ class Stopper:
 
     def power_off(self) -> None:
         """Take the power off each axis as soon as it rests."""
-        for one in self._conduct.rig.powered():
-            one.disable()
+        for axis in self._conduct.rig.powered():
+            axis.disable()
 
     def at_rest(self) -> bool:
         """Return whether nothing moves and all is answered; at rest the shaft loses its power.

@@ -141,13 +141,13 @@ class Surroundings:
             yield Demand(f"medium: bring the model into {medium}; press Enter", "medium", medium)
 
     def _change_mass(self, run: RunPlan) -> Iterator[Demand]:
-        known = run.known_mass
-        mass_kg, at_m = (known.mass_kg, known.x_m) if known is not None else (0.0, 0.0)
+        mass = run.known_mass
+        mass_kg, at_m = (mass.mass_kg, mass.x_m) if mass is not None else (0.0, 0.0)
         if mass_kg == self.mass_kg:
             return
         self.mass_kg = mass_kg
-        what = f"put {mass_kg:g} kg on the model at x = {at_m:g} m" if known else "take it off"
-        yield Demand(f"mass: {what}; press Enter", "mass", mass_kg, at_m=at_m)
+        request = f"put {mass_kg:g} kg on the model at x = {at_m:g} m" if mass else "take it off"
+        yield Demand(f"mass: {request}; press Enter", "mass", mass_kg, at_m=at_m)
 
     def _change_drift(self, run: RunPlan, oscillator: Oscillator) -> Iterator[Demand]:
         drift_rad = run.set_point.drift_rad
@@ -183,14 +183,14 @@ class Surroundings:
             return
         self.lines = point.lines
         orders = ", ".join(str(line.order) for line in point.lines)
-        what = (
+        request = (
             f"let each strut follow its table of lines {orders} over a turn of the master angle, "
             "as the run's header.json has them"
             if orders
             else "let the struts follow a single sine again"
         )
         table = json.dumps([asdict(line) for line in point.lines])
-        yield Demand(f"lines: {what}; press Enter when it is so", "lines", table)
+        yield Demand(f"lines: {request}; press Enter when it is so", "lines", table)
 
 
 class Questions:

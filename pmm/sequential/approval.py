@@ -111,13 +111,13 @@ class Envelope:
 
 
 def approval_of(
-    given: str | None, *, simulated: bool, clock: Callable[[], float] = time.monotonic
+    choice: str | None, *, simulated: bool, clock: Callable[[], float] = time.monotonic
 ) -> Approval:
     """Return what ``--approve`` asks for.
 
     Parameters
     ----------
-    given
+    choice
         ``None``, ``"all"`` or the path of an envelope.
 
     Raises
@@ -125,10 +125,10 @@ def approval_of(
     ConfigurationError
         If all is to be approved on a real rig, or the envelope's file is wrong.
     """
-    if given is None:
+    if choice is None:
         return _Always(covering=False)
-    if given != _ALL:
-        return Envelope(Path(given), _envelope(Path(given)), clock)
+    if choice != _ALL:
+        return Envelope(Path(choice), _envelope(Path(choice)), clock)
     if not simulated:
         raise ConfigurationError(
             "--approve all is for the simulated rig; on a real one give an envelope of set-points "

@@ -129,4 +129,4 @@ def _decided(look: Look, answer: str) -> Look | None:
     if answer[0] == "k":
         return look.as_before
     named = _NUMBER.findall(answer)
-    return look.chosen([int(one) for one in named]) if named else look
+    return look.chosen([int(number) for number in named]) if named else look

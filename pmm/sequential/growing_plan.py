@@ -50,9 +50,9 @@ class GrowingPlan:
     @property
     def chosen(self) -> tuple[RunPlan, ...]:
         """Runs that were chosen, in their order."""
-        own = {one["name"] for one in self.entries}
+        names = {entry["name"] for entry in self.entries}
         return tuple(
-            run for run in self.plan.runs if run.kind is RunKind.OSCILLATION and run.entry in own
+            run for run in self.plan.runs if run.kind is RunKind.OSCILLATION and run.entry in names
         )
 
     @property
@@ -74,7 +74,7 @@ class GrowingPlan:
     def given_left(self) -> tuple[RunPlan, ...]:
         """Runs that are made in any case and are not complete, zero and control runs apart."""
         apart = {run.name for run in self.chosen}
-        return tuple(one for one in self.open if one.name not in apart and one.kind not in _BETWEEN)
+        return tuple(run for run in self.open if run.name not in apart and run.kind not in _BETWEEN)
 
     @property
     def due(self) -> tuple[RunPlan, ...]:
@@ -97,14 +97,16 @@ class GrowingPlan:
 
     def chosen_s(self, rig: RigFile) -> float:
         """Return the tank time of the chosen runs that were made, with what stands between them."""
-        own = {run.name for run in self.chosen}
+        names = {run.name for run in self.chosen}
         rows = zip(self.made, duration_rows(self.made, rig), strict=True)
-        return math.fsum(time_s for run, time_s in rows if run.name in own or run.kind in _BETWEEN)
+        return math.fsum(
+            time_s for run, time_s in rows if run.name in names or run.kind in _BETWEEN
+        )
 
     def made_entries(self) -> Iterator[Mapping[str, Any]]:
         """Yield the entries whose runs are complete."""
-        done = {run.entry for run in self.made}
-        yield from (one for one in self.entries if one["name"] in done)
+        names = {run.entry for run in self.made}
+        yield from (entry for entry in self.entries if entry["name"] in names)
 
 
 def read_growing(folder: Path, design: DesignFile) -> GrowingPlan | None:
@@ -120,14 +122,14 @@ def read_growing(folder: Path, design: DesignFile) -> GrowingPlan | None:
         return None
     plan, _ = read_plan_and_rig(path)
     entries = read_toml(path)["runs"]
-    given = design.plan_table.get("runs", [])
-    if entries[: len(given)] != given:
+    design_entries = design.plan_table.get("runs", [])
+    if entries[: len(design_entries)] != design_entries:
         raise ConfigurationError(
             f"{path}: begins with other [[runs]] than {design.path.name}; put them back, or record "
             "to another folder with --output"
         )
-    own = tuple(entries[len(given) :])
-    return GrowingPlan(plan, own, frozenset(done_runs(folder, plan.runs)))
+    chosen_entries = tuple(entries[len(design_entries) :])
+    return GrowingPlan(plan, chosen_entries, frozenset(done_runs(folder, plan.runs)))
 
 
 def planned(folder: Path, design: DesignFile, look: Look) -> tuple[str, ...]:
@@ -154,15 +156,15 @@ def write_growing(
         That follow, to be named.
     """
     target = folder / PLAN
-    own = [] if before is None else list(before.made_entries())
+    entries = [] if before is None else list(before.made_entries())
     if before is not None and before.closed and runs:
-        own.append(_apart(design, len(own)))
-    first = 1 + sum("motion" in one for one in own)
-    own += [run_entry(run, number) for number, run in enumerate(runs, first)]
-    tables = [*design.plan_table.get("runs", []), *own]
+        entries.append(_apart(design, len(entries)))
+    first = 1 + sum("motion" in entry for entry in entries)
+    entries += [run_entry(run, number) for number, run in enumerate(runs, first)]
+    tables = [*design.plan_table.get("runs", []), *entries]
     text = [
         *plan_head(design, target, grows=True),
-        *(toml_table("runs", one, array=True) for one in tables),
+        *(toml_table("runs", table, array=True) for table in tables),
     ]
     write_whole(target, "\n".join(text))
 

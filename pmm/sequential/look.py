@@ -194,7 +194,7 @@ class Look:
         """Return it as it is kept."""
         ended = self.ending
         return Decision(
-            self.runs, self.time_s, self.known, tuple(one.name for one in self.kept),
+            self.runs, self.time_s, self.known, tuple(run.name for run in self.kept),
             tuple(map(in_words, self.proposed)), self.left_s, approved,
             "" if ended is None else str(ended), self.remark, self.notes, self.causes,
         )  # fmt: skip
@@ -233,10 +233,10 @@ def read_decisions(folder: Path) -> tuple[Decision, ...]:
         table = json.loads(path.read_text(encoding="utf-8"))
     except ValueError as error:
         raise ConfigurationError(f"{path}: damaged ({error}); take it out to go on") from error
-    found = validate(_Kept, table, faults) if isinstance(table, Mapping) else None
-    if found is None or faults:
+    content = validate(_Kept, table, faults) if isinstance(table, Mapping) else None
+    if content is None or faults:
         raise as_error(path, faults or [Fault((), "holds no decisions")], {})
-    return found.decisions
+    return content.decisions
 
 
 def keep_decision(folder: Path, decision: Decision) -> None:
@@ -246,12 +246,12 @@ def keep_decision(folder: Path, decision: Decision) -> None:
     interrupted before the next run keeps what was decided.
     """
     before = read_decisions(folder)
-    older = [one for one in before if len(one.runs) < len(decision.runs)]
-    same = [one for one in before if len(one.runs) == len(decision.runs) and not one.ending]
+    older = [entry for entry in before if len(entry.runs) < len(decision.runs)]
+    same = [entry for entry in before if len(entry.runs) == len(decision.runs) and not entry.ending]
     stays = bool(same) and not (decision.added or decision.ending)
     _write(folder, [*older, same[-1] if stays else decision])
 
 
 def _write(folder: Path, decisions: Sequence[Decision]) -> None:
-    text = json.dumps({"decisions": [asdict(one) for one in decisions]}, indent=1)
+    text = json.dumps({"decisions": [asdict(decision) for decision in decisions]}, indent=1)
     write_whole(folder / DECISIONS, text + "\n")

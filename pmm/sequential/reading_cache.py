@@ -35,5 +35,5 @@ class Remembering(InThisProcess):
         key = (fn.__qualname__, pickle.dumps(task), file.st_size, file.st_mtime_ns)
         if key not in self._known:
             self._known[key] = fn(task)
-        found: T = self._known[key]
-        return found
+        result: T = self._known[key]
+        return result

@@ -80,60 +80,67 @@ class TargetGoal:
             If the folder's plan or campaign file is wrong.
         """
         standing = self._standing()
-        file, found, hopeless = _designed(self._going_on(standing))
+        file, best_design, hopeless = _designed(self._going_on(standing))
         notes = (
             *(f"{name} cannot be used: {why}" for name, why in standing.unusable.items()),
-            *(why for why, one in hopeless),
+            *(why for why, row in hopeless),
             *standing.repeats(self._file.noise.repeat_relative),
         )
         made = () if standing.plan is None else standing.plan.made
         look = Look(
             standing.names,
             math.fsum(duration_rows(made, self._file.rig)),
-            tuple(_known([*found.now, *(one for _, one in hopeless)] if file.cycles else [])),
+            tuple(_known([*best_design.now, *(row for _, row in hopeless)] if file.cycles else [])),
             notes=notes,
         )
-        given = bool(self._file.fixed) if standing.plan is None else bool(standing.plan.given_left)
-        left = _offered(standing.left, file)
-        ending = _ending(found, file, left, hopeless=bool(hopeless))
-        if ending is not None and not given:
+        has_fixed = (
+            bool(self._file.fixed) if standing.plan is None else bool(standing.plan.given_left)
+        )
+        planned_runs = _offered(standing.left, file)
+        ending = _ending(best_design, file, planned_runs, hopeless=bool(hopeless))
+        if ending is not None and not has_fixed:
             return replace(look, ending=ending[0], remark=ending[1])
-        return self._next(look, found, file, left, made)
+        return self._next(look, best_design, file, planned_runs, made)
 
     def _next(
         self,
         look: Look,
-        found: Design,
+        best_design: Design,
         file: DesignFile,
-        left: Sequence[RunPlan],
+        planned_runs: Sequence[RunPlan],
         made: Sequence[RunPlan],
     ) -> Look:
         """Return the look with the runs that follow: those that were planned, or others."""
-        new = tuple(step.run for step in found.steps for _ in range(step.repeats))
-        each_s, left_s = self._costs_s(new, made), math.fsum(self._costs_s(left, made))
+        new = tuple(step.run for step in best_design.steps for _ in range(step.repeats))
+        each_s, left_s = self._costs_s(new, made), math.fsum(self._costs_s(planned_runs, made))
         new_s = math.fsum(each_s)
-        why = self._why_new(found, file, left, new_s, left_s)
+        why = self._why_new(best_design, file, planned_runs, new_s, left_s)
         if not why or not new:
-            return replace(look, kept=tuple(left), left_s=left_s)
+            return replace(look, kept=tuple(planned_runs), left_s=left_s)
         return replace(
             look,
             proposed=new,
             costs_s=each_s,
             left_s=new_s,
-            before=tuple(left),
+            before=tuple(planned_runs),
             before_s=left_s,
             remark=why,
         )
 
     def _why_new(
-        self, found: Design, file: DesignFile, left: Sequence[RunPlan], new_s: float, left_s: float
+        self,
+        best_design: Design,
+        file: DesignFile,
+        planned_runs: Sequence[RunPlan],
+        new_s: float,
+        left_s: float,
     ) -> str:
         """Return why the runs that are planned are not to stay; empty where they are."""
-        if not left:
+        if not planned_runs:
             return "the plan so far does not do" if file.cycles else "the first plan"
-        candidates = [CandidateRun(run.set_point, run.periods, math.inf) for run in left]
+        candidates = [CandidateRun(run.set_point, run.periods, math.inf) for run in planned_runs]
         would = foreseen(file, candidates)
-        if _missing(would) > _missing(found.known) + _WORSE:
+        if _missing(would) > _missing(best_design.known) + _WORSE:
             worst = max(would, key=_short)
             return f"the runs that were planned would leave {_said(worst)}"
         if left_s > file.time_s:
@@ -146,26 +153,26 @@ class TargetGoal:
             return _Standing(plan, None, {})
         if not any(run.oscillates for run in plan.made):
             return _Standing(plan, None, {})
-        found = measured(self._file, self._folder, self._executor)
-        kept = [k for k, one in enumerate(found.cycles) if one.name in plan.done]
-        found = replace(
-            found,
-            candidates=tuple(found.candidates[k] for k in kept),
-            cycles=tuple(found.cycles[k] for k in kept),
+        measurement = measured(self._file, self._folder, self._executor)
+        places = [k for k, cycle in enumerate(measurement.cycles) if cycle.name in plan.done]
+        measurement = replace(
+            measurement,
+            candidates=tuple(measurement.candidates[k] for k in places),
+            cycles=tuple(measurement.cycles[k] for k in places),
         )
-        usable = {one.name for one in found.cycles}
+        usable = {cycle.name for cycle in measurement.cycles}
         unusable = {
-            run.name: found.failed.get(run.name, "it is left out")
+            run.name: measurement.failed.get(run.name, "it is left out")
             for run in plan.chosen
             if run.name in plan.done and run.name not in usable
         }
-        return _Standing(plan, found, unusable)
+        return _Standing(plan, measurement, unusable)
 
     def _going_on(self, standing: _Standing) -> DesignFile:
         """Return the design after what was made, with the time and the candidates that are left."""
-        found, plan, file = standing.found, standing.plan, self._file
-        if found is not None and found.cycles:
-            file = after(file, [found])
+        measurement, plan, file = standing.found, standing.plan, self._file
+        if measurement is not None and measurement.cycles:
+            file = after(file, [measurement])
         if plan is None:
             return file
         made = [run for run in plan.chosen if run.name in plan.done]
@@ -185,10 +192,12 @@ class TargetGoal:
         return costs_s(runs, before, file.rig, file.tables.zero)
 
 
-def _offered(left: Sequence[RunPlan], file: DesignFile) -> Sequence[RunPlan]:
+def _offered(planned_runs: Sequence[RunPlan], file: DesignFile) -> Sequence[RunPlan]:
     """Return the planned runs that are left; none where the grid does not have all of them now."""
     offered = {(run.set_point, run.periods) for run in file.grid.runs}
-    return left if all((run.set_point, run.periods) in offered for run in left) else ()
+    return (
+        planned_runs if all((run.set_point, run.periods) in offered for run in planned_runs) else ()
+    )
 
 
 def _designed(
@@ -197,31 +206,38 @@ def _designed(
     """Return the file with the targets that runs can meet, its design, and why not the others."""
     hopeless: list[tuple[str, ExpectedCoefficient]] = []
     while True:
-        found = design(file)
-        short = zip([one for one in found.known if not one.met], found.why, strict=True)
-        bad = [(why, one) for one, why in short if math.isfinite(one.wanted) and beyond_runs(one)]
+        best_design = design(file)
+        short = zip(
+            [row for row in best_design.known if not row.met],
+            best_design.why,
+            strict=True,
+        )
+        bad = [(why, row) for row, why in short if math.isfinite(row.wanted) and beyond_runs(row)]
         if not bad:
-            return file, found, hopeless
-        now = {(one.name, one.where): one for one in found.now}
-        hopeless += [(why, now.get((one.name, one.where), one)) for why, one in bad]
-        names = {one.name for _, one in bad}
-        targets = tuple(one for one in file.targets if one.name not in names)
+            return file, best_design, hopeless
+        now = {(row.name, row.where): row for row in best_design.now}
+        hopeless += [(why, now.get((row.name, row.where), row)) for why, row in bad]
+        names = {row.name for _, row in bad}
+        targets = tuple(target for target in file.targets if target.name not in names)
         if not targets:
             return file, Design((), (), (), ()), hopeless
         file = replace(file, targets=targets)
 
 
 def _ending(
-    found: Design, file: DesignFile, left: Sequence[RunPlan], *, hopeless: bool
+    best_design: Design, file: DesignFile, planned_runs: Sequence[RunPlan], *, hopeless: bool
 ) -> tuple[Ending, str] | None:
     """Return why nothing more is to be made, and more of it; ``None`` where something is."""
-    wanted = [one for one in found.now if math.isfinite(one.wanted)]
-    if file.cycles and wanted and all(one.met for one in wanted):
+    wanted = [row for row in best_design.now if math.isfinite(row.wanted)]
+    if file.cycles and wanted and all(row.met for row in wanted):
         return (Ending.EXHAUSTED, "all other targets are met") if hopeless else (Ending.MET, "")
-    if found.steps or (left and not hopeless):
+    if best_design.steps or (planned_runs and not hopeless):
         return None
-    short = [_said(one) for one in wanted if file.cycles and not one.met]
-    cheapest_s = min((one.cost_s + one.setting_s for one in file.grid.candidates), default=math.inf)
+    short = [_said(row) for row in wanted if file.cycles and not row.met]
+    cheapest_s = min(
+        (candidate.cost_s + candidate.setting_s for candidate in file.grid.candidates),
+        default=math.inf,
+    )
     if cheapest_s > file.time_s:
         left_of = f"{clock(file.time_s)} are left of limits.time_h, too little for any run"
         return Ending.TIME, "; ".join([f"{left_of} of the grid", *short])
@@ -229,31 +245,31 @@ def _ending(
 
 
 def _known(rows: Sequence[ExpectedCoefficient]) -> Iterator[KnownTarget]:
-    for one in rows:
-        if math.isfinite(one.wanted):
-            name = f"{one.name} at {one.where}" if one.where else one.name
-            told = math.isfinite(one.standard_uncertainty)
-            u, value = (one.standard_uncertainty, one.value) if told else (None, None)
-            most = next(iter(one.shares.items()), None)
+    for row in rows:
+        if math.isfinite(row.wanted):
+            name = f"{row.name} at {row.where}" if row.where else row.name
+            is_known = math.isfinite(row.standard_uncertainty)
+            u, value = (row.standard_uncertainty, row.value) if is_known else (None, None)
+            most = next(iter(row.shares.items()), None)
             mostly = "" if most is None else f"{most[0]}, {100.0 * most[1]:.0f} %"
-            yield KnownTarget(name, one.unit, value, u, one.wanted, mostly)
+            yield KnownTarget(name, row.unit, value, u, row.wanted, mostly)
 
 
-def _short(one: ExpectedCoefficient) -> float:
+def _short(row: ExpectedCoefficient) -> float:
     """Return by how much a coefficient misses its target, as a logarithm; 0 where it is met."""
-    if not math.isfinite(one.wanted):
+    if not math.isfinite(row.wanted):
         return 0.0
-    if not math.isfinite(one.standard_uncertainty):
+    if not math.isfinite(row.standard_uncertainty):
         return _UNKNOWN
-    return max(0.0, math.log(max(one.standard_uncertainty, 1e-300) / one.wanted))
+    return max(0.0, math.log(max(row.standard_uncertainty, 1e-300) / row.wanted))
 
 
 def _missing(rows: Sequence[ExpectedCoefficient]) -> float:
     return math.fsum(map(_short, rows))
 
 
-def _said(one: ExpectedCoefficient) -> str:
-    where = f" at {one.where}" if one.where else ""
-    if one.message:
-        return f"{one.name}{where} unknown ({one.message})"
-    return f"{one.name}{where} at {one.standard_uncertainty:.3g} {one.unit}, {one.wanted:.3g} asked"
+def _said(row: ExpectedCoefficient) -> str:
+    where = f" at {row.where}" if row.where else ""
+    if row.message:
+        return f"{row.name}{where} unknown ({row.message})"
+    return f"{row.name}{where} at {row.standard_uncertainty:.3g} {row.unit}, {row.wanted:.3g} asked"

@@ -132,22 +132,26 @@ def at_rest(watched: Sequence[RecordingBehaviour]) -> list[bool]:
     Judged by the columns that carry the line of the recording with the cleanest one: at rest none
     of them moves by more than a small part of its amplitude there.
     """
-    timed = [one for one in watched if one.line is not None and not one.line.doubt]
+    timed = [
+        recording
+        for recording in watched
+        if recording.line is not None and not recording.line.doubt
+    ]
     if not timed:
         return [False] * len(watched)
-    cleanest = min(timed, key=lambda one: one.line.beside if one.line else 1.0)
+    cleanest = min(timed, key=lambda recording: recording.line.beside if recording.line else 1.0)
     amplitudes = {
         name: abs(column.part.first)
         for name, column in cleanest.columns.items()
         if column.part.carried
     }
-    return [_stands(one, amplitudes, in_time=one in timed) for one in watched]
+    return [_stands(recording, amplitudes, in_time=recording in timed) for recording in watched]
 
 
-def _stands(one: RecordingBehaviour, amplitudes: dict[str, float], *, in_time: bool) -> bool:
+def _stands(recording: RecordingBehaviour, amplitudes: dict[str, float], *, in_time: bool) -> bool:
     moved = [
-        one.columns[name].spread / amplitude
+        recording.columns[name].spread / amplitude
         for name, amplitude in amplitudes.items()
-        if name in one.columns
+        if name in recording.columns
     ]
     return bool(moved) and max(moved) < (_STANDS if in_time else _TIMELESS)

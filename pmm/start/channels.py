@@ -22,26 +22,29 @@ def as_columns(
     roles: Sequence[ColumnRole], running: Sequence[RecordingBehaviour]
 ) -> list[FoundColumn]:
     """Return the channels, sure or not, and the columns with the line that keep their names."""
-    found: list[FoundColumn] = []
+    columns: list[FoundColumn] = []
     for kind, channels in _PAIRS:
-        found += _of_struts([role for role in roles if role.kind is kind], channels)
-    found += [
+        columns += _of_struts([role for role in roles if role.kind is kind], channels)
+    columns += [
         FoundColumn(role.kind.name, role.column, doubt=role.doubt)
         for role in roles
         if role.kind.places == 1
     ]
-    found = [_with_unit(one, running) for one in found]
-    found.sort(key=lambda one: CHANNELS.index(one.name))
-    return [*found, *_keeping_names({one.column for one in found if not one.doubt}, running)]
+    columns = [_with_unit(column, running) for column in columns]
+    columns.sort(key=lambda column: CHANNELS.index(column.name))
+    return [
+        *columns,
+        *_keeping_names({column.column for column in columns if not column.doubt}, running),
+    ]
 
 
 def _of_struts(roles: Sequence[ColumnRole], channels: Sequence[str]) -> Iterator[FoundColumn]:
     doubts = {role.column: role.doubt for role in roles}
     names = words.struts_in_order(list(doubts))
-    told = [words.says(name, words.FORE) - words.says(name, words.AFT) for name in names]
-    if told == [0, 0]:  # what is sure is no worse for being called the first
+    ends = [words.says(name, words.FORE) - words.says(name, words.AFT) for name in names]
+    if ends == [0, 0]:  # what is sure is no worse for being called the first
         names.sort(key=lambda name: bool(doubts[name]))
-    places = channels[1:] if told == [1] else channels
+    places = channels[1:] if ends == [1] else channels
     for channel, name in zip(places, names, strict=False):
         yield FoundColumn(channel, name, doubt=doubts[name])
 
@@ -57,29 +60,36 @@ def by_order_of_names(columns: Sequence[FoundColumn]) -> bool:
     )
 
 
-def _with_unit(one: FoundColumn, running: Sequence[RecordingBehaviour]) -> FoundColumn:
+def _with_unit(column: FoundColumn, running: Sequence[RecordingBehaviour]) -> FoundColumn:
     """Say the unit that the numbers have where the header has none."""
-    seen = [watched.columns[one.column] for watched in running if one.column in watched.columns]
-    if seen[0].unit or one.name == PULSES.name:
-        return one
-    if one.name == ANGLE.name:
-        turn = next(each.turn for each in seen if each.turn)
-        return replace(one, unit=turn.unit, remark="no unit in the header: it turns so")
-    if one.name in (*DISPLACEMENTS, *COMMANDS):
-        amplitude = float(np.median([abs(each.part.first) for each in seen]))
+    behaviours = [
+        watched.columns[column.column] for watched in running if column.column in watched.columns
+    ]
+    if behaviours[0].unit or column.name == PULSES.name:
+        return column
+    if column.name == ANGLE.name:
+        turn = next(each.turn for each in behaviours if each.turn)
+        return replace(column, unit=turn.unit, remark="no unit in the header: it turns so")
+    if column.name in (*DISPLACEMENTS, *COMMANDS):
+        amplitude = float(np.median([abs(each.part.first) for each in behaviours]))
         unit = "m" if amplitude < _LARGEST_M else "mm"
         said = f"no unit in the header: {unit} by its amplitude of {amplitude:.3g}"
-        return replace(one, unit=unit, remark=said)
-    if one.name in FORCES:
-        said = f"no unit in the header: if it is kN, write {one.column + ':kN'!r}"
-        return replace(one, remark=said)
-    return replace(one, remark="no unit in the header")
+        return replace(column, unit=unit, remark=said)
+    if column.name in FORCES:
+        said = f"no unit in the header: if it is kN, write {column.column + ':kN'!r}"
+        return replace(column, remark=said)
+    return replace(column, remark="no unit in the header")
 
 
 def _keeping_names(taken: set[str], running: Sequence[RecordingBehaviour]) -> Iterator[FoundColumn]:
     """Yield what carries the line in most runs and is no channel of the rig for sure."""
-    names = sorted({name for one in running for name in one.columns} - taken, key=words.natural)
+    names = sorted(
+        {name for recording in running for name in recording.columns} - taken, key=words.natural
+    )
     for name in names:
-        held = [one.columns[name] for one in running if name in one.columns]
-        if len(held) == len(running) and sum(one.part.carried for one in held) > len(held) / 2:
+        held = [recording.columns[name] for recording in running if name in recording.columns]
+        if (
+            len(held) == len(running)
+            and sum(behaviour.part.carried for behaviour in held) > len(held) / 2
+        ):
             yield FoundColumn(name, name)

@@ -19,7 +19,7 @@ from hardware.description.setpoint import Medium
 from hardware.description.units import unit
 
 PHOTOCELL: Final = "photocell"
-ON_MODEL: Final = (*(one.name for one in (*STEERING, *HEELING)), *POSITIONS)
+ON_MODEL: Final = (*(channel.name for channel in (*STEERING, *HEELING)), *POSITIONS)
 """What the model has of its own: the simulation needs to be told of it."""
 CHANNELS: Final = (
     *FORCES, FORCE_X.name, *DISPLACEMENTS, SHAFT_ANGLE.name, CARRIAGE_SPEED.name, *COMMANDS,
@@ -132,7 +132,7 @@ class FoundCampaign:
             if column.doubt:
                 yield f"not sure, commented out: {column.name} = {column.column!r}: {column.doubt}"
         doubts = {run.name: run.doubt for run in self.runs}
-        doubts |= {one.name: one.doubt for one in self.at_rest}
+        doubts |= {rest.name: rest.doubt for rest in self.at_rest}
         for name, doubt in doubts.items():
             if doubt:
                 yield f"not sure, commented out: {name}: {doubt}"

@@ -86,10 +86,10 @@ def _rig(task: StartTask) -> Draft:
 
 
 def _campaign(task: StartTask) -> Draft:
-    found = find_campaign(task.recordings, task.folder) if task.recordings else None
-    widened = _widened(task.answers["plane"], found.runs if found else ())
-    text = render("campaign.toml", task.values(found=found, widened=widened))
-    notes = tuple(found.notes()) if found else ()
+    campaign = find_campaign(task.recordings, task.folder) if task.recordings else None
+    widened = _widened(task.answers["plane"], campaign.runs if campaign else ())
+    text = render("campaign.toml", task.values(found=campaign, widened=widened))
+    notes = tuple(campaign.notes()) if campaign else ()
     return Draft(
         {"campaign.toml": text}, lambda tried: read_campaign(tried / "campaign.toml"), notes
     )
@@ -117,11 +117,11 @@ def _inertia(task: StartTask) -> Draft:
     name = FILES[task.job][0]
     run = swing.run if task.job == "swing" else bifilar.run
     near = [Path(os.path.relpath(path, task.folder)).as_posix() for path in task.recordings]
-    there = [path.resolve().as_posix() for path in task.recordings]
+    full_paths = [path.resolve().as_posix() for path in task.recordings]
 
     def trial(tried: Path) -> None:
         path = tried / f"trial-{name}"
-        path.write_text(render(name, task.values(records=there)), encoding="utf-8")
+        path.write_text(render(name, task.values(records=full_paths)), encoding="utf-8")
         run(str(path))
 
     return Draft({name: render(name, task.values(records=near))}, trial)

@@ -56,11 +56,11 @@ def once_a_period(edges_s: Sequence[float], frequency_hz: float) -> bool:
 def _tails(path: Path) -> Iterator[str]:
     """Yield what the names of text files beside a recording have behind its stem."""
     stem = stem_of(path)
-    for other in path.parent.glob(f"{_literal(stem)}?*"):
-        tail = other.name[len(stem) :]
-        if other != path and tail[0] not in ".0123456789" and tail.endswith(text_endings()):
+    for sibling in path.parent.glob(f"{_literal(stem)}?*"):
+        tail = sibling.name[len(stem) :]
+        if sibling != path and tail[0] not in ".0123456789" and tail.endswith(text_endings()):
             yield tail
 
 
 def _literal(text: str) -> str:
-    return "".join(f"[{one}]" if one in "*?[" else one for one in text)
+    return "".join(f"[{character}]" if character in "*?[" else character for character in text)

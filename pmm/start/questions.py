@@ -41,8 +41,8 @@ class StartQuestion:
             For a number that is not above ``lowest``, or none of ``choices``.
         """
         if self.choices and answer not in self.choices:
-            known = ", ".join(self.choices)
-            raise ConfigurationError(f"{self.option} {answer}: should be one of {known}")
+            choices = ", ".join(self.choices)
+            raise ConfigurationError(f"{self.option} {answer}: should be one of {choices}")
         if isinstance(answer, float) and self.lowest is not None and not answer > self.lowest:
             raise ConfigurationError(f"{self.option} {answer:g}: should be above {self.lowest:g}")
         return answer
@@ -128,7 +128,7 @@ JOBS: Final[Mapping[str, Sequence[StartQuestion]]] = {
 }
 
 
-def answers(job: str, given: Mapping[str, Any], ask: Ask) -> dict[str, str | float]:
+def answers(job: str, options: Mapping[str, Any], ask: Ask) -> dict[str, str | float]:
     """Return an answer to each question of a job: the one that was given, else that of ``ask``.
 
     Raises
@@ -136,10 +136,14 @@ def answers(job: str, given: Mapping[str, Any], ask: Ask) -> dict[str, str | flo
     ConfigurationError
         If one cannot be.
     """
-    found: dict[str, str | float] = {}
+    replies: dict[str, str | float] = {}
     for question in JOBS[job]:
-        told = given.get(question.name)
-        if told is None and question.name == "channel" and found["interface"] != "pmm-simulated":
+        option = options.get(question.name)
+        if (
+            option is None
+            and question.name == "channel"
+            and replies["interface"] != "pmm-simulated"
+        ):
             question = StartQuestion("channel", question.text, "can0")
-        found[question.name] = question.checked(ask(question) if told is None else told)
-    return found
+        replies[question.name] = question.checked(ask(question) if option is None else option)
+    return replies

@@ -131,8 +131,8 @@ def _names(paths: Sequence[Path]) -> list[str]:
     """Return a name for each recording: its file's, with its folder's where that is not enough."""
     stems = [stem_of(path) for path in paths]
     folders = [path.resolve().parent.name for path in paths]
-    both = [f"{folder}-{stem}" for folder, stem in zip(folders, stems, strict=True)]
-    return next((one for one in (stems, folders) if len(set(one)) == len(one)), both)
+    full_names = [f"{folder}-{stem}" for folder, stem in zip(folders, stems, strict=True)]
+    return next((names for names in (stems, folders) if len(set(names)) == len(names)), full_names)
 
 
 def _reference(columns: Iterable[FoundColumn], pulses: bool) -> str:
@@ -148,22 +148,22 @@ def _reference(columns: Iterable[FoundColumn], pulses: bool) -> str:
 
 def _without(columns: Sequence[FoundColumn]) -> tuple[str, ...]:
     """Return the gauges that are not there beside one that is; what may be one is not said."""
-    seen = {column.name: column.doubt for column in columns if column.name in FORCES}
-    return tuple(name for name in FORCES if name not in seen) if "" in seen.values() else ()
+    doubts = {column.name: column.doubt for column in columns if column.name in FORCES}
+    return tuple(name for name in FORCES if name not in doubts) if "" in doubts.values() else ()
 
 
 def _run(
     look: _Look, name: str, folder: Path, sure: dict[str, FoundColumn], digits: int
 ) -> FoundRun:
-    line, told = look.watched.line, look.set_point
+    line, set_point = look.watched.line, look.set_point
     phasors = {
-        one: look.watched.columns[column.column].part.first * column.factor
-        for one, column in sure.items()
+        channel: look.watched.columns[column.column].part.first * column.factor
+        for channel, column in sure.items()
         if column.column in look.watched.columns
     }
     speed_m_s, remarks = _speed_m_s(look, sure), {}
-    if told is None:
-        told = _PLACEHOLDER if line is None else _set_point(line.frequency_hz, phasors)
+    if set_point is None:
+        set_point = _PLACEHOLDER if line is None else _set_point(line.frequency_hz, phasors)
         strut = next(
             (displacement for displacement in DISPLACEMENTS if displacement in phasors), None
         )
@@ -178,15 +178,15 @@ def _run(
         if speed_m_s is None:
             remarks["carriage_speed_m_s"] = f"{_NOT_SAID}; without it the carriage stands"
     else:
-        speed_m_s, digits = told.carriage_speed_m_s, 6
+        speed_m_s, digits = set_point.carriage_speed_m_s, 6
     return FoundRun(
         name,
         Path(os.path.relpath(look.path, folder)).as_posix(),
-        _rounded(told.frequency_hz, digits),
-        _rounded(1e3 * told.eccentricity_m, 3),
-        float(round(math.degrees(told.strut_phase_rad))) % 360.0,
+        _rounded(set_point.frequency_hz, digits),
+        _rounded(1e3 * set_point.eccentricity_m, 3),
+        float(round(math.degrees(set_point.strut_phase_rad))) % 360.0,
         speed_m_s or 0.0,
-        told.medium,
+        set_point.medium,
         remarks,
         "nothing in it keeps time" if line is None else line.doubt,
     )
@@ -213,8 +213,8 @@ def _speed_m_s(look: _Look, sure: dict[str, FoundColumn]) -> float | None:
 
 def _rest(look: _Look, name: str, folder: Path, sure: dict[str, FoundColumn]) -> FoundRest:
     speed_m_s = _speed_m_s(look, sure)
-    known = speed_m_s is not None or words.says(name, _ZERO)
-    doubt = "" if known else "nothing says whether the carriage stood"
+    is_known = speed_m_s is not None or words.says(name, _ZERO)
+    doubt = "" if is_known else "nothing says whether the carriage stood"
     return FoundRest(
         name,
         Path(os.path.relpath(look.path, folder)).as_posix(),
@@ -235,21 +235,21 @@ def _sensors(
         holding = [look for look in looks if column.column in look.steps]
         # A shaft that turns evenly is sampled at angles of a grid of its own.
         turns = name == SHAFT_ANGLE.name
-        step = None if turns else smallest_step(one.steps[column.column] for one in holding)
+        step = None if turns else smallest_step(look.steps[column.column] for look in holding)
         quiet = [
             look.noise[column.column]
             for look, stands in zip(looks, rests, strict=True)
             if stands and column.column in look.noise
         ]
-        found = {}
+        numbers = {}
         if quiet:
             rounding = 0.0 if step is None else step / math.sqrt(12.0)
             white = math.sqrt(max(float(np.mean(np.square(quiet))) - rounding**2, 0.0))
-            found["noise_rms"] = _rounded(white * column.factor, 3)
+            numbers["noise_rms"] = _rounded(white * column.factor, 3)
         if step is not None:
-            found["resolution"] = _rounded(step * column.factor, 6)
-        if found:
-            yield name, found
+            numbers["resolution"] = _rounded(step * column.factor, 6)
+        if numbers:
+            yield name, numbers
 
 
 def _rounded(value: float, digits: int) -> float:

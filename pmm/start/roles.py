@@ -105,10 +105,12 @@ def find_roles(watched: Sequence[RecordingBehaviour]) -> list[ColumnRole]:
     watched
         One for each recording; those in which nothing keeps time say nothing.
     """
-    telling = [one for one in watched if one.line is not None]
+    telling = [recording for recording in watched if recording.line is not None]
     if not telling:
         return []
-    columns = sorted({name for one in telling for name in one.columns}, key=words.natural)
+    columns = sorted(
+        {name for recording in telling for name in recording.columns}, key=words.natural
+    )
     reasons = {
         (column, kind): list(_reasons(column, kind, telling))
         for column in columns
@@ -118,7 +120,7 @@ def find_roles(watched: Sequence[RecordingBehaviour]) -> list[ColumnRole]:
         [[sum(r.odds for r in reasons[column, kind]) for kind in KINDS] for column in columns]
     )
     best = _given_out(odds)
-    found = []
+    roles = []
     for row, at in sorted(best.items(), key=lambda pair: (pair[1], pair[0])):
         without = odds.copy()
         without[row, at] = -np.inf
@@ -129,8 +131,8 @@ def find_roles(watched: Sequence[RecordingBehaviour]) -> list[ColumnRole]:
         if margin < SURE:
             instead = [columns[r] for r, k in second.items() if k == at and best.get(r) != at]
             doubt = _doubt(reasons[column, kind], instead)
-        found.append(ColumnRole(column, kind, margin, doubt))
-    return found
+        roles.append(ColumnRole(column, kind, margin, doubt))
+    return roles
 
 
 def _given_out(odds: FloatArray) -> dict[int, int]:
@@ -147,8 +149,8 @@ def _given_out(odds: FloatArray) -> dict[int, int]:
     }
 
 
-def _total(odds: FloatArray, given: Mapping[int, int]) -> float:
-    return float(sum(odds[row, kind] for row, kind in given.items()))
+def _total(odds: FloatArray, choice: Mapping[int, int]) -> float:
+    return float(sum(odds[row, kind] for row, kind in choice.items()))
 
 
 def _doubt(reasons: Sequence[RoleEvidence], instead: Sequence[str]) -> str:
@@ -164,10 +166,14 @@ def _reasons(
     column: str, kind: ChannelKind, telling: Sequence[RecordingBehaviour]
 ) -> Iterator[RoleEvidence]:
     """Yield what speaks for a role and against it; what a column does, in most recordings."""
-    seen = [(one, one.columns[column]) for one in telling if column in one.columns]
-    if len(seen) < len(telling):
+    pairs = [
+        (recording, recording.columns[column])
+        for recording in telling
+        if column in recording.columns
+    ]
+    if len(pairs) < len(telling):
         yield RoleEvidence(_AGAINST, "it is not in every recording")
-    unit = seen[0][1].unit
+    unit = pairs[0][1].unit
     if unit not in ("", *kind.units):
         yield RoleEvidence(-np.inf, f"it is in {unit}")
     elif unit and kind is not PULSES:
@@ -175,16 +181,18 @@ def _reasons(
     yield from _of_name(column, kind, telling)
     if kind in BY_NAME:
         return
-    done = [list(_DOING[kind.name](behaviour, watch)) for watch, behaviour in seen]
-    yield from sorted(done, key=lambda one: sum(e.odds for e in one))[(len(done) - 1) // 2]
+    evidence = [list(_DOING[kind.name](behaviour, watch)) for watch, behaviour in pairs]
+    yield from sorted(evidence, key=lambda reasons: sum(e.odds for e in reasons))[
+        (len(evidence) - 1) // 2
+    ]
 
 
 def _of_name(
     column: str, kind: ChannelKind, telling: Sequence[RecordingBehaviour]
 ) -> Iterator[RoleEvidence]:
     if column in CHANNELS:  # our own name says it, and no other
-        own = column.startswith(kind.name) and (column == FORCE_X.name) == (kind is ALONG)
-        yield RoleEvidence(SURE if own else -np.inf, "its name is that of the channel")
+        is_own = column.startswith(kind.name) and (column == FORCE_X.name) == (kind is ALONG)
+        yield RoleEvidence(SURE if is_own else -np.inf, "its name is that of the channel")
         return
     if kind in BY_NAME:
         says = words.says(column, kind.words)
@@ -196,9 +204,9 @@ def _of_name(
         yield RoleEvidence(_AGAINST, "it is called as what is no part of the oscillator")
     if words.says(column, kind.words):
         yield RoleEvidence(_NAME, "its name")
-    elif any(words.says(column, one.words) for one in KINDS):
+    elif any(words.says(column, other_kind.words) for other_kind in KINDS):
         yield RoleEvidence(-_NAME, "its name is that of something else")
-    axes = {words.axis_of(name) for one in telling for name in one.columns} - {""}
+    axes = {words.axis_of(name) for recording in telling for name in recording.columns} - {""}
     if kind in (FORCE, ALONG) and words.axis_of(column) and len(axes) > 1:
         named = ", ".join(sorted(axes))
         yield RoleEvidence(
@@ -206,43 +214,47 @@ def _of_name(
         )
 
 
-def _displacement(one: Behaviour, watch: RecordingBehaviour) -> Iterator[RoleEvidence]:
-    if not one.part.carried or one.turn:
+def _displacement(behaviour: Behaviour, watch: RecordingBehaviour) -> Iterator[RoleEvidence]:
+    if not behaviour.part.carried or behaviour.turn:
         yield RoleEvidence(-np.inf, "it does not move at the line")
         return
-    clean = float(np.clip(-np.log10(max(one.part.beside, 1e-12)) - _CLEAN, -1.0, 1.0))
-    yield RoleEvidence(_DOES * clean, f"{100.0 * one.part.beside:.2g} % of it is beside the line")
+    clean = float(np.clip(-np.log10(max(behaviour.part.beside, 1e-12)) - _CLEAN, -1.0, 1.0))
+    yield RoleEvidence(
+        _DOES * clean, f"{100.0 * behaviour.part.beside:.2g} % of it is beside the line"
+    )
     like = [
-        other for other in watch.columns.values() if other.unit == one.unit and other.part.carried
+        motion
+        for motion in watch.columns.values()
+        if motion.unit == behaviour.unit and motion.part.carried
     ]
-    driver = min(like, key=lambda other: other.part.beside)
-    apart = abs(one.part.first) / max(abs(driver.part.first), 1e-300)
+    driver = min(like, key=lambda motion: motion.part.beside)
+    apart = abs(behaviour.part.first) / max(abs(driver.part.first), 1e-300)
     if not 1.0 - _OTHER_STRUT < apart < 1.0 / (1.0 - _OTHER_STRUT):
         yield RoleEvidence(
             _AGAINST, f"its amplitude is {apart:.2g} times that of the cleanest motion"
         )
 
 
-def _force(one: Behaviour, _: RecordingBehaviour) -> Iterator[RoleEvidence]:
-    if one.part.carried:
+def _force(behaviour: Behaviour, _: RecordingBehaviour) -> Iterator[RoleEvidence]:
+    if behaviour.part.carried:
         yield RoleEvidence(_DOES, "it answers at the line")
     else:
         yield RoleEvidence(_AGAINST, "it does not answer at the line")
 
 
-def _angle(one: Behaviour, _: RecordingBehaviour) -> Iterator[RoleEvidence]:
-    if one.turn is None:
+def _angle(behaviour: Behaviour, _: RecordingBehaviour) -> Iterator[RoleEvidence]:
+    if behaviour.turn is None:
         yield RoleEvidence(-np.inf, "it does not turn once in each period")
         return
     yield RoleEvidence(1.5 * _DOES, "it rises by one turn in each period")
-    if one.turn.wraps:
+    if behaviour.turn.wraps:
         yield RoleEvidence(_DOES, "it begins anew after each turn")
 
 
-def _speed(one: Behaviour, _: RecordingBehaviour) -> Iterator[RoleEvidence]:
-    if one.part.carried and one.part.beside < _SWINGS:
+def _speed(behaviour: Behaviour, _: RecordingBehaviour) -> Iterator[RoleEvidence]:
+    if behaviour.part.carried and behaviour.part.beside < _SWINGS:
         yield RoleEvidence(_AGAINST, "it swings with the line")
-    elif one.spread <= _EVEN * abs(one.mean):
+    elif behaviour.spread <= _EVEN * abs(behaviour.mean):
         yield RoleEvidence(_DOES, "it is even")
 
 
@@ -250,8 +262,8 @@ def _along(_one: Behaviour, _watch: RecordingBehaviour) -> Iterator[RoleEvidence
     yield RoleEvidence(-_NAME, "few rigs have a gauge along the model")
 
 
-def _pulses(one: Behaviour, _: RecordingBehaviour) -> Iterator[RoleEvidence]:
-    odds = 3.0 * _DOES if one.pulses else -np.inf
+def _pulses(behaviour: Behaviour, _: RecordingBehaviour) -> Iterator[RoleEvidence]:
+    odds = 3.0 * _DOES if behaviour.pulses else -np.inf
     yield RoleEvidence(odds, "it has one pulse in each period")
 
 

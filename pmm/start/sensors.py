@@ -27,8 +27,8 @@ def step_of(values: FloatArray) -> float | None:
     apart = apart[apart > _SAME * (levels[-1] - levels[0])]
     if apart.size < _FEWEST_LEVELS - 1:
         return None
-    found = (_grid(apart, float(np.quantile(apart, at))) for at in _TRIED)
-    return next((step for step in found if step is not None), None)
+    steps = (_grid(apart, float(np.quantile(apart, at))) for at in _TRIED)
+    return next((step for step in steps if step is not None), None)
 
 
 def _grid(apart: FloatArray, about: float) -> float | None:
@@ -43,9 +43,9 @@ def _grid(apart: FloatArray, about: float) -> float | None:
 
 def smallest_step(steps: Iterable[float | None]) -> float | None:
     """Return the step that all recordings keep; ``None`` where one keeps none."""
-    found = list(steps)
-    known = [step for step in found if step is not None]
-    return min(known) if known and len(known) == len(found) else None
+    all_steps = list(steps)
+    known_steps = [step for step in all_steps if step is not None]
+    return min(known_steps) if known_steps and len(known_steps) == len(all_steps) else None
 
 
 def noise_at_rest(recording: Recording, name: str) -> float:

@@ -99,13 +99,17 @@ def shared_line(recording: Recording) -> SharedLine | None:
         With all its columns; one in which nothing moves is none of a run.
     """
     names = sorted(recording.channel_names)
-    found = {name: one for name in names if (one := _own(recording, name))}
-    asked = {name: one for name, one in found.items() if not _few(one)} or found
-    lines = sorted((_alone(recording, *one) for one in asked.items()), key=lambda one: one.beside)
+    references = {name: reference for name in names if (reference := _own(recording, name))}
+    asked = {
+        name: reference for name, reference in references.items() if not _few(reference)
+    } or references
+    lines = sorted(
+        (_alone(recording, *item) for item in asked.items()), key=lambda line: line.beside
+    )
     judged = [_judged(recording, line) for line in _apart(lines)]
     if not judged:
         return None
-    line, _ = max(judged, key=lambda one: one[1])
+    line, _ = max(judged, key=lambda pair: pair[1])
     return replace(line, doubt=_doubt(line, len(asked) > 1))
 
 
@@ -118,21 +122,26 @@ def _alone(recording: Recording, name: str, reference: PhaseReference) -> Shared
 
 def _apart(lines: Sequence[SharedLine]) -> list[SharedLine]:
     """Return the first of all that are one line: the cleanest."""
-    kept: list[SharedLine] = []
+    clean_lines: list[SharedLine] = []
     for line in lines:
-        if all(abs(line.frequency_hz / one.frequency_hz - 1.0) > SAME_TIME for one in kept):
-            kept.append(line)
-    return kept
+        if all(
+            abs(line.frequency_hz / clean_line.frequency_hz - 1.0) > SAME_TIME
+            for clean_line in clean_lines
+        ):
+            clean_lines.append(line)
+    return clean_lines
 
 
 def _judged(recording: Recording, line: SharedLine) -> tuple[SharedLine, float]:
     names = [
         channel_name for channel_name in recording.channel_names if channel_name != line.channel
     ]
-    known = shares(recording, line.reference, names)
-    others = tuple(sorted(one for one, share in known.items() if share.first > _SHARED))
-    alike = max([_ALONE, *(share.first for share in known.values())])
-    return replace(line, others=others), -math.log10(max(line.beside, _PUREST)) * alike
+    column_shares = shares(recording, line.reference, names)
+    other_names = tuple(
+        sorted(name for name, share in column_shares.items() if share.first > _SHARED)
+    )
+    alike = max([_ALONE, *(share.first for share in column_shares.values())])
+    return replace(line, others=other_names), -math.log10(max(line.beside, _PUREST)) * alike
 
 
 def _doubt(line: SharedLine, rivals: bool) -> str:
@@ -165,9 +174,9 @@ def _even(recording: Recording, name: str, reference: PhaseReference) -> PhaseRe
     inside = recording.between(*ends_s.tolist())
     values, time_s = inside.values(name), inside.time_s() - ends_s.mean()
     turn = 2.0 * np.pi * reference.frequency_hz * time_s
-    ones = np.ones_like(turn)
+    constant = np.ones_like(turn)
     rows = np.stack(
-        [by * one for by in (ones, time_s) for one in (ones, np.sin(turn), np.cos(turn))]
+        [by * wave for by in (constant, time_s) for wave in (constant, np.sin(turn), np.cos(turn))]
     )
     good = np.isfinite(values)
     rows, values = rows[:, good], values[good]
@@ -200,8 +209,8 @@ def _share(rows: FloatArray, values: FloatArray) -> Share:
     power = float(level @ level)
     if not power > _ROUNDING * float(values @ values):
         return Share()
-    first, every = (level - _fitted(rows[:count], level) for count in (4, None))
-    return Share(1.0 - float(first @ first) / power, float(every @ every) / power)
+    first, residual = (level - _fitted(rows[:count], level) for count in (4, None))
+    return Share(1.0 - float(first @ first) / power, float(residual @ residual) / power)
 
 
 def _fitted(rows: FloatArray, values: FloatArray) -> FloatArray:
@@ -212,20 +221,22 @@ def parts_in(
     recording: Recording, names: Sequence[str], reference: PhaseReference
 ) -> list[LinePart]:
     """Return what columns have of a line; nothing where no period of one is whole."""
-    known = shares(recording, reference, names)
-    return [_part(recording.select([name]), reference, known[name].beside) for name in names]
+    column_shares = shares(recording, reference, names)
+    return [
+        _part(recording.select([name]), reference, column_shares[name].beside) for name in names
+    ]
 
 
 def _part(chosen: Recording, reference: PhaseReference, beside: float) -> LinePart:
     samples = chosen.sample_rate_hz / reference.frequency_hz
     harmonics = max(1, min(HARMONICS, int((samples - 1.0) // 2)))
     try:
-        found = resolve(chosen, period_sums(chosen, reference, harmonics))
+        reading = resolve(chosen, period_sums(chosen, reference, harmonics))
     except PmmError:
         return NO_PART
-    first = complex(*found.coefficients[0, 1:3])
+    first = complex(*reading.coefficients[0, 1:3])
     # A wave maker that starts and stops inside the stretch has memory, and its line all the same.
-    alone = found.standard_uncertainty / found.widening
+    alone = reading.standard_uncertainty / reading.widening
     scatter = float(np.hypot(*alone[0, 1:3]))
-    rounding = _ROUNDING**0.5 * abs(float(found.mean[0]))
+    rounding = _ROUNDING**0.5 * abs(float(reading.mean[0]))
     return LinePart(first, abs(first) > max(CARRIED * scatter, rounding), beside)

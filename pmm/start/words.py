@@ -90,5 +90,5 @@ def struts_in_order(names: Sequence[str]) -> list[str]:
 
 def axis_of(name: str) -> str:
     """Return the axis of a balance that a name says, as the z of ``Fz``; empty where none."""
-    found = re.fullmatch(r"(?:f|force|kraft|kracht)[\s_]*([xyz])", name.strip().casefold())
-    return found[1] if found else ""
+    match = re.fullmatch(r"(?:f|force|kraft|kracht)[\s_]*([xyz])", name.strip().casefold())
+    return match[1] if match else ""

@@ -30,7 +30,7 @@ def render(template: str, values: Mapping[str, Any]) -> str:
 def toml_value(value: object) -> str:
     """Return a text, a number or a table of them as TOML has it, in one line."""
     if isinstance(value, Mapping):
-        inside = ", ".join(f"{toml_key(key)} = {toml_value(one)}" for key, one in value.items())
+        inside = ", ".join(f"{toml_key(key)} = {toml_value(item)}" for key, item in value.items())
         return f"{{ {inside} }}"
     if isinstance(value, str):
         escaped = value.replace("\\", "\\\\").replace('"', '\\"').replace("\t", "\\t")
@@ -51,10 +51,10 @@ def check_free(folder: Path, names: Sequence[str], *, force: bool) -> None:
     ConfigurationError
         Unless ``force``; it names the files.
     """
-    there = [str(folder / name) for name in names if (folder / name).exists()]
-    if there and not force:
+    files = [str(folder / name) for name in names if (folder / name).exists()]
+    if files and not force:
         raise ConfigurationError(
-            f"{', '.join(there)}: exists already; --output to another folder, or --force"
+            f"{', '.join(files)}: exists already; --output to another folder, or --force"
         )
 
 

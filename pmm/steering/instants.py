@@ -94,11 +94,14 @@ def _instant(
     )
     turn = np.exp(1j * angle_rad * np.arange(cycle.orders + 1))
     rate = 1j * omega * np.arange(cycle.orders + 1) * rotation
-    u, v = (float(one[0].real + (one[1:] * turn[1:]).imag.sum()) for one in (ahead, across))
+    u, v = (
+        float(velocity[0].real + (velocity[1:] * turn[1:]).imag.sum())
+        for velocity in (ahead, across)
+    )
     motion = (u, v, float((rate * turn).imag.sum()))
     loads, loads_u = _at(cycle.phasors, _LOADS, angle_rad)
-    told, told_u = _at(read, gauges, angle_rad)
-    return Instant(side, motion, tuple(-one for one in loads), loads_u, told, told_u)
+    readings, readings_u = _at(read, gauges, angle_rad)
+    return Instant(side, motion, tuple(-load for load in loads), loads_u, readings, readings_u)
 
 
 def _at(
@@ -113,5 +116,5 @@ def _at(
                 n = int(order)
                 slope[row, 2 * place] = math.sin(n * angle_rad) if n else 1.0
                 slope[row, 2 * place + 1] = math.cos(n * angle_rad) if n else 0.0
-    found = phasors.real.mapped(slope)
-    return tuple(found.values.tolist()), tuple(found.standard_uncertainty.tolist())
+    levels = phasors.real.mapped(slope)
+    return tuple(levels.values.tolist()), tuple(levels.standard_uncertainty.tolist())

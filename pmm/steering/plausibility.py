@@ -33,8 +33,8 @@ _RATE: Final = (
 _ANGLE: Final = "is rudder_angle_deg in degrees, and the channel rudder_angle in its unit?"
 _INTERVAL: Final = 2.0  # standard uncertainties: what a few runs hardly tell is not doubted
 BOUNDS: Final = {
-    one.name: one
-    for one in (
+    bound.name: bound
+    for bound in (
         Bound("1-t_P", 0.55, 1.05, "published: 0.78 and 0.79", _LOADS),
         Bound("w_P0", -0.1, 0.65, "published: 0.40 and 0.36", _PROPELLER),
         Bound("t_R", -0.1, 0.8, "published: 0.39 and 0.26", _LOADS),
@@ -55,8 +55,8 @@ as far they let a rudder pass that is measured in the wrong unit of length."""
 
 
 OF_RUNS: Final = {
-    one.name: one
-    for one in (
+    bound.name: bound
+    for bound in (
         Bound("U/(n D_P)", 0.05, 3.0, "advance without wake, bollard pull to windmilling", _RATE),
         Bound("largest rudder angle in °", 2.0, 60.0, "what rudders are laid to", _ANGLE),
     )
@@ -78,33 +78,43 @@ _SIGNS: Final = {
 """Factors of the equations, above 0 on every ship, that are below 0 where one sign is turned."""
 
 
-def doubts(found: SteeringParameters, runs: SteeringRuns, known: Particulars) -> Iterator[str]:
+def doubts(
+    parameters: SteeringParameters, runs: SteeringRuns, particulars: Particulars
+) -> Iterator[str]:
     """Yield a sentence on each number of the runs and each parameter that is not believed.
 
     Where parameters are what one turned sign makes of a ship's, that sign is named alone: what is
     beyond its bounds follows from it.
     """
-    pace = np.median(runs.speed_m_s / runs.rate_hz) / known.diameter_m
+    pace = np.median(runs.speed_m_s / runs.rate_hz) / particulars.diameter_m
     largest = math.degrees(np.abs(runs.rudder_rad).max())
     for bound, stated in zip(OF_RUNS.values(), (float(pace), largest), strict=True):
         if (doubt := bound.doubt(stated)) is not None:
             yield doubt
-    if (sign := _turned_sign(found)) is not None:
+    if (sign := _turned_sign(parameters)) is not None:
         yield sign
         return
-    half = _INTERVAL * found.standard_uncertainty
-    for name, value, width in zip(found.names, found.values.tolist(), half.tolist(), strict=True):
+    half = _INTERVAL * parameters.standard_uncertainty
+    for name, value, width in zip(
+        parameters.names, parameters.values.tolist(), half.tolist(), strict=True
+    ):
         if (doubt := BOUNDS[name].doubt(value, width)) is not None:
             yield doubt
 
 
-def _turned_sign(found: SteeringParameters) -> str | None:
+def _turned_sign(parameters: SteeringParameters) -> str | None:
     """Return the sentence on the sign that turns just those factors that are below 0."""
-    factors = {"1-t_P": found["1-t_P"], "1-t_R": 1.0 - found["t_R"], "1+a_H": 1.0 + found["a_H"]}
-    factors |= {name: found[name] for name in found.names if name == "epsilon"}
-    factors |= {name[:7]: found[name] for name in found.names if name.startswith("gamma_R")}
+    factors = {
+        "1-t_P": parameters["1-t_P"],
+        "1-t_R": 1.0 - parameters["t_R"],
+        "1+a_H": 1.0 + parameters["a_H"],
+    }
+    factors |= {name: parameters[name] for name in parameters.names if name == "epsilon"}
+    factors |= {
+        name[:7]: parameters[name] for name in parameters.names if name.startswith("gamma_R")
+    }
     below = {name for name, value in factors.items() if value < 0.0}
-    likely = [what for what, turns in _SIGNS.items() if below and turns & factors.keys() == below]
+    likely = [sign for sign, turns in _SIGNS.items() if below and turns & factors.keys() == below]
     if not likely:
         return None
     return f"{', '.join(sorted(below))} below 0, as where {', or '.join(likely)}: turn that sign"

@@ -76,51 +76,57 @@ def read_gauge_zeros(task: Task) -> ZeroReading | Failed:
     """Return what the gauges behind the model read in a zero run, as far as it has them."""
     try:
         recording = open_recording(task.source)
-        own = tuple(name for name in _TARED if name in recording.channel_names)
-        return zero_reading(recording, 0.0, own)
+        names = tuple(name for name in _TARED if name in recording.channel_names)
+        return zero_reading(recording, 0.0, names)
     except DataError as error:
         return Failed(task.name, str(task.source.path), str(error), error.exit_status)
 
 
 def read_steered(task: Task, zeros: Mapping[str, ZeroReading]) -> list[SteeredRun] | Failed:
     """Read a run; ``task`` has its zero runs, ``zeros`` what the gauges behind the model read."""
-    done = read_cycle(task)
-    if isinstance(done, Failed):
-        return done
-    assert done.cycle is not None  # noqa: S101 - only a zero run has none
+    result = read_cycle(task)
+    if isinstance(result, Failed):
+        return result
+    assert result.cycle is not None  # noqa: S101 - only a zero run has none
     try:
-        return list(_steered(task, done.cycle, zeros))
+        return list(_steered(task, result.cycle, zeros))
     except DataError as error:
-        return Failed(task.name, done.file, str(error), error.exit_status)
+        return Failed(task.name, result.file, str(error), error.exit_status)
 
 
 def _steered(
     task: Task, cycle: BodyCycle, zeros: Mapping[str, ZeroReading]
 ) -> Iterator[SteeredRun]:
     recording = open_recording(task.source)
-    there = recording.channel_names
-    lacking = [name for name in (*GAUGES, FORCE_X.name) if name not in there]
+    channels = recording.channel_names
+    lacking = [name for name in (*GAUGES, FORCE_X.name) if name not in channels]
     if lacking:
         raise DataError(
             f"{task.name}: no channel {' or '.join(lacking)}; thrust, the rudder's normal force "
-            f"and the force along the model have to be recorded (channels: {', '.join(there)})"
+            f"and the force along the model have to be recorded (channels: {', '.join(channels)})"
         )
-    own = {name: zeros[name] for name in task.zero_names if name is not None and name in zeros}
-    gauges = (*GAUGES, _TORQUE) if _TORQUE in there else GAUGES
-    rest = {name: _rest(recording, name, own, tared=task.tared) for name in gauges}
-    angle, rate = _angle(task, recording, own), _rate(task, recording)
+    run_zeros = {
+        name: zeros[name] for name in task.zero_names if name is not None and name in zeros
+    }
+    gauges = (*GAUGES, _TORQUE) if _TORQUE in channels else GAUGES
+    rest = {name: _rest(recording, name, run_zeros, tared=task.tared) for name in gauges}
+    angle, rate = _angle(task, recording, run_zeros), _rate(task, recording)
     by_zero = {(zero, name): u for name in GAUGES for zero, u in rest[name][1].items()}
-    for one in _instants(task, recording, cycle, gauges):
-        course = f"{replace(task.set_point, rudder_angle_rad=0.0, revolutions_hz=0.0)} {one.side}"
-        told = [
-            value - offset for value, (offset, _) in zip(one.gauges, rest.values(), strict=True)
+    for instant in _instants(task, recording, cycle, gauges):
+        course = (
+            f"{replace(task.set_point, rudder_angle_rad=0.0, revolutions_hz=0.0)} {instant.side}"
+        )
+        values = [
+            value - offset for value, (offset, _) in zip(instant.gauges, rest.values(), strict=True)
         ]
-        spread = list(one.gauges_u)
-        torque = [told[2], math.hypot(spread[2], *rest[_TORQUE][1].values())] if told[2:] else []
-        name = f"{task.name} {one.side}".strip()
+        spread = list(instant.gauges_u)
+        torque = (
+            [values[2], math.hypot(spread[2], *rest[_TORQUE][1].values())] if values[2:] else []
+        )
+        name = f"{task.name} {instant.side}".strip()
         yield SteeredRun(
-            name, course, one.motion, one.loads, one.loads_u, angle, rate,
-            told[0], spread[0], told[1], spread[1], by_zero, *torque,
+            name, course, instant.motion, instant.loads, instant.loads_u, angle, rate,
+            values[0], spread[0], values[1], spread[1], by_zero, *torque,
         )  # fmt: skip
 
 
@@ -140,10 +146,10 @@ def _instants(
     return [Instant("", motion, loads, loads_u, tuple(values), tuple(spread))]
 
 
-def _angle(task: Task, recording: Recording, own: Mapping[str, ZeroReading]) -> float:
+def _angle(task: Task, recording: Recording, zeros: Mapping[str, ZeroReading]) -> float:
     if RUDDER_ANGLE.name not in recording.channel_names:
         return task.set_point.rudder_angle_rad
-    offset, _ = _rest(recording, RUDDER_ANGLE.name, own, tared=task.tared)
+    offset, _ = _rest(recording, RUDDER_ANGLE.name, zeros, tared=task.tared)
     return float(recording.values(RUDDER_ANGLE.name).mean()) - offset
 
 
@@ -167,22 +173,22 @@ def _rest(
 ) -> tuple[float, dict[str, float]]:
     """Return what a channel reads at rest, and the uncertainty that each zero run adds to it."""
     rest = {
-        zero: one.offsets.select([name]).real
-        for zero, one in zeros.items()
-        if name in one.offsets.names
+        zero: reading.offsets.select([name]).real
+        for zero, reading in zeros.items()
+        if name in reading.offsets.names
     }
     if not rest and not tared:
-        what = "neutral" if name == RUDDER_ANGLE.name else "zero"
+        level = "neutral" if name == RUDDER_ANGLE.name else "zero"
         raise DataError(
-            f"{recording.name}: the channel {name} has no {what}; make a zero run with the rudder "
+            f"{recording.name}: the channel {name} has no {level}; make a zero run with the rudder "
             "amidships and the propeller at rest, and name it as zero_before or zero_after; or say "
             "tared = true in the campaign file"
         )
     share = 1.0 / max(len(rest), 1)
-    by_zero = {zero: share * float(one.standard_uncertainty[0]) for zero, one in rest.items()}
-    return share * sum(float(one.values[0]) for one in rest.values()), by_zero
+    by_zero = {zero: share * float(offset.standard_uncertainty[0]) for zero, offset in rest.items()}
+    return share * sum(float(offset.values[0]) for offset in rest.values()), by_zero
 
 
 def zeroed_names(tasks: list[Task]) -> set[str]:
     """Return the zero runs that tasks name."""
-    return {name for one in tasks for name in one.zero_names if name is not None}
+    return {name for task in tasks for name in task.zero_names if name is not None}

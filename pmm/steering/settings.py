@@ -74,25 +74,25 @@ def read_steering_settings(path: Path) -> SteeringSettings:
     """
     table = read_toml(path)
     faults: list[Fault] = list(limit_faults(table))
-    found = validate(SteeringSettings, table, faults)
-    if found is not None:
+    settings = validate(SteeringSettings, table, faults)
+    if settings is not None:
         sizes = {
-            ("length_m",): found.length_m,
-            ("propeller", "diameter_m"): found.propeller.diameter_m,
-            ("rudder", "area_m2"): found.rudder.area_m2,
-            ("rudder", "height_m"): found.rudder.height_m,
-            ("rudder", "slope"): found.rudder.slope,
+            ("length_m",): settings.length_m,
+            ("propeller", "diameter_m"): settings.propeller.diameter_m,
+            ("rudder", "area_m2"): settings.rudder.area_m2,
+            ("rudder", "height_m"): settings.rudder.height_m,
+            ("rudder", "slope"): settings.rudder.slope,
         }
         for place, value in sizes.items():
             if not value > 0.0:
                 faults.append(Fault(place, f"= {value:g} should be above 0"))
-        diameter_m, height_m = found.propeller.diameter_m, found.rudder.height_m
+        diameter_m, height_m = settings.propeller.diameter_m, settings.rudder.height_m
         if diameter_m > height_m > 0.0:
             text = (
                 f"= {diameter_m:g} is above rudder.height_m = {height_m:g}: the race would be "
                 "wider than the rudder is high; are both in metres?"
             )
             faults.append(Fault(("propeller", "diameter_m"), text))
-    if found is None or faults:
+    if settings is None or faults:
         raise as_error(path, faults, table)
-    return found
+    return settings

@@ -54,13 +54,13 @@ class CampaignSteering:
     water: TankWater | None = None
 
 
-def steering_of(folder: Path, given: Path | None = None) -> CampaignSteering:
+def steering_of(folder: Path, settings_path: Path | None = None) -> CampaignSteering:
     """Read a campaign's tows with a turning propeller and identify the parameters.
 
     Parameters
     ----------
     folder
-        With the campaign file, and ``steering.toml`` where ``given`` is ``None``.
+        With the campaign file, and ``steering.toml`` where ``settings_path`` is ``None``.
 
     Raises
     ------
@@ -70,19 +70,21 @@ def steering_of(folder: Path, given: Path | None = None) -> CampaignSteering:
         If there is no such run, or the runs do not tell the parameters.
     """
     campaign = read_campaign(folder / CAMPAIGN_FILE)
-    settings = read_steering_settings(folder / SETTINGS_FILE if given is None else given)
+    settings = read_steering_settings(
+        folder / SETTINGS_FILE if settings_path is None else settings_path
+    )
     density = _density_kg_m3(campaign, settings)
     work = _work(campaign, folder)
     tows, failed = _tows(work)
     if not tows:
-        told = "; ".join(one.message for one in failed)
-        raise DataError(told or _nothing(folder))
-    known, runs = settings.particulars(density), steering_runs(tows)
-    parameters = identified(runs, known, settings.towing_force_n)
+        messages = "; ".join(failure.message for failure in failed)
+        raise DataError(messages or _nothing(folder))
+    particulars, runs = settings.particulars(density), steering_runs(tows)
+    parameters = identified(runs, particulars, settings.towing_force_n)
     return CampaignSteering(
         campaign.name,
         settings,
-        known,
+        particulars,
         tuple(tows),
         runs,
         parameters,
@@ -142,42 +144,42 @@ def _tows(work: Work) -> tuple[list[SteeredRun], list[Failed]]:
         if task.name not in names:
             continue
         struts, gauges = read_zero(task), read_gauge_zeros(task)
-        failed += [one for one in (struts, gauges) if isinstance(one, Failed)][:1]
+        failed += [reading for reading in (struts, gauges) if isinstance(reading, Failed)][:1]
         if not isinstance(struts, Failed) and struts.zero is not None:
             strut_zeros[task.name] = struts.zero
         if isinstance(gauges, ZeroReading):
             gauge_zeros[task.name] = gauges
-    found: list[SteeredRun] = []
+    runs: list[SteeredRun] = []
     for task in wanted:
-        one = read_steered(task.with_zeros(strut_zeros), gauge_zeros)
-        if isinstance(one, Failed):
-            failed.append(one)
+        result = read_steered(task.with_zeros(strut_zeros), gauge_zeros)
+        if isinstance(result, Failed):
+            failed.append(result)
         else:
-            found += one
-    return found, failed
+            runs += result
+    return runs, failed
 
 
 def steering_runs(runs: Sequence[SteeredRun]) -> SteeringRuns:
     """Return runs as the equations take them: loads about the midpoint, X ahead."""
-    values = np.array([(*one.loads, one.thrust_n, one.normal_n) for one in runs]).T
-    spread = np.array([(*one.loads_u, one.thrust_u, one.normal_u) for one in runs]).T
+    values = np.array([(*run.loads, run.thrust_n, run.normal_n) for run in runs]).T
+    spread = np.array([(*run.loads_u, run.thrust_u, run.normal_u) for run in runs]).T
     least = _SMALLEST * np.abs(values).max(axis=1, keepdims=True)
     return SteeringRuns(
-        tuple(one.run for one in runs),
-        np.array([one.motion for one in runs]).T,
-        np.array([one.rudder_rad for one in runs]),
-        np.array([one.rate_hz for one in runs]),
+        tuple(run.run for run in runs),
+        np.array([run.motion for run in runs]).T,
+        np.array([run.rudder_rad for run in runs]),
+        np.array([run.rate_hz for run in runs]),
         values,
         np.maximum(spread, least),
         _shared(runs),
-        tuple(one.course for one in runs),
+        tuple(run.course for run in runs),
     )
 
 
 def _shared(tows: Sequence[SteeredRun]) -> FloatArray:
     """Return what the zeros' readings add to thrust and normal force of the runs they serve."""
-    keys = sorted({key for one in tows for key in one.zero_u})
+    keys = sorted({key for tow in tows for key in tow.zero_u})
     shared = np.zeros((5, len(tows), len(keys)))
     for k, key in enumerate(keys):
-        shared[3 + GAUGES.index(key[1]), :, k] = [one.zero_u.get(key, 0.0) for one in tows]
+        shared[3 + GAUGES.index(key[1]), :, k] = [tow.zero_u.get(key, 0.0) for tow in tows]
     return shared

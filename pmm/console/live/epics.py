@@ -54,7 +54,7 @@ class EpicsOutlet(Outlet):
         counts = {"carried": LiveValue(0), "dropped": LiveValue(0)}
         self._variables = {k: _variable(v) for k, v in {**first.values, **counts}.items()}
         self._shown = {}
-        served = {f"{self._prefix}:{name}": one for name, one in self._variables.items()}
+        served = {f"{self._prefix}:{name}": variable for name, variable in self._variables.items()}
         addresses = get_server_address_list()
         context = Context(served, addresses)
         serving = asyncio.ensure_future(context.run())

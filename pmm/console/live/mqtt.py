@@ -23,7 +23,7 @@ _TOGETHER: Final = 50
 _AT_LEAST_ONCE: Final = 1
 _PATIENCE_S: Final = 5.0  # for an answer of the broker
 _STATUS_S: Final = 1.0
-_ALARMS: Final = {one: one.name.lower() for one in Alarm}
+_ALARMS: Final = {alarm: alarm.name.lower() for alarm in Alarm}
 _ENCODER: Final = json.JSONEncoder(allow_nan=False, ensure_ascii=False, separators=(",", ":"))
 
 
@@ -63,7 +63,7 @@ class MqttOutlet(Outlet):
                 turn, sent = asyncio.Lock(), dict[int, Tick]()
                 senders = (self._publish(client, turn, sent) for _ in range(_TOGETHER))
                 work = [self._say(client), self._watch(client), *senders]
-                tasks = [asyncio.ensure_future(one) for one in work]
+                tasks = [asyncio.ensure_future(sender) for sender in work]
                 try:
                     await asyncio.gather(*tasks)
                 finally:
@@ -106,7 +106,7 @@ class MqttOutlet(Outlet):
         """Publish the status once a second, where it has changed."""
         said = None
         while True:
-            status = {key: one for key, one in asdict(self.status()).items() if key != "name"}
+            status = {key: value for key, value in asdict(self.status()).items() if key != "name"}
             if status != said:
                 await self._send(client, "status", json.dumps(status), retain=True)
                 said = status
@@ -127,10 +127,10 @@ class MqttOutlet(Outlet):
 def message(tick: Tick) -> str:
     """Return a tick as JSON; what is not known is ``null``."""
     values, alarms = {}, {}
-    for name, one in tick.values.items():
-        values[name] = _plain(one.value)
-        if one.severity is not Alarm.FINE:
-            alarms[name] = _ALARMS[one.severity]
+    for name, value in tick.values.items():
+        values[name] = _plain(value.value)
+        if value.severity is not Alarm.FINE:
+            alarms[name] = _ALARMS[value.severity]
     utc = datetime.fromtimestamp(tick.utc_s, UTC).isoformat(timespec="milliseconds")
     content = {"n": tick.number, "utc": utc, "values": values, "alarms": alarms}
     return _ENCODER.encode(content)

@@ -57,12 +57,14 @@ class Publishing:
 
     def statuses(self) -> tuple[OutletStatus, ...]:
         """Return how the outlets are, if there is something new since the last call."""
-        told = self._link.orders()
-        if told:
-            self._last = told[-1]
+        statuses = self._link.orders()
+        if statuses:
+            self._last = statuses[-1]
             return self._last
-        if self._link.lost and any(one.connected or not one.trouble for one in self._last):
-            self._last = tuple(replace(one, connected=False, trouble=_LOST) for one in self._last)
+        if self._link.lost and any(status.connected or not status.trouble for status in self._last):
+            self._last = tuple(
+                replace(status, connected=False, trouble=_LOST) for status in self._last
+            )
             return self._last
         return ()
 
@@ -88,12 +90,12 @@ def outlets_of(settings: OutletSettings) -> list[Outlet]:
     from pmm.console.live.epics import EpicsOutlet
     from pmm.console.live.mqtt import MqttOutlet
 
-    found: list[Outlet] = []
+    outlets: list[Outlet] = []
     if settings.broker is not None:
-        found.append(MqttOutlet(settings.broker))
+        outlets.append(MqttOutlet(settings.broker))
     if settings.epics_prefix:
-        found.append(EpicsOutlet(settings.epics_prefix))
-    return found
+        outlets.append(EpicsOutlet(settings.epics_prefix))
+    return outlets
 
 
 class _Source(Thread):
@@ -132,17 +134,17 @@ async def _carry_out(connection: Connection, settings: OutletSettings) -> None:
     outlets = outlets_of(settings)
     source = _Source(connection, outlets)
     source.start()
-    tasks = [asyncio.ensure_future(one.run()) for one in outlets]
+    tasks = [asyncio.ensure_future(outlet.run()) for outlet in outlets]
     try:
-        while source.is_alive() and not any(one.done() for one in tasks):
-            connection.send(tuple(one.status() for one in outlets))
+        while source.is_alive() and not any(task.done() for task in tasks):
+            connection.send(tuple(outlet.status() for outlet in outlets))
             await asyncio.sleep(_TELL_S)
     except OSError:  # the server has gone
         pass
     finally:
         for task in tasks:
             task.cancel()
-        found = await asyncio.gather(*tasks, return_exceptions=True)
-    for error in found:
+        outcomes = await asyncio.gather(*tasks, return_exceptions=True)
+    for error in outcomes:
         if isinstance(error, Exception):
             raise error

@@ -74,7 +74,7 @@ class LiveTable:
     def __init__(self, hello: Hello) -> None:
         self._hello = hello
         self._samples = [math.nan] * len(hello.channels)
-        self._names = [_names(one, hello.harmonics) for one in hello.channels]
+        self._names = [_names(channel, hello.harmonics) for channel in hello.channels]
 
     def tick(self, frame: Frame, utc_s: float) -> Tick:
         """Return all live values of a frame, measured at ``utc_s``, seconds since 1970."""
@@ -143,7 +143,7 @@ def _of_the_rig(frame: Frame) -> dict[str, LiveValue]:
     return {
         "time": LiveValue(frame.status.time_s, "s"),
         "shaft": _number(frame.shaft_hz, "Hz"),
-        **{_FOREIGN.sub("_", name): _number(one, unit) for name, unit, one in frame.axes},
+        **{_FOREIGN.sub("_", name): _number(value, unit) for name, unit, value in frame.axes},
         "bus": LiveValue(int(frame.bus.ok), severity=bus),
         "fault": LiveValue("; ".join(frame.bus.faults), severity=bus),
         "late_cycles": LiveValue(frame.loop.late, severity=late),
