@@ -20,9 +20,9 @@ __all__ = ["connect", "open", "simulate"]
 
 def __getattr__(name: str) -> Any:
     if name not in __all__:
-        there = f"there are {', '.join(__all__)} (docs/python.md)"
+        hint = f"there are {', '.join(__all__)} (docs/python.md)"
         raise AttributeError(
-            f"module {__name__!r} has no attribute {name!r}; {there}",
+            f"module {__name__!r} has no attribute {name!r}; {hint}",
             name=name,
             obj=sys.modules[__name__],
         )

@@ -139,8 +139,8 @@ def _wait_for_a_worker(client: Any, address: str, patience: str | None) -> None:
 
 def _check_workers(client: Any, address: str, module: str) -> None:
     """Refuse workers that lack a module: one that is sent such a task ends without a word."""
-    found = client.run(find_spec, module, on_error="return")
-    lacking = sorted(worker for worker, has in found.items() if not isinstance(has, ModuleSpec))
+    specs = client.run(find_spec, module, on_error="return")
+    lacking = sorted(worker for worker, spec in specs.items() if not isinstance(spec, ModuleSpec))
     if lacking:
         raise DataError(
             f"--scheduler {address}: {', '.join(lacking)} cannot import {module}; a cluster's "
@@ -169,9 +169,9 @@ def queued_jobs(address: str) -> Iterator[str]:
     DataError
         If the queue refuses a job.
     """
-    found = _NAMED.fullmatch(address)
-    assert found is not None  # noqa: S101 - whoever calls has asked is_queue
-    name, jobs = found[1], int(found[2])
+    match = _NAMED.fullmatch(address)
+    assert match is not None  # noqa: S101 - whoever calls has asked is_queue
+    name, jobs = match[1], int(match[2])
     if jobs < 1:
         raise ConfigurationError(f"--scheduler {address}: at least one job is needed")
     with _cluster(address, name) as cluster:

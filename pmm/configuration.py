@@ -92,26 +92,26 @@ def validate(
     key: Any = kind
     try:
         # By way of JSON: there pydantic is strict about numbers and yet takes arrays for tuples.
-        found: T = _adapter(key).validate_json(json.dumps(table), strict=True)
+        instance: T = _adapter(key).validate_json(json.dumps(table), strict=True)
     except ValidationError as error:
-        for one in error.errors(include_url=False):
-            where = find(kind, one["loc"], table)
-            if where is None:
+        for entry in error.errors(include_url=False):
+            match = find(kind, entry["loc"], table)
+            if match is None:
                 continue
-            place = where.place
-            if one["type"] == "unexpected_keyword_argument":
+            place = match.place
+            if entry["type"] == "unexpected_keyword_argument":
                 table_name = next((key for key in place if isinstance(key, str)), "")
                 extra = extra_keys.get(table_name, ()) if len(place) > 1 else ()
-                faults.append(Fault(place, unknown(place, (*where.known, *extra))))
-            elif one["type"] == "missing":
+                faults.append(Fault(place, unknown(place, (*match.known, *extra))))
+            elif entry["type"] == "missing":
                 faults.append(Fault(place, "is missing"))
             else:
-                faults.append(Fault(place, f"= {_short(one['input'])} {_problem(one['msg'])}"))
+                faults.append(Fault(place, f"= {_short(entry['input'])} {_problem(entry['msg'])}"))
         return None
     except ConfigurationError as error:  # a value that its own class refuses
         faults.append(Fault((), str(error)))
         return None
-    return found
+    return instance
 
 
 @cache
@@ -134,11 +134,11 @@ def _short(value: object) -> str:
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
-def unknown(place: Place, known: Sequence[str]) -> str:
+def unknown(place: Place, keys: Sequence[str]) -> str:
     """Say that a key is not known, and which one may be meant."""
-    known = [one for one in known if not one.startswith("_")]
-    near = get_close_matches(str(place[-1]), known, n=1, cutoff=0.5)
-    hint = f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
+    keys = [key for key in keys if not key.startswith("_")]
+    near = get_close_matches(str(place[-1]), keys, n=1, cutoff=0.5)
+    hint = f"did you mean {near[0]}?" if near else f"known: {', '.join(keys)}"
     return f"is not a known key; {hint}"
 
 
@@ -213,19 +213,19 @@ def limit_faults(table: Any, place: Place = ()) -> Iterator[Fault]:
     """Yield what is no finite number or not within the bounds of its name, at any depth."""
     parts = table.items() if isinstance(table, dict) else enumerate(table)
     for key, value in parts:
-        here: Place = (*place, key)
+        value_place: Place = (*place, key)
         if isinstance(value, dict | list):
-            yield from limit_faults(value, here)
+            yield from limit_faults(value, value_place)
         elif is_number(value):
             fault = _number_fault(str(key), value)
             if fault is not None:
-                yield Fault(here, f"= {value:g} {fault}")
+                yield Fault(value_place, f"= {value:g} {fault}")
 
 
 def as_error(path: Path, faults: Sequence[Fault], table: Mapping[str, Any]) -> ConfigurationError:
     """Return all faults of a file as one error: for each its path in the file and the message."""
-    told = (f"{place_text(fault.place, table)}{fault.message}" for fault in faults)
-    lines = list({line.lower(): line for line in told}.values())  # nan and NaN are one fault
+    texts = (f"{place_text(fault.place, table)}{fault.message}" for fault in faults)
+    lines = list({line.lower(): line for line in texts}.values())  # nan and NaN are one fault
     if len(lines) == 1:
         return ConfigurationError(f"{path}: {lines[0]}")
     return ConfigurationError(f"{path}: {len(lines)} errors\n  " + "\n  ".join(lines))

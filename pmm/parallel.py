@@ -94,24 +94,24 @@ def as_done(
         there are then: clusters grow. A message has one task, and of short tasks to many workers
         :func:`tasks_each`.
     """
-    done: SimpleQueue[Future[_Done[T]]] = SimpleQueue()
+    futures: SimpleQueue[Future[_Done[T]]] = SimpleQueue()
     waiting, running = iter(tasks), 0
     count, work_s = 0, 0.0
 
     def results() -> Iterator[T]:
         nonlocal running, count, work_s
-        found = done.get().result()
+        outcome = futures.get().result()
         running -= 1
-        count, work_s = count + len(found.results), work_s + found.work_s
-        yield from found.results
-        if found.error is not None:
-            raise found.error
+        count, work_s = count + len(outcome.results), work_s + outcome.work_s
+        yield from outcome.results
+        if outcome.error is not None:
+            raise outcome.error
 
-    while some := list(islice(waiting, tasks_each(executor, work_s / count if count else None))):
-        executor.submit(_each, work, some).add_done_callback(done.put)
+    while batch := list(islice(waiting, tasks_each(executor, work_s / count if count else None))):
+        executor.submit(_each, work, batch).add_done_callback(futures.put)
         running += 1
         # What is done at once, as in this process, is yielded before the next task is begun.
-        while not done.empty() or running >= (most or in_hand(executor)):
+        while not futures.empty() or running >= (most or in_hand(executor)):
             yield from results()
     while running:
         yield from results()
@@ -179,12 +179,12 @@ class InThisProcess(Executor):
 
     def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
         """Do a task now and return it done."""
-        done: Future[T] = Future()
+        future: Future[T] = Future()
         try:
-            done.set_result(fn(*args, **kwargs))
+            future.set_result(fn(*args, **kwargs))
         except Exception as error:  # it belongs to whoever asks for the result
-            done.set_exception(error)
-        return done
+            future.set_exception(error)
+        return future
 
     def map(
         self,
@@ -242,15 +242,15 @@ class LocalProcesses(Executor):
         except BrokenProcessPool:
             self._again(outer, work, pool)
             return
-        inner.add_done_callback(lambda done: self._settle(outer, work, pool, done))
+        inner.add_done_callback(lambda future: self._settle(outer, work, pool, future))
 
     def _settle(
-        self, outer: Future[T], work: Callable[[], T], pool: ProcessPoolExecutor, done: Future[T]
+        self, outer: Future[T], work: Callable[[], T], pool: ProcessPoolExecutor, inner: Future[T]
     ) -> None:
-        if done.cancelled():
+        if inner.cancelled():
             outer.cancel()
             return
-        error = done.exception()
+        error = inner.exception()
         if isinstance(error, BrokenProcessPool):
             self._again(outer, work, pool)
         elif not outer.set_running_or_notify_cancel():
@@ -258,14 +258,14 @@ class LocalProcesses(Executor):
         elif error is not None:
             outer.set_exception(error)
         else:
-            outer.set_result(done.result())
+            outer.set_result(inner.result())
 
-    def _again(self, outer: Future[T], work: Callable[[], T], broken: ProcessPoolExecutor) -> None:
+    def _again(self, outer: Future[T], work: Callable[[], T], pool: ProcessPoolExecutor) -> None:
         with self._lock:
-            if self._pools[-1] is broken and self._left > 0:
+            if self._pools[-1] is pool and self._left > 0:
                 self._left -= 1
                 self._pools.append(self._new_pool())
-            given_up = self._pools[-1] is broken
+            given_up = self._pools[-1] is pool
         if not given_up:
             self._start(outer, work)
         elif outer.set_running_or_notify_cancel():

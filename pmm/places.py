@@ -24,7 +24,7 @@ def find(kind: Any, place: Place, table: Any) -> PlaceMatch | None:
     It is ``None`` for what is wrong with a table taken for a class that it is not meant to be.
     """
     cleaned: list[str | int] = []
-    known: tuple[str, ...] = ()
+    keys: tuple[str, ...] = ()
     for key in place:
         members = _members(kind)
         if len(members) > 1:
@@ -33,15 +33,17 @@ def find(kind: Any, place: Place, table: Any) -> PlaceMatch | None:
                 return None
             continue
         kind = members[0]
-        known = _keys(kind)
+        keys = _keys(kind)
         cleaned.append(key)
         kind, table = _part(kind, key), _value(table, key)
-    return PlaceMatch(tuple(cleaned), known)
+    return PlaceMatch(tuple(cleaned), keys)
 
 
 def meant(members: list[Any], table: Any) -> Any:
     """Return the class whose keys are most like those of a table; the first of equals."""
-    return max(members, key=lambda one: _likeness(one, table if isinstance(table, dict) else {}))
+    return max(
+        members, key=lambda member: _likeness(member, table if isinstance(table, dict) else {})
+    )
 
 
 def _likeness(kind: Any, table: dict[str, Any]) -> float:

@@ -33,19 +33,19 @@ def here(place: str | Path) -> Path:
     if url is None:
         return Path(place)
     protocol, _, rest = url.partition("://")
-    system, there = _system(url)
+    system, location = _system(url)
     if "file" in _protocols(system):
-        return Path(there)
+        return Path(location)
     target = _copies() / protocol / rest
     try:
-        found = _files(system, there)
-        _check_names([rest, *found])
-        copies = {_below(target, there, name): info for name, info in found.items()}
+        files = _files(system, location)
+        _check_names([rest, *files])
+        copies = {_below(target, location, name): info for name, info in files.items()}
         _bring(system, copies)
     except Exception as error:  # each protocol's package raises its own
         raise DataError(f"{url}: cannot be read: {error}") from error
     _forget(target, copies)
-    if not found:
+    if not files:
         raise ConfigurationError(f"{url}: no such file or folder")
     return target
 
@@ -56,43 +56,43 @@ def url_of(place: str | Path) -> str | None:
     if _COPIES in parts[:-2]:
         protocol, *rest = parts[parts.index(_COPIES) + 1 :]
         return f"{protocol}://{'/'.join(rest)}"
-    found = _URL.fullmatch(str(place).replace(os.sep, "/"))
-    if found is None:
+    match = _URL.fullmatch(str(place).replace(os.sep, "/"))
+    if match is None:
         return None
-    root = "/" if found[1] == "file" else ""
-    return f"{found[1]}://{root}{found[2].rstrip('/')}"
+    root = "/" if match[1] == "file" else ""
+    return f"{match[1]}://{root}{match[2].rstrip('/')}"
 
 
 def _system(url: str) -> tuple[Any, str]:
     from fsspec.core import url_to_fs
 
     try:
-        found: tuple[Any, str] = url_to_fs(url)
+        system_path: tuple[Any, str] = url_to_fs(url)
     except ImportError as error:
         remedy = f": {installing('s3')}" if url.startswith("s3:") else ""
         raise ConfigurationError(f"{url}: {error}{remedy}") from None
     except ValueError as error:
         raise ConfigurationError(f"{url}: {error}") from None
-    return found
+    return system_path
 
 
 def _protocols(system: Any) -> tuple[str, ...]:
-    found = system.protocol
-    return (found,) if isinstance(found, str) else tuple(found)
+    protocols = system.protocol
+    return (protocols,) if isinstance(protocols, str) else tuple(protocols)
 
 
 def _copies() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / _COPIES
 
 
-def _files(system: Any, there: str) -> dict[str, dict[str, Any]]:
+def _files(system: Any, location: str) -> dict[str, dict[str, Any]]:
     """Return what is known of each file below a place, or of the file that it is."""
     system.invalidate_cache()
     try:
-        found: dict[str, dict[str, Any]] = system.find(there, detail=True)
+        files: dict[str, dict[str, Any]] = system.find(location, detail=True)
     except FileNotFoundError:
         return {}
-    return found
+    return files
 
 
 def _check_names(names: Iterable[str]) -> None:
@@ -100,22 +100,22 @@ def _check_names(names: Iterable[str]) -> None:
         raise ValueError("a name has '..' in it")
 
 
-def _below(target: Path, there: str, name: str) -> Path:
+def _below(target: Path, location: str, name: str) -> Path:
     """Return where a file's copy lies; the place itself where it is a file."""
-    return target / name.removeprefix(there).lstrip("/") if name != there else target
+    return target / name.removeprefix(location).lstrip("/") if name != location else target
 
 
-def _bring(system: Any, found: dict[Path, dict[str, Any]]) -> None:
-    for path, info in found.items():
-        changed = _changed_s(system, info["name"])
-        if changed is not None and _is_copied(path, info["size"], changed):
+def _bring(system: Any, copies: dict[Path, dict[str, Any]]) -> None:
+    for path, info in copies.items():
+        changed_s = _changed_s(system, info["name"])
+        if changed_s is not None and _is_copied(path, info["size"], changed_s):
             continue
         path.parent.mkdir(parents=True, exist_ok=True)
         part = path.with_name(f".{path.name}.{os.getpid()}.part")
         try:
             system.get_file(info["name"], str(part))
-            if changed is not None:
-                os.utime(part, (changed, changed))
+            if changed_s is not None:
+                os.utime(part, (changed_s, changed_s))
             part.replace(path)
         finally:
             part.unlink(missing_ok=True)
@@ -131,12 +131,12 @@ def _changed_s(system: Any, name: str) -> float | None:
 def _is_copied(path: Path, size: int, changed_s: float) -> bool:
     if not path.is_file():
         return False
-    mine = path.stat()
-    return mine.st_size == size and abs(mine.st_mtime - changed_s) < _SAME_S
+    status = path.stat()
+    return status.st_size == size and abs(status.st_mtime - changed_s) < _SAME_S
 
 
-def _forget(target: Path, kept: Collection[Path]) -> None:
+def _forget(target: Path, copies: Collection[Path]) -> None:
     """Remove the copies of files that are gone, but for those that are just being made."""
     for path in (target,) if target.is_file() else tuple(target.rglob("*")):
-        if path.is_file() and path not in kept and path.suffix != ".part":
+        if path.is_file() and path not in copies and path.suffix != ".part":
             path.unlink()

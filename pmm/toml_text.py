@@ -15,7 +15,9 @@ def toml_table(name: str, table: Mapping[str, Any], *, array: bool = False) -> s
         Whether it is one of an array of tables.
     """
     heading = f"[[{name}]]" if array else f"[{name}]"
-    lines = [f"{_key(key)} = {toml_value(one)}" for key, one in table.items() if one is not None]
+    lines = [
+        f"{_key(key)} = {toml_value(value)}" for key, value in table.items() if value is not None
+    ]
     return "\n".join([heading, *lines]) + "\n"
 
 
@@ -38,7 +40,9 @@ def toml_value(value: Any) -> str:
         return repr(value)
     if isinstance(value, Mapping):
         inner = (
-            f"{_key(key)} = {toml_value(one)}" for key, one in value.items() if one is not None
+            f"{_key(key)} = {toml_value(entry)}"
+            for key, entry in value.items()
+            if entry is not None
         )
         return f"{{ {', '.join(inner)} }}"
     if isinstance(value, Sequence):

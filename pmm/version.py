@@ -15,10 +15,10 @@ _BESIDE: Final = ("NumPy", "SciPy", "numba", "python-can", "canopen")
 def version_line() -> str:
     """Return version, commit where it is known, Python, the system, and the libraries' versions."""
     commit = _commit()
-    built = program() + (f" ({commit})" if commit else "")
+    program_text = program() + (f" ({commit})" if commit else "")
     libraries = ", ".join(f"{name} {version_of(name)}" for name in _BESIDE)
     system = f"{platform.system()} {platform.machine()}"
-    return f"{built}, Python {platform.python_version()}, {system}, {libraries}"
+    return f"{program_text}, Python {platform.python_version()}, {system}, {libraries}"
 
 
 def _commit() -> str | None:
@@ -27,10 +27,10 @@ def _commit() -> str | None:
     git = shutil.which("git")
     if git is None or not (house / ".git").exists():
         return None
-    where = [git, "--no-optional-locks", "-C", str(house)]
-    command = [*where, "describe", "--always", "--dirty", "--abbrev=8"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603
-    return done.stdout.strip() or None
+    git_command = [git, "--no-optional-locks", "-C", str(house)]
+    command = [*git_command, "describe", "--always", "--dirty", "--abbrev=8"]
+    process = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603
+    return process.stdout.strip() or None
 
 
 def provenance() -> tuple[tuple[str, str], ...]:

@@ -47,10 +47,10 @@ class Worker:
 
     def offer(self, job: Job, most: int) -> bool:
         """Take a job if fewer than ``most`` are not done yet; tell whether it was taken."""
-        taken = self.behind < most
-        if taken:
+        is_taken = self.behind < most
+        if is_taken:
             self.do(job)
-        return taken
+        return is_taken
 
     def wait(self) -> None:
         """Wait until what was handed over so far is done, or let go of."""

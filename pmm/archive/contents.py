@@ -29,8 +29,8 @@ class Stamp:
 
     def fits(self, path: Path) -> bool:
         """Whether size and time are still those of a file."""
-        found = path.stat()
-        return (self.size, self.mtime_ns) == (found.st_size, found.st_mtime_ns)
+        status = path.stat()
+        return (self.size, self.mtime_ns) == (status.st_size, status.st_mtime_ns)
 
 
 @dataclass(frozen=True)
@@ -57,8 +57,8 @@ class Contents:
     def sha256(self) -> str:
         """One hash of all files that results rest on; notes are not among them."""
         lines = (
-            f"{one.sha256} {name}\n"
-            for name, one in sorted(self.stamps.items())
+            f"{stamp.sha256} {name}\n"
+            for name, stamp in sorted(self.stamps.items())
             if name != NOTES_FILE
         )
         return hashlib.sha256("".join(lines).encode()).hexdigest()
@@ -69,7 +69,7 @@ class Contents:
         return name if name in self.stamps else None
 
 
-def read_contents(folder: Path, known: Mapping[str, Stamp]) -> Contents:
+def read_contents(folder: Path, last_stamps: Mapping[str, Stamp]) -> Contents:
     """Read a folder; a file whose size and time are known is not read again for its hash.
 
     Raises
@@ -81,7 +81,7 @@ def read_contents(folder: Path, known: Mapping[str, Stamp]) -> Contents:
         raise ConfigurationError(f"{folder}: no folder with a {CAMPAIGN_FILE}")
     campaign = read_campaign(folder / CAMPAIGN_FILE)
     stamps = {
-        name: stamp(path, known.get(name))
+        name: stamp(path, last_stamps.get(name))
         for path in _files(folder, campaign)
         if path.is_file()
         for name in (relative(path, folder),)
@@ -99,16 +99,16 @@ def _files(folder: Path, campaign: Campaign) -> Iterator[Path]:
         yield folder / name
     if campaign.radiation is not None:
         yield Path(campaign.radiation.file)
-    for one in records_of(campaign):
-        yield one.recording_path(folder)
+    for record in records_of(campaign):
+        yield record.recording_path(folder)
 
 
-def stamp(path: Path, known: Stamp | None = None) -> Stamp:
+def stamp(path: Path, last_stamp: Stamp | None = None) -> Stamp:
     """Return a file's stamp; the known one, without a look at its bytes, where it still fits."""
-    if known is not None and known.fits(path):
-        return known
-    found = path.stat()
-    return Stamp(found.st_size, found.st_mtime_ns, sha256(path))
+    if last_stamp is not None and last_stamp.fits(path):
+        return last_stamp
+    status = path.stat()
+    return Stamp(status.st_size, status.st_mtime_ns, sha256(path))
 
 
 def relative(path: Path, folder: Path) -> str:
@@ -116,11 +116,11 @@ def relative(path: Path, folder: Path) -> str:
     return path.relative_to(folder).as_posix() if path.is_relative_to(folder) else str(path)
 
 
-def changes(folder: Path, known: Mapping[str, Stamp]) -> tuple[str, ...]:
+def changes(folder: Path, last_stamps: Mapping[str, Stamp]) -> tuple[str, ...]:
     """Say what of a folder is not as it was seen; a hash is taken only where size or time differ.
 
-    Recordings that are new are not looked for: a run that gets its first is not yet among ``known``
-    and is found when the folder is added again.
+    Recordings that are new are not looked for: a run that gets its first is not yet among
+    ``last_stamps`` and is found when the folder is added again.
     """
     try:
         here(folder)
@@ -130,15 +130,15 @@ def changes(folder: Path, known: Mapping[str, Stamp]) -> tuple[str, ...]:
         return (str(error),)
     if not folder.is_dir():
         return ("the folder vanished",)
-    return tuple(_changes(folder, known))
+    return tuple(_changes(folder, last_stamps))
 
 
-def _changes(folder: Path, known: Mapping[str, Stamp]) -> Iterator[str]:
-    for name, one in sorted(known.items()):
+def _changes(folder: Path, last_stamps: Mapping[str, Stamp]) -> Iterator[str]:
+    for name, last_stamp in sorted(last_stamps.items()):
         path = folder / name
         if not path.is_file():
             yield f"{name} vanished"
-        elif not one.fits(path) and sha256(path) != one.sha256:
+        elif not last_stamp.fits(path) and sha256(path) != last_stamp.sha256:
             yield f"{name} changed"
 
 

@@ -75,7 +75,7 @@ def read_condition(text: str, columns: Mapping[str, KnownColumn]) -> Condition:
 
 
 def _tokens(text: str) -> list[_Token]:
-    found, place = [], 0
+    tokens, place = [], 0
     end = len(text.rstrip())
     while place < end:
         match = _TOKEN.match(text, place)
@@ -88,9 +88,9 @@ def _tokens(text: str) -> list[_Token]:
         word = match[kind]
         if kind == "word" and word.lower() in ("and", "or", "not"):
             kind, word = word.lower(), word.lower()
-        found.append(_Token(kind, word, match.start(match.lastgroup or 0)))
+        tokens.append(_Token(kind, word, match.start(match.lastgroup or 0)))
         place = match.end()
-    return [*found, _Token("end", "the end", end)]
+    return [*tokens, _Token("end", "the end", end)]
 
 
 class _Reader:
@@ -104,17 +104,17 @@ class _Reader:
     def token(self) -> _Token:
         return self.tokens[self.at]
 
-    def take(self, kind: str, wanted: str) -> _Token:
+    def take(self, kind: str, expected: str) -> _Token:
         token = self.token
         if token.kind != kind:
-            raise self.error(wanted)
+            raise self.error(expected)
         self.at += 1
         return token
 
-    def error(self, wanted: str) -> ConfigurationError:
-        found = self.token.text if self.token.kind == "end" else repr(self.token.text)
+    def error(self, expected: str) -> ConfigurationError:
+        token_text = self.token.text if self.token.kind == "end" else repr(self.token.text)
         return ConfigurationError(
-            f"expression {self.text!r}: {wanted} is missing before {found}, letter "
+            f"expression {self.text!r}: {expected} is missing before {token_text}, letter "
             f"{self.token.place + 1}"
         )
 
@@ -131,8 +131,10 @@ class _Reader:
             parts.append(part())
         if len(parts) == 1:
             return parts[0]
-        sql = f" {word.upper()} ".join(one.sql for one in parts)
-        return Condition(f"({sql})", tuple(value for one in parts for value in one.parameters))
+        sql = f" {word.upper()} ".join(condition.sql for condition in parts)
+        return Condition(
+            f"({sql})", tuple(value for condition in parts for value in condition.parameters)
+        )
 
     def _factor(self, depth: int) -> Condition:
         if depth > _DEEPEST:
@@ -156,8 +158,8 @@ class _Reader:
             raise ConfigurationError(f"no column {name!r}; {_nearest(name, list(self.columns))}")
         column = self.columns[name]
         operator = self.take("operator", "one of = != < <= > >=").text
-        wanted = "a quoted text" if column.kind == TEXT else "a number"
-        token = self.take(column.kind, f"{wanted} for {name}")
+        kind_text = "a quoted text" if column.kind == TEXT else "a number"
+        token = self.take(column.kind, f"{kind_text} for {name}")
         value = _unquoted(token.text) if column.kind == TEXT else float(token.text)
         if isinstance(value, float) and not math.isfinite(value):
             raise ConfigurationError(f"{name}: {token.text} is beyond any number")

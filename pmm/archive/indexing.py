@@ -78,28 +78,28 @@ def add_folders(
     interrupted adds the same folders again, and nothing is computed twice. A folder that is refused
     gives its error, and the others go on.
     """
-    told: list[AddedFolder | PmmError] = []
+    results: list[AddedFolder | PmmError] = []
 
     def tasks() -> Iterator[FolderTask]:
         for folder in folders:
             try:
                 task = _taken_in(connection, folder, analyses, now_utc)
             except PmmError as error:
-                told.append(error)
+                results.append(error)
                 continue
             if task.due == Analyses():
-                told.append(task.added)
+                results.append(task.added)
             else:
                 yield task
 
-    for found in as_done(executor, compute, tasks()):
+    for outcome in as_done(executor, compute, tasks()):
         try:
-            told.append(_kept(connection, found))
+            results.append(_kept(connection, outcome))
         except PmmError as error:
-            told.append(error)
-        while told:
-            yield told.pop(0)
-    yield from told
+            results.append(error)
+        while results:
+            yield results.pop(0)
+    yield from results
 
 
 def add_folder(
@@ -136,13 +136,13 @@ def _taken_in(
     connection: sqlite3.Connection, folder: Path, analyses: Analyses, now_utc: str
 ) -> FolderTask:
     folder = here(folder).resolve()
-    before = _row(connection, folder)
-    contents = read_contents(folder, {} if before is None else stamps(connection, before["id"]))
-    same = before is not None and before["sha256"] == contents.sha256
+    last_row = _row(connection, folder)
+    contents = read_contents(folder, {} if last_row is None else stamps(connection, last_row["id"]))
+    is_same = last_row is not None and last_row["sha256"] == contents.sha256
     with connection:
-        if before is not None and not same:
-            connection.execute("DELETE FROM campaigns WHERE id = ?", (before["id"],))
-        if not same:
+        if last_row is not None and not is_same:
+            connection.execute("DELETE FROM campaigns WHERE id = ?", (last_row["id"],))
+        if not is_same:
             _insert(connection, contents, now_utc)
     row = _row(connection, folder)
     assert row is not None  # noqa: S101 - it was written above
@@ -151,20 +151,20 @@ def _taken_in(
         connection.execute("UPDATE campaigns SET seen_utc = ? WHERE id = ?", (now_utc, key))
         _set_files(connection, key, contents)
         _set_notes(connection, key, contents.notes)
-    due = Analyses(
+    open_analyses = Analyses(
         None if row["analysed"] else analyses.analyse,
         None if row["diagnosed"] else analyses.diagnose,
     )
-    state = "as before" if same else "new" if before is None else "changed"
-    added = AddedFolder(folder, contents.campaign.name, state, len(contents.records), (), ())
-    return FolderTask(added, key, contents.stamps, due)
+    state = "as before" if is_same else "new" if last_row is None else "changed"
+    added_folder = AddedFolder(folder, contents.campaign.name, state, len(contents.records), (), ())
+    return FolderTask(added_folder, key, contents.stamps, open_analyses)
 
 
 def _row(connection: sqlite3.Connection, folder: Path) -> sqlite3.Row | None:
-    found: sqlite3.Row | None = connection.execute(
+    row: sqlite3.Row | None = connection.execute(
         "SELECT * FROM campaigns WHERE folder = ?", (str(folder),)
     ).fetchone()
-    return found
+    return row
 
 
 def stamps(connection: sqlite3.Connection, campaign: int) -> Mapping[str, Stamp]:
@@ -178,9 +178,9 @@ def stamps(connection: sqlite3.Connection, campaign: int) -> Mapping[str, Stamp]
 def _insert(connection: sqlite3.Connection, contents: Contents, now_utc: str) -> None:
     campaign = contents.campaign
     runs = contents.records
-    places = [contents.recording(one) for one in runs]
-    times = [None if one is None else recorded_utc(contents.folder / one) for one in places]
-    first = min((one for one in times if one is not None), default=None)
+    places = [contents.recording(run) for run in runs]
+    times = [None if place is None else recorded_utc(contents.folder / place) for place in places]
+    first = min((time for time in times if time is not None), default=None)
     key = connection.execute(
         "INSERT INTO campaigns (folder, campaign, hull, recorded_utc, seen_utc, sha256) "
         "VALUES (?, ?, ?, ?, ?, ?)",
@@ -189,11 +189,12 @@ def _insert(connection: sqlite3.Connection, contents: Contents, now_utc: str) ->
     ).lastrowid  # fmt: skip
     rows = []
     for run, place, time in zip(runs, places, times, strict=True):
-        at = run.set_point
+        set_point = run.set_point
         rows.append(
-            (key, run.name, str(run.kind), run.outcome, run.repeat, at.frequency_hz,
-             at.eccentricity_m, at.strut_phase_rad, at.carriage_speed_m_s, str(at.medium),
-             at.drift_rad, place, None if place is None else contents.stamps[place].sha256, time)
+            (key, run.name, str(run.kind), run.outcome, run.repeat, set_point.frequency_hz,
+             set_point.eccentricity_m, set_point.strut_phase_rad, set_point.carriage_speed_m_s,
+             str(set_point.medium), set_point.drift_rad, place,
+             None if place is None else contents.stamps[place].sha256, time)
         )  # fmt: skip
     connection.executemany(
         "INSERT INTO runs (campaign, run, kind, outcome, repeat, frequency_hz, eccentricity_m, "
@@ -204,7 +205,7 @@ def _insert(connection: sqlite3.Connection, contents: Contents, now_utc: str) ->
 
 
 def _set_files(connection: sqlite3.Connection, key: int, contents: Contents) -> None:
-    rows = [(key, path, *astuple(one)) for path, one in contents.stamps.items()]
+    rows = [(key, path, *astuple(stamp)) for path, stamp in contents.stamps.items()]
     connection.execute("DELETE FROM files WHERE campaign = ?", (key,))
     connection.executemany("INSERT INTO files VALUES (?, ?, ?, ?, ?)", rows)
 
@@ -241,45 +242,45 @@ def note_run(connection: sqlite3.Connection, run: Mapping[str, Any], note: NoteL
 
 
 def _set_notes(connection: sqlite3.Connection, key: int, notes: Iterable[NoteLine]) -> None:
-    rows = [(key, *astuple(one)) for one in notes]
+    rows = [(key, *astuple(note)) for note in notes]
     connection.execute("DELETE FROM notes WHERE campaign = ?", (key,))
     connection.executemany("INSERT INTO notes VALUES (?, ?, ?, ?, ?)", rows)
 
 
-def _kept(connection: sqlite3.Connection, found: Computed) -> AddedFolder:
+def _kept(connection: sqlite3.Connection, outcome: Computed) -> AddedFolder:
     """Keep what was computed of a folder that is still as it was."""
-    task, computed = found.task, []
-    if changed := changes(task.added.folder, task.stamps):
+    task, computed = outcome.task, []
+    if folder_changes := changes(task.added.folder, task.stamps):
         raise DataError(
-            f"{task.added.folder}: {'; '.join(changed)} while it was analysed; add it again"
+            f"{task.added.folder}: {'; '.join(folder_changes)} while it was analysed; add it again"
         )
     with connection:
-        if found.analysed is not None:
-            _write(connection, task.key, found.analysed)
+        if outcome.analysed is not None:
+            _write(connection, task.key, outcome.analysed)
             computed.append("analysis")
-        if found.verdict is not None:
-            row = (task.key, *astuple(found.verdict))
+        if outcome.verdict is not None:
+            row = (task.key, *astuple(outcome.verdict))
             connection.execute("INSERT INTO verdicts VALUES (?, ?, ?, ?)", row)
             connection.execute("UPDATE campaigns SET diagnosed = 1 WHERE id = ?", (task.key,))
             computed.append("diagnosis")
-    if found.error is not None:
-        raise found.error
-    refused = () if found.analysed is None else found.analysed.refused
-    return replace(task.added, computed=tuple(computed), refused=refused)
+    if outcome.error is not None:
+        raise outcome.error
+    refusals = () if outcome.analysed is None else outcome.analysed.refused
+    return replace(task.added, computed=tuple(computed), refused=refusals)
 
 
-def _write(connection: sqlite3.Connection, key: int, found: Analysed) -> None:
+def _write(connection: sqlite3.Connection, key: int, result: Analysed) -> None:
     ids = dict(connection.execute("SELECT run, id FROM runs WHERE campaign = ?", (key,)))
     connection.executemany(
         "INSERT INTO harmonics VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-        _harmonic_rows(key, ids, found.harmonics),
+        _harmonic_rows(key, ids, result.harmonics),
     )
     connection.executemany(
         "INSERT INTO coefficients VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
-        [(key, *astuple(one), LEVEL) for one in found.coefficients],
+        [(key, *astuple(coefficient), LEVEL) for coefficient in result.coefficients],
     )
     connection.executemany(
-        "INSERT INTO refusals VALUES (?, ?)", [(key, text) for text in found.refused]
+        "INSERT INTO refusals VALUES (?, ?)", [(key, text) for text in result.refused]
     )
     connection.execute("UPDATE campaigns SET analysed = 1 WHERE id = ?", (key,))
 
@@ -287,6 +288,6 @@ def _write(connection: sqlite3.Connection, key: int, found: Analysed) -> None:
 def _harmonic_rows(
     key: int, ids: Mapping[str, int], values: Iterable[HarmonicValue]
 ) -> Iterable[tuple[object, ...]]:
-    for one in values:
-        name, *rest = astuple(one)
+    for harmonic in values:
+        name, *rest = astuple(harmonic)
         yield (key, ids[name], *rest)

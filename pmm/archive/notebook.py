@@ -41,11 +41,11 @@ def read_notes(folder: Path) -> tuple[NoteLine, ...]:
 
 def _note(line: str, place: str) -> NoteLine:
     try:
-        told: Any = json.loads(line)
-        note = NoteLine(**told)
+        table: Any = json.loads(line)
+        note = NoteLine(**table)
     except (ValueError, TypeError):
         note = None
-    if note is None or not all(isinstance(one, str) for one in asdict(note).values()):
+    if note is None or not all(isinstance(value, str) for value in asdict(note).values()):
         raise ConfigurationError(
             f"{place}: no note; a line has time_utc, run, author and text, as JSON"
         )

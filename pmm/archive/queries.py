@@ -45,8 +45,8 @@ HARMONIC_COLUMNS: Final = {
     "amplitude": KnownColumn(_AMPLITUDE, NUMBER),
 }
 FILED_HARMONICS: Final = {
-    **{name: one for name, one in RUN_COLUMNS.items() if name != "sha256"},
-    **{name: one for name, one in HARMONIC_COLUMNS.items() if name != "amplitude"},
+    **{name: column for name, column in RUN_COLUMNS.items() if name != "sha256"},
+    **{name: column for name, column in HARMONIC_COLUMNS.items() if name != "amplitude"},
     "channel": KnownColumn("harmonics.channel", TEXT),
     "order": KnownColumn("harmonics.ord", NUMBER),
 }
@@ -79,11 +79,11 @@ def rows_of(
     connection: sqlite3.Connection, sql: str, values: Sequence[object] | Mapping[str, object] = ()
 ) -> list[Row]:
     """Return the rows of a query, each by the names of its columns."""
-    return [dict(one) for one in connection.execute(sql, values)]
+    return [dict(row) for row in connection.execute(sql, values)]
 
 
 def _select(columns: Mapping[str, KnownColumn]) -> str:
-    return "SELECT " + ", ".join(f'{one.sql} AS "{name}"' for name, one in columns.items())
+    return "SELECT " + ", ".join(f'{column.sql} AS "{name}"' for name, column in columns.items())
 
 
 def campaigns(connection: sqlite3.Connection) -> list[Row]:
@@ -101,10 +101,10 @@ def campaigns(connection: sqlite3.Connection) -> list[Row]:
 
 
 def _found_now(connection: sqlite3.Connection, row: Row) -> Row:
-    refused = rows_of(connection, "SELECT text FROM refusals WHERE campaign = ?", (row["id"],))
+    refusals = rows_of(connection, "SELECT text FROM refusals WHERE campaign = ?", (row["id"],))
     return {
         "changes": list(changes(Path(row["folder"]), stamps(connection, row["id"]))),
-        "refused": [one["text"] for one in refused],
+        "refused": [refusal["text"] for refusal in refusals],
     }
 
 
@@ -141,31 +141,31 @@ def find_coefficients(connection: sqlite3.Connection, expression: str) -> list[R
         As :func:`pmm.archive.expression.read_condition`; or if no campaign has been analysed.
     """
     condition = read_condition(expression, COEFFICIENT_COLUMNS)
-    found = rows_of(
+    rows = rows_of(
         connection,
         f"{_select(COEFFICIENT_COLUMNS)} FROM {_COEFFICIENTS} WHERE {condition.sql} "
         "ORDER BY campaigns.folder, coefficients.rowid",
         condition.parameters,
     )
-    if not found and not rows_of(connection, "SELECT 1 FROM coefficients LIMIT 1"):
+    if not rows and not rows_of(connection, "SELECT 1 FROM coefficients LIMIT 1"):
         raise ConfigurationError(what_is_there("coefficients", "", ()))
-    return found
+    return rows
 
 
 def _check_channel(connection: sqlite3.Connection, channel: str) -> None:
     if not rows_of(connection, "SELECT 1 FROM harmonics WHERE channel = ? LIMIT 1", (channel,)):
         rows = rows_of(connection, "SELECT DISTINCT channel FROM harmonics")
-        there = what_is_there("channels", channel, [one["channel"] for one in rows])
-        raise ConfigurationError(f"no channel {channel!r}; {there}")
+        hint = what_is_there("channels", channel, [row["channel"] for row in rows])
+        raise ConfigurationError(f"no channel {channel!r}; {hint}")
 
 
-def what_is_there(what: str, name: str, names: Sequence[str]) -> str:
+def what_is_there(kind: str, name: str, names: Sequence[str]) -> str:
     """Return what there is instead of a name, the nearest first."""
     if not names:
         return "nothing is analysed yet: pmm archive add FOLDER... --analyse"
     near = get_close_matches(name, names, n=1, cutoff=0.4)
     hint = f"did you mean {near[0]!r}? " if near else ""
-    return f"{hint}{what}: {', '.join(sorted(names))}"
+    return f"{hint}{kind}: {', '.join(sorted(names))}"
 
 
 def the_run(connection: sqlite3.Connection, name: str, campaign: str | None) -> Row:
@@ -181,7 +181,7 @@ def the_run(connection: sqlite3.Connection, name: str, campaign: str | None) -> 
     ConfigurationError
         If there is none, or there are several.
     """
-    found = rows_of(
+    rows = rows_of(
         connection,
         f"{_select(RUN_COLUMNS)}, runs.id AS id, campaigns.id AS campaign_id FROM {_RUNS} "
         f"WHERE runs.run = ?{_IN_ORDER}",
@@ -189,17 +189,17 @@ def the_run(connection: sqlite3.Connection, name: str, campaign: str | None) -> 
     )
     if campaign is not None:
         folder = str(here(campaign).resolve())
-        found = [one for one in found if campaign == one["campaign"] or folder == one["folder"]]
-    if not found:
-        names = [one["run"] for one in rows_of(connection, "SELECT DISTINCT run FROM runs")]
+        rows = [row for row in rows if campaign == row["campaign"] or folder == row["folder"]]
+    if not rows:
+        names = [row["run"] for row in rows_of(connection, "SELECT DISTINCT run FROM runs")]
         near = get_close_matches(name, names, n=1, cutoff=0.4)
         hint = f"did you mean {near[0]!r}?" if near else "pmm archive find lists them"
-        where = "" if campaign is None else f" of campaign {campaign!r}"
-        raise ConfigurationError(f"no run {name!r}{where}; {hint}")
-    if len(found) > 1:
-        folders = ", ".join(one["folder"] for one in found)
+        campaign_text = "" if campaign is None else f" of campaign {campaign!r}"
+        raise ConfigurationError(f"no run {name!r}{campaign_text}; {hint}")
+    if len(rows) > 1:
+        folders = ", ".join(row["folder"] for row in rows)
         raise ConfigurationError(f"several runs {name!r}; say which with --campaign: {folders}")
-    return found[0]
+    return rows[0]
 
 
 @dataclass(frozen=True)
@@ -226,8 +226,8 @@ def show_run(connection: sqlite3.Connection, name: str, campaign: str | None) ->
         "ORDER BY time_utc, rowid",
         (run["campaign_id"], name),
     )
-    told = {key: value for key, value in run.items() if key in RUN_COLUMNS}
-    return ShownRun(told, harmonics, notes)
+    columns = {key: value for key, value in run.items() if key in RUN_COLUMNS}
+    return ShownRun(columns, harmonics, notes)
 
 
 def all_harmonics(connection: sqlite3.Connection) -> list[Row]:
@@ -251,5 +251,5 @@ def write_parquet(columns: Mapping[str, KnownColumn], rows: Sequence[Row], path:
 
     schema = pa.schema([(name, kind(name)) for name in columns], {"level": repr(LEVEL)})
     file = BytesIO()
-    pq.write_table(pa.Table.from_pylist([dict(one) for one in rows], schema), file)
+    pq.write_table(pa.Table.from_pylist([dict(row) for row in rows], schema), file)
     write_whole(path, file.getvalue())

@@ -66,7 +66,7 @@ def control_chart(values: Sequence[float], probability: float) -> tuple[ChartPoi
 
     n = len(values)
     if n < FEWEST:
-        return tuple(ChartPoint(one, math.nan, math.nan) for one in values)
+        return tuple(ChartPoint(value, math.nan, math.nan) for value in values)
     factor = float(stdtrit(n - 2, 0.5 + 0.5 * probability)) * math.sqrt(1.0 + 1.0 / (n - 1))
     all_values = np.asarray(values, float)
     off = all_values - all_values.mean()
@@ -74,8 +74,8 @@ def control_chart(values: Sequence[float], probability: float) -> tuple[ChartPoi
     squares = np.sum(off**2) - off**2 * n / (n - 1)  # of the others about their own mean
     half = factor * np.sqrt(np.maximum(squares, 0.0) / (n - 2))
     return tuple(
-        ChartPoint(*map(float, one))
-        for one in zip(all_values, middle - half, middle + half, strict=True)
+        ChartPoint(*map(float, point))
+        for point in zip(all_values, middle - half, middle + half, strict=True)
     )
 
 
@@ -101,7 +101,7 @@ def _trend(name: str, rows: list[Row], probability: float) -> Trend:
         first["speed_m_s"],
         first["frequency_hz"],
         tuple(rows),
-        control_chart([one["value"] for one in rows], probability),
+        control_chart([row["value"] for row in rows], probability),
     )
 
 
@@ -127,13 +127,13 @@ def coefficient_trends(
         (name,),
     )
     if not rows:
-        found = rows_of(connection, "SELECT DISTINCT name FROM coefficients")
-        there = what_is_there("coefficients", name, [one["name"] for one in found])
-        raise DataError(f"no coefficient {name!r}; {there}")
+        name_rows = rows_of(connection, "SELECT DISTINCT name FROM coefficients")
+        hint = what_is_there("coefficients", name, [row["name"] for row in name_rows])
+        raise DataError(f"no coefficient {name!r}; {hint}")
     groups: dict[tuple[object, ...], list[Row]] = defaultdict(list)
     for row in rows:
         groups[row["hull"], row["unit"], row["speed_m_s"], row["frequency_hz"]].append(row)
-    return tuple(_trend(name, found, probability) for _, found in sorted(groups.items()))
+    return tuple(_trend(name, group, probability) for _, group in sorted(groups.items()))
 
 
 def repeat_trends(
@@ -157,20 +157,20 @@ def repeat_trends(
     """
     set_to = the_run(connection, run, campaign)
     rows = rows_of(connection, _REPEATS, {**set_to, "channel": channel, "order": order})
-    if not any((one["folder"], one["run"]) == (set_to["folder"], run) for one in rows):
-        found = rows_of(
+    if not any((row["folder"], row["run"]) == (set_to["folder"], run) for row in rows):
+        channel_rows = rows_of(
             connection, "SELECT DISTINCT channel FROM harmonics WHERE run = ?", (set_to["id"],)
         )
-        there = what_is_there("channels", channel, [one["channel"] for one in found])
-        raise DataError(f"run {run!r} has no harmonic {order} of {channel!r}; {there}")
+        hint = what_is_there("channels", channel, [row["channel"] for row in channel_rows])
+        raise DataError(f"run {run!r} has no harmonic {order} of {channel!r}; {hint}")
     trends = []
-    for part, said in _PARTS.items():
-        told: list[Row] = [
-            {**one, "value": one[part], "half_width": one[f"{part}_half_width"]}
-            for one in rows
-            if one[part] is not None
+    for part, part_name in _PARTS.items():
+        part_rows: list[Row] = [
+            {**row, "value": row[part], "half_width": row[f"{part}_half_width"]}
+            for row in rows
+            if row[part] is not None
         ]
-        if told:
-            name = f"{channel}, harmonic {order}, {said}" if order else f"{channel}, mean"
-            trends.append(_trend(name, told, probability))
+        if part_rows:
+            name = f"{channel}, harmonic {order}, {part_name}" if order else f"{channel}, mean"
+            trends.append(_trend(name, part_rows, probability))
     return tuple(trends)

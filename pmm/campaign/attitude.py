@@ -26,7 +26,7 @@ def attitude_faults(
         faults: list[Fault] = []
         table = validate(kind, tables[key], faults)
         if own:
-            yield from (Fault((key, *one.place), one.message) for one in faults)
+            yield from (Fault((key, *fault.place), fault.message) for fault in faults)
         if table is not None and oscillator is not None:
             yield from beside(oscillator, table)
 

@@ -25,11 +25,15 @@ _AT_ONCE: Final = 200_000  # samples
 _ROUNDED: Final = 1.0 - 1e-9  # of the full scale
 
 
-def provenance_of(one: Calibration | None) -> dict[str, str]:
+def provenance_of(calibration: Calibration | None) -> dict[str, str]:
     """Return what a recording's provenance keeps of a calibration; nothing where there is none."""
-    if one is None:
+    if calibration is None:
         return {}
-    return {CARRIED: json.dumps({"file": one.file, "sha256": one.sha256} | as_table(one))}
+    return {
+        CARRIED: json.dumps(
+            {"file": calibration.file, "sha256": calibration.sha256} | as_table(calibration)
+        )
+    }
 
 
 def carried(recording: Recording) -> Calibration | None:
@@ -57,18 +61,18 @@ def _kept(recording: Recording, key: str) -> Calibration | None:
         return None
     try:
         table = dict(json.loads(text))
-        found = from_table(table, f"{recording.name}: calibration in the provenance")
-        return replace(found, file=str(table["file"]), sha256=str(table["sha256"]))
+        calibration = from_table(table, f"{recording.name}: calibration in the provenance")
+        return replace(calibration, file=str(table["file"]), sha256=str(table["sha256"]))
     except (ValueError, KeyError, TypeError, AttributeError, ConfigurationError) as error:
         raise DataError(f"{recording.name}: its calibration cannot be read: {error}") from error
 
 
-def calibrated(recording: Recording, given: Calibration | None = None) -> Recording:
+def calibrated(recording: Recording, replacement: Calibration | None = None) -> Recording:
     """Return a recording with forces in place of readings.
 
     Parameters
     ----------
-    given
+    replacement
         In place of the calibration that the recording carries; without either it stays as it is.
 
     Raises
@@ -76,16 +80,16 @@ def calibrated(recording: Recording, given: Calibration | None = None) -> Record
     DataError
         If a calibrated channel is not in the recording, or one was applied to it before.
     """
-    one = carried(recording) if given is None else given
-    if one is None:
+    calibration = carried(recording) if replacement is None else replacement
+    if calibration is None:
         return recording
     if APPLIED in recording.provenance:
         raise DataError(
             f"{recording.name}: a calibration was applied to it already; apply another one to the "
             "recording that pmm run made"
         )
-    rows = tuple(_row(recording, name, one) for name in one.channels)
-    kept = {key: text for key, text in recording.provenance.items() if key != CARRIED}
+    rows = tuple(_row(recording, name, calibration) for name in calibration.channels)
+    provenance = {key: text for key, text in recording.provenance.items() if key != CARRIED}
     channels = tuple(
         replace(channel, full_scale=None) if row in rows else channel
         for row, channel in enumerate(recording.channels)
@@ -93,23 +97,25 @@ def calibrated(recording: Recording, given: Calibration | None = None) -> Record
     return replace(
         recording,
         channels=channels,
-        samples=_Forces(recording.samples, rows, np.asarray(np.linalg.inv(one.matrix), float)),
-        provenance=kept | {APPLIED: provenance_of(one)[CARRIED]},
+        samples=_Forces(
+            recording.samples, rows, np.asarray(np.linalg.inv(calibration.matrix), float)
+        ),
+        provenance=provenance | {APPLIED: provenance_of(calibration)[CARRIED]},
         flags=(
             *recording.flags,
-            _told(one),
+            _told(calibration),
             *_saturated(recording, rows),
-            *_expired(recording, one),
+            *_expired(recording, calibration),
         ),
     )
 
 
-def expiry_text(one: Calibration, on: date) -> str:
+def expiry_text(calibration: Calibration, on: date) -> str:
     """Return in words that a calibration had expired by a date, and what to do."""
     return (
-        f"the calibration {one.file or 'of the gauges'}, made on {one.made}, expired on "
-        f"{one.expires}, {(on - one.expires).days} days before {on}; hang the check weights again "
-        "and let `pmm evaluate` write a new one"
+        f"the calibration {calibration.file or 'of the gauges'}, made on {calibration.made}, "
+        f"expired on {calibration.expires}, {(on - calibration.expires).days} days before {on}; "
+        "hang the check weights again and let `pmm evaluate` write a new one"
     )
 
 
@@ -126,43 +132,46 @@ class _Forces:
         return self.source.shape
 
     def __getitem__(self, key: tuple[slice | Sequence[int], slice], /) -> FloatArray:
-        chosen, when = key
-        wanted = list(range(self.shape[0])[chosen]) if isinstance(chosen, slice) else list(chosen)
-        mixed = self.rows if any(row in self.rows for row in wanted) else ()
-        place = {row: i for i, row in enumerate(sorted({*wanted, *mixed}))}
-        read = self.source[list(place), when]
-        found = np.array(read[[place[row] for row in wanted]])
-        if mixed:
-            forces = self.inverse @ read[[place[row] for row in mixed]]
-            for i, row in enumerate(wanted):
-                if row in mixed:
-                    found[i] = forces[mixed.index(row)]
-        return found
+        row_key, span = key
+        row_numbers = (
+            list(range(self.shape[0])[row_key]) if isinstance(row_key, slice) else list(row_key)
+        )
+        mixed_rows = self.rows if any(row in self.rows for row in row_numbers) else ()
+        place = {row: i for i, row in enumerate(sorted({*row_numbers, *mixed_rows}))}
+        readings = self.source[list(place), span]
+        samples = np.array(readings[[place[row] for row in row_numbers]])
+        if mixed_rows:
+            forces = self.inverse @ readings[[place[row] for row in mixed_rows]]
+            for i, row in enumerate(row_numbers):
+                if row in mixed_rows:
+                    samples[i] = forces[mixed_rows.index(row)]
+        return samples
 
 
-def _row(recording: Recording, name: str, one: Calibration) -> int:
+def _row(recording: Recording, name: str, calibration: Calibration) -> int:
     if name in recording.channel_names:
         return recording.channel_names.index(name)
     raise DataError(
-        f"{recording.name}: no channel {name!r}, but the calibration {one.file} was made of "
-        f"{', '.join(one.channels)}: without it their cross-talk cannot be taken out"
+        f"{recording.name}: no channel {name!r}, but the calibration {calibration.file} was made "
+        f"of {', '.join(calibration.channels)}: without it their cross-talk cannot be taken out"
     )
 
 
-def _told(one: Calibration) -> Flag:
+def _told(calibration: Calibration) -> Flag:
     message = (
-        f"readings of {', '.join(one.channels)} made newtons by {one.file or 'a calibration'} of "
-        f"{one.made}, good until {one.expires}"
+        f"readings of {', '.join(calibration.channels)} made newtons by "
+        f"{calibration.file or 'a calibration'} of {calibration.made}, good until "
+        f"{calibration.expires}"
     )
     return Flag("calibrated", Severity.NOTE, message)
 
 
 def _saturated(recording: Recording, rows: Sequence[int]) -> Iterator[Flag]:
     """Yield a flag for each gauge whose reading, not its force, reached the end of the range."""
-    known = {flag.channel for flag in recording.flags if flag.code == "saturated"}
+    flagged_channels = {flag.channel for flag in recording.flags if flag.code == "saturated"}
     for row in rows:
         channel = recording.channels[row]
-        if channel.full_scale is None or channel.name in known:
+        if channel.full_scale is None or channel.name in flagged_channels:
             continue
         limit, count = channel.full_scale, 0
         for start in range(0, recording.sample_count, _AT_ONCE):
@@ -176,10 +185,10 @@ def _saturated(recording: Recording, rows: Sequence[int]) -> Iterator[Flag]:
             yield Flag("saturated", Severity.VOID, message, channel.name)
 
 
-def _expired(recording: Recording, one: Calibration) -> Iterator[Flag]:
-    made = _date_of(recording.provenance)
-    if made is not None and one.is_expired(made):
-        yield Flag("calibration_expired", Severity.WARNING, expiry_text(one, made))
+def _expired(recording: Recording, calibration: Calibration) -> Iterator[Flag]:
+    recorded_on = _date_of(recording.provenance)
+    if recorded_on is not None and calibration.is_expired(recorded_on):
+        yield Flag("calibration_expired", Severity.WARNING, expiry_text(calibration, recorded_on))
 
 
 def _date_of(provenance: Mapping[str, str]) -> date | None:

@@ -74,14 +74,18 @@ class Calibration:
         return today > self.expires
 
 
-def write_calibration(one: Calibration, path: Path) -> Path:
+def write_calibration(calibration: Calibration, path: Path) -> Path:
     """Write a calibration for people and programs; an older one of another date is kept beside."""
     if path.exists():
-        before = read_calibration(path)
-        if before.made != one.made:
-            path.rename(path.with_name(f"{path.stem}-{before.made.isoformat()}{path.suffix}"))
+        old_calibration = read_calibration(path)
+        if old_calibration.made != calibration.made:
+            path.rename(
+                path.with_name(f"{path.stem}-{old_calibration.made.isoformat()}{path.suffix}")
+            )
     head = "# Reading of a channel (row) for a newton on a gauge (column): docs/run-control.md\n"
-    lines = "".join(f"{key} = {toml_value(value)}\n" for key, value in as_table(one).items())
+    lines = "".join(
+        f"{key} = {toml_value(value)}\n" for key, value in as_table(calibration).items()
+    )
     write_whole(path, head + lines)
     return path
 
@@ -101,43 +105,43 @@ def read_calibration(path: Path) -> Calibration:
         table = parse_toml(data.decode("utf-8"))
     except (OSError, UnicodeDecodeError, ConfigurationError) as error:
         raise ConfigurationError(f"{path}: no calibration: {error}") from error
-    found = from_table(table, str(path))
-    return replace(found, file=path.name, sha256=hashlib.sha256(data).hexdigest())
+    calibration = from_table(table, str(path))
+    return replace(calibration, file=path.name, sha256=hashlib.sha256(data).hexdigest())
 
 
-def as_table(one: Calibration) -> dict[str, Any]:
+def as_table(calibration: Calibration) -> dict[str, Any]:
     """Return a calibration with the keys of its file."""
     return {
-        "made": one.made.isoformat(),
-        "expires": one.expires.isoformat(),
-        "channels": list(one.channels),
-        **{key: getattr(one, key).tolist() for key in _ARRAYS},
+        "made": calibration.made.isoformat(),
+        "expires": calibration.expires.isoformat(),
+        "channels": list(calibration.channels),
+        **{key: getattr(calibration, key).tolist() for key in _ARRAYS},
     }
 
 
-def from_table(table: Mapping[str, Any], where: str) -> Calibration:
-    """Return the calibration that a table holds; ``where`` names it in errors.
+def from_table(table: Mapping[str, Any], place: str) -> Calibration:
+    """Return the calibration that a table holds; ``place`` names it in errors.
 
     It raises what :func:`read_calibration` raises.
     """
     missing = [key for key in _KEYS if key not in table]
     if missing:
-        raise ConfigurationError(f"{where}: no calibration: {', '.join(missing)} missing")
+        raise ConfigurationError(f"{place}: no calibration: {', '.join(missing)} missing")
     try:
-        channels = tuple(str(one) for one in table["channels"])
+        channels = tuple(str(name) for name in table["channels"])
         arrays = [np.array(table[key], dtype=np.float64) for key in _ARRAYS]
         made, expires = (date.fromisoformat(table[key]) for key in ("made", "expires"))
     except (TypeError, ValueError) as error:
-        raise ConfigurationError(f"{where}: no calibration: {error}") from error
+        raise ConfigurationError(f"{place}: no calibration: {error}") from error
     size = len(channels)
     if [array.shape for array in arrays] != [(size, size), (size, size), (size,), (size,)]:
-        raise ConfigurationError(f"{where}: the matrix does not fit the {size} channels")
+        raise ConfigurationError(f"{place}: the matrix does not fit the {size} channels")
     pairs = zip(_ARRAYS, arrays, strict=True)
-    if wrong := [key for key, one in pairs if not np.isfinite(one).all()]:
-        raise ConfigurationError(f"{where}: {' and '.join(wrong)} should be finite numbers")
+    if bad_keys := [key for key, array in pairs if not np.isfinite(array).all()]:
+        raise ConfigurationError(f"{place}: {' and '.join(bad_keys)} should be finite numbers")
     if not np.linalg.cond(arrays[0]) < _WORST_CONDITION:
         raise ConfigurationError(
-            f"{where}: matrix = {arrays[0].tolist()} is singular: two gauges would tell the same"
+            f"{place}: matrix = {arrays[0].tolist()} is singular: two gauges would tell the same"
         )
     matrix, spread, hysteresis, nonlinearity = arrays
     return Calibration(channels, matrix, spread, hysteresis, nonlinearity, made, expires)

@@ -196,19 +196,23 @@ class Campaign:
 
     def as_recorded(self, name: str) -> "Campaign":
         """Return the campaign with the tables that a run or a record at rest was recorded with."""
-        every: tuple[Run | AtRest, ...] = (*self.runs, *self.at_rest)
-        own = next((one for one in every if one.name == name), None)
-        if own is None or own.recorded_with is None:
+        entries: tuple[Run | AtRest, ...] = (*self.runs, *self.at_rest)
+        record = next((entry for entry in entries if entry.name == name), None)
+        if record is None or record.recorded_with is None:
             return self
-        told = {one.name: getattr(own.recorded_with, one.name) for one in fields(RecordedWith)}
-        return replace(self, **{key: one for key, one in told.items() if one is not None})
+        tables = {
+            field.name: getattr(record.recorded_with, field.name) for field in fields(RecordedWith)
+        }
+        return replace(self, **{key: table for key, table in tables.items() if table is not None})
 
-    def effects_on(self, more: Mapping[str, type[Effect]] | None = None) -> tuple[Effect, ...]:
+    def effects_on(
+        self, user_effects: Mapping[str, type[Effect]] | None = None
+    ) -> tuple[Effect, ...]:
         """Return the effects that the file switches on.
 
         Parameters
         ----------
-        more
+        user_effects
             Effects of the user's own, by name.
 
         Raises
@@ -216,15 +220,15 @@ class Campaign:
         ConfigurationError
             If a name, a parameter or a value is wrong: all of them in one message.
         """
-        built, faults = [], []
+        effects, faults = [], []
         for number, effect in enumerate(self.effects, 1):
             try:
-                built.append(build_from(effect.name, effect.parameters, dict(more or {})))
+                effects.append(build_from(effect.name, effect.parameters, dict(user_effects or {})))
             except ConfigurationError as error:
                 faults.append(f"effects[{number}]: {error}")
         if faults:
             raise ConfigurationError(f"campaign {self.name!r}: " + "; ".join(faults))
-        return tuple(built)
+        return tuple(effects)
 
     def run(self, name: str) -> Run:
         """Return the run of that name.

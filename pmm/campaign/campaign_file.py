@@ -83,10 +83,10 @@ def _expand_units(table: dict[str, Any], faults: list[Fault]) -> None:
                 _expand_units_of(run, (array, number), faults)
 
 
-def _expand_units_of(run: dict[str, Any], where: Place, faults: list[Fault]) -> None:
+def _expand_units_of(run: dict[str, Any], run_place: Place, faults: list[Fault]) -> None:
     for key in [key for key in _UNITS if key in run]:
         value, (si_key, factor) = run.pop(key), _UNITS[key]
-        place = (*where, key)
+        place = (*run_place, key)
         if si_key in run:
             faults.append(Fault(place, f"and {si_key} are both given; one is enough"))
         elif isinstance(value, bool) or not isinstance(value, int | float):
@@ -102,7 +102,7 @@ def _none_for_false(table: dict[str, Any]) -> None:
         if value is False:
             table[key] = None
         elif isinstance(value, dict):
-            table[key] = {part: None if one is False else one for part, one in value.items()}
+            table[key] = {part: None if entry is False else entry for part, entry in value.items()}
 
 
 def _run_faults(table: dict[str, Any]) -> Iterator[Fault]:
@@ -111,27 +111,27 @@ def _run_faults(table: dict[str, Any]) -> Iterator[Fault]:
     yield from attitude_faults(oscillator, table)
     runs = list(_valid(table, "runs", Run))
     rest = list(_valid(table, "at_rest", AtRest))
-    every: list[tuple[Place, Run | AtRest]] = [*runs, *rest]
+    records: list[tuple[Place, Run | AtRest]] = [*runs, *rest]
     names: set[str] = set()
-    for place, one in every:
-        yield from _name_faults(one.name, (*place, "name"), names)
+    for place, record in records:
+        yield from _name_faults(record.name, (*place, "name"), names)
     for place, run in runs:
-        own = run.recorded_with.oscillator if run.recorded_with is not None else None
-        if (rig := own or oscillator) is not None:
+        run_oscillator = run.recorded_with.oscillator if run.recorded_with is not None else None
+        if (rig := run_oscillator or oscillator) is not None:
             yield from _beyond(rig, run, place)
-    zeros = [one.name for _, one in rest if one.kind is RunKind.ZERO]
-    for place, one in every:
-        yield from _zero_faults(one, place, zeros)
-    for place, still in rest:
-        yield from _kind_faults(still, place)
+    zeros = [record.name for _, record in rest if record.kind is RunKind.ZERO]
+    for place, record in records:
+        yield from _zero_faults(record, place, zeros)
+    for place, rest_record in rest:
+        yield from _kind_faults(rest_record, place)
 
 
 def _valid(table: dict[str, Any], array: str, kind: type[T]) -> Iterator[tuple[Place, T]]:
     entries = table.get(array)
     for number, entry in enumerate(entries if isinstance(entries, list) else []):
-        found = validate(kind, entry, [])
-        if found is not None:
-            yield (array, number), found
+        item = validate(kind, entry, [])
+        if item is not None:
+            yield (array, number), item
 
 
 def _name_faults(name: str, place: Place, names: set[str]) -> Iterator[Fault]:
@@ -152,13 +152,15 @@ def _zero_faults(run: Run | AtRest, place: Place, zeros: list[str]) -> Iterator[
             yield Fault((*place, key), f"= {name!r} is no zero run of the campaign; {hint}")
 
 
-def _kind_faults(one: AtRest, place: Place) -> Iterator[Fault]:
-    if one.kind is RunKind.CIRCLE and not (one.turn_rate_rad_s and one.carriage_speed_m_s > 0.0):
+def _kind_faults(record: AtRest, place: Place) -> Iterator[Fault]:
+    if record.kind is RunKind.CIRCLE and not (
+        record.turn_rate_rad_s and record.carriage_speed_m_s > 0.0
+    ):
         yield Fault(place, "needs carriage_speed_m_s and turn_rate_deg_s for a run of kind circle")
-    elif one.turn_rate_rad_s and one.kind is not RunKind.CIRCLE:
-        yield Fault((*place, "turn_rate_deg_s"), f"is of no use to a run of kind {one.kind}")
-    if one.release_rad and one.kind is not RunKind.FREE_DECAY:
-        yield Fault((*place, "release_deg"), f"is of no use to a run of kind {one.kind}")
+    elif record.turn_rate_rad_s and record.kind is not RunKind.CIRCLE:
+        yield Fault((*place, "turn_rate_deg_s"), f"is of no use to a run of kind {record.kind}")
+    if record.release_rad and record.kind is not RunKind.FREE_DECAY:
+        yield Fault((*place, "release_deg"), f"is of no use to a run of kind {record.kind}")
 
 
 def _beyond(oscillator: Oscillator, run: Run, place: Place) -> Iterator[Fault]:

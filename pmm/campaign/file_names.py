@@ -22,9 +22,11 @@ def no_file_name(name: str) -> str | None:
         return "is empty"
     if len(name) > LONGEST:
         return f"has {len(name)} letters; the limit is {LONGEST}"
-    wrong = sorted({one for one in name if one in _NEVER or not one.isprintable()})
-    if wrong:
-        return f"cannot be the name of a file or folder: it has {', '.join(map(repr, wrong))}"
+    bad_letters = sorted(
+        {letter for letter in name if letter in _NEVER or not letter.isprintable()}
+    )
+    if bad_letters:
+        return f"cannot be the name of a file or folder: it has {', '.join(map(repr, bad_letters))}"
     if name[0] in " ." or name[-1] in " .":
         return "cannot be the name of a file or folder: it begins or ends with a dot or a blank"
     if name.split(".")[0].casefold() in _DEVICES:

@@ -30,21 +30,21 @@ class ModelUncertainty:
 
 def take_uncertainty(table: dict[str, Any], faults: list[Fault]) -> ModelUncertainty | None:
     """Take the table out of a campaign's; what is wrong with it is noted."""
-    given = table.pop("model_uncertainty", None)
-    if given is None:
+    entry = table.pop("model_uncertainty", None)
+    if entry is None:
         return None
     place = "model_uncertainty"
-    if not isinstance(given, dict):
+    if not isinstance(entry, dict):
         faults.append(Fault((place,), "should be a table"))
         return None
-    finite = {key: value for key, value in given.items() if value != math.inf or key != _FREEDOM}
-    own: list[Fault] = []
-    found = validate(ModelUncertainty, finite, own)
-    faults += [Fault((place, *one.place), one.message) for one in own]
+    finite = {key: value for key, value in entry.items() if value != math.inf or key != _FREEDOM}
+    entry_faults: list[Fault] = []
+    uncertainty = validate(ModelUncertainty, finite, entry_faults)
+    faults += [Fault((place, *fault.place), fault.message) for fault in entry_faults]
     for key, value in finite.items():
         if isinstance(value, int | float) and value < 0.0:
             faults.append(Fault((place, key), f"= {value:g} should be 0 or more"))
-    return found
+    return uncertainty
 
 
 _FREEDOM = "inertia_degrees_of_freedom"

@@ -19,21 +19,21 @@ def made_in_order(campaign: Campaign) -> tuple[Record, ...]:
     """
     if not campaign.at_rest:
         return campaign.runs
-    every: tuple[Record, ...] = (*campaign.runs, *campaign.at_rest)
-    numbered = [(one.number, one) for one in every if one.number is not None]
-    if len(numbered) == len(every):
-        return tuple(one for _, one in sorted(numbered, key=lambda pair: pair[0]))
+    records: tuple[Record, ...] = (*campaign.runs, *campaign.at_rest)
+    numbered = [(record.number, record) for record in records if record.number is not None]
+    if len(numbered) == len(records):
+        return tuple(record for _, record in sorted(numbered, key=lambda pair: pair[0]))
     order: list[Record] = list(campaign.runs)
-    for one in campaign.at_rest:
-        place = _place_by_name(order, one.name)
+    for record in campaign.at_rest:
+        place = _place_by_name(order, record.name)
         if place is not None:
-            order.insert(place, one)
+            order.insert(place, record)
     return tuple(order)
 
 
 def _place_by_name(order: Sequence[Record], name: str) -> int | None:
-    before = [at for at, one in enumerate(order) if one.zero_before == name]
-    after = [at + 1 for at, one in enumerate(order) if one.zero_after == name]
+    before = [place for place, record in enumerate(order) if record.zero_before == name]
+    after = [place + 1 for place, record in enumerate(order) if record.zero_after == name]
     return min(before) if before else max(after, default=None)
 
 
@@ -53,20 +53,22 @@ def place_in(campaign: Campaign, record: Record) -> CampaignRun:
         )
     earlier = order[: order.index(record)]
     waiting_s = campaign.simulation.waiting_s
-    since_s = sum(_duration_s(campaign, one) for one in earlier) + len(earlier) * waiting_s
-    runs = [at for at, one in enumerate(earlier) if isinstance(one, Run)]
+    since_s = sum(_duration_s(campaign, entry) for entry in earlier) + len(earlier) * waiting_s
+    runs = [place for place, entry in enumerate(earlier) if isinstance(entry, Run)]
     if not runs:
         return CampaignRun(0, since_s, 0.0, None)
     last = earlier[runs[-1]]
     between = earlier[runs[-1] + 1 :]
-    waited_s = sum(_duration_s(campaign, one) for one in between) + (len(between) + 1) * waiting_s
+    waited_s = (
+        sum(_duration_s(campaign, entry) for entry in between) + (len(between) + 1) * waiting_s
+    )
     before = last.set_point if isinstance(last, Run) else None
     return CampaignRun(len(runs), since_s, waited_s, before)
 
 
-def _duration_s(campaign: Campaign, one: Record) -> float:
+def _duration_s(campaign: Campaign, record: Record) -> float:
     """Return how long a run or a record at rest takes."""
-    if isinstance(one, AtRest):
-        return one.duration_s
+    if isinstance(record, AtRest):
+        return record.duration_s
     # A record is one period longer than the periods that are wanted.
-    return (campaign.simulation.settling_periods + one.periods + 1) / one.frequency_hz
+    return (campaign.simulation.settling_periods + record.periods + 1) / record.frequency_hz

@@ -122,8 +122,8 @@ def open_recording(
         progress=progress,
     )
     if source.path.name == RECORDING:
-        found = text_flags(source.path.parent)
-        recording = replace(recording, flags=(*recording.flags, *found))
+        flags = text_flags(source.path.parent)
+        recording = replace(recording, flags=(*recording.flags, *flags))
     recording = _in_newtons(recording, source.calibration)
     if source.edges_file is not None:
         edges_file = here(source.edges_file)
@@ -143,10 +143,10 @@ def _columns(source: RecordingSource) -> "ColumnMap | None":
     return replace(source.columns, photocell=None) if source.at_rest else source.columns
 
 
-def _in_newtons(recording: "Recording", given: "Calibration | str | None") -> "Recording":
+def _in_newtons(recording: "Recording", calibration: "Calibration | str | None") -> "Recording":
     from pmm.campaign.calibrated_recording import calibrated
 
-    return recording if isinstance(given, str) else calibrated(recording, given)
+    return recording if isinstance(calibration, str) else calibrated(recording, calibration)
 
 
 def _gated(recording: "Recording", path: Path) -> "Recording":
@@ -162,12 +162,16 @@ def _gated(recording: "Recording", path: Path) -> "Recording":
 
 def _named(recording: "Recording", source: RecordingSource) -> "Recording":
     """Return a recording under its run's name and set-point, flagged where its own is another."""
-    own, told = recording.set_point, source.set_point
-    flags = () if own is None or told is None else _differences(own, told, _readings(recording))
+    recorded, stated = recording.set_point, source.set_point
+    flags = (
+        ()
+        if recorded is None or stated is None
+        else _differences(recorded, stated, _readings(recording))
+    )
     return replace(
         recording,
         name=source.name or recording.name,
-        set_point=own if told is None else told,
+        set_point=recorded if stated is None else stated,
         flags=(*recording.flags, *flags, *_otherwise(source)),
     )
 
@@ -182,46 +186,47 @@ def _otherwise(source: RecordingSource) -> tuple[Flag, ...]:
 
 def _readings(recording: "Recording") -> dict[str, Reading]:
     """Return where the axes stood as run control read them, which its campaign states."""
-    kept = json.loads(recording.provenance.get("readings", "{}"))
-    return {axis: Reading(**one) for axis, one in kept.items()}
+    tables = json.loads(recording.provenance.get("readings", "{}"))
+    return {axis: Reading(**table) for axis, table in tables.items()}
 
 
 def _differences(
-    own: SetPoint, told: SetPoint, readings: Mapping[str, Reading]
+    recorded: SetPoint, stated: SetPoint, readings: Mapping[str, Reading]
 ) -> tuple[Flag, ...]:
     """Say where a recording was made with another set-point than its campaign states."""
-    e = readings.get("eccentricity", Reading(own.eccentricity_m, 0.0, ""))
-    phase = readings.get("phase", Reading(own.strut_phase_rad, 0.0, ""))
+    e = readings.get("eccentricity", Reading(recorded.eccentricity_m, 0.0, ""))
+    phase = readings.get("phase", Reading(recorded.strut_phase_rad, 0.0, ""))
     pairs = (
-        ("frequency", "Hz", own.frequency_hz, told.frequency_hz, 0.0),
-        ("eccentricity", "m", e.value, told.eccentricity_m, e.standard_uncertainty),
-        ("strut phase", "rad", phase.value, told.strut_phase_rad, phase.standard_uncertainty),
-        ("carriage speed", "m/s", own.carriage_speed_m_s, told.carriage_speed_m_s, 0.0),
-        ("drift", "rad", own.drift_rad, told.drift_rad, 0.0),
-        ("rudder angle", "rad", own.rudder_angle_rad, told.rudder_angle_rad, 0.0),
-        ("revolutions", "Hz", own.revolutions_hz, told.revolutions_hz, 0.0),
-        ("heel", "rad", own.heel_rad, told.heel_rad, 0.0),
-        ("rate of turn", "rad/s", own.turn_rate_rad_s, told.turn_rate_rad_s, 0.0),
-        ("release", "rad", own.release_rad, told.release_rad, 0.0),
-        ("waves", "Hz", own.wave_frequency_hz, told.wave_frequency_hz, 0.0),
+        ("frequency", "Hz", recorded.frequency_hz, stated.frequency_hz, 0.0),
+        ("eccentricity", "m", e.value, stated.eccentricity_m, e.standard_uncertainty),
+        ("strut phase", "rad", phase.value, stated.strut_phase_rad, phase.standard_uncertainty),
+        ("carriage speed", "m/s", recorded.carriage_speed_m_s, stated.carriage_speed_m_s, 0.0),
+        ("drift", "rad", recorded.drift_rad, stated.drift_rad, 0.0),
+        ("rudder angle", "rad", recorded.rudder_angle_rad, stated.rudder_angle_rad, 0.0),
+        ("revolutions", "Hz", recorded.revolutions_hz, stated.revolutions_hz, 0.0),
+        ("heel", "rad", recorded.heel_rad, stated.heel_rad, 0.0),
+        ("rate of turn", "rad/s", recorded.turn_rate_rad_s, stated.turn_rate_rad_s, 0.0),
+        ("release", "rad", recorded.release_rad, stated.release_rad, 0.0),
+        ("waves", "Hz", recorded.wave_frequency_hz, stated.wave_frequency_hz, 0.0),
     )
-    found = [
-        f"{what} {mine:.6g} {unit}, the campaign says {theirs:.6g} {unit}"
-        for what, unit, mine, theirs, u in pairs
-        if abs(mine - theirs) > max(_SAME * max(abs(mine), abs(theirs)), _WITHIN * u)
+    differences = [
+        f"{quantity} {recorded_value:.6g} {unit}, the campaign says {stated_value:.6g} {unit}"
+        for quantity, unit, recorded_value, stated_value, u in pairs
+        if abs(recorded_value - stated_value)
+        > max(_SAME * max(abs(recorded_value), abs(stated_value)), _WITHIN * u)
     ]
-    if own.medium is not told.medium:
-        found.append(f"medium {own.medium}, the campaign says {told.medium}")
-    if not found:
+    if recorded.medium is not stated.medium:
+        differences.append(f"medium {recorded.medium}, the campaign says {stated.medium}")
+    if not differences:
         return ()
     text = (
-        f"recorded with {'; '.join(found)}: is this the recording of that run? The campaign's "
-        "set-point is used"
+        f"recorded with {'; '.join(differences)}: is this the recording of that run? The "
+        "campaign's set-point is used"
     )
     return (Flag("set_point_differs", Severity.WARNING, text),)
 
 
 def _check_there(path: Path) -> None:
     if not path.exists():
-        what = "file" if path.suffix else "file or folder"
-        raise ConfigurationError(f"{path}: no such {what}")
+        kind = "file" if path.suffix else "file or folder"
+        raise ConfigurationError(f"{path}: no such {kind}")

@@ -166,8 +166,8 @@ def _told(run: "Asked | AtRest") -> dict[str, Any]:
 
 
 def _recording_path(folder: Path, name: str, file: str | None) -> Path:
-    own = folder / f"{name}.nc"
-    return own if file is None or own.exists() else folder / file
+    default_path = folder / f"{name}.nc"
+    return default_path if file is None or default_path.exists() else folder / file
 
 
 def nearest_run(name: str, names: Sequence[str]) -> str:

@@ -56,12 +56,14 @@ class PlannedSimulation:
     seed: int
     overwrite: bool
 
-    def carry_out(self, told: Callable[[Sequence[Run]], Iterable[Run]] = iter) -> SimulatedCampaign:
+    def carry_out(
+        self, progress: Callable[[Sequence[Run]], Iterable[Run]] = iter
+    ) -> SimulatedCampaign:
         """Simulate and write.
 
         Parameters
         ----------
-        told
+        progress
             Hands the runs on one by one and may show how far it is.
 
         Raises
@@ -74,7 +76,7 @@ class PlannedSimulation:
         with own_new_campaign(self.folder):
             runs = simulate_runs(
                 self.campaign,
-                told(self.runs),
+                progress(self.runs),
                 self.folder,
                 self.seed,
                 overwrite=self.overwrite,
@@ -88,9 +90,9 @@ class PlannedSimulation:
                 overwrite=self.overwrite,
                 effects=self.effects,
             )
-            done = SimulatedCampaign(tuple(runs), tuple(zeros))
+            result = SimulatedCampaign(tuple(runs), tuple(zeros))
             copy_campaign(self.file, self.campaign, self.folder)
-        return done
+        return result
 
 
 def planned_simulation(
@@ -125,17 +127,17 @@ def planned_simulation(
     """
     file = path / CAMPAIGN_FILE if path.is_dir() else path
     campaign = read_campaign(file)
-    more = user_effects(effects_file)
-    planned = PlannedSimulation(
+    file_effects = user_effects(effects_file)
+    simulation = PlannedSimulation(
         file,
         campaign,
         Path(campaign.name) if folder is None else folder,
         tuple(campaign.run(name) for name in runs) or tuple(campaign.runs),
         () if runs else at_rest_runs(campaign),
-        (*campaign.effects_on(more), *(build(text, more) for text in effects)),
+        (*campaign.effects_on(file_effects), *(build(text, file_effects) for text in effects)),
         campaign.simulation.seed if seed is None else seed,
         overwrite,
     )
-    written: tuple[Run | AtRest, ...] = (*planned.runs, *planned.zeros)
-    check_target(file, campaign, written, planned.folder, overwrite=overwrite)
-    return planned
+    records: tuple[Run | AtRest, ...] = (*simulation.runs, *simulation.zeros)
+    check_target(file, campaign, records, simulation.folder, overwrite=overwrite)
+    return simulation

@@ -43,9 +43,9 @@ class SimulatedRun:
 
 def at_rest_runs(campaign: Campaign) -> tuple[AtRest, ...]:
     """Return zero runs, tows and decays whose place in the campaign is known, as made."""
-    made = (one for one in made_in_order(campaign) if isinstance(one, AtRest))
+    records = (record for record in made_in_order(campaign) if isinstance(record, AtRest))
     kinds = (RunKind.ZERO, RunKind.FREE_DECAY)
-    return tuple(one for one in made if one.kind in kinds or one.kind.towed)
+    return tuple(record for record in records if record.kind in kinds or record.kind.towed)
 
 
 def check_target(
@@ -62,19 +62,19 @@ def check_target(
     if not runs:
         raise ConfigurationError(f"{path}: the campaign has no runs; add a table [[runs]] for each")
     target = folder / CAMPAIGN_FILE
-    own = target.exists() and target.samefile(path)
-    if own and any(run.file for run in campaign.runs):
+    is_same_file = target.exists() and target.samefile(path)
+    if is_same_file and any(run.file for run in campaign.runs):
         raise ConfigurationError(
             f"{path}: its runs name recordings of another system; simulate into another folder "
             "with --output, so that measured and simulated runs are not taken for each other"
         )
     if overwrite:
         return
-    there = [one for one in (folder / f"{run.name}.nc" for run in runs) if one.exists()]
-    if target.exists() and not own and target.read_bytes() != path.read_bytes():
-        there.append(target)
-    if there:
-        names = ", ".join(str(one) for one in there)
+    files = [file for file in (folder / f"{run.name}.nc" for run in runs) if file.exists()]
+    if target.exists() and not is_same_file and target.read_bytes() != path.read_bytes():
+        files.append(target)
+    if files:
+        names = ", ".join(str(file) for file in files)
         raise ConfigurationError(f"{names}: there already; choose another --output, or --overwrite")
 
 
@@ -100,11 +100,13 @@ def simulate_runs(
     rig = campaign.rig()
     for run in runs:
         run_seed = seed_of(seed, run.name)
-        own = rig if run.recorded_with is None else campaign.as_recorded(run.name).rig()
-        recording = _simulated(own, campaign, run, run.set_point, run.periods, run_seed, effects)
+        run_rig = rig if run.recorded_with is None else campaign.as_recorded(run.name).rig()
+        recording = _simulated(
+            run_rig, campaign, run, run.set_point, run.periods, run_seed, effects
+        )
         switched_on = {"effects": json.dumps(effect_rows(effects))} if effects else {}
-        told = {**recording.provenance, **switched_on}
-        recording = replace(recording, set_point=run.set_point, provenance=told)
+        provenance = {**recording.provenance, **switched_on}
+        recording = replace(recording, set_point=run.set_point, provenance=provenance)
         file = _written(recording, folder, run.name, overwrite=overwrite)
         rate, count = recording.sample_rate_hz, recording.sample_count
         yield SimulatedRun(run, file, run_seed, rate, count, recording.flags)
@@ -127,14 +129,14 @@ def simulate_at_rest(
         As :func:`simulate_runs`.
     """
     rig = campaign.rig()
-    for one in records:
+    for record in records:
         # The gauges' mean is taken with the scatter between blocks: a block stands for a period.
-        point = replace(one.set_point, frequency_hz=ZERO_BLOCKS / one.duration_s)
+        point = replace(record.set_point, frequency_hz=ZERO_BLOCKS / record.duration_s)
         periods = ZERO_BLOCKS - 1  # a simulated record is one longer
-        own = seed_of(seed, one.name)
-        recording = _simulated(rig, campaign, one, point, periods, own, effects)
+        record_seed = seed_of(seed, record.name)
+        recording = _simulated(rig, campaign, record, point, periods, record_seed, effects)
         recording = replace(recording, set_point=None)
-        yield _written(recording, folder, one.name, overwrite=overwrite)
+        yield _written(recording, folder, record.name, overwrite=overwrite)
 
 
 def _simulated(
@@ -146,21 +148,21 @@ def _simulated(
     seed: int,
     effects: Sequence[Effect],
 ) -> "Recording":
-    still, settings = isinstance(run, AtRest), campaign.simulation
+    at_rest, settings = isinstance(run, AtRest), campaign.simulation
     try:
-        changed, set_point = switch_on(effects, rig, point, place_in(campaign, run))
+        effect_rig, set_point = switch_on(effects, rig, point, place_in(campaign, run))
         dataset = simulate(
-            rig_at_rest(changed) if still else changed,
+            rig_at_rest(effect_rig) if at_rest else effect_rig,
             set_point,
             periods=periods,
-            settling_periods=0 if still else settings.settling_periods,
+            settling_periods=0 if at_rest else settings.settling_periods,
             sample_rate_hz=settings.sample_rate_hz,
             seed=seed,
             name=run.name,
         )
     except ConfigurationError as error:
-        what = "record at rest" if still else "run"
-        raise ConfigurationError(f"{what} {run.name!r}: {error}") from None
+        kind = "record at rest" if at_rest else "run"
+        raise ConfigurationError(f"{kind} {run.name!r}: {error}") from None
     return from_dataset(dataset)
 
 
@@ -184,9 +186,9 @@ def copy_campaign(path: Path, campaign: Campaign, folder: Path) -> None:
     """Put a campaign file beside its recordings, and its table of added mass where it looks."""
     _copied(path, folder / CAMPAIGN_FILE)
     if campaign.radiation is not None:
-        source, own = Path(campaign.radiation.file).resolve(), path.parent.resolve()
-        if source.is_relative_to(own):
-            _copied(source, folder / source.relative_to(own))
+        source, campaign_folder = Path(campaign.radiation.file).resolve(), path.parent.resolve()
+        if source.is_relative_to(campaign_folder):
+            _copied(source, folder / source.relative_to(campaign_folder))
 
 
 def _copied(source: Path, target: Path) -> None:

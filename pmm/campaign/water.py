@@ -24,17 +24,17 @@ def common_water(waters: Sequence[TankWater | None]) -> TankWater | None:
     ConfigurationError
         If only some say, or salinity or depth differ.
     """
-    known = [one for one in waters if one is not None]
-    if not known:
+    tank_waters = [water for water in waters if water is not None]
+    if not tank_waters:
         return None
-    if len(known) < len(waters):
+    if len(tank_waters) < len(waters):
         raise ConfigurationError("only some of the campaigns have a table [water]; give all one")
     for key in ("salinity_g_kg", "depth_m"):
-        values = {getattr(one, key) for one in known}
+        values = {getattr(water, key) for water in tank_waters}
         if len(values) > 1:
-            told = " and ".join(map(str, values))
+            values_text = " and ".join(map(str, values))
             raise ConfigurationError(
-                f"the campaigns' [water] differ in {key} ({told}): analyse them one by one"
+                f"the campaigns' [water] differ in {key} ({values_text}): analyse them one by one"
             )
-    mean = sum(one.temperature_deg_c for one in known) / len(known)
-    return TankWater(mean, known[0].salinity_g_kg, known[0].depth_m)
+    mean = sum(water.temperature_deg_c for water in tank_waters) / len(tank_waters)
+    return TankWater(mean, tank_waters[0].salinity_g_kg, tank_waters[0].depth_m)

@@ -50,9 +50,9 @@ class Commands(CommandGroup):
         except BrokenPipeError:
             raise
         except OSError as error:
-            named = DataError(said(error))
-            _show(named.with_traceback(error.__traceback__), with_traceback=ctx.params["debug"])
-            ctx.exit(named.exit_status)
+            refusal = DataError(said(error))
+            _show(refusal.with_traceback(error.__traceback__), with_traceback=ctx.params["debug"])
+            ctx.exit(refusal.exit_status)
         except KeyboardInterrupt:
             click.echo("stopped", err=True)
             ctx.exit(_INTERRUPTED)

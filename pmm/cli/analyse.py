@@ -177,30 +177,32 @@ def analyse(files: tuple[str, ...], plot: str | None, as_json: bool, **options: 
     from pmm.report.harmonics_document import analysis_document, doubt_section, run_section
 
     request = HarmonicsRequest(**options)
-    tell_writers(one for one in map(Path, files) if one.is_dir() or one.suffix == ".toml")
-    found = find_sources(files)
-    _check(found.sources, request, plot)
-    done: list[Resolved] = []
-    failed: list[Failure] = []
-    for one in _each(found.sources, request, plot):
-        if isinstance(one, Failure):
-            failed.append(one)
-            _tell(one)
+    tell_writers(path for path in map(Path, files) if path.is_dir() or path.suffix == ".toml")
+    selection = find_sources(files)
+    _check(selection.sources, request, plot)
+    resolved: list[Resolved] = []
+    failures: list[Failure] = []
+    for outcome in _each(selection.sources, request, plot):
+        if isinstance(outcome, Failure):
+            failures.append(outcome)
+            _tell(outcome)
             continue
-        done.append(one)
+        resolved.append(outcome)
         if not as_json:
-            print_section(output(), run_section(one.rows, request.level))
-    wrong, rows = tuple(doubts(done)), [one.rows for one in done]
+            print_section(output(), run_section(outcome.rows, request.level))
+    flagged_files, rows = tuple(doubts(resolved)), [run.rows for run in resolved]
     if as_json:
-        told = analysis_document(rows, failed, found.not_recorded, wrong, request.level)
-        click.echo(as_text(told))
-    for path, flags in () if as_json else wrong:
+        document = analysis_document(
+            rows, failures, selection.not_recorded, flagged_files, request.level
+        )
+        click.echo(as_text(document))
+    for path, flags in () if as_json else flagged_files:
         print_section(output(), doubt_section(path, flags))
-    for path in found.not_recorded:
+    for path in selection.not_recorded:
         messages().print(f"not recorded yet: {path}")
-    tell_unchecked(one.source.path for one in done)
-    statuses = tell_damaged((one.file, one.flags) for one in rows)
-    if statuses := statuses + [failure.exit_status for failure in failed]:
+    tell_unchecked(run.source.path for run in resolved)
+    statuses = tell_damaged((run.file, run.flags) for run in rows)
+    if statuses := statuses + [failure.exit_status for failure in failures]:
         click.get_current_context().exit(min(statuses))
 
 
@@ -217,22 +219,22 @@ def _each(
     from pmm.harmonics.resolving import resolve, untold
     from pmm.parallel import open_executor
 
-    doing, jobs, draw = "analysing", 1, None
+    activity, jobs, draw = "analysing", 1, None
     if plot is not None:
-        doing, jobs = "analysing and plotting", min(cores(), len(sources))
+        activity, jobs = "analysing and plotting", min(cores(), len(sources))
         draw = partial(_draw, Path(plot), request)
     with open_executor(max(1, jobs)) as executor:
         # Of the run at hand; another process has no screen.
-        shown: list[Callable[[float], None]] = [untold]
-        tell = untold if jobs > 1 else lambda part: shown[-1](part)
+        displays: list[Callable[[float], None]] = [untold]
+        tell = untold if jobs > 1 else lambda part: displays[-1](part)
         columns = request.chosen_columns()
         work = partial(resolve, request=request, columns=columns, draw=draw, progress=tell)
         results = executor.map(work, sources)
         for number, source in enumerate(sources, 1):
-            with busy(f"{doing} {source.stem}, {number} of {len(sources)}") as told:
-                shown.append(told)
-                one = next(results)
-            yield one
+            with busy(f"{activity} {source.stem}, {number} of {len(sources)}") as display:
+                displays.append(display)
+                outcome = next(results)
+            yield outcome
 
 
 def _draw(folder: Path, request: "HarmonicsRequest", analysis: "Analysis", name: str) -> None:

@@ -68,21 +68,21 @@ def add(folders: tuple[str, ...], analysed: bool, gap: bool, jobs: int | None,
     check_file(Path(file), "--archive")
     Path(file).parent.mkdir(parents=True, exist_ok=True)
     analyses = Analyses(analysed_folder if analysed else None, diagnosed_folder if gap else None)
-    done: list[AddedFolder] = []
+    added_folders: list[AddedFolder] = []
     statuses = []
     with (
         open_archive(Path(file), create=True) as connection,
         open_executor(1 if scheduler is None and jobs is None else jobs, scheduler) as executor,
     ):
-        found = add_folders(connection, map(Path, folders), analyses, _now(), executor)
-        for one in show_progress(found, "folders", len(folders)):
-            if isinstance(one, PmmError):
-                error_line(str(one))
-                statuses.append(one.exit_status)
+        outcomes = add_folders(connection, map(Path, folders), analyses, _now(), executor)
+        for outcome in show_progress(outcomes, "folders", len(folders)):
+            if isinstance(outcome, PmmError):
+                error_line(str(outcome))
+                statuses.append(outcome.exit_status)
             else:
-                done.append(one)
-    show(added_document(tuple(done), file), as_json=as_json)
-    statuses += [1 for one in done if one.refused]
+                added_folders.append(outcome)
+    show(added_document(tuple(added_folders), file), as_json=as_json)
+    statuses += [1 for folder in added_folders if folder.refused]
     if statuses:
         click.get_current_context().exit(min(statuses))
 
@@ -140,8 +140,8 @@ def find(expression: str, channel: str | None, order: int, coefficients: bool, f
         )
     with open_archive(Path(file)) as connection:
         if coefficients:
-            found = find_coefficients(connection, expression)
-            show(coefficients_found_document(found, expression, file), as_json=as_json)
+            coefficient_rows = find_coefficients(connection, expression)
+            show(coefficients_found_document(coefficient_rows, expression, file), as_json=as_json)
             return
         rows = find_runs(connection, expression, channel, order)
     show(find_document(rows, expression, channel, order, file), as_json=as_json)
@@ -184,9 +184,9 @@ def note(run: str, text: str, campaign: str | None, author: str | None, file: st
     from pmm.cli.screen import messages
 
     with open_archive(Path(file)) as connection:
-        found = the_run(connection, run, campaign)
+        filed_run = the_run(connection, run, campaign)
         line = NoteLine(_now(), run, author or getuser(), text)
-        path = note_run(connection, found, line)
+        path = note_run(connection, filed_run, line)
     messages().print(f"written: {path}")
 
 
@@ -229,11 +229,11 @@ def trend(
     check_folder(plot, "--plot")
     with open_archive(Path(file)) as connection:
         if run is None:
-            found = coefficient_trends(connection, name, level)
+            trends = coefficient_trends(connection, name, level)
         else:
-            found = repeat_trends(connection, run, campaign, name, order, level)
-    show(trend_document(found, level), as_json=as_json)
-    write_asked_figures(trend_figures(found), plot, "archive")
+            trends = repeat_trends(connection, run, campaign, name, order, level)
+    show(trend_document(trends, level), as_json=as_json)
+    write_asked_figures(trend_figures(trends), plot, "archive")
 
 
 @archive.command()
@@ -262,10 +262,10 @@ def export(parquet: str, coefficients: bool, overwrite: bool, file: str) -> None
     check_files({"--parquet": parquet}, [("--archive", Path(file))], overwrite=overwrite)
     with open_archive(Path(file)) as connection:
         if coefficients:
-            what, columns = "coefficients", COEFFICIENT_COLUMNS
+            kind, columns = "coefficients", COEFFICIENT_COLUMNS
             rows = find_coefficients(connection, "coefficient != ''")
         else:
-            what, columns = "harmonics", FILED_HARMONICS
+            kind, columns = "harmonics", FILED_HARMONICS
             rows = all_harmonics(connection)
     write_parquet(columns, rows, Path(parquet))
-    messages().print(f"written: {parquet}, {len(rows)} {what}")
+    messages().print(f"written: {parquet}, {len(rows)} {kind}")

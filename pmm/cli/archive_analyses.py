@@ -18,57 +18,57 @@ T = TypeVar("T")
 def analysed_folder(folder: Path) -> Analysed:
     """Return harmonics and recommended coefficients; what data refuse is said in the result."""
     records = opened(folder)
-    refused: list[str] = []
+    refusals: list[str] = []
 
     def harmonics() -> tuple[HarmonicValue, ...]:
-        found = records.harmonics(level=LEVEL)
-        refused.extend(one.said for one in found.failed)
-        return tuple(_harmonics(found))
+        result = records.harmonics(level=LEVEL)
+        refusals.extend(failure.said for failure in result.failed)
+        return tuple(_harmonics(result))
 
     def coefficients() -> tuple[CoefficientValue, ...]:
-        found = records.coefficients(level=LEVEL)
-        refused.extend(one.message for one in found.outcome.failed)
-        return tuple(_coefficients(found))
+        result = records.coefficients(level=LEVEL)
+        refusals.extend(failure.message for failure in result.outcome.failed)
+        return tuple(_coefficients(result))
 
-    parts = _attempt(harmonics, refused), _attempt(coefficients, refused)
-    return Analysed(*parts, tuple(dict.fromkeys(refused)))
+    parts = _attempt(harmonics, refusals), _attempt(coefficients, refusals)
+    return Analysed(*parts, tuple(dict.fromkeys(refusals)))
 
 
-def _attempt(find: Callable[[], tuple[T, ...]], refused: list[str]) -> tuple[T, ...]:
+def _attempt(find: Callable[[], tuple[T, ...]], refusals: list[str]) -> tuple[T, ...]:
     try:
         return find()
     except PmmError as error:
-        refused.append(str(error))
+        refusals.append(str(error))
         return ()
 
 
-def _harmonics(found: HarmonicsResult) -> Iterator[HarmonicValue]:
-    for run in found.runs:
+def _harmonics(result: HarmonicsResult) -> Iterator[HarmonicValue]:
+    for run in result.runs:
         for number, gate in enumerate(run.gates, 1):
             for channel in gate.channels:
-                about = (run.run, number, channel.name)
+                keys = (run.run, number, channel.name)
                 mean = channel.mean
-                yield HarmonicValue(
-                    *about, 0, channel.unit, mean.value, None, mean.half_width, None
-                )
-                for one in channel.harmonics:
-                    sine, cosine = one.in_phase, one.quadrature
+                yield HarmonicValue(*keys, 0, channel.unit, mean.value, None, mean.half_width, None)
+                for harmonic in channel.harmonics:
+                    sine, cosine = harmonic.in_phase, harmonic.quadrature
                     yield HarmonicValue(
-                        *about, one.order, channel.unit, sine.value, cosine.value,
+                        *keys, harmonic.order, channel.unit, sine.value, cosine.value,
                         sine.half_width, cosine.half_width,
                     )  # fmt: skip
 
 
-def _coefficients(found: CoefficientsResult) -> Iterator[CoefficientValue]:
-    for row in table(found.outcome.result):
+def _coefficients(result: CoefficientsResult) -> Iterator[CoefficientValue]:
+    for row in table(result.outcome.result):
         if row["recommended"]:
-            yield CoefficientValue(**{one.name: row[one.name] for one in fields(CoefficientValue)})
+            yield CoefficientValue(
+                **{field.name: row[field.name] for field in fields(CoefficientValue)}
+            )
 
 
 def diagnosed_folder(folder: Path) -> GapVerdict:
     """Return what the gap diagnosis answers."""
-    found = opened(folder).gap()
-    first = next(iter(found.report.ranking), None)
+    gap = opened(folder).gap()
+    first = next(iter(gap.report.ranking), None)
     if first is None:
-        return GapVerdict(found.verdict, None, None)
-    return GapVerdict(found.verdict, first.answer, first.probability)
+        return GapVerdict(gap.verdict, None, None)
+    return GapVerdict(gap.verdict, first.answer, first.probability)

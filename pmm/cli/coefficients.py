@@ -138,12 +138,16 @@ def finish(outcome: "CampaignOutcome") -> None:
 
     for name in outcome.not_recorded:
         messages().print(f"not recorded yet: {name}")
-    for one in outcome.failed:
-        shown = one.message if one.name in one.message else f"{one.name}: {one.message}"
-        error_line(shown)
-    tell_unchecked(one.file for one in outcome.runs)
-    statuses = tell_damaged((one.file, one.flags) for one in outcome.runs)
-    if statuses := statuses + [one.exit_status for one in outcome.failed]:
+    for failure in outcome.failed:
+        message = (
+            failure.message
+            if failure.name in failure.message
+            else f"{failure.name}: {failure.message}"
+        )
+        error_line(message)
+    tell_unchecked(run.file for run in outcome.runs)
+    statuses = tell_damaged((run.file, run.flags) for run in outcome.runs)
+    if statuses := statuses + [failure.exit_status for failure in outcome.failed]:
         click.get_current_context().exit(min(statuses))
 
 
@@ -168,10 +172,10 @@ def _show_steps() -> "Iterator[Progress]":
     with Bars(console=console, transient=True, disable=not console.is_terminal) as bars:
         tasks: dict[str, TaskID] = {}
 
-        def progress(done: int, total: int, what: str) -> None:
-            if what not in tasks:
-                tasks[what] = bars.add_task(what, total=total)
-            bars.update(tasks[what], completed=done, total=total)
+        def progress(count: int, total: int, step: str) -> None:
+            if step not in tasks:
+                tasks[step] = bars.add_task(step, total=total)
+            bars.update(tasks[step], completed=count, total=total)
 
         yield progress
 
@@ -188,10 +192,12 @@ def _check_outputs(options: Mapping[str, Any]) -> None:
         from pmm.coefficients.memory_file import curves_file
 
         files["--memory (its curves)"] = str(curves_file(Path(memory)))
-    named = [Path(name) for name in options["campaigns"]]
-    own = [one if one.name == CAMPAIGN_FILE else one / CAMPAIGN_FILE for one in named]
-    read = [("the campaign", one) for one in own]
-    check_files(files, read, overwrite=options["overwrite"])
+    campaign_paths = [Path(name) for name in options["campaigns"]]
+    campaign_files = [
+        path if path.name == CAMPAIGN_FILE else path / CAMPAIGN_FILE for path in campaign_paths
+    ]
+    inputs = [("the campaign", path) for path in campaign_files]
+    check_files(files, inputs, overwrite=options["overwrite"])
 
 
 def _written(outcome: "CampaignOutcome", options: Mapping[str, Any]) -> Iterator[str]:
@@ -217,9 +223,9 @@ def _written(outcome: "CampaignOutcome", options: Mapping[str, Any]) -> Iterator
         from pmm.report.coefficient_plots import figures
         from pmm.report.memory_figure import memory_figures
 
-        drawn = (*figures(outcome.result), *memory_figures(outcome))
-        written = write_figures(drawn, Path(options["plot"]), "coefficients")
-        yield f"{len(written)} figures in {options['plot']}"
+        all_figures = (*figures(outcome.result), *memory_figures(outcome))
+        paths = write_figures(all_figures, Path(options["plot"]), "coefficients")
+        yield f"{len(paths)} figures in {options['plot']}"
     if options["memory"] is not None:
         from pmm.coefficients.memory_file import write_memory
 

@@ -68,16 +68,18 @@ def compare(
     from pmm.report.comparison_document import comparison_document
 
     check_folder(plot, "--plot")
-    given = {key: value for key, value in options.items() if value is not None}
-    settings = ComparisonSettings(**given)
+    arguments = {key: value for key, value in options.items() if value is not None}
+    settings = ComparisonSettings(**arguments)
     settings.check()
-    with busy("reading") as told:
-        one, other = read_pair(first, second, column_map, columns, rates_hz, told)
-    result = compared(*one, *other, settings)
+    with busy("reading") as progress:
+        first_channel, second_channel = read_pair(
+            first, second, column_map, columns, rates_hz, progress
+        )
+    result = compared(*first_channel, *second_channel, settings)
     document = comparison_document(result, level)
     show(document, as_json=as_json)
     if plot is not None:
-        write_figures(document.figures, Path(plot), _stem(one[0], other[0]))
+        write_figures(document.figures, Path(plot), _stem(first_channel[0], second_channel[0]))
 
 
 def _stem(first: "Recording", second: "Recording") -> str:

@@ -93,11 +93,11 @@ def console(**options: Any) -> None:
     interrupts = Interrupts()
     # The terminal is waited for last: the rig is left by then.
     with (
-        ExitStack() as shown,
+        ExitStack() as stack,
         interrupts.counted(),
         station_of(request, rig_file, lambda line: messages().print(line)) as station,
     ):
-        terminal = shown.enter_context(Terminal())
+        terminal = stack.enter_context(Terminal())
         run_loop(station, interrupts, terminal.say)
         if station.control.fault is not None:
             terminal.say(f"fault: {station.control.fault}")

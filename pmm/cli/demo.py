@@ -38,14 +38,14 @@ def demo(target: str, vertical_only: bool) -> None:
     folder = Path(target)
     check_folder(folder, "--output")
     campaigns = [_campaign(name, folder / name) for name in CAMPAIGNS[: 1 if vertical_only else 2]]
-    found = [analysis for each in campaigns for analysis in each.items()]
-    _print(found)
-    _write_plots([list(each.items())[1] for each in campaigns], folder / "plots")
-    _write_page([analysis for _, analysis in found], folder)
+    analyses = [analysis for campaign in campaigns for analysis in campaign.items()]
+    _print(analyses)
+    _write_plots([list(campaign.items())[1] for campaign in campaigns], folder / "plots")
+    _write_page([analysis for _, analysis in analyses], folder)
     rig = folder / f"{CAMPAIGNS[0]}-rig" / "rig.toml"
     say(
         f"plots   {folder / 'plots'}",
-        f"again   {pasted('analyse', found[0][0])}",
+        f"again   {pasted('analyse', analyses[0][0])}",
         f"console {pasted('console', rig, '--output', folder / 'console')}",
         folder / PAGE,
     )
@@ -75,36 +75,41 @@ def _campaign(name: str, folder: Path) -> "dict[Path, Analysis]":
         shutil.copytree(shipped, rig, dirs_exist_ok=True)
     click.get_current_context().invoke(run, plan=str(rig / "plan.toml"), output=str(folder))
     campaign = read_campaign(folder / CAMPAIGN_FILE)
-    paths = [one.recording_path(folder) for one in campaign.runs]
+    paths = [campaign_run.recording_path(folder) for campaign_run in campaign.runs]
     return {
         path: analyse(read_recording(path), campaign.reference, campaign.analysis)
         for path in show_progress(paths, f"analysing {name}")
     }
 
 
-def _print(found: "Sequence[tuple[Path, Analysis]]") -> None:
+def _print(analyses: "Sequence[tuple[Path, Analysis]]") -> None:
     from hardware.description.channels import FORCE_AFT, FORCE_FORE
     from pmm.document.terminal import print_content
     from pmm.harmonics.rows import run_rows
     from pmm.report.harmonics_tables import first_harmonics_table
 
-    rows = [run_rows((one,), file=str(path), level=DEFAULT_LEVEL) for path, one in found]
+    rows = [
+        run_rows((analysis,), file=str(path), level=DEFAULT_LEVEL) for path, analysis in analyses
+    ]
     print_content(first_harmonics_table(rows, (FORCE_AFT.name, FORCE_FORE.name)), output())
 
 
-def _write_plots(found: "Sequence[tuple[Path, Analysis]]", folder: Path) -> None:
+def _write_plots(analyses: "Sequence[tuple[Path, Analysis]]", folder: Path) -> None:
     from pmm.document.style import write_figures
     from pmm.report.plots import figures
 
-    for path, analysis in show_progress(found, "plotting"):
+    for path, analysis in show_progress(analyses, "plotting"):
         write_figures(figures(analysis), folder, path.parent.name)
 
 
-def _write_page(found: "Sequence[Analysis]", folder: Path) -> None:
+def _write_page(analyses: "Sequence[Analysis]", folder: Path) -> None:
     from pmm.document.page import write_page
     from pmm.report.harmonics_document import harmonics_document
 
     title = "Heave, pitch, sway and yaw on the simulated rig"
-    told, command = harmonics_document(found, folder.name), pasted("demo", "--output", folder)
+    document, command = (
+        harmonics_document(analyses, folder.name),
+        pasted("demo", "--output", folder),
+    )
     with busy("writing the page"):
-        write_page(told, folder / PAGE, title=title, command=command)
+        write_page(document, folder / PAGE, title=title, command=command)

@@ -26,9 +26,9 @@ def doctor(rig: str | None, folder: str, listen_s: float, as_json: bool) -> None
     from pmm.report.doctor_document import doctor_document
 
     with busy("looking"):
-        found = list(_check(rig, Path(folder), listen_s))
-    show(doctor_document(found), as_json=as_json)
-    if any(one.status is MachineStatus.FAULT for one in found):
+        findings = list(_check(rig, Path(folder), listen_s))
+    show(doctor_document(findings), as_json=as_json)
+    if any(finding.status is MachineStatus.FAULT for finding in findings):
         click.get_current_context().exit(1)
 
 
@@ -55,12 +55,12 @@ def _devices(path: Path, listen_s: float) -> Iterator[MachineFinding]:
 
     tables = DeviceTables(path)
     try:
-        found = survey_rig(tables, listen_s)
+        survey = survey_rig(tables, listen_s)
     except HardwareError as error:
         cure = f"is the bus there and up, and no other program on it? `pmm devices scan {path}`"
         yield MachineFinding("devices", error.device, MachineStatus.FAULT, str(error), cure)
         return
-    answering = {one.node_id for one in found.nodes}
-    names = [name for node, name in found.names.items() if node in answering]
-    ports = [name for name, one in found.heard.items() if one.what != "silent"]
-    yield from check_rig(path, [*names, *ports, *found.asked], found.wrong)
+    answering = {node.node_id for node in survey.nodes}
+    names = [name for node, name in survey.names.items() if node in answering]
+    ports = [name for name, port in survey.heard.items() if port.what != "silent"]
+    yield from check_rig(path, [*names, *ports, *survey.asked], survey.wrong)

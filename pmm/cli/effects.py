@@ -62,14 +62,14 @@ def effects(
     from pmm.report.effects_document import catalogue_document, effect_document
     from sim.effects.catalogue import build, catalogue, user_effects
 
-    more = user_effects(effects_file)
+    file_effects = user_effects(effects_file)
     if effect is None:
         if plot is not None:
             raise ConfigurationError("--plot draws the signature of one effect; name it")
-        show(catalogue_document({**catalogue(), **more}), as_json=as_json)
+        show(catalogue_document({**catalogue(), **file_effects}), as_json=as_json)
         return
-    built, rig = build(effect, more), _rig(campaign, plane)
-    at = SetPoint(
+    built_effect, rig = build(effect, file_effects), _rig(campaign, plane)
+    set_point = SetPoint(
         frequency_hz,
         1e-3 * amplitude_mm,
         math.radians(phase_deg),
@@ -77,9 +77,9 @@ def effects(
         Medium.AIR if air else Medium.WATER,
         math.radians(drift_deg),
     )
-    told = effect_document(_at_set_point(built, rig, at))
-    figures = [] if plot is None else _draw(built, rig, at, Path(plot))
-    show(told, as_json=as_json)
+    document = effect_document(_at_set_point(built_effect, rig, set_point))
+    figures = [] if plot is None else _draw(built_effect, rig, set_point, Path(plot))
+    show(document, as_json=as_json)
     if not as_json:
         say(*figures)
 
@@ -105,8 +105,8 @@ def _at_set_point(
     theory = effect.signature(situation)
     channels = channels_of(effect, rig, set_point)
     keys = theory or [(name, order) for name in channels for order in range(4)]
-    found = simulated_signature(effect, rig, set_point, keys)
-    return EffectAtSetPoint(effect, set_point, theory, found, effect.lines(situation))
+    signature = simulated_signature(effect, rig, set_point, keys)
+    return EffectAtSetPoint(effect, set_point, theory, signature, effect.lines(situation))
 
 
 def _draw(effect: "Effect", rig: "SimulatedRig", set_point: "SetPoint", folder: Path) -> list[Path]:
@@ -114,10 +114,10 @@ def _draw(effect: "Effect", rig: "SimulatedRig", set_point: "SetPoint", folder: 
     from pmm.report.signature_figure import save_signature_figure
 
     with busy("solving"):
-        written = save_signature_figure(effect, rig, set_point, folder)
-    if not written:
+        paths = save_signature_figure(effect, rig, set_point, folder)
+    if not paths:
         messages().print(
             f"{effect.name}: no figure; what it does does not repeat with the shaft, so that it "
             "has no harmonic signature: see pmm simulate --plot"
         )
-    return written
+    return paths

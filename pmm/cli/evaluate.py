@@ -48,15 +48,15 @@ def evaluate(folder: str, valid_days: int, plot: str | None, as_json: bool) -> N
         raise ConfigurationError(f"{place}: no such folder")
     check_folder(plot, "--plot")
     tell_writers([place])
-    found = evaluated(place, valid_days)
-    files = keep(found, place)
-    for one in () if plot is None else evaluation_figures(found):
-        files += write_figure(one.draw(), Path(str(plot)), one.name)
-    show(evaluation_document(replace(found, files=tuple(files))), as_json=as_json)
+    evaluation = evaluated(place, valid_days)
+    files = keep(evaluation, place)
+    for figure in () if plot is None else evaluation_figures(evaluation):
+        files += write_figure(figure.draw(), Path(str(plot)), figure.name)
+    show(evaluation_document(replace(evaluation, files=tuple(files))), as_json=as_json)
     if not as_json:
-        for note in found.notes:
+        for note in evaluation.notes:
             messages().print(note)
-        for text in found.failed:
+        for text in evaluation.failed:
             error_line(text)
-    if not found.in_control or found.failed:
+    if not evaluation.in_control or evaluation.failed:
         click.get_current_context().exit(1)

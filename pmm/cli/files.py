@@ -13,12 +13,12 @@ if TYPE_CHECKING:
     from pmm.document.content import Document, Figure
 
 
-def check_folder(named: Path | str | None, option: str) -> None:
+def check_folder(path: Path | str | None, option: str) -> None:
     """Refuse a folder that cannot be made or written to; nothing is made yet.
 
     Parameters
     ----------
-    named
+    path
         The folder; ``None`` where the option is not given.
     option
         What named the folder, for the message.
@@ -30,9 +30,9 @@ def check_folder(named: Path | str | None, option: str) -> None:
     """
     from pmm.remote import url_of
 
-    if named is None:
+    if path is None:
         return
-    folder = Path(named)
+    folder = Path(path)
     if url_of(folder):
         raise ConfigurationError(f"{option} {folder}: only a folder of this computer is written to")
     place = folder
@@ -72,8 +72,8 @@ def check_file(path: Path, option: str, *, overwrite: bool = True) -> None:
 
 
 def check_files(
-    asked: Mapping[str, str | None],
-    read: Iterable[tuple[str, Path]] = (),
+    outputs: Mapping[str, str | None],
+    inputs: Iterable[tuple[str, Path]] = (),
     *,
     overwrite: bool = True,
 ) -> None:
@@ -81,9 +81,9 @@ def check_files(
 
     Parameters
     ----------
-    asked
+    outputs
         What each option names; ``None`` where it is not given.
-    read
+    inputs
         Files that the command reads and must not lose, each with what named it.
 
     Raises
@@ -91,18 +91,20 @@ def check_files(
     ConfigurationError, DataError
         As :func:`check_file`; or an option names a file that is read, or that another one names.
     """
-    readers = {path.resolve(): name for name, path in read}
+    readers = {path.resolve(): name for name, path in inputs}
     writers: dict[Path, str] = {}
-    for option, name in asked.items():
+    for option, name in outputs.items():
         if name is None:
             continue
-        path, here = Path(name), f"{option} {name}"
+        path, label = Path(name), f"{option} {name}"
         check_file(path, option, overwrite=overwrite)
-        if (found := path.resolve()) in readers:
-            raise ConfigurationError(f"{here}: {readers[found]} is read from it; name another file")
-        if found in writers:
-            raise ConfigurationError(f"{writers[found]} and {here}: the same file; name two")
-        writers[found] = here
+        if (real_path := path.resolve()) in readers:
+            raise ConfigurationError(
+                f"{label}: {readers[real_path]} is read from it; name another file"
+            )
+        if real_path in writers:
+            raise ConfigurationError(f"{writers[real_path]} and {label}: the same file; name two")
+        writers[real_path] = label
 
 
 def write_asked_page(
@@ -129,11 +131,11 @@ def write_asked_figures(figures: "Iterable[Figure]", plot: str | None, stem: str
     from pmm.document.style import write_figures
 
     if plot is not None:
-        written = write_figures(figures, Path(plot), stem)
-        messages().print(f"written: {len(written)} figures in {plot}")
+        paths = write_figures(figures, Path(plot), stem)
+        messages().print(f"written: {len(paths)} figures in {plot}")
 
 
-def tell_damaged(found: "Iterable[tuple[str, Iterable[Flag]]]") -> list[int]:
+def tell_damaged(file_flags: "Iterable[tuple[str, Iterable[Flag]]]") -> list[int]:
     """Say what of files is damaged, each given with its name and flags.
 
     Returns
@@ -141,10 +143,10 @@ def tell_damaged(found: "Iterable[tuple[str, Iterable[Flag]]]") -> list[int]:
     list of int
         An exit status for each thing that was said.
     """
-    told = [(name, flag.message) for name, flags in found for flag in flags if flag.damaged]
-    for name, message in told:
+    damages = [(name, flag.message) for name, flags in file_flags for flag in flags if flag.damaged]
+    for name, message in damages:
         error_line(f"{name}: {message}")
-    return [1] * len(told)
+    return [1] * len(damages)
 
 
 def tell_unchecked(paths: Iterable[Path | str]) -> None:
@@ -152,7 +154,7 @@ def tell_unchecked(paths: Iterable[Path | str]) -> None:
     from analysis.readers.damage import carries_checksums
     from pmm.document.notation import joined
 
-    names = [Path(one).name for one in dict.fromkeys(paths) if not carries_checksums(Path(one))]
+    names = [Path(path).name for path in dict.fromkeys(paths) if not carries_checksums(Path(path))]
     if names:
         messages().print(f"without checksums, so that no change would be seen: {joined(names)}")
 
@@ -167,7 +169,7 @@ def tell_writers(places: Iterable[Path]) -> None:
     """
     from pmm.recorder.campaign_owner import writer_of
 
-    folders = (one if one.is_dir() else one.parent for one in places)
+    folders = (place if place.is_dir() else place.parent for place in places)
     for folder in dict.fromkeys(folders):
         writer = writer_of(folder)
         if writer is not None:

@@ -53,9 +53,11 @@ class CommandGroup(click.Group):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands, each with its line."""
-        own = {name: one.get_short_help_str(_LONGEST) for name, one in self.commands.items()}
+        help_lines = {
+            name: command.get_short_help_str(_LONGEST) for name, command in self.commands.items()
+        }
         with formatter.section("Commands"):
-            formatter.write_dl([*self.names.items(), *own.items()])
+            formatter.write_dl([*self.names.items(), *help_lines.items()])
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
@@ -71,5 +73,5 @@ class CommandGroup(click.Group):
         from difflib import get_close_matches
 
         near = get_close_matches(word, names, n=1, cutoff=0.4)
-        known = f"{self.kind}s: {', '.join(names)}"
-        return f"no {self.kind} {word!r}; {f'did you mean {near[0]!r}?' if near else known}"
+        choices = f"{self.kind}s: {', '.join(names)}"
+        return f"no {self.kind} {word!r}; {f'did you mean {near[0]!r}?' if near else choices}"

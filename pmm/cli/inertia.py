@@ -88,11 +88,11 @@ def _command(job: str) -> Callable[..., None]:
         with busy(f"{job}: {file}"):
             outcome = do_job(job, file)
             fits = form_fits(outcome) if with_fits else None
-        told = document(outcome, fits)
-        show(told, as_json=as_json)
+        content = document(outcome, fits)
+        show(content, as_json=as_json)
         options = ("--fits",) if with_fits else ()
-        write_asked_figures(told.figures, plot, Path(file).stem)
-        write_asked_page(told, page, ("inertia", job, file, *options), [Path(file)])
+        write_asked_figures(content.figures, plot, Path(file).stem)
+        write_asked_page(content, page, ("inertia", job, file, *options), [Path(file)])
         if output is not None:
             write_whole(Path(output), model_section(outcome))
             messages().print(f"written: {output}")

@@ -162,14 +162,14 @@ def _write(job: str, options: dict[str, Any]) -> None:
     from pmm.start.writing import check_free
 
     folder = Path(options["output"])
-    recordings = tuple(Path(one) for one in options.get("recordings", ()))
+    recordings = tuple(Path(recording) for recording in options.get("recordings", ()))
     check_folder(folder, "--output")
     check_free(folder, FILES[job], force=options["force"])
-    given = answers(job, options, _default if options["yes"] else _asked)
-    done = write(StartTask(job, given, folder, recordings), force=options["force"])
-    for path in done.paths:
+    job_answers = answers(job, options, _default if options["yes"] else _asked)
+    outcome = write(StartTask(job, job_answers, folder, recordings), force=options["force"])
+    for path in outcome.paths:
         messages().print(f"written: {path}")
-    for note in done.notes:
+    for note in outcome.notes:
         messages().print(note)
     kind = "recordings" if job == "campaign" and recordings else job
     for words in _NEXT[kind]:

@@ -50,13 +50,13 @@ def manoeuvre(
     from pmm.report.manoeuvre_document import depth_document, figures, manoeuvre_document
 
     check_folder(plot, "--plot")
-    console, read = messages(), read_ship(Path(file))
-    if isinstance(read, SubmergedFile):
+    console, ship = messages(), read_ship(Path(file))
+    if isinstance(ship, SubmergedFile):
         if plot is not None:
             raise ConfigurationError("--plot: a body below the surface has no figures")
-        show(depth_document(depth_keeping(read, trials, seed, level)), as_json=as_json)
+        show(depth_document(depth_keeping(ship, trials, seed, level)), as_json=as_json)
         return
     with console.status("reading") as status:
-        found = predict(read, trials, seed, level, status.update)
-    show(manoeuvre_document(found), as_json=as_json)
-    write_asked_figures(figures(found), plot, "manoeuvre")
+        prediction = predict(ship, trials, seed, level, status.update)
+    show(manoeuvre_document(prediction), as_json=as_json)
+    write_asked_figures(figures(prediction), plot, "manoeuvre")

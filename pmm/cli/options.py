@@ -15,12 +15,12 @@ JSON: Final = click.option(
 PLOT: Final = click.option("--plot", metavar="FOLDER", help="Write figures there, as SVG and PNG.")
 
 
-def with_options(*those: Callable[[Any], Any]) -> Callable[[F], F]:
+def with_options(*options: Callable[[Any], Any]) -> Callable[[F], F]:
     """Give a command options and arguments, in the order of its help."""
 
     def give(command: F) -> F:
-        for one in reversed(those):
-            command = one(command)
+        for option in reversed(options):
+            command = option(command)
         return command
 
     return give

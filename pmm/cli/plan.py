@@ -35,10 +35,10 @@ def check(file: str, every: bool, as_json: bool) -> None:
     from pmm.plan.plan import read_plan_and_rig
     from pmm.report.plan_document import check_document
 
-    read, rig = read_plan_and_rig(file)
-    found = check_plan(read, rig, datetime.now(UTC).date())
-    tell(check_document(read, rig, found, every=every), as_json=as_json)
-    if any(one.verdict is PlanVerdict.REFUSE for one in found):
+    run_plan, rig = read_plan_and_rig(file)
+    findings = check_plan(run_plan, rig, datetime.now(UTC).date())
+    tell(check_document(run_plan, rig, findings, show_all=every), as_json=as_json)
+    if any(finding.verdict is PlanVerdict.REFUSE for finding in findings):
         click.get_current_context().exit(1)
 
 
@@ -56,12 +56,12 @@ def show(file: str, plot: str | None, as_json: bool) -> None:
     from pmm.report.matrix_figure import matrix_figure
     from pmm.report.plan_document import show_document
 
-    read, rig = read_plan_and_rig(file)
+    run_plan, rig = read_plan_and_rig(file)
     check_folder(plot, "--plot")
-    tell(show_document(read, rig), as_json=as_json)
+    tell(show_document(run_plan, rig), as_json=as_json)
     figures: list[Path] = []
     if plot is not None:
-        figures = write_figure(matrix_figure(read, rig), Path(plot), f"{read.name}-matrix")
+        figures = write_figure(matrix_figure(run_plan, rig), Path(plot), f"{run_plan.name}-matrix")
     if not as_json:
         say(*figures, pasted("plan", "check", file))
 
@@ -109,25 +109,27 @@ def design(
 
     check_files({"--output": output}, [("the design", Path(file))], overwrite=overwrite)
     check_folder(plot, "--plot")
-    read = read_design(Path(file))
+    design_file = read_design(Path(file))
     if after:
         from pmm.coefficients.request import campaign_folder
         from pmm.design.measured_runs import after as going_on
         from pmm.design.measured_runs import measured
         from pmm.parallel import open_executor
 
-        folders = [campaign_folder(one) for one in after]
+        folders = [campaign_folder(folder) for folder in after]
         with doing("reading what was measured"), open_executor(1) as executor:
-            read = going_on(read, [measured(read, one, executor) for one in folders])
+            design_file = going_on(
+                design_file, [measured(design_file, folder, executor) for folder in folders]
+            )
     with doing("looking at what each run would tell"):
-        found = designed(read)
-    target = Path(output) if output is not None and found.steps else None
-    document = design_document(read, found, target)
+        selection = designed(design_file)
+    target = Path(output) if output is not None and selection.steps else None
+    document = design_document(design_file, selection, target)
     tell(document, as_json=as_json)
-    figures = [] if plot is None else write_figures(document.figures, Path(plot), read.name)
+    figures = [] if plot is None else write_figures(document.figures, Path(plot), design_file.name)
     if target is not None:
-        write_whole(target, plan_text(read, found, target))
+        write_whole(target, plan_text(design_file, selection, target))
     if not as_json:
         say(*figures, *([] if target is None else [pasted("plan", "check", target)]))
-    if not found.met:
+    if not selection.met:
         click.get_current_context().exit(1)

@@ -33,22 +33,22 @@ def recover(places: tuple[str, ...], as_json: bool) -> None:
     if missing:
         raise ConfigurationError(f"{', '.join(missing)}: no such folder")
     folders = [folder for place in places for folder in runs_in(Path(place))]
-    found = [_recovered(folder) for folder in show_progress(folders, "recovering")]
-    told = recovery_document(found)
+    recoveries = [_recovered(folder) for folder in show_progress(folders, "recovering")]
+    document = recovery_document(recoveries)
     if as_json:
         import json
 
-        click.echo(json.dumps(as_data(told)["runs"], indent=1))
+        click.echo(json.dumps(as_data(document)["runs"], indent=1))
     else:
-        print_document(output(), told)
-    wrong = [one.error for one in found if one.error]
-    for one in found:
-        if one.run is not None and one.run.changed:
-            names = ", ".join(one.run.changed)
-            wrong.append(f"{one.folder}: {names}: not what was written, see its flags")
-    for line in wrong:
+        print_document(output(), document)
+    faults = [recovery.error for recovery in recoveries if recovery.error]
+    for recovery in recoveries:
+        if recovery.run is not None and recovery.run.changed:
+            names = ", ".join(recovery.run.changed)
+            faults.append(f"{recovery.folder}: {names}: not what was written, see its flags")
+    for line in faults:
         error_line(line)
-    if wrong:
+    if faults:
         click.get_current_context().exit(1)
 
 

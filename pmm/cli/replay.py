@@ -26,12 +26,14 @@ def replay(folder: str, as_json: bool) -> None:
     if not Path(folder).is_dir():
         raise ConfigurationError(f"{folder}: no such folder")
     with busy("replaying"):
-        found = replay_run(Path(folder))
-    show(replay_document(found), as_json=as_json)
-    wrong = [f"{folder}: {name} was changed: {words}" for name, words in found.changed.items()]
-    if not found.same:
-        wrong.append(f"{folder}: the replay differs from the recording")
-    for one in wrong:
-        error_line(one)
-    if wrong:
+        comparison = replay_run(Path(folder))
+    show(replay_document(comparison), as_json=as_json)
+    faults = [
+        f"{folder}: {name} was changed: {words}" for name, words in comparison.changed.items()
+    ]
+    if not comparison.same:
+        faults.append(f"{folder}: the replay differs from the recording")
+    for fault in faults:
+        error_line(fault)
+    if faults:
         click.get_current_context().exit(1)

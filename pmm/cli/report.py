@@ -48,8 +48,8 @@ def report(**options: Any) -> None:
     outcome, files = analysed(options, hashed=True)
     title = options["title"] or f"Coefficients of {', '.join(outcome.names)}"
     command = shlex.join([Path(program()).name, *sys.argv[1:]])
-    folders = [campaign_folder(one) for one in options["campaigns"]]
-    stories = [one for pair in zip(folders, outcome.names, strict=True) for one in story(*pair)]
+    folders = [campaign_folder(text) for text in options["campaigns"]]
+    stories = [part for pair in zip(folders, outcome.names, strict=True) for part in story(*pair)]
     level = outcome.result.level
     with busy("drawing the page"):
         for folder in folders:

@@ -82,45 +82,47 @@ def run(
     """  # noqa: D301
     from pmm.cli.screen import pasted
 
-    where = ("--output", output) if output else ()
-    again = pasted("run", plan, *(("--until", until) if until else ()), "--resume", *where)
-    with _room_said(again):
+    output_options = ("--output", output) if output else ()
+    command = pasted(
+        "run", plan, *(("--until", until) if until else ()), "--resume", *output_options
+    )
+    with _room_said(command):
         if until is None:
             _refuse(approve is not None, "--approve")
-            found = _carried_out(
+            report = _carried_out(
                 plan, only, output, resume, accept_changes, dry_run, real_time, as_json=as_json
             )
         else:
             _refuse(bool(only), "--only", until)
             _refuse(dry_run, "--dry-run", until)
-            found = carried_out_until(
+            report = carried_out_until(
                 plan, until, output, approve, resume, accept_changes, real_time, as_json=as_json
             )
-    if found.fault:
+    if report.fault:
         from pmm.run.session import RunFailedError
 
         raise RunFailedError(
-            f"{found.fault}\nall axes are told to stop and the fault is latched; when its cause "
-            f"is gone: {again}"
+            f"{report.fault}\nall axes are told to stop and the fault is latched; when its cause "
+            f"is gone: {command}"
         )
-    if found.interrupted:
+    if report.interrupted:
         click.get_current_context().exit(_INTERRUPTED)
 
 
-def _refuse(given: bool, option: str, until: str | None = None) -> None:
+def _refuse(is_given: bool, option: str, until: str | None = None) -> None:
     """Refuse an option that does not go with --until, or goes with nothing else."""
-    if given and until is None:
+    if is_given and until is None:
         raise click.UsageError(
             f"{option} goes with --until; without it each run of PLAN.toml is made"
         )
-    if given:
+    if is_given:
         raise click.UsageError(
             f"{option} does not go with --until: `pmm plan design` shows what would be chosen"
         )
 
 
 @contextmanager
-def _room_said(again: str) -> "Iterator[None]":
+def _room_said(command: str) -> "Iterator[None]":
     """Say what to do where the disk is full."""
     try:
         yield
@@ -131,7 +133,7 @@ def _room_said(again: str) -> "Iterator[None]":
         if not is_full(error):
             raise
         raise RunFailedError(
-            f"{said(error)}; what is recorded is kept\nwhen there is room: {again}"
+            f"{said(error)}; what is recorded is kept\nwhen there is room: {command}"
         ) from error
 
 
@@ -152,10 +154,10 @@ def _carried_out(
     from pmm.report.run_document import complete_runs, run_document
     from pmm.run.session import RunReport, run_job
 
-    found = RunReport()
+    report = RunReport()
     # The terminal is waited for last: the rig is left by then, and the folder free.
     with (
-        ExitStack() as shown,
+        ExitStack() as stack,
         run_job(
             plan,
             only,
@@ -169,20 +171,20 @@ def _carried_out(
     ):
         tell_job(job)
         if job.runs and not dry_run:
-            found = _shown(job, shown, quiet=as_json)
-    show(run_document(job, found, dry_run=dry_run), as_json=as_json)
-    if complete_runs(found) and not as_json:
+            report = _shown(job, stack, quiet=as_json)
+    show(run_document(job, report, dry_run=dry_run), as_json=as_json)
+    if complete_runs(report) and not as_json:
         say(pasted("analyse", job.folder))
-    return found
+    return report
 
 
-def _shown(job: "RunJob", shown: ExitStack, *, quiet: bool) -> "RunReport":
+def _shown(job: "RunJob", stack: ExitStack, *, quiet: bool) -> "RunReport":
     """Carry the runs out, shown on the terminal."""
     from pmm.cli.screen import messages
     from pmm.run.operator import standard_input
     from pmm.run.session import carry_out
 
-    terminal = before_others_with_terminal(shown, real_time=job.real_time)
+    terminal = before_others_with_terminal(stack, real_time=job.real_time)
     return carry_out(
         job,
         lambda ask: view_of(terminal, ask, quiet=quiet),
@@ -198,19 +200,19 @@ def tell_job(job: "RunJob") -> None:
     from pmm.report.plan_document import finding_notes
 
     print_content(finding_notes(job.findings), messages())
-    for told in job.changes:
-        messages().print(f"keeps what it was recorded with: {told}")
+    for change in job.changes:
+        messages().print(f"keeps what it was recorded with: {change}")
 
 
-def before_others_with_terminal(shown: ExitStack, *, real_time: bool) -> "Terminal":
+def before_others_with_terminal(stack: ExitStack, *, real_time: bool) -> "Terminal":
     """Put the loop before other programs where it keeps time; open the terminal."""
     from pmm.cli.screen import messages
     from pmm.cli.terminal import Terminal
     from pmm.run.session import keep_time
 
-    if real_time and (advice := keep_time(shown).advice):
+    if real_time and (advice := keep_time(stack).advice):
         messages().print(advice)
-    return shown.enter_context(Terminal())
+    return stack.enter_context(Terminal())
 
 
 def view_of(terminal: "Terminal", ask: "Ask", *, quiet: bool) -> "AbstractContextManager[View]":
@@ -256,12 +258,12 @@ def carried_out_until(
             "without it"
         )
     keeps_time = file.rig.realtime or real_time
-    asked = CampaignRequest(
+    request = CampaignRequest(
         output, approve, resume, accept_changes, real_time,
         lambda folder: check_folder(folder, "--output"),
     )  # fmt: skip
-    with ExitStack() as shown:
-        terminal = before_others_with_terminal(shown, real_time=keeps_time)
+    with ExitStack() as stack:
+        terminal = before_others_with_terminal(stack, real_time=keeps_time)
         screen = Screen(
             lambda ask: view_of(terminal, ask, quiet=as_json),
             lambda line: messages().print(line),
@@ -269,17 +271,17 @@ def carried_out_until(
             _tell_runs,
         )
         goal = partial(goal_of, apart=keeps_time)
-        found = carry_out_campaign(file, goal, asked, screen, standard_input())
-    decisions = read_decisions(found.folder)
+        outcome = carry_out_campaign(file, goal, request, screen, standard_input())
+    decisions = read_decisions(outcome.folder)
     if decisions:
-        show(sequential_document(file.name, found.folder, decisions), as_json=as_json)
+        show(sequential_document(file.name, outcome.folder, decisions), as_json=as_json)
     if decisions and decisions[-1].runs and not as_json:
-        say(pasted("report", found.folder))
-    return found.report
+        say(pasted("report", outcome.folder))
+    return outcome.report
 
 
 def _tell_runs(job: "RunJob") -> None:
     """Say what was found of the runs that are made next, and not of the whole plan each time."""
     from dataclasses import replace
 
-    tell_job(replace(job, findings=tuple(one for one in job.findings if one.run)))
+    tell_job(replace(job, findings=tuple(finding for finding in job.findings if finding.run)))

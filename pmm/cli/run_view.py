@@ -47,14 +47,16 @@ class PlainView:
             self._say(outcome_line(outcome))
 
     def _news(self, status: RunStatus, alarm_count: int) -> None:
-        new = alarm_count - self._alarms
+        new_count = alarm_count - self._alarms
         self._alarms = alarm_count
-        for alarm in status.alarms[len(status.alarms) - new :] if new else ():
+        for alarm in status.alarms[len(status.alarms) - new_count :] if new_count else ():
             self._say(f"! {alarm}")
         if status.state is not self._state:
             self._state = status.state
-            where = f"{status.run} ({status.run_number}/{status.run_count})" if status.run else ""
-            self._say(f"{status.time_s:9.2f} s  {status.state:10s} {where}".rstrip())
+            run_text = (
+                f"{status.run} ({status.run_number}/{status.run_count})" if status.run else ""
+            )
+            self._say(f"{status.time_s:9.2f} s  {status.state:10s} {run_text}".rstrip())
 
 
 class LiveView:
@@ -119,11 +121,11 @@ class LiveView:
             *_head(status),
             _bars(status, len(self._outcomes)),
         ]
-        rows = tuple(one for one in status.harmonics if one.channel != SHAFT_ANGLE.name)
+        rows = tuple(reading for reading in status.harmonics if reading.channel != SHAFT_ANGLE.name)
         if rows:
             parts.append(harmonics_table(rows))
-        parts += [_line(outcome_line(one), "dim") for one in self._outcomes[-5:]]
-        parts += [Text(f"! {one}", style="bold red") for one in status.alarms[-5:]]
+        parts += [_line(outcome_line(outcome), "dim") for outcome in self._outcomes[-5:]]
+        parts += [Text(f"! {alarm}", style="bold red") for alarm in status.alarms[-5:]]
         if self._asked():
             parts.append(Text(f"? {self._asked()}", style="bold yellow"))
         return Group(*parts)
@@ -140,18 +142,18 @@ def harmonics_table(rows: tuple[ChannelReading, ...]) -> "Table":
     table = Table(box=None, pad_edge=False)
     table.add_column("channel", no_wrap=True)
     headings = ["mean", "in phase", "quadrature", "amplitude", "95 %"]
-    planned = any(math.isfinite(one.expected) for one in rows)
+    planned = any(math.isfinite(row.expected) for row in rows)
     for heading in [*headings, "plan"] if planned else headings:
         table.add_column(heading, justify="right", no_wrap=True)
-    for one in rows:
-        factor = display(one.unit).factor
-        half_width = factor * one.half_width
-        values = (one.mean, one.in_phase, one.quadrature, one.amplitude)
+    for row in rows:
+        factor = display(row.unit).factor
+        half_width = factor * row.half_width
+        values = (row.mean, row.in_phase, row.quadrature, row.amplitude)
         cells = [_places(factor * value, half_width) for value in values]
         width = "" if math.isnan(half_width) else f"± {half_width:.2g}"
-        name = f"{one.channel} [{display(one.unit).label}]" if one.unit else one.channel
-        plan = [f"{one.expected:.1f}"] if math.isfinite(one.expected) else [""]
-        style = "bold red" if one.far else "" if one.final else "dim"
+        name = f"{row.channel} [{display(row.unit).label}]" if row.unit else row.channel
+        plan = [f"{row.expected:.1f}"] if math.isfinite(row.expected) else [""]
+        style = "bold red" if row.far else "" if row.final else "dim"
         table.add_row(name, *cells, width, *(plan if planned else ()), style=style)
     return table
 
@@ -176,16 +178,16 @@ def _head(status: RunStatus) -> "Iterator[Text]":
     run = f"{status.run}  {status.frequency_hz:g} Hz" if status.frequency_hz else status.run
     first.append(f" {status.time_s:8.1f} s  {run}", style="default not bold")
     yield first
-    said = []
-    late = status.statistics
-    if late is not None and late.cycles:
-        said.append(
-            f"cycles late {late.late}, p99 {1e3 * late.p99_s:.2f} ms, "
-            f"worst {1e3 * late.worst_s:.2f} ms"
+    parts = []
+    statistics = status.statistics
+    if statistics is not None and statistics.cycles:
+        parts.append(
+            f"cycles late {statistics.late}, p99 {1e3 * statistics.p99_s:.2f} ms, "
+            f"worst {1e3 * statistics.worst_s:.2f} ms"
         )
     if status.free_bytes is not None:
-        said.append(f"disk {status.free_bytes / _GIGA:.1f} GB free")
-    yield _line("   ".join(said), "dim")
+        parts.append(f"disk {status.free_bytes / _GIGA:.1f} GB free")
+    yield _line("   ".join(parts), "dim")
 
 
 def _bars(status: RunStatus, ended: int) -> "Table":
@@ -200,6 +202,10 @@ def _bars(status: RunStatus, ended: int) -> "Table":
         f"run {status.run_number} of {status.run_count}",
         ProgressBar(total=runs, completed=min(ended + share, runs), width=_BAR),
     )
-    done = f", period {status.periods} of {status.wanted_periods}" if status.wanted_periods else ""
-    grid.add_row(f"gate {status.gate}{done}", ProgressBar(total=1.0, completed=share, width=_BAR))
+    period_text = (
+        f", period {status.periods} of {status.wanted_periods}" if status.wanted_periods else ""
+    )
+    grid.add_row(
+        f"gate {status.gate}{period_text}", ProgressBar(total=1.0, completed=share, width=_BAR)
+    )
     return grid

@@ -50,7 +50,7 @@ def error_line(message: str) -> None:
     messages().print(Text.assemble(("error: ", "bold red"), message))
 
 
-def show_progress(items: Iterable[T], what: str, count: int | None = None) -> Iterator[T]:
+def show_progress(items: Iterable[T], activity: str, count: int | None = None) -> Iterator[T]:
     """Yield the items, with a progress bar where there are several and a terminal to see it.
 
     Parameters
@@ -65,11 +65,11 @@ def show_progress(items: Iterable[T], what: str, count: int | None = None) -> It
     with Progress(
         console=console, transient=True, disable=count < 2 or not console.is_terminal
     ) as progress:
-        yield from progress.track(items, total=count, description=what)
+        yield from progress.track(items, total=count, description=activity)
 
 
 @contextmanager
-def doing(what: str) -> Iterator[Callable[[str], None]]:
+def doing(activity: str) -> Iterator[Callable[[str], None]]:
     """Say that something is going on, on a terminal, for as long as the context lasts.
 
     What it gives may be told what is done now.
@@ -78,15 +78,15 @@ def doing(what: str) -> Iterator[Callable[[str], None]]:
     if not console.is_terminal:
         yield lambda _: None
         return
-    with console.status(what) as status:
-        yield lambda said: status.update(said)
+    with console.status(activity) as status:
+        yield lambda words: status.update(words)
 
 
 @contextmanager
-def busy(what: str) -> Iterator[Callable[[float], None]]:
+def busy(activity: str) -> Iterator[Callable[[float], None]]:
     """Say so of something of which parts have been read, from 0 to 1."""
-    with doing(what) as tell:
-        yield lambda part: tell(f"{what}: {100.0 * part:.0f} % read")
+    with doing(activity) as tell:
+        yield lambda part: tell(f"{activity}: {100.0 * part:.0f} % read")
 
 
 def say(*lines: object) -> None:
@@ -110,8 +110,8 @@ def program() -> str:
     """Return the program as it was called, ``pmm`` where that cannot be told."""
     called = sys.argv[0] if sys.argv else ""
     # Start-up does without pathlib.
-    own = os.path.splitext(os.path.basename(called))[0] == "pmm"  # noqa: PTH119, PTH122
-    return called if own else "pmm"
+    is_pmm = os.path.splitext(os.path.basename(called))[0] == "pmm"  # noqa: PTH119, PTH122
+    return called if is_pmm else "pmm"
 
 
 def pasted(*words: "str | Path") -> str:

@@ -46,7 +46,7 @@ def simulate(
     from pmm.cli.screen import pasted, say, show, show_progress
     from pmm.report.simulation_document import simulation_document
 
-    planned = planned_simulation(
+    simulation = planned_simulation(
         Path(campaign),
         None if output is None else Path(output),
         runs=runs,
@@ -55,17 +55,21 @@ def simulate(
         seed=seed,
         overwrite=overwrite,
     )
-    check_folder(planned.folder, "--output")
+    check_folder(simulation.folder, "--output")
     check_folder(plot, "--plot")
-    done = planned.carry_out(lambda these: show_progress(these, "simulating"))
+    outcome = simulation.carry_out(lambda tasks: show_progress(tasks, "simulating"))
     figures: list[Path] = []
     if plot is not None:
         from pmm.report.chain_figures import save_chain_figure
 
-        for one in show_progress(done.runs, "plotting"):
+        for simulated_run in show_progress(outcome.runs, "plotting"):
             figures += save_chain_figure(
-                planned.campaign, one.run, planned.effects, one.seed, Path(plot)
+                simulation.campaign,
+                simulated_run.run,
+                simulation.effects,
+                simulated_run.seed,
+                Path(plot),
             )
-    show(simulation_document(planned, done), as_json=as_json)
+    show(simulation_document(simulation, outcome), as_json=as_json)
     if not as_json:
-        say(pasted("analyse", planned.folder), *figures)
+        say(pasted("analyse", simulation.folder), *figures)

@@ -42,10 +42,10 @@ def steering(
         raise ConfigurationError(f"{place}: no such folder")
     check_folder(plot, "--plot")
     tell_writers([place])
-    found = steering_of(place, None if settings is None else Path(settings))
-    show(steering_document(found, level), as_json=as_json)
-    write_asked_figures(steering_figures(found), plot, "steering")
-    for one in found.failed:
-        error_line(one.message)
-    if found.failed:
+    result = steering_of(place, None if settings is None else Path(settings))
+    show(steering_document(result, level), as_json=as_json)
+    write_asked_figures(steering_figures(result), plot, "steering")
+    for failure in result.failed:
+        error_line(failure.message)
+    if result.failed:
         click.get_current_context().exit(1)

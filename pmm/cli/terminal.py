@@ -70,8 +70,8 @@ class Terminal:
         self._worker.do(job)
 
     def _tell_lost(self, most: int = LINES) -> None:
-        told = f"({self.lost} lines are left out here: the terminal took nothing)"
-        if self.lost and self._worker.offer(lambda: self.console.print(told), most):
+        line = f"({self.lost} lines are left out here: the terminal took nothing)"
+        if self.lost and self._worker.offer(lambda: self.console.print(line), most):
             self.lost = 0
 
 
@@ -113,10 +113,10 @@ class _Direct(io.TextIOBase):
         """
         if self._handle < 0:
             return len(text) if self._stream is None else self._stream.write(text)
-        left = memoryview(text.encode(self.encoding, "backslashreplace"))
+        rest = memoryview(text.encode(self.encoding, "backslashreplace"))
         try:
-            while left:
-                left = left[os.write(self._handle, left) :]
+            while rest:
+                rest = rest[os.write(self._handle, rest) :]
         except OSError as error:
             raise OSError(errno.EIO, "nobody reads what is shown") from error
         return len(text)

@@ -30,8 +30,8 @@ def rest_of(task: Task, recording: Recording) -> tuple[RestPosition | None, tupl
     flags = _unusable(task, recording)
     if flags or task.sensors is None:
         return None, flags
-    means, apart = _means(recording, POSITIONS)
-    return RestPosition(means, apart), ()
+    means, uncertainties = _means(recording, POSITIONS)
+    return RestPosition(means, uncertainties), ()
 
 
 def attitude_of(task: Task, recording: Recording) -> tuple[Attitude | None, tuple[Flag, ...]]:
@@ -45,14 +45,14 @@ def attitude_of(task: Task, recording: Recording) -> tuple[Attitude | None, tupl
     flags = _unusable(task, recording)
     if flags or task.sensors is None:
         return None, flags
-    found = [one.position for one in task.zeros if one is not None]
-    rests = [one for one in found if one is not None]
+    positions = [zero.position for zero in task.zeros if zero is not None]
+    rests = [position for position in positions if position is not None]
     if not rests and not task.tared:
-        why = (
+        reason = (
             "sinkage and trim are told from rest, and no zero run with both positions is named; "
             "name one as zero_before or zero_after, or say tared = true in the campaign file"
         )
-        return None, (_flag(why),)
+        return None, (_flag(reason),)
     rest = common_rest(rests) if rests else _AT_REST
     derived = with_attitude(recording, task.sensors, rest)
     if task.kind.oscillates:
@@ -60,37 +60,38 @@ def attitude_of(task: Task, recording: Recording) -> tuple[Attitude | None, tupl
         reading = analyse(derived, task.choice, settings).readings[0]
         sinkage, trim = (measured(reading, name) for name in NAMES)
     else:
-        means, apart = _means(derived, NAMES)
-        sinkage, trim = (AttitudeChannel(*one) for one in zip(means, apart, strict=True))
+        means, uncertainties = _means(derived, NAMES)
+        sinkage, trim = (AttitudeChannel(*pair) for pair in zip(means, uncertainties, strict=True))
     return attitude(task.sensors, rest, sinkage, trim), ()
 
 
 def _unusable(task: Task, recording: Recording) -> tuple[Flag, ...]:
     """Say why there is no attitude to be told; refuse positions in another unit."""
-    there = [name for name in POSITIONS if name in recording.channel_names]
+    names = [name for name in POSITIONS if name in recording.channel_names]
     if task.sensors is None:
-        why = "recorded, but the campaign file has no table [attitude]: nothing is told of it"
-        return (_flag(f"{' and '.join(there)}: {why}"),) if there else ()
-    missing = [name for name in POSITIONS if name not in there]
+        reason = "recorded, but the campaign file has no table [attitude]: nothing is told of it"
+        return (_flag(f"{' and '.join(names)}: {reason}"),) if names else ()
+    missing = [name for name in POSITIONS if name not in names]
     if missing:
-        why = "[attitude] is stated, so sinkage and trim are not told; name it in [columns]"
-        return (_flag(f"no channel {' or '.join(missing)}: {why}"),)
+        reason = "[attitude] is stated, so sinkage and trim are not told; name it in [columns]"
+        return (_flag(f"no channel {' or '.join(missing)}: {reason}"),)
     units = {recording.channels[recording.index(name)].unit for name in POSITIONS}
-    if wrong := units - {"", "m"}:
+    if other_units := units - {"", "m"}:
         raise DataError(
-            f"{recording.name}: {' and '.join(POSITIONS)} are in {' and '.join(sorted(wrong))}, "
-            "not in m; name the right unit in [columns.channels]"
+            f"{recording.name}: {' and '.join(POSITIONS)} are in "
+            f"{' and '.join(sorted(other_units))}, not in m; name the right unit in "
+            "[columns.channels]"
         )
     return ()
 
 
-def _flag(why: str) -> Flag:
-    return Flag("attitude_unknown", Severity.WARNING, why)
+def _flag(reason: str) -> Flag:
+    return Flag("attitude_unknown", Severity.WARNING, reason)
 
 
 def _means(
     recording: Recording, names: tuple[str, str]
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    read = zero_reading(recording, 0.0, names).offsets
-    (first, second), (first_u, second_u) = read.values.real, read.standard_uncertainty.real
+    offsets = zero_reading(recording, 0.0, names).offsets
+    (first, second), (first_u, second_u) = offsets.values.real, offsets.standard_uncertainty.real
     return (float(first), float(second)), (float(first_u), float(second_u))

@@ -61,7 +61,7 @@ class CampaignCycles:
     @property
     def turns(self) -> tuple[SteadyTurn, ...]:
         """Its runs on a circle."""
-        return tuple(one.turn for one in self.runs if one.turn is not None)
+        return tuple(run.turn for run in self.runs if run.turn is not None)
 
     @property
     def waves(self) -> tuple[WaveRun, ...]:
@@ -71,12 +71,12 @@ class CampaignCycles:
     @property
     def doubts(self) -> tuple[Flag, ...]:
         """Units and signs that look wrong in all runs, and a roll gauge that is not there."""
-        seen = [one.seen for one in self.runs if one.seen is not None]
-        return (*implausible(self.campaign, seen), *self._without_roll_gauge)
+        harmonics = [run.seen for run in self.runs if run.seen is not None]
+        return (*implausible(self.campaign, harmonics), *self._without_roll_gauge)
 
     @property
     def _without_roll_gauge(self) -> tuple[Flag, ...]:
-        names = tuple(dict.fromkeys(one.name for one in self.cycles if not one.has_roll))
+        names = tuple(dict.fromkeys(cycle.name for cycle in self.cycles if not cycle.has_roll))
         if self.campaign.heel is None or not names:
             return ()
         return (Flag("roll_gauge_missing", Severity.WARNING, NO_ROLL_GAUGE, None, names),)
@@ -109,22 +109,27 @@ def campaign_cycles(
         hashed=hashed,
     )
     body, models = body_of(campaign, settings.inertia, has_dry=bool(work.dry))
-    decays, torn = decays_of(campaign, folder, settings.leave_out)
-    found = _recordings(work, executor, progress, with_dry=body is None)
-    wet, dry = _sorted(found, {task.name for task in work.dry})
-    wet = [with_own_body(one, campaign, settings, body) for one in wet]
+    decays, decay_failures = decays_of(campaign, folder, settings.leave_out)
+    recordings = _recordings(work, executor, progress, with_dry=body is None)
+    wet, dry = _sorted(recordings, {task.name for task in work.dry})
+    wet = [with_own_body(cycle, campaign, settings, body) for cycle in wet]
     if body is None:  # a dry run is taken off line by line
-        wet, dry = ([one for cycle in some for one in by_lines(cycle)] for some in (wet, dry))
-    cycles = [one.about(settings.point_ahead_m) for one in wet]
+        wet, dry = (
+            [line_cycle for cycle in group for line_cycle in by_lines(cycle)]
+            for group in (wet, dry)
+        )
+    cycles = [cycle.about(settings.point_ahead_m) for cycle in wet]
     if body is None:
-        cycles = [without_dry(one, dry, campaign) if one.frequency_hz else one for one in cycles]
-    done = [one for one in found if isinstance(one, ReadRecording)]
-    gauges = [one.calibration for one in done if one.calibration is not None]
+        cycles = [
+            without_dry(cycle, dry, campaign) if cycle.frequency_hz else cycle for cycle in cycles
+        ]
+    readings = [outcome for outcome in recordings if isinstance(outcome, ReadRecording)]
+    gauges = [reading.calibration for reading in readings if reading.calibration is not None]
     return CampaignCycles(
         campaign,
         tuple(cycles),
-        tuple(done),
-        (*(one for one in found if isinstance(one, Failed)), *torn),
+        tuple(readings),
+        (*(outcome for outcome in recordings if isinstance(outcome, Failed)), *decay_failures),
         work,
         stated_of(
             campaign,
@@ -132,8 +137,8 @@ def campaign_cycles(
             models,
             gauges,
             motion_asked=_asked(cycles),
-            following=[one.following for one in done if one.following],
-            speed_age_s=max((one.speed_age_u_s for one in done), default=0.0),
+            following=[reading.following for reading in readings if reading.following],
+            speed_age_s=max((reading.speed_age_u_s for reading in readings), default=0.0),
         ),
         body,
         decays,
@@ -145,38 +150,42 @@ def _recordings(
 ) -> list[ReadRecording | Failed]:
     """Read the zero runs, and then all that they are taken off."""
     zeros = _all(read_zero, work.zeros, "reading zero runs", executor, progress)
-    by_name = {one.name: one.zero for one in zeros if isinstance(one, ReadRecording) and one.zero}
+    by_name = {
+        zero.name: zero.zero for zero in zeros if isinstance(zero, ReadRecording) and zero.zero
+    }
     tasks = (*work.runs, *(work.dry if with_dry else ()))
-    found = _all(
+    recordings = _all(
         read_cycle, [task.with_zeros(by_name) for task in tasks], "reading runs", executor, progress
     )
-    return [*zeros, *found]
+    return [*zeros, *recordings]
 
 
 def _asked(cycles: Sequence[BodyCycle]) -> bool:
     """Whether a set-point's motion stands in for one that was not measured."""
-    return any(flag.code == MOTION_ASKED.code for one in cycles for flag in one.flags)
+    return any(flag.code == MOTION_ASKED.code for cycle in cycles for flag in cycle.flags)
 
 
 def _all(
-    read: Callable[[Task], ReadRecording | Failed],
+    reader: Callable[[Task], ReadRecording | Failed],
     tasks: Sequence[Task],
-    what: str,
+    step: str,
     executor: Executor,
     progress: Progress,
 ) -> list[ReadRecording | Failed]:
-    found = []
-    for one in executor.map(read, tasks):
-        found.append(one)
-        progress(len(found), len(tasks), what)
-    return found
+    recordings = []
+    for recording in executor.map(reader, tasks):
+        recordings.append(recording)
+        progress(len(recordings), len(tasks), step)
+    return recordings
 
 
 def _sorted(
-    found: Sequence[ReadRecording | Failed], dry: set[str]
+    recordings: Sequence[ReadRecording | Failed], dry: set[str]
 ) -> tuple[list[BodyCycle], list[BodyCycle]]:
     cycles = [
-        one.cycle for one in found if isinstance(one, ReadRecording) and one.cycle is not None
+        recording.cycle
+        for recording in recordings
+        if isinstance(recording, ReadRecording) and recording.cycle is not None
     ]
-    wet = [one for one in cycles if one.name not in dry]
-    return wet, [one for one in cycles if one.name in dry]
+    wet = [cycle for cycle in cycles if cycle.name not in dry]
+    return wet, [cycle for cycle in cycles if cycle.name in dry]

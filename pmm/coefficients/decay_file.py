@@ -21,9 +21,9 @@ def fill_decays(table: dict[str, Any], folder: Path) -> Iterator[Fault]:
     decays = table.get("roll_decays")
     for k, decay in enumerate(decays if isinstance(decays, list) else []):
         if isinstance(decay, dict) and isinstance(decay.get(_KEY), str):
-            said = _fill(decay, folder / decay.pop(_KEY))
-            if said:
-                yield Fault(("roll_decays", k, _KEY), said)
+            message = _fill(decay, folder / decay.pop(_KEY))
+            if message:
+                yield Fault(("roll_decays", k, _KEY), message)
 
 
 def _fill(decay: dict[str, Any], path: Path) -> str:
@@ -35,9 +35,13 @@ def _fill(decay: dict[str, Any], path: Path) -> str:
     missing = [name for name in _TAKEN if name not in findings]
     # Whatever is wrong, what a decay needs is there, so that this is the one sentence about it.
     for name, keys in _TAKEN.items():
-        one = findings.get(name, {"value": 0.5})
-        told = (one["value"], one.get("standard_uncertainty"), one.get("degrees_of_freedom"))
-        pairs = zip(keys, told, strict=True)
+        finding = findings.get(name, {"value": 0.5})
+        numbers = (
+            finding["value"],
+            finding.get("standard_uncertainty"),
+            finding.get("degrees_of_freedom"),
+        )
+        pairs = zip(keys, numbers, strict=True)
         decay.update({key: number for key, number in pairs if number is not None})
     if typed:
         return f"and {', '.join(typed)} are both given; leave one of them out"

@@ -58,30 +58,34 @@ def decays_of(
 ) -> tuple[tuple[Decay, ...], tuple[Failed, ...]]:
     """Return a campaign's free decays by speed, and the records that could not be used."""
     groups: dict[float, list[tuple[AtRest, RecordAnalysis]]] = {}
-    failed = []
-    for one in campaign.at_rest:
-        used = one.outcome == COMPLETE and one.name not in leave_out
-        if one.kind is RunKind.FREE_DECAY and used:
-            source = RecordingSource.of(campaign, one, folder.resolve())
+    failures = []
+    for record in campaign.at_rest:
+        is_used = record.outcome == COMPLETE and record.name not in leave_out
+        if record.kind is RunKind.FREE_DECAY and is_used:
+            source = RecordingSource.of(campaign, record, folder.resolve())
             try:
                 series = series_from_recording(open_recording(source), HEEL_ANGLE.name)
-                own = one, analyse_record(replace(series, name=one.name))
-                groups.setdefault(round(one.carriage_speed_m_s / _SAME_M_S), []).append(own)
+                pair = record, analyse_record(replace(series, name=record.name))
+                groups.setdefault(round(record.carriage_speed_m_s / _SAME_M_S), []).append(pair)
             except PmmError as error:
-                failed.append(Failed(one.name, str(source.path), str(error), error.exit_status))
-    return tuple(_joined(some) for some in groups.values()), tuple(failed)
+                failures.append(
+                    Failed(record.name, str(source.path), str(error), error.exit_status)
+                )
+    return tuple(_joined(group) for group in groups.values()), tuple(failures)
 
 
-def _joined(some: Sequence[tuple[AtRest, RecordAnalysis]]) -> Decay:
+def _joined(pairs: Sequence[tuple[AtRest, RecordAnalysis]]) -> Decay:
     """Join the records of one speed, at the amplitudes at which GM is what rights the model."""
-    runs, records = zip(*some, strict=True)
-    small, along = from_runs(records).estimate, damping_of(records)
-    slower = small.value * len(records) / sum(one.fit.modes[0].period_s for one in records)
-    ratio = along.following(along.value * slower, slower)
+    runs, records = zip(*pairs, strict=True)
+    small_period, along = from_runs(records).estimate, damping_of(records)
+    period_ratio = (
+        small_period.value * len(records) / sum(record.fit.modes[0].period_s for record in records)
+    )
+    ratio = along.following(along.value * period_ratio, period_ratio)
     # The rate of decay is taken for the same at all amplitudes; as far as the period is not, it may
     # not be either: anything between, evenly.
-    ratio = ratio.widened(ratio.value * abs(slower - 1.0) / math.sqrt(3.0))
-    return Decay(runs, records, small, ratio)
+    ratio = ratio.widened(ratio.value * abs(period_ratio - 1.0) / math.sqrt(3.0))
+    return Decay(runs, records, small_period, ratio)
 
 
 def with_recorded(
@@ -92,28 +96,28 @@ def with_recorded(
     A decay of a speed that the settings have one of themselves is theirs. Without metacentric
     height and inertia nothing follows but period and damping ratio, and a flag says so.
     """
-    stated = {round(one.speed_m_s / _SAME_M_S) for one in settings.roll_decays}
-    new = [one for one in decays if round(one.speed_m_s / _SAME_M_S) not in stated]
-    if new and (heel is None or heel.gm_m is None or heel.inertia_kg_m2 is None):
+    stated = {round(decay.speed_m_s / _SAME_M_S) for decay in settings.roll_decays}
+    new_decays = [decay for decay in decays if round(decay.speed_m_s / _SAME_M_S) not in stated]
+    if new_decays and (heel is None or heel.gm_m is None or heel.inertia_kg_m2 is None):
         text = (
             "free decays: period and damping ratio alone; state gm_m and inertia_kg_m2 in [heel] "
             "of the campaign file for K_p and K_pdot"
         )
-        names = tuple(run.name for one in new for run in one.runs)
+        names = tuple(run.name for decay in new_decays for run in decay.runs)
         return settings, (Flag("decay_alone", Severity.NOTE, text, None, names),)
-    own = settings.decays
-    found = [
+    uncertainties = settings.decays
+    roll_decays = [
         RollDecay(
-            one.period.value,
-            one.ratio.value,
-            one.period.uncertainty,
-            one.ratio.uncertainty,
-            own.u_gm_m,
-            own.u_inertia_kg_m2,
-            one.speed_m_s,
-            one.period.degrees_of_freedom,
-            one.ratio.degrees_of_freedom,
+            decay.period.value,
+            decay.ratio.value,
+            decay.period.uncertainty,
+            decay.ratio.uncertainty,
+            uncertainties.u_gm_m,
+            uncertainties.u_inertia_kg_m2,
+            decay.speed_m_s,
+            decay.period.degrees_of_freedom,
+            decay.ratio.degrees_of_freedom,
         )
-        for one in new
+        for decay in new_decays
     ]
-    return replace(settings, roll_decays=(*settings.roll_decays, *found)), ()
+    return replace(settings, roll_decays=(*settings.roll_decays, *roll_decays)), ()

@@ -17,16 +17,16 @@ from pmm.coefficients.workflow import CampaignOutcome
 from pmm.whole_file import write_whole
 
 
-def csv_text(found: CampaignCoefficients) -> str:
+def csv_text(coefficients: CampaignCoefficients) -> str:
     """Return the table as CSV: the system in a comment, then a row for each value."""
-    written = io.StringIO()
-    written.write(f"# system = {found.normalisation}\n# level = {found.level:g}\n")
-    rows = list(table(found))
-    lines = csv.writer(written, lineterminator="\n")
+    stream = io.StringIO()
+    stream.write(f"# system = {coefficients.normalisation}\n# level = {coefficients.level:g}\n")
+    rows = list(table(coefficients))
+    lines = csv.writer(stream, lineterminator="\n")
     lines.writerow(rows[0] if rows else ())
     for row in rows:
         lines.writerow([_cell(value) for value in row.values()])
-    return written.getvalue()
+    return stream.getvalue()
 
 
 def write_netcdf(outcome: CampaignOutcome, path: Path, provenance: Mapping[str, str]) -> None:
@@ -54,8 +54,8 @@ def write_deliverables(outcome: CampaignOutcome, folder: Path, *, overwrite: boo
     moving = [cycle for cycle in outcome.cycles if cycle.frequency_hz > 0.0]
     if not moving:
         raise DataError("no run oscillates: there is no cycle to deliver")
-    rates = {one.name: one.sample_rate_hz for one in outcome.runs}
-    periods = {one.name: one.periods for one in outcome.runs}
+    rates = {run.name: run.sample_rate_hz for run in outcome.runs}
+    periods = {run.name: run.periods for run in outcome.runs}
     body, ship, water = outcome.body, outcome.settings.ship, outcome.water
     for cycle in moving:
         description = SimmanDescription(

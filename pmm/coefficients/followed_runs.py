@@ -24,12 +24,12 @@ def following_of(
     task: Task, recording: Recording
 ) -> tuple[tuple[Following, ...], tuple[Flag, ...]]:
     """Return how each strut followed its set-points, or why that is not told."""
-    both = [name for one in led_struts(recording) for name in one]
-    if not both:
+    names = [name for pair in led_struts(recording) for name in pair]
+    if not names:
         return (), ()
     order = max(task.set_point.every_line, key=lambda line: line.share).order
     settings = replace(
-        task.settings, channels=tuple(both), harmonics=max(order, task.settings.harmonics)
+        task.settings, channels=tuple(names), harmonics=max(order, task.settings.harmonics)
     )
     try:
         reading = analyse(recording, task.choice, settings).readings[0]
@@ -46,16 +46,16 @@ def carriage_of(task: Task, recording: Recording, gate: Recording) -> tuple[Foll
         return ()
     age_s, _ = recorded_age(gate)
     try:
-        found = carriage_following(recording, path, age_s, task.choice, task.settings)
+        following = carriage_following(recording, path, age_s, task.choice, task.settings)
     except DataError:
         return ()  # what the struts' gate says of it is flagged there
-    return () if found is None else (found,)
+    return () if following is None else (following,)
 
 
 def speed_age_u_s(task: Task, gate: Recording) -> float:
     """Return what is not known of the age of a led carriage's recorded speed; 0 of others."""
-    led = task.set_point.steady_ahead and CARRIAGE_SPEED.name in gate.channel_names
-    return recorded_age(gate)[1] if led else 0.0
+    is_led = task.set_point.steady_ahead and CARRIAGE_SPEED.name in gate.channel_names
+    return recorded_age(gate)[1] if is_led else 0.0
 
 
 def as_driven(task: Task, recording: Recording) -> tuple[Task, tuple[float, float]]:

@@ -65,7 +65,7 @@ def write_memory(outcome: CampaignOutcome, path: Path) -> None:
         )
     path.parent.mkdir(parents=True, exist_ok=True)
     curves = curves_file(path)
-    remembers = any(one.chosen.states for one in memories)
+    remembers = any(memory.chosen.states for memory in memories)
     if remembers:
         write_whole(curves, memory_csv(memories))
     tables = _tables(memories, outcome.cycles[0].restoring, curves.name if remembers else None)
@@ -75,15 +75,15 @@ def write_memory(outcome: CampaignOutcome, path: Path) -> None:
 def _tables(
     memories: "Sequence[MeasuredMemory]", restoring: "FloatArray", curves: str | None
 ) -> Iterator[str]:
-    omega = np.concatenate([one.measured.omega_rad_s for one in memories])
-    low, high = (float(one) / (2.0 * math.pi) for one in (omega.min(), omega.max()))
+    omega = np.concatenate([memory.measured.omega_rad_s for memory in memories])
+    low, high = (float(limit) / (2.0 * math.pi) for limit in (omega.min(), omega.max()))
     yield f"# Of what was measured at rest from {low:.4g} to {high:.4g} Hz; beyond, extrapolated."
-    added = np.sum([one.radiation.added_mass_infinite for one in memories], axis=0)
-    damping = np.sum([one.damping_matrix() for one in memories], axis=0)
+    added_mass = np.sum([memory.radiation.added_mass_infinite for memory in memories], axis=0)
+    damping = np.sum([memory.damping_matrix() for memory in memories], axis=0)
     hull = {"damping": damping.tolist(), "restoring": restoring.tolist()}
     if curves is None:
-        yield toml_table("hull", {"added_mass": added.tolist(), **hull})
+        yield toml_table("hull", {"added_mass": added_mass.tolist(), **hull})
         return
     yield toml_table("hull", hull)
-    states = max(one.chosen.states for one in memories)
+    states = max(memory.chosen.states for memory in memories)
     yield toml_table("radiation", {"file": curves, "states": states})

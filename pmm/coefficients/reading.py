@@ -71,8 +71,8 @@ def _tried(task: Task, work: Callable[[Task, Recording], ReadRecording]) -> Read
 def _opened(task: Task) -> Recording:
     """Open a recording, in newtons by its own calibration unless the settings give another."""
     chain = task.chain
-    given = chain.calibration if chain.matrix is None else RAW
-    return open_recording(replace(task.source, calibration=given))
+    calibration = chain.calibration if chain.matrix is None else RAW
+    return open_recording(replace(task.source, calibration=calibration))
 
 
 def _check(recording: Recording, task: Task) -> None:
@@ -91,16 +91,17 @@ def _check(recording: Recording, task: Task) -> None:
 def _check_channels(recording: Recording, task: Task) -> None:
     missing = [name for name in FORCES if name not in recording.channel_names]
     if missing:
-        alone = "; with one force, pmm analyse and pmm gap still work" if len(missing) == 1 else ""
+        hint = "; with one force, pmm analyse and pmm gap still work" if len(missing) == 1 else ""
         raise DataError(
             f"{recording.name}: no channel {' or '.join(missing)}; coefficients need the forces at "
             f"both struts (channels: {', '.join(recording.channel_names)}). Name the columns in "
-            f"[columns] of the campaign file{alone}"
+            f"[columns] of the campaign file{hint}"
         )
-    still = [name for name in DISPLACEMENTS if name not in recording.channel_names]
-    if still and task.kind.oscillates and task.oscillator.joint is Joint.YAW_TABLE:
+    missing_motions = [name for name in DISPLACEMENTS if name not in recording.channel_names]
+    if missing_motions and task.kind.oscillates and task.oscillator.joint is Joint.YAW_TABLE:
         raise DataError(
-            f"{recording.name}: no channel {' or '.join(still)}; the set-point has no angle of a "
+            f"{recording.name}: no channel {' or '.join(missing_motions)}; the set-point has no "
+            "angle of a "
             'turntable (joint = "yaw_table"), so its sway and its angle have to be recorded'
         )
 
@@ -112,30 +113,30 @@ def _check_heel(recording: Recording, task: Task) -> None:
             f"{task.name}: it has a heel, and the campaign file has no table [heel]: say how the "
             "model is held"
         )
-    wrong = [
-        f"{one.name} is in {one.unit}, not in {own.unit}"
-        for own in HEELING
-        for one in recording.channels
-        if one.name == own.name and one.unit not in ("", own.unit)
+    faults = [
+        f"{channel.name} is in {channel.unit}, not in {heel_channel.unit}"
+        for heel_channel in HEELING
+        for channel in recording.channels
+        if channel.name == heel_channel.name and channel.unit not in ("", heel_channel.unit)
     ]
-    if wrong and task.heel is not None:
-        raise DataError(f"{recording.name}: {'; '.join(wrong)}; name the right unit in [columns]")
+    if faults and task.heel is not None:
+        raise DataError(f"{recording.name}: {'; '.join(faults)}; name the right unit in [columns]")
 
 
 def _check_units(recording: Recording, joint: Joint) -> None:
     """Refuse a stated unit that the rig's channel cannot have; a calibration makes its own."""
-    made = applied(recording) is not None
-    wrong = [
-        f"{one.name} is in {one.unit}, not in {unit}"
+    is_calibrated = applied(recording) is not None
+    faults = [
+        f"{channel.name} is in {channel.unit}, not in {unit}"
         for name, unit in units_on(joint).items()
-        for one in recording.channels
-        if one.name == name
-        and one.unit not in ("", unit)
-        and not (made and name not in DISPLACEMENTS)
+        for channel in recording.channels
+        if channel.name == name
+        and channel.unit not in ("", unit)
+        and not (is_calibrated and name not in DISPLACEMENTS)
     ]
-    if wrong:
+    if faults:
         raise DataError(
-            f'{recording.name}: {"; ".join(wrong)}, as joint = "{joint}" has it; name the right '
+            f'{recording.name}: {"; ".join(faults)}, as joint = "{joint}" has it; name the right '
             "column and its unit in [columns.channels], or correct joint in [oscillator]"
         )
 
@@ -157,10 +158,10 @@ def _at_rest(task: Task, recording: Recording) -> ReadRecording:
 
 
 def _turning(task: Task, recording: Recording) -> ReadRecording:
-    wanted = (*_USED, *_besides(task, recording))
+    names = (*_USED, *_besides(task, recording))
     if task.set_point.steady_ahead:
-        wanted = (*wanted, CARRIAGE_SPEED.name)
-    channels = tuple(name for name in wanted if name in recording.channel_names)
+        names = (*names, CARRIAGE_SPEED.name)
+    channels = tuple(name for name in names if name in recording.channel_names)
     if not all(name in channels for name in DISPLACEMENTS):
         channels = tuple(name for name in channels if name not in DISPLACEMENTS)
     settings, waves = replace(task.settings, channels=channels), None
@@ -170,18 +171,18 @@ def _turning(task: Task, recording: Recording) -> ReadRecording:
         analysis = analyse(recording, task.choice, settings)
     struts = measured_cycle(analysis, task.oscillator, set_point=task.set_point)
     struts, flags = zeroed(struts, task, recording)
-    found = tuple(flag for flag in analysis.flags if flag not in recording.flags)
-    attitude, told = attitude_of(task, recording)
-    following, unknown = following_of(task, recording)
+    new_flags = tuple(flag for flag in analysis.flags if flag not in recording.flags)
+    attitude, attitude_flags = attitude_of(task, recording)
+    following, following_flags = following_of(task, recording)
     if waves is not None:  # what they add to the mean is no load of calm water
         struts = replace(struts, mean_known=False)
     reading = analysis.readings[0]
     gate = recording.between(reading.opened_s, reading.closed_s)
-    flags = (*found, *flags, *_speed_flags(task, gate), *told, *unknown)
-    done = _done(task, recording, _model(task, struts), None, reading.periods, flags)
+    flags = (*new_flags, *flags, *_speed_flags(task, gate), *attitude_flags, *following_flags)
+    result = _done(task, recording, _model(task, struts), None, reading.periods, flags)
     lines = reading if task.set_point.lines else None
     return replace(
-        done,
+        result,
         seen=first_harmonics(recording, analysis),
         attitude=attitude,
         lines=lines,
@@ -205,22 +206,24 @@ def _towed(task: Task, recording: Recording) -> ReadRecording:
             "before and after, and name them as zero_before and zero_after; or say tared = true in "
             "the campaign file, where zeros were taken off before it was recorded"
         )
-    attitude, told = attitude_of(task, recording)
+    attitude, attitude_flags = attitude_of(task, recording)
     cycle, turn = _model(task, struts), None
     if task.kind is RunKind.CIRCLE:
         turn = turn_of(cycle, *spread)
         cycle = cycle if CARRIAGE_SPEED.name in recording.channel_names else by_radius(cycle)
-    done = _done(task, recording, cycle, None, 0, (*flags, *told))
-    return replace(done, attitude=attitude, turn=turn)
+    result = _done(task, recording, cycle, None, 0, (*flags, *attitude_flags))
+    return replace(result, attitude=attitude, turn=turn)
 
 
 def _model(task: Task, struts: StrutCycle) -> BodyCycle:
     chain = task.chain
     if chain.matrix is not None:
         struts = struts.calibrated(chain.matrix)
-    known = set(struts.phasors.names)
+    names = set(struts.phasors.names)
     responses = {
-        name: response_of(one) for name, one in chain.amplifiers.items() if f"{name} 0" in known
+        name: response_of(amplifier)
+        for name, amplifier in chain.amplifiers.items()
+        if f"{name} 0" in names
     }
     if responses:
         struts = struts.without_response(responses)
@@ -239,33 +242,34 @@ def _propelled(rate_hz: float) -> Flag:
     return Flag(PROPELLED, Severity.NOTE, text, FORCE_X.name)
 
 
-def response_of(one: AmplifierTable) -> Response:
+def response_of(amplifier: AmplifierTable) -> Response:
     """Return an amplifier's response: its lag, gain and filter in a chain."""
-    late = Delay(one.lag_s, one.gain)
-    if one.cutoff_hz is None:
-        return late
-    filtered = AmplifierFilter(one.cutoff_hz, one.order, one.kind)
-    return lambda s: late(s) * filtered(s)
+    delay = Delay(amplifier.lag_s, amplifier.gain)
+    if amplifier.cutoff_hz is None:
+        return delay
+    filtered = AmplifierFilter(amplifier.cutoff_hz, amplifier.order, amplifier.kind)
+    return lambda s: delay(s) * filtered(s)
 
 
 def _besides(task: Task, recording: Recording) -> tuple[str, ...]:
     """The surge gauge and, of a model that heels, roll gauge and inclinometer: those there are."""
-    wanted = (FORCE_X.name, *((ROLL_MOMENT.name, HEEL_ANGLE.name) if task.heel is not None else ()))
-    return tuple(name for name in wanted if name in recording.channel_names)
+    names = (FORCE_X.name, *((ROLL_MOMENT.name, HEEL_ANGLE.name) if task.heel is not None else ()))
+    return tuple(name for name in names if name in recording.channel_names)
 
 
 def _speed_flags(task: Task, recording: Recording) -> tuple[Flag, ...]:
     """Say where the carriage did not do what the campaign says."""
     if CARRIAGE_SPEED.name not in recording.channel_names:
         return ()
-    led = CarriagePath.of(task.oscillator, task.set_point)
-    asked = task.set_point.carriage_speed_m_s if led is None else led.mean_m_s
-    found = float(recording.values(CARRIAGE_SPEED.name).mean())
-    if abs(found - asked) <= _SPEED_OFF * max(abs(asked), 0.1):
+    path = CarriagePath.of(task.oscillator, task.set_point)
+    stated_m_s = task.set_point.carriage_speed_m_s if path is None else path.mean_m_s
+    measured_m_s = float(recording.values(CARRIAGE_SPEED.name).mean())
+    if abs(measured_m_s - stated_m_s) <= _SPEED_OFF * max(abs(stated_m_s), 0.1):
         return ()
     text = (
-        f"the carriage ran at {found:.4g} m/s on average, the campaign says {asked:.4g} m/s (limit "
-        f"{100.0 * _SPEED_OFF:g} %); correct carriage_speed_m_s in the campaign file"
+        f"the carriage ran at {measured_m_s:.4g} m/s on average, the campaign says "
+        f"{stated_m_s:.4g} m/s (limit {100.0 * _SPEED_OFF:g} %); correct carriage_speed_m_s in the "
+        "campaign file"
     )
     return (Flag("speed_differs", Severity.WARNING, text, CARRIAGE_SPEED.name),)
 

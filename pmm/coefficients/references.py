@@ -52,13 +52,13 @@ def read_references(
     files: Sequence[ReferenceFile],
     plane: Plane,
     form: Form,
-    fitted: Sequence[Campaign] = (),
+    campaigns: Sequence[Campaign] = (),
 ) -> tuple[Reference, ...]:
     """Read tables; one of several speeds becomes a table for each.
 
     Parameters
     ----------
-    fitted
+    campaigns
         Campaigns whose simulation has a memory of the water. Where a reference is the table that it
         was fitted to, its allowance holds the largest deviation of that memory.
 
@@ -69,20 +69,22 @@ def read_references(
     DataError
         If it cannot be read as a table; the message names line and column.
     """
-    return tuple(found for one in files for found in _read(one, plane, form, fitted))
+    return tuple(reference for file in files for reference in _read(file, plane, form, campaigns))
 
 
 def beside(
-    found: CampaignCoefficients, references: Sequence[Reference], system: System
+    coefficients: CampaignCoefficients, references: Sequence[Reference], system: System
 ) -> CampaignCoefficients:
     """Return the campaign with all tables of one system beside its own values.
 
     It raises what :func:`analysis.coefficients.reference.compared` raises.
     """
-    for one in references:
-        if one.system is system:
-            found = compared(found, replace(one.table, normalisation=found.normalisation))
-    return found
+    for reference in references:
+        if reference.system is system:
+            coefficients = compared(
+                coefficients, replace(reference.table, normalisation=coefficients.normalisation)
+            )
+    return coefficients
 
 
 def check_systems(references: Sequence[Reference], system: System) -> None:
@@ -93,91 +95,94 @@ def check_systems(references: Sequence[Reference], system: System) -> None:
     ConfigurationError
         Naming the table and the system that would do.
     """
-    for one in references:
-        if one.system not in (system, System.DIMENSIONAL):
+    for reference in references:
+        if reference.system not in (system, System.DIMENSIONAL):
             raise ConfigurationError(
-                f"{one.table.name} is in the system {one.system}; the campaign is asked for in "
-                f"{system}: take --system {one.system}"
+                f"{reference.table.name} is in the system {reference.system}; the campaign is "
+                f"asked for in {system}: take --system {reference.system}"
             )
 
 
 def _read(
-    one: ReferenceFile, plane: Plane, form: Form, fitted: Sequence[Campaign]
+    file: ReferenceFile, plane: Plane, form: Form, campaigns: Sequence[Campaign]
 ) -> Iterator[Reference]:
-    path = Path(one.file)
+    path = Path(file.file)
     if not path.is_file():
         raise ConfigurationError(f"reference {path}: no such file")
     if path.suffix.lower() in (".nc", ".1"):
-        yield _radiation(one, plane, form, fitted)
+        yield _radiation(file, plane, form, campaigns)
         return
     text = path.read_text(encoding="utf-8-sig")
     if "radiating_dof" in text or "a33_analytic_kg" in text:
-        yield _radiation(one, plane, form, fitted)
+        yield _radiation(file, plane, form, campaigns)
         return
-    yield from _from_csv(path, text, one)
+    yield from _from_csv(path, text, file)
 
 
 def _radiation(
-    one: ReferenceFile, plane: Plane, form: Form, fitted: Sequence[Campaign]
+    file: ReferenceFile, plane: Plane, form: Form, campaigns: Sequence[Campaign]
 ) -> Reference:
     """Return a table of added mass and damping over frequency as a reference."""
     from sim.model.water.radiation_file import RadiationFile
     from sim.model.water.wamit_file import FirstColumn
 
-    found = RadiationFile(
-        one.file,
-        body=one.body,
-        rotation_sign=one.rotation_sign,
-        density_kg_m3=one.density_kg_m3,
-        length_m=one.length_m,
-        first_column=FirstColumn(one.first_column),
+    radiation = RadiationFile(
+        file.file,
+        body=file.body,
+        rotation_sign=file.rotation_sign,
+        density_kg_m3=file.density_kg_m3,
+        length_m=file.length_m,
+        first_column=FirstColumn(file.first_column),
     ).table(plane)
-    memory = _memory_of(one, fitted)
-    allowance, flag = one.allowance_relative, None
+    memory = _memory_of(file, campaigns)
+    allowance, flag = file.allowance_relative, None
     if memory is not None:
         allowance = math.hypot(allowance, memory.error)
         text = f"the simulation's memory of the water, {memory} Intervals beside it are wider by it"
         flag = Flag("memory_misfit", Severity.NOTE, text)
     table = table_of_matrices(
-        one.name or found.name,
+        file.name or radiation.name,
         plane,
-        (found.omega_rad_s / (2.0 * math.pi)).tolist(),
-        found.added_mass,
-        found.damping,
+        (radiation.omega_rad_s / (2.0 * math.pi)).tolist(),
+        radiation.added_mass,
+        radiation.damping,
         form=form,
-        speed_m_s=one.speed_m_s,
+        speed_m_s=file.speed_m_s,
         allowance_relative=allowance,
     )
     return Reference(System.DIMENSIONAL, table, flag)
 
 
-def _memory_of(one: ReferenceFile, fitted: Sequence[Campaign]) -> "FittedMemory | None":
+def _memory_of(file: ReferenceFile, campaigns: Sequence[Campaign]) -> "FittedMemory | None":
     """Return the memory that was fitted to this very table; ``None`` where none was."""
-    for campaign in fitted:
+    for campaign in campaigns:
         table = campaign.radiation
-        if table is None or Path(table.file).resolve() != Path(one.file).resolve():
+        if table is None or Path(table.file).resolve() != Path(file.file).resolve():
             continue
-        if table.body == one.body and campaign.oscillator is not None:
+        if table.body == file.body and campaign.oscillator is not None:
             return campaign.memory
     return None
 
 
-def _from_csv(path: Path, text: str, one: ReferenceFile) -> Iterator[Reference]:
-    said = {m[1]: m[2] for line in text.splitlines() if (m := _COMMENT.match(line))}
-    name = one.name or said.get("name") or path.stem
-    system = _system(path, said.get("system", System.DIMENSIONAL))
-    allowance = one.allowance_relative or float(said.get("allowance_relative", 0.0))
-    values = _values(path, text, one.speed_m_s)
+def _from_csv(path: Path, text: str, file: ReferenceFile) -> Iterator[Reference]:
+    comment_values = {m[1]: m[2] for line in text.splitlines() if (m := _COMMENT.match(line))}
+    name = file.name or comment_values.get("name") or path.stem
+    system = _system(path, comment_values.get("system", System.DIMENSIONAL))
+    allowance = file.allowance_relative or float(comment_values.get("allowance_relative", 0.0))
+    values = _values(path, text, file.speed_m_s)
     for speed in sorted({key[0] for key in values}):
         frequencies = sorted({key[1] for key in values if key[0] == speed})
         names = list(dict.fromkeys(key[2] for key in values if key[0] == speed))
         # A coefficient that has not all of the table's frequencies gets a table of its own.
         for group in _alike(values, speed, frequencies, names):
-            own = [f for f in frequencies if (speed, f, group[0]) in values]
+            group_frequencies = [f for f in frequencies if (speed, f, group[0]) in values]
             columns = {
-                column: np.array([values[speed, f, column] for f in own]) for column in group
+                column: np.array([values[speed, f, column] for f in group_frequencies])
+                for column in group
             }
-            table = ReferenceTable(name, speed, str(system), np.array(own), columns, allowance)
+            table = ReferenceTable(
+                name, speed, str(system), np.array(group_frequencies), columns, allowance
+            )
             yield Reference(system, table)
 
 
@@ -199,50 +204,50 @@ def _system(path: Path, text: str) -> System:
     try:
         return System(text.lower())
     except ValueError:
-        known = ", ".join(System)
+        choices = ", ".join(System)
         raise ConfigurationError(
-            f"reference {path}: system {text!r} is not known (known: {known})"
+            f"reference {path}: system {text!r} is not known (known: {choices})"
         ) from None
 
 
 def _values(path: Path, text: str, speed_m_s: float) -> dict[tuple[float, float, str], float]:
     """Return values by speed, frequency and coefficient, from either layout."""
     numbered = [(k, line) for k, line in enumerate(text.splitlines(), 1)]
-    kept = [(k, line) for k, line in numbered if line.strip() and not line.startswith("#")]
-    reader = csv.DictReader((line for _, line in kept), skipinitialspace=True)
+    lines = [(k, line) for k, line in numbered if line.strip() and not line.startswith("#")]
+    reader = csv.DictReader((line for _, line in lines), skipinitialspace=True)
     heads = list(reader.fieldnames or ())
-    long = {"coefficient", "value"} <= set(heads)
-    names = [] if long else [head for head in heads if head not in _NOT_COEFFICIENTS]
-    if not long and not names:
+    is_long = {"coefficient", "value"} <= set(heads)
+    names = [] if is_long else [head for head in heads if head not in _NOT_COEFFICIENTS]
+    if not is_long and not names:
         raise DataError(
             f"reference {path}: no column is a coefficient (columns: {', '.join(heads)}); name "
             "them a33, b33 ... or Z_wdot, Z_w ..., or use the columns coefficient and value"
         )
-    found: dict[tuple[float, float, str], float] = {}
-    for (line, _), row in zip(kept[1:], reader, strict=False):
-        where = f"reference {path}, line {line}"
-        speed = _number(where, row, "speed_m_s", speed_m_s)
-        frequency = _frequency(where, row)
-        pairs = [(row["coefficient"], "value")] if long else [(name, name) for name in names]
+    values: dict[tuple[float, float, str], float] = {}
+    for (line, _), row in zip(lines[1:], reader, strict=False):
+        place = f"reference {path}, line {line}"
+        speed = _number(place, row, "speed_m_s", speed_m_s)
+        frequency = _frequency(place, row)
+        pairs = [(row["coefficient"], "value")] if is_long else [(name, name) for name in names]
         for name, column in pairs:
             if (row[column] or "").strip():
                 key = (speed, frequency, name.strip())
-                if key in found:
-                    raise DataError(f"{where}: {name} at {frequency:g} Hz is there twice")
-                found[key] = _number(where, row, column, 0.0)
-    if not found:
+                if key in values:
+                    raise DataError(f"{place}: {name} at {frequency:g} Hz is there twice")
+                values[key] = _number(place, row, column, 0.0)
+    if not values:
         raise DataError(f"reference {path}: the table has no values")
-    return found
+    return values
 
 
-def _frequency(where: str, row: Mapping[str, str]) -> float:
+def _frequency(place: str, row: Mapping[str, str]) -> float:
     for name, factor in _FREQUENCIES.items():
         if name in row:
-            return factor * _number(where, row, name, 0.0)
+            return factor * _number(place, row, name, 0.0)
     return 0.0
 
 
-def _number(where: str, row: Mapping[str, str], column: str, default: float) -> float:
+def _number(place: str, row: Mapping[str, str], column: str, default: float) -> float:
     text = row.get(column)
     if text is None:
         return default
@@ -251,5 +256,5 @@ def _number(where: str, row: Mapping[str, str], column: str, default: float) -> 
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise DataError(f"{where}: {column} is {text!r}, not a finite number")
+        raise DataError(f"{place}: {column} is {text!r}, not a finite number")
     return value

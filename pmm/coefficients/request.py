@@ -52,32 +52,32 @@ def requested(folder: Path, options: Mapping[str, Any]) -> tuple[CoefficientSett
 
 def _merged(base: CoefficientSettings, options: Mapping[str, Any]) -> CoefficientSettings:
     """Return the settings with what the command line says in their place."""
-    given: dict[str, Any] = {name: options[name] for name in _PLAIN if options[name]}
-    if "form" in given:
-        given["form"] = Form(given["form"])
-    if "system" in given:
-        given["system"] = System(given["system"])
+    arguments: dict[str, Any] = {name: options[name] for name in _PLAIN if options[name]}
+    if "form" in arguments:
+        arguments["form"] = Form(arguments["form"])
+    if "system" in arguments:
+        arguments["system"] = System(arguments["system"])
     if options["names"]:
-        given["names"] = Names(options["names"])
-    inertia = given.get("inertia", MODEL)
+        arguments["names"] = Names(options["names"])
+    inertia = arguments.get("inertia", MODEL)
     if inertia not in (MODEL, DRY) and not Path(inertia).is_file():
         raise ConfigurationError(
             f"--inertia {inertia}: no such file; name one that `pmm inertia --output` wrote, or "
             f"say {MODEL} or {DRY}"
         )
     if options["references"]:
-        more = tuple(ReferenceFile(one) for one in options["references"])
-        given["references"] = (*base.references, *more)
-    return replace(base, **given, trials=_trials(base, options))
+        added_references = tuple(ReferenceFile(name) for name in options["references"])
+        arguments["references"] = (*base.references, *added_references)
+    return replace(base, **arguments, trials=_trials(base, options))
 
 
 def _trials(base: CoefficientSettings, options: Mapping[str, Any]) -> int:
-    wanted, trials = options["uncertainty"], options["trials"]
-    if wanted == "linear" and trials is not None:
+    method, trials = options["uncertainty"], options["trials"]
+    if method == "linear" and trials is not None:
         raise ConfigurationError("--trials belongs to --uncertainty monte-carlo")
-    if wanted == "linear":
+    if method == "linear":
         return 0
-    if wanted is None and trials is None:
+    if method is None and trials is None:
         return base.trials
     return int(trials or base.trials or DEFAULT_TRIALS)
 
@@ -106,18 +106,22 @@ def campaign_folder(text: str) -> Path:
 
 def finished(outcome: CampaignOutcome, settings: CoefficientSettings) -> CampaignOutcome:
     """Put reference tables beside the values, and bring both to the system asked for."""
-    found = outcome.result
-    references = read_references(settings.references, found.plane, found.form, outcome.with_memory)
+    coefficients = outcome.result
+    references = read_references(
+        settings.references, coefficients.plane, coefficients.form, outcome.with_memory
+    )
     check_systems(references, settings.system)
-    noted = [one.flag for one in references if one.flag is not None]
-    found = beside(found, references, System.DIMENSIONAL)
-    found, flags = in_system(
-        found, settings.system, outcome.settings.ship, outcome.body, outcome.stated
+    reference_flags = [reference.flag for reference in references if reference.flag is not None]
+    coefficients = beside(coefficients, references, System.DIMENSIONAL)
+    coefficients, flags = in_system(
+        coefficients, settings.system, outcome.settings.ship, outcome.body, outcome.stated
     )
     if settings.system is not System.DIMENSIONAL:
-        found = beside(found, references, settings.system)
-    found = quoted(found, settings.quoting, _carried(outcome, settings))
-    return replace(outcome, result=found, left_out=(*outcome.left_out, *flags, *noted))
+        coefficients = beside(coefficients, references, settings.system)
+    coefficients = quoted(coefficients, settings.quoting, _carried(outcome, settings))
+    return replace(
+        outcome, result=coefficients, left_out=(*outcome.left_out, *flags, *reference_flags)
+    )
 
 
 def _carried(outcome: CampaignOutcome, settings: CoefficientSettings) -> Carried:

@@ -203,29 +203,29 @@ def read_settings(path: Path) -> CoefficientSettings:
     table = read_toml(path)
     faults: list[Fault] = list(limit_faults(table))
     faults += _value_faults(table)
-    seen = _with_folder(table, path.parent)
-    faults += fill_decays(seen, path.parent)
-    found = validate(CoefficientSettings, seen, faults)
-    if found is None or faults:
+    resolved_table = _with_folder(table, path.parent)
+    faults += fill_decays(resolved_table, path.parent)
+    settings = validate(CoefficientSettings, resolved_table, faults)
+    if settings is None or faults:
         raise as_error(path, faults, table)
-    return found
+    return settings
 
 
-def settings_of(folder: Path, given: str | None) -> tuple[CoefficientSettings, Path | None]:
+def settings_of(folder: Path, file: str | None) -> tuple[CoefficientSettings, Path | None]:
     """Return the settings of a campaign's folder, or those of the file that was given.
 
     It raises what :func:`read_settings` raises.
     """
-    path = folder / SETTINGS_FILE if given is None else Path(given)
-    if given is None and not path.exists():
+    path = folder / SETTINGS_FILE if file is None else Path(file)
+    if file is None and not path.exists():
         return CoefficientSettings(), None
     return read_settings(path), path
 
 
 def _value_faults(table: dict[str, Any]) -> list[Fault]:
     faults = []
-    stated = table.get("uncertainty")
-    for key, value in stated.items() if isinstance(stated, dict) else ():
+    uncertainties = table.get("uncertainty")
+    for key, value in uncertainties.items() if isinstance(uncertainties, dict) else ():
         if is_number(value) and value < 0.0:
             faults.append(Fault(("uncertainty", key), f"= {value:g} should be 0 or more"))
     pairs = ("restoring", "calibration_matrix")
@@ -245,15 +245,15 @@ def _is_pair(value: Any) -> bool:
 
 def _with_folder(table: dict[str, Any], folder: Path) -> dict[str, Any]:
     """Return the table with the files that it names seen from here."""
-    found = deepcopy(table)
+    resolved_table = deepcopy(table)
     for key in ("inertia", "calibration", "steady_turns"):
-        if isinstance(found.get(key), str) and found[key] not in (MODEL, DRY):
-            found[key] = str(folder / found[key])
-    references = found.get("references")
-    for one in references if isinstance(references, list) else []:
-        if isinstance(one, dict) and isinstance(one.get("file"), str):
-            one["file"] = str(folder / one["file"])
-    return found
+        if isinstance(resolved_table.get(key), str) and resolved_table[key] not in (MODEL, DRY):
+            resolved_table[key] = str(folder / resolved_table[key])
+    references = resolved_table.get("references")
+    for reference in references if isinstance(references, list) else []:
+        if isinstance(reference, dict) and isinstance(reference.get("file"), str):
+            reference["file"] = str(folder / reference["file"])
+    return resolved_table
 
 
 def check_trials(trials: int) -> None:

@@ -52,9 +52,9 @@ class TrialBlock:
     block: int
 
 
-def draw_block(one: TrialBlock) -> FloatArray:
+def draw_block(block: TrialBlock) -> FloatArray:
     """Return the coefficients of each trial, shape ``(count, n)``."""
-    return draw_cycles(one.fit, one.count, (one.seed, one.block))
+    return draw_cycles(block.fit, block.count, (block.seed, block.block))
 
 
 def solve_campaign(
@@ -64,20 +64,20 @@ def solve_campaign(
 
     It raises what :func:`analysis.coefficients.campaign.campaign_coefficients` raises.
     """
-    groups, single, known = planned(cycles, request)
+    groups, single, repeatability = planned(cycles, request)
     solver = GroupSolver(request)
     blocks = list(_counted(executor.map(solver, groups), len(groups), "solving", progress))
     if request.trials:
         blocks = _with_trials(blocks, groups, request, executor, progress)
-    return assemble(blocks, single, known, request)
+    return assemble(blocks, single, repeatability, request)
 
 
 def _counted(
-    results: Iterator[GroupCoefficients], total: int, what: str, progress: Progress
+    results: Iterator[GroupCoefficients], total: int, step: str, progress: Progress
 ) -> Iterator[GroupCoefficients]:
-    for k, one in enumerate(results, 1):
-        progress(k, total, what)
-        yield one
+    for k, result in enumerate(results, 1):
+        progress(k, total, step)
+        yield result
 
 
 def _with_trials(
@@ -93,16 +93,16 @@ def _with_trials(
     ]
     work = {k: _trial_blocks(groups[k], request) for k in linear}
     total = sum(map(len, work.values()))
-    drawn = executor.map(draw_block, [one for k in linear for one in work[k]])
-    found, done = list(blocks), 0
+    draws = executor.map(draw_block, [block for k in linear for block in work[k]])
+    results, count = list(blocks), 0
     for k in linear:
-        own = []
+        trials = []
         for _ in work[k]:
-            own.append(next(drawn))
-            done += 1
-            progress(done, total, "drawing trials")
-        found[k] = replace(found[k], trials=columns(np.concatenate(own), request.level))
-    return found
+            trials.append(next(draws))
+            count += 1
+            progress(count, total, "drawing trials")
+        results[k] = replace(results[k], trials=columns(np.concatenate(trials), request.level))
+    return results
 
 
 def _trial_blocks(group: Group, request: Request) -> list[TrialBlock]:

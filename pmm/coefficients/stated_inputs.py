@@ -73,13 +73,14 @@ def chain_of(settings: CoefficientSettings) -> MeasuringChain:
 
 def _of_both(path: Path) -> Calibration:
     """Read a calibration of both struts' gauges."""
-    one = read_calibration(path)
-    missing = [name for name in FORCES if name not in one.channels]
+    calibration = read_calibration(path)
+    missing = [name for name in FORCES if name not in calibration.channels]
     if missing:
         raise ConfigurationError(
-            f"{path}: nothing of {' and '.join(missing)} (channels: {', '.join(one.channels)})"
+            f"{path}: nothing of {' and '.join(missing)} (channels: "
+            f"{', '.join(calibration.channels)})"
         )
-    return one
+    return calibration
 
 
 def body_of(
@@ -107,9 +108,13 @@ def body_of(
             "... --output model.toml` (a swing or a bifilar test) into the campaign file, name "
             'that file with --inertia, or add a dry run (kind = "dry") at each set-point'
         )
-    own = [campaign.as_recorded(one.name).model_uncertainty for one in campaign.runs]
-    known = [one for one in (campaign.model_uncertainty, *own) if one is not None]
-    return campaign.model, tuple(dict.fromkeys(known))
+    run_uncertainties = [campaign.as_recorded(run.name).model_uncertainty for run in campaign.runs]
+    uncertainties = [
+        uncertainty
+        for uncertainty in (campaign.model_uncertainty, *run_uncertainties)
+        if uncertainty is not None
+    ]
+    return campaign.model, tuple(dict.fromkeys(uncertainties))
 
 
 def with_own_body(
@@ -124,16 +129,18 @@ def with_own_body(
     """
     recorded = campaign.as_recorded(cycle.name)
     restoring = restoring_of(recorded, settings)
-    own = recorded.model if settings.inertia in (None, MODEL) else body
-    if body is None or own is None or own == body:
+    cycle_body = recorded.model if settings.inertia in (None, MODEL) else body
+    if body is None or cycle_body is None or cycle_body == body:
         return cycle.without(body, restoring)
-    text = f"the model that it was recorded with is taken off ({own.mass_kg:g} kg)"
+    text = f"the model that it was recorded with is taken off ({cycle_body.mass_kg:g} kg)"
     flag = Flag(OWN_MODEL, Severity.NOTE, text, None, (cycle.name,))
-    found = cycle.without(own, restoring)
-    return replace(found, flags=(*found.flags, flag))
+    bare_cycle = cycle.without(cycle_body, restoring)
+    return replace(bare_cycle, flags=(*bare_cycle.flags, flag))
 
 
-def _model_file(path: Path, own: Body | None) -> tuple[Body, tuple[ModelUncertainty, ...]]:
+def _model_file(
+    path: Path, campaign_body: Body | None
+) -> tuple[Body, tuple[ModelUncertainty, ...]]:
     """Return the file's body; what the water bears, which no swing tells, is the campaign's own."""
     original: dict[str, Any] = read_toml(path)
     table = dict(original)
@@ -143,8 +150,12 @@ def _model_file(path: Path, own: Body | None) -> tuple[Body, tuple[ModelUncertai
     if not isinstance(model, dict):
         faults.append(Fault(("model",), "is missing; `pmm inertia ... --output` writes it"))
         model = {}
-    borne = {} if own is None or own.displaced_kg is None else {k: vars(own)[k] for k in _BORNE}
-    body = validate(Body, borne | model, faults)
+    water_values = (
+        {}
+        if campaign_body is None or campaign_body.displaced_kg is None
+        else {k: vars(campaign_body)[k] for k in _BORNE}
+    )
+    body = validate(Body, water_values | model, faults)
     if body is None or faults:
         raise as_error(path, faults, original)
     return body, () if uncertainty is None else (uncertainty,)
@@ -152,8 +163,8 @@ def _model_file(path: Path, own: Body | None) -> tuple[Body, tuple[ModelUncertai
 
 def restoring_of(campaign: Campaign, settings: CoefficientSettings) -> FloatArray:
     """Return the hydrostatic restoring about the midpoint, shape ``(2, 2)``."""
-    given = settings.restoring
-    return np.array(campaign.hull.restoring if given is None else given, dtype=np.float64)
+    restoring = settings.restoring
+    return np.array(campaign.hull.restoring if restoring is None else restoring, dtype=np.float64)
 
 
 def stated_of(
@@ -184,25 +195,29 @@ def stated_of(
     speed_age_s
         What the records leave open of the age of a led carriage's speed.
     """
-    led = any(following)
-    own_set = motion_asked or led
-    set_points = StatedUncertainties(**(_of_set_points(campaign.runs) if own_set else {}))
-    known = [
+    is_led = any(following)
+    uses_set_points = motion_asked or is_led
+    set_points = StatedUncertainties(**(_of_set_points(campaign.runs) if uses_set_points else {}))
+    uncertainties = [
         StatedUncertainties(speed_age_s=speed_age_s),
-        *([of_following(following)] if motion_asked and led else []),
+        *([of_following(following)] if motion_asked and is_led else []),
         *map(of_model, models),
         *map(of_gauges, calibrations),
     ]
-    by_files = largest([set_points, *known])
-    own, other = settings.uncertainty, by_files
-    freedom = (other if own.inertia_kg_m2 == 0.0 else own).inertia_degrees_of_freedom
-    return _stated(np.where(own.vector == 0.0, other.vector, own.vector), freedom)
+    by_files = largest([set_points, *uncertainties])
+    in_settings, from_files = settings.uncertainty, by_files
+    freedom = (
+        from_files if in_settings.inertia_kg_m2 == 0.0 else in_settings
+    ).inertia_degrees_of_freedom
+    return _stated(
+        np.where(in_settings.vector == 0.0, from_files.vector, in_settings.vector), freedom
+    )
 
 
-def largest(every: Sequence[StatedUncertainties]) -> StatedUncertainties:
+def largest(uncertainties: Sequence[StatedUncertainties]) -> StatedUncertainties:
     """Return the largest of each standard uncertainty."""
-    inertia = max(every, key=lambda one: one.inertia_kg_m2)
-    vector = np.max([one.vector for one in every], axis=0)
+    inertia = max(uncertainties, key=lambda uncertainty: uncertainty.inertia_kg_m2)
+    vector = np.max([uncertainty.vector for uncertainty in uncertainties], axis=0)
     return _stated(vector, inertia.inertia_degrees_of_freedom)
 
 
@@ -213,40 +228,45 @@ def with_turns(stated: StatedUncertainties, turns: Sequence[SteadyTurn]) -> Stat
 
 
 def _stated(vector: FloatArray, freedom: float) -> StatedUncertainties:
-    found = dict(zip(STATED, vector.tolist(), strict=True))
-    return StatedUncertainties(**found, inertia_degrees_of_freedom=freedom)
+    values = dict(zip(STATED, vector.tolist(), strict=True))
+    return StatedUncertainties(**values, inertia_degrees_of_freedom=freedom)
 
 
 def of_model(model: ModelUncertainty) -> StatedUncertainties:
     """Return what is uncertain of the body that is taken off."""
     freedom = model.inertia_degrees_of_freedom
-    found = {name: getattr(model, name) for name in _BODY}
-    known = freedom if np.isfinite(freedom) else 0.0
-    return StatedUncertainties(**found, inertia_degrees_of_freedom=known)
+    values = {name: getattr(model, name) for name in _BODY}
+    stated_freedom = freedom if np.isfinite(freedom) else 0.0
+    return StatedUncertainties(**values, inertia_degrees_of_freedom=stated_freedom)
 
 
 def _of_set_points(runs: Sequence[Run]) -> dict[str, float]:
-    relative = [one.u_eccentricity_m / one.eccentricity_m for one in runs if one.eccentricity_m > 0]
+    relative = [run.u_eccentricity_m / run.eccentricity_m for run in runs if run.eccentricity_m > 0]
     return {
         "amplitude_relative": max(relative, default=0.0),
-        "strut_phase_rad": max((one.u_strut_phase_rad for one in runs), default=0.0),
+        "strut_phase_rad": max((run.u_strut_phase_rad for run in runs), default=0.0),
     }
 
 
 def of_following(runs: Sequence[Sequence[Following]]) -> StatedUncertainties:
     """Return by how much set-points are off that stand in for struts like these."""
-    every = [one for run in runs for one in run]
+    followings = [following for run in runs for following in run]
     return StatedUncertainties(
-        amplitude_relative=max(abs(one.amplitude_relative) for one in every),
+        amplitude_relative=max(abs(following.amplitude_relative) for following in followings),
         strut_phase_rad=max(abs(run[0].phase_rad - run[-1].phase_rad) for run in runs if run),
-        latency_s=max(abs(one.phase_rad) / (2.0 * np.pi * one.frequency_hz) for one in every),
+        latency_s=max(
+            abs(following.phase_rad) / (2.0 * np.pi * following.frequency_hz)
+            for following in followings
+        ),
     )
 
 
-def of_gauges(one: Calibration) -> StatedUncertainties:
+def of_gauges(calibration: Calibration) -> StatedUncertainties:
     """Return what a calibration leaves open, of the struts' gauges that it was made of."""
-    rows = {name: one.channels.index(name) for name in FORCES if name in one.channels}
-    spread = one.force_uncertainty
+    rows = {
+        name: calibration.channels.index(name) for name in FORCES if name in calibration.channels
+    }
+    spread = calibration.force_uncertainty
     return StatedUncertainties(
         **{
             _GAUGES[force, loaded]: float(spread[i, j])
@@ -264,16 +284,18 @@ def without_dry(cycle: BodyCycle, dry: Sequence[BodyCycle], campaign: Campaign) 
     ConfigurationError
         If none of them has it; the message says which would do.
     """
-    refused = []
+    refusals = []
     model = campaign.as_recorded(cycle.name).model
-    for one in (one for one in dry if campaign.as_recorded(one.name).model == model):
+    for dry_run in (
+        dry_run for dry_run in dry if campaign.as_recorded(dry_run.name).model == model
+    ):
         try:
-            return cycle.without_dry(one)
+            return cycle.without_dry(dry_run)
         except ConfigurationError as error:
-            refused.append(str(error))
+            refusals.append(str(error))
     amplitude = abs(cycle.motion)
     raise ConfigurationError(
         f"{cycle.name}: no dry run has its motion; run it in air at {cycle.frequency_hz:g} Hz with "
         f"{1e3 * amplitude[0]:.3g} mm and {amplitude[1]:.3g} rad, or give the inertia"
-        + (f" ({refused[0]})" if len(refused) == 1 else "")
+        + (f" ({refusals[0]})" if len(refusals) == 1 else "")
     )

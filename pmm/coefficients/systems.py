@@ -23,7 +23,7 @@ BY_GRAVITY = (System.SEAKEEPING, System.BIS)
 
 
 def in_system(
-    found: CampaignCoefficients,
+    coefficients: CampaignCoefficients,
     system: System,
     ship: ShipTable,
     body: Body | None,
@@ -37,21 +37,23 @@ def in_system(
         If a dimension of the model is missing, or nothing was measured at speed.
     """
     if system is System.DIMENSIONAL:
-        return found, ()
+        return coefficients, ()
     by_speed, flags = system_of(system, ship, body), _assumed(ship)
     if system in BY_GRAVITY:
-        return without_dimensions(found, by_speed, stated), flags
-    moving = [k for k, entry in enumerate(found.entries) if entry.speed_m_s > 0.0]
+        return without_dimensions(coefficients, by_speed, stated), flags
+    moving = [k for k, entry in enumerate(coefficients.entries) if entry.speed_m_s > 0.0]
     if not moving:
         raise ConfigurationError(
             f"--system {system} divides by the speed, and nothing was measured at speed; take "
             "--system seakeeping or dimensional"
         )
-    left = len(found.entries) - len(moving)
-    if left:
-        text = f"{left} values at rest have no meaning in the system {system} and are left out"
+    rest_count = len(coefficients.entries) - len(moving)
+    if rest_count:
+        text = (
+            f"{rest_count} values at rest have no meaning in the system {system} and are left out"
+        )
         flags = (*flags, Flag("at_rest_left_out", Severity.NOTE, text))
-    return without_dimensions(found.taken(moving), by_speed, stated), flags
+    return without_dimensions(coefficients.taken(moving), by_speed, stated), flags
 
 
 def _assumed(ship: ShipTable) -> tuple[Flag, ...]:

@@ -15,7 +15,7 @@ from hardware.description.oscillator import Oscillator, Plane
 from hardware.driver import read_settings
 
 _DEGREES: Final = "drift_deg"
-_NUMBERS: Final = tuple(one.name for one in fields(SteadyTurn) if one.name != "run")
+_NUMBERS: Final = tuple(field.name for field in fields(SteadyTurn) if field.name != "run")
 
 
 def read_turns(path: Path) -> tuple[SteadyTurn, ...]:
@@ -54,29 +54,29 @@ def turn_cycles(
             "steady_turns: the gauges carry the model's inertia on the circle; state [model] in "
             "the campaign file, or inertia in coefficients.toml"
         )
-    return tuple(turn_cycle(one, oscillator.half_spacing_m, body) for one in turns)
+    return tuple(turn_cycle(turn, oscillator.half_spacing_m, body) for turn in turns)
 
 
-def _turn(row: dict[str, str | None], where: str) -> SteadyTurn:
+def _turn(row: dict[str, str | None], place: str) -> SteadyTurn:
     table: dict[str, object] = {}
     if None in row:
-        raise ConfigurationError(f"{where}: more values than the head line has columns; add a name")
+        raise ConfigurationError(f"{place}: more values than the head line has columns; add a name")
     for key, text in row.items():
         name = key.strip()
         if name == "run":
             table[name] = (text or "").strip()
         elif (text or "").strip():
-            table[name] = _number(name, str(text), where)
+            table[name] = _number(name, str(text), place)
     if _DEGREES in table and "drift_rad" not in table:
         table["drift_rad"] = math.radians(float(str(table.pop(_DEGREES))))
-    return read_settings(SteadyTurn, table, where)
+    return read_settings(SteadyTurn, table, place)
 
 
-def _number(name: str, text: str, where: str) -> float:
+def _number(name: str, text: str, place: str) -> float:
     try:
         return float(text)
     except ValueError:
-        known = ", ".join(("run", *_NUMBERS, _DEGREES))
+        columns = ", ".join(("run", *_NUMBERS, _DEGREES))
         raise ConfigurationError(
-            f"{where}: {name} = {text!r} is no number; columns are {known}"
+            f"{place}: {name} = {text!r} is no number; columns are {columns}"
         ) from None

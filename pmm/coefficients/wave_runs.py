@@ -27,25 +27,27 @@ class WaveRun:
     calm: BodyCycle | None
 
 
-def wave_runs(campaign: Campaign, done: Sequence[ReadRecording]) -> Iterator[WaveRun]:
+def wave_runs(campaign: Campaign, recordings: Sequence[ReadRecording]) -> Iterator[WaveRun]:
     """Yield the runs in waves that were read."""
-    points = {one.name: one.set_point for one in campaign.runs}
-    cycles = {one.name: one.cycle for one in done if one.cycle is not None}
+    points = {run.name: run.set_point for run in campaign.runs}
+    cycles = {
+        recording.name: recording.cycle for recording in recordings if recording.cycle is not None
+    }
     calm = {
         points[name]: cycle
         for name, cycle in cycles.items()
         if name in points and not points[name].wave_frequency_hz
     }
-    for one in done:
-        if one.waves is not None and one.cycle is not None:
-            yield WaveRun(one.waves, one.cycle, calm.get(_calm(one.waves.point)))
+    for recording in recordings:
+        if recording.waves is not None and recording.cycle is not None:
+            yield WaveRun(recording.waves, recording.cycle, calm.get(_calm(recording.waves.point)))
 
 
 def _calm(point: SetPoint) -> SetPoint:
-    own = SetPoint(0.0, 0.0)
+    default = SetPoint(0.0, 0.0)
     return replace(
         point,
-        wave_frequency_hz=own.wave_frequency_hz,
-        wave_amplitude_m=own.wave_amplitude_m,
-        wave_heading_rad=own.wave_heading_rad,
+        wave_frequency_hz=default.wave_frequency_hz,
+        wave_amplitude_m=default.wave_amplitude_m,
+        wave_heading_rad=default.wave_heading_rad,
     )

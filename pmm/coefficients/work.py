@@ -73,74 +73,74 @@ def work_of(
     dry: list[Task] = []
     missing: list[str] = []
     flags: list[Flag] = []
-    every: tuple[Run | AtRest, ...] = (*campaign.at_rest, *campaign.runs)
-    rates = Counter(one.revolutions_hz for one in every if one.kind.oscillates or one.kind.towed)
-    usual = rates.most_common(1)[0][0] if rates else 0.0
-    for one in every:
-        why = _why_not(one, leave_out)
-        if why is None and one.kind is not RunKind.ZERO:
-            why = _other_steering(one, usual, with_steering=with_steering)
-        if why is not None:
-            flags += [_left_out(one.name, why)] if why else []
+    all_runs: tuple[Run | AtRest, ...] = (*campaign.at_rest, *campaign.runs)
+    rates = Counter(run.revolutions_hz for run in all_runs if run.kind.oscillates or run.kind.towed)
+    usual_hz = rates.most_common(1)[0][0] if rates else 0.0
+    for run in all_runs:
+        reason = _why_not(run, leave_out)
+        if reason is None and run.kind is not RunKind.ZERO:
+            reason = _other_steering(run, usual_hz, with_steering=with_steering)
+        if reason is not None:
+            flags += [_left_out(run.name, reason)] if reason else []
             continue
-        source = RecordingSource.of(campaign, one, folder.resolve())
-        if not source.path.exists() and isinstance(one, Run) and one.file is None:
-            missing.append(one.name)
+        source = RecordingSource.of(campaign, run, folder.resolve())
+        if not source.path.exists() and isinstance(run, Run) and run.file is None:
+            missing.append(run.name)
             continue
-        own = campaign.as_recorded(one.name)
-        overtones = _OVERTONES * max((line.order for line in one.set_point.lines), default=0)
+        recorded = campaign.as_recorded(run.name)
+        overtones = _OVERTONES * max((line.order for line in run.set_point.lines), default=0)
         task = Task(
             source,
-            one.kind,
-            own.oscillator or oscillator,
-            _set_point(one),
-            own.reference,
+            run.kind,
+            recorded.oscillator or oscillator,
+            _set_point(run),
+            recorded.reference,
             replace(settings, harmonics=max(harmonics, overtones)),
-            one.number,
+            run.number,
             chain,
-            (one.zero_before, one.zero_after),
+            (run.zero_before, run.zero_after),
             tared=campaign.tared,
             hashed=hashed,
             sensors=campaign.attitude,
             heel=campaign.heel,
             depth_m=None if campaign.water is None else campaign.water.depth_m,
         )
-        kept = zeros if one.kind is RunKind.ZERO else dry if _is_dry(one) else runs
-        kept.append(task)
+        tasks = zeros if run.kind is RunKind.ZERO else dry if _is_dry(run) else runs
+        tasks.append(task)
     return Work(tuple(zeros), tuple(runs), tuple(dry), tuple(missing), tuple(flags))
 
 
-def _other_steering(one: Run | AtRest, usual_hz: float, *, with_steering: bool) -> str | None:
+def _other_steering(run: Run | AtRest, usual_hz: float, *, with_steering: bool) -> str | None:
     """Say why a run's rudder or propeller is not as it is wanted, as :func:`_why_not` does."""
     if with_steering:
-        return None if one.rudder_angle_rad or one.revolutions_hz else _NO_STEERING
-    if one.rudder_angle_rad and one.kind.oscillates:
+        return None if run.rudder_angle_rad or run.revolutions_hz else _NO_STEERING
+    if run.rudder_angle_rad and run.kind.oscillates:
         return _LAID
-    return _OTHER_RATE if one.revolutions_hz != usual_hz else None
+    return _OTHER_RATE if run.revolutions_hz != usual_hz else None
 
 
-def _why_not(one: Run | AtRest, leave_out: Sequence[str]) -> str | None:
+def _why_not(run: Run | AtRest, leave_out: Sequence[str]) -> str | None:
     """Say why a run is not used; without words where nobody expects it to be."""
-    if one.name in leave_out:
+    if run.name in leave_out:
         return "it was asked for"
-    if one.outcome != COMPLETE:
-        return f"its outcome is {one.outcome!r}"
-    unused = one.kind is RunKind.KNOWN_MASS or (
-        isinstance(one, AtRest) and one.kind is not RunKind.ZERO and not one.kind.towed
+    if run.outcome != COMPLETE:
+        return f"its outcome is {run.outcome!r}"
+    unused = run.kind is RunKind.KNOWN_MASS or (
+        isinstance(run, AtRest) and run.kind is not RunKind.ZERO and not run.kind.towed
     )
     return "" if unused else None
 
 
-def _left_out(name: str, why: str) -> Flag:
-    return Flag("run_left_out", Severity.NOTE, f"left out: {why}", None, (name,))
+def _left_out(name: str, reason: str) -> Flag:
+    return Flag("run_left_out", Severity.NOTE, f"left out: {reason}", None, (name,))
 
 
-def _is_dry(one: Run | AtRest) -> bool:
-    return one.kind is RunKind.DRY or one.medium is Medium.AIR
+def _is_dry(run: Run | AtRest) -> bool:
+    return run.kind is RunKind.DRY or run.medium is Medium.AIR
 
 
-def _set_point(one: Run | AtRest) -> SetPoint:
-    if isinstance(one, AtRest):
-        return one.set_point
-    medium = Medium.AIR if _is_dry(one) else one.medium
-    return replace(one.set_point, medium=medium)
+def _set_point(run: Run | AtRest) -> SetPoint:
+    if isinstance(run, AtRest):
+        return run.set_point
+    medium = Medium.AIR if _is_dry(run) else run.medium
+    return replace(run.set_point, medium=medium)

@@ -109,19 +109,19 @@ class CampaignOutcome:
     @property
     def with_memory(self) -> tuple[Campaign, ...]:
         """The campaigns whose simulation has a memory of the water, fitted to a table."""
-        return tuple(one.campaign for one in self.parts if one.campaign.radiation is not None)
+        return tuple(part.campaign for part in self.parts if part.campaign.radiation is not None)
 
     @property
     def flags(self) -> Mapping[str, tuple[Flag, ...]]:
         """About runs, by the run's name."""
-        return {one.name: one.flags for one in self.runs if one.flags}
+        return {run.name: run.flags for run in self.runs if run.flags}
 
     @cached_property
     def memories(self) -> "tuple[MeasuredMemory, ...]":
         """The water's memory of each of the matrices at rest, in SI units."""
         from analysis.memory.fit import fit_measured
 
-        return tuple(fit_measured(one) for one in self.at_rest)
+        return tuple(fit_measured(matrices) for matrices in self.at_rest)
 
     @property
     def noticed(self) -> tuple[Flag, ...]:
@@ -132,10 +132,11 @@ class CampaignOutcome:
     @property
     def all_flags(self) -> tuple[Flag, ...]:
         """The same with the runs that could not be used."""
-        failed = [
-            Flag("run_failed", Severity.VOID, one.message, None, (one.name,)) for one in self.failed
+        failure_flags = [
+            Flag("run_failed", Severity.VOID, failure.message, None, (failure.name,))
+            for failure in self.failed
         ]
-        return (*failed, *self.noticed)
+        return (*failure_flags, *self.noticed)
 
 
 _NOTHING_STATED = Flag(
@@ -197,7 +198,7 @@ def coefficients_of(
         *_joined((*part.work.left_out, *part.doubts) for part in parts),
         *(() if stated.vector.any() else (_NOTHING_STATED,)),
         *alone,
-        *_joined(one.flags for one in decays),
+        *_joined(decay.flags for decay in decays),
     )
     stated = with_turns(stated, turns)
     result = solve_campaign(cycles, request_of(settings, stated), executor, progress)
@@ -225,10 +226,10 @@ def request_of(settings: CoefficientSettings, stated: StatedUncertainties) -> Re
 
 
 def _nothing(folders: Sequence[Path], parts: Sequence[CampaignCycles]) -> str:
-    where = ", ".join(map(str, folders))
+    folder_text = ", ".join(map(str, folders))
     missing = _joined(part.work.not_recorded for part in parts)
-    if failed := _joined(part.failed for part in parts):
-        return f"{where}: none of the runs can be used; the first: {failed[0].message}"
+    if failures := _joined(part.failed for part in parts):
+        return f"{folder_text}: none of the runs can be used; the first: {failures[0].message}"
     if missing:
-        return f"{where}: none of the runs is recorded yet ({', '.join(missing[:5])})"
-    return f"{where}: no runs in water; add a table [[runs]] for each"
+        return f"{folder_text}: none of the runs is recorded yet ({', '.join(missing[:5])})"
+    return f"{folder_text}: no runs in water; add a table [[runs]] for each"

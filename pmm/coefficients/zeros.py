@@ -43,31 +43,31 @@ def _elsewhere(task: Task) -> tuple[Flag, ...]:
     horizontal = task.oscillator.plane is Plane.HORIZONTAL
     if horizontal and task.heel is None:
         return ()
-    key, what = ("heel_rad", "heel") if horizontal else ("drift_rad", "trim")
-    own = getattr(task.set_point, key)
-    apart = {
+    key, angle_name = ("heel_rad", "heel") if horizontal else ("drift_rad", "trim")
+    angle = getattr(task.set_point, key)
+    zero_angles = {
         zero.name: getattr(zero, key)
         for zero in task.zeros
-        if zero is not None and abs(getattr(zero, key) - own) > _SAME_RAD
+        if zero is not None and abs(getattr(zero, key) - angle) > _SAME_RAD
     }
-    stated = key.replace("rad", "deg")
+    stated_key = key.replace("rad", "deg")
     return tuple(
         Flag(
             "zero_elsewhere",
             Severity.WARNING,
-            f"zero run {name} stood at a {what} of {math.degrees(there):.3g} deg, the run at "
-            f"{math.degrees(own):.3g} deg: what weight and restoring ask at rest differs; make a "
-            f"zero run at the run's {what}, or state its {stated} in [[at_rest]]",
+            f"zero run {name} stood at a {angle_name} of {math.degrees(zero_angle):.3g} deg, the "
+            f"run at {math.degrees(angle):.3g} deg: what weight and restoring ask at rest differs; "
+            f"make a zero run at the run's {angle_name}, or state its {stated_key} in [[at_rest]]",
             None,
             (task.name,),
         )
-        for name, there in apart.items()
+        for name, zero_angle in zero_angles.items()
     )
 
 
 def _taken(struts: StrutCycle, offsets: Phasors) -> StrutCycle:
-    known = {name.rpartition(" ")[0] for name in struts.phasors.names}
-    return struts.without_zero(offsets.select([one for one in offsets.names if one in known]))
+    channels = {name.rpartition(" ")[0] for name in struts.phasors.names}
+    return struts.without_zero(offsets.select([name for name in offsets.names if name in channels]))
 
 
 def _places(
@@ -80,9 +80,9 @@ def _places(
     utc = (before.utc_s, utc_s(recording), after.utc_s)
     numbers = (before.number, task.number, after.number)
     for clock in (utc, numbers):
-        known = [float(at) for at in clock if at is not None]
-        if len(known) == 3 and known[0] < known[1] < known[2]:
-            return known[0], known[1], known[2]
+        places = [float(place) for place in clock if place is not None]
+        if len(places) == 3 and places[0] < places[1] < places[2]:
+            return places[0], places[1], places[2]
     return 0.0, 0.5, 1.0
 
 

@@ -92,35 +92,37 @@ def read_design(path: Path) -> DesignFile:
         can make no run.
     """
     original = read_toml(path)
-    own: dict[str, Any] = {key: original[key] for key in _OWN if key in original and key != "grid"}
-    plan_table = {key: one for key, one in original.items() if key not in _OWN}
+    design_table: dict[str, Any] = {
+        key: original[key] for key in _OWN if key in original and key != "grid"
+    }
+    plan_table = {key: value for key, value in original.items() if key not in _OWN}
     grid, places = _grid_entries(original.get("grid"))
     fixed = plan_table.get("runs", [])
     count = len(fixed) if isinstance(fixed, list) else 0
-    whole = {**plan_table, "runs": [*fixed, *grid] if isinstance(fixed, list) else fixed}
-    found = examine_plan(whole, path)
-    faults = [_placed(fault, count, places) for fault in found.faults]
+    full_table = {**plan_table, "runs": [*fixed, *grid] if isinstance(fixed, list) else fixed}
+    reading = examine_plan(full_table, path)
+    faults = [_placed(fault, count, places) for fault in reading.faults]
     if not grid:
         faults.append(Fault(("grid",), "is missing; add a table [[grid]] of runs to choose from"))
-    faults += limit_faults(own)
-    tables = validate(DesignTables, own, faults)
-    rig = found.rig.rig
-    if faults or tables is None or rig is None or found.tables is None:
+    faults += limit_faults(design_table)
+    tables = validate(DesignTables, design_table, faults)
+    rig = reading.rig.rig
+    if faults or tables is None or rig is None or reading.tables is None:
         errors = [as_error(path, faults, original)] if faults else []
-        errors += [found.rig.error] if found.rig.error is not None else []
+        errors += [reading.rig.error] if reading.rig.error is not None else []
         raise ConfigurationError("\n".join(map(str, errors)))
-    return _design(path, plan_table, found, rig, found.tables, tables, count, original)
+    return _design(path, plan_table, reading, rig, reading.tables, tables, count, original)
 
 
-def _grid_entries(given: Any) -> tuple[list[dict[str, Any]], list[int]]:
+def _grid_entries(entries: Any) -> tuple[list[dict[str, Any]], list[int]]:
     """Return a table for each number of periods, and of which entry of the grid each is."""
     tables: list[dict[str, Any]] = []
     places: list[int] = []
-    for number, entry in enumerate(given if isinstance(given, list) else []):
+    for number, entry in enumerate(entries if isinstance(entries, list) else []):
         periods = entry.get("periods") if isinstance(entry, dict) else None
-        for one in periods if isinstance(periods, list) else [periods]:
+        for period_count in periods if isinstance(periods, list) else [periods]:
             table = deepcopy(entry)
-            tables.append(table | ({} if one is None else {"periods": one}))
+            tables.append(table | ({} if period_count is None else {"periods": period_count}))
             places.append(number)
     return tables, places
 
@@ -136,7 +138,7 @@ def _placed(fault: Fault, fixed: int, places: list[int]) -> Fault:
 def _design(
     path: Path,
     plan_table: dict[str, Any],
-    found: PlanReading,
+    reading: PlanReading,
     rig: RigFile,
     plan: PlanTables,
     tables: DesignTables,
@@ -144,19 +146,19 @@ def _design(
     original: dict[str, Any],
 ) -> DesignFile:
     entries = plan.runs
-    kept = replace(plan, runs=entries[:fixed_entries])
-    fixed = runs_of(kept, rig.oscillator, found.channels)
-    could = [
+    fixed_plan = replace(plan, runs=entries[:fixed_entries])
+    fixed = runs_of(fixed_plan, rig.oscillator, reading.channels)
+    candidates = [
         run
         for entry in entries[fixed_entries:]
-        for run in expand(entry, plan.defaults, rig.oscillator, found.channels, all_of)
+        for run in expand(entry, plan.defaults, rig.oscillator, reading.channels, all_of)
     ]
-    faults = list(_grid_faults(could))
+    faults = list(_grid_faults(candidates))
     belief = _belief(tables, rig, faults)
-    grid = grid_of(could, rig, tables.limits, plan.zero)
-    if could and not grid.runs:
-        why = ", ".join(f"{what} ({count})" for what, count in grid.left_out.items())
-        faults.append(Fault(("grid",), f"has no run that may be made; left out for: {why}"))
+    grid = grid_of(candidates, rig, tables.limits, plan.zero)
+    if candidates and not grid.runs:
+        reasons = ", ".join(f"{reason} ({count})" for reason, count in grid.left_out.items())
+        faults.append(Fault(("grid",), f"has no run that may be made; left out for: {reasons}"))
     targets: tuple[DesignTarget, ...] = ()
     if belief is not None and not faults:
         points = [run.set_point for run in grid.runs]
@@ -167,11 +169,13 @@ def _design(
         faults.append(Fault(("targets",), "are missing, and so is limits.time_h; give either"))
     if faults or belief is None:
         raise as_error(path, faults, original)
-    made = tuple(CandidateRun(run.set_point, run.periods, np.inf) for run in fixed if _tells(run))
+    made_runs = tuple(
+        CandidateRun(run.set_point, run.periods, np.inf) for run in fixed if _tells(run)
+    )
     return DesignFile(
-        plan.name or path.resolve().parent.name, path, plan_table, found.rig_path, rig, kept,
-        fixed, made, grid, belief, _noise(tables, rig), _stated(tables, rig), targets,
-        np.inf if hours is None else 3600.0 * hours, gap=tables.gap,
+        plan.name or path.resolve().parent.name, path, plan_table, reading.rig_path, rig,
+        fixed_plan, fixed, made_runs, grid, belief, _noise(tables, rig), _stated(tables, rig),
+        targets, np.inf if hours is None else 3600.0 * hours, gap=tables.gap,
     )  # fmt: skip
 
 
@@ -228,19 +232,21 @@ def _belief(tables: DesignTables, rig: RigFile, faults: list[Fault]) -> Belief |
 
 
 def _noise(tables: DesignTables, rig: RigFile) -> Noise:
-    one = tables.noise
-    rate_hz = rig.sample_rate_hz if one.sample_rate_hz is None else one.sample_rate_hz
-    return Noise(one.force_n, rate_hz, one.displacement_m, one.corner_hz, one.repeat_relative)
+    noise = tables.noise
+    rate_hz = rig.sample_rate_hz if noise.sample_rate_hz is None else noise.sample_rate_hz
+    return Noise(
+        noise.force_n, rate_hz, noise.displacement_m, noise.corner_hz, noise.repeat_relative
+    )
 
 
 def _stated(tables: DesignTables, rig: RigFile) -> StatedUncertainties:
     """Return what is stated; where it says nothing, what the rig's file knows."""
     model = take_uncertainty(dict(rig.campaign), [])
-    known = [StatedUncertainties()]
-    known += [] if model is None else [of_model(model)]
-    known += [] if rig.calibration is None else [of_gauges(rig.calibration)]
-    by_file, own = largest(known), tables.stated
-    vector = np.where(own.vector == 0.0, by_file.vector, own.vector)
-    freedom = (own if own.inertia_kg_m2 else by_file).inertia_degrees_of_freedom
+    uncertainties = [StatedUncertainties()]
+    uncertainties += [] if model is None else [of_model(model)]
+    uncertainties += [] if rig.calibration is None else [of_gauges(rig.calibration)]
+    by_file, stated = largest(uncertainties), tables.stated
+    vector = np.where(stated.vector == 0.0, by_file.vector, stated.vector)
+    freedom = (stated if stated.inertia_kg_m2 else by_file).inertia_degrees_of_freedom
     values = dict(zip(STATED, vector.tolist(), strict=True))
     return StatedUncertainties(**values, inertia_degrees_of_freedom=freedom)

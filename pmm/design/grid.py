@@ -43,19 +43,21 @@ def grid_of(
     runs: Sequence[RunPlan], rig: RigFile, limits: DesignLimits, zero: ZeroTable | None
 ) -> RunGrid:
     """Return the candidates among some runs."""
-    kept: list[RunPlan] = []
+    candidate_runs: list[RunPlan] = []
     left_out: Counter[str] = Counter()
     conditions: dict[object, str] = {}
     for run in runs:
         if run.set_point not in conditions:
             conditions[run.set_point] = next(_excluding(condition_findings(run, rig), limits), "")
-        own = chain(limit_findings(run, rig), field_findings(run, rig))
-        why = conditions[run.set_point] or next(_excluding(own, limits), "")
-        if why:
-            left_out[why] += 1
+        findings = chain(limit_findings(run, rig), field_findings(run, rig))
+        reason = conditions[run.set_point] or next(_excluding(findings, limits), "")
+        if reason:
+            left_out[reason] += 1
         else:
-            kept.append(run)
-    return RunGrid(tuple(kept), tuple(_candidates(kept, rig, zero)), dict(left_out))
+            candidate_runs.append(run)
+    return RunGrid(
+        tuple(candidate_runs), tuple(_candidates(candidate_runs, rig, zero)), dict(left_out)
+    )
 
 
 def _candidates(
@@ -64,8 +66,8 @@ def _candidates(
     """Yield each run with what it costs; its axes come from the farthest settings."""
     firsts = {_settings(run): run for run in runs}
     moves_s = {
-        own: max(setting_s(run, other, rig) for other in (None, *firsts.values()))
-        for own, run in firsts.items()
+        settings: max(setting_s(run, start, rig) for start in (None, *firsts.values()))
+        for settings, run in firsts.items()
     }
     for run in runs:
         (cost_s,) = costs_s([run], run, rig, zero)
@@ -91,15 +93,15 @@ def costs_s(
     return tuple(run_s(run, last, rig) + share_s for run, last in zip(runs, order, strict=False))
 
 
-def _excluding(found: Iterable[PlanFinding], limits: DesignLimits) -> Iterator[str]:
+def _excluding(findings: Iterable[PlanFinding], limits: DesignLimits) -> Iterator[str]:
     """Yield the quantities for which a run is no candidate."""
-    for one in found:
-        warned = one.verdict is PlanVerdict.WARN and limits.advised
-        if one.verdict is PlanVerdict.REFUSE or warned or _beyond(one, limits):
-            yield one.quantity
+    for finding in findings:
+        warned = finding.verdict is PlanVerdict.WARN and limits.advised
+        if finding.verdict is PlanVerdict.REFUSE or warned or _beyond(finding, limits):
+            yield finding.quantity
 
 
-def _beyond(one: PlanFinding, limits: DesignLimits) -> bool:
+def _beyond(finding: PlanFinding, limits: DesignLimits) -> bool:
     """Whether a run's number is beyond the design's own limit."""
     limited = {
         table.ANGLE_TO_FLOW.quantity: limits.angle_to_flow_deg,
@@ -111,5 +113,5 @@ def _beyond(one: PlanFinding, limits: DesignLimits) -> bool:
         table.ROTATION.quantity.format(rotation=word): limits.rotation_deg
         for word in ("yaw", "pitch")
     }
-    limit = limited.get(one.quantity)
-    return limit is not None and one.value > limit
+    limit = limited.get(finding.quantity)
+    return limit is not None and finding.value > limit

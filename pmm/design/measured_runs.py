@@ -55,17 +55,19 @@ def after(file: DesignFile, parts: Sequence[Measured]) -> DesignFile:
     DataError
         If no run can be used.
     """
-    candidates = tuple(one for part in parts for one in part.candidates)
-    cycles = [one for part in parts for one in part.cycles]
+    candidates = tuple(candidate for part in parts for candidate in part.candidates)
+    cycles = [cycle for part in parts for cycle in part.cycles]
     if not cycles:
-        why = "; ".join(f"{name}: {said}" for part in parts for name, said in part.failed.items())
-        raise DataError(f"none of the runs that were made can be used{why and f' ({why})'}")
+        reasons = "; ".join(
+            f"{name}: {message}" for part in parts for name, message in part.failed.items()
+        )
+        raise DataError(f"none of the runs that were made can be used{reasons and f' ({reasons})'}")
     spread = repeating(cycles, file.noise.repeat_relative)
     stated = largest([file.stated, *(part.stated for part in parts)])
-    table = {key: one for key, one in file.plan_table.items() if key != "runs"}
+    table = {key: value for key, value in file.plan_table.items() if key != "runs"}
     going_on = replace(
         file, plan_table=table, fixed=(), made=candidates, stated=stated,
-        cycles=tuple(with_repeats(one, spread) for one in cycles),
+        cycles=tuple(with_repeats(cycle, spread) for cycle in cycles),
     )  # fmt: skip
     times = _noise_shown(going_on)
     noise = file.noise
@@ -91,26 +93,28 @@ def repeating(cycles: Sequence[BodyCycle], stated: float) -> Repeatability:
     stated
         Standard deviation between repeats beyond their scatter, over the load.
     """
-    known = repeatability(cycles)
-    if known.degrees_of_freedom >= _ENOUGH:
-        return known
-    freedom = known.degrees_of_freedom or math.inf
-    return replace(known, relative=np.maximum(known.relative, stated), degrees_of_freedom=freedom)
+    repeats = repeatability(cycles)
+    if repeats.degrees_of_freedom >= _ENOUGH:
+        return repeats
+    freedom = repeats.degrees_of_freedom or math.inf
+    return replace(
+        repeats, relative=np.maximum(repeats.relative, stated), degrees_of_freedom=freedom
+    )
 
 
 def repeats_said(cycles: Sequence[BodyCycle], stated: float) -> str:
     """Say which scatter between repeats uncertainties count on; empty where there is none."""
-    known = repeatability(cycles)
-    shown = f"{100.0 * float(known.relative.max()):.2g} %"
-    freedom = f"{known.degrees_of_freedom:g} degrees of freedom"
-    if known.degrees_of_freedom >= _ENOUGH:
-        return f"repeats differ by {shown} of their load, as they showed with {freedom}"
+    repeats = repeatability(cycles)
+    shown_text = f"{100.0 * float(repeats.relative.max()):.2g} %"
+    freedom = f"{repeats.degrees_of_freedom:g} degrees of freedom"
+    if repeats.degrees_of_freedom >= _ENOUGH:
+        return f"repeats differ by {shown_text} of their load, as they showed with {freedom}"
     if not stated > 0.0:
         return ""
-    few = f"repeats with {freedom} showed {shown}" if known.kinds else "no repeat was made"
+    basis = f"repeats with {freedom} showed {shown_text}" if repeats.kinds else "no repeat was made"
     return (
         f"repeats are taken to differ by {100.0 * stated:.2g} % of their load, as repeat_relative "
-        f"states, or more: {few}, and what they show counts alone from {_ENOUGH} on"
+        f"states, or more: {basis}, and what they show counts alone from {_ENOUGH} on"
     )
 
 
@@ -124,23 +128,23 @@ def measured(file: DesignFile, folder: Path, executor: Executor) -> Measured:
     """
     path = folder / CAMPAIGN_FILE
     campaign = read_campaign(path)
-    runs = {one.name: one for one in campaign.runs}
+    runs = {run.name: run for run in campaign.runs}
     settings, _ = settings_of(folder, None)
-    found = campaign_cycles(folder, campaign, settings, executor, lambda *_: None)
-    moving = [one for one in found.cycles if one.frequency_hz > 0.0]
-    cycles = [one for one in moving if not one.lines]
+    recorded = campaign_cycles(folder, campaign, settings, executor, lambda *_: None)
+    moving = [cycle for cycle in recorded.cycles if cycle.frequency_hz > 0.0]
+    cycles = [cycle for cycle in moving if not cycle.lines]
     oscillator = file.rig.oscillator
-    for one in cycles:
-        if (one.plane, one.half_spacing_m) != (oscillator.plane, oscillator.half_spacing_m):
+    for cycle in cycles:
+        if (cycle.plane, cycle.half_spacing_m) != (oscillator.plane, oscillator.half_spacing_m):
             raise ConfigurationError(
-                f"{path}: {one.name} was made on another oscillator than that of "
+                f"{path}: {cycle.name} was made on another oscillator than that of "
                 f"{file.rig_path.name}; name the campaigns of this design alone"
             )
-    made = [runs[one.name] for one in cycles]
-    candidates = tuple(CandidateRun(one.set_point, one.periods, math.inf) for one in made)
-    failed = {one.name: one.message for one in found.failed}
-    failed |= {one.name: _LINES for one in moving if one.lines}
-    return Measured(candidates, tuple(cycles), found.stated, failed)
+    made_runs = [runs[cycle.name] for cycle in cycles]
+    candidates = tuple(CandidateRun(run.set_point, run.periods, math.inf) for run in made_runs)
+    failures = {failure.name: failure.message for failure in recorded.failed}
+    failures |= {cycle.name: _LINES for cycle in moving if cycle.lines}
+    return Measured(candidates, tuple(cycles), recorded.stated, failures)
 
 
 def _noise_shown(file: DesignFile) -> float:
@@ -149,15 +153,19 @@ def _noise_shown(file: DesignFile) -> float:
         return 1.0
     cycles = (made_up(file.made, file.belief, file.noise), file.cycles)
     believed, shown = (
-        expected(file.made, own, file.targets, file.belief, file.stated) for own in cycles
+        expected(file.made, group, file.targets, file.belief, file.stated) for group in cycles
     )
     pairs = zip(map(_scatter, shown), map(_scatter, believed), strict=True)
-    ratios = [one / other for one, other in pairs if math.isfinite(one) and other > 0.0]
+    ratios = [
+        shown_u / believed_u
+        for shown_u, believed_u in pairs
+        if math.isfinite(shown_u) and believed_u > 0.0
+    ]
     return median(ratios) if ratios and min(ratios) > 0.0 else 1.0
 
 
-def _scatter(one: ExpectedCoefficient) -> float:
+def _scatter(coefficient: ExpectedCoefficient) -> float:
     """Return what the periods' scatter leaves of a coefficient."""
-    if not math.isfinite(one.standard_uncertainty):
+    if not math.isfinite(coefficient.standard_uncertainty):
         return math.inf
-    return one.standard_uncertainty * math.sqrt(one.shares.get(SCATTER, 0.0))
+    return coefficient.standard_uncertainty * math.sqrt(coefficient.shares.get(SCATTER, 0.0))

@@ -23,7 +23,7 @@ def plan_text(file: DesignFile, design: Design, target: Path) -> str:
     target
         Where it is to lie: the rig is named from there.
     """
-    entries = [toml_table("runs", one, array=True) for one in file.plan_table.get("runs", [])]
+    entries = [toml_table("runs", run, array=True) for run in file.plan_table.get("runs", [])]
     for number, step in enumerate(design.steps, 1 + len(file.cycles)):
         table = run_entry(step.run, number, step.repeats)
         entries.append(f"# until {clock(step.time_s)}\n" + toml_table("runs", table, array=True))

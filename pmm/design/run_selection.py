@@ -76,14 +76,14 @@ def design(file: DesignFile) -> Design:
         If a run of the grid cannot be reached, or its loads not be told without an X gauge.
     """
     now = _known(file)
-    chosen: list[tuple[int, int]] = []
-    if not (now and file.targets and all(one.met for one in now)):
-        chosen = _chosen(file)
-    steps = _steps(file, chosen)
+    choices: list[tuple[int, int]] = []
+    if not (now and file.targets and all(coefficient.met for coefficient in now)):
+        choices = _chosen(file)
+    steps = _steps(file, choices)
     after = steps[-1].known if steps else now
-    used_s = math.fsum(_costs_s(file, chosen))
-    why = tuple(_why(one, file, used_s) for one in after if not one.met)
-    return Design(steps, now, after, why)
+    used_s = math.fsum(_costs_s(file, choices))
+    reasons = tuple(_why(coefficient, file, used_s) for coefficient in after if not coefficient.met)
+    return Design(steps, now, after, reasons)
 
 
 def _chosen(file: DesignFile) -> list[tuple[int, int]]:
@@ -93,25 +93,25 @@ def _chosen(file: DesignFile) -> list[tuple[int, int]]:
     its runs do not do by what is expected of the fit, more is asked for.
     """
     candidates = (*file.grid.candidates, *file.made)
-    known = prospects(candidates, file.belief, file.noise, file.stated)
-    made = tuple(range(len(file.grid.candidates), len(candidates)))
+    run_prospects = prospects(candidates, file.belief, file.noise, file.stated)
+    made_places = tuple(range(len(file.grid.candidates), len(candidates)))
     runs: tuple[int, ...] = ()
     for harder in _HARDER:
-        asked = [
-            replace(one, standard_uncertainty=one.standard_uncertainty / harder)
-            for one in file.targets
+        targets = [
+            replace(target, standard_uncertainty=target.standard_uncertainty / harder)
+            for target in file.targets
         ]
-        found = select(known, asked, file.time_s, made)
-        if runs and not found.met:
+        selection = select(run_prospects, targets, file.time_s, made_places)
+        if runs and not selection.met:
             break  # asked for more than can be had, it would only cost more
-        runs = found.chosen or runs
-        if runs and (not found.met or _suffice(file, [candidates[k] for k in runs])):
+        runs = selection.chosen or runs
+        if runs and (not selection.met or _suffice(file, [candidates[k] for k in runs])):
             break
     return list(Counter(runs).items())
 
 
-def _suffice(file: DesignFile, more: Sequence[CandidateRun]) -> bool:
-    return all(one.met for one in foreseen(file, more))
+def _suffice(file: DesignFile, extra_runs: Sequence[CandidateRun]) -> bool:
+    return all(coefficient.met for coefficient in foreseen(file, extra_runs))
 
 
 def _known(file: DesignFile) -> tuple[ExpectedCoefficient, ...]:
@@ -122,14 +122,14 @@ def _known(file: DesignFile) -> tuple[ExpectedCoefficient, ...]:
     return expected(file.made, cycles, file.targets, file.belief, file.stated)
 
 
-def _steps(file: DesignFile, chosen: list[tuple[int, int]]) -> tuple[DesignStep, ...]:
+def _steps(file: DesignFile, choices: list[tuple[int, int]]) -> tuple[DesignStep, ...]:
     """Return the steps: the runs that were made, or are made in any case, come before them."""
     order = [*file.made]
     ends = []
-    for candidate, repeats in chosen:
+    for candidate, repeats in choices:
         order += [file.grid.candidates[candidate]] * repeats
         ends.append(len(order))
-    if not chosen:
+    if not choices:
         return ()
     cycles = _cycles(file, order)
     start_s = math.fsum(duration_rows(file.fixed, file.rig)) or _closing_s(file)
@@ -141,7 +141,7 @@ def _steps(file: DesignFile, chosen: list[tuple[int, int]]) -> tuple[DesignStep,
             expected(order[:end], cycles[:end], file.targets, file.belief, file.stated),
         )
         for (candidate, repeats), end, time_s in zip(
-            chosen, ends, accumulate(_costs_s(file, chosen)), strict=True
+            choices, ends, accumulate(_costs_s(file, choices)), strict=True
         )
     )
 
@@ -152,16 +152,18 @@ def _closing_s(file: DesignFile) -> float:
     return 0.0 if zero is None else zero.duration_s + file.tables.defaults.pause_s
 
 
-def _costs_s(file: DesignFile, chosen: Sequence[tuple[int, int]]) -> list[float]:
+def _costs_s(file: DesignFile, choices: Sequence[tuple[int, int]]) -> list[float]:
     """Return the tank time of each run that is chosen with its repeats, made in this order."""
-    order = [file.grid.runs[k] for k, repeats in chosen for _ in range(repeats)]
+    order = [file.grid.runs[k] for k, repeats in choices for _ in range(repeats)]
     costs = iter(costs_s(order, file.fixed[-1] if file.fixed else None, file.rig, file.tables.zero))
-    return [math.fsum(islice(costs, repeats)) for _, repeats in chosen]
+    return [math.fsum(islice(costs, repeats)) for _, repeats in choices]
 
 
-def foreseen(file: DesignFile, more: Sequence[CandidateRun]) -> tuple[ExpectedCoefficient, ...]:
+def foreseen(
+    file: DesignFile, extra_runs: Sequence[CandidateRun]
+) -> tuple[ExpectedCoefficient, ...]:
     """Return what is expected of each coefficient after some runs beside those that were made."""
-    order = [*file.made, *more]
+    order = [*file.made, *extra_runs]
     return expected(order, _cycles(file, order), file.targets, file.belief, file.stated)
 
 
@@ -170,39 +172,44 @@ def _cycles(file: DesignFile, order: Sequence[CandidateRun]) -> list[BodyCycle]:
     return [*file.cycles, *made_up(order[len(file.cycles) :], file.belief, file.noise)]
 
 
-def beyond_runs(one: ExpectedCoefficient) -> bool:
+def beyond_runs(coefficient: ExpectedCoefficient) -> bool:
     """Whether a target cannot be met by any runs: what they do not lower is beyond it alone."""
-    return not one.message and _left(one) <= 0.0
+    return not coefficient.message and _left(coefficient) <= 0.0
 
 
-def _left(one: ExpectedCoefficient) -> float:
+def _left(coefficient: ExpectedCoefficient) -> float:
     """Return the variance that the scatter may have where the target is met."""
-    scatter = sum(one.shares.get(name, 0.0) for name in (SCATTER, REPEATS))
-    return one.wanted**2 - (1.0 - scatter) * one.standard_uncertainty**2
+    scatter = sum(coefficient.shares.get(name, 0.0) for name in (SCATTER, REPEATS))
+    return coefficient.wanted**2 - (1.0 - scatter) * coefficient.standard_uncertainty**2
 
 
-def _why(one: ExpectedCoefficient, file: DesignFile, used_s: float) -> str:
+def _why(coefficient: ExpectedCoefficient, file: DesignFile, used_s: float) -> str:
     """Return why a target is not met, and what would help."""
-    where = f" at {one.where}" if one.where else ""
-    limited = math.isfinite(file.time_s)
-    if one.message:
-        hint = "; limits.time_h may leave no time for it" if limited else ""
-        return f"{one.name}{where}: {one.message}{hint}"
-    scatter = sum(one.shares.get(name, 0.0) for name in (SCATTER, REPEATS))
-    rest = {name: share for name, share in one.shares.items() if name not in (SCATTER, REPEATS)}
-    expected_u, wanted = one.standard_uncertainty, one.wanted
-    text = f"{one.name}{where}: {expected_u:.3g} {one.unit} is expected, {wanted:.3g} is asked for"
-    left = _left(one)
-    if left <= 0.0:
-        most = max(rest, key=lambda name: rest[name])
+    condition = f" at {coefficient.where}" if coefficient.where else ""
+    has_limit = math.isfinite(file.time_s)
+    if coefficient.message:
+        hint = "; limits.time_h may leave no time for it" if has_limit else ""
+        return f"{coefficient.name}{condition}: {coefficient.message}{hint}"
+    scatter = sum(coefficient.shares.get(name, 0.0) for name in (SCATTER, REPEATS))
+    rest = {
+        name: share for name, share in coefficient.shares.items() if name not in (SCATTER, REPEATS)
+    }
+    expected_u, wanted_u = coefficient.standard_uncertainty, coefficient.wanted
+    text = (
+        f"{coefficient.name}{condition}: {expected_u:.3g} {coefficient.unit} is expected, "
+        f"{wanted_u:.3g} is asked for"
+    )
+    free_variance = _left(coefficient)
+    if free_variance <= 0.0:
+        largest = max(rest, key=lambda name: rest[name])
         return (
-            f"{text}; {100.0 * rest[most]:.0f} % of the variance is {most}, which no run lowers: "
-            "state it better, or ask for less"
+            f"{text}; {100.0 * rest[largest]:.0f} % of the variance is {largest}, which no run "
+            "lowers: state it better, or ask for less"
         )
-    more = scatter * expected_u**2 / left
-    if limited:
+    factor = scatter * expected_u**2 / free_variance
+    if has_limit:
         return (
-            f"{text}; the scatter needs about {more:.2g} times these {used_s / 3600.0:.2g} h of "
+            f"{text}; the scatter needs about {factor:.2g} times these {used_s / 3600.0:.2g} h of "
             "runs: raise limits.time_h, or ask for less"
         )
     return f"{text}; no further run of the grid helps: widen it, or ask for less"

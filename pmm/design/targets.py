@@ -40,15 +40,17 @@ def targets_of(
     points
         Of all runs that could be made.
     """
-    found = []
+    targets = []
     for key, value in table.items():
-        own = [Fault(("targets", key), message) for message in _faults(key, value, belief, points)]
-        faults += own
-        if not own:
+        key_faults = [
+            Fault(("targets", key), message) for message in _faults(key, value, belief, points)
+        ]
+        faults += key_faults
+        if not key_faults:
             name, band, size, relative = _asked(key, value)
-            believed = abs(belief.values[name]) if relative else 1.0
-            found.append(DesignTarget(name, size * believed, band))
-    return tuple(found)
+            believed_size = abs(belief.values[name]) if relative else 1.0
+            targets.append(DesignTarget(name, size * believed_size, band))
+    return tuple(targets)
 
 
 def _asked(key: str, value: float | str) -> AskedTarget:
@@ -79,8 +81,8 @@ def _faults(
     if name not in belief.values:
         near = get_close_matches(name, belief.values, n=1, cutoff=0.5)
         hint = f"did you mean {near[0]}?" if near else "give what is believed of it in [believed]"
-        known = ", ".join(belief.values)
-        yield f"asks for a coefficient that nothing is believed of; {hint} (known: {known})"
+        choices = ", ".join(belief.values)
+        yield f"asks for a coefficient that nothing is believed of; {hint} (known: {choices})"
         return
     if not size > 0.0:
         yield f'= {value!r} should be a number above 0, or per cent as "2 %"'
@@ -99,33 +101,35 @@ def _band_faults(
         return
     if belief.terms[list(belief.values).index(name)].degree > 1:
         yield "is not linear; runs of one frequency are fitted with linear terms: leave the band"
-    frequencies = {one.frequency_hz for one in points if one.drift_rad == 0.0}
-    if not any(low <= one <= high for one in frequencies):
-        known = ", ".join(f"{one:g}" for one in sorted(frequencies))
-        yield f"has no frequency of the grid without drift in its band (there are: {known} Hz)"
+    frequencies = {point.frequency_hz for point in points if point.drift_rad == 0.0}
+    if not any(low <= frequency <= high for frequency in frequencies):
+        choices = ", ".join(f"{frequency:g}" for frequency in sorted(frequencies))
+        yield f"has no frequency of the grid without drift in its band (there are: {choices} Hz)"
 
 
 def _near_zero(name: str, size: float, belief: Belief, points: Sequence[SetPoint]) -> Iterator[str]:
     """Yield that a part of so small a value is no target: it stands beside much larger loads."""
     parts = _parts(belief, points)
-    own = belief.terms[list(belief.values).index(name)]
+    target_term = belief.terms[list(belief.values).index(name)]
     largest = max(
-        part for part, term in zip(parts.values(), belief.terms, strict=True) if term.row == own.row
+        part
+        for part, term in zip(parts.values(), belief.terms, strict=True)
+        if term.row == target_term.row
     )
     if not parts[name] > _NEAR_ZERO * largest:
         share = 100.0 * parts[name] / max(largest, 1e-300)
         yield (
-            f"is {100.0 * size:g} % of a value near zero: {belief.values[name]:g} {own.unit} makes "
-            f"{share:.2g} % of the largest part of its load (limit {100 * _NEAR_ZERO:g} %); give "
-            f"the standard uncertainty itself, in {own.unit}"
+            f"is {100.0 * size:g} % of a value near zero: {belief.values[name]:g} "
+            f"{target_term.unit} makes {share:.2g} % of the largest part of its load (limit "
+            f"{100 * _NEAR_ZERO:g} %); give the standard uncertainty itself, in {target_term.unit}"
         )
 
 
 def _parts(belief: Belief, points: Sequence[SetPoint]) -> dict[str, float]:
     """Return the size of each term's load at the runs' usual pace, both motions alike."""
-    omega = 2.0 * math.pi * float(np.median([one.frequency_hz for one in points]))
-    pace = omega * float(np.median([one.eccentricity_m for one in points]))
-    ahead = max(float(np.median([one.carriage_speed_m_s for one in points])), pace)
+    omega = 2.0 * math.pi * float(np.median([point.frequency_hz for point in points]))
+    pace = omega * float(np.median([point.eccentricity_m for point in points]))
+    ahead = max(float(np.median([point.carriage_speed_m_s for point in points])), pace)
     half = belief.oscillator.half_spacing_m
     parts = {}
     for (name, value), term in zip(belief.values.items(), belief.terms, strict=True):

@@ -22,13 +22,15 @@ def axis_of(rig: Rig, name: str) -> PositionAxis:
     ConfigurationError
         If the rig has none of that name.
     """
-    found: dict[str, PositionAxis] = {
-        one: axis for one in _AXES if (axis := getattr(rig, one)) is not None
+    axes: dict[str, PositionAxis] = {
+        key: axis for key in _AXES if (axis := getattr(rig, key)) is not None
     } | rig.angles
-    if name not in found:
-        known = ", ".join(found) or "none"
-        raise ConfigurationError(f"no axis {name!r} that moves to a position; the rig has {known}")
-    return found[name]
+    if name not in axes:
+        choices = ", ".join(axes) or "none"
+        raise ConfigurationError(
+            f"no axis {name!r} that moves to a position; the rig has {choices}"
+        )
+    return axes[name]
 
 
 def look(rig: Rig) -> None:
@@ -47,7 +49,7 @@ def move(rig: Rig, axis: PositionAxis, position: float) -> Reading:
     HardwareError
         What the drives report on the way.
     """
-    check_position(axis, position, told=NOTHING_MOVED)
+    check_position(axis, position, remark=NOTHING_MOVED)
     rate_hz = rig.configuration.sample_rate_hz
     axis.enable()
     rig.run_until(lambda: axis.enabled, round(_ENABLE_S * rate_hz), f"{axis.name} enables")
@@ -65,7 +67,7 @@ def move(rig: Rig, axis: PositionAxis, position: float) -> Reading:
 
 def turn(rig: Rig, shaft: Shaft, frequency_hz: float) -> None:
     """Put the shaft under power and run it up to a speed; raises as :func:`move`."""
-    check_speed(shaft, frequency_hz, told=NOTHING_MOVED)
+    check_speed(shaft, frequency_hz, remark=NOTHING_MOVED)
     rate_hz = rig.configuration.sample_rate_hz
     shaft.enable()
     rig.run_until(lambda: shaft.enabled, round(_ENABLE_S * rate_hz), f"{shaft.name} enables")

@@ -63,13 +63,13 @@ class Live:
         """Keep the mean of what each channel has read since the last time."""
         rig = self.rig
         for device in (rig.shaft, rig.inclinometer, *rig.forces, rig.carriage):
-            taken = device.take() if device is not None else ()
-            if device is None or not taken:
+            blocks = device.take() if device is not None else ()
+            if device is None or not blocks:
                 continue
-            values = np.concatenate([one.values for one in taken], axis=1)
+            values = np.concatenate([block.values for block in blocks], axis=1)
             # An angle that grows is told by its last sample, a noisy force by its mean.
             last = values[:, -1] if device is rig.shaft else np.mean(values, axis=1)
-            self._latest[device.name] = tuple(float(one) for one in last)
+            self._latest[device.name] = tuple(float(value) for value in last)
         for pulse in rig.photocell.take() if rig.photocell is not None else ():
             self._pulses += 1
             self._pulse_s = pulse.time_s

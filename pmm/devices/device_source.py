@@ -29,8 +29,8 @@ class DeviceTables:
         self.path = path
         self.devices: dict[str, Any] = {key: tables[key] for key in _DEVICES if key in tables}
         if not self.devices:
-            known = ", ".join(_DEVICES)
-            raise ConfigurationError(f"{path}: names no device; the tables are {known}")
+            choices = ", ".join(_DEVICES)
+            raise ConfigurationError(f"{path}: names no device; the tables are {choices}")
         self.plane = _plane(tables)
         _beside(self.devices, path.parent)
 
@@ -43,20 +43,20 @@ class DeviceTables:
 
     def ports(self) -> dict[str, dict[str, Any]]:
         """Return the port of each serial device, by its part's name."""
-        found = {}
-        for name, one in self._parts():
-            port = one.get("port")
+        ports = {}
+        for name, table in self._parts():
+            port = table.get("port")
             if isinstance(port, dict) and isinstance(port.get("url"), str):
-                found[name] = port
-        return found
+                ports[name] = port
+        return ports
 
     def _parts(self) -> list[tuple[str, Mapping[str, Any]]]:
         parts = []
         for key, table in self.devices.items():
-            many = isinstance(table, list)
-            for i, one in enumerate(table if many else [table]):
-                if isinstance(one, Mapping):
-                    parts.append((f"{key}[{i}]" if many else key, one))
+            is_array = isinstance(table, list)
+            for i, entry in enumerate(table if is_array else [table]):
+                if isinstance(entry, Mapping):
+                    parts.append((f"{key}[{i}]" if is_array else key, entry))
         return parts
 
 

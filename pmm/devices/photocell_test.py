@@ -67,7 +67,7 @@ def watch(
     if cell is None:
         raise ConfigurationError("the rig has no photocell; it needs a [photocell] table")
     pulses: list[Pulse] = []
-    said: list[str] = []
+    messages: list[str] = []
     cell.take()
     for _ in range(round(within_s * rig.configuration.sample_rate_hz)):
         try:
@@ -75,10 +75,12 @@ def watch(
         except HardwareError as error:
             if not isinstance(error, _PHOTOCELL_FAULTS):
                 raise
-            said.append(str(error))
-        for one in cell.take():
-            pulses.append(one)
-            on_pulse(one)
+            messages.append(str(error))
+        for pulse in cell.take():
+            pulses.append(pulse)
+            on_pulse(pulse)
         if len(pulses) >= count:
             break
-    return PhotocellRecord(tuple(pulses), judge_pulses(pulses), tuple(said), len(pulses) >= count)
+    return PhotocellRecord(
+        tuple(pulses), judge_pulses(pulses), tuple(messages), len(pulses) >= count
+    )

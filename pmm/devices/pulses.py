@@ -63,14 +63,14 @@ def _interval(earlier: Pulse, later: Pulse, usual_s: float) -> Interval:
     seconds = later.time_s - earlier.time_s
     turns = abs(later.shaft_angle_rad - earlier.shaft_angle_rad) / (2.0 * math.pi)
     share = seconds / usual_s if math.isnan(turns) and usual_s > 0.0 else turns
-    lost = max(later.number - earlier.number - 1, 0)
-    share_each = share / (lost + 1)
+    lost_count = max(later.number - earlier.number - 1, 0)
+    share_each = share / (lost_count + 1)
     return Interval(
         later.number,
         later.time_s,
         seconds,
         turns,
-        max(round(share) - 1 - lost, 0) if share_each > MISSED else 0,
+        max(round(share) - 1 - lost_count, 0) if share_each > MISSED else 0,
         extra=share_each < EXTRA,
-        lost=lost,
+        lost=lost_count,
     )

@@ -74,14 +74,14 @@ class GaugeReadings:
 
     def records(self, last_s: float | None = None) -> Mapping[str, FloatArray]:
         """Return the samples of each channel, all of them or the last seconds."""
-        found = {}
+        records = {}
         for name, values in self._kept.items():
             record = np.array(values, dtype=np.float64)
             count = record.size
             if last_s is not None:
                 count = max(round(last_s * self._rates[name]), _FEWEST)
-            found[name] = record[max(record.size - count, 0) :]
-        return found
+            records[name] = record[max(record.size - count, 0) :]
+        return records
 
 
 def push_each(
@@ -132,17 +132,17 @@ def _wait_for_push(
 ) -> Pushed:
     text = f"push the model {direction(name, plane)} at the gauge {name}, then let go"
     demand = Demand(text, "load", _load(gauges, name), 1.0, name)
-    why = ""
+    reason = ""
     for _ in range(round(within_s / _LOOK_S)):
         gauges.run(_LOOK_S, demand)
         try:
             judge(gauges.channels, rest, gauges.records(2.0 * _LOOK_S))
         except PushError as error:
-            why = str(error)
+            reason = str(error)
             continue
         gauges.run(_AFTER_S)
         return _judged(gauges, name, rest)
-    return Pushed(name, None, (f"{why} (waited {within_s:g} s)",))
+    return Pushed(name, None, (f"{reason} (waited {within_s:g} s)",))
 
 
 def _judged(gauges: GaugeReadings, name: str, rest: Mapping[str, FloatArray]) -> Pushed:

@@ -89,7 +89,9 @@ def judge(
         for channel in channels
     }
     first, *weaker = sorted(
-        channels, key=lambda one: _strength(changes[one.name], limits[one.name]), reverse=True
+        channels,
+        key=lambda channel: _strength(changes[channel.name], limits[channel.name]),
+        reverse=True,
     )
     change, limit = changes[first.name], limits[first.name]
     if not abs(change) > limit:
@@ -97,41 +99,41 @@ def judge(
             f"no push: {first.name} moved most, by {change:.3g} {first.unit}, and a push is more "
             f"than {limit:.3g} {first.unit}; push harder, or look whether the gauge is connected"
         )
-    for other in weaker:
-        _check_alone(first, changes, limits, other)
-    others = {one.name: changes[one.name] for one in weaker}
-    return Push(first.name, 1 if change > 0.0 else -1, change, limit, first.unit, others)
+    for weaker_channel in weaker:
+        _check_alone(first, changes, limits, weaker_channel)
+    weaker_changes = {channel.name: changes[channel.name] for channel in weaker}
+    return Push(first.name, 1 if change > 0.0 else -1, change, limit, first.unit, weaker_changes)
 
 
-def faults(found: Push, asked: str, sign: int = 1) -> tuple[str, ...]:
-    """Return what is wrong with a push on the gauge ``asked`` that should read ``sign``.
+def faults(push: Push, channel: str, sign: int = 1) -> tuple[str, ...]:
+    """Return what is wrong with a push on the gauge ``channel`` that should read ``sign``.
 
     Each with its fix; empty if all is right.
     """
-    wrong = []
-    if found.channel != asked:
-        wrong.append(
-            f"the push on {asked} came in on {found.channel}: their cables are swapped; exchange "
-            f"the plugs of {asked} and {found.channel}, or the two channels' `object` in the rig's "
-            "file"
+    messages = []
+    if push.channel != channel:
+        messages.append(
+            f"the push on {channel} came in on {push.channel}: their cables are swapped; exchange "
+            f"the plugs of {channel} and {push.channel}, or the two channels' `object` in the "
+            "rig's file"
         )
-    if found.sign != sign:
-        wrong.append(
-            f"{found.channel} went to {found.change:+.3g} {found.unit} where it should go to "
+    if push.sign != sign:
+        messages.append(
+            f"{push.channel} went to {push.change:+.3g} {push.unit} where it should go to "
             f"{'plus' if sign > 0 else 'minus'}: turn the sign of its `scale` in the rig's file, "
             "or exchange its two signal wires"
         )
-    return tuple(wrong)
+    return tuple(messages)
 
 
 def _largest(name: str, rest: Records, pushed: Records) -> float:
     """Return the largest change of a channel, its sign kept, a few samples smoothed."""
     before, during = rest[name], pushed[name]
-    for what, record in (("at rest", before), ("while pushed", during)):
+    for state, record in (("at rest", before), ("while pushed", during)):
         if record.size < _SMOOTH:
-            raise PushError(f"{name}: {record.size} samples {what}; {_SMOOTH} are needed")
+            raise PushError(f"{name}: {record.size} samples {state}; {_SMOOTH} are needed")
         if not np.all(np.isfinite(record)):
-            raise PushError(f"{name}: not valid {what}; check the gauge and its cable")
+            raise PushError(f"{name}: not valid {state}; check the gauge and its cable")
     smooth = np.convolve(during - np.mean(before), np.full(_SMOOTH, 1.0 / _SMOOTH), mode="valid")
     return float(smooth[np.argmax(np.abs(smooth))])
 
@@ -143,13 +145,15 @@ def _strength(change: float, limit: float) -> float:
 
 
 def _check_alone(
-    first: Channel, changes: Mapping[str, float], limits: Mapping[str, float], other: Channel
+    first: Channel, changes: Mapping[str, float], limits: Mapping[str, float], weaker: Channel
 ) -> None:
     """Refuse a push that another gauge shows about as much, as a part of its full scale."""
-    mine, theirs = (abs(changes[one.name]) / (one.full_scale or 1.0) for one in (first, other))
-    if abs(changes[other.name]) > limits[other.name] and theirs > ALONE_SHARE * mine:
+    first_share, weaker_share = (
+        abs(changes[channel.name]) / (channel.full_scale or 1.0) for channel in (first, weaker)
+    )
+    if abs(changes[weaker.name]) > limits[weaker.name] and weaker_share > ALONE_SHARE * first_share:
         raise PushError(
-            f"{first.name} ({changes[first.name]:+.3g} {first.unit}) and {other.name} "
-            f"({changes[other.name]:+.3g} {other.unit}) moved about alike: push one gauge alone, "
+            f"{first.name} ({changes[first.name]:+.3g} {first.unit}) and {weaker.name} "
+            f"({changes[weaker.name]:+.3g} {weaker.unit}) moved about alike: push one gauge alone, "
             "close to it, or look for a short between the channels"
         )

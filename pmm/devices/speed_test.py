@@ -54,8 +54,8 @@ class SpeedTest:
                 f"from {self.slow_hz:g} Hz to {self.fast_hz:g} Hz: the second speed has to be "
                 "above the first, and that above 0"
             )
-        for one in (self.slow_hz, self.fast_hz):
-            check_speed(shaft, one, told=NOTHING_MOVED)
+        for speed_hz in (self.slow_hz, self.fast_hz):
+            check_speed(shaft, speed_hz, remark=NOTHING_MOVED)
         return shaft
 
     def run(self, rig: Rig) -> SpeedRecord:
@@ -83,8 +83,8 @@ class SpeedTest:
         shaft.stop()
         return SpeedRecord(
             period_s
-            * np.concatenate([one.first + np.arange(one.values.shape[1]) for one in samples]),
-            np.concatenate([one.values[0] for one in samples]),
+            * np.concatenate([block.first + np.arange(block.values.shape[1]) for block in samples]),
+            np.concatenate([block.values[0] for block in samples]),
             _TURN * self.slow_hz,
             tuple(changes),
             _TURN * self.acceleration_hz_per_s,

@@ -58,36 +58,36 @@ def survey_rig(tables: DeviceTables, listen_s: float) -> Survey:
     rig = tables.configuration()
     expected = _expected(tables)
     heard: dict[str, Heard] = {}
-    wrong: list[str] = []
+    faults: list[str] = []
     nodes = _scan(rig.bus, listen_s) if rig.bus is not None else ()
     asks = [part for part in rig.parts() if isinstance(part.settings, AskedSettings)]
     silent = {part.name: part for part in asks if not part.nodes()}  # others are on the bus
     for name, port in tables.ports().items():
         if name not in silent:
-            _hear(name, PortSettings(**port), listen_s, heard, wrong)
-    asked: dict[str, str] = {}
+            _hear(name, PortSettings(**port), listen_s, heard, faults)
+    answers: dict[str, str] = {}
     for name, part in silent.items():
-        _ask(name, part.settings, asked, wrong)
-    wrong += _missing(nodes, expected)
-    return Survey(nodes, {one.node_id: one.name for one in expected}, heard, wrong, asked)
+        _ask(name, part.settings, answers, faults)
+    faults += _missing(nodes, expected)
+    return Survey(nodes, {node.node_id: node.name for node in expected}, heard, faults, answers)
 
 
 def survey_bus(bus: BusConfiguration, listen_s: float) -> Survey:
     """Ask a bus of which nothing is known."""
     nodes = _scan(bus, listen_s)
-    wrong = [] if nodes else [
+    faults = [] if nodes else [
         f"nobody answers on {bus.interface}:{bus.channel} at {bus.bit_rate} bit/s; "
         "check power, bit rate and termination"
     ]  # fmt: skip
-    return Survey(nodes, {}, {}, wrong)
+    return Survey(nodes, {}, {}, faults)
 
 
 def survey_port(settings: PortSettings, listen_s: float) -> Survey:
     """Listen to a serial port of which nothing is known."""
     heard: dict[str, Heard] = {}
-    wrong: list[str] = []
-    _hear("port", settings, listen_s, heard, wrong)
-    return Survey((), {}, heard, wrong)
+    faults: list[str] = []
+    _hear("port", settings, listen_s, heard, faults)
+    return Survey((), {}, heard, faults)
 
 
 def _scan(bus: BusConfiguration, listen_s: float) -> tuple[FoundNode, ...]:
@@ -100,60 +100,60 @@ def _scan(bus: BusConfiguration, listen_s: float) -> tuple[FoundNode, ...]:
 
 
 def _hear(
-    name: str, settings: PortSettings, seconds: float, heard: dict[str, Heard], wrong: list[str]
+    name: str, settings: PortSettings, seconds: float, heard: dict[str, Heard], faults: list[str]
 ) -> None:
     try:
         port = SerialPort(name, settings)
     except HardwareError as error:
-        wrong.append(str(error))
+        faults.append(str(error))
         return
     try:
         heard[name] = listen(port, seconds, time.monotonic, time.sleep)
     except HardwareError as error:
-        wrong.append(str(error))
+        faults.append(str(error))
     finally:
         port.close()
 
 
-def _ask(name: str, settings: Any, asked: dict[str, str], wrong: list[str]) -> None:
+def _ask(name: str, settings: Any, answers: dict[str, str], faults: list[str]) -> None:
     """Read what a device shows that says nothing by itself, once; nothing is written."""
     places = spans(settings.asked.read().values(), settings.asked.status)
     try:
-        found = read_once(name, settings, places)
+        register_count = read_once(name, settings, places)
     except HardwareError as error:
-        wrong.append(str(error))
+        faults.append(str(error))
     else:
         has_registers = isinstance(settings, ModbusSettings)
-        asked[name] = f"{found} registers" if has_registers else f"{len(places)} lines"
+        answers[name] = f"{register_count} registers" if has_registers else f"{len(places)} lines"
 
 
 def _expected(tables: DeviceTables) -> tuple[_Expected, ...]:
     from hardware.dictionary import Entry, load, variable
 
-    found = []
+    nodes = []
     for part in tables.configuration().parts():
         for plan in part.nodes():
-            at = variable(load(plan.eds, plan.node_id, plan.name), Entry(0x1000))
-            profile = int(at.default or 0) & 0xFFFF if at is not None else 0
-            found.append(_Expected(plan.name, plan.node_id, profile))
-    return tuple(found)
+            entry = variable(load(plan.eds, plan.node_id, plan.name), Entry(0x1000))
+            profile = int(entry.default or 0) & 0xFFFF if entry is not None else 0
+            nodes.append(_Expected(plan.name, plan.node_id, profile))
+    return tuple(nodes)
 
 
 def _missing(nodes: Sequence[FoundNode], expected: Sequence[_Expected]) -> list[str]:
     """Return what does not fit between the bus and the rig's file."""
-    found = {one.node_id: one for one in nodes}
-    wrong = []
-    for one in expected:
-        node = found.pop(one.node_id, None)
+    nodes_by_id = {node.node_id: node for node in nodes}
+    faults = []
+    for expected_node in expected:
+        node = nodes_by_id.pop(expected_node.node_id, None)
         if node is None:
-            wrong.append(
-                f"{one.name}: node {one.node_id} does not answer; check its power, its node id and "
-                "the bit rate"
+            faults.append(
+                f"{expected_node.name}: node {expected_node.node_id} does not answer; check its "
+                "power, its node id and the bit rate"
             )
-        elif one.profile and node.profile != one.profile:
-            wrong.append(
-                f"{one.name}: node {one.node_id} follows profile {node.profile} where its EDS says "
-                f"{one.profile}; check the node ids"
+        elif expected_node.profile and node.profile != expected_node.profile:
+            faults.append(
+                f"{expected_node.name}: node {expected_node.node_id} follows profile "
+                f"{node.profile} where its EDS says {expected_node.profile}; check the node ids"
             )
-    wrong += [f"node {node_id} answers and is not in the rig's file" for node_id in found]
-    return wrong
+    faults += [f"node {node_id} answers and is not in the rig's file" for node_id in nodes_by_id]
+    return faults

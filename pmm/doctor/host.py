@@ -27,75 +27,77 @@ def check_host(machine: Machine, folder: Path) -> Iterator[MachineFinding]:
 
 def _finding(
     area: str,
-    what: str,
+    item: str,
     fine: bool | None,
-    found: str,
+    state: str,
     cure: str,
     worse: MachineStatus = MachineStatus.WARNING,
 ) -> MachineFinding:
     """Return a finding; ``None`` is what the system does not tell."""
     if fine is None or fine:
-        return MachineFinding(area, what, MachineStatus.OK if fine else MachineStatus.NOTE, found)
-    return MachineFinding(area, what, worse, found, cure)
+        return MachineFinding(area, item, MachineStatus.OK if fine else MachineStatus.NOTE, state)
+    return MachineFinding(area, item, worse, state, cure)
 
 
 def _resolution(machine: Machine) -> MachineFinding:
-    found = machine.monotonic_resolution_s()
-    told = f"resolves {1e6 * found:.3g} us (limit {1e6 * _RESOLUTION_S:g} us)"
+    resolution_s = machine.monotonic_resolution_s()
+    text = f"resolves {1e6 * resolution_s:.3g} us (limit {1e6 * _RESOLUTION_S:g} us)"
     cure = "run on a system with a high-resolution timer"
-    fine = found <= _RESOLUTION_S
-    return _finding("clock", "monotonic clock", fine, told, cure, MachineStatus.FAULT)
+    fine = resolution_s <= _RESOLUTION_S
+    return _finding("clock", "monotonic clock", fine, text, cure, MachineStatus.FAULT)
 
 
 def _lateness(machine: Machine) -> MachineFinding:
-    found = machine.worst_lateness_s()
-    told = f"a nap of 2 ms ends at worst {1e3 * found:.2g} ms late (limit {1e3 * _LATE_S:g} ms)"
+    lateness_s = machine.worst_lateness_s()
+    text = (
+        f"a nap of 2 ms ends at worst {1e3 * lateness_s:.2g} ms late (limit {1e3 * _LATE_S:g} ms)"
+    )
     cure = "end what else runs here, and switch power saving off"
-    return _finding("clock", "timer", found <= _LATE_S, told, cure)
+    return _finding("clock", "timer", lateness_s <= _LATE_S, text, cure)
 
 
 def _network_time(machine: Machine) -> MachineFinding:
-    found = machine.synchronised()
-    told = {
+    is_synchronised = machine.synchronised()
+    texts = {
         None: "the system does not tell whether it is synchronised",
         True: "synchronised over the network",
         False: "not synchronised: recordings may be dated wrongly (intervals are not touched)",
     }
     cure = "timedatectl set-ntp true, or start chrony"
-    return _finding("clock", "time of day", found, told[found], cure)
+    return _finding("clock", "time of day", is_synchronised, texts[is_synchronised], cure)
 
 
 def _priority(machine: Machine) -> MachineFinding:
-    found = machine.highest_priority()
-    fine = None if found is None else found >= _PRIORITY
-    told = {
+    priority = machine.highest_priority()
+    fine = None if priority is None else priority >= _PRIORITY
+    texts = {
         None: "not known of here",
-        True: f"up to {found}",
-        False: f"up to {found}, wanted are {_PRIORITY}: other programs can make cycles late",
+        True: f"up to {priority}",
+        False: f"up to {priority}, wanted are {_PRIORITY}: other programs can make cycles late",
     }
     cure = f"'* - rtprio {_PRIORITY}' in /etc/security/limits.conf, then log in anew"
-    return _finding("permissions", "real-time priority", fine, told[fine], cure)
+    return _finding("permissions", "real-time priority", fine, texts[fine], cure)
 
 
 def _memory(machine: Machine) -> MachineFinding:
-    found = machine.may_lock_memory()
-    told = {
+    may_lock = machine.may_lock_memory()
+    texts = {
         None: "not known of here",
         True: "without a limit",
         False: "limited, wanted is no limit: what is moved out of memory makes cycles late",
     }
     cure = "'* - memlock unlimited' in /etc/security/limits.conf, then log in anew"
-    return _finding("permissions", "locked memory", found, told[found], cure)
+    return _finding("permissions", "locked memory", may_lock, texts[may_lock], cure)
 
 
 def _disk(machine: Machine, folder: Path) -> MachineFinding:
-    what = f"disk of {folder}"
+    item = f"disk of {folder}"
     if not machine.may_write(folder):
-        told, cure = "no permission to write", "record to another folder: --output"
-        return _finding("disk", what, False, told, cure, MachineStatus.FAULT)
+        text, cure = "no permission to write", "record to another folder: --output"
+        return _finding("disk", item, False, text, cure, MachineStatus.FAULT)
     free = machine.free_bytes(folder)
-    told = f"{free / _MEGA:.0f} MB free (limit {_RESERVE / _MEGA:.0f} MB)"
+    text = f"{free / _MEGA:.0f} MB free (limit {_RESERVE / _MEGA:.0f} MB)"
     if free < _RESERVE:
         cure = "make room, or record to another disk: --output"
-        return _finding("disk", what, False, told, cure, MachineStatus.FAULT)
-    return _finding("disk", what, free >= _LITTLE, told, "make room before a long campaign")
+        return _finding("disk", item, False, text, cure, MachineStatus.FAULT)
+    return _finding("disk", item, free >= _LITTLE, text, "make room before a long campaign")

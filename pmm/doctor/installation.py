@@ -30,55 +30,60 @@ def check_installation(machine: Machine) -> Iterator[MachineFinding]:
     yield _compiled(machine)
     for group, name in _NEEDED:
         if not entry_points(group=group, name=name):
-            told = f"{name} is not registered"
+            text = f"{name} is not registered"
             cure = "install the package anew: python -m pip install --editable ."
-            yield MachineFinding(_AREA, f"entry point {group}", MachineStatus.FAULT, told, cure)
+            yield MachineFinding(_AREA, f"entry point {group}", MachineStatus.FAULT, text, cure)
 
 
 def _python(machine: Machine) -> MachineFinding:
-    found = ".".join(map(str, machine.python))
+    version = ".".join(map(str, machine.python))
     if machine.python >= _OLDEST:
-        return MachineFinding(_AREA, "Python", MachineStatus.OK, found)
+        return MachineFinding(_AREA, "Python", MachineStatus.OK, version)
     oldest = ".".join(map(str, _OLDEST))
     return MachineFinding(
         _AREA,
         "Python",
         MachineStatus.FAULT,
-        f"{found}, needed is {oldest}",
+        f"{version}, needed is {oldest}",
         f"install Python {oldest} or newer and make the environment anew",
     )
 
 
 def _libraries(machine: Machine) -> Iterator[MachineFinding]:
-    wanted = [
+    requirements = [
         requirement for requirement in machine.requirements() if "extra ==" not in requirement
     ]
-    wrong = 0
-    for one in wanted:
-        match = _REQUIREMENT.match(one)
-        name, least = match.groups() if match else (one, None)
-        found = machine.installed(name)
-        if found is None:
-            wrong += 1
+    fault_count = 0
+    for requirement in requirements:
+        match = _REQUIREMENT.match(requirement)
+        name, least = match.groups() if match else (requirement, None)
+        version = machine.installed(name)
+        if version is None:
+            fault_count += 1
             yield MachineFinding(
-                _AREA, name, MachineStatus.FAULT, "not installed", f"{_INSTALL} '{one}'"
+                _AREA, name, MachineStatus.FAULT, "not installed", f"{_INSTALL} '{requirement}'"
             )
-        elif least and _numbers(found) < _numbers(least):
-            wrong += 1
-            told = f"{found}, needed is {least} or newer"
-            yield MachineFinding(_AREA, name, MachineStatus.FAULT, told, f"{_INSTALL} '{one}'")
-    if not wrong:
+        elif least and _numbers(version) < _numbers(least):
+            fault_count += 1
+            text = f"{version}, needed is {least} or newer"
+            yield MachineFinding(
+                _AREA, name, MachineStatus.FAULT, text, f"{_INSTALL} '{requirement}'"
+            )
+    if not fault_count:
         yield MachineFinding(
-            _AREA, "libraries", MachineStatus.OK, f"{len(wanted)} of {len(wanted)} are there"
+            _AREA,
+            "libraries",
+            MachineStatus.OK,
+            f"{len(requirements)} of {len(requirements)} are there",
         )
 
 
 def _files(machine: Machine) -> Iterator[MachineFinding]:
-    changed = list(machine.changed_files())
-    if changed:
-        told = f"{len(changed)} differ from what was installed, first {changed[0]}"
+    changed_files = list(machine.changed_files())
+    if changed_files:
+        text = f"{len(changed_files)} differ from what was installed, first {changed_files[0]}"
         cure = f"{_INSTALL} --force-reinstall --no-deps {DISTRIBUTION}"
-        yield MachineFinding(_AREA, "own files", MachineStatus.FAULT, told, cure)
+        yield MachineFinding(_AREA, "own files", MachineStatus.FAULT, text, cure)
 
 
 def _numbers(text: str) -> tuple[int, ...]:
@@ -86,17 +91,19 @@ def _numbers(text: str) -> tuple[int, ...]:
 
 
 def _compiled(machine: Machine) -> MachineFinding:
-    what = "compiled loops (numba)"
-    found = machine.installed("numba")
-    if found is None:
-        told = "not installed: loops that go from sample to sample are interpreted, which is slow"
-        return MachineFinding(_AREA, what, MachineStatus.WARNING, told, installing("fast"))
+    item = "compiled loops (numba)"
+    version = machine.installed("numba")
+    if version is None:
+        text = "not installed: loops that go from sample to sample are interpreted, which is slow"
+        return MachineFinding(_AREA, item, MachineStatus.WARNING, text, installing("fast"))
     folder = Path(machine.compiled_in) if machine.compiled_in else machine.home / "sim"
     if not machine.may_write(folder):
-        told = f"{found}, but {folder} cannot be written to: compiled anew in every process"
+        text = f"{version}, but {folder} cannot be written to: compiled anew in every process"
         return MachineFinding(
-            _AREA, what, MachineStatus.WARNING, told, "set NUMBA_CACHE_DIR to a folder of your own"
+            _AREA, item, MachineStatus.WARNING, text, "set NUMBA_CACHE_DIR to a folder of your own"
         )
-    kept = sum(1 for _ in folder.rglob("*.nbi")) if folder.is_dir() else 0
-    later = "" if kept else "; the first use compiles for some 20 s"
-    return MachineFinding(_AREA, what, MachineStatus.OK, f"{found}, {kept} loops kept{later}")
+    loop_count = sum(1 for _ in folder.rglob("*.nbi")) if folder.is_dir() else 0
+    note = "" if loop_count else "; the first use compiles for some 20 s"
+    return MachineFinding(
+        _AREA, item, MachineStatus.OK, f"{version}, {loop_count} loops kept{note}"
+    )

@@ -24,9 +24,9 @@ def check_buses(machine: Machine) -> Iterator[MachineFinding]:
             "for a USB adapter: plug it in and look at `ip -details link`",
         )
     for folder in buses:
-        up = int(_read(folder / "flags") or "0", 16) & _UP
+        is_up = int(_read(folder / "flags") or "0", 16) & _UP
         state = _read(folder / "operstate") or "unknown"
-        if up:
+        if is_up:
             yield MachineFinding("buses", f"CAN {folder.name}", MachineStatus.OK, f"up ({state})")
         else:
             yield MachineFinding(
@@ -44,35 +44,35 @@ def check_ports(machine: Machine) -> Iterator[MachineFinding]:
     if not ports:
         yield MachineFinding("ports", "serial ports", MachineStatus.NOTE, "none is plugged in")
     for port in ports:
-        what = f"serial port {port.device}"
-        named = f'{port.description or "no description"}, url = "{port.url}"'
+        item = f"serial port {port.device}"
+        description = f'{port.description or "no description"}, url = "{port.url}"'
         if machine.may_use(port.device):
-            yield MachineFinding("ports", what, MachineStatus.OK, named)
+            yield MachineFinding("ports", item, MachineStatus.OK, description)
         else:
             group = _group(port.device)
             yield MachineFinding(
                 "ports",
-                what,
+                item,
                 MachineStatus.FAULT,
-                f"no permission to read and write; {named}",
+                f"no permission to read and write; {description}",
                 f"sudo usermod -aG {group} $USER, then log in anew",
             )
 
 
-def check_rig(path: Path, found: Sequence[str], wrong: Sequence[str]) -> Iterator[MachineFinding]:
+def check_rig(path: Path, names: Sequence[str], faults: Sequence[str]) -> Iterator[MachineFinding]:
     """Turn what a survey of a rig's devices found, and found wrong, into findings."""
-    for one in wrong:
-        where, _, why = one.partition(": ")
-        what, _, cure = why.partition("; ")
+    for fault in faults:
+        part, _, reason = fault.partition(": ")
+        state, _, cure = reason.partition("; ")
         yield MachineFinding(
             "devices",
-            where,
+            part,
             MachineStatus.FAULT,
-            what or "does not fit",
+            state or "does not fit",
             cure or f"see {path} and `pmm devices scan {path}`",
         )
-    if found:
-        yield MachineFinding("devices", str(path), MachineStatus.OK, f"{', '.join(found)} answer")
+    if names:
+        yield MachineFinding("devices", str(path), MachineStatus.OK, f"{', '.join(names)} answer")
 
 
 def _read(path: Path) -> str:

@@ -72,7 +72,7 @@ def _wrong(diagnosis: PendulumDiagnosis, concluded: PendulumConclusion) -> Itera
 
 def _named(diagnosis: PendulumDiagnosis, concluded: PendulumConclusion, cause: str) -> str:
     if math.isfinite(diagnosis.foretells):
-        return cause_statement(cause, diagnosis.foretells, told=concluded.adds)
+        return cause_statement(cause, diagnosis.foretells, certain=concluded.adds)
     heading = "the cause" if concluded.adds else "the cause cannot be told; likeliest cause"
     return f"{heading}: {cause}"
 

@@ -50,21 +50,28 @@ def read_pair(
         As :func:`pmm.campaign.recording_source.open_recording`; or no channel is named where a file
         has several, no file is named first, both are one channel, or options contradict each other.
     """
-    one, other = NamedChannel.parse(first), NamedChannel.parse(second)
-    if one.file is None:
+    first_channel, second_channel = NamedChannel.parse(first), NamedChannel.parse(second)
+    if first_channel.file is None:
         raise ConfigurationError(f"{first}: name the file of the first channel: FILE:CHANNEL")
     if column_map and columns:
         raise ConfigurationError("give --map or --column, not both")
     if len(rates_hz) > 2:
         raise ConfigurationError(f"{len(rates_hz)} sample rates for two files; give one or two")
-    chosen = parse_options(columns) if columns else None
-    chosen = read_column_map(column_map) if column_map else chosen
+    channel_map = parse_options(columns) if columns else None
+    channel_map = read_column_map(column_map) if column_map else channel_map
     rates = (rates_hz[0], rates_hz[-1]) if rates_hz else (None, None)
-    leading = _read(one.file, chosen, rates[0], progress)
-    same = other.file is None or other.file == one.file
-    following = leading if same else _read(other.file or one.file, chosen, rates[1], progress)
-    pair = (leading, _channel(leading, one)), (following, _channel(following, other))
-    if same and pair[0][1] == pair[1][1]:
+    first_recording = _read(first_channel.file, channel_map, rates[0], progress)
+    same_file = second_channel.file is None or second_channel.file == first_channel.file
+    second_recording = (
+        first_recording
+        if same_file
+        else _read(second_channel.file or first_channel.file, channel_map, rates[1], progress)
+    )
+    pair = (
+        (first_recording, _channel(first_recording, first_channel)),
+        (second_recording, _channel(second_recording, second_channel)),
+    )
+    if same_file and pair[0][1] == pair[1][1]:
         raise ConfigurationError(f"{first} and {second} are one channel; name two")
     return pair
 
@@ -76,10 +83,10 @@ def _read(
     return open_recording(source, partial=True, progress=progress)
 
 
-def _channel(recording: "Recording", named: NamedChannel) -> str:
-    if named.channel is not None:
-        recording.index(named.channel)
-        return named.channel
+def _channel(recording: "Recording", named_channel: NamedChannel) -> str:
+    if named_channel.channel is not None:
+        recording.index(named_channel.channel)
+        return named_channel.channel
     names = recording.channel_names
     if len(names) > 1:
         raise ConfigurationError(

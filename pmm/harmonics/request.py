@@ -63,9 +63,9 @@ class HarmonicsRequest:
             "--frequency": self.frequency,
             "--edges": self.edges,
         }
-        given = [name for name, value in ways.items() if value is not None]
-        if len(given) > 1:
-            raise ConfigurationError(f"give one reference, not {' and '.join(given)}")
+        reference_options = [name for name, value in ways.items() if value is not None]
+        if len(reference_options) > 1:
+            raise ConfigurationError(f"give one reference, not {' and '.join(reference_options)}")
         if self.edges and len(sources) > 1 and "{stem}" not in self.edges:
             raise ConfigurationError(
                 f"--edges {self.edges}: one file of edges for several recordings; put {{stem}} "
@@ -75,10 +75,10 @@ class HarmonicsRequest:
             raise ConfigurationError("--bandwidth belongs to --carrier; give both or neither")
         if self.lines and self.response_to is None:
             raise ConfigurationError("--line belongs to --response-to; say which channel moves")
-        there = [Path(self.save or "") / f"{one.stem}.nc" for one in sources if self.save]
-        there = [path for path in there if path.exists()]
-        if there:
-            names = ", ".join(map(str, there))
+        paths = [Path(self.save or "") / f"{source.stem}.nc" for source in sources if self.save]
+        paths = [path for path in paths if path.exists()]
+        if paths:
+            names = ", ".join(map(str, paths))
             raise ConfigurationError(f"{names}: exists already; --save to another folder")
 
     def chosen_columns(self) -> "ColumnMap | None":
@@ -103,7 +103,7 @@ class HarmonicsRequest:
         ConfigurationError
             If one is not ``CHANNEL=SECONDS`` or ``CHANNEL=METRES/SPEED``, or a channel has two.
         """
-        found: dict[str, float] = {}
+        delays: dict[str, float] = {}
         for text in self.delays:
             name, _, value = (part.strip() for part in text.rpartition("="))
             distance, _, speed = value.replace(" ", "").partition("/")
@@ -111,29 +111,29 @@ class HarmonicsRequest:
                 delay_s = float(distance.rstrip("sm")) / float(speed.removesuffix("m/s") or 1.0)
             except (ValueError, ZeroDivisionError):
                 delay_s = math.nan
-            if not name or name in found or not math.isfinite(delay_s):
+            if not name or name in delays or not math.isfinite(delay_s):
                 raise ConfigurationError(
                     f"--delay {text}: give CHANNEL=SECONDS, or CHANNEL=METRES/SPEED with the "
                     "distance from the reference's sensor and the waves' group velocity in m/s, "
                     "once for a channel"
                 )
-            found[name] = delay_s
-        return found
+            delays[name] = delay_s
+        return delays
 
     def choice(self, base: ReferenceChoice) -> ReferenceChoice:
         """Return the reference wanted, on top of what a campaign says."""
-        given: dict[str, Any] = {}
+        arguments: dict[str, Any] = {}
         if self.reference is not None or self.frequency is not None or self.edges is not None:
-            given = {"channel": self.reference, "frequency_hz": self.frequency}
+            arguments = {"channel": self.reference, "frequency_hz": self.frequency}
         if self.latency is not None:
-            given["latency_s"] = self.latency
+            arguments["latency_s"] = self.latency
         if self.angle_offset is not None:
-            given["angle_offset_rad"] = math.radians(self.angle_offset)
-        return replace(base, **given)
+            arguments["angle_offset_rad"] = math.radians(self.angle_offset)
+        return replace(base, **arguments)
 
     def settings(self, base: ResolverSettings) -> ResolverSettings:
         """Return the settings wanted, on top of what a campaign says."""
-        given: dict[str, Any] = {
+        arguments: dict[str, Any] = {
             "channels": tuple(dict.fromkeys(self.channels)) or None,
             "harmonics": self.harmonics,
             "gate_periods": self.gate,
@@ -144,4 +144,6 @@ class HarmonicsRequest:
             "local_polynomials": self.local_polynomials or None,
             "take_out_drift": False if self.no_drift else None,
         }
-        return replace(base, **{key: value for key, value in given.items() if value is not None})
+        return replace(
+            base, **{key: value for key, value in arguments.items() if value is not None}
+        )

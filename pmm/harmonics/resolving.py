@@ -54,8 +54,8 @@ class Failure:
     @property
     def said(self) -> str:
         """The message, with the file's name."""
-        named = Path(self.file).name in self.message
-        return self.message if named else f"{self.file}: {self.message}"
+        is_named = Path(self.file).name in self.message
+        return self.message if is_named else f"{self.file}: {self.message}"
 
 
 def untold(_part: float) -> None:
@@ -106,8 +106,8 @@ def _resolved(
     choice = request.choice(campaign.reference if campaign else ReferenceChoice())
     settings = request.settings(campaign.analysis if campaign else ResolverSettings())
     delays_s = request.delays_s()
-    named = (*settings.channels, choice.channel, request.response_to, *delays_s)
-    _check_channels(recording, named, columns)
+    channels = (*settings.channels, choice.channel, request.response_to, *delays_s)
+    _check_channels(recording, channels, columns)
     if request.save is not None:
         folder = Path(request.save)
         folder.mkdir(parents=True, exist_ok=True)
@@ -117,8 +117,8 @@ def _resolved(
     analyses = analyse_windows(recording, choice, settings, delays_s)
     if draw is not None:
         draw(analyses[0], source.stem)
-        for one in analyses[1:]:
-            draw(one, f"{source.stem}-{one.recording.channel_names[0]}")
+        for analysis in analyses[1:]:
+            draw(analysis, f"{source.stem}-{analysis.recording.channel_names[0]}")
     rows = run_rows(
         analyses,
         file=str(source.path),
@@ -159,13 +159,13 @@ def _detected(
     return demodulate(recording, channels, carrier_hz, **bandwidth)
 
 
-def doubts(done: Sequence[Resolved]) -> Iterator[tuple[Path, tuple[Flag, ...]]]:
+def doubts(resolved: Sequence[Resolved]) -> Iterator[tuple[Path, tuple[Flag, ...]]]:
     """Yield for each campaign which units and signs look wrong in all its runs."""
-    sources = {one.source.campaign_path: one.source for one in done}
+    sources = {run.source.campaign_path: run.source for run in resolved}
     for path, source in sources.items():
         campaign = source.campaign
         if path is None or campaign is None:
             continue
-        seen = [one.seen for one in done if one.source.campaign_path == path and one.seen]
-        if flags := implausible(campaign, seen):
+        harmonics = [run.seen for run in resolved if run.source.campaign_path == path and run.seen]
+        if flags := implausible(campaign, harmonics):
             yield path, flags

@@ -86,13 +86,13 @@ def response_rows(
         If the motion was not resolved, or does not move at a line given.
     """
     lines: list[ResponseRow] = []
-    found: list[DistortionRow] = []
+    distortion_rows: list[DistortionRow] = []
     for output in reading.channel_names:
         if output != motion:
-            own, distorted = _of(reading, motion, output, orders, level)
-            lines += own
-            found += distorted
-    return ResponseRows(tuple(lines), tuple(found))
+            channel_lines, channel_distortions = _of(reading, motion, output, orders, level)
+            lines += channel_lines
+            distortion_rows += channel_distortions
+    return ResponseRows(tuple(lines), tuple(distortion_rows))
 
 
 def _of(
@@ -121,19 +121,19 @@ def _of(
         for k, line in enumerate(response.orders)
     )
     unit = response.unit.rpartition("/")[0]
-    distorted = (
+    distortion_rows = (
         DistortionRow(
             output,
             unit,
-            str(one.degree),
-            one.orders,
-            one.level,
-            float(student_factor(np.array([np.inf]), level)[0]) * one.uncertainty,
-            float(np.sqrt((one.noise**2).mean())),
-            one.relative,
-            one.chance,
-            one.told,
+            str(distortion.degree),
+            distortion.orders,
+            distortion.level,
+            float(student_factor(np.array([np.inf]), level)[0]) * distortion.uncertainty,
+            float(np.sqrt((distortion.noise**2).mean())),
+            distortion.relative,
+            distortion.chance,
+            distortion.told,
         )
-        for one in distortions(reading, response)
+        for distortion in distortions(reading, response)
     )
-    return lines, distorted
+    return lines, distortion_rows

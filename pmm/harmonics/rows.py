@@ -191,13 +191,15 @@ def run_rows(
         window_periods=steady.period_count,
         steady_tolerance=analysis.settings.steady_tolerance,
         gates=tuple(
-            gate_rows(reading, level, number, len(one.readings))
-            for one in analyses
-            for number, reading in enumerate(one.readings, 1)
+            gate_rows(reading, level, number, len(window.readings))
+            for window in analyses
+            for number, reading in enumerate(window.readings, 1)
         ),
-        flags=tuple(dict.fromkeys(flag for one in analyses for flag in one.flags)),
+        flags=tuple(dict.fromkeys(flag for window in analyses for flag in window.flags)),
         let_through=_let_through(analysis, vibrations_hz),
-        classic=tuple(row for one in analyses for row in classic_rows(one)) if classic else (),
+        classic=tuple(row for window in analyses for row in classic_rows(window))
+        if classic
+        else (),
         response=response_rows(analysis.readings[0], response_to, lines, level)
         if response_to is not None
         else None,
@@ -219,8 +221,8 @@ def _let_through(analysis: "Analysis", frequencies_hz: Sequence[float]) -> tuple
 def window_kind(analysis: "Analysis") -> str:
     """Return how the window was come by; see :class:`RunRows`."""
     if analysis.settings.opens_s is not None:
-        own = analysis.recording.provenance.get(GATE_OPENED)
-        return "run's gate" if own == repr(analysis.settings.opens_s) else "given"
+        opening = analysis.recording.provenance.get(GATE_OPENED)
+        return "run's gate" if opening == repr(analysis.settings.opens_s) else "given"
     steady = all(flag.code != "not_steady" for flag in analysis.flags)
     return "found steady" if steady else "not steady"
 

@@ -105,8 +105,8 @@ def _find_in_campaign(path: Path) -> SourceList:
         if run.file is None and not recording.exists():
             not_recorded.append(recording)
         else:
-            own = RecordingSource.of(campaign, run, path.parent)
-            sources.append(Source(own, campaign, path))
+            run_source = RecordingSource.of(campaign, run, path.parent)
+            sources.append(Source(run_source, campaign, path))
     if not sources:
         raise DataError(
             f"{path}: none of its {len(campaign.runs)} runs is recorded yet; the first would be "
@@ -145,12 +145,14 @@ def read_source(
     """
     from pmm.campaign.calibration import read_calibration
 
-    asked = replace(source.recording, sample_rate_hz=sample_rate_hz)
+    recording_source = replace(source.recording, sample_rate_hz=sample_rate_hz)
     if columns is not None:
-        asked = replace(asked, columns=columns)
+        recording_source = replace(recording_source, columns=columns)
     if edges is not None:
-        asked = replace(asked, edges_file=Path(edges.replace("{stem}", source.stem)))
+        recording_source = replace(
+            recording_source, edges_file=Path(edges.replace("{stem}", source.stem))
+        )
     if calibration is not None:
-        given = RAW if calibration == RAW else read_calibration(Path(calibration))
-        asked = replace(asked, calibration=given)
-    return open_recording(asked, partial=True, progress=progress)
+        gauge_calibration = RAW if calibration == RAW else read_calibration(Path(calibration))
+        recording_source = replace(recording_source, calibration=gauge_calibration)
+    return open_recording(recording_source, partial=True, progress=progress)

@@ -157,7 +157,7 @@ def _methods(suspension: Suspended) -> Iterator[Redundancy]:
     if len(gyradii) > 1:
         matrix, measured = np.ones((len(gyradii), 1)), joint(gyradii.values())
         title = f"{suspension.table.name}: yaw gyradius by several methods"
-        yield best_fit(matrix, measured, what=title, results=("k_yaw_m",), data=list(gyradii))[1]
+        yield best_fit(matrix, measured, subject=title, results=("k_yaw_m",), data=list(gyradii))[1]
 
 
 def _chosen(table: BifilarTable, suspension: Suspended, axis: str) -> Assessment | None:

@@ -128,7 +128,7 @@ class HangingTable:
         """
         common = self.u_common_angle_rad + math.radians(self.u_common_angle_deg)
         lines = [line.line(str(k), common) for k, line in enumerate(self.lines, 1)]
-        return centre_of_lines(lines, what=title)
+        return centre_of_lines(lines, subject=title)
 
 
 def hanging_rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

@@ -177,7 +177,7 @@ def read_period(
     if source.gates:
         return _from_gates(job, source, where)
     if source.stopwatch:
-        timed = stopwatch_period(source.stopwatch, reaction_s=source.reaction_s, what=where)
+        timed = stopwatch_period(source.stopwatch, reaction_s=source.reaction_s, subject=where)
         how = f"stopwatch, {len(timed.runs)} readings"
         return PeriodRuns(
             where, how, (timed.estimate,), (timed.runs,), flags=timed.flags,
@@ -223,7 +223,7 @@ def _undamped(
     runs: Sequence[RecordAnalysis], mode: int, source: PeriodSource, where: str
 ) -> Repeated:
     """Join the runs' periods at no amplitude and take the damping of small swings out."""
-    joined = from_runs(runs, mode, known_scatter=source.known_scatter, what=where)
+    joined = from_runs(runs, mode, known_scatter=source.known_scatter, subject=where)
     period = joined.estimate.value
     factor = float(np.mean([run.modes[mode].rates.undamped(period) for run in runs])) / period
     estimate = joined.estimate.following(factor * joined.estimate.value, factor)
@@ -238,7 +238,7 @@ def _ratio(runs: Sequence[RecordAnalysis], where: str) -> Estimate | None:
         derived("ratio", lambda slow, fast: slow / fast, slow=run.period(0), fast=run.period(1))
         for run in runs
     ]
-    return combine_runs(ratios, what=f"{where}, ratio").estimate
+    return combine_runs(ratios, subject=f"{where}, ratio").estimate
 
 
 def _from_gates(job: Job[Any], source: PeriodSource, where: str) -> PeriodRuns:
@@ -259,7 +259,7 @@ def _from_gates(job: Job[Any], source: PeriodSource, where: str) -> PeriodRuns:
         flags.append(flag)
     else:
         joined = combine_runs(
-            periods, known_scatter=source.known_scatter, what=where, names=source.gates
+            periods, known_scatter=source.known_scatter, subject=where, names=source.gates
         )
         estimate, flags, redundancy = joined.estimate, [*flags, *joined.flags], joined.redundancy
     single = tuple(period.value for period in periods)

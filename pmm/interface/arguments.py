@@ -28,14 +28,17 @@ def checked(call: Callable[P, R]) -> Callable[P, R]:
     ConfigurationError
         By the call, before it does anything.
     """
-    told = signature(call)
-    names = [one for one in told.parameters if one != "self"]
+    call_signature = signature(call)
+    names = [name for name in call_signature.parameters if name != "self"]
 
     @cache
     def model() -> type[BaseModel]:
         fields: dict[str, Any] = {
-            name: (one.annotation, ... if one.default is Parameter.empty else one.default)
-            for name, one in told.parameters.items()
+            name: (
+                parameter.annotation,
+                ... if parameter.default is Parameter.empty else parameter.default,
+            )
+            for name, parameter in call_signature.parameters.items()
             if name in names
         }
         return create_model(call.__name__, __config__=ConfigDict(extra="forbid"), **fields)
@@ -43,16 +46,16 @@ def checked(call: Callable[P, R]) -> Callable[P, R]:
     @wraps(call)
     def refusing(*args: P.args, **kwargs: P.kwargs) -> R:
         try:
-            bound = told.bind(*args, **kwargs)
+            bound = call_signature.bind(*args, **kwargs)
         except TypeError as error:
             takes = f"it takes {', '.join(names)}"
             raise TypeError(f"{call.__name__}: {error}; {takes}") from None
-        given = {name: one for name, one in bound.arguments.items() if name in names}
+        arguments = {name: value for name, value in bound.arguments.items() if name in names}
         try:
-            found = model().model_validate(given)
+            validated = model().model_validate(arguments)
         except ValidationError as error:
             raise ConfigurationError(f"{call.__name__}: {_said(error)}") from None
-        bound.arguments |= {name: getattr(found, name) for name in given}
+        bound.arguments |= {name: getattr(validated, name) for name in arguments}
         return call(*bound.args, **bound.kwargs)
 
     return refusing
@@ -65,10 +68,10 @@ def text_of(path: FilePath | None) -> str | None:
 
 def _said(error: ValidationError) -> str:
     """Return the first thing that is wrong with each argument."""
-    first = {one["loc"][0]: one for one in reversed(error.errors(include_url=False))}
+    first = {fault["loc"][0]: fault for fault in reversed(error.errors(include_url=False))}
     return "; ".join(
-        f"{name} = {one['input']!r} is one text; give a list of them"
-        if one["type"] == "sequence_str"
-        else f"{name} = {one['input']!r} {one['msg'].removeprefix('Input ')}"
-        for name, one in reversed(first.items())
+        f"{name} = {fault['input']!r} is one text; give a list of them"
+        if fault["type"] == "sequence_str"
+        else f"{name} = {fault['input']!r} {fault['msg'].removeprefix('Input ')}"
+        for name, fault in reversed(first.items())
     )

@@ -58,9 +58,11 @@ class CoefficientsResult(Result):
         from pmm.report.coefficients_document import coefficients_document
         from pmm.report.memory_figure import memory_figures
 
-        told = coefficients_document(self.outcome)
-        drawn = Section("Figures", (*figures(self.outcome.result), *memory_figures(self.outcome)))
-        return replace(told, sections=(*told.sections, drawn))
+        content = coefficients_document(self.outcome)
+        figure_section = Section(
+            "Figures", (*figures(self.outcome.result), *memory_figures(self.outcome))
+        )
+        return replace(content, sections=(*content.sections, figure_section))
 
     def to_dataframe(self) -> "pd.DataFrame":
         """Return a row for each coefficient by each method; ``recommended`` marks those to use."""

@@ -86,7 +86,7 @@ class ConsoleClient(QueueCalls):
             held.callback(reader.join)
             held.callback(stream.close)
             reader.start()
-            self.wait(lambda known: "session" in known, _STREAM_S)
+            self.wait(lambda state: "session" in state, _STREAM_S)
             self._held = held.pop_all()
 
     def __enter__(self) -> Self:
@@ -128,8 +128,8 @@ class ConsoleClient(QueueCalls):
 
     def audit(self) -> list[Message]:
         """Return who did what with the present campaign, from its folder, the latest last."""
-        found: list[Message] = self._requests.ask("/api/audit")["audit"]
-        return found
+        entries: list[Message] = self._requests.ask("/api/audit")["audit"]
+        return entries
 
     def take_control(self) -> str:
         """Take control from whoever has it."""
@@ -137,14 +137,14 @@ class ConsoleClient(QueueCalls):
 
     def messages(self) -> Iterator[Message]:
         """Yield each message as it comes, until the console goes."""
-        told: queue.SimpleQueue[Message | None] = queue.SimpleQueue()
+        inbox: queue.SimpleQueue[Message | None] = queue.SimpleQueue()
         with self._news:
-            self._listeners.append(told)
+            self._listeners.append(inbox)
         try:
-            while (message := told.get(timeout=_STREAM_S)) is not None:
+            while (message := inbox.get(timeout=_STREAM_S)) is not None:
                 yield message
         finally:
-            self._listeners.remove(told)
+            self._listeners.remove(inbox)
 
     def wait(self, until: Callable[[Mapping[str, Any]], bool], timeout_s: float) -> None:
         """Wait until what is :attr:`known` fulfils a condition.
@@ -185,24 +185,26 @@ class ConsoleClient(QueueCalls):
             If it is refused or not done in time, if the rig asks and nobody answers, or if it ends
             in a fault; the rig is left as it is, but for the fault's own stop.
         """
-        queued = self.queue(plan)
-        before = len(self.known["finished"])
-        told = max((one["id"] for one in self.known["notices"]), default=0)
+        entry = self.queue(plan)
+        finished_count = len(self.known["finished"])
+        last_id = max((notice["id"] for notice in self.known["notices"]), default=0)
         self.command("start")
-        began, said = self.frame["n"] + _UNDER_WAY, f"{queued['name']}: "
+        start_number, prefix = self.frame["n"] + _UNDER_WAY, f"{entry['name']}: "
 
-        def over(known: Mapping[str, Any]) -> bool:
-            if queued["chooses"]:  # how many runs there will be is not known
+        def over(state: Mapping[str, Any]) -> bool:
+            if entry["chooses"]:  # how many runs there will be is not known
                 return any(
-                    one["id"] > told and one["kind"] != "queue" and one["text"].startswith(said)
-                    for one in known["notices"]
+                    notice["id"] > last_id
+                    and notice["kind"] != "queue"
+                    and notice["text"].startswith(prefix)
+                    for notice in state["notices"]
                 )
-            return len(known["finished"]) >= before + len(queued["runs"])
+            return len(state["finished"]) >= finished_count + len(entry["runs"])
 
-        def ended(known: Mapping[str, Any]) -> bool:
-            frame = known["frame"]
-            broken = frame["n"] >= began and frame["state"] in _BROKEN
-            return over(known) or broken or bool(frame["question"])
+        def ended(state: Mapping[str, Any]) -> bool:
+            frame = state["frame"]
+            broken = frame["n"] >= start_number and frame["state"] in _BROKEN
+            return over(state) or broken or bool(frame["question"])
 
         end_s = time.monotonic() + timeout_s
         self.wait(ended, timeout_s)
@@ -210,11 +212,11 @@ class ConsoleClient(QueueCalls):
             if answers is None:
                 raise ConsoleRefusalError(f"the rig asks {question!r}; give answers")
             self.answer(answers(question))
-            self.wait(lambda known, asked=question: known["frame"]["question"] != asked, _STREAM_S)  # type: ignore[misc]
+            self.wait(lambda state, asked=question: state["frame"]["question"] != asked, _STREAM_S)  # type: ignore[misc]
             self.wait(ended, end_s - time.monotonic())
         if self.frame["state"] == "fault":
             raise ConsoleRefusalError("the rig is in a fault: " + self.known["notices"][-1]["text"])
-        runs: list[Message] = self.known["finished"][before:]
+        runs: list[Message] = self.known["finished"][finished_count:]
         return runs
 
     def _opened(self, held: ExitStack) -> ClientConnection:
@@ -244,22 +246,22 @@ class ConsoleClient(QueueCalls):
                 with self._news:
                     self._known = self._with(message)
                     self._news.notify_all()
-                    for one in self._listeners:
-                        one.put(message)
+                    for listener in self._listeners:
+                        listener.put(message)
             self._gone = "it has closed the stream"
         except (WebSocketException, ValueError) as error:
             self._gone = str(error)
         with self._news:
             self._news.notify_all()
-            for one in self._listeners:
-                one.put(None)
+            for listener in self._listeners:
+                listener.put(None)
 
     def _with(self, message: Message) -> dict[str, Any]:
-        kind, known = message["type"], self._known
+        kind, state = message["type"], self._known
         if kind == "snapshot":
             self._requests.session = message["session"]
             return message
         if kind in _LISTS:
             name, part = _LISTS[kind]
-            return {**known, name: [*known[name], message if part is None else message[part]]}
-        return {**known, kind: message[kind] if kind in _PARTS else message}
+            return {**state, name: [*state[name], message if part is None else message[part]]}
+        return {**state, kind: message[kind] if kind in _PARTS else message}

@@ -31,13 +31,13 @@ class QueueCalls:
         plan
             One of :meth:`plans`; the text of one; or the ``Path`` of a file here.
         """
-        checked: Message = self._requests.ask("/api/plans/check", _plan(plan))["plan"]
-        return checked
+        plan_entry: Message = self._requests.ask("/api/plans/check", _plan(plan))["plan"]
+        return plan_entry
 
     def queue(self, plan: str | Path) -> Message:
         """Queue a plan, and return it as :meth:`check` does; nothing moves before a start."""
-        queued: Message = self._requests.ask("/api/plans/queue", _plan(plan))["plan"]
-        return queued
+        plan_entry: Message = self._requests.ask("/api/plans/queue", _plan(plan))["plan"]
+        return plan_entry
 
     def drop(self, number: int) -> str:
         """Take a plan out of the queue by its number, a key of ``known["plans"]``."""
@@ -55,8 +55,8 @@ class QueueCalls:
             ``carriage_speed_m_s``, ``drift_rad``, ``periods``; what is not given stays.
         """
         body = {"number": number, "run": run, **settings}
-        changed: Message = self._requests.ask("/api/plans/edit", body)["plan"]
-        return changed
+        plan_entry: Message = self._requests.ask("/api/plans/edit", body)["plan"]
+        return plan_entry
 
     def move(self, number: int, by: int, run: str = "") -> str:
         """Move a planned run, or a plan that waits, by so many places; earlier if negative."""

@@ -53,7 +53,7 @@ class ConsoleRequests:
     @property
     def cookies(self) -> str:
         """What was given for the token, as a header has it; empty without."""
-        return "; ".join(f"{one.name}={one.value}" for one in self._jar)
+        return "; ".join(f"{cookie.name}={cookie.value}" for cookie in self._jar)
 
     def ask(self, path: str, body: Message | None = None) -> dict[str, Any]:
         """Post a body, or get without one, and return the answer; raises as the class says."""
@@ -62,8 +62,8 @@ class ConsoleRequests:
         try:
             request = Request(self.url + path, data, headers)  # noqa: S310 - the user's console
             with self._opener.open(request, timeout=_ANSWER_S) as answer:
-                found: dict[str, Any] = json.loads(answer.read())
-                return found
+                content: dict[str, Any] = json.loads(answer.read())
+                return content
         except HTTPError as error:
             text = error.read().decode("utf-8", "replace")
             if error.code == 401:

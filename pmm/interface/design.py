@@ -63,15 +63,16 @@ class DesignResult(Result):
         import pandas as pd
 
         return pd.DataFrame(
-            {name: getattr(one, name) for name in _VARIABLES} for one in self.design.known
+            {name: getattr(coefficient, name) for name in _VARIABLES}
+            for coefficient in self.design.known
         )
 
     def to_dataset(self) -> "xr.Dataset":
         """Return the same over the dimension entry."""
         frame = self.to_dataframe().rename_axis("entry").reset_index()
         signs = "axes and signs: docs/conventions.md"
-        about = {"design": self.file.name, "conventions": signs}
-        return dataset_of(frame, ["entry"], _VARIABLES, about)
+        attributes = {"design": self.file.name, "conventions": signs}
+        return dataset_of(frame, ["entry"], _VARIABLES, attributes)
 
     def plot_uncertainty(self) -> Drawn:
         """Draw what is expected of each coefficient against tank time."""
@@ -83,6 +84,6 @@ def designed(path: Path, campaigns: Sequence[str | Path]) -> DesignResult:
     file = read_design(path)
     if campaigns:
         with open_executor(1) as executor:
-            folders = [campaign_folder(str(one)) for one in campaigns]
-            file = after(file, [measured(file, one, executor) for one in folders])
+            folders = [campaign_folder(str(campaign)) for campaign in campaigns]
+            file = after(file, [measured(file, folder, executor) for folder in folders])
     return DesignResult(file, design(file))

@@ -59,13 +59,13 @@ class GapResult(Result):
 
         return pd.DataFrame(
             {
-                "answer": one.answer,
-                "probability": one.probability,
-                "withheld_u": one.withheld_u,
-                "stage": one.stage,
-                "alike": ", ".join(one.alike),
+                "answer": answer.answer,
+                "probability": answer.probability,
+                "withheld_u": answer.withheld_u,
+                "stage": answer.stage,
+                "alike": ", ".join(answer.alike),
             }
-            for one in self.report.ranking
+            for answer in self.report.ranking
         )
 
     def to_dataset(self) -> "xr.Dataset":

@@ -62,7 +62,7 @@ class HarmonicsResult(Result):
     @property
     def runs(self) -> tuple[RunRows, ...]:
         """The rows of each recording, as ``pmm analyse`` has them."""
-        return tuple(one.rows for one in self.resolved)
+        return tuple(run.rows for run in self.resolved)
 
     @property
     def level(self) -> float:
@@ -74,8 +74,10 @@ class HarmonicsResult(Result):
         """What ``pmm analyse`` shows."""
         from pmm.report.harmonics_document import analysis_document
 
-        wrong = tuple(doubts(self.resolved))
-        return analysis_document(self.runs, self.failed, self.not_recorded, wrong, self.level)
+        flagged_files = tuple(doubts(self.resolved))
+        return analysis_document(
+            self.runs, self.failed, self.not_recorded, flagged_files, self.level
+        )
 
     def to_dataframe(self) -> "pd.DataFrame":
         """Return a row for each run, gate, channel and order; order 0 is the mean, in ``in_phase``.
@@ -102,10 +104,12 @@ class HarmonicsResult(Result):
         """
         frame = self.to_dataframe()
         units = frame.groupby("channel")["unit"].unique()
-        if mixed := [str(name) for name, found in units.items() if len(found) > 1]:
+        if mixed_names := [
+            str(name) for name, channel_units in units.items() if len(channel_units) > 1
+        ]:
             raise DataError(
-                f"{', '.join(mixed)}: in several units, by run; open the recordings one by one, or "
-                "put the units right in the campaign's column map"
+                f"{', '.join(mixed_names)}: in several units, by run; open the recordings one by "
+                "one, or put the units right in the campaign's column map"
             )
         index = ["run", "gate", "channel", "order"]
         attributes = {"conventions": CONVENTIONS, "level": self.level}
@@ -156,28 +160,28 @@ class HarmonicsResult(Result):
         return self.plot("spectrum", run)
 
     def _source(self, run: str | None) -> Source:
-        names = [one.rows.run for one in self.resolved]
+        names = [recording.rows.run for recording in self.resolved]
         if run is None and len(names) == 1:
             return self.resolved[0].source
         if run not in names:
-            asked = "say which run" if run is None else f"no run {run!r}"
-            raise ConfigurationError(f"{asked}; there are: {', '.join(names)}")
+            hint = "say which run" if run is None else f"no run {run!r}"
+            raise ConfigurationError(f"{hint}; there are: {', '.join(names)}")
         return self.resolved[names.index(run)].source
 
     def _drawn(self, draw: "Callable[[Analysis], Figure]", source: Source) -> Drawn:
-        drawn: list[Figure] = []
+        figures: list[Figure] = []
         resolved_again = resolve(
             source,
             self.request,
             self.request.chosen_columns(),
-            lambda analysis, _: drawn.append(draw(analysis)),
+            lambda analysis, _: figures.append(draw(analysis)),
         )
         if isinstance(resolved_again, Failure):
             raise DataError(resolved_again.said)
-        return Drawn(drawn[0].axes)
+        return Drawn(figures[0].axes)
 
 
-def harmonics_of(found: SourceList, request: HarmonicsRequest) -> HarmonicsResult:
+def harmonics_of(source_list: SourceList, request: HarmonicsRequest) -> HarmonicsResult:
     """Resolve recordings as ``pmm analyse`` does.
 
     Raises
@@ -187,27 +191,31 @@ def harmonics_of(found: SourceList, request: HarmonicsRequest) -> HarmonicsResul
     DataError
         If none of them can be resolved; the message is the first one's.
     """
-    request.check(found.sources)
+    request.check(source_list.sources)
     columns = request.chosen_columns()
-    done = [resolve(one, request, columns, None) for one in found.sources]
-    failed = tuple(one for one in done if isinstance(one, Failure))
-    resolved = tuple(one for one in done if isinstance(one, Resolved))
+    outcomes = [resolve(source, request, columns, None) for source in source_list.sources]
+    failures = tuple(outcome for outcome in outcomes if isinstance(outcome, Failure))
+    resolved = tuple(outcome for outcome in outcomes if isinstance(outcome, Resolved))
     if not resolved:
-        first = failed[0]
+        first = failures[0]
         kind = DataError if first.exit_status == DataError.exit_status else ConfigurationError
         raise kind(first.said)
-    return HarmonicsResult(resolved, failed, found.not_recorded, request)
+    return HarmonicsResult(resolved, failures, source_list.not_recorded, request)
 
 
 def _rows(run: RunRows, gate: GateRows, channel: ChannelRows) -> Iterator[dict[str, Any]]:
-    about = {"run": run.run, "gate": gate.number, "channel": channel.name}
-    where = {"unit": channel.unit, "frequency_hz": gate.frequency_hz, "periods": gate.periods}
+    run_columns = {"run": run.run, "gate": gate.number, "channel": channel.name}
+    gate_columns = {
+        "unit": channel.unit,
+        "frequency_hz": gate.frequency_hz,
+        "periods": gate.periods,
+    }
     mean = (channel.mean.value, channel.mean.half_width, *[math.nan] * 6)
-    yield {**about, "order": 0, **_named(mean), **where}
-    for one in channel.harmonics:
-        parts = (one.in_phase, one.quadrature, one.amplitude, one.phase_deg)
+    yield {**run_columns, "order": 0, **_named(mean), **gate_columns}
+    for harmonic in channel.harmonics:
+        parts = (harmonic.in_phase, harmonic.quadrature, harmonic.amplitude, harmonic.phase_deg)
         numbers = [number for part in parts for number in (part.value, part.half_width)]
-        yield {**about, "order": one.order, **_named(numbers), **where}
+        yield {**run_columns, "order": harmonic.order, **_named(numbers), **gate_columns}
 
 
 def _named(numbers: Sequence[float]) -> dict[str, float]:

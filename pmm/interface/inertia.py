@@ -47,15 +47,15 @@ class InertiaResult(Result):
 
         return pd.DataFrame(
             {
-                "name": one.name,
-                "what": one.what,
-                "value": one.estimate.value,
-                "standard_uncertainty": one.estimate.uncertainty,
-                "degrees_of_freedom": one.estimate.degrees_of_freedom,
-                "half_width": one.estimate.half_width(),
-                "unit": one.estimate.unit,
+                "name": finding.name,
+                "what": finding.what,
+                "value": finding.estimate.value,
+                "standard_uncertainty": finding.estimate.uncertainty,
+                "degrees_of_freedom": finding.estimate.degrees_of_freedom,
+                "half_width": finding.estimate.half_width(),
+                "unit": finding.estimate.unit,
             }
-            for one in self.outcome.findings
+            for finding in self.outcome.findings
         )
 
     def to_dataset(self) -> "xr.Dataset":

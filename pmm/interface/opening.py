@@ -61,8 +61,8 @@ def _kind(path: Path) -> RecordKind:
             table = tomllib.load(file)
         except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
             raise ConfigurationError(f"{path}: {error}") from None
-    told = (kind for key, kind in _TELLING.items() if key in table)
-    return next(told, RecordKind.PENDULUM)
+    kinds = (kind for key, kind in _TELLING.items() if key in table)
+    return next(kinds, RecordKind.PENDULUM)
 
 
 @checked
@@ -102,7 +102,7 @@ def simulate(
     """
     from pmm.campaign.simulated_campaign import planned_simulation
 
-    planned = planned_simulation(
+    simulation = planned_simulation(
         Path(campaign),
         None if output is None else Path(output),
         runs=runs,
@@ -112,7 +112,7 @@ def simulate(
         overwrite=overwrite,
     )
     try:
-        planned.carry_out()
+        simulation.carry_out()
     except OSError as error:
-        raise ConfigurationError(f"{planned.folder}: cannot be written to: {error}") from None
-    return Records(planned.folder, RecordKind.CAMPAIGN)
+        raise ConfigurationError(f"{simulation.folder}: cannot be written to: {error}") from None
+    return Records(simulation.folder, RecordKind.CAMPAIGN)

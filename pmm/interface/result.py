@@ -72,7 +72,7 @@ class Result(ABC):
     @property
     def figures(self) -> tuple[str, ...]:
         """Names of the figures that :meth:`plot` draws."""
-        return tuple(one.name for one in self.document.figures)
+        return tuple(figure.name for figure in self.document.figures)
 
     def plot(self, name: str) -> Drawn:
         """Draw a figure and return its axes, which a notebook shows; ``.figure`` is the figure.
@@ -82,11 +82,11 @@ class Result(ABC):
         ConfigurationError
             If there is no figure of that name; the message lists those that there are.
         """
-        for one in self.document.figures:
-            if one.name == name:
-                return Drawn(one.draw().axes)
-        there = ", ".join(self.figures) or "none"
-        raise ConfigurationError(f"no figure {name!r}; there are: {there}")
+        for figure in self.document.figures:
+            if figure.name == name:
+                return Drawn(figure.draw().axes)
+        names = ", ".join(self.figures) or "none"
+        raise ConfigurationError(f"no figure {name!r}; there are: {names}")
 
     def _plot_kind(self, kind: str) -> dict[str, Drawn]:
         """Draw all figures whose names are of a kind, by name."""
@@ -114,9 +114,9 @@ def dataset_of(
         Of the whole.
     """
     dataset = frame.set_index(index).to_xarray()
-    for name, one in variables.items():
+    for name, variable in variables.items():
         if name in dataset:
-            dataset[name].attrs = {"long_name": one.meaning}
-            if one.unit:
-                dataset[name].attrs["units"] = one.unit
+            dataset[name].attrs = {"long_name": variable.meaning}
+            if variable.unit:
+                dataset[name].attrs["units"] = variable.unit
     return dataset.assign_attrs(attributes)

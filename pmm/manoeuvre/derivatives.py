@@ -92,47 +92,57 @@ def _measured(
 
     With whether a propeller turned in the runs that tell ``X_0``.
     """
-    found = _read(Path(str(file.coefficients)), plane)
+    coefficients = _read(Path(str(file.coefficients)), plane)
     rows = [
         k
-        for k in recommended(found)
-        if found.entries[k].speed_m_s > 0.0 and not term_of(found.entries[k].name, plane).of_roll
+        for k in recommended(coefficients)
+        if coefficients.entries[k].speed_m_s > 0.0
+        and not term_of(coefficients.entries[k].name, plane).of_roll
     ]
-    speeds = sorted({found.entries[k].speed_m_s for k in rows})
-    wanted = file.coefficients_speed_m_s
-    if wanted is None and len(speeds) != 1:
+    speeds = sorted({coefficients.entries[k].speed_m_s for k in rows})
+    stated_speed_m_s = file.coefficients_speed_m_s
+    if stated_speed_m_s is None and len(speeds) != 1:
         raise ConfigurationError(
             f"{file.coefficients}: {len(speeds)} carriage speeds above 0 "
-            f"({', '.join(f'{one:g}' for one in speeds)} m/s); name one as coefficients_speed_m_s"
+            f"({', '.join(f'{speed:g}' for speed in speeds)} m/s); name one as "
+            "coefficients_speed_m_s"
         )
-    speed = speeds[0] if wanted is None else wanted
-    rows = [k for k in rows if abs(found.entries[k].speed_m_s - speed) <= _SAME_M_S]
+    speed = speeds[0] if stated_speed_m_s is None else stated_speed_m_s
+    rows = [k for k in rows if abs(coefficients.entries[k].speed_m_s - speed) <= _SAME_M_S]
     if not rows:
         raise ConfigurationError(
             f"{file.coefficients}: no values at coefficients_speed_m_s = {speed:g}; there are "
-            f"{', '.join(f'{one:g}' for one in speeds)} m/s"
+            f"{', '.join(f'{speed:g}' for speed in speeds)} m/s"
         )
-    system, own = file.system_at(speed), found.uncertain.taken(rows)
-    drawn = np.column_stack((own.values, own.drawn(trials, generator)))
-    names = [found.entries[k].name for k in rows]
-    turned = {run for flag in found.flags if flag.code == PROPELLED for run in flag.runs}
-    told_by = {run for k in rows if found.entries[k].name == "X_0" for run in found.entries[k].runs}
+    system, uncertain_values = file.system_at(speed), coefficients.uncertain.taken(rows)
+    draws = np.column_stack((uncertain_values.values, uncertain_values.drawn(trials, generator)))
+    names = [coefficients.entries[k].name for k in rows]
+    propelled_runs = {
+        run for flag in coefficients.flags if flag.code == PROPELLED for run in flag.runs
+    }
+    source_runs = {
+        run
+        for k in rows
+        if coefficients.entries[k].name == "X_0"
+        for run in coefficients.entries[k].runs
+    }
     values = {
         name: row / system.term_factor(term_of(name, plane))
-        for name, row in zip(names, drawn, strict=True)
+        for name, row in zip(names, draws, strict=True)
     }
-    return values, bool(turned & told_by)
+    return values, bool(propelled_runs & source_runs)
 
 
 def _read(path: Path, plane: Plane) -> CampaignCoefficients:
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
-        found = from_dict(content.get("coefficients", content))
+        coefficients = from_dict(content.get("coefficients", content))
     except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:
         raise DataError(f"{path}: not what `pmm coefficients --json` printed ({error})") from None
-    if found.plane is not plane or found.normalisation != DIMENSIONAL:
+    if coefficients.plane is not plane or coefficients.normalisation != DIMENSIONAL:
         raise ConfigurationError(
-            f"{path}: coefficients of the {found.plane} plane, {found.normalisation}; needed are "
-            f"those of the {plane} plane in SI units: pmm coefficients --system dimensional"
+            f"{path}: coefficients of the {coefficients.plane} plane, "
+            f"{coefficients.normalisation}; needed are those of the {plane} plane in SI units: pmm "
+            "coefficients --system dimensional"
         )
-    return found
+    return coefficients

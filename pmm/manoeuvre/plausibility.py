@@ -40,8 +40,8 @@ _HELM: Final = (
 _ITTC: Final = "ITTC 7.5-02-06-01: typically 0.25"
 
 SHIP: Final = {
-    one.name: one
-    for one in (
+    bound.name: bound
+    for bound in (
         Bound("Fn", 0.02, 0.6, "ships that displace their weight",
               "are speed_m_s and length_m both the model's or both the ship's, in m/s and m?"),
         Bound("L/d", 4.0, 80.0, "tugs to barges", _SIZES),
@@ -73,8 +73,8 @@ A limit of half or twice its size lets as large a factor pass, or doubts tugs, b
 shallow water; a wrong system is off by L/d, degrees by 57, units by a thousand."""
 
 BODY: Final = {
-    one.name: one
-    for one in (
+    bound.name: bound
+    for bound in (
         Bound("m/(rho/2 L³)", 0.002, 0.1, "bodies 4 to 20 times as long as thick",
               "are length_m and mass_kg in m and kg?"),
         Bound("sqrt(I_y/m)/L", 0.18, 0.35, _ITTC, _INERTIA),
@@ -92,53 +92,62 @@ BODY: Final = {
 
 def doubts_of_ship(file: ShipFile, ship: Ship) -> tuple[str, ...]:
     """Return a sentence on each number of a ship that is not believed."""
-    own, hull = file.ship, ship.hull
-    ideal = 0.5 * hull.density_kg_m3 * own.length_m**2 * own.draught_m
-    mass, k = own.mass_kg / ideal, 2.0 * own.draught_m / own.length_m
+    particulars, hull = file.ship, ship.hull
+    ideal = 0.5 * hull.density_kg_m3 * particulars.length_m**2 * particulars.draught_m
+    mass, k = particulars.mass_kg / ideal, 2.0 * particulars.draught_m / particulars.length_m
     force, moment = _by_rudder(ship)
 
     def first(name: str) -> float:
         """Return a derivative over rho/2 L d U²."""
-        return float(hull.values[name][0]) * hull.area_m2 / (own.length_m * own.draught_m)
+        return (
+            float(hull.values[name][0])
+            * hull.area_m2
+            / (particulars.length_m * particulars.draught_m)
+        )
 
     def added(name: str) -> float:
         return -float(hull.added(name)[0])
 
     values = {
-        "Fn": froude_number(file.speed_m_s, own.length_m),
-        "L/d": own.length_m / own.draught_m,
+        "Fn": froude_number(file.speed_m_s, particulars.length_m),
+        "L/d": particulars.length_m / particulars.draught_m,
         "m/(rho/2 L² d)": mass,
-        "sqrt(I_z/m)/L": math.sqrt(own.inertia_kg_m2 / own.mass_kg) / own.length_m,
-        "x_G/L": own.cg_x_m / own.length_m,
-        "D_P/d": file.propeller.diameter_m / own.draught_m,
+        "sqrt(I_z/m)/L": math.sqrt(particulars.inertia_kg_m2 / particulars.mass_kg)
+        / particulars.length_m,
+        "x_G/L": particulars.cg_x_m / particulars.length_m,
+        "D_P/d": file.propeller.diameter_m / particulars.draught_m,
         "rudder's rate at full scale in °/s": ship.rudder_rate_deg_s / math.sqrt(file.scale),
-        "-X_udot/m": added("X_udot") / own.mass_kg,
-        "-Y_vdot/m": added("Y_vdot") / own.mass_kg,
-        "-N_rdot/I_z": added("N_rdot") / own.inertia_kg_m2,
+        "-X_udot/m": added("X_udot") / particulars.mass_kg,
+        "-Y_vdot/m": added("Y_vdot") / particulars.mass_kg,
+        "-N_rdot/I_z": added("N_rdot") / particulars.inertia_kg_m2,
         "Y_v over Inoue's": -first("Y_v") / (0.5 * math.pi * k + 0.7 * mass),
         "N_v over Inoue's": -first("N_v") / k,
         "N_r over Inoue's": -first("N_r") / (0.54 * k),
         "Y_r/m": first("Y_r") / mass,
-        "-Y_d/(rho/2 L d U²)": -force / (ideal / own.length_m * file.speed_m_s**2),
-        "rudder's lever N_d/(-Y_d L)": _over(moment, -force) / own.length_m,
+        "-Y_d/(rho/2 L d U²)": -force / (ideal / particulars.length_m * file.speed_m_s**2),
+        "rudder's lever N_d/(-Y_d L)": _over(moment, -force) / particulars.length_m,
     }
     if file.rudder is not None:
-        values["H_R/d"] = file.rudder.height_m / own.draught_m
+        values["H_R/d"] = file.rudder.height_m / particulars.draught_m
     return tuple(_doubts(SHIP, values))
 
 
 def doubts_of_body(file: SubmergedFile, body: SubmergedBody) -> tuple[str, ...]:
     """Return a sentence on each number of a body below the surface that is not believed."""
-    own = file.body
-    unit = 0.5 * body.density_kg_m3 * own.length_m**3
-    mass = own.mass_kg / unit
+    particulars = file.body
+    unit = 0.5 * body.density_kg_m3 * particulars.length_m**3
+    mass = particulars.mass_kg / unit
     first = {name: float(values[0]) for name, values in body.values.items()}
     values = {
         "m/(rho/2 L³)": mass,
-        "sqrt(I_y/m)/L": math.sqrt(own.inertia_kg_m2 / own.mass_kg) / own.length_m,
-        "x_G/L": own.cg_x_m / own.length_m,
+        "sqrt(I_y/m)/L": math.sqrt(particulars.inertia_kg_m2 / particulars.mass_kg)
+        / particulars.length_m,
+        "x_G/L": particulars.cg_x_m / particulars.length_m,
         "-Z_wdot/m": -first["Z_wdot"] / mass,
-        "-M_qdot/I_y": -first["M_qdot"] * unit * own.length_m**2 / own.inertia_kg_m2,
+        "-M_qdot/I_y": -first["M_qdot"]
+        * unit
+        * particulars.length_m**2
+        / particulars.inertia_kg_m2,
         "-Z_w/m": -first["Z_w"] / mass,
         "-M_q/m": -first["M_q"] / mass,
         "lever M_w/(-Z_w L)": _over(first["M_w"], -first["Z_w"]),
@@ -147,8 +156,8 @@ def doubts_of_body(file: SubmergedFile, body: SubmergedBody) -> tuple[str, ...]:
     return tuple(_doubts(BODY, values))
 
 
-def _over(one: float, other: float) -> float:
-    return one / other if other else math.nan
+def _over(numerator: float, denominator: float) -> float:
+    return numerator / denominator if denominator else math.nan
 
 
 def _by_rudder(ship: Ship) -> tuple[float, float]:

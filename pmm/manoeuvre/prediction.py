@@ -29,7 +29,7 @@ from pmm.manoeuvre.quantity import FullScale, ManoeuvreQuantity, quantity_of
 from pmm.manoeuvre.ship_file import ShipFile
 
 SIDES = {"starboard": 1.0, "port": -1.0}
-_HELM, _SPIRAL_LARGEST, _SPIRAL_STEP = (math.radians(one) for one in (35.0, 20.0, 5.0))
+_HELM, _SPIRAL_LARGEST, _SPIRAL_STEP = (math.radians(angle_deg) for angle_deg in (35.0, 20.0, 5.0))
 _SPIRAL_SHIPS = 101
 LOOP = "r' loop at rudder 0"
 
@@ -66,27 +66,29 @@ class Prediction:
 
     def _quantities(self) -> Iterator[ManoeuvreQuantity]:
         for side, turn in self.turns.items():
-            what = f"turning circle 35°, {side}"
-            yield self._of(what, "advance", "L", turn.advance, imo.ADVANCE)
-            yield self._of(what, "transfer", "L", turn.transfer)
-            yield self._of(what, "tactical diameter", "L", turn.tactical_diameter, imo.TACTICAL)
-            yield self._of(what, "steady diameter", "L", turn.steady_diameter)
-            yield self._of(what, "steady speed / approach", "1", turn.steady_speed)
-            yield self._of(what, "steady drift", "°", np.degrees(turn.steady_drift_rad))
+            manoeuvre = f"turning circle 35°, {side}"
+            yield self._of(manoeuvre, "advance", "L", turn.advance, imo.ADVANCE)
+            yield self._of(manoeuvre, "transfer", "L", turn.transfer)
+            yield self._of(
+                manoeuvre, "tactical diameter", "L", turn.tactical_diameter, imo.TACTICAL
+            )
+            yield self._of(manoeuvre, "steady diameter", "L", turn.steady_diameter)
+            yield self._of(manoeuvre, "steady speed / approach", "1", turn.steady_speed)
+            yield self._of(manoeuvre, "steady drift", "°", np.degrees(turn.steady_drift_rad))
         first = imo.first_overshoot_deg(self.length_over_speed_s)
         limits = {
             (10, 0): first,
             (10, 1): imo.second_overshoot_deg(self.length_over_speed_s),
             (20, 0): imo.OVERSHOOT_20,
         }
-        for (side, angle), one in self.zigzags.items():
-            what = f"zig-zag {angle}/{angle}, {side}"
+        for (side, angle), test in self.zigzags.items():
+            manoeuvre = f"zig-zag {angle}/{angle}, {side}"
             if angle == 10:
-                yield self._of(what, "initial turning", "L", one.initial_turning, imo.INITIAL)
-            for k, values in enumerate(one.overshoots_rad):
+                yield self._of(manoeuvre, "initial turning", "L", test.initial_turning, imo.INITIAL)
+            for k, values in enumerate(test.overshoots_rad):
                 name = f"overshoot {k + 1}"
                 limit = limits.get((angle, k), math.nan)
-                yield self._of(what, name, "°", np.degrees(values), limit)
+                yield self._of(manoeuvre, name, "°", np.degrees(values), limit)
         straight = self.straight
         yield self._of("spiral", LOOP, "1", self.spiral.height)
         yield self._of("straight course", "C' of the bare hull", "1", straight.criterion)
@@ -119,10 +121,10 @@ def predict(file: ShipFile, trials: int, seed: int, level: float, progress: Prog
             log = logs.setdefault(f"{angle}", Log()) if side == "starboard" else None
             zigzags[side, angle] = zigzag(ship, sign * size, size, 2, log)
     progress("spiral")
-    few = replace(ship, hull=_first(ship.hull, _SPIRAL_SHIPS))
-    found = spiral(few, _SPIRAL_LARGEST, _SPIRAL_STEP)
+    spiral_ship = replace(ship, hull=_first(ship.hull, _SPIRAL_SHIPS))
+    spiral_curve = spiral(spiral_ship, _SPIRAL_LARGEST, _SPIRAL_STEP)
     straight = straight_course(ship)
-    return Prediction(file, ship, level, turns, zigzags, found, straight, logs)
+    return Prediction(file, ship, level, turns, zigzags, spiral_curve, straight, logs)
 
 
 def ship_of(file: ShipFile, trials: int, seed: int) -> Ship:
@@ -141,4 +143,4 @@ def ship_of(file: ShipFile, trials: int, seed: int) -> Ship:
 
 
 def _first(hull: HullLoads, count: int) -> HullLoads:
-    return replace(hull, values={name: one[:count] for name, one in hull.values.items()})
+    return replace(hull, values={name: value[:count] for name, value in hull.values.items()})

@@ -58,10 +58,12 @@ def quantity_of(
 ) -> ManoeuvreQuantity:
     """Return a quantity; ``values`` has the value itself first, and behind it each draw."""
     draws = values[1:]
-    good = draws[np.isfinite(draws)]
+    finite_draws = draws[np.isfinite(draws)]
     tail = 0.5 * (1.0 - level)
-    low, high = np.quantile(good, (tail, 1.0 - tail)) if good.size else (np.nan, np.nan)
-    judged = draws.size and math.isfinite(limit)
+    low, high = (
+        np.quantile(finite_draws, (tail, 1.0 - tail)) if finite_draws.size else (np.nan, np.nan)
+    )
+    is_judged = draws.size and math.isfinite(limit)
     return ManoeuvreQuantity(
         manoeuvre,
         name,
@@ -72,6 +74,6 @@ def quantity_of(
         float(values[0]) * size.factor if size else math.nan,
         size.unit if size else "",
         limit,
-        float(np.mean(draws <= limit)) if judged else math.nan,
-        int(draws.size - good.size),
+        float(np.mean(draws <= limit)) if is_judged else math.nan,
+        int(draws.size - finite_draws.size),
     )

@@ -162,24 +162,24 @@ def read_ship(path: Path) -> ShipFile | SubmergedFile:
     table = read_toml(path)
     below = "plane" in table
     faults: list[Fault] = list(limit_faults(table))
-    seen = deepcopy(table)
-    if isinstance(seen.get("coefficients"), str):
-        seen["coefficients"] = str(path.parent / seen["coefficients"])
+    resolved_table = deepcopy(table)
+    if isinstance(resolved_table.get("coefficients"), str):
+        resolved_table["coefficients"] = str(path.parent / resolved_table["coefficients"])
     kind: type[ShipFile | SubmergedFile] = SubmergedFile if below else ShipFile
-    found = validate(kind, seen, faults)
+    ship = validate(kind, resolved_table, faults)
     if below and table["plane"] != Plane.VERTICAL:
         faults.append(Fault(("plane",), "should be vertical, or left out for a ship"))
-    if isinstance(found, ShipFile):
-        faults += _rudder_faults(found)
+    if isinstance(ship, ShipFile):
+        faults += _rudder_faults(ship)
     plane = Plane.VERTICAL if below else Plane.HORIZONTAL
     faults += _hull_faults(table.get("hull"), plane, ("prime",) if below else SYSTEMS)
-    if found is None or faults:
+    if ship is None or faults:
         raise as_error(path, faults, table)
-    return found
+    return ship
 
 
-def _rudder_faults(found: ShipFile) -> list[Fault]:
-    if (found.rudder is None) != (found.rudder_rate_deg_s is None):
+def _rudder_faults(ship: ShipFile) -> list[Fault]:
+    if (ship.rudder is None) != (ship.rudder_rate_deg_s is None):
         return []
     return [
         Fault(

@@ -35,21 +35,23 @@ def depth_keeping(file: SubmergedFile, trials: int, seed: int, level: float) -> 
     speed, root = file.speed_m_s, math.sqrt(file.scale)
     knots = FullScale(root, "m/s")
     time = body.length_m / speed
-    found = [
+    quantities = [
         quantity_of("depth", "index G_v", "1", body.index, level),
         quantity_of("depth", "critical speed", "m/s", body.critical_speed_m_s, level, knots),
         quantity_of("depth", "largest root L/U", "1", body.root(speed) * time, level),
     ]
-    for name, one in file.planes.items():
-        speeds = body.reversal_speed_m_s(one.force, one.moment)
-        found.append(quantity_of(f"planes {name}", "reversal speed", "m/s", speeds, level, knots))
-    return DepthKeeping(file, level, trials, tuple(found), doubts_of_body(file, body))
+    for name, plane in file.planes.items():
+        speeds = body.reversal_speed_m_s(plane.force, plane.moment)
+        quantities.append(
+            quantity_of(f"planes {name}", "reversal speed", "m/s", speeds, level, knots)
+        )
+    return DepthKeeping(file, level, trials, tuple(quantities), doubts_of_body(file, body))
 
 
 def body_of(file: SubmergedFile, trials: int, seed: int) -> SubmergedBody:
     """Return the body of a file's values, and behind it those of the draws."""
-    own = file.body
+    particulars = file.body
     values = derivatives_of(file, Plane.VERTICAL, trials, np.random.default_rng(seed))
-    righting = own.mass_kg * STANDARD_GRAVITY_M_S2 * own.centre_distance_m
-    mass = (own.mass_kg, own.inertia_kg_m2, own.cg_x_m)
-    return SubmergedBody(own.length_m, file.water.density_kg_m3, *mass, righting, values)
+    righting = particulars.mass_kg * STANDARD_GRAVITY_M_S2 * particulars.centre_distance_m
+    mass = (particulars.mass_kg, particulars.inertia_kg_m2, particulars.cg_x_m)
+    return SubmergedBody(particulars.length_m, file.water.density_kg_m3, *mass, righting, values)

@@ -93,10 +93,10 @@ class Target:
         ConfigurationError
             If nothing to look at is named, or two things are.
         """
-        named = [one for one in (self.rig, self.interface, self.port) if one]
-        if len(named) != 1:
+        places = [place for place in (self.rig, self.interface, self.port) if place]
+        if len(places) != 1:
             raise ConfigurationError(
-                f"{' and '.join(named) or 'nothing'} to look at: name one of RIG.toml, "
+                f"{' and '.join(places) or 'nothing'} to look at: name one of RIG.toml, "
                 "--interface (with --channel), --port"
             )
         from pmm.devices.device_source import DeviceTables
@@ -107,8 +107,8 @@ class Target:
         """Return the bus that is named alone."""
         from pmm.devices.device_source import bus_alone
 
-        found = dict(_option(one) for one in self.options)
-        return bus_alone(self.interface or "", self.channel, self.bitrate, found)
+        settings = dict(_option(option) for option in self.options)
+        return bus_alone(self.interface or "", self.channel, self.bitrate, settings)
 
     def port_settings(self) -> "PortSettings":
         """Return the port that is named alone."""
@@ -160,16 +160,16 @@ def _asking(*, absent: bool) -> Callable[[str], str | None]:
     """Return what asks a person on the error stream; where nobody answers, a simulated rig acts."""
     from pmm.run.operator import OperatorAnswers
 
-    answers, asked = OperatorAnswers(sys.stdin), ""
+    answers, last_question = OperatorAnswers(sys.stdin), ""
 
     def ask(question: str) -> str | None:
-        nonlocal asked
-        if question != asked:
-            asked = question
+        nonlocal last_question
+        if question != last_question:
+            last_question = question
             messages().print(question)
         answer = None if absent else answers(question)
         if answer is not None:
-            asked = ""
+            last_question = ""
         return answer
 
     return ask

@@ -37,32 +37,32 @@ def gauges(
 
     tables = DeviceTables(Path(rig))
     with (
-        ExitStack() as shown,
+        ExitStack() as stack,
         opened(tables.configuration(), free_running=free_running) as opened_rig,
     ):
         all_gauges = GaugeReadings(opened_rig)
-        names = tuple(one.name for one in all_gauges.channels)
-        for one in channels:
-            if one not in names:
+        names = tuple(gauge.name for gauge in all_gauges.channels)
+        for name in channels:
+            if name not in names:
                 raise ConfigurationError(
-                    f"no force channel {one!r}; the rig has {', '.join(names)}"
+                    f"no force channel {name!r}; the rig has {', '.join(names)}"
                 )
         console = output(sys.stdout)
-        terminal = shown.enter_context(Terminal())
+        terminal = stack.enter_context(Terminal())
         opened_rig.prepare()
-        found = []
-        for pushed in push_each(all_gauges, channels or names, tables.plane, within_s):
-            found.append(pushed)
+        pushes = []
+        for push in push_each(all_gauges, channels or names, tables.plane, within_s):
+            pushes.append(push)
             if not as_json:
-                _show_push(terminal, console, pushed, push_line(pushed))
+                _show_push(terminal, console, push, push_line(push))
     if as_json:
-        show(gauges_document(found), as_json=True)
-    if any(one.wrong for one in found):
+        show(gauges_document(pushes), as_json=True)
+    if any(push.wrong for push in pushes):
         raise click.exceptions.Exit(1)
 
 
-def _show_push(terminal: Terminal, console: "Console", pushed: "Pushed", line: str) -> None:
+def _show_push(terminal: Terminal, console: "Console", push: "Pushed", line: str) -> None:
     if line:
         terminal.do(lambda: console.print(line))
-    for one in pushed.wrong:
-        terminal.say(f"error: {pushed.asked}: {one}")
+    for fault in push.wrong:
+        terminal.say(f"error: {push.asked}: {fault}")

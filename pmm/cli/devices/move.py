@@ -39,19 +39,21 @@ def move(axis: str, position: str, rig: str, free_running: bool, as_json: bool, 
 
     tables = DeviceTables(Path(rig))
     with (
-        ExitStack() as shown,
+        ExitStack() as stack,
         opened(tables.configuration(), free_running=free_running) as opened_rig,
     ):
-        one = axis_of(opened_rig, axis)
-        goal = _position(position, one.unit)
-        check_position(one, goal, told=NOTHING_MOVED)
-        there = f"{goal:g} {one.unit}"
-        confirm(f"{axis} will home if it has to, and move to {there}. Is the way clear?", yes=yes)
-        shown.enter_context(Terminal())
+        rig_axis = axis_of(opened_rig, axis)
+        goal = _position(position, rig_axis.unit)
+        check_position(rig_axis, goal, remark=NOTHING_MOVED)
+        goal_text = f"{goal:g} {rig_axis.unit}"
+        confirm(
+            f"{axis} will home if it has to, and move to {goal_text}. Is the way clear?", yes=yes
+        )
+        stack.enter_context(Terminal())
         opened_rig.prepare()
         look(opened_rig)
-        reading = move_axis(opened_rig, one, goal)
-        unit = one.unit
+        reading = move_axis(opened_rig, rig_axis, goal)
+        unit = rig_axis.unit
     show(move_document(axis, goal, unit, reading), as_json=as_json)
 
 
@@ -63,13 +65,13 @@ def _position(text: str, unit: str) -> float:
     ConfigurationError
         If it is no number, or its unit is not one of the axis's.
     """
-    found = _POSITION.match(text)
+    match = _POSITION.match(text)
     allowed = [name for name, (base, _) in _UNITS.items() if base == unit]
-    if not found or (found[2] and found[2] not in allowed):
+    if not match or (match[2] and match[2] not in allowed):
         raise ConfigurationError(
             f"position {text!r}: write a number, with or without a unit ({', '.join(allowed)})"
         )
     try:
-        return float(found[1]) * (_UNITS[found[2]][1] if found[2] else 1.0)
+        return float(match[1]) * (_UNITS[match[2]][1] if match[2] else 1.0)
     except ValueError:
         raise ConfigurationError(f"position {text!r} is no number") from None

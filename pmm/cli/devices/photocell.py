@@ -44,16 +44,16 @@ def photocell(
 
     tables = DeviceTables(Path(rig))
     with (
-        ExitStack() as shown,
+        ExitStack() as stack,
         opened(tables.configuration(), free_running=free_running) as opened_rig,
     ):
         shaft = opened_rig.shaft
         if turn_hz is not None:
             if shaft is None:
                 raise ConfigurationError("--turn: the rig has no shaft; turn it by hand")
-            check_speed(shaft, turn_hz, told=NOTHING_MOVED)
+            check_speed(shaft, turn_hz, remark=NOTHING_MOVED)
             confirm(f"the shaft will turn at {turn_hz:g} Hz. Is everything clear of it?", yes=yes)
-        terminal = shown.enter_context(Terminal())
+        terminal = stack.enter_context(Terminal())
         opened_rig.prepare()
         look(opened_rig)
         if turn_hz is not None and shaft is not None:
@@ -61,11 +61,11 @@ def photocell(
         else:
             terminal.say(f"turn the shaft by hand, evenly, until {pulses} pulses have come")
         tell = (lambda _: None) if as_json else partial(_tell, terminal)
-        watched = watch(opened_rig, pulses, within_s, tell)
-    show(photocell_document(watched), as_json=as_json)
+        record = watch(opened_rig, pulses, within_s, tell)
+    show(photocell_document(record), as_json=as_json)
     if not as_json:
-        _complain(watched)
-    if not watched.good:
+        _complain(record)
+    if not record.good:
         raise click.exceptions.Exit(1)
 
 
@@ -73,8 +73,8 @@ def _tell(terminal: Terminal, pulse: "Pulse") -> None:
     terminal.say(f"pulse {pulse.number} at {pulse.time_s:.4f} s")
 
 
-def _complain(watched: "PhotocellRecord") -> None:
-    for one in watched.said:
-        error_line(one)
-    if not watched.enough:
-        error_line(f"{len(watched.pulses)} pulses in the time; check lamp, slot, cable and input")
+def _complain(record: "PhotocellRecord") -> None:
+    for message in record.said:
+        error_line(message)
+    if not record.enough:
+        error_line(f"{len(record.pulses)} pulses in the time; check lamp, slot, cable and input")

@@ -42,11 +42,11 @@ def read(once: bool, seconds: float | None, as_json: bool, **options: Any) -> No
     screen = None if once or as_json else _screen(output(sys.stdout))
     # The terminal is waited for last: the rig is left by then.
     with Terminal() as terminal, _source(target, tables) as look:
-        shown = look(ONCE_S) if once else _live(look, seconds, terminal, screen)
+        values = look(ONCE_S) if once else _live(look, seconds, terminal, screen)
     if as_json or once:
-        show(values_document(shown), as_json=as_json)
-    for one in () if as_json else shown.said[-_LATEST:]:
-        error_line(one)
+        show(values_document(values), as_json=as_json)
+    for message in () if as_json else values.said[-_LATEST:]:
+        error_line(message)
 
 
 @contextmanager
@@ -59,8 +59,8 @@ def _source(target: Target, tables: "DeviceTables | None") -> "Iterator[Look]":
             rig.prepare()
             yield of_rig(rig)
     else:
-        named = of_bus(target.bus()) if target.interface else of_port(target.port_settings())
-        with named as look:
+        source = of_bus(target.bus()) if target.interface else of_port(target.port_settings())
+        with source as look:
             yield look
 
 
@@ -71,16 +71,16 @@ def _live(
     from pmm.devices.readings import REFRESH_S, Shown
 
     end = None if seconds is None else time.monotonic() + seconds
-    shown = Shown(())
+    values = Shown(())
     with suppress(KeyboardInterrupt):  # the way to end it
         while end is None or time.monotonic() < end:
-            shown = look(REFRESH_S)
+            values = look(REFRESH_S)
             if screen is not None:
-                terminal.draw(partial(_draw, screen, shown.rows))
+                terminal.draw(partial(_draw, screen, values.rows))
     if screen is not None:
-        terminal.do(partial(_draw, screen, shown.rows))
+        terminal.do(partial(_draw, screen, values.rows))
         terminal.do(screen.stop)
-    return shown
+    return values
 
 
 def _screen(console: "Console") -> "Screen":

@@ -23,13 +23,15 @@ def scan(listen_s: float, as_json: bool, **options: Any) -> None:
     from pmm.report.devices_document import scan_document
 
     with busy("scanning"):
-        found = _survey(Target(**options), listen_s)
-    silent = [f"{name}: {one.what}" for name, one in found.heard.items() if one.what == "silent"]
-    wrong = found.wrong + silent
-    show(scan_document(found, wrong), as_json=as_json)
-    for line in () if as_json else wrong:
+        survey = _survey(Target(**options), listen_s)
+    silent = [
+        f"{name}: {port.what}" for name, port in survey.heard.items() if port.what == "silent"
+    ]
+    faults = survey.wrong + silent
+    show(scan_document(survey, faults), as_json=as_json)
+    for line in () if as_json else faults:
         error_line(line)
-    if wrong:
+    if faults:
         raise click.exceptions.Exit(1)
 
 

@@ -30,10 +30,14 @@ class Jobs(CommandGroup):
         """List what a campaign in place of a job takes, then the jobs."""
         diagnose = self.get_command(ctx, "diagnose")
         if diagnose is not None:
-            options = [one for one in diagnose.get_params(ctx) if isinstance(one, click.Option)]
-            own = [one.get_help_record(ctx) for one in options]
+            options = [
+                parameter
+                for parameter in diagnose.get_params(ctx)
+                if isinstance(parameter, click.Option)
+            ]
+            records = [option.get_help_record(ctx) for option in options]
             with formatter.section("Options with a campaign"):
-                formatter.write_dl([one for one in own if one is not None])
+                formatter.write_dl([record for record in records if record is not None])
         self.format_commands(ctx, formatter)
 
 

@@ -29,7 +29,7 @@ _SCHEMA: Final = "pmm-gap-add-1"
 @LOOKS
 @jobs_option("one for each core")
 @JSON
-def add(campaign: str, effect: str | None, jobs: int | None, as_json: bool, **chosen: Any) -> None:
+def add(campaign: str, effect: str | None, jobs: int | None, as_json: bool, **options: Any) -> None:
     """Write an effect with its fitted parameters into the campaign file.
 
     The next "pmm gap CAMPAIGN" and "pmm simulate" start from it. The file as it was is kept beside
@@ -47,19 +47,19 @@ def add(campaign: str, effect: str | None, jobs: int | None, as_json: bool, **ch
     from pmm.gap.appended_tables import Added, stated
     from pmm.gap.load import campaign_of
 
-    looks, folder = Looks(**chosen), Path(campaign)
+    looks, folder = Looks(**options), Path(campaign)
     path = folder / CAMPAIGN_FILE if folder.is_dir() else folder
     if not path.exists():
         raise ConfigurationError(f"{path}: no such folder or campaign file")
     check_appendable(path)
     if effect is not None:
         _refuse_twice(path, (effect,))
-    found = _effects(_examined(looks, path, effect, jobs), effect)
-    _refuse_twice(path, [one.name for one in found])
-    added = [Added(one.name, stated(one)) for one in found]
-    files = [word for one in looks.files for word in ("--effects", one)]
-    again = pasted("gap", campaign, *files)
-    add_and_say(path, added, campaign_of, again=again, schema=_SCHEMA, as_json=as_json)
+    causes = _effects(_examined(looks, path, effect, jobs), effect)
+    _refuse_twice(path, [cause.name for cause in causes])
+    additions = [Added(cause.name, stated(cause)) for cause in causes]
+    files = [word for file in looks.files for word in ("--effects", file)]
+    command = pasted("gap", campaign, *files)
+    add_and_say(path, additions, campaign_of, command=command, schema=_SCHEMA, as_json=as_json)
 
 
 def _examined(looks: Looks, path: Path, effect: str | None, jobs: int | None) -> "Examined":
@@ -71,35 +71,35 @@ def _examined(looks: Looks, path: Path, effect: str | None, jobs: int | None) ->
     options = looks.options
     if effect is not None:
         options = replace(options, effects=(effect, *looks.files))
-    with doing("reading") as told, engine(looks, jobs) as executor:
-        return examine(path, options, executor, told)
+    with doing("reading") as progress, engine(looks, jobs) as executor:
+        return examine(path, options, executor, progress)
 
 
-def _effects(examined: "Examined", effect: str | None) -> "Sequence[Effect]":
+def _effects(examination: "Examined", effect: str | None) -> "Sequence[Effect]":
     """Return what to add: the named effect as fitted, or the one that was found."""
     from hardware.description.errors import DataError
     from pmm.gap.words import what_is_wrong
 
-    found = examined.diagnosis
+    diagnosis = examination.diagnosis
     if effect is not None:
-        fits = [one for one in found.weighed.singles if one.names == (effect,)]
+        fits = [fit for fit in diagnosis.weighed.singles if fit.names == (effect,)]
         if not fits:
-            reason = found.weighed.refused.get(effect, "these runs do not show it")
+            reason = diagnosis.weighed.refused.get(effect, "these runs do not show it")
             raise DataError(f"{effect}: cannot be fitted: {reason}")
         return fits[0].effects
-    if examined.cause is None:
+    if examination.cause is None:
         raise DataError(
-            f"{examined.campaign.name}: {what_is_wrong(examined.conclusion)} So there "
+            f"{examination.campaign.name}: {what_is_wrong(examination.conclusion)} So there "
             "is nothing to add; --effect NAME adds one all the same"
         )
-    return examined.cause.effects
+    return examination.cause.effects
 
 
 def _refuse_twice(path: Path, names: "Sequence[str]") -> None:
     from pmm.gap.appended_tables import refuse_twice
     from pmm.gap.load import campaign_of
 
-    refuse_twice(path, [one.name for one in campaign_of(path).effects], names)
+    refuse_twice(path, [effect.name for effect in campaign_of(path).effects], names)
 
 
 def check_appendable(path: Path) -> None:
@@ -118,10 +118,10 @@ def check_appendable(path: Path) -> None:
 
 def add_and_say(
     path: Path,
-    added: "Sequence[Added]",
-    read: "Callable[[Path], object]",
+    additions: "Sequence[Added]",
+    reader: "Callable[[Path], object]",
     *,
-    again: str,
+    command: str,
     schema: str,
     as_json: bool,
 ) -> None:
@@ -129,9 +129,9 @@ def add_and_say(
 
     Parameters
     ----------
-    read
+    reader
         Reads such a file.
-    again
+    command
         The command that starts from the new file.
     schema
         Of the JSON document.
@@ -140,12 +140,12 @@ def add_and_say(
     from pmm.document.content import Data, Document, Section, Text
     from pmm.gap.appended_tables import append_tables
 
-    kept = append_tables(path, [one.table for one in added], read)
-    told = (
-        Text([f"added {one.said}" for one in added]),
-        Text((f"{path}; as it was: {kept}", again)),
+    backup = append_tables(path, [addition.table for addition in additions], reader)
+    contents = (
+        Text([f"added {addition.said}" for addition in additions]),
+        Text((f"{path}; as it was: {backup}", command)),
         Data("file", path),
-        Data("kept", kept),
-        Data("effects", added),
+        Data("kept", backup),
+        Data("effects", additions),
     )
-    show(Document("", "added effects", (Section("", told),), schema), as_json=as_json)
+    show(Document("", "added effects", (Section("", contents),), schema), as_json=as_json)

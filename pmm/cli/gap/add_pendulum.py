@@ -24,7 +24,7 @@ _SCHEMA: Final = "pmm-gap-add-pendulum-1"
 @CATALOGUE
 @JSON
 def add_pendulum(
-    file: str, causes: tuple[str, ...], most: int, as_json: bool, **chosen: Any
+    file: str, causes: tuple[str, ...], most: int, as_json: bool, **options: Any
 ) -> None:
     """Write effects with their fitted parameters into the file of a pendulum or a free decay.
 
@@ -40,17 +40,20 @@ def add_pendulum(
     from pmm.gap.pendulum_examination import PendulumOptions
     from pmm.gap.pendulum_file import read_case
 
-    given, path = Chosen(**chosen), Path(file)
-    there = [one.name for one in read_case(path).effects]
+    choice, path = Chosen(**options), Path(file)
+    known_names = [effect.name for effect in read_case(path).effects]
     check_appendable(path)
-    refuse_twice(path, there, causes)
-    after = _settled(path, causes, PendulumOptions(given.effects, given.without, most))
-    refuse_twice(path, there, after.best.names)
-    added = [Added(one.name, _told(one)) for one in after.best.effects]
-    again = pasted(
-        "gap", "pendulum", file, *(word for one in given.files for word in ("--effects", one))
+    refuse_twice(path, known_names, causes)
+    after = _settled(path, causes, PendulumOptions(choice.effects, choice.without, most))
+    refuse_twice(path, known_names, after.best.names)
+    additions = [Added(effect.name, _told(effect)) for effect in after.best.effects]
+    command = pasted(
+        "gap",
+        "pendulum",
+        file,
+        *(word for effects_file in choice.files for word in ("--effects", effects_file)),
     )
-    add_and_say(path, added, read_case, again=again, schema=_SCHEMA, as_json=as_json)
+    add_and_say(path, additions, read_case, command=command, schema=_SCHEMA, as_json=as_json)
 
 
 def _settled(path: Path, causes: tuple[str, ...], options: "PendulumOptions") -> "Settled":
@@ -63,13 +66,13 @@ def _settled(path: Path, causes: tuple[str, ...], options: "PendulumOptions") ->
 
     if causes:
         return fitted_causes(path, causes, options)
-    with doing("reading") as shown:
-        found = examine_pendulum(path, options, shown).diagnosis
-    concluded = conclusion_of(found)
-    if not concluded.adds:
-        said = what_is_wrong(found, concluded)
-        raise DataError(f"{path.stem}: {said} So there is nothing to add")
-    return found.settled
+    with doing("reading") as progress:
+        diagnosis = examine_pendulum(path, options, progress).diagnosis
+    conclusion = conclusion_of(diagnosis)
+    if not conclusion.adds:
+        reason = what_is_wrong(diagnosis, conclusion)
+        raise DataError(f"{path.stem}: {reason} So there is nothing to add")
+    return diagnosis.settled
 
 
 def _told(effect: object) -> dict[str, float | str]:

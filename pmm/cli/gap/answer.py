@@ -66,7 +66,7 @@ def answer(
     target = board / "answers" if output is None else Path(output)
     check_folder(target, "--output")
     left_out = None if leave_out is None else _left_out(Path(leave_out))
-    cases = [one for one in _cases(board) if left_out is None or one.name in left_out]
+    cases = [case for case in _cases(board) if left_out is None or case.name in left_out]
     tasks = [
         CaseTask(case.absolute(), tuple((left_out or {}).get(case.name, ())))
         for case in cases
@@ -74,27 +74,27 @@ def answer(
     ]
     target.mkdir(parents=True, exist_ok=True)
     started = time.monotonic()
-    failed = _answered(tasks, target, jobs, scheduler)
-    took = time.monotonic() - started
-    kept = len(cases) - len(tasks)
+    failures = _answered(tasks, target, jobs, scheduler)
+    duration_s = time.monotonic() - started
+    kept_count = len(cases) - len(tasks)
     messages().print(
-        f"{len(tasks) - len(failed)} cases answered in {took:.0f} s"
-        + (f", {kept} had answers already" if kept else "")
+        f"{len(tasks) - len(failures)} cases answered in {duration_s:.0f} s"
+        + (f", {kept_count} had answers already" if kept_count else "")
         + f": {target}"
     )
-    for line in failed:
+    for line in failures:
         error_line(line)
-    if failed:
+    if failures:
         click.get_current_context().exit(DataError.exit_status)
 
 
 def _cases(board: Path) -> list[Path]:
     from hardware.description.errors import ConfigurationError
 
-    found = sorted(one for one in (board / "cases").glob("*") if one.is_dir())
-    if not found:
+    folders = sorted(folder for folder in (board / "cases").glob("*") if folder.is_dir())
+    if not folders:
         raise ConfigurationError(f"{board}: no cases in {board / 'cases'}")
-    return found
+    return folders
 
 
 def _left_out(path: Path) -> "Mapping[str, Sequence[str]]":
@@ -120,14 +120,14 @@ def _answered(
     from pmm.parallel import as_done, open_executor
     from pmm.whole_file import write_whole
 
-    failed: list[str] = []
+    failures: list[str] = []
     with open_executor(jobs, scheduler) as executor:
-        for one in show_progress(as_done(executor, answer_one, tasks), "cases", len(tasks)):
-            if one.failed:
-                failed.append(one.failed)
+        for outcome in show_progress(as_done(executor, answer_one, tasks), "cases", len(tasks)):
+            if outcome.failed:
+                failures.append(outcome.failed)
             else:
-                write_whole(target / f"{one.case}.json", one.text)
-    return sorted(failed)
+                write_whole(target / f"{outcome.case}.json", outcome.text)
+    return sorted(failures)
 
 
 def answer_one(task: CaseTask) -> Answered:
@@ -143,10 +143,10 @@ def answer_one(task: CaseTask) -> Answered:
 
     folder = seen(task.case)
     try:
-        found = diagnosed(folder, task.left_out)
+        content = diagnosed(folder, task.left_out)
     except (PmmError, OSError) as error:
         return Answered(task.case.name, failed=f"{task.case.name}: {error}")
-    return Answered(task.case.name, json.dumps(found, indent=1, allow_nan=False) + "\n")
+    return Answered(task.case.name, json.dumps(content, indent=1, allow_nan=False) + "\n")
 
 
 def diagnosed(folder: Path, left_out: tuple[str, ...] = ()) -> dict[str, Any]:
@@ -156,9 +156,13 @@ def diagnosed(folder: Path, left_out: tuple[str, ...] = ()) -> dict[str, Any]:
     from pmm.gap.preparation import prepare
     from sim.effects.catalogue import catalogue
 
-    known = {name: kind for name, kind in catalogue().items() if name not in left_out}
-    ready = prepare(folder, known)
-    found = diagnose(ready.there.rig, ready.fitted, ready.settings)
+    kinds = {name: kind for name, kind in catalogue().items() if name not in left_out}
+    preparation = prepare(folder, kinds)
+    diagnosis = diagnose(preparation.there.rig, preparation.fitted, preparation.settings)
     return answer_of(
-        folder.name, found, ready.there.free, ready.case.held_out, ready.case.tolerances
+        folder.name,
+        diagnosis,
+        preparation.there.free,
+        preparation.case.held_out,
+        preparation.case.tolerances,
     )

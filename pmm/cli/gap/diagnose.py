@@ -36,7 +36,7 @@ def diagnose(
     scheduler: str | None,
     tolerances: bool,
     as_json: bool,
-    **chosen: Any,
+    **options: Any,
 ) -> None:
     """Say where rig and simulation differ, which effect causes it, and how far the gap shrinks.
 
@@ -64,44 +64,44 @@ def diagnose(
     from pmm.gap.tolerance_document import tolerance_document
     from pmm.remote import here
 
-    looks, path = Looks(**chosen), here(campaign)
+    looks, path = Looks(**options), here(campaign)
     file = campaign_file(path)
-    read = [("CAMPAIGN", file), ("CAMPAIGN", file.parent / CASE_FILE), *looks.read]
-    files.check_files({"--page": page, "--plan": plan}, read)
+    inputs = [("CAMPAIGN", file), ("CAMPAIGN", file.parent / CASE_FILE), *looks.read]
+    files.check_files({"--page": page, "--plan": plan}, inputs)
     files.tell_writers([path])
     if tolerances:
         show(tolerance_document(path, looks.options), as_json=as_json)
         return
-    with doing("reading") as told, engine(looks, jobs, scheduler) as executor:
-        found = examine(path, looks.options, executor, told)
-    report = gap_report(found)
+    with doing("reading") as progress, engine(looks, jobs, scheduler) as executor:
+        examination = examine(path, looks.options, executor, progress)
+    report = gap_report(examination)
     content = document(report)
     files.write_asked_page(content, page, ("gap", campaign, *looks.words()))
     if plan is not None:
-        _write_plan(found, Path(plan))
+        _write_plan(examination, Path(plan))
     show(content, as_json=as_json)
     if report.conclusion.adds and not as_json:
         say(pasted("gap", "add", campaign, *looks.words()))
-    files.tell_unchecked(_read_files(found, file.parent))
-    if files.tell_damaged(found.ready.damaged.items()):
+    files.tell_unchecked(_read_files(examination, file.parent))
+    if files.tell_damaged(examination.ready.damaged.items()):
         click.get_current_context().exit(1)
 
 
-def _read_files(found: "Examined", folder: Path) -> "Iterator[Path]":
-    every: tuple[Run | AtRest, ...] = (*found.campaign.runs, *found.campaign.at_rest)
-    for one in every:
-        path = one.recording_path(folder)
-        if one.name not in found.left_out and path.exists():
+def _read_files(examination: "Examined", folder: Path) -> "Iterator[Path]":
+    runs: tuple[Run | AtRest, ...] = (*examination.campaign.runs, *examination.campaign.at_rest)
+    for run in runs:
+        path = run.recording_path(folder)
+        if run.name not in examination.left_out and path.exists():
             yield path
 
 
-def _write_plan(found: "Examined", path: Path) -> None:
+def _write_plan(examination: "Examined", path: Path) -> None:
     from pmm.cli.screen import messages
     from pmm.gap.next_plan import RIG_FILE, plan_text
     from pmm.gap.report import PROPOSED
     from pmm.whole_file import write_whole
 
-    proposed = found.diagnosis.proposals[:PROPOSED]
+    proposed = examination.diagnosis.proposals[:PROPOSED]
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_whole(path, plan_text(f"{found.campaign.name}-next", proposed))
+    write_whole(path, plan_text(f"{examination.campaign.name}-next", proposed))
     messages().print(f"plan: {path}; put the rig's {RIG_FILE} beside it, then: pmm plan check")

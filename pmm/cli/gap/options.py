@@ -34,7 +34,7 @@ class Chosen:
     @property
     def read(self) -> list[tuple[str, Path]]:
         """Those files, each with the option that names it."""
-        return [("--effects", Path(one)) for one in self.files]
+        return [("--effects", Path(file)) for file in self.files]
 
     def check_alone(self, jobs: int | None, scheduler: str | None = None) -> None:
         """Refuse to share work that only this process can do.
@@ -70,7 +70,7 @@ class Looks(Chosen):
         """Return these options as the diagnosis takes them, the sensors' names apart."""
         from pmm.gap.examination import Options
 
-        names = tuple(one.strip() for one in (self.sensors or "").split(",") if one.strip())
+        names = tuple(name.strip() for name in (self.sensors or "").split(",") if name.strip())
         return Options(self.effects, self.without, names, self.hold_out)
 
     def words(self) -> Iterator[str]:
@@ -82,10 +82,10 @@ class Looks(Chosen):
             yield from ("--hold-out", value)
 
 
-def _listed(_: click.Context, __: click.Parameter, given: tuple[str, ...]) -> tuple[str, ...]:
+def _listed(_: click.Context, __: click.Parameter, texts: tuple[str, ...]) -> tuple[str, ...]:
     """Take names apart that stand between commas."""
-    names = [one for text in given for one in text.split(",")]
-    return tuple(one.strip() for one in names if one.strip())
+    names = [name for text in texts for name in text.split(",")]
+    return tuple(name.strip() for name in names if name.strip())
 
 
 CATALOGUE: Final = with_options(

@@ -25,7 +25,7 @@ def pendulum(
     page: str | None,
     plot: str | None,
     as_json: bool,
-    **chosen: Any,
+    **catalogue_options: Any,
 ) -> None:
     """Find what separates a free decay, a swing or a bifilar test from its simulation.
 
@@ -45,28 +45,28 @@ def pendulum(
     from pmm.gap.pendulum_document import document
     from pmm.gap.pendulum_examination import PendulumOptions, examine_pendulum
 
-    given, path = Chosen(**chosen), Path(file)
-    check_files({"--page": page}, [("FILE.toml", path), *given.read])
+    choice, path = Chosen(**catalogue_options), Path(file)
+    check_files({"--page": page}, [("FILE.toml", path), *choice.read])
     check_folder(plot, "--plot")
-    options = PendulumOptions(given.effects, given.without, most)
-    with doing("reading") as shown:
-        examined = examine_pendulum(path, options, shown)
-    told = document(path.stem, examined)
-    words = ("--most", str(most), *given.words())
-    show(told, as_json=as_json)
-    if conclusion_of(examined.diagnosis).adds and not as_json:
+    options = PendulumOptions(choice.effects, choice.without, most)
+    with doing("reading") as progress:
+        examination = examine_pendulum(path, options, progress)
+    content = document(path.stem, examination)
+    words = ("--most", str(most), *choice.words())
+    show(content, as_json=as_json)
+    if conclusion_of(examination.diagnosis).adds and not as_json:
         say("", pasted("gap", "add-pendulum", file, *words))
     if plot is not None:
-        _draw(told, Path(plot))
-    write_asked_page(told, page, ("gap", "pendulum", file, *words))
+        _draw(content, Path(plot))
+    write_asked_page(content, page, ("gap", "pendulum", file, *words))
 
 
-def _draw(told: "Document", folder: Path) -> None:
+def _draw(content: "Document", folder: Path) -> None:
     from pmm.cli.screen import messages
     from pmm.document.style import write_figure
     from pmm.gap.pendulum_document import RECORD
 
-    records = (one for one in told.figures if one.name.startswith(RECORD))
-    for at, one in enumerate(records, 1):
-        for path in write_figure(one.draw(), folder, f"gap-{at}", ("svg",)):
+    records = (figure for figure in content.figures if figure.name.startswith(RECORD))
+    for number, figure in enumerate(records, 1):
+        for path in write_figure(figure.draw(), folder, f"gap-{number}", ("svg",)):
             messages().print(str(path))

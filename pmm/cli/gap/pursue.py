@@ -62,7 +62,7 @@ def pursue(
     wait: float,
     jobs: int | None,
     as_json: bool,
-    **chosen: Any,
+    **options: Any,
 ) -> None:
     """Propose runs, take in their recordings and diagnose again, until one class is known.
 
@@ -92,7 +92,7 @@ def pursue(
     from pmm.sequential.execution import next_job
     from pmm.sequential.look import read_decisions
 
-    looks, path = Looks(**chosen), Path(folder)
+    looks, path = Looks(**options), Path(folder)
     campaign = pursued(path).campaign
     make = None if simulated is None else simulated_by(Path(simulated), campaign)
     answers, tell, appear = standard_input(), messages().print, _waiting(60.0 * wait)
@@ -128,8 +128,8 @@ def _examined(looks: Looks, path: Path, jobs: int | None) -> "Examined":
     from pmm.cli.screen import doing
     from pmm.gap.examination import examine
 
-    with doing("reading") as told, engine(looks, jobs) as executor:
-        return examine(path, looks.options, executor, told)
+    with doing("reading") as progress, engine(looks, jobs) as executor:
+        return examine(path, looks.options, executor, progress)
 
 
 def _waiting(seconds: float) -> "Callable[[], bool]":
@@ -139,10 +139,10 @@ def _waiting(seconds: float) -> "Callable[[], bool]":
     until = monotonic() + seconds
 
     def waited() -> bool:
-        left = until - monotonic()
-        if left <= 0.0:
+        remaining_s = until - monotonic()
+        if remaining_s <= 0.0:
             return False
-        sleep(min(_EVERY_S, left))
+        sleep(min(_EVERY_S, remaining_s))
         return True
 
     return waited
