@@ -22,13 +22,13 @@ def analyse(folder: Path = FOLDER) -> tuple[Assessment, Assessment]:
         recording = read_recording(path)
         series = series_from_recording(recording, recording.channel_names[0])
         runs.append(analyse_record(series, modes=2))
-    yaw = from_runs(runs, 0, what="yaw period").estimate
+    yaw = from_runs(runs, 0, subject="yaw period").estimate
     by_period = yaw_from_period(yaw, HALF_SPACING, LINE, exactly(9.81, "m/s2"))
     ratios = []
     for run in runs:
         slow, fast = run.fit.modes
         spread = run.fit.period_uncertainty_s(0) / fast.period_s
         ratios.append(Estimate.of(slow.period_s / fast.period_s, spread))
-    ratio = combine_runs(ratios, what="ratio").estimate
+    ratio = combine_runs(ratios, subject="ratio").estimate
     by_ratio = yaw_from_ratio(ratio, exactly(1.0), HALF_SPACING)
     return by_period, by_ratio

@@ -117,7 +117,7 @@ def test_intervals_cover_as_promised_and_are_no_wider_than_they_must() -> None:
             )
             ratio = a.period_s / b.period_s
             ratios.append(Estimate.of(ratio, ratio * u))
-        ratio = combine_runs(ratios, what="ratio").estimate
+        ratio = combine_runs(ratios, subject="ratio").estimate
         spacing = Estimate.of(D + spacing_u * rng.standard_normal(), spacing_u, "m")
         budget = linear_budget(
             "k", lambda ratio, d: ratio * d, {"ratio": ratio, "d": spacing}, unit="m"

@@ -35,7 +35,7 @@ def solved(matrix: FloatArray, values: FloatArray, covariance: FloatArray) -> Fl
 
 
 def fitted(values: UncertainValues) -> tuple[UncertainValues, Redundancy]:
-    return best_fit(LINE, values, what="line", results=("a_m", "b_m"), data=NAMES)
+    return best_fit(LINE, values, subject="line", results=("a_m", "b_m"), data=NAMES)
 
 
 def test_all_and_without_each_against_fits_made_anew() -> None:
@@ -95,7 +95,7 @@ def test_disagreement_widens_by_birge_and_agreement_by_nothing() -> None:
 
 def test_one_datum_too_many_tells_that_and_not_which() -> None:
     three = joint([Estimate.of(v, 0.1) for v in (1.0, 1.05, 2.0)])
-    _, agreement = best_fit(LINE[:3], three, what="line", results=("a", "b"), data=NAMES[:3])
+    _, agreement = best_fit(LINE[:3], three, subject="line", results=("a", "b"), data=NAMES[:3])
     assert not agreement.agree
     assert agreement.furthest == ()
     assert "cannot be told" in agreement.flags()[0].message
@@ -105,14 +105,14 @@ def test_two_that_only_check_each_other_are_both_named() -> None:
     """Without either, the other is no longer contradicted."""
     matrix = np.array([[1.0, 0.0]] * 4 + [[0.0, 1.0]] * 2)
     seen = joint([Estimate.of(v, 0.1) for v in (1.0, 1.1, 0.95, 1.05, 3.0, 5.0)])
-    _, agreement = best_fit(matrix, seen, what="pair", results=("a", "b"), data=NAMES[:6])
+    _, agreement = best_fit(matrix, seen, subject="pair", results=("a", "b"), data=NAMES[:6])
     assert set(agreement.stands_out) == {"datum 4", "datum 5"}
 
 
 def test_a_datum_that_nothing_checks_departs_from_nothing() -> None:
     matrix = np.array([[1.0, 0.0]] * 3 + [[0.0, 1.0]])
     seen = joint([Estimate.of(v, 0.1) for v in (1.0, 1.1, 0.95, 77.0)])
-    _, agreement = best_fit(matrix, seen, what="lonely", results=("a", "b"), data=NAMES[:4])
+    _, agreement = best_fit(matrix, seen, subject="lonely", results=("a", "b"), data=NAMES[:4])
     assert agreement.departure[3] == 0.0
     assert np.isnan(agreement.without[3]).all()
     assert agreement.agree
@@ -126,7 +126,9 @@ def test_uncertainties_from_few_repeats_are_no_certainty() -> None:
         spread = np.sqrt(generator.chisquare(4.0, 5) / 4.0)
         values = generator.standard_normal(5)
         seen = joint([Estimate.of(v, s, "1", 4.0) for v, s in zip(values, spread, strict=True)])
-        _, agreement = best_fit(np.ones((5, 1)), seen, what="mean", results=("m",), data=NAMES[:5])
+        _, agreement = best_fit(
+            np.ones((5, 1)), seen, subject="mean", results=("m",), data=NAMES[:5]
+        )
         named += not agreement.agree
     assert named <= 400 * 2 * CHANCE
 
@@ -135,7 +137,7 @@ def test_own_scatter_against_the_students_t_of_fits_made_anew() -> None:
     generator = np.random.default_rng(5)
     values = LINE @ [1.0, -2.0] + 0.1 * generator.standard_normal(7)
     values[5] += 2.0
-    agreement = scattered_fit(LINE, values, what="line", results=("a", "b"), data=NAMES)
+    agreement = scattered_fit(LINE, values, subject="line", results=("a", "b"), data=NAMES)
     for k in range(7):
         rest = np.arange(7) != k
         line, (square,), *_ = np.linalg.lstsq(LINE[rest], values[rest], rcond=None)

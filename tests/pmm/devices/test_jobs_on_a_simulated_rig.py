@@ -173,7 +173,7 @@ def test_no_axis_moves_while_the_shaft_turns() -> None:
 def test_a_speed_beyond_the_shafts_limits_is_refused(frequency_hz: float) -> None:
     refused = pytest.raises(LimitError, match=r"outside 0 to 2 Hz \(and above 0\); nothing")
     with in_process({"shaft": WHOLE["shaft"]}) as (rig, _), refused:
-        check_speed(rig.shaft, frequency_hz, told=NOTHING_MOVED)
+        check_speed(rig.shaft, frequency_hz, remark=NOTHING_MOVED)
 
 
 @pytest.mark.parametrize(

@@ -45,11 +45,11 @@ def test_odds_tell_laws_apart(other: DampingLaw, apart: bool) -> None:
 
 @pytest.mark.parametrize("share", [-0.2, 0.0, 0.5])
 def test_a_cause_that_is_not_told_is_the_likeliest(share: float) -> None:
-    said = cause_statement("line_twist", share, told=False)
+    said = cause_statement("line_twist", share, certain=False)
     assert said.startswith("the cause cannot be told; likeliest cause: line_twist")
     assert f"accounts for {100.0 * max(share, 0.0):.0f} %" in said
 
 
 def test_a_cause_that_is_told_is_named() -> None:
-    said = cause_statement("line_twist", 0.93, told=True)
+    said = cause_statement("line_twist", 0.93, certain=True)
     assert said.startswith("the cause: line_twist, which predicts 93 %")
