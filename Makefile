@@ -69,8 +69,10 @@ bench: $(VENV)/.bench
 	$(PYTEST) -m hypothesis --hypothesis-profile=full
 	$(BIN)/python -m benchmarks
 
-# Scored once for each commit: the commit's hash is the seed. Goes on where it was broken off.
+# First the tests of what makes and scores the campaigns. Scored once for each commit: the commit's
+# hash is the seed. Goes on where it was broken off.
 sealed: $(VENV)/.sealed
+	$(PYTEST) -m "" tests/sealed
 	$(BIN)/python -m tests.sealed whole --commit $$(git rev-parse HEAD) --output board --left-out 100
 
 # First the tests that take long. Of a commit a step is done once: goes on where it was broken off.

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Final
 
 HOUSE: Final = Path(__file__).parents[1]
-SEALED: Final = HOUSE / "tests" / "sealed"
 
 
 def march_and_balance() -> None:
@@ -42,21 +41,10 @@ def swing() -> None:
     simulate_swing(seed=1, duration_s=1.0)
 
 
-def sealed() -> None:
-    """Run the rig of the sealed campaigns."""
-    from dataclasses import replace
-
-    from tests.sealed.closed_forms import HEAVE, RIG, still
-    from tests.sealed.generator.mechanism import happen
-
-    happen(still(), replace(HEAVE, periods=1), RIG, settling=0.5)
-
-
 # What compiles, and which loops: one of which is kept, all are.
 LOOPS: Final[Mapping[Callable[[], None], str]] = {
     march_and_balance: "march.march",
     swing: "kernel.run",
-    sealed: "integrate.integrate",
 }
 
 
@@ -64,7 +52,7 @@ def _are_kept(loops: str) -> bool:
     from sim.solve.compilation import cache_folder
 
     chosen = os.environ.get("NUMBA_CACHE_DIR", "")
-    return any(any(folder.rglob(f"{loops}-*.nbi")) for folder in (cache_folder(chosen), SEALED))
+    return any(cache_folder(chosen).rglob(f"{loops}-*.nbi"))
 
 
 def compile_loops() -> None:

@@ -102,7 +102,7 @@ def covering(data: Path, root: Path, file: str) -> Covering:
     read.read()
     tests = read.contexts_by_lineno(str(root / file))
     return Covering(
-        {line: [one.partition("|")[0] for one in names] for line, names in tests.items()}
+        {line: [name.rpartition("|")[0] for name in names] for line, names in tests.items()}
     )
 
 

@@ -19,6 +19,8 @@ from tests.sealed.generator.mechanism import happen, set_run
 from tests.sealed.generator.parameters import FloatArray, P
 from tests.sealed.generator.rig import Run
 
+pytestmark = pytest.mark.slow  # the time loop takes 20 s to compile
+
 STRUTS = [
     Arrangement(*one)
     for one in product((Joint.SLIDES_ON_MODEL, Joint.SLIDES_ON_RIG), Pivot, Gauges, DriftBy)
@@ -86,7 +88,6 @@ def _agree(plane: Plane, one: Arrangement, run: Run, drift_rad: float) -> None:
                   ).max() > 0.3  # fmt: skip
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("one", STRUTS, ids=lambda a: "-".join(vars(a).values()))
 def test_yaw_at_any_drift(one: Arrangement) -> None:
     for drift_rad in (0.0, 0.15):

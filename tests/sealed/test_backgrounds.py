@@ -7,8 +7,9 @@ from tests.sealed.generator.case import make
 from tests.sealed.generator.effect import heavier
 from tests.sealed.generator.parameters import P
 
+pytestmark = pytest.mark.slow  # the time loop takes 20 s to compile
 
-@pytest.mark.slow
+
 @pytest.mark.parametrize("index", range(1, 13))
 def test_noise_free_null_is_the_nominal_within_a_sigma(index: int) -> None:
     case = make(11, index, null=True)

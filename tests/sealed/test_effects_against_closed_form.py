@@ -24,6 +24,8 @@ from tests.sealed.closed_forms import (
 from tests.sealed.generator.catalogue import BY_NAME
 from tests.sealed.generator.parameters import P
 
+pytestmark = pytest.mark.slow  # the time loop takes 20 s to compile
+
 PI = np.pi
 W, A = OMEGA, AMPLITUDE
 

@@ -36,6 +36,7 @@ def test_rest_stays_at_rest() -> None:
     assert filtered(level, butterworth(4, 7.0), 200.0) == pytest.approx(level)
 
 
+@pytest.mark.slow  # the time loop takes 20 s to compile
 def test_every_form_of_a_lag_delays_by_its_size() -> None:
     size = 4e-3
     assert len(LAGS) == 3

@@ -16,10 +16,11 @@ from tests.sealed.generator.sensing import record, sense
 from tests.sealed.generator.wider import working
 from tests.sealed.generator.worlds import world
 
+pytestmark = pytest.mark.slow  # the time loop takes 20 s to compile
+
 KNOWN = {one.effect.name: one for one in tolerated(world("C"), np.random.default_rng(1))}
 
 
-@pytest.mark.slow
 def test_each_is_within_two_deviations_and_seen() -> None:
     seen, cases = 0, [make(3, index, null=True, where="C") for index in (1, 2)]
     for case in cases:

@@ -9,6 +9,8 @@ from tests.sealed.closed_forms import HEAVE, RIG, Phasors, impedance, phasors, s
 from tests.sealed.generator.parameters import FloatArray, P
 from tests.sealed.generator.rig import Run
 
+pytestmark = pytest.mark.slow  # the time loop takes 20 s to compile
+
 LEVER = 0.5
 SMALL_M = 3e-6  # angles whose squares are nothing
 

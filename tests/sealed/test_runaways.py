@@ -10,6 +10,8 @@ from tests.sealed.generator.mechanism import happen, set_run
 from tests.sealed.generator.parameters import P
 from tests.sealed.generator.sensing import sense
 
+pytestmark = pytest.mark.slow  # the time loop takes 20 s to compile
+
 
 @pytest.mark.parametrize("creep", [1.0, 1e6])
 def test_a_belt_that_creeps_too_fast_stalls_without_an_overflow(creep: float) -> None:

@@ -49,6 +49,7 @@ def test_damping_over_frequency_gives_the_kernel_back() -> None:
         assert back == pytest.approx(damped_wave(rate, turn, np.array(t)), abs=1e-3)
 
 
+@pytest.mark.slow  # the time loop takes 20 s to compile
 @pytest.mark.parametrize("frequency", [0.5, 0.8, 1.1])
 def test_a_run_has_the_impedance_of_its_frequency(frequency: float) -> None:
     p = remembering(still(), RUNS, world("B"), np.random.default_rng(3))
