@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis.recording import Recording
+from analysis.recording import Recording, sample_numbers
 from hardware.description.channels import Channel
 from hardware.description.errors import DataError
 
@@ -31,6 +31,14 @@ def test_sample_numbers_are_the_inverse_of_times(numbers: list[float]) -> None:
     recording = example()
     times = recording.start_s + np.array(numbers) / recording.sample_rate_hz
     assert recording.sample_number(times) == pytest.approx(numbers, abs=1e-9)
+
+
+def test_beyond_uneven_stamps_the_numbers_run_on_at_the_mean_rate() -> None:
+    stamps_s = np.array([1.0, 1.2, 1.3, 2.0])  # 3 intervals in a second
+    times_s = [0.5, 1.0, 1.1, 1.65, 2.0, 4.0]
+    expected = [-1.5, 0.0, 0.5, 2.5, 3.0, 9.0]
+    found = sample_numbers(np.array(times_s), 1.0, 3.0, stamps_s)
+    assert found == pytest.approx(expected, abs=1e-12)
 
 
 def test_values_by_name() -> None:

@@ -83,6 +83,13 @@ def test_a_transient_is_flagged_in_its_channel(periods: int, size: float) -> Non
     assert [(flag.code, flag.channel) for flag in found] == [("transient", "force_1")]
 
 
+def test_a_trend_counts_beside_noise_as_if_it_were_no_slow_noise_itself() -> None:
+    """One that goes through zero: for slow noise its own interval would hide it."""
+    growing = (0.02 * (TIME - 23.0) + 0.12) * MOTION
+    values = np.stack((MOTION, growing)) + noise(1e-3, 3, 2)
+    assert [(flag.code, flag.channel) for flag in flags(values, 40)] == [("transient", "force_1")]
+
+
 def test_a_transient_of_the_phase_is_flagged() -> None:
     turning = np.sin(2.0 * np.pi * TIME + 0.01 * TIME)
     assert codes(turning, 10) == ["transient"]

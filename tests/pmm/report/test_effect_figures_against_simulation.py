@@ -58,7 +58,11 @@ def test_difference_of_the_figure_is_the_effect() -> None:
 
 
 def test_nominal_run_alone_has_one_column() -> None:
-    figure = chain_figure(stretch(RIG), None, PERIOD_S, "run")
+    nominal = stretch(RIG)
+    figure = chain_figure(nominal, None, PERIOD_S, "run")
+    inside = (nominal.time_s >= 0.0) & (nominal.time_s <= 2.0 * PERIOD_S)
+    drawn = [axes.get_lines()[0] for axes in figure.axes]
+    assert all(np.array_equal(line.get_xdata(), nominal.time_s[inside]) for line in drawn)
     assert len({axes.get_subplotspec().colspan.start for axes in figure.axes}) == 1  # type: ignore[union-attr]
 
 

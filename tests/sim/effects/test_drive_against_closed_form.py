@@ -129,6 +129,15 @@ def test_droop_and_ripple_make_one_motor_in_either_order() -> None:
     assert np.allclose(first.spectra["force_aft"], second.spectra["force_aft"], rtol=1e-6)
 
 
+def test_a_motor_that_yields_already_yields_by_the_sum() -> None:
+    rig, set_point = vertical_rig().ideal(), SetPoint(0.7, 0.03)
+    twice = SpeedDroop(0.02).change(SpeedDroop(0.01).change(rig, set_point), set_point)
+    once = SpeedDroop(0.03).change(rig, set_point)
+    lost_hz = 0.7 - steady_run(twice, set_point).period.frequency_hz
+    assert lost_hz == pytest.approx(0.7 - steady_run(once, set_point).period.frequency_hz, rel=1e-6)
+    assert lost_hz > 0.0
+
+
 def test_belt_ripple_has_no_part_in_the_harmonics() -> None:
     assert np.isnan(
         at_small_angles(SpeedRippleEffect(0.005, 2.5), vertical_rig().ideal(), SET_POINTS[:2])
