@@ -1,8 +1,9 @@
 """Draw mutations over all four packages, run the tests that cover each, list the survivors.
 
-``make coverage`` says which tests run which line (``.coverage``); without it, a mutation is tried
-on the test files that import its module, then on those that import it through another, as far as
-patience goes. The draw is seeded: the same sources give the same mutations, each kind as often.
+``make coverage`` says which tests run which line (``.coverage``). Where it names none, as of what
+is compiled, or there was no such run, a mutation is tried on the test files that import its module,
+then on those that import it through another, as far as patience goes. The draw is seeded: the same
+sources give the same mutations, each kind as often.
 ``--before`` takes a checkout of an earlier state: then only mutations are drawn that stand once in
 both, and what survives now is tried there too. It goes on where it was broken off, also on later
 sources; a line of the results is one mutation.
@@ -82,11 +83,11 @@ class State:
 
     def judge(self, file: str, one: Mutation) -> Outcome:
         """Return what becomes of a mutation."""
+        covered: list[str] = []
         if self.coverage.exists():
-            return self.house.judge(
-                file, one, [covering(self.coverage, self.root, file).of(one.line)]
-            )
-        return self.house.judge(file, one, rings(self.root, self.packages, file))
+            covered = covering(self.coverage, self.root, file).of(one.line)
+        tests = [covered] if covered else rings(self.root, self.packages, file)
+        return self.house.judge(file, one, tests)
 
     def again(self, mutation: Mutation) -> Outcome:
         """Return what becomes here of a mutation of another state."""

@@ -103,3 +103,16 @@ def test_a_run_without_repeats_stays_as_it_is() -> None:
     known = repeatability(one)
     assert with_repeats(one[0], known) is one[0]
     assert known.kinds == ()
+
+
+@pytest.mark.parametrize(
+    "other",
+    [{"frequency_hz": 0.82}, {"speed_m_s": 0.1}, {"drift_rad": 0.01}],
+    ids=lambda other: next(iter(other)),
+)
+def test_runs_at_another_set_point_are_no_repeats(other: dict[str, float]) -> None:
+    cycles = repeats(3, 0.01, np.random.default_rng(0))
+    (kind,) = repeatability(cycles).kinds
+    assert len(kind.runs) == 3
+    (kind,) = repeatability([*cycles[:2], replace(cycles[2], **other)]).kinds  # type: ignore[arg-type]
+    assert len(kind.runs) == 2
