@@ -131,10 +131,12 @@ def _time(
         return None, named
     if named is None:
         names = ", ".join(header.text or header.generic for header in headers)
+        first = headers[0]
+        example = first.name if first.unit else f"{first.name}:s"
         raise DataError(
             f"{where}: no column is named as time (columns: {names}); name it in the column map "
-            f"(time={headers[0].name}:ms), or give the sample rate; where these are no headers, "
-            "say skip_rows (lines before them)"
+            f"(time={example}; with its unit, s or ms, where the header has none), or give the "
+            "sample rate; where these are no headers, say skip_rows (lines before them)"
         )
     return named, named
 

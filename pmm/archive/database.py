@@ -9,6 +9,7 @@ from typing import Final
 from hardware.description.errors import ConfigurationError
 
 VERSION: Final = 2
+_PATIENCE_S: Final = 60.0  # while another process writes
 _TABLES: Final = """
 CREATE TABLE campaigns (
     id INTEGER PRIMARY KEY, folder TEXT NOT NULL UNIQUE, campaign TEXT NOT NULL,
@@ -67,8 +68,8 @@ def open_archive(path: Path, *, create: bool = False) -> Iterator[sqlite3.Connec
     if not path.exists() and not create:
         raise ConfigurationError(f"{path}: no archive; make one with: pmm archive add FOLDER...")
     try:
-        with closing(sqlite3.connect(path)) as connection:
-            _prepare(connection, path)
+        with closing(sqlite3.connect(path, timeout=_PATIENCE_S)) as connection:
+            _prepare(connection, path, create=create)
             yield connection
     except sqlite3.Error as error:
         raise ConfigurationError(
@@ -77,12 +78,16 @@ def open_archive(path: Path, *, create: bool = False) -> Iterator[sqlite3.Connec
         ) from error
 
 
-def _prepare(connection: sqlite3.Connection, path: Path) -> None:
+def _prepare(connection: sqlite3.Connection, path: Path, *, create: bool) -> None:
     connection.row_factory = sqlite3.Row
     connection.execute("PRAGMA foreign_keys = ON")
     (version,) = connection.execute("PRAGMA user_version").fetchone()
     (tables,) = connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
     if version == 0 and tables == 0:
+        if not create:
+            raise ConfigurationError(
+                f"{path}: an empty file and no archive; make one with: pmm archive add FOLDER..."
+            )
         connection.executescript(f"BEGIN; {_TABLES} PRAGMA user_version = {VERSION}; COMMIT;")
     elif version != VERSION:
         raise ConfigurationError(

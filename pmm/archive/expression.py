@@ -52,13 +52,17 @@ class _Token(NamedTuple):
     place: int
 
 
-def read_condition(text: str, columns: Mapping[str, KnownColumn]) -> Condition:
+def read_condition(
+    text: str, columns: Mapping[str, KnownColumn], elsewhere: Mapping[str, str] | None = None
+) -> Condition:
     """Read an expression.
 
     Parameters
     ----------
     columns
         What may be asked for, by name.
+    elsewhere
+        How to ask for other columns, by name.
 
     Raises
     ------
@@ -67,7 +71,7 @@ def read_condition(text: str, columns: Mapping[str, KnownColumn]) -> Condition:
     """
     if len(text) > _LONGEST or not text.isprintable():
         raise ConfigurationError(f"an expression has up to {_LONGEST} printable letters")
-    reader = _Reader(text, columns)
+    reader = _Reader(text, columns, elsewhere or {})
     condition = reader.expression(0)
     if reader.token.kind != "end":
         raise reader.error("'and', 'or' or the end")
@@ -96,8 +100,10 @@ def _tokens(text: str) -> list[_Token]:
 class _Reader:
     """Goes through the tokens once, a function for each rule."""
 
-    def __init__(self, text: str, columns: Mapping[str, KnownColumn]) -> None:
-        self.text, self.columns = text, columns
+    def __init__(
+        self, text: str, columns: Mapping[str, KnownColumn], elsewhere: Mapping[str, str]
+    ) -> None:
+        self.text, self.columns, self.elsewhere = text, columns, elsewhere
         self.tokens, self.at = _tokens(text), 0
 
     @property
@@ -154,6 +160,8 @@ class _Reader:
 
     def _comparison(self) -> Condition:
         name = self.take("word", "a column").text
+        if name not in self.columns and name in self.elsewhere:
+            raise ConfigurationError(f"no column {name!r} here; {self.elsewhere[name]}")
         if name not in self.columns:
             raise ConfigurationError(f"no column {name!r}; {_nearest(name, list(self.columns))}")
         column = self.columns[name]

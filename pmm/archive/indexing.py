@@ -22,7 +22,7 @@ class AddedFolder:
     Attributes
     ----------
     state
-        ``"new"``, ``"changed"`` or ``"as before"``.
+        ``"new"``, ``"changed"``, ``"as before"`` or ``"moved"``.
     computed
         What was computed now: ``"analysis"``, ``"diagnosis"``, both or none.
     refused
@@ -138,16 +138,12 @@ def _taken_in(
     folder = here(folder).resolve()
     last_row = _row(connection, folder)
     contents = read_contents(folder, {} if last_row is None else stamps(connection, last_row["id"]))
-    is_same = last_row is not None and last_row["sha256"] == contents.sha256
     with connection:
-        if last_row is not None and not is_same:
-            connection.execute("DELETE FROM campaigns WHERE id = ?", (last_row["id"],))
-        if not is_same:
-            _insert(connection, contents, now_utc)
-    row = _row(connection, folder)
-    assert row is not None  # noqa: S101 - it was written above
-    key: int = row["id"]
-    with connection:
+        connection.execute("BEGIN IMMEDIATE")  # others may add the same folder meanwhile
+        state = _filed(connection, contents, now_utc)
+        row = _row(connection, folder)
+        assert row is not None  # noqa: S101 - it was written above
+        key: int = row["id"]
         connection.execute("UPDATE campaigns SET seen_utc = ? WHERE id = ?", (now_utc, key))
         _set_files(connection, key, contents)
         _set_notes(connection, key, contents.notes)
@@ -155,9 +151,42 @@ def _taken_in(
         None if row["analysed"] else analyses.analyse,
         None if row["diagnosed"] else analyses.diagnose,
     )
-    state = "as before" if is_same else "new" if last_row is None else "changed"
     added_folder = AddedFolder(folder, contents.campaign.name, state, len(contents.records), (), ())
     return FolderTask(added_folder, key, contents.stamps, open_analyses)
+
+
+def _filed(connection: sqlite3.Connection, contents: Contents, now_utc: str) -> str:
+    """Give a folder a row for what it holds now; return its state.
+
+    One that holds what a folder held that is gone is that folder, moved.
+
+    Raises
+    ------
+    DataError
+        If it holds what another one holds: a copy is no new measurement.
+    """
+    row = _row(connection, contents.folder)
+    if row is not None and row["sha256"] == contents.sha256:
+        return "as before"
+    if row is not None:
+        connection.execute("DELETE FROM campaigns WHERE id = ?", (row["id"],))
+        _insert(connection, contents, now_utc)
+        return "changed"
+    alike = connection.execute(
+        "SELECT id, folder FROM campaigns WHERE sha256 = ? ORDER BY id", (contents.sha256,)
+    )
+    for key, place in alike:
+        if url_of(place) is not None or Path(place).exists():
+            raise DataError(
+                f"{contents.folder}: a copy of {place}, which the archive has: the same files are "
+                "no new measurement"
+            )
+        connection.execute(
+            "UPDATE campaigns SET folder = ? WHERE id = ?", (str(contents.folder), key)
+        )
+        return "moved"
+    _insert(connection, contents, now_utc)
+    return "new"
 
 
 def _row(connection: sqlite3.Connection, folder: Path) -> sqlite3.Row | None:
@@ -230,9 +259,10 @@ def note_run(connection: sqlite3.Connection, run: Mapping[str, Any], note: NoteL
         raise ConfigurationError(f"{url}: what lies elsewhere is only read; write the note there")
     if not folder.is_dir():
         raise DataError(f"{folder}: the folder vanished; add it from where it is now")
-    write_note(folder, note)
     path = folder / NOTES_FILE
     with connection:
+        connection.execute("BEGIN IMMEDIATE")  # an archive that cannot be written gets no note
+        write_note(folder, note)
         _set_notes(connection, key, read_notes(folder))
         connection.execute(
             "INSERT OR REPLACE INTO files VALUES (?, ?, ?, ?, ?)",
@@ -260,7 +290,7 @@ def _kept(connection: sqlite3.Connection, outcome: Computed) -> AddedFolder:
             computed.append("analysis")
         if outcome.verdict is not None:
             row = (task.key, *astuple(outcome.verdict))
-            connection.execute("INSERT INTO verdicts VALUES (?, ?, ?, ?)", row)
+            connection.execute("INSERT OR REPLACE INTO verdicts VALUES (?, ?, ?, ?)", row)
             connection.execute("UPDATE campaigns SET diagnosed = 1 WHERE id = ?", (task.key,))
             computed.append("diagnosis")
     if outcome.error is not None:
@@ -271,6 +301,8 @@ def _kept(connection: sqlite3.Connection, outcome: Computed) -> AddedFolder:
 
 def _write(connection: sqlite3.Connection, key: int, result: Analysed) -> None:
     ids = dict(connection.execute("SELECT run, id FROM runs WHERE campaign = ?", (key,)))
+    for table in ("harmonics", "coefficients", "refusals"):  # others may have computed them too
+        connection.execute(f"DELETE FROM {table} WHERE campaign = ?", (key,))  # noqa: S608
     connection.executemany(
         "INSERT INTO harmonics VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
         _harmonic_rows(key, ids, result.harmonics),

@@ -60,6 +60,12 @@ COEFFICIENT_COLUMNS: Final = {
         for name in ("speed_m_s", "frequency_hz", "value", "standard_uncertainty", "half_width")
     },
 }
+# How to ask for a column that the rows in question do not have.
+_ELSEWHERE: Final = {
+    **dict.fromkeys(COEFFICIENT_COLUMNS, "coefficients have it: --coefficients"),
+    **dict.fromkeys(HARMONIC_COLUMNS, "a channel's harmonics have it: --channel NAME"),
+    "unit": "harmonics and coefficients have it: --channel NAME or --coefficients",
+}
 # Of tables whose rows have a campaign.
 _WITH_CAMPAIGN: Final = (
     "JOIN campaigns ON campaigns.id = {0}.campaign "
@@ -119,11 +125,11 @@ def find_runs(
         As :func:`pmm.archive.expression.read_condition`; or if no run has the channel.
     """
     columns = RUN_COLUMNS if channel is None else RUN_COLUMNS | HARMONIC_COLUMNS
-    condition = read_condition(expression, columns)
+    condition = read_condition(expression, columns, _ELSEWHERE)
     if channel is None:
         sql = f"{_select(columns)} FROM {_RUNS} WHERE {condition.sql}{_IN_ORDER}"
         return rows_of(connection, sql, condition.parameters)
-    _check_channel(connection, channel)
+    _check_channel(connection, channel, order)
     sql = (
         f"{_select(columns)} FROM {_HARMONICS} "
         f"WHERE harmonics.channel = ? AND harmonics.ord = ? AND {condition.sql}"
@@ -152,8 +158,13 @@ def find_coefficients(connection: sqlite3.Connection, expression: str) -> list[R
     return rows
 
 
-def _check_channel(connection: sqlite3.Connection, channel: str) -> None:
-    if not rows_of(connection, "SELECT 1 FROM harmonics WHERE channel = ? LIMIT 1", (channel,)):
+def _check_channel(connection: sqlite3.Connection, channel: str, order: int) -> None:
+    where = "SELECT DISTINCT ord FROM harmonics WHERE channel = ? ORDER BY ord"
+    orders = [row["ord"] for row in rows_of(connection, where, (channel,))]
+    if orders and order not in orders:
+        there = ", ".join(map(str, orders))
+        raise ConfigurationError(f"no harmonic {order} of {channel}; there are: {there}")
+    if not orders:
         rows = rows_of(connection, "SELECT DISTINCT channel FROM harmonics")
         hint = what_is_there("channels", channel, [row["channel"] for row in rows])
         raise ConfigurationError(f"no channel {channel!r}; {hint}")
@@ -190,12 +201,18 @@ def the_run(connection: sqlite3.Connection, name: str, campaign: str | None) -> 
     if campaign is not None:
         folder = str(here(campaign).resolve())
         rows = [row for row in rows if campaign == row["campaign"] or folder == row["folder"]]
+    others = [] if campaign is None else connection.execute(
+        "SELECT DISTINCT campaigns.campaign FROM runs JOIN campaigns "
+        "ON campaigns.id = runs.campaign WHERE run = ? ORDER BY 1", (name,)
+    ).fetchall()  # fmt: skip
+    if not rows and others:
+        there = ", ".join(row[0] for row in others)
+        raise ConfigurationError(f"no run {name!r} of campaign {campaign!r}, but of: {there}")
     if not rows:
         names = [row["run"] for row in rows_of(connection, "SELECT DISTINCT run FROM runs")]
         near = get_close_matches(name, names, n=1, cutoff=0.4)
         hint = f"did you mean {near[0]!r}?" if near else "pmm archive find lists them"
-        campaign_text = "" if campaign is None else f" of campaign {campaign!r}"
-        raise ConfigurationError(f"no run {name!r}{campaign_text}; {hint}")
+        raise ConfigurationError(f"no run {name!r}; {hint}")
     if len(rows) > 1:
         folders = ", ".join(row["folder"] for row in rows)
         raise ConfigurationError(f"several runs {name!r}; say which with --campaign: {folders}")

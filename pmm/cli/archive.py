@@ -108,12 +108,12 @@ def list_campaigns(file: str, as_json: bool) -> None:
 @archive.command()
 @click.argument("expression", metavar="EXPR")
 @click.option("--channel", metavar="NAME", help="Show a harmonic of this channel with each run.")
-@click.option("--order", type=click.IntRange(min=0), default=1, show_default=True,
+@click.option("--order", type=click.IntRange(min=0), show_default="1",
               help="Of that harmonic; 0 is the mean.")  # fmt: skip
 @click.option("--coefficients", is_flag=True, help="Find coefficients instead of runs.")
 @FILE
 @JSON
-def find(expression: str, channel: str | None, order: int, coefficients: bool, file: str,
+def find(expression: str, channel: str | None, order: int | None, coefficients: bool, file: str,
          as_json: bool) -> None:  # fmt: skip
     """Find the runs, or the coefficients, that fulfil a condition.
 
@@ -138,6 +138,9 @@ def find(expression: str, channel: str | None, order: int, coefficients: bool, f
             "--channel and --coefficients: runs have channels, campaigns have coefficients; "
             "ask for one of both"
         )
+    if order is not None and channel is None:
+        raise ConfigurationError("--order: of which channel? Say it with --channel NAME")
+    order = 1 if order is None else order
     with open_archive(Path(file)) as connection:
         if coefficients:
             coefficient_rows = find_coefficients(connection, expression)

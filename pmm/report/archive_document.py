@@ -73,7 +73,11 @@ def added_document(added: tuple[AddedFolder, ...], archive: str) -> Document:
         for text in folder.refused
     ]
     return _document(
-        archive, "folders added", Table("Folders", columns, added, "added"), Notes(refused)
+        archive,
+        "folders added",
+        Table("Folders", columns, added, "added"),
+        Notes(refused),
+        Text([] if added else ["no folder was added"]),
     )
 
 

@@ -325,6 +325,8 @@ def test_bad_requests_are_said(copy: Path, tmp_path: Path) -> None:
     assert "no folder with a campaign.toml" in done.stderr
     assert "march" in done.stdout
     shutil.copytree(copy / "march", copy / "again")
+    with (copy / "again" / "campaign.toml").open("a", encoding="utf-8") as text_file:
+        text_file.write("# of another week\n")
     told("add", copy / "again", "--archive", file)
     told("add", copy / "again", "--archive", copy / "not" / "yet" / "there.sqlite")
     done = job("show", "one-0.6-20", "--archive", file, status=2)
