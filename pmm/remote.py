@@ -39,11 +39,16 @@ def here(place: str | Path) -> Path:
     target = _copies() / protocol / rest
     try:
         files = _files(system, location)
+        if not files:
+            system.info(location)  # it says why
         _check_names([rest, *files])
         copies = {_below(target, location, name): info for name, info in files.items()}
         _bring(system, copies)
     except Exception as error:  # each protocol's package raises its own
-        raise DataError(f"{url}: cannot be read: {error}") from error
+        reason = error.__cause__ or error
+        if not isinstance(reason, FileNotFoundError):
+            raise DataError(f"{url}: cannot be read: {reason}") from error
+        files, copies = {}, {}
     _forget(target, copies)
     if not files:
         raise ConfigurationError(f"{url}: no such file or folder")

@@ -26,6 +26,9 @@ class _Finite(click.FloatRange):
     def __init__(self, *, positive: bool = True) -> None:
         super().__init__(min=0.0 if positive else None, min_open=positive)
 
+    def _describe_range(self) -> str:
+        return "" if self.min is None else super()._describe_range()
+
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Return the number."""
         number = super().convert(value, param, ctx)

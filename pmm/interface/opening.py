@@ -61,6 +61,10 @@ def _kind(path: Path) -> RecordKind:
             table = tomllib.load(file)
         except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
             raise ConfigurationError(f"{path}: {error}") from None
+    if "channels" in table:
+        raise ConfigurationError(
+            f"{path}: says how the columns of a recording are read, and is none; open the recording"
+        )
     kinds = (kind for key, kind in _TELLING.items() if key in table)
     return next(kinds, RecordKind.PENDULUM)
 

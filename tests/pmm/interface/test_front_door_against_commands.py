@@ -180,6 +180,8 @@ def test_what_a_path_is_not_is_said(tmp_path: Path) -> None:
         pmm.open(tmp_path / "nothing")
     with pytest.raises(ConfigurationError, match=r"a folder without a campaign\.toml"):
         pmm.open(tmp_path)
+    with pytest.raises(ConfigurationError, match=r"heave\.toml: says how the columns of a record"):
+        pmm.open(EXAMPLES / "recordings" / "heave.toml")
     (tmp_path / "broken.toml").write_text("name = ")
     with pytest.raises(ConfigurationError, match=r"broken\.toml"):
         pmm.open(tmp_path / "broken.toml")
