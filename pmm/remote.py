@@ -39,9 +39,9 @@ def here(place: str | Path) -> Path:
     target = _copies() / protocol / rest
     try:
         files = _files(system, location)
+        _check_names([rest, *files])
         if not files:
             system.info(location)  # it says why
-        _check_names([rest, *files])
         copies = {_below(target, location, name): info for name, info in files.items()}
         _bring(system, copies)
     except Exception as error:  # each protocol's package raises its own
