@@ -14,7 +14,7 @@ from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from pmm.archive.database import open_archive
 from pmm.archive.indexing import add_folder
 from pmm.archive.queries import campaigns, find_coefficients, find_runs
-from pmm.archive.results import Analysed, Analyses
+from pmm.archive.results import AnalysedCampaign, Analyses
 from pmm.archive.trends import coefficient_trends, repeat_trends
 from pmm.cli.archive_analyses import analysed_folder
 
@@ -87,8 +87,8 @@ def _copy(made: Path, folder: Path, number: int) -> Path:
     return folder
 
 
-def _scattered(found: Analysed) -> Analyses:
-    def analyse(folder: Path) -> Analysed:
+def _scattered(found: AnalysedCampaign) -> Analyses:
+    def analyse(folder: Path) -> AnalysedCampaign:
         factor = 1.0 + 0.01 * ((int(folder.name) * 7919) % 101 - 50) / 50.0
         coefficients = tuple(replace(one, value=one.value * factor) for one in found.coefficients)
         return replace(found, coefficients=coefficients)

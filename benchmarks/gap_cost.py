@@ -54,7 +54,7 @@ def _diagnosed(
     folder: Path, known: Mapping[str, type[Effect]], executor: Executor | None = None
 ) -> Diagnosis:
     prepared = prepare(folder, dict(known))
-    return diagnose(prepared.there.rig, prepared.fitted, prepared.settings, executor)
+    return diagnose(prepared.recentred.rig, prepared.fitted, prepared.settings, executor)
 
 
 def _known(quick: bool) -> Mapping[str, type[Effect]]:

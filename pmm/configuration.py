@@ -102,7 +102,7 @@ def validate(
             if entry["type"] == "unexpected_keyword_argument":
                 table_name = next((key for key in place if isinstance(key, str)), "")
                 extra = extra_keys.get(table_name, ()) if len(place) > 1 else ()
-                faults.append(Fault(place, unknown(place, (*match.known, *extra))))
+                faults.append(Fault(place, unknown(place, (*match.keys, *extra))))
             elif entry["type"] == "missing":
                 faults.append(Fault(place, "is missing"))
             else:

@@ -26,7 +26,7 @@ from typing import Any, Final, Generic, TypeVar
 from analysis.threads import SETTING, cores
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.cluster import cluster
-from pmm.remote import here
+from pmm.remote import local_path
 
 T = TypeVar("T")
 S = TypeVar("S")
@@ -94,7 +94,7 @@ def as_done(
         there are then: clusters grow. A message has one task, and of short tasks to many workers
         :func:`tasks_each`.
     """
-    futures: SimpleQueue[Future[_Done[T]]] = SimpleQueue()
+    futures: SimpleQueue[Future[_BatchResult[T]]] = SimpleQueue()
     waiting, running = iter(tasks), 0
     count, work_s = 0, 0.0
 
@@ -118,7 +118,7 @@ def as_done(
 
 
 @dataclass(frozen=True)
-class _Done(Generic[T]):
+class _BatchResult(Generic[T]):
     """What came of a message's tasks, up to the first that fails."""
 
     results: list[T]
@@ -126,14 +126,14 @@ class _Done(Generic[T]):
     error: Exception | None = None
 
 
-def _each(work: Callable[[S], T], tasks: Sequence[S]) -> _Done[T]:
+def _each(work: Callable[[S], T], tasks: Sequence[S]) -> _BatchResult[T]:
     started = time.perf_counter()
     results: list[T] = []
     try:
         results.extend(map(work, tasks))
     except Exception as error:  # it belongs to whoever asks for the results
-        return _Done(results, time.perf_counter() - started, error)
-    return _Done(results, time.perf_counter() - started)
+        return _BatchResult(results, time.perf_counter() - started, error)
+    return _BatchResult(results, time.perf_counter() - started)
 
 
 def tasks_each(executor: Executor, task_s: float | None) -> int:
@@ -156,7 +156,7 @@ def in_hand(executor: Executor) -> int:
     return IN_HAND_EACH * workers
 
 
-def seen(folder: Path) -> Path:
+def task_folder(folder: Path) -> Path:
     """Return a task's folder as the process sees it that has the task.
 
     Raises
@@ -164,9 +164,9 @@ def seen(folder: Path) -> Path:
     DataError
         With the folder and the computer that does not see it.
     ConfigurationError, DataError
-        As :func:`pmm.remote.here`, for what lies elsewhere.
+        As :func:`pmm.remote.local_path`, for what lies elsewhere.
     """
-    folder = here(folder)
+    folder = local_path(folder)
     if not folder.is_dir():
         raise DataError(
             f"{folder}: not there on {node()}; the workers of a cluster need it under the same path"
@@ -240,7 +240,7 @@ class LocalProcesses(Executor):
         try:
             inner = pool.submit(work)
         except BrokenProcessPool:
-            self._again(outer, work, pool)
+            self._restart(outer, work, pool)
             return
         inner.add_done_callback(lambda future: self._settle(outer, work, pool, future))
 
@@ -252,7 +252,7 @@ class LocalProcesses(Executor):
             return
         error = inner.exception()
         if isinstance(error, BrokenProcessPool):
-            self._again(outer, work, pool)
+            self._restart(outer, work, pool)
         elif not outer.set_running_or_notify_cancel():
             return
         elif error is not None:
@@ -260,7 +260,7 @@ class LocalProcesses(Executor):
         else:
             outer.set_result(inner.result())
 
-    def _again(self, outer: Future[T], work: Callable[[], T], pool: ProcessPoolExecutor) -> None:
+    def _restart(self, outer: Future[T], work: Callable[[], T], pool: ProcessPoolExecutor) -> None:
         with self._lock:
             if self._pools[-1] is pool and self._left > 0:
                 self._left -= 1

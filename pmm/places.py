@@ -12,7 +12,7 @@ class PlaceMatch(NamedTuple):
     """A place in the words of the file, and the keys that the table around it may have."""
 
     place: Place
-    known: tuple[str, ...]
+    keys: tuple[str, ...]
 
 
 def find(kind: Any, place: Place, table: Any) -> PlaceMatch | None:
@@ -28,7 +28,7 @@ def find(kind: Any, place: Place, table: Any) -> PlaceMatch | None:
     for key in place:
         members = _members(kind)
         if len(members) > 1:
-            kind = meant(members, table)
+            kind = likeliest_class(members, table)
             if key != kind.__name__:
                 return None
             continue
@@ -39,7 +39,7 @@ def find(kind: Any, place: Place, table: Any) -> PlaceMatch | None:
     return PlaceMatch(tuple(cleaned), keys)
 
 
-def meant(members: list[Any], table: Any) -> Any:
+def likeliest_class(members: list[Any], table: Any) -> Any:
     """Return the class whose keys are most like those of a table; the first of equals."""
     return max(
         members, key=lambda member: _likeness(member, table if isinstance(table, dict) else {})

@@ -15,7 +15,7 @@ _URL: Final = re.compile(r"([a-z][a-z0-9+.-]+):/+(.+)")
 _SAME_S: Final = 1e-5  # times of change: systems of files keep them to 1e-7 s or finer
 
 
-def here(place: str | Path) -> Path:
+def local_path(place: str | Path) -> Path:
     """Return where a file or folder can be read on this computer; a plain path is itself.
 
     What a URL of ``fsspec`` names is copied; of a copy that is there, only files whose size or time

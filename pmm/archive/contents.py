@@ -14,7 +14,7 @@ from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.campaign.runs import AtRest, Run
 from pmm.recorder.files import sha256
-from pmm.remote import here
+from pmm.remote import local_path
 
 _SETTINGS: Final = ("coefficients.toml",)  # beside the campaign's file, read by its analysis
 
@@ -123,7 +123,7 @@ def changes(folder: Path, last_stamps: Mapping[str, Stamp]) -> tuple[str, ...]:
     ``last_stamps`` and is found when the folder is added again.
     """
     try:
-        here(folder)
+        local_path(folder)
     except ConfigurationError:
         return ("the folder vanished",)
     except DataError as error:

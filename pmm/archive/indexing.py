@@ -10,9 +10,9 @@ from typing import Any
 from hardware.description.errors import ConfigurationError, DataError, PmmError
 from pmm.archive.contents import Contents, Stamp, changes, read_contents, recorded_utc, stamp
 from pmm.archive.notebook import NOTES_FILE, NoteLine, read_notes, write_note
-from pmm.archive.results import LEVEL, Analysed, Analyses, GapVerdict, HarmonicValue
-from pmm.parallel import as_done, seen
-from pmm.remote import here, url_of
+from pmm.archive.results import LEVEL, AnalysedCampaign, Analyses, GapVerdict, HarmonicValue
+from pmm.parallel import as_done, task_folder
+from pmm.remote import local_path, url_of
 
 
 @dataclass(frozen=True)
@@ -56,11 +56,11 @@ class FolderTask:
 
 
 @dataclass(frozen=True)
-class Computed:
+class ComputedFolder:
     """What was computed of a folder, up to what it refused with."""
 
     task: FolderTask
-    analysed: Analysed | None = None
+    analysed: AnalysedCampaign | None = None
     verdict: GapVerdict | None = None
     error: PmmError | None = None
 
@@ -94,7 +94,7 @@ def add_folders(
 
     for outcome in as_done(executor, compute, tasks()):
         try:
-            results.append(_kept(connection, outcome))
+            results.append(_keep_results(connection, outcome))
         except PmmError as error:
             results.append(error)
         while results:
@@ -115,27 +115,27 @@ def add_folder(
         If the folder changes while it is analysed.
     """
     task = _taken_in(connection, folder, analyses, now_utc)
-    return _kept(connection, compute(task))
+    return _keep_results(connection, compute(task))
 
 
-def compute(task: FolderTask) -> Computed:
+def compute(task: FolderTask) -> ComputedFolder:
     """Compute what is due of a folder, wherever its task was sent."""
     analysed, verdict = None, None
     try:
-        folder = seen(task.added.folder)
+        folder = task_folder(task.added.folder)
         if task.due.analyse is not None:
             analysed = task.due.analyse(folder)
         if task.due.diagnose is not None:
             verdict = task.due.diagnose(folder)
     except PmmError as error:
-        return Computed(task, analysed, verdict, error)
-    return Computed(task, analysed, verdict)
+        return ComputedFolder(task, analysed, verdict, error)
+    return ComputedFolder(task, analysed, verdict)
 
 
 def _taken_in(
     connection: sqlite3.Connection, folder: Path, analyses: Analyses, now_utc: str
 ) -> FolderTask:
-    folder = here(folder).resolve()
+    folder = local_path(folder).resolve()
     last_row = _row(connection, folder)
     contents = read_contents(folder, {} if last_row is None else stamps(connection, last_row["id"]))
     with connection:
@@ -277,7 +277,7 @@ def _set_notes(connection: sqlite3.Connection, key: int, notes: Iterable[NoteLin
     connection.executemany("INSERT INTO notes VALUES (?, ?, ?, ?, ?)", rows)
 
 
-def _kept(connection: sqlite3.Connection, outcome: Computed) -> AddedFolder:
+def _keep_results(connection: sqlite3.Connection, outcome: ComputedFolder) -> AddedFolder:
     """Keep what was computed of a folder that is still as it was."""
     task, computed = outcome.task, []
     if folder_changes := changes(task.added.folder, task.stamps):
@@ -299,7 +299,7 @@ def _kept(connection: sqlite3.Connection, outcome: Computed) -> AddedFolder:
     return replace(task.added, computed=tuple(computed), refused=refusals)
 
 
-def _write(connection: sqlite3.Connection, key: int, result: Analysed) -> None:
+def _write(connection: sqlite3.Connection, key: int, result: AnalysedCampaign) -> None:
     ids = dict(connection.execute("SELECT run, id FROM runs WHERE campaign = ?", (key,)))
     for table in ("harmonics", "coefficients", "refusals"):  # others may have computed them too
         connection.execute(f"DELETE FROM {table} WHERE campaign = ?", (key,))  # noqa: S608

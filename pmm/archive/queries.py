@@ -13,7 +13,7 @@ from pmm.archive.contents import changes
 from pmm.archive.expression import NUMBER, TEXT, KnownColumn, read_condition
 from pmm.archive.indexing import stamps
 from pmm.archive.results import LEVEL
-from pmm.remote import here
+from pmm.remote import local_path
 from pmm.whole_file import write_whole
 
 _OF_CAMPAIGN: Final = ("folder", "campaign", "hull")
@@ -199,7 +199,7 @@ def the_run(connection: sqlite3.Connection, name: str, campaign: str | None) -> 
         (name,),
     )
     if campaign is not None:
-        folder = str(here(campaign).resolve())
+        folder = str(local_path(campaign).resolve())
         rows = [row for row in rows if campaign == row["campaign"] or folder == row["folder"]]
     others = [] if campaign is None else connection.execute(
         "SELECT DISTINCT campaigns.campaign FROM runs JOIN campaigns "

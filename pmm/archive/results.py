@@ -41,7 +41,7 @@ class CoefficientValue:
 
 
 @dataclass(frozen=True)
-class Analysed:
+class AnalysedCampaign:
     """Harmonics and coefficients of a campaign; ``refused`` says what could not be found."""
 
     harmonics: tuple[HarmonicValue, ...] = ()
@@ -62,5 +62,5 @@ class GapVerdict:
 class Analyses:
     """What is computed of a folder that is not known yet; ``None`` where it is not asked for."""
 
-    analyse: Callable[[Path], Analysed] | None = None
+    analyse: Callable[[Path], AnalysedCampaign] | None = None
     diagnose: Callable[[Path], GapVerdict] | None = None

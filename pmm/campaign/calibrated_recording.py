@@ -36,7 +36,7 @@ def provenance_of(calibration: Calibration | None) -> dict[str, str]:
     }
 
 
-def carried(recording: Recording) -> Calibration | None:
+def carried_calibration(recording: Recording) -> Calibration | None:
     """Return the calibration that a recording carries and that is not applied yet.
 
     Raises
@@ -44,18 +44,18 @@ def carried(recording: Recording) -> Calibration | None:
     DataError
         If what it carries cannot be read.
     """
-    return _kept(recording, CARRIED)
+    return _stored_calibration(recording, CARRIED)
 
 
-def applied(recording: Recording) -> Calibration | None:
+def applied_calibration(recording: Recording) -> Calibration | None:
     """Return the calibration that made a recording's readings forces, if one did.
 
-    It raises what :func:`carried` raises.
+    It raises what :func:`carried_calibration` raises.
     """
-    return _kept(recording, APPLIED)
+    return _stored_calibration(recording, APPLIED)
 
 
-def _kept(recording: Recording, key: str) -> Calibration | None:
+def _stored_calibration(recording: Recording, key: str) -> Calibration | None:
     text = recording.provenance.get(key)
     if text is None:
         return None
@@ -80,7 +80,7 @@ def calibrated(recording: Recording, replacement: Calibration | None = None) -> 
     DataError
         If a calibrated channel is not in the recording, or one was applied to it before.
     """
-    calibration = carried(recording) if replacement is None else replacement
+    calibration = carried_calibration(recording) if replacement is None else replacement
     if calibration is None:
         return recording
     if APPLIED in recording.provenance:
@@ -103,7 +103,7 @@ def calibrated(recording: Recording, replacement: Calibration | None = None) -> 
         provenance=provenance | {APPLIED: provenance_of(calibration)[CARRIED]},
         flags=(
             *recording.flags,
-            _told(calibration),
+            _calibration_flag(calibration),
             *_saturated(recording, rows),
             *_expired(recording, calibration),
         ),
@@ -157,7 +157,7 @@ def _row(recording: Recording, name: str, calibration: Calibration) -> int:
     )
 
 
-def _told(calibration: Calibration) -> Flag:
+def _calibration_flag(calibration: Calibration) -> Flag:
     message = (
         f"readings of {', '.join(calibration.channels)} made newtons by "
         f"{calibration.file or 'a calibration'} of {calibration.made}, good until "

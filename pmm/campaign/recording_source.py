@@ -14,7 +14,7 @@ from pmm.campaign.campaign import Campaign
 from pmm.campaign.runs import AtRest, Run
 from pmm.recorder.files import EVENTS, RECORDING
 from pmm.recorder.line_shapes import read_lines
-from pmm.remote import here
+from pmm.remote import local_path
 
 if TYPE_CHECKING:
     from analysis.readers import ColumnMap
@@ -36,7 +36,7 @@ class RecordingSource:
     Attributes
     ----------
     path
-        Of the recording, or of the copy of one that lies elsewhere (:func:`pmm.remote.here`).
+        Of the recording, or of the copy of one that lies elsewhere (:func:`pmm.remote.local_path`).
     name
         Of the run; ``None`` leaves the file's own.
     set_point
@@ -113,7 +113,7 @@ def open_recording(
 
     if source.outcome != COMPLETE and not partial:
         raise DataError(f"{source.name}: its outcome is {source.outcome!r}")
-    source = replace(source, path=here(source.path))
+    source = replace(source, path=local_path(source.path))
     _check_there(source.path)
     recording = read_recording(
         source.path,
@@ -126,12 +126,12 @@ def open_recording(
         recording = replace(recording, flags=(*recording.flags, *flags))
     recording = _in_newtons(recording, source.calibration)
     if source.edges_file is not None:
-        edges_file = here(source.edges_file)
+        edges_file = local_path(source.edges_file)
         _check_there(edges_file)
         recording = replace(recording, photocell_edges_s=read_edges(edges_file))
     if source.at_rest:
         recording = replace(_gated(recording, source.path), photocell_edges_s=None)
-    return _named(recording, source)
+    return _relabelled(recording, source)
 
 
 def _columns(source: RecordingSource) -> "ColumnMap | None":
@@ -160,7 +160,7 @@ def _gated(recording: "Recording", path: Path) -> "Recording":
     return recording.between(times["gate open"], times["hold"])
 
 
-def _named(recording: "Recording", source: RecordingSource) -> "Recording":
+def _relabelled(recording: "Recording", source: RecordingSource) -> "Recording":
     """Return a recording under its run's name and set-point, flagged where its own is another."""
     recorded, stated = recording.set_point, source.set_point
     flags = (
@@ -172,11 +172,11 @@ def _named(recording: "Recording", source: RecordingSource) -> "Recording":
         recording,
         name=source.name or recording.name,
         set_point=recorded if stated is None else stated,
-        flags=(*recording.flags, *flags, *_otherwise(source)),
+        flags=(*recording.flags, *flags, *_difference_note(source)),
     )
 
 
-def _otherwise(source: RecordingSource) -> tuple[Flag, ...]:
+def _difference_note(source: RecordingSource) -> tuple[Flag, ...]:
     """Say what a run was recorded with that others of its campaign were not."""
     if not source.differs:
         return ()

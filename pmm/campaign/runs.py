@@ -60,7 +60,7 @@ class Asked:
     @property
     def set_point(self) -> SetPoint:
         """What the run was told to do."""
-        return SetPoint(**_told(self))
+        return SetPoint(**_set_point_values(self))
 
 
 @dataclass(frozen=True)
@@ -153,14 +153,14 @@ class AtRest:
     @property
     def set_point(self) -> SetPoint:
         """What the rig was told to do with its shaft at rest."""
-        return SetPoint(**{"frequency_hz": 0.0, "eccentricity_m": 0.0, **_told(self)})
+        return SetPoint(**{"frequency_hz": 0.0, "eccentricity_m": 0.0, **_set_point_values(self)})
 
     def recording_path(self, folder: Path) -> Path:
         """Return where the recording lies, as for a run."""
         return _recording_path(folder, self.name, self.file)
 
 
-def _told(run: "Asked | AtRest") -> dict[str, Any]:
+def _set_point_values(run: "Asked | AtRest") -> dict[str, Any]:
     """Return what a run says of its set-point, by the keys that they have in common."""
     return {key: getattr(run, key) for key in _SET if hasattr(run, key)}
 

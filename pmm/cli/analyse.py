@@ -271,4 +271,4 @@ def _tell(failure: "Failure") -> None:
     from pmm.report.harmonics_tables import noticed
 
     print_content(noticed(failure.flags), messages())
-    error_line(failure.said)
+    error_line(failure.full_message)

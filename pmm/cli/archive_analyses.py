@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from analysis.coefficients.recommendation import table
 from hardware.description.errors import PmmError
-from pmm.archive.results import LEVEL, Analysed, CoefficientValue, GapVerdict, HarmonicValue
+from pmm.archive.results import LEVEL, AnalysedCampaign, CoefficientValue, GapVerdict, HarmonicValue
 from pmm.interface.coefficients import CoefficientsResult
 from pmm.interface.harmonics import HarmonicsResult
 from pmm.interface.opening import open as opened
@@ -15,14 +15,14 @@ from pmm.interface.opening import open as opened
 T = TypeVar("T")
 
 
-def analysed_folder(folder: Path) -> Analysed:
+def analysed_folder(folder: Path) -> AnalysedCampaign:
     """Return harmonics and recommended coefficients; what data refuse is said in the result."""
     records = opened(folder)
     refusals: list[str] = []
 
     def harmonics() -> tuple[HarmonicValue, ...]:
         result = records.harmonics(level=LEVEL)
-        refusals.extend(failure.said for failure in result.failed)
+        refusals.extend(failure.full_message for failure in result.failed)
         return tuple(_harmonics(result))
 
     def coefficients() -> tuple[CoefficientValue, ...]:
@@ -31,7 +31,7 @@ def analysed_folder(folder: Path) -> Analysed:
         return tuple(_coefficients(result))
 
     parts = _attempt(harmonics, refusals), _attempt(coefficients, refusals)
-    return Analysed(*parts, tuple(dict.fromkeys(refusals)))
+    return AnalysedCampaign(*parts, tuple(dict.fromkeys(refusals)))
 
 
 def _attempt(find: Callable[[], tuple[T, ...]], refusals: list[str]) -> tuple[T, ...]:

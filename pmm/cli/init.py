@@ -165,7 +165,7 @@ def _write(job: str, options: dict[str, Any]) -> None:
     recordings = tuple(Path(recording) for recording in options.get("recordings", ()))
     check_folder(folder, "--output")
     check_free(folder, FILES[job], force=options["force"])
-    job_answers = answers(job, options, _default if options["yes"] else _asked)
+    job_answers = answers(job, options, _default if options["yes"] else _ask)
     outcome = write(StartTask(job, job_answers, folder, recordings), force=options["force"])
     for path in outcome.paths:
         messages().print(f"written: {path}")
@@ -182,7 +182,7 @@ def _default(question: "StartQuestion") -> str | float:
     return question.default
 
 
-def _asked(question: "StartQuestion") -> str | float:
+def _ask(question: "StartQuestion") -> str | float:
     kind: Any = click.Choice(question.choices) if question.choices else type(question.default)
     answer: str | float = click.prompt(question.text, default=question.default, type=kind, err=True)
     return answer

@@ -112,14 +112,15 @@ def design(
     design_file = read_design(Path(file))
     if after:
         from pmm.coefficients.request import campaign_folder
-        from pmm.design.measured_runs import after as going_on
-        from pmm.design.measured_runs import measured
+        from pmm.design.measured_runs import continued_design as going_on
+        from pmm.design.measured_runs import read_measured_runs
         from pmm.parallel import open_executor
 
         folders = [campaign_folder(folder) for folder in after]
         with doing("reading what was measured"), open_executor(1) as executor:
             design_file = going_on(
-                design_file, [measured(design_file, folder, executor) for folder in folders]
+                design_file,
+                [read_measured_runs(design_file, folder, executor) for folder in folders],
             )
     with doing("looking at what each run would tell"):
         selection = designed(design_file)

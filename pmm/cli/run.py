@@ -171,14 +171,14 @@ def _carried_out(
     ):
         tell_job(job)
         if job.runs and not dry_run:
-            report = _shown(job, stack, quiet=as_json)
+            report = _run_on_terminal(job, stack, quiet=as_json)
     show(run_document(job, report, dry_run=dry_run), as_json=as_json)
     if complete_runs(report) and not as_json:
         say(pasted("analyse", job.folder))
     return report
 
 
-def _shown(job: "RunJob", stack: ExitStack, *, quiet: bool) -> "RunReport":
+def _run_on_terminal(job: "RunJob", stack: ExitStack, *, quiet: bool) -> "RunReport":
     """Carry the runs out, shown on the terminal."""
     from pmm.cli.screen import messages
     from pmm.run.operator import standard_input
@@ -221,7 +221,7 @@ def view_of(terminal: "Terminal", ask: "Ask", *, quiet: bool) -> "AbstractContex
 
     if quiet or not terminal.console.is_terminal:
         return nullcontext(PlainView(terminal.say, ask))
-    return LiveView(terminal, time.monotonic, ask).shown()
+    return LiveView(terminal, time.monotonic, ask).drawn_live()
 
 
 def carried_out_until(

@@ -100,7 +100,7 @@ class LiveView:
             self._status, self._outcomes = self._control.status(), tuple(self._control.outcomes)
 
     @contextmanager
-    def shown(self) -> "Iterator[LiveView]":
+    def drawn_live(self) -> "Iterator[LiveView]":
         """Draw for as long as the context lasts; what stays on the terminal is the end."""
         self._terminal.do(self._live.start)
         try:

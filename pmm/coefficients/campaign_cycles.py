@@ -27,7 +27,7 @@ from pmm.coefficients.stated_inputs import (
     with_own_body,
     without_dry,
 )
-from pmm.coefficients.tasks import Failed, ReadRecording, Task
+from pmm.coefficients.tasks import FailedRecording, ReadRecording, Task
 from pmm.coefficients.wave_runs import WaveRun, wave_runs
 from pmm.coefficients.work import Work, work_of
 
@@ -52,7 +52,7 @@ class CampaignCycles:
     campaign: Campaign
     cycles: tuple[BodyCycle, ...]
     runs: tuple[ReadRecording, ...]
-    failed: tuple[Failed, ...]
+    failed: tuple[FailedRecording, ...]
     work: Work
     stated: StatedUncertainties
     body: Body | None
@@ -71,7 +71,7 @@ class CampaignCycles:
     @property
     def doubts(self) -> tuple[Flag, ...]:
         """Units and signs that look wrong in all runs, and a roll gauge that is not there."""
-        harmonics = [run.seen for run in self.runs if run.seen is not None]
+        harmonics = [run.run_harmonics for run in self.runs if run.run_harmonics is not None]
         return (*implausible(self.campaign, harmonics), *self._without_roll_gauge)
 
     @property
@@ -129,14 +129,17 @@ def campaign_cycles(
         campaign,
         tuple(cycles),
         tuple(readings),
-        (*(outcome for outcome in recordings if isinstance(outcome, Failed)), *decay_failures),
+        (
+            *(outcome for outcome in recordings if isinstance(outcome, FailedRecording)),
+            *decay_failures,
+        ),
         work,
         stated_of(
             campaign,
             settings,
             models,
             gauges,
-            motion_asked=_asked(cycles),
+            motion_asked=_is_motion_asked(cycles),
             following=[reading.following for reading in readings if reading.following],
             speed_age_s=max((reading.speed_age_u_s for reading in readings), default=0.0),
         ),
@@ -147,7 +150,7 @@ def campaign_cycles(
 
 def _recordings(
     work: Work, executor: Executor, progress: Progress, *, with_dry: bool
-) -> list[ReadRecording | Failed]:
+) -> list[ReadRecording | FailedRecording]:
     """Read the zero runs, and then all that they are taken off."""
     zeros = _all(read_zero, work.zeros, "reading zero runs", executor, progress)
     by_name = {
@@ -160,18 +163,18 @@ def _recordings(
     return [*zeros, *recordings]
 
 
-def _asked(cycles: Sequence[BodyCycle]) -> bool:
+def _is_motion_asked(cycles: Sequence[BodyCycle]) -> bool:
     """Whether a set-point's motion stands in for one that was not measured."""
     return any(flag.code == MOTION_ASKED.code for cycle in cycles for flag in cycle.flags)
 
 
 def _all(
-    reader: Callable[[Task], ReadRecording | Failed],
+    reader: Callable[[Task], ReadRecording | FailedRecording],
     tasks: Sequence[Task],
     step: str,
     executor: Executor,
     progress: Progress,
-) -> list[ReadRecording | Failed]:
+) -> list[ReadRecording | FailedRecording]:
     recordings = []
     for recording in executor.map(reader, tasks):
         recordings.append(recording)
@@ -180,7 +183,7 @@ def _all(
 
 
 def _sorted(
-    recordings: Sequence[ReadRecording | Failed], dry: set[str]
+    recordings: Sequence[ReadRecording | FailedRecording], dry: set[str]
 ) -> tuple[list[BodyCycle], list[BodyCycle]]:
     cycles = [
         recording.cycle

@@ -18,7 +18,7 @@ from pmm.campaign.campaign import Campaign
 from pmm.campaign.recording_source import COMPLETE, RecordingSource, open_recording
 from pmm.campaign.runs import AtRest
 from pmm.coefficients.settings import CoefficientSettings
-from pmm.coefficients.tasks import Failed
+from pmm.coefficients.tasks import FailedRecording
 
 _SAME_M_S = 1e-3
 
@@ -55,7 +55,7 @@ class Decay:
 
 def decays_of(
     campaign: Campaign, folder: Path, leave_out: Sequence[str] = ()
-) -> tuple[tuple[Decay, ...], tuple[Failed, ...]]:
+) -> tuple[tuple[Decay, ...], tuple[FailedRecording, ...]]:
     """Return a campaign's free decays by speed, and the records that could not be used."""
     groups: dict[float, list[tuple[AtRest, RecordAnalysis]]] = {}
     failures = []
@@ -69,7 +69,7 @@ def decays_of(
                 groups.setdefault(round(record.carriage_speed_m_s / _SAME_M_S), []).append(pair)
             except PmmError as error:
                 failures.append(
-                    Failed(record.name, str(source.path), str(error), error.exit_status)
+                    FailedRecording(record.name, str(source.path), str(error), error.exit_status)
                 )
     return tuple(_joined(group) for group in groups.values()), tuple(failures)
 

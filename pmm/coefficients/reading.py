@@ -32,12 +32,12 @@ from hardware.description.channels import (
 from hardware.description.errors import DataError, PmmError
 from hardware.description.flags import Flag, Severity
 from hardware.description.kinds import RunKind
-from pmm.campaign.calibrated_recording import applied
+from pmm.campaign.calibrated_recording import applied_calibration
 from pmm.campaign.recording_source import RAW, open_recording
 from pmm.coefficients.attitude import attitude_of, rest_of
 from pmm.coefficients.followed_runs import as_driven, carriage_of, following_of, speed_age_u_s
 from pmm.coefficients.settings import AmplifierTable
-from pmm.coefficients.tasks import Failed, ReadRecording, Task, Zero
+from pmm.coefficients.tasks import FailedRecording, ReadRecording, Task, Zero
 from pmm.coefficients.zeros import utc_s, zeroed
 from pmm.recorder.files import sha256
 
@@ -45,17 +45,19 @@ _USED = (*DISPLACEMENTS, *FORCES)
 _SPEED_OFF = 0.01
 
 
-def read_zero(task: Task) -> ReadRecording | Failed:
+def read_zero(task: Task) -> ReadRecording | FailedRecording:
     """Read what the gauges show at rest."""
     return _tried(task, _at_rest)
 
 
-def read_cycle(task: Task) -> ReadRecording | Failed:
+def read_cycle(task: Task) -> ReadRecording | FailedRecording:
     """Read a run and return motion and loads of the model, zeros taken off."""
     return _tried(task, _turning if task.kind.oscillates else _towed)
 
 
-def _tried(task: Task, work: Callable[[Task, Recording], ReadRecording]) -> ReadRecording | Failed:
+def _tried(
+    task: Task, work: Callable[[Task, Recording], ReadRecording]
+) -> ReadRecording | FailedRecording:
     """Read a recording and do the work; if that fails, what is damaged of the file is named."""
     damaged: list[str] = []
     try:
@@ -65,7 +67,7 @@ def _tried(task: Task, work: Callable[[Task, Recording], ReadRecording]) -> Read
         return work(task, recording)
     except PmmError as error:
         message = "; ".join([str(error), *damaged])
-        return Failed(task.name, str(task.source.path), message, error.exit_status)
+        return FailedRecording(task.name, str(task.source.path), message, error.exit_status)
 
 
 def _opened(task: Task) -> Recording:
@@ -81,7 +83,7 @@ def _check(recording: Recording, task: Task) -> None:
     _check_heel(recording, task)
     if task.chain.matrix is None:
         _check_units(recording, task.oscillator.joint)
-    elif applied(recording) is not None:
+    elif applied_calibration(recording) is not None:
         raise DataError(
             f"{task.name}: a calibration was applied to it already; take calibration_matrix out of "
             "the settings, or the recording that pmm run made"
@@ -125,7 +127,7 @@ def _check_heel(recording: Recording, task: Task) -> None:
 
 def _check_units(recording: Recording, joint: Joint) -> None:
     """Refuse a stated unit that the rig's channel cannot have; a calibration makes its own."""
-    is_calibrated = applied(recording) is not None
+    is_calibrated = applied_calibration(recording) is not None
     faults = [
         f"{channel.name} is in {channel.unit}, not in {unit}"
         for name, unit in units_on(joint).items()
@@ -154,7 +156,7 @@ def _at_rest(task: Task, recording: Recording) -> ReadRecording:
         position,
         point.heel_rad,
     )
-    return _done(task, recording, None, zero, flags=flags)
+    return _read_recording(task, recording, None, zero, flags=flags)
 
 
 def _turning(task: Task, recording: Recording) -> ReadRecording:
@@ -179,11 +181,11 @@ def _turning(task: Task, recording: Recording) -> ReadRecording:
     reading = analysis.readings[0]
     gate = recording.between(reading.opened_s, reading.closed_s)
     flags = (*new_flags, *flags, *_speed_flags(task, gate), *attitude_flags, *following_flags)
-    result = _done(task, recording, _model(task, struts), None, reading.periods, flags)
+    result = _read_recording(task, recording, _model(task, struts), None, reading.periods, flags)
     lines = reading if task.set_point.lines else None
     return replace(
         result,
-        seen=first_harmonics(recording, analysis),
+        run_harmonics=first_harmonics(recording, analysis),
         attitude=attitude,
         lines=lines,
         following=following,
@@ -211,7 +213,7 @@ def _towed(task: Task, recording: Recording) -> ReadRecording:
     if task.kind is RunKind.CIRCLE:
         turn = turn_of(cycle, *spread)
         cycle = cycle if CARRIAGE_SPEED.name in recording.channel_names else by_radius(cycle)
-    result = _done(task, recording, cycle, None, 0, (*flags, *attitude_flags))
+    result = _read_recording(task, recording, cycle, None, 0, (*flags, *attitude_flags))
     return replace(result, attitude=attitude, turn=turn)
 
 
@@ -274,7 +276,7 @@ def _speed_flags(task: Task, recording: Recording) -> tuple[Flag, ...]:
     return (Flag("speed_differs", Severity.WARNING, text, CARRIAGE_SPEED.name),)
 
 
-def _done(
+def _read_recording(
     task: Task,
     recording: Recording,
     cycle: BodyCycle | None,
@@ -292,5 +294,5 @@ def _done(
         recording.end_s - recording.start_s,
         tuple(flag.of(task.name) for flag in (*recording.flags, *flags)),
         sha256(task.source.path) if task.hashed else "",
-        applied(recording),
+        applied_calibration(recording),
     )

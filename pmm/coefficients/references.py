@@ -72,7 +72,7 @@ def read_references(
     return tuple(reference for file in files for reference in _read(file, plane, form, campaigns))
 
 
-def beside(
+def with_references(
     coefficients: CampaignCoefficients, references: Sequence[Reference], system: System
 ) -> CampaignCoefficients:
     """Return the campaign with all tables of one system beside its own values.

@@ -11,7 +11,7 @@ from analysis.coefficients.quoting import Names
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.coefficients import DEFAULT_TRIALS
-from pmm.coefficients.references import beside, check_systems, read_references
+from pmm.coefficients.references import check_systems, read_references, with_references
 from pmm.coefficients.settings import (
     DRY,
     MODEL,
@@ -23,7 +23,7 @@ from pmm.coefficients.settings import (
 )
 from pmm.coefficients.systems import check_dimensions, in_system, system_of
 from pmm.coefficients.workflow import CampaignOutcome
-from pmm.remote import here
+from pmm.remote import local_path
 
 _PLAIN: Final = ("with_mass", "form", "level", "seed", "system", "inertia", "wanted", "leave_out")
 
@@ -88,11 +88,11 @@ def campaign_folder(text: str) -> Path:
     Raises
     ------
     ConfigurationError
-        If there is none, or no campaign file in it; or as :func:`pmm.remote.here`.
+        If there is none, or no campaign file in it; or as :func:`pmm.remote.local_path`.
     DataError
-        As :func:`pmm.remote.here`.
+        As :func:`pmm.remote.local_path`.
     """
-    path = here(text)
+    path = local_path(text)
     if path.name == CAMPAIGN_FILE and path.is_file():
         return path.parent
     if not path.is_dir():
@@ -112,12 +112,12 @@ def finished(outcome: CampaignOutcome, settings: CoefficientSettings) -> Campaig
     )
     check_systems(references, settings.system)
     reference_flags = [reference.flag for reference in references if reference.flag is not None]
-    coefficients = beside(coefficients, references, System.DIMENSIONAL)
+    coefficients = with_references(coefficients, references, System.DIMENSIONAL)
     coefficients, flags = in_system(
         coefficients, settings.system, outcome.settings.ship, outcome.body, outcome.stated
     )
     if settings.system is not System.DIMENSIONAL:
-        coefficients = beside(coefficients, references, settings.system)
+        coefficients = with_references(coefficients, references, settings.system)
     coefficients = quoted(coefficients, settings.quoting, _carried(outcome, settings))
     return replace(
         outcome, result=coefficients, left_out=(*outcome.left_out, *flags, *reference_flags)

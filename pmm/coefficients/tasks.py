@@ -136,7 +136,7 @@ class ReadRecording:
         Of the file, where it was wanted.
     calibration
         What made its readings forces; ``None`` where nothing did, or a matrix by hand.
-    seen
+    run_harmonics
         What the checks across all runs look at; ``None`` for a record at rest.
     attitude
         Sinkage and trim; ``None`` without their sensors, in a zero run or without a zero.
@@ -164,7 +164,7 @@ class ReadRecording:
     flags: tuple[Flag, ...] = ()
     sha256: str = ""
     calibration: Calibration | None = None
-    seen: RunHarmonics | None = None
+    run_harmonics: RunHarmonics | None = None
     attitude: Attitude | None = None
     lines: Harmonics | None = None
     following: tuple[Following, ...] = ()
@@ -175,7 +175,7 @@ class ReadRecording:
 
 
 @dataclass(frozen=True)
-class Failed:
+class FailedRecording:
     """A recording that could not be used, and why."""
 
     name: str

@@ -29,7 +29,7 @@ from pmm.coefficients.run_names import check_left_out, check_names
 from pmm.coefficients.settings import CoefficientSettings
 from pmm.coefficients.solving import Progress, solve_campaign
 from pmm.coefficients.stated_inputs import largest, with_turns
-from pmm.coefficients.tasks import Failed, ReadRecording
+from pmm.coefficients.tasks import FailedRecording, ReadRecording
 from pmm.coefficients.turn_file import read_turns, turn_cycles
 from pmm.coefficients.wave_runs import WaveRun
 
@@ -87,7 +87,7 @@ class CampaignOutcome:
         return _joined(part.runs for part in self.parts)
 
     @property
-    def failed(self) -> tuple[Failed, ...]:
+    def failed(self) -> tuple[FailedRecording, ...]:
         """What could not be used."""
         return _joined(part.failed for part in self.parts)
 

@@ -21,7 +21,7 @@ def zeroed(
 ) -> tuple[StrutCycle, tuple[Flag, ...]]:
     """Return a cycle with the zero runs taken off its means, with their drift between them."""
     before, after = task.zeros
-    elsewhere = _elsewhere(task)
+    elsewhere = _elsewhere_flags(task)
     if before is None and after is None:
         return replace(struts, mean_known=task.tared), ()
     if before is None or after is None or before.name == after.name:
@@ -29,16 +29,16 @@ def zeroed(
         assert only is not None  # noqa: S101 - one of them is there
         text = f"only one zero run, {only.name}: what drifted since is not known"
         one_sided = Flag("zero_one_sided", Severity.NOTE, text, None, (task.name,))
-        return _taken(struts, only.reading.offsets), (one_sided, *elsewhere)
+        return _without_zero(struts, only.reading.offsets), (one_sided, *elsewhere)
     places = _places(before, after, task, recording)
     first, last = (
         ZeroReading(at, zero.reading.offsets)
         for at, zero in ((places[0], before), (places[2], after))
     )
-    return _taken(struts, zero_at(first, last, places[1])), elsewhere
+    return _without_zero(struts, zero_at(first, last, places[1])), elsewhere
 
 
-def _elsewhere(task: Task) -> tuple[Flag, ...]:
+def _elsewhere_flags(task: Task) -> tuple[Flag, ...]:
     """Warn of zero runs at another trim or heel, where weight and restoring ask something else."""
     horizontal = task.oscillator.plane is Plane.HORIZONTAL
     if horizontal and task.heel is None:
@@ -65,7 +65,7 @@ def _elsewhere(task: Task) -> tuple[Flag, ...]:
     )
 
 
-def _taken(struts: StrutCycle, offsets: Phasors) -> StrutCycle:
+def _without_zero(struts: StrutCycle, offsets: Phasors) -> StrutCycle:
     channels = {name.rpartition(" ")[0] for name in struts.phasors.names}
     return struts.without_zero(offsets.select([name for name in offsets.names if name in channels]))
 

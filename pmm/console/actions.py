@@ -22,7 +22,7 @@ from pmm.console.plans import Plans
 from pmm.console.proposals import PROPOSED, Proposals
 from pmm.console.queue_changes import ActionReply, QueueChanges, of_reply
 from pmm.console.queue_journal import QueueJournal
-from pmm.console.request_body import Who, body_of, who_asks
+from pmm.console.request_body import Requester, body_of, who_asks
 from pmm.console.requests import (
     AnswerPosted,
     CommandPosted,
@@ -134,7 +134,7 @@ class PageActions:
         request: Request,
         kind: type[P],
         action: str,
-        act: Callable[[P, Who], Awaitable[ActionReply]],
+        act: Callable[[P, Requester], Awaitable[ActionReply]],
     ) -> Response:
         who = who_asks(request)
         text, present = "", None
@@ -144,7 +144,7 @@ class PageActions:
             reply = await act(kind.model_validate_json(body), who)
             status, answer, present = 200, reply.answer(), reply.present
         except ValidationError as error:
-            status, answer = 422, {"error": _said(error)}
+            status, answer = 422, {"error": _validation_message(error)}
         except NotInControlError as error:
             status, answer = 403, {"error": str(error)}
         except RefusedError as error:
@@ -157,7 +157,7 @@ class PageActions:
 
     async def log(
         self,
-        who: Who,
+        who: Requester,
         action: str,
         text: str,
         answer: dict[str, Any],
@@ -185,24 +185,24 @@ class PageActions:
     async def _alter(self, request: Request, action: str) -> Response:
         """Change the queue, or keep the wish where the token is for proposing."""
 
-        async def act(posted: Posted, who: Who) -> ActionReply:
+        async def act(posted: Posted, who: Requester) -> ActionReply:
             if who.visitor.role is VisitorRole.PROPOSE:
                 return await self._propose(action, posted, who)
             self._require_control(who)
-            return await self.changes.kept(await self.changes.carry_out(action, posted))
+            return await self.changes.when_written(await self.changes.carry_out(action, posted))
 
         return await self._do(request, PROPOSED[action], action, act)
 
-    async def _propose(self, action: str, posted: Posted, who: Who) -> ActionReply:
+    async def _propose(self, action: str, posted: Posted, who: Requester) -> ActionReply:
         """Keep what would be done, once it is checked that it could be."""
         self._proposals.require_room()
         name, picture = await self.changes.try_out(posted)
         proposal = self._proposals.add(action, posted, name, who.visitor, self._utc())
         self.changes.tell_proposals()
         said = f"proposal {proposal.number}, {proposal.text}: whoever has control decides"
-        return await self.changes.kept(ActionReply(said, picture))
+        return await self.changes.when_written(ActionReply(said, picture))
 
-    async def _approve(self, posted: DecisionPosted, who: Who) -> ActionReply:
+    async def _approve(self, posted: DecisionPosted, who: Requester) -> ActionReply:
         self._require_control(who)
         proposal = self._proposals.take(posted.number)
         try:
@@ -211,10 +211,10 @@ class PageActions:
             self._proposals.waiting[proposal.number] = proposal
             raise
         self.changes.tell_proposals()
-        said = f"{proposal.text}, proposed by {proposal.visitor.name!r}: {reply.said}"
-        return await self.changes.kept(replace(reply, said=said))
+        said = f"{proposal.text}, proposed by {proposal.visitor.name!r}: {reply.text}"
+        return await self.changes.when_written(replace(reply, text=said))
 
-    async def _refuse(self, posted: DecisionPosted, who: Who) -> ActionReply:
+    async def _refuse(self, posted: DecisionPosted, who: Requester) -> ActionReply:
         proposal = self._proposals.waiting.get(posted.number)
         is_own = proposal is not None and proposal.visitor is who.visitor
         if not is_own:
@@ -222,24 +222,24 @@ class PageActions:
         proposal = self._proposals.take(posted.number)
         self.changes.tell_proposals()
         said = f"{proposal.text}, proposed by {proposal.visitor.name!r}: {_ENDED[is_own]}"
-        return await self.changes.kept(ActionReply(said))
+        return await self.changes.when_written(ActionReply(said))
 
-    async def _command(self, posted: CommandPosted, who: Who) -> ActionReply:
+    async def _command(self, posted: CommandPosted, who: Requester) -> ActionReply:
         if posted.command is Command.QUICK_STOP:
             return ActionReply(await self._loop.stop_quickly())
         self._require_control(who)
         return of_reply(await self._loop.order(OrderKind.COMMAND, str(posted.command)))
 
-    async def _answer(self, posted: AnswerPosted, who: Who) -> ActionReply:
+    async def _answer(self, posted: AnswerPosted, who: Requester) -> ActionReply:
         self._require_control(who)
         return of_reply(await self._loop.order(OrderKind.ANSWER, posted.answer, posted.question))
 
-    async def _check(self, posted: PlanPosted, who: Who) -> ActionReply:
+    async def _check(self, posted: PlanPosted, who: Requester) -> ActionReply:
         worker = self._workers.for_whom(in_control=self._hub.desk.holder == who.session)
         picture = await worker.run(check_plan_text, self._plans, posted.name, posted.text)
         return ActionReply("", picture)
 
-    async def _note(self, posted: NotePosted, who: Who) -> ActionReply:
+    async def _note(self, posted: NotePosted, who: Requester) -> ActionReply:
         who.visitor.require(VisitorRole.PROPOSE)
         worker = self._workers.for_whom(in_control=self._hub.desk.holder == who.session)
         plan = self.changes.queued.plan(posted.number)
@@ -253,18 +253,18 @@ class PageActions:
         records = await run_sync(latest, self.folder())
         return Response(encode_answer({"audit": records}), media_type="application/json")
 
-    def _require_control(self, who: Who) -> None:
+    def _require_control(self, who: Requester) -> None:
         who.visitor.require(VisitorRole.OPERATE)
         self._hub.desk.require(who.session)
 
-    async def _take(self, posted: TakePosted, who: Who) -> ActionReply:
+    async def _take(self, posted: TakePosted, who: Requester) -> ActionReply:
         who.visitor.require(VisitorRole.OPERATE)
         self._hub.desk.take_over(who.session)
         self._hub.news.set()
         return ActionReply("this browser has control")
 
 
-def _said(error: ValidationError) -> str:
+def _validation_message(error: ValidationError) -> str:
     return "; ".join(
         f"{'.'.join(map(str, fault['loc'])) or 'body'}: {fault['msg']}"
         for fault in error.errors(include_url=False, include_input=False)

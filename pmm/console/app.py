@@ -25,13 +25,13 @@ from hardware.description.errors import PmmError
 from pmm.console.actions import PageActions
 from pmm.console.app_settings import ConsoleSettings
 from pmm.console.client import Client
-from pmm.console.coefficient_updates import Finished
+from pmm.console.coefficient_updates import CoefficientUpdates
 from pmm.console.hub import Hub, pump
 from pmm.console.limits import MOST_STREAMS
 from pmm.console.live.process import Publishing
 from pmm.console.lockout import Lockout
 from pmm.console.loop_side import LoopSide
-from pmm.console.messages import Frame, Hello, Notice, Reply, Told
+from pmm.console.messages import Frame, Hello, LoopMessage, Notice, Reply
 from pmm.console.openapi import description
 from pmm.console.pages import Pages
 from pmm.console.plans import Plans
@@ -39,7 +39,7 @@ from pmm.console.quick_stop import QuickStop
 from pmm.console.request_body import TooLargeError, body_of, who_asks
 from pmm.console.requests import TokenPosted
 from pmm.console.security import COOKIE, VISITOR, Guard
-from pmm.console.worker_process import Shared, Workers
+from pmm.console.worker_process import SharedAnswer, Workers
 from pmm.console.worker_tasks import look_around
 
 PAGE: Final = Path(__file__).parent / "page"
@@ -75,20 +75,20 @@ class Console:
         )
         self._restoring: asyncio.Future[None] | None = None
         figures = self.workers.figures
-        self.finished = Finished(self.hub, figures, settings.earlier, settings.reference)
+        self.finished = CoefficientUpdates(self.hub, figures, settings.earlier, settings.reference)
         self.pages = Pages(self.actions.changes.queued.folders, settings.log_folder)
-        self._around = Shared(
+        self._around = SharedAnswer(
             lambda: self.workers.around.run(look_around, plans, self.pages.folders())
         )
         self._pump = asyncio.ensure_future(pump(self.hub))
 
-    def _take(self, message: Told) -> None:
+    def _take(self, message: LoopMessage) -> None:
         """Take what the loop tells, for the browsers and for those who read along."""
         self.hub.take(message)
         if isinstance(message, Hello):
             self._restoring = asyncio.ensure_future(self.actions.changes.restore())
         elif isinstance(message, Frame):
-            self.actions.changes.seen(message.number, (message.plan, *message.queue))
+            self.actions.changes.follow_frame(message.number, (message.plan, *message.queue))
         if self._publishing is not None:
             self._publishing.take(message)
             self.hub.tell_live(self._publishing.statuses())
@@ -136,14 +136,14 @@ class Console:
             return JSONResponse({"error": _WAIT.format(left_s)}, 429, {"retry-after": str(left_s)})
         login = self.door.log_in(posted.token, posted.name.strip())
         if login is None:
-            said, shut_out = self._lockout.wrong(who.address)
+            said, shut_out = self._lockout.count_wrong(who.address)
             if shut_out:
                 self.actions.alarm(said)
             await self.actions.log(who, "log in", "", {"error": said}, taken=False)
             return JSONResponse({"error": "this is not the token"}, 401)
         cookie, visitor = login
         who = replace(who, visitor=visitor)
-        self._lockout.right(who.address)
+        self._lockout.forget_wrong(who.address)
         await self.actions.log(who, "log in", "", {"said": "welcome"}, taken=True)
         answer = JSONResponse({"said": "welcome"})
         answer.set_cookie(
@@ -153,13 +153,13 @@ class Console:
 
     async def offered(self, request: Request) -> Response:
         """Return the names of the plans."""
-        return await self._seen(lambda names, _: {"names": names})
+        return await self._folder_response(lambda names, _: {"names": names})
 
     async def listed(self, request: Request) -> Response:
         """Return the pages that the campaigns' folders hold."""
-        return await self._seen(lambda _, folders: {"pages": self.pages.listed(folders)})
+        return await self._folder_response(lambda _, folders: {"pages": self.pages.listed(folders)})
 
-    async def _seen(
+    async def _folder_response(
         self, show: Callable[[list[str], dict[Path, list[str]]], dict[str, Any]]
     ) -> Response:
         try:

@@ -8,7 +8,7 @@ from pmm.console.hub import Hub
 from pmm.console.worker_process import NotWorkedOutError, WorkerProcess
 
 
-class Finished:
+class CoefficientUpdates:
     """Works coefficients out when runs end.
 
     What comes while a calculation runs is taken together in the next one.

@@ -27,12 +27,12 @@ class Crowd:
         self._open: dict[Connection, None] = {}  # the one that was heard of longest ago is first
         self._half: dict[Connection, asyncio.TimerHandle] = {}  # the oldest is first
 
-    def heard(self, connection: "Connection", *, complete: bool) -> None:
+    def note_arrival(self, connection: "Connection", *, complete: bool) -> None:
         """Note that something came, and whether that completed the request."""
         self._open.pop(connection, None)
         self._open[connection] = None
         if complete:
-            self._whole(connection)
+            self._stop_timer(connection)
         elif connection not in self._half:
             self._half[connection] = connection.loop.call_later(REQUEST_S, connection.refuse, _LATE)
         while len(self._half) > MOST_HALF_SENT and self._is_old(next(iter(self._half))):
@@ -40,16 +40,16 @@ class Crowd:
         if len(self._open) > MOST_CONNECTIONS:
             next(iter(self._open)).give_way()
 
-    def gone(self, connection: "Connection") -> None:
+    def forget(self, connection: "Connection") -> None:
         """Forget a connection that ended, or became a page's stream."""
         self._open.pop(connection, None)
-        self._whole(connection)
+        self._stop_timer(connection)
 
     def _is_old(self, connection: "Connection") -> bool:
         """Whether one had the time to send: many pages may come at once, each on its own."""
         return self._half[connection].when() - connection.loop.time() < REQUEST_S - YOUNG_S
 
-    def _whole(self, connection: "Connection") -> None:
+    def _stop_timer(self, connection: "Connection") -> None:
         timer = self._half.pop(connection, None)
         if timer is not None:
             timer.cancel()
@@ -67,31 +67,31 @@ class Connection(H11Protocol):
         self._accepting = asyncio.current_task()  # of the event loop; it goes on to the handshake
         if self._accepting is not None:
             self._accepting.add_done_callback(self._accepted)
-        crowd.heard(self, complete=False)
+        crowd.note_arrival(self, complete=False)
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Begin; nothing is sent yet, which is half a request too."""
         super().connection_made(transport)
-        self._crowd.heard(self, complete=False)
+        self._crowd.note_arrival(self, complete=False)
 
     def data_received(self, data: bytes) -> None:
         """Take bytes of a request, and tell the crowd whether it is whole."""
         super().data_received(data)
         if self.transport.is_closing() or self.transport.get_protocol() is not self:
-            self._crowd.gone(self)
+            self._crowd.forget(self)
         else:
-            self._crowd.heard(self, complete=self.conn.their_state not in _COMING)
+            self._crowd.note_arrival(self, complete=self.conn.their_state not in _COMING)
 
     def on_response_complete(self) -> None:
         """Go on with a request that came behind the one that is answered now."""
         super().on_response_complete()
         half = self.conn.their_state is h11.SEND_BODY or bool(self.conn.trailing_data[0])
         if half and not self.transport.is_closing():
-            self._crowd.heard(self, complete=self.conn.their_state not in _COMING)
+            self._crowd.note_arrival(self, complete=self.conn.their_state not in _COMING)
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Leave the crowd; the browser or the network closed the connection."""
-        self._crowd.gone(self)
+        self._crowd.forget(self)
         super().connection_lost(exc)
 
     def refuse(self, why: str) -> None:
@@ -99,7 +99,7 @@ class Connection(H11Protocol):
         if self.transport is None:
             self.give_way()
             return
-        self._crowd.gone(self)
+        self._crowd.forget(self)
         if self.cycle is None or not self.cycle.response_started or self.cycle.response_complete:
             body = why.encode()
             self.transport.write(
@@ -113,7 +113,7 @@ class Connection(H11Protocol):
 
     def give_way(self) -> None:
         """Close the connection at once, so that another has its place."""
-        self._crowd.gone(self)
+        self._crowd.forget(self)
         if self.transport is not None:
             self.transport.abort()
         elif self._accepting is not None:
@@ -122,7 +122,7 @@ class Connection(H11Protocol):
     def _accepted(self, _: object) -> None:
         """End where no connection came of it: a handshake that failed."""
         if self.transport is None:
-            self._crowd.gone(self)
+            self._crowd.forget(self)
 
 
 class PageStream(WebSocketsSansIOProtocol):
@@ -138,14 +138,14 @@ class PageStream(WebSocketsSansIOProtocol):
     def resume_writing(self) -> None:
         """Note that it takes something again."""
         super().resume_writing()
-        self._taken()
+        self._stop_timer()
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Give its place up; the browser or the network closed the connection."""
-        self._taken()
+        self._stop_timer()
         super().connection_lost(exc)
 
-    def _taken(self) -> None:
+    def _stop_timer(self) -> None:
         if self._full is not None:
             self._full.cancel()
             self._full = None

@@ -103,14 +103,15 @@ def campaign_picture(campaign: CampaignLook) -> dict[str, Any]:
         "runs": len(look.runs),
         "time": clock(look.time_s),
         "known": [
-            {key: _plain(getattr(coefficient, key)) for key in keys} for coefficient in look.known
+            {key: _plain(getattr(coefficient, key)) for key in keys}
+            for coefficient in look.known_targets
         ],
         "causes": [{**asdict(cause), "met": cause.met} for cause in look.causes],
         "proposed": [
             {"what": in_words(run), "time": clock(cost_s), "why": why}
             for run, cost_s, why in zip(look.proposed, look.costs_s, look.whys, strict=True)
         ],
-        "kept": [run.name for run in look.kept],
+        "kept": [run.name for run in look.kept_runs],
         "left": clock(look.left_s),
         "remark": look.remark,
         "ending": "" if look.ending is None else str(look.ending),

@@ -9,7 +9,7 @@ from analysis.coefficients.campaign_result import CampaignCoefficients
 from hardware.description.errors import DataError, PmmError
 
 
-class _Here(Executor):
+class _SameProcessExecutor(Executor):
     """Does what it is given at once: this process is a worker already."""
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> "Future[Any]":
@@ -73,7 +73,7 @@ def _result(folder: Path) -> CampaignCoefficients:
     from pmm.coefficients.workflow import coefficients_of
 
     settings = CoefficientSettings(nonlinear=False, zero_frequency=False)
-    return coefficients_of([folder], settings, _Here(), _silent).result
+    return coefficients_of([folder], settings, _SameProcessExecutor(), _silent).result
 
 
 def _points(result: CampaignCoefficients) -> Iterator[dict[str, Any]]:

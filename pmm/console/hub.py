@@ -25,7 +25,16 @@ from pmm.console.encoding import (
     outcome_picture,
 )
 from pmm.console.live.outlet import OutletStatus
-from pmm.console.messages import WRITTEN, CampaignLook, Frame, Hello, Needles, Notice, Reply, Told
+from pmm.console.messages import (
+    WRITTEN,
+    CampaignLook,
+    Frame,
+    Hello,
+    LoopMessage,
+    Needles,
+    Notice,
+    Reply,
+)
 from pmm.console.pictures import Pictures
 from pmm.console.security import VisitorRole
 
@@ -80,7 +89,7 @@ class Hub:
         self._pictures = Pictures()
         self._common = ""
 
-    def take(self, message: Told) -> None:
+    def take(self, message: LoopMessage) -> None:
         """Take a message of the loop: a frame, a notice, a reply or a look at a campaign."""
         if isinstance(message, Frame):
             self.last = message

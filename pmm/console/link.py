@@ -7,7 +7,7 @@ from dataclasses import replace
 from multiprocessing.connection import Connection
 from typing import Any, Final, Generic, TypeVar
 
-from pmm.console.messages import Frame, LoopOrder, Told
+from pmm.console.messages import Frame, LoopMessage, LoopOrder
 from pmm.console.queued_plan import PackedPlan, unpack
 
 _POLL_S: Final = 0.2
@@ -36,7 +36,7 @@ class Link(Generic[T]):
         self._most_frames = most_frames
         self._connection = connection
         self._frames: deque[Frame] = deque(maxlen=most_frames)
-        self._others: deque[Told] = deque()
+        self._others: deque[LoopMessage] = deque()
         self._orders: queue.SimpleQueue[T] = queue.SimpleQueue()
         self._wake = threading.Event()
         self._closed = threading.Event()
@@ -63,7 +63,7 @@ class Link(Generic[T]):
         self._frames.append(frame)
         self._wake.set()
 
-    def tell(self, message: Told) -> None:
+    def tell(self, message: LoopMessage) -> None:
         """Hand on what must not be dropped; without another side there is nobody to hand it to."""
         if self.lost:
             return
@@ -106,13 +106,13 @@ class Link(Generic[T]):
         try:
             while not self._closed.is_set():
                 if self._connection.poll(_POLL_S):
-                    self._orders.put(_whole(self._connection.recv()))
+                    self._orders.put(_unpacked_order(self._connection.recv()))
         except (OSError, EOFError):
             self._closed.set()
             self._wake.set()
 
 
-def _whole(message: Any) -> Any:
+def _unpacked_order(message: Any) -> Any:
     """Return an order with its plan unpacked; in the thread, for the loop does not wait for it."""
     if isinstance(message, LoopOrder) and isinstance(message.plan, PackedPlan):
         return replace(message, plan=unpack(message.plan))

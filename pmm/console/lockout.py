@@ -44,7 +44,7 @@ class Lockout:
         count.turned_away += left_s > 0.0
         return left_s
 
-    def wrong(self, address: str) -> tuple[str, bool]:
+    def count_wrong(self, address: str) -> tuple[str, bool]:
         """Count a wrong token; return what to log, and whether it first shuts the address out."""
         key = _network(address)
         count = self._counts.pop(key, None) or _Count()
@@ -61,7 +61,7 @@ class Lockout:
         said += f"; it waits {lasts_s:g} s" if lasts_s else ""
         return said, beyond == 0
 
-    def right(self, address: str) -> None:
+    def forget_wrong(self, address: str) -> None:
         """Forget the wrong ones: somebody has found the right one."""
         self._counts.pop(_network(address), None)
 

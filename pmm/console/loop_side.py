@@ -8,7 +8,7 @@ from multiprocessing.connection import Connection
 from anyio.to_thread import run_sync
 
 from hardware.description.errors import PmmError
-from pmm.console.messages import LoopOrder, OrderKind, Reply, Told
+from pmm.console.messages import LoopMessage, LoopOrder, OrderKind, Reply
 from pmm.console.queued_plan import PackedPlan
 from pmm.console.quick_stop import PATIENCE_S, QuickStop
 
@@ -44,7 +44,7 @@ class LoopSide:
         self,
         connection: Connection,
         quick_stop: QuickStop,
-        take: Callable[[Told], None],
+        take: Callable[[LoopMessage], None],
         lost: Callable[[], None],
     ) -> None:
         self._quick_stop = quick_stop
@@ -78,7 +78,7 @@ class LoopSide:
             raise RefusedError("the control loop does not answer; look at the rig") from error
         finally:
             self._open.pop(order.number, None)
-        if not reply.done:
+        if not reply.carried_out:
             raise RefusedError(reply.text, reply.plan)
         return reply
 
@@ -90,7 +90,7 @@ class LoopSide:
         NotStoppedError
             If it has not.
         """
-        await self._quick_stop.taken(self._quick_stop.press())
+        await self._quick_stop.wait_taken(self._quick_stop.press())
         return "quick stop taken"
 
     def replied(self, reply: Reply) -> None:

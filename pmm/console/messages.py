@@ -70,7 +70,7 @@ class Reply:
     """
 
     number: int
-    done: bool
+    carried_out: bool
     text: str = ""
     plan: int = 0
     frame: int = 0
@@ -231,4 +231,4 @@ class CampaignLook:
     look: Look
 
 
-Told = Hello | Notice | Frame | Reply | CampaignLook
+LoopMessage = Hello | Notice | Frame | Reply | CampaignLook

@@ -88,7 +88,9 @@ def following(control: RunControl, status: RunStatus) -> tuple[str, ...]:
     """Return the names of the runs that come after that one."""
     planned = control.planned
     after = islice(planned.runs, status.run_number, None)
-    return tuple(islice((run.name for run in after if run.name not in planned.held), _FOLLOWING))
+    return tuple(
+        islice((run.name for run in after if run.name not in planned.held_runs), _FOLLOWING)
+    )
 
 
 class NeedleReader:

@@ -90,7 +90,7 @@ class Plans:
         if text:
             with self._written(text) as path:
                 return self._read(path)
-        return self._read(self._known(name))
+        return self._read(self._plan_path(name))
 
     def possible(self, name: str, text: str) -> CheckedPlan:
         """Read a plan that might be run; nothing is kept.
@@ -103,7 +103,7 @@ class Plans:
         if text:
             with self._written(text) as path:
                 return self._possible(path)
-        return self._possible(self._known(name))
+        return self._possible(self._plan_path(name))
 
     def queue(self, name: str, text: str) -> CheckedPlan:
         """Read a plan that is to be run; a text is kept beside the other plans.
@@ -117,7 +117,7 @@ class Plans:
             self.possible(name, text)  # what is refused is not kept
             name = f"console-{_digest(text)}.toml"
             (self.folder / name).write_text(text, encoding="utf-8")
-        return self._possible(self._known(name))
+        return self._possible(self._plan_path(name))
 
     def changed(self, plan: QueuedPlan, posted: RunPosted) -> CheckedPlan:
         """Return a queued plan with what was posted changed in it.
@@ -136,7 +136,7 @@ class Plans:
             check_names(plan.plan, [posted.run])
         rig = read_rig_file(self.rig_path)
         self._check_unchanged(rig)
-        runs, held = plan.plan.runs, plan.held
+        runs, held = plan.plan.runs, plan.held_runs
         findings: tuple[PlanFinding, ...] = ()
         if isinstance(posted, EditPosted):
             settings = posted.model_dump(exclude={"number", "run"}, exclude_none=True)
@@ -151,7 +151,7 @@ class Plans:
             held = held | names if posted.held else held - names
         made = {run.name for run in plan.runs}
         rest = tuple(run for run in runs if run.name in made)
-        waiting = replace(plan, plan=replace(plan.plan, runs=runs), runs=rest, held=held)
+        waiting = replace(plan, plan=replace(plan.plan, runs=runs), runs=rest, held_runs=held)
         return CheckedPlan(waiting, rig, findings, duration_rows(rest, rig))
 
     def _check_rig(self, path: Path) -> None:
@@ -178,7 +178,7 @@ class Plans:
             require_possible(checked.waiting.plan, checked.rig, _today())
         return checked
 
-    def _known(self, name: str) -> Path:
+    def _plan_path(self, name: str) -> Path:
         names = self.names()
         if name not in names:
             choices = ", ".join(names) or "none"
@@ -233,7 +233,7 @@ def plan_picture(checked: CheckedPlan) -> dict[str, Any]:
         "folder": str(plan.folder),
         "runs": [_run(run, s) for run, s in zip(plan.runs, checked.durations_s, strict=True)],
         "chooses": plan.chooses,
-        "held": sorted(plan.held),
+        "held": sorted(plan.held_runs),
         "complete": len(plan.plan.runs) - len(plan.runs),
         "refused": checked.refused,
         "findings": [

@@ -100,7 +100,7 @@ class PlansInHand:
         before = present if is_present and present is not None else self.waits(plan.number)
         names = {run.name for run in before.runs}
         now = replace(plan, runs=tuple(run for run in plan.runs if run.name in names))
-        if (now.runs, now.held) == (before.runs, before.held):
+        if (now.runs, now.held_runs) == (before.runs, before.held_runs):
             raise RunStateError(UNCHANGED)
         if is_present:
             self.present = now

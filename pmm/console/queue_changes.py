@@ -21,7 +21,7 @@ from pmm.console.queue_journal import KeptPlan, KeptQueue, QueueJournal
 from pmm.console.requests import DropPosted, HoldPosted, MovePosted, PlanPosted, Posted, RunPosted
 from pmm.console.worker_process import Workers
 from pmm.console.worker_tasks import (
-    Queued,
+    QueuedPlans,
     ReadyPlan,
     changed_plan,
     possible_plan,
@@ -39,19 +39,19 @@ class ActionReply:
 
     Attributes
     ----------
-    said, plan
+    text, plan
         The answer; empty or ``None`` where there is nothing to say.
     present
         Number of the plan to which it belongs; ``None`` where the loop was not asked.
     """
 
-    said: str
+    text: str
     plan: EncodedText | None = None
     present: int | None = None
 
     def answer(self) -> dict[str, Any]:
         """Return the fields that the page gets, without those that say nothing."""
-        parts = {"said": self.said or None, "plan": self.plan}
+        parts = {"said": self.text or None, "plan": self.plan}
         return {key: value for key, value in parts.items() if value is not None}
 
 
@@ -80,10 +80,10 @@ class QueueChanges:
     ) -> None:
         self._hub, self._loop, self._workers, self._plans = hub, loop, workers, plans
         self._proposals = proposals
-        self._keeper = QueueKeeper(journal, self._kept, lambda text: hub.say("alarm", text))
+        self._keeper = QueueKeeper(journal, self._queue_state, lambda text: hub.say("alarm", text))
         self._changing, self._order = asyncio.Lock(), tuple[int, ...]()
         self._frame, self._told = 0, asyncio.Event()
-        self.queued = Queued()
+        self.queued = QueuedPlans()
         self._acts: dict[str, Callable[[Any], Awaitable[ActionReply]]] = {
             "queue": self._queue,
             "drop": self._drop,
@@ -156,14 +156,14 @@ class QueueChanges:
         self._tell_plans()
         return of_reply(reply, ready.picture)
 
-    def seen(self, frame: int, numbers: tuple[int, ...]) -> None:
+    def follow_frame(self, frame: int, numbers: tuple[int, ...]) -> None:
         """Take the order of the queue as the latest frame tells it."""
         self._frame = frame
         self._told.set()
         if numbers != self._order:
             self._order = numbers
             self.queued.at_hand(numbers)
-            self._keeper.changed()
+            self._keeper.note_change()
 
     async def restore(self) -> None:
         """Queue again what was in the queue when the console before ended; nothing moves by it."""
@@ -173,13 +173,13 @@ class QueueChanges:
             except PmmError as error:
                 self._hub.say("alarm", str(error))
                 queue = KeptQueue()
-            numbers = {plan.number: await self._again(plan) for plan in queue.plans}
+            numbers = {plan.number: await self._queue_again(plan) for plan in queue.plans}
             self._proposals.restore(queue.proposals, numbers)
             self._tell_plans()
             self.tell_proposals()
             self._keeper.begin()
 
-    async def _again(self, plan: KeptPlan) -> int:
+    async def _queue_again(self, plan: KeptPlan) -> int:
         """Queue a plan again; return its number now, 0 if nothing of it is left to be made."""
         worker = self._workers.for_whom(in_control=True)
         try:
@@ -192,26 +192,26 @@ class QueueChanges:
             return 0
         return self.queued.count
 
-    async def kept(self, reply: ActionReply) -> ActionReply:
+    async def when_written(self, reply: ActionReply) -> ActionReply:
         """Return an answer once what it says is on the disk; the answer says where it is not."""
         async with self._changing:  # what was kept before is known by then
-            trouble = await self._keeper.kept()
-        return replace(reply, said=f"{reply.said}; {trouble}") if trouble else reply
+            trouble = await self._keeper.wait_written()
+        return replace(reply, text=f"{reply.text}; {trouble}") if trouble else reply
 
     def tell_proposals(self) -> None:
         """Tell what is proposed, and keep it."""
         self._hub.tell_proposals(self._proposals.pictures())
-        self._keeper.changed()
+        self._keeper.note_change()
 
     def _tell_plans(self) -> None:
         last = self._hub.last
         if last is not None:
             self.queued.at_hand((last.plan, *last.queue))
         self._hub.tell_plans(encode_answer(self.queued.pictures()))
-        self._keeper.changed()
+        self._keeper.note_change()
 
-    def _kept(self) -> KeptQueue:
-        return KeptQueue(self.queued.kept(), tuple(self._proposals.waiting.values()))
+    def _queue_state(self) -> KeptQueue:
+        return KeptQueue(self.queued.kept_plans(), tuple(self._proposals.waiting.values()))
 
 
 class QueueKeeper:
@@ -240,15 +240,15 @@ class QueueKeeper:
     def begin(self) -> None:
         """Keep the present state, and each that follows."""
         self._begun = True
-        self.changed()
+        self.note_change()
 
-    def changed(self) -> None:
+    def note_change(self) -> None:
         """Note that there is something to keep."""
         self._again = self._begun
         if self._begun and (self._task is None or self._task.done()):
             self._task = asyncio.get_running_loop().create_task(self._write())
 
-    async def kept(self) -> str:
+    async def wait_written(self) -> str:
         """Wait until what was changed so far is on the disk; return why it is not, if it is not."""
         if self._task is not None:
             await asyncio.wait([self._task])

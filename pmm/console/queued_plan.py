@@ -27,7 +27,7 @@ class QueuedPlan:
         Those that are to be made: what the folder holds complete is left out.
     chooses
         Whether it is a design, whose runs are chosen one after the other.
-    held
+    held_runs
         Names of runs that are passed over until they are released.
     """
 
@@ -36,12 +36,12 @@ class QueuedPlan:
     folder: Path
     runs: tuple[RunPlan, ...]
     chooses: bool = False
-    held: frozenset[str] = frozenset()
+    held_runs: frozenset[str] = frozenset()
 
     @property
     def ready(self) -> bool:
         """Whether any of its runs may be made: not all are held."""
-        return self.chooses or any(run.name not in self.held for run in self.runs)
+        return self.chooses or any(run.name not in self.held_runs for run in self.runs)
 
 
 @dataclass(frozen=True)

@@ -47,7 +47,7 @@ class QuickStop:
         self._taken.value = pressed
         return is_new
 
-    async def taken(self, number: int) -> None:
+    async def wait_taken(self, number: int) -> None:
         """Wait until the loop has taken one.
 
         Raises

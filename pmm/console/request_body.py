@@ -13,7 +13,7 @@ SESSION: Final = "x-pmm-session"
 
 
 @dataclass(frozen=True)
-class Who:
+class Requester:
     """The session, address and rights of whoever sends a request."""
 
     session: str
@@ -21,10 +21,10 @@ class Who:
     visitor: Visitor
 
 
-def who_asks(request: Request) -> Who:
+def who_asks(request: Request) -> Requester:
     """Return session, address and rights of a request; the address ``?`` if not known."""
     address = request.client.host if request.client is not None else "?"
-    return Who(request.headers.get(SESSION, ""), address, request.scope[VISITOR])
+    return Requester(request.headers.get(SESSION, ""), address, request.scope[VISITOR])
 
 
 class TooLargeError(PmmError):

@@ -92,11 +92,11 @@ class ChoosingCampaign:
             self._executor.submit(self._stack.close)
 
     def _course(self) -> Generator[QueuedPlan | None, None, None]:
-        course = yield from self._away(self._begun)
+        course = yield from self._do_aside(self._begin_course)
         for job in course.jobs():
             yield None if job is None else replace(self.plan, plan=job.plan, runs=job.runs)
 
-    def _begun(self) -> "CampaignCourse[RunJob]":
+    def _begin_course(self) -> "CampaignCourse[RunJob]":
         from pmm.design.design_file import read_design
         from pmm.gap.rig_pursuit import goal_of
         from pmm.sequential.execution import CampaignRequest, campaign_course
@@ -113,7 +113,7 @@ class ChoosingCampaign:
     def _show(self, look: Look) -> None:
         self._tell(CampaignLook(self.plan.number, look))
 
-    def _away(self, work: Callable[[], T]) -> Generator[None, None, T]:
+    def _do_aside(self, work: Callable[[], T]) -> Generator[None, None, T]:
         if self._executor is None:
             return work()
         future: Future[T] = self._executor.submit(work)

@@ -114,7 +114,11 @@ class Station:
             return
         if not self.control.finished:
             return
-        if self._plans.present is not None and not self._left and not self.control.planned.held:
+        if (
+            self._plans.present is not None
+            and not self._has_runs_left
+            and not self.control.planned.held_runs
+        ):
             self._writer.let_go(self._plans.present.number)
         if self._plans.ready:
             self._next_plan(goes_on=self.control.state is State.DONE)
@@ -139,7 +143,7 @@ class Station:
             self._recording.plan = plan.plan
             self.control.replan((*self.control.runs, *plan.runs))
             return
-        self._anew(plan.runs)
+        self._renew_control(plan.runs)
         self.control.request(Command.START)
 
     def _end_campaign(self, how: str, kind: str = "plan") -> None:
@@ -211,7 +215,7 @@ class Station:
 
     def _take_turns(self) -> None:
         """Make the next plan the present one where nothing is under way; it waits for Start."""
-        if self._idle and not self._left and self._campaign is None and self._plans.ready:
+        if self._idle and not self._has_runs_left and self._campaign is None and self._plans.ready:
             self._next_plan(goes_on=False)
 
     def _change(self, plan: QueuedPlan) -> str:
@@ -220,11 +224,11 @@ class Station:
         now = self._plans.change(plan)
         if self._plans.present is now:
             try:
-                self.control.replan(now.runs, now.held)
+                self.control.replan(now.runs, now.held_runs)
             except RunStateError:
                 self._plans.present = before
                 raise
-            if over and self._left and self.control.state is State.DONE:
+            if over and self._has_runs_left and self.control.state is State.DONE:
                 self.control.request(Command.STOP)  # released at rest: Start begins it
         self._view.notice("queue", f"{plan.plan.name}: changed")
         self._take_turns()
@@ -243,7 +247,7 @@ class Station:
             self._end_campaign("left")
             name, self._plans.present = self._plans.present.plan.name, None
             self._writer.let_go(number)
-            self._anew(())
+            self._renew_control(())
         else:
             name = self._plans.drop(number).plan.name
             self._writer.let_go(number)
@@ -255,17 +259,17 @@ class Station:
         return self.control.state in _READY and self.control.measurement is None
 
     @property
-    def _left(self) -> bool:
+    def _has_runs_left(self) -> bool:
         """Whether runs of the present plan are still to be made, those that are held apart."""
-        return bool(self.control.planned.left)
+        return bool(self.control.planned.runs_left)
 
     def _next_plan(self, *, goes_on: bool) -> None:
         """Take the next plan; queueing at rest moves nothing: that is what Start is for."""
         goes_on = goes_on and self._plans.present is not None
-        if self._left and self._plans.present is not None:
+        if self._has_runs_left and self._plans.present is not None:
             return
         plan = self._plans.take_next({outcome.run for outcome in self.control.outcomes})
-        self._anew(plan.runs)
+        self._renew_control(plan.runs)
         if plan.chooses:
             self._campaign = ChoosingCampaign(plan, self._answers, self._link.tell, self._executor)
             goes_on = False
@@ -273,7 +277,7 @@ class Station:
         if goes_on:
             self.control.request(Command.START)
 
-    def _anew(self, runs: tuple[RunPlan, ...]) -> None:
+    def _renew_control(self, runs: tuple[RunPlan, ...]) -> None:
         """Control runs where the control before has left the rig."""
         before, self.control = self.control, self._controlled(runs)
         self.control.follow(before)
@@ -283,7 +287,7 @@ class Station:
         control = RunControl(
             self._rig, self._rig_file, runs, self._begin, self._clock, self._view, self._executor
         )
-        control.planned.held = frozenset() if present is None else present.held
+        control.planned.held_runs = frozenset() if present is None else present.held_runs
         self._view.begin()
         self._recording = None if present is None else self._recorded(present)
         if self._recording is not None:

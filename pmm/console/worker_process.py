@@ -91,7 +91,7 @@ class WorkerProcess:
         asked = asyncio.get_running_loop().run_in_executor(
             self._thread, self._ask, work, arguments, named
         )
-        asked.add_done_callback(self._done)
+        asked.add_done_callback(self._end_request)
         result: T = await asyncio.shield(asked)
         return result
 
@@ -107,7 +107,7 @@ class WorkerProcess:
         self._thread.shutdown()
         self._end()
 
-    def _done(self, asked: "asyncio.Future[Any]") -> None:
+    def _end_request(self, asked: "asyncio.Future[Any]") -> None:
         self._waiting -= 1
         if not asked.cancelled():
             asked.exception()  # whoever asked may have gone
@@ -255,7 +255,7 @@ class Workers:
             worker.close()
 
 
-class Shared(Generic[T]):
+class SharedAnswer(Generic[T]):
     """One answer for all who ask while another is worked out: every page asks when a run ends."""
 
     def __init__(self, ask: Callable[[], Awaitable[T]]) -> None:

@@ -93,7 +93,7 @@ def look_around(plans: Plans, folders: tuple[Path, ...]) -> tuple[list[str], dic
     return plans.names(), pages_in(folders)
 
 
-class Queued:
+class QueuedPlans:
     """Keeps plans by their numbers, which are never used twice.
 
     A plan has its runs, and its picture too, some megabytes. Both are kept while the plan is under
@@ -126,7 +126,7 @@ class Queued:
         self._folders[plan.packed.bare.folder] = None
         return self._count
 
-    def kept(self) -> tuple[KeptPlan, ...]:
+    def kept_plans(self) -> tuple[KeptPlan, ...]:
         """Return what is to be queued again after a restart, in the order of the queue."""
         later = [number for number in self._plans if number not in self._order]
         return tuple(

@@ -63,14 +63,14 @@ class Writer:
     def _do(self, plan: QueuedPlan, work: Callable[[], None]) -> None:
         owned = own_campaign(plan.folder, patience_s=0.0)
 
-        def done() -> None:
+        def do_owned() -> None:
             with owned:
                 work()
 
         if self._executor is None:
-            done()
+            do_owned()
         else:
-            self._pending.append(self._executor.submit(done))
+            self._pending.append(self._executor.submit(do_owned))
 
     def failures(self) -> list[str]:
         """Return what went wrong since the last call."""

@@ -53,7 +53,7 @@ class DesignFile:
         Where the rig's file lies.
     fixed
         Runs that are made in any case, zero and control runs among them.
-    made
+    made_runs
         Those of them that tell of the coefficients, or runs that were made before.
     time_s
         That the runs to be chosen may take.
@@ -70,7 +70,7 @@ class DesignFile:
     rig: RigFile
     tables: PlanTables
     fixed: tuple[RunPlan, ...]
-    made: tuple[CandidateRun, ...]
+    made_runs: tuple[CandidateRun, ...]
     grid: RunGrid
     belief: Belief
     noise: Noise

@@ -30,7 +30,7 @@ _ENOUGH = 3  # runs, or repeats beyond the first of their kind: fewer say too li
 
 
 @dataclass(frozen=True, eq=False)
-class Measured:
+class MeasuredRuns:
     """Oscillations that were made and can be used, each with its cycle.
 
     Attributes
@@ -45,7 +45,7 @@ class Measured:
     failed: Mapping[str, str]
 
 
-def after(file: DesignFile, parts: Sequence[Measured]) -> DesignFile:
+def continued_design(file: DesignFile, parts: Sequence[MeasuredRuns]) -> DesignFile:
     """Return a design that goes on from runs that were made, with the noise that they showed.
 
     What ``[[runs]]`` has is taken to be among them.
@@ -66,7 +66,7 @@ def after(file: DesignFile, parts: Sequence[Measured]) -> DesignFile:
     stated = largest([file.stated, *(part.stated for part in parts)])
     table = {key: value for key, value in file.plan_table.items() if key != "runs"}
     going_on = replace(
-        file, plan_table=table, fixed=(), made=candidates, stated=stated,
+        file, plan_table=table, fixed=(), made_runs=candidates, stated=stated,
         cycles=tuple(with_repeats(cycle, spread) for cycle in cycles),
     )  # fmt: skip
     times = _noise_shown(going_on)
@@ -118,7 +118,7 @@ def repeats_said(cycles: Sequence[BodyCycle], stated: float) -> str:
     )
 
 
-def measured(file: DesignFile, folder: Path, executor: Executor) -> Measured:
+def read_measured_runs(file: DesignFile, folder: Path, executor: Executor) -> MeasuredRuns:
     """Read the runs of a campaign's folder, each on an executor.
 
     Raises
@@ -144,16 +144,16 @@ def measured(file: DesignFile, folder: Path, executor: Executor) -> Measured:
     candidates = tuple(CandidateRun(run.set_point, run.periods, math.inf) for run in made_runs)
     failures = {failure.name: failure.message for failure in recorded.failed}
     failures |= {cycle.name: _LINES for cycle in moving if cycle.lines}
-    return Measured(candidates, tuple(cycles), recorded.stated, failures)
+    return MeasuredRuns(candidates, tuple(cycles), recorded.stated, failures)
 
 
 def _noise_shown(file: DesignFile) -> float:
     """Return how many times as much the runs scatter as is believed; 1 where they cannot tell."""
-    if len(file.made) < _ENOUGH:
+    if len(file.made_runs) < _ENOUGH:
         return 1.0
-    cycles = (made_up(file.made, file.belief, file.noise), file.cycles)
+    cycles = (made_up(file.made_runs, file.belief, file.noise), file.cycles)
     believed, shown = (
-        expected(file.made, group, file.targets, file.belief, file.stated) for group in cycles
+        expected(file.made_runs, group, file.targets, file.belief, file.stated) for group in cycles
     )
     pairs = zip(map(_scatter, shown), map(_scatter, believed), strict=True)
     ratios = [

@@ -30,14 +30,14 @@ class DesignStep:
         What is added, and how often.
     time_s
         Tank time of all runs so far, those made in any case among them.
-    known
+    expected_coefficients
         What is expected of each coefficient then.
     """
 
     run: RunPlan
     repeats: int
     time_s: float
-    known: tuple[ExpectedCoefficient, ...]
+    expected_coefficients: tuple[ExpectedCoefficient, ...]
 
 
 @dataclass(frozen=True)
@@ -48,17 +48,17 @@ class Design:
     ----------
     steps
         One for each set of settings.
-    now
+    expected_now
         What is known of each coefficient before the first of them.
-    known
+    expected_coefficients
         What is expected of each coefficient after all of them.
     why
         Of each target that is not met, why.
     """
 
     steps: tuple[DesignStep, ...]
-    now: tuple[ExpectedCoefficient, ...]
-    known: tuple[ExpectedCoefficient, ...]
+    expected_now: tuple[ExpectedCoefficient, ...]
+    expected_coefficients: tuple[ExpectedCoefficient, ...]
     why: tuple[str, ...]
 
     @property
@@ -75,12 +75,12 @@ def design(file: DesignFile) -> Design:
     DataError
         If a run of the grid cannot be reached, or its loads not be told without an X gauge.
     """
-    now = _known(file)
+    now = _expected_now(file)
     choices: list[tuple[int, int]] = []
     if not (now and file.targets and all(coefficient.met for coefficient in now)):
         choices = _chosen(file)
     steps = _steps(file, choices)
-    after = steps[-1].known if steps else now
+    after = steps[-1].expected_coefficients if steps else now
     used_s = math.fsum(_costs_s(file, choices))
     reasons = tuple(_why(coefficient, file, used_s) for coefficient in after if not coefficient.met)
     return Design(steps, now, after, reasons)
@@ -92,7 +92,7 @@ def _chosen(file: DesignFile) -> list[tuple[int, int]]:
     The search takes scatter for known, and runs that were made for what is believed of them. Where
     its runs do not do by what is expected of the fit, more is asked for.
     """
-    candidates = (*file.grid.candidates, *file.made)
+    candidates = (*file.grid.candidates, *file.made_runs)
     run_prospects = prospects(candidates, file.belief, file.noise, file.stated)
     made_places = tuple(range(len(file.grid.candidates), len(candidates)))
     runs: tuple[int, ...] = ()
@@ -111,20 +111,20 @@ def _chosen(file: DesignFile) -> list[tuple[int, int]]:
 
 
 def _suffice(file: DesignFile, extra_runs: Sequence[CandidateRun]) -> bool:
-    return all(coefficient.met for coefficient in foreseen(file, extra_runs))
+    return all(coefficient.met for coefficient in expected_after(file, extra_runs))
 
 
-def _known(file: DesignFile) -> tuple[ExpectedCoefficient, ...]:
+def _expected_now(file: DesignFile) -> tuple[ExpectedCoefficient, ...]:
     """Return what the runs that were made tell, or will tell that are made in any case."""
-    if not file.made:
+    if not file.made_runs:
         return ()
-    cycles = file.cycles or made_up(file.made, file.belief, file.noise)
-    return expected(file.made, cycles, file.targets, file.belief, file.stated)
+    cycles = file.cycles or made_up(file.made_runs, file.belief, file.noise)
+    return expected(file.made_runs, cycles, file.targets, file.belief, file.stated)
 
 
 def _steps(file: DesignFile, choices: list[tuple[int, int]]) -> tuple[DesignStep, ...]:
     """Return the steps: the runs that were made, or are made in any case, come before them."""
-    order = [*file.made]
+    order = [*file.made_runs]
     ends = []
     for candidate, repeats in choices:
         order += [file.grid.candidates[candidate]] * repeats
@@ -159,11 +159,11 @@ def _costs_s(file: DesignFile, choices: Sequence[tuple[int, int]]) -> list[float
     return [math.fsum(islice(costs, repeats)) for _, repeats in choices]
 
 
-def foreseen(
+def expected_after(
     file: DesignFile, extra_runs: Sequence[CandidateRun]
 ) -> tuple[ExpectedCoefficient, ...]:
     """Return what is expected of each coefficient after some runs beside those that were made."""
-    order = [*file.made, *extra_runs]
+    order = [*file.made_runs, *extra_runs]
     return expected(order, _cycles(file, order), file.targets, file.belief, file.stated)
 
 
@@ -174,10 +174,10 @@ def _cycles(file: DesignFile, order: Sequence[CandidateRun]) -> list[BodyCycle]:
 
 def beyond_runs(coefficient: ExpectedCoefficient) -> bool:
     """Whether a target cannot be met by any runs: what they do not lower is beyond it alone."""
-    return not coefficient.message and _left(coefficient) <= 0.0
+    return not coefficient.message and _scatter_variance(coefficient) <= 0.0
 
 
-def _left(coefficient: ExpectedCoefficient) -> float:
+def _scatter_variance(coefficient: ExpectedCoefficient) -> float:
     """Return the variance that the scatter may have where the target is met."""
     scatter = sum(coefficient.shares.get(name, 0.0) for name in (SCATTER, REPEATS))
     return coefficient.wanted**2 - (1.0 - scatter) * coefficient.standard_uncertainty**2
@@ -199,7 +199,7 @@ def _why(coefficient: ExpectedCoefficient, file: DesignFile, used_s: float) -> s
         f"{coefficient.name}{condition}: {expected_u:.3g} {coefficient.unit} is expected, "
         f"{wanted_u:.3g} is asked for"
     )
-    free_variance = _left(coefficient)
+    free_variance = _scatter_variance(coefficient)
     if free_variance <= 0.0:
         largest = max(rest, key=lambda name: rest[name])
         return (

@@ -47,13 +47,13 @@ def targets_of(
         ]
         faults += key_faults
         if not key_faults:
-            name, band, size, relative = _asked(key, value)
+            name, band, size, relative = _parsed_target(key, value)
             believed_size = abs(belief.values[name]) if relative else 1.0
             targets.append(DesignTarget(name, size * believed_size, band))
     return tuple(targets)
 
 
-def _asked(key: str, value: float | str) -> AskedTarget:
+def _parsed_target(key: str, value: float | str) -> AskedTarget:
     """Return what a key and its value ask for; a size that cannot be read is NaN."""
     match = _KEY.fullmatch(key.strip())
     if match is None:
@@ -77,7 +77,7 @@ def _faults(
     key: str, value: float | str, belief: Belief, points: Sequence[SetPoint]
 ) -> Iterator[str]:
     """Yield what is wrong with one target."""
-    name, band, size, relative = _asked(key, value)
+    name, band, size, relative = _parsed_target(key, value)
     if name not in belief.values:
         near = get_close_matches(name, belief.values, n=1, cutoff=0.5)
         hint = f"did you mean {near[0]}?" if near else "give what is believed of it in [believed]"

@@ -32,7 +32,7 @@ class DeviceTables:
             choices = ", ".join(_DEVICES)
             raise ConfigurationError(f"{path}: names no device; the tables are {choices}")
         self.plane = _plane(tables)
-        _beside(self.devices, path.parent)
+        _resolve_simulated_paths(self.devices, path.parent)
 
     def configuration(self) -> RigConfiguration:
         """Return the rig, checked as a whole; raises :class:`ConfigurationError`."""
@@ -79,19 +79,19 @@ def _plane(tables: Mapping[str, Any]) -> Plane | None:
     return Plane(plane) if plane in set(Plane) else None
 
 
-def _beside(devices: Mapping[str, Any], folder: Path) -> None:
+def _resolve_simulated_paths(devices: Mapping[str, Any], folder: Path) -> None:
     """Let a simulated rig's file be seen from the rig's file, wherever the command is given."""
     bus = devices.get("bus")
     if isinstance(bus, dict) and bus.get("interface") == SIMULATED:
-        bus["channel"] = _whole(str(bus.get("channel")), folder)
+        bus["channel"] = _resolved_path(str(bus.get("channel")), folder)
     for table in devices.values():
         for part in table if isinstance(table, list) else [table]:
             port = part.get("port") if isinstance(part, dict) else None
             url = port.get("url") if isinstance(port, dict) else None
             if isinstance(port, dict) and isinstance(url, str) and url.startswith(_SIM):
                 file, _, name = url.removeprefix(_SIM).rpartition("/")
-                port["url"] = f"{_SIM}{_whole(file, folder)}/{name}"
+                port["url"] = f"{_SIM}{_resolved_path(file, folder)}/{name}"
 
 
-def _whole(name: str, folder: Path) -> str:
+def _resolved_path(name: str, folder: Path) -> str:
     return (folder / name).resolve().as_posix() if name.endswith(".toml") else name

@@ -25,7 +25,7 @@ class PhotocellRecord:
     ----------
     pulses, intervals
         The pulses, and what lies between them.
-    said
+    driver_messages
         What its driver reported meanwhile.
     enough
         Whether as many pulses came as were asked for.
@@ -33,7 +33,7 @@ class PhotocellRecord:
 
     pulses: tuple[Pulse, ...]
     intervals: tuple[Interval, ...]
-    said: tuple[str, ...]
+    driver_messages: tuple[str, ...]
     enough: bool
 
     @property
@@ -41,7 +41,7 @@ class PhotocellRecord:
         """Whether all pulses came, and none too many."""
         return (
             self.enough
-            and not self.said
+            and not self.driver_messages
             and not any(interval.verdict for interval in self.intervals)
         )
 

@@ -25,7 +25,7 @@ class Shown:
     """Values, and the faults that were reported up to now, oldest first."""
 
     rows: tuple[DeviceRow, ...]
-    said: Sequence[str] = ()
+    faults: Sequence[str] = ()
 
 
 Look = Callable[[float], Shown]  # looks for so many seconds
@@ -69,12 +69,12 @@ def of_port(settings: PortSettings) -> Iterator[Look]:
 
         def look(seconds: float) -> Shown:
             listen(port, seconds, time.monotonic, time.sleep, heard)
-            return Shown(tuple(_heard(heard)))
+            return Shown(tuple(_port_rows(heard)))
 
         yield look
 
 
-def _heard(heard: Heard) -> Iterator[DeviceRow]:
+def _port_rows(heard: Heard) -> Iterator[DeviceRow]:
     yield DeviceRow("port", "is", heard.what)
     yield DeviceRow("port", "lines", float(sum(heard.counts.values())))
     for kind, line in heard.last.items():

@@ -18,7 +18,7 @@ from pmm.devices.device_source import DeviceTables
 
 
 @dataclass(frozen=True)
-class _Expected:
+class _ExpectedNode:
     """What a rig's file wants of the bus."""
 
     name: str
@@ -32,19 +32,19 @@ class Survey:
 
     Attributes
     ----------
-    asked
+    modbus_devices
         Modbus devices that answer, by their part's name: how many registers they showed.
     names
         Of the nodes that the rig's file names, by node id.
-    wrong
+    faults
         What is missing or does not fit, with what to do.
     """
 
     nodes: tuple[FoundNode, ...]
     names: dict[int, str]
-    heard: dict[str, Heard]
-    wrong: list[str]
-    asked: dict[str, str] = field(default_factory=dict)
+    heard_ports: dict[str, Heard]
+    faults: list[str]
+    modbus_devices: dict[str, str] = field(default_factory=dict)
 
 
 def survey_rig(tables: DeviceTables, listen_s: float) -> Survey:
@@ -127,7 +127,7 @@ def _ask(name: str, settings: Any, answers: dict[str, str], faults: list[str]) -
         answers[name] = f"{register_count} registers" if has_registers else f"{len(places)} lines"
 
 
-def _expected(tables: DeviceTables) -> tuple[_Expected, ...]:
+def _expected(tables: DeviceTables) -> tuple[_ExpectedNode, ...]:
     from hardware.dictionary import Entry, load, variable
 
     nodes = []
@@ -135,11 +135,11 @@ def _expected(tables: DeviceTables) -> tuple[_Expected, ...]:
         for plan in part.nodes():
             entry = variable(load(plan.eds, plan.node_id, plan.name), Entry(0x1000))
             profile = int(entry.default or 0) & 0xFFFF if entry is not None else 0
-            nodes.append(_Expected(plan.name, plan.node_id, profile))
+            nodes.append(_ExpectedNode(plan.name, plan.node_id, profile))
     return tuple(nodes)
 
 
-def _missing(nodes: Sequence[FoundNode], expected: Sequence[_Expected]) -> list[str]:
+def _missing(nodes: Sequence[FoundNode], expected: Sequence[_ExpectedNode]) -> list[str]:
     """Return what does not fit between the bus and the rig's file."""
     nodes_by_id = {node.node_id: node for node in nodes}
     faults = []

@@ -110,7 +110,7 @@ class Table(Generic[Row]):
     by: Callable[[Row], str] | None = None
 
     @cached_property
-    def shown(self) -> Sequence[Column[Row]]:
+    def shown_columns(self) -> Sequence[Column[Row]]:
         """The columns that people see."""
         columns = [column for column in self.columns if column.heading is not None]
         if not self.filled:
@@ -119,14 +119,14 @@ class Table(Generic[Row]):
 
     @property
     def lines(self) -> Iterator[tuple[list[str], str]]:
-        """The rows as people read them, under :attr:`shown`, and the grade of each."""
+        """The rows as people read them, under :attr:`shown_columns`, and the grade of each."""
         above: list[str] = []
         for row in self.rows[: self.most or None]:
-            cells = [column.text(row) for column in self.shown]
+            cells = [column.text(row) for column in self.shown_columns]
             yield (
                 [
                     "" if column.once and above[: k + 1] == cells[: k + 1] else cells[k]
-                    for k, column in enumerate(self.shown)
+                    for k, column in enumerate(self.shown_columns)
                 ],
                 self.grade(row),
             )
@@ -141,10 +141,10 @@ class Table(Generic[Row]):
     def data(self) -> list[dict[str, Any]] | dict[str, dict[str, Any]]:
         """The rows as programs get them."""
         if self.by is not None:
-            return {self.by(row): self._told(row) for row in self.rows}
-        return [self._told(row) for row in self.rows]
+            return {self.by(row): self._row_data(row) for row in self.rows}
+        return [self._row_data(row) for row in self.rows]
 
-    def _told(self, row: Row) -> dict[str, Any]:
+    def _row_data(self, row: Row) -> dict[str, Any]:
         cells = ((column.key, column.value(row)) for column in self.columns if column.key)
         return {key: value for key, value in cells if value is not ABSENT}
 

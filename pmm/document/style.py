@@ -78,7 +78,7 @@ def drawing() -> Iterator[None]:
 
 
 @contextmanager
-def drawn(width_in: float, height_in: float, title: str = "") -> "Iterator[Figure]":
+def new_figure(width_in: float, height_in: float, title: str = "") -> "Iterator[Figure]":
     """Give an empty figure of that size in inches to draw on, with this project's settings."""
     from matplotlib.figure import Figure
 

@@ -87,8 +87,8 @@ def grid(table: Table[Any]) -> "Grid":
 
     title = f"\n{table.name}" if table.titled else None
     rich_table = Grid(title=title, title_justify="left", box=None, padding=(0, 1), pad_edge=False)
-    rich_table.show_header = any(column.title for column in table.shown)
-    for column in table.shown:
+    rich_table.show_header = any(column.title for column in table.shown_columns)
+    for column in table.shown_columns:
         justify: Literal["left", "right"] = "right" if column.number else "left"
         rich_table.add_column(column.title, justify=justify, overflow="fold")
     for cells, grade in table.lines:

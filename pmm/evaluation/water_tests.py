@@ -24,7 +24,7 @@ from pmm.coefficients.decays import Decay, decays_of
 from pmm.coefficients.reading import read_cycle, read_zero
 from pmm.coefficients.settings import CoefficientSettings, ShipTable, settings_of
 from pmm.coefficients.stated_inputs import chain_of, oscillator_of, stated_of
-from pmm.coefficients.tasks import Failed, ReadRecording, Task
+from pmm.coefficients.tasks import FailedRecording, ReadRecording, Task
 from pmm.coefficients.work import work_of
 from pmm.coefficients.workflow import request_of
 
@@ -59,7 +59,7 @@ class InWater:
     derivatives: CampaignCoefficients | None = None
     turns: tuple[SteadyTurn, ...] = ()
     decays: tuple[Decay, ...] = ()
-    failed: tuple[Failed, ...] = ()
+    failed: tuple[FailedRecording, ...] = ()
     ship: ShipTable = field(default_factory=ShipTable)
     water: TankWater | None = None
 
@@ -88,10 +88,12 @@ def in_water(campaign: Campaign, folder: Path) -> InWater:
     zero_names = {name for task in tasks for name in task.zero_names}
     zeros = [read_zero(zero) for zero in work.zeros if zero.name in zero_names]
     zeros_by_name = {
-        zero.name: zero.zero for zero in zeros if not isinstance(zero, Failed) and zero.zero
+        zero.name: zero.zero
+        for zero in zeros
+        if not isinstance(zero, FailedRecording) and zero.zero
     }
-    failed = [_named(zero) for zero in zeros if isinstance(zero, Failed)]
-    results = _Found(campaign, oscillator, settings, failed)
+    failed = [_with_run_name(zero) for zero in zeros if isinstance(zero, FailedRecording)]
+    results = _WaterTestCollector(campaign, oscillator, settings, failed)
     for task in tasks:
         results.take(task.with_zeros(zeros_by_name))
     decays, torn = decays_of(campaign, folder)
@@ -102,13 +104,13 @@ def in_water(campaign: Campaign, folder: Path) -> InWater:
         results.derivatives(),
         tuple(results.turns),
         decays,
-        (*failed, *map(_named, torn)),
+        (*failed, *map(_with_run_name, torn)),
         settings.ship.within(campaign.water),
         campaign.water,
     )
 
 
-class _Found:
+class _WaterTestCollector:
     """Gathers what the runs say; one that cannot be used is told and stops no other."""
 
     def __init__(
@@ -116,7 +118,7 @@ class _Found:
         campaign: Campaign,
         oscillator: Oscillator,
         settings: CoefficientSettings,
-        failed: list[Failed],
+        failed: list[FailedRecording],
     ) -> None:
         self._campaign, self._oscillator, self._failed = campaign, oscillator, failed
         self._settings = settings
@@ -129,14 +131,16 @@ class _Found:
     def take(self, task: Task) -> None:
         """Read a run and evaluate it."""
         recording = read_cycle(task)
-        if isinstance(recording, Failed):
-            self._failed.append(_named(recording))
+        if isinstance(recording, FailedRecording):
+            self._failed.append(_with_run_name(recording))
         elif recording.cycle is not None:
             try:
                 self._evaluate(task, recording, recording.cycle)
             except PmmError as error:
                 self._failed.append(
-                    _named(Failed(task.name, recording.file, str(error), error.exit_status))
+                    _with_run_name(
+                        FailedRecording(task.name, recording.file, str(error), error.exit_status)
+                    )
                 )
 
     def derivatives(self) -> CampaignCoefficients | None:
@@ -168,7 +172,7 @@ class _Found:
         self.tracks.append(track_of(restoring, cycle))
 
 
-def _named(failure: Failed) -> Failed:
+def _with_run_name(failure: FailedRecording) -> FailedRecording:
     """Return it with the run's name in its message."""
     if failure.name in failure.message:
         return failure

@@ -19,7 +19,7 @@ class Added:
     parameters: Mapping[str, float | str]
 
     @property
-    def said(self) -> str:
+    def text(self) -> str:
         """Name and parameters for people."""
         parts = [
             f"{key} = {value if isinstance(value, str) else format(value, '.6g')}"
@@ -38,7 +38,7 @@ class Added:
         return f'\n[[effects]]\nname = "{self.name}"\n{parameters}'
 
 
-def stated(effect: Effect) -> dict[str, float]:
+def stated_parameters(effect: Effect) -> dict[str, float]:
     """Return an effect's parameters, without those of forms that it does not have."""
     forms = {
         parameter.name: parameter.typical for parameter in effect.parameters() if parameter.forms

@@ -35,29 +35,29 @@ class Suggestion:
 
 
 @dataclass(frozen=True)
-class Found:
+class CauseDiagnosis:
     """What a diagnosis comes to, in values that go from one process to another.
 
     Attributes
     ----------
-    said
+    sentences
         Three sentences, as of ``pmm gap``.
     suggestions
         The most telling first.
-    sure
+    probability
         Probability of the verdict: of an effect with all that is alike in these runs.
-    known
+    verdict_text
         That in words, and what tells further where something is alike.
-    outside
+    other_measurements
         Measurements besides these runs that would tell, what is confounded first.
     """
 
-    said: tuple[str, ...]
-    sure: float
-    known: str
+    sentences: tuple[str, ...]
+    probability: float
+    verdict_text: str
     causes: tuple[KnownCause, ...]
     suggestions: tuple[Suggestion, ...]
-    outside: tuple[str, ...]
+    other_measurements: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Standing:
     ----------
     runs, time_s
         Oscillations that were made, and the tank time of all runs made.
-    given, left
+    given_runs, runs_left
         Runs that are made before anything is diagnosed, and others that are approved of.
     set_points
         What was made or is planned.
@@ -80,8 +80,8 @@ class Standing:
 
     runs: tuple[str, ...]
     time_s: float
-    given: tuple[RunPlan, ...]
-    left: tuple[RunPlan, ...]
+    given_runs: tuple[RunPlan, ...]
+    runs_left: tuple[RunPlan, ...]
     set_points: frozenset[SetPoint]
     notes: tuple[str, ...] = ()
     time_left_s: float = math.inf
@@ -109,7 +109,7 @@ class CauseGoal:
 
     Attributes
     ----------
-    found
+    diagnose
         Diagnoses what is recorded there.
     least
         Expected log odds below which a run is not worth making.
@@ -118,7 +118,7 @@ class CauseGoal:
     """
 
     place: Place
-    found: Callable[[], Found]
+    diagnose: Callable[[], CauseDiagnosis]
     least: float = LEAST
     batch: int = 1
 
@@ -138,25 +138,25 @@ class CauseGoal:
         """
         standing = self.place.standing()
         look = Look(standing.runs, standing.time_s, (), notes=standing.notes)
-        if standing.given:
-            return self._kept(look, (*standing.given, *standing.left))
-        diagnosis = self.found()
-        look = replace(look, causes=diagnosis.causes, notes=(*standing.notes, *diagnosis.said))
-        if diagnosis.sure > SURE:
-            return replace(look, ending=Ending.KNOWN, remark=diagnosis.known)
-        if standing.left:
-            return self._kept(look, standing.left)
-        if not diagnosis.suggestions and not diagnosis.outside:
+        if standing.given_runs:
+            return self._keep_runs(look, (*standing.given_runs, *standing.runs_left))
+        diagnosis = self.diagnose()
+        look = replace(look, causes=diagnosis.causes, notes=(*standing.notes, *diagnosis.sentences))
+        if diagnosis.probability > SURE:
+            return replace(look, ending=Ending.KNOWN, remark=diagnosis.verdict_text)
+        if standing.runs_left:
+            return self._keep_runs(look, standing.runs_left)
+        if not diagnosis.suggestions and not diagnosis.other_measurements:
             raise DataError(
                 "no runs can be proposed; [oscillator] in the campaign file, or [rig] in a "
                 "case.toml beside it, says what the rig can do"
             )
         return self._next(look, standing, diagnosis)
 
-    def _kept(self, look: Look, runs: Sequence[RunPlan]) -> Look:
-        return replace(look, kept=tuple(runs), left_s=math.fsum(self.place.costs_s(runs)))
+    def _keep_runs(self, look: Look, runs: Sequence[RunPlan]) -> Look:
+        return replace(look, kept_runs=tuple(runs), left_s=math.fsum(self.place.costs_s(runs)))
 
-    def _next(self, look: Look, standing: Standing, diagnosis: Found) -> Look:
+    def _next(self, look: Look, standing: Standing, diagnosis: CauseDiagnosis) -> Look:
         """Return the look with the runs that are proposed, or why there are none."""
         worth = (
             suggestion for suggestion in diagnosis.suggestions if suggestion.gain >= self.least
@@ -189,8 +189,8 @@ def _reason(suggestion: Suggestion) -> str:
     return f"{suggestion.gain:.1f} log odds between {', '.join(suggestion.between)}"
 
 
-def _exhausted(least: float, diagnosis: Found) -> str:
+def _exhausted(least: float, diagnosis: CauseDiagnosis) -> str:
     statement = f"no run that the rig can make by itself is worth {least:g} log odds"
-    if not diagnosis.outside:
+    if not diagnosis.other_measurements:
         return f"{statement}, and no measurement outside it is known that would tell"
-    return f"{statement}; what would tell: {'; or '.join(diagnosis.outside)}"
+    return f"{statement}; what would tell: {'; or '.join(diagnosis.other_measurements)}"

@@ -11,7 +11,7 @@ from analysis.gap.forward.free_numbers import tolerated
 from analysis.gap.search.joint import with_numbers
 from hardware.description.arrays import FloatArray
 from pmm.gap.examination import Examined
-from pmm.gap.hull_report import HULL, Convention, Reported, reported
+from pmm.gap.hull_report import HULL, Convention, ReportedCoefficient, reported_coefficients
 from sim.rig import SimulatedRig
 
 _TERMS: Final = {"a": "added_mass", "b": "damping", "c": "restoring"}
@@ -137,11 +137,15 @@ def coefficient_rows(examined: Examined) -> tuple[Convention, tuple[CoefficientR
     """
     simulator = examined.diagnosis.problem.simulator
     points = [run.set_point for run in simulator.stack.runs if run.turns]
-    convention, derivatives = reported(
+    convention, derivatives = reported_coefficients(
         examined.ready.reporting, simulator.rig, points, examined.campaign.memory
     )
     plain, cured = _fits(examined)
-    numbers = [Reported(name, UNITS[name], {name: 1.0}) for name in plain.names if name not in HULL]
+    numbers = [
+        ReportedCoefficient(name, UNITS[name], {name: 1.0})
+        for name in plain.names
+        if name not in HULL
+    ]
     coefficients = [
         coefficient
         for coefficient in (*derivatives, *numbers)
@@ -153,7 +157,7 @@ def coefficient_rows(examined: Examined) -> tuple[Convention, tuple[CoefficientR
 
 
 def _row(
-    coefficient: Reported, examined: Examined, plain: _Fit, cured: _Fit | None
+    coefficient: ReportedCoefficient, examined: Examined, plain: _Fit, cured: _Fit | None
 ) -> CoefficientRow:
     moved, rig = examined.recentred.moved, examined.diagnosis.problem.simulator.rig
     simulated = coefficient.memory + sum(

@@ -46,7 +46,7 @@ def _missing(analysis: Analysis) -> Iterator[str]:
     """Yield which channels have missing samples, those of one place together."""
     if _reference_gap(analysis):
         yield f"{analysis.reference.channel}, which tells the phase, has missing samples"
-    inside = _whole(analysis)
+    inside = _in_whole_periods(analysis)
     where: dict[bytes, list[str]] = {}
     for name in inside.channel_names:
         gaps = np.isnan(inside.values(name))
@@ -63,7 +63,7 @@ def _missing(analysis: Analysis) -> Iterator[str]:
             yield f"{said}, the first at {at_s[0]:.2f} s"
 
 
-def _whole(analysis: Analysis) -> Recording:
+def _in_whole_periods(analysis: Analysis) -> Recording:
     """Return the whole periods of a record."""
     sums = analysis.sums
     return analysis.recording.between(float(sums.opened_s[0]), float(sums.closed_s[-1]))

@@ -30,7 +30,7 @@ from hardware.description.setpoint import SetPoint
 from pmm.campaign.campaign import Campaign
 from pmm.gap.conclusion import EFFECT, Conclusion, Weighing, verdict_of
 from pmm.gap.own_effects import chosen_effects, try_own
-from pmm.gap.preparation import Prepared, Progress, prepare
+from pmm.gap.preparation import PreparedCampaign, Progress, prepare
 from pmm.gap.steps import remains, walk_rows
 from sim.effects.catalogue import catalogue
 from sim.effects.effect import Effect
@@ -64,7 +64,7 @@ class Options:
 
 
 @dataclass(frozen=True, eq=False)
-class Judged:
+class WithheldPredictions:
     """Withheld runs, predicted by each answer from the same fitting runs.
 
     Attributes
@@ -96,10 +96,10 @@ class Examined:
         Those that are not out of the question, whatever else is there too.
     """
 
-    ready: Prepared
+    ready: PreparedCampaign
     free: tuple[Free, ...]
     diagnosis: Diagnosis
-    judged: Judged
+    judged: WithheldPredictions
     effects: tuple[Marginal, ...]
     catalogue: Mapping[str, type[Effect]]
 
@@ -121,7 +121,7 @@ class Examined:
     @property
     def recentred(self) -> Recentred:
         """The rig about which the diagnosis went on."""
-        return self.ready.there
+        return self.ready.recentred
 
     @property
     def shares(self) -> Mapping[str, float]:
@@ -142,14 +142,14 @@ class Examined:
         return self.diagnosis.cause
 
     @property
-    def left(self) -> FloatArray:
+    def remainder(self) -> FloatArray:
         """What the answer leaves of the whitened difference, shape ``(observations,)``."""
         return self.diagnosis.problem.residual - self._explained(self.conclusion.verdict)
 
     @cached_property
     def description(self) -> Description | None:
         """The form of what is left, if it is more than noise."""
-        return describe(self.diagnosis.problem, self.left)
+        return describe(self.diagnosis.problem, self.remainder)
 
     def _explained(self, verdict: str) -> FloatArray:
         best = self.diagnosis.best
@@ -196,7 +196,7 @@ def examine(
     if options.runs and ready.settings.choices is not None:
         choices = replace(ready.settings.choices, runs=options.runs)
         ready = replace(ready, settings=replace(ready.settings, choices=choices))
-    recentred, tolerances = ready.there, ready.case.tolerances
+    recentred, tolerances = ready.recentred, ready.case.tolerances
     try_own(more, recentred.rig, ready.fitted)
     diagnosis = diagnose(recentred.rig, ready.fitted, ready.settings, executor, progress)
     progress("predicting withheld runs")
@@ -211,7 +211,7 @@ def _judged(
     withheld: Sequence[GapRun],
     free: Sequence[Free],
     tolerances: Tolerances,
-) -> Judged:
+) -> WithheldPredictions:
     asked: dict[str, Fit | None] = {NONE: None, **_likeliest(diagnosis)}
     if not withheld:
         problem = diagnosis.problem
@@ -265,7 +265,7 @@ def _foretold(
     control: Fit,
     *,
     chosen: bool,
-) -> Judged:
+) -> WithheldPredictions:
     """Ask answers, by name, for what is withheld."""
     predictions = {name: predict_withheld(problem, fit, withheld) for name, fit in asked.items()}
     best, rival = (
@@ -273,7 +273,7 @@ def _foretold(
     )
     free_form = predict_withheld(problem, control, withheld)
     by_answer = {name: _gap(predicted) for name, predicted in predictions.items()}
-    return Judged(predictions[NONE], best, rival, free_form, by_answer, chosen)
+    return WithheldPredictions(predictions[NONE], best, rival, free_form, by_answer, chosen)
 
 
 def _gap(predicted: Sequence[Predicted]) -> float:
@@ -282,10 +282,12 @@ def _gap(predicted: Sequence[Predicted]) -> float:
     return gap_of(np.concatenate(residuals)) if residuals else math.nan
 
 
-def _by_run(judged: Judged, problem: Problem, runs: Sequence[Regime]) -> Judged:
+def _by_run(
+    judged: WithheldPredictions, problem: Problem, runs: Sequence[Regime]
+) -> WithheldPredictions:
     """Take the withheld runs apart, each with what the fitting runs predict of it."""
 
-    def apart(predictions: tuple[Predicted, ...]) -> tuple[Predicted, ...]:
+    def split_by_run(predictions: tuple[Predicted, ...]) -> tuple[Predicted, ...]:
         return tuple(
             replace(prediction, regime=run, rows=rows, left=prediction.left[rows[prediction.rows]])
             for prediction in predictions
@@ -293,11 +295,11 @@ def _by_run(judged: Judged, problem: Problem, runs: Sequence[Regime]) -> Judged:
             for rows in [prediction.rows & np.isin(problem.simulator.stack.run, run.runs)]
         )
 
-    return Judged(
-        apart(judged.plain),
-        apart(judged.cured),
-        apart(judged.rival),
-        apart(judged.free_form),
+    return WithheldPredictions(
+        split_by_run(judged.plain),
+        split_by_run(judged.cured),
+        split_by_run(judged.rival),
+        split_by_run(judged.free_form),
         judged.by_answer,
         judged.chosen,
     )

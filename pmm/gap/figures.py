@@ -9,7 +9,7 @@ from analysis.gap.judge.description import ForceMap
 from analysis.gap.locate.walk import CHAIN
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import plain
-from pmm.document.style import PALETTE, TRACE, drawn
+from pmm.document.style import PALETTE, TRACE, new_figure
 from pmm.gap.cells import HARMONIC, Cell
 from pmm.gap.heat import (
     AFTER,
@@ -73,7 +73,7 @@ def walk_figure(report: GapReport) -> "Figure":
     """Draw the gap step by step along the chain, before and after, over the noise's own 1."""
     after = {step.what: step.gap_u for step in report.conclusion.remains}
     count = len(report.conclusion.walk)
-    with drawn(10.5, 1.6 + 0.42 * count) as figure:
+    with new_figure(10.5, 1.6 + 0.42 * count) as figure:
         axes = figure.add_subplot()
         for at, step in enumerate(report.conclusion.walk):
             axes.plot(max(step.gap_u, LEAST_U), at, "o", color=BEFORE, markersize=7)
@@ -127,7 +127,7 @@ def withheld_figure(report: GapReport) -> "Figure":
 
 def force_map_figure(maps: Sequence[ForceMap]) -> "Figure":
     """Draw the remainder over the strut's displacement and velocity, no form assumed."""
-    with drawn(10.5, 4.2) as figure:
+    with new_figure(10.5, 4.2) as figure:
         places = figure.subplots(1, len(maps), squeeze=False)[0]
         largest = max(float(np.nanmax(np.abs(force_map.force_n))) for force_map in maps) or 1.0
         for axes, force_map in zip(places, maps, strict=True):

@@ -14,7 +14,7 @@ from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.runs import Run
 from pmm.campaign.simulation import simulate_runs
 from pmm.gap.causes import Standing, Suggestion
-from pmm.gap.pursuit import Maker, pursued, recording_of, take_in, write_round
+from pmm.gap.pursuit import Maker, read_pursued_folder, recording_of, take_in, write_round
 from pmm.plan.plan_tables import Defaults
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.campaign_owner import own_campaign
@@ -31,8 +31,8 @@ class FolderPlace:
 
     def standing(self) -> Standing:
         """Return what is there, recordings that have appeared taken in."""
-        missing = take_in(pursued(self.folder))
-        pursuit = pursued(self.folder)
+        missing = take_in(read_pursued_folder(self.folder))
+        pursuit = read_pursued_folder(self.folder)
         made = pursuit.campaign.runs
         return Standing(
             tuple(run.name for run in made),
@@ -56,7 +56,7 @@ class FolderPlace:
         """Write the plan of a round; return the names of the runs that are to be recorded."""
         if look.ending is not None:
             return ()
-        pursuit = pursued(self.folder)
+        pursuit = read_pursued_folder(self.folder)
         if look.proposed:
             chosen = (self._offered[run.set_point] for run in look.proposed)
             proposals = (
@@ -66,7 +66,7 @@ class FolderPlace:
                 for suggestion in chosen
             )
             write_round(pursuit, list(proposals))
-            pursuit = pursued(self.folder)
+            pursuit = read_pursued_folder(self.folder)
         return tuple(run.name for run in pursuit.open)
 
 

@@ -86,7 +86,7 @@ def _run(
         body, transfer = over.at(floating, 1.0 / period_s)
         force = force.by(transfer) if transfer is not None else force
     for sensor in run.measured:
-        yield _seen(run, body, force, _gate(run, sensor, read))
+        yield _driven_trial(run, body, force, _gate(run, sensor, read))
 
 
 def _gate(run: ForcedTable, channel: Record, read: Read) -> _Gate:
@@ -99,7 +99,7 @@ def _gate(run: ForcedTable, channel: Record, read: Read) -> _Gate:
     return _Gate(channel.channel, unit, part.time_s(), part.values(channel.channel))
 
 
-def _seen(run: ForcedTable, body: Floating, force: KnownForce, gate: _Gate) -> DrivenTrial:
+def _driven_trial(run: ForcedTable, body: Floating, force: KnownForce, gate: _Gate) -> DrivenTrial:
     """Return what a sensor saw: of a displacement, a rate or an acceleration by its unit."""
     length, _, per = gate.unit.partition("/")
     coordinate = ROLL if length == "rad" else HEAVE

@@ -7,7 +7,7 @@ from typing import Final
 from analysis.gap.design.proposals import Proposal
 from analysis.gap.inference.answers import effects_in
 from analysis.gap.judge.confounded import separating_measurements
-from pmm.gap.causes import LEAST, SURE, Found, Suggestion
+from pmm.gap.causes import LEAST, SURE, CauseDiagnosis, Suggestion
 from pmm.gap.conclusion import EFFECT
 from pmm.gap.examination import Examined, Options, examine
 from pmm.gap.report import gap_report
@@ -17,12 +17,12 @@ from pmm.sequential.look import KnownCause
 _POSSIBLE: Final = 0.02  # probability from which on an answer is still to be told from the others
 
 
-def diagnosed(folder: Path, options: Options) -> Found:
+def diagnosed(folder: Path, options: Options) -> CauseDiagnosis:
     """Examine a campaign and return what that comes to."""
     return found_of(examine(folder, options))
 
 
-def found_of(examined: Examined, least: float = LEAST) -> Found:
+def found_of(examined: Examined, least: float = LEAST) -> CauseDiagnosis:
     """Return what an examination comes to."""
     report, concluded = gap_report(examined), examined.conclusion
     possible = [name for name, share in examined.shares.items() if share > _POSSIBLE]
@@ -34,10 +34,10 @@ def found_of(examined: Examined, least: float = LEAST) -> Found:
     ]
     alike = tuple(dict.fromkeys(how for row in report.ranking for how in row.measure))
     measurements = tuple(dict.fromkeys([*alike, *separating_measurements(effects), *outside[:1]]))
-    return Found(
+    return CauseDiagnosis(
         report.said,
         concluded.probability,
-        _known(examined, alike),
+        _verdict_text(examined, alike),
         tuple(_causes(examined)),
         suggestions(examined.diagnosis.proposals),
         measurements,
@@ -65,7 +65,7 @@ def suggestions(proposals: Sequence[Proposal]) -> tuple[Suggestion, ...]:
     )
 
 
-def _known(examined: Examined, alike: Sequence[str]) -> str:
+def _verdict_text(examined: Examined, alike: Sequence[str]) -> str:
     first, concluded = next(iter(examined.shares)), examined.conclusion
     answer = joined(first) if concluded.verdict == EFFECT else f"the answer {first!r}"
     also = f"; within its class tells: {'; or '.join(alike)}" if alike else ""

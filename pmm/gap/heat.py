@@ -9,7 +9,7 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import plain
-from pmm.document.style import PALETTE, TRACE, drawn
+from pmm.document.style import PALETTE, TRACE, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -58,7 +58,7 @@ def before_and_after(grid: Grid, maps: Sequence[FloatArray], label: str) -> "Fig
     """
     height = 1.6 + 0.17 * len(grid.rows)
     height += 0.06 * max((len(name) for name in grid.columns), default=0)
-    with drawn(10.5, max(height, 2.4)) as figure:
+    with new_figure(10.5, max(height, 2.4)) as figure:
         axes = figure.subplots(1, 2, sharey=True)
         for place, title, values in zip(axes, grid.titles, maps, strict=True):
             image = _cells(place, values, grid)
@@ -87,7 +87,7 @@ def _cells(axes: "Axes", values: FloatArray, grid: Grid) -> "QuadMesh":
 
 def probability_bars(shares: Mapping[str, float], alike: Sequence[str], label: str) -> "Figure":
     """Draw probabilities as bars, those of what cannot be told from the first one in its colour."""
-    with drawn(10.5, 1.1 + 0.36 * len(shares)) as figure:
+    with new_figure(10.5, 1.1 + 0.36 * len(shares)) as figure:
         axes = figure.add_subplot()
         for at, (name, share) in enumerate(shares.items()):
             axes.barh(at, share, color=AFTER if name in alike else _OTHER, height=0.7)
@@ -112,7 +112,7 @@ class Dots:
 def dotted(rows: Sequence[str], series: Sequence[Dots]) -> "Figure":
     """Draw gaps in u without and with some answers, noise taken off, a row for each regime."""
     count = len(rows)
-    with drawn(10.5, 1.6 + 0.36 * count) as figure:
+    with new_figure(10.5, 1.6 + 0.36 * count) as figure:
         axes = figure.add_subplot()
         for step, dots in enumerate(series):
             points = [(value, at) for at, value in enumerate(dots.values) if not math.isnan(value)]

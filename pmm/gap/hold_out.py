@@ -35,7 +35,7 @@ def held_out_runs(campaign: Campaign, said: Sequence[str]) -> tuple[str, ...]:
     ConfigurationError
         If nothing is called so, or no run is like that.
     """
-    chosen = {name for criterion in said for name in _meant(campaign, criterion)}
+    chosen = {name for criterion in said for name in _matching_runs(campaign, criterion)}
     return tuple(run.name for run in _records(campaign) if run.name in chosen)
 
 
@@ -44,7 +44,7 @@ def _records(campaign: Campaign) -> tuple[Run | AtRest, ...]:
     return (*campaign.runs, *(record for record in campaign.at_rest if record.kind is RunKind.ZERO))
 
 
-def _meant(campaign: Campaign, said: str) -> list[str]:
+def _matching_runs(campaign: Campaign, said: str) -> list[str]:
     if said in {run.name for run in _records(campaign)}:
         return [said]
     for record in campaign.at_rest:

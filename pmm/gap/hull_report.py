@@ -54,7 +54,7 @@ class Convention:
 
 
 @dataclass(frozen=True)
-class Reported:
+class ReportedCoefficient:
     """One coefficient.
 
     Attributes
@@ -78,12 +78,12 @@ class Reported:
     frequency_hz: float = math.nan
 
 
-def reported(
+def reported_coefficients(
     settings: CoefficientSettings,
     rig: SimulatedRig,
     set_points: Sequence[SetPoint],
     memory: FittedMemory | None = None,
-) -> tuple[Convention, tuple[Reported, ...]]:
+) -> tuple[Convention, tuple[ReportedCoefficient, ...]]:
     """Return the coefficients that a campaign's runs report, and how they are written.
 
     Runs in air count only where there are no others. A system that divides by the speed leaves out
@@ -124,7 +124,7 @@ def _of_state(
     state: State,
     system: Normalisation | None,
     fitted: FittedMemory | None,
-) -> Iterator[Reported]:
+) -> Iterator[ReportedCoefficient]:
     """Yield each coefficient at one speed and frequency."""
     form, plane, (speed, frequency) = settings.form, rig.oscillator.plane, state
     added_mass, damping = _memory(rig, frequency)
@@ -147,7 +147,7 @@ def _of_state(
         weights = {hull_name: part for hull_name, part in zip(HULL, parts, strict=True) if part}
         unit = place.unit if system is None else "1"
         memory_u = float(np.linalg.norm(parts * uncertainties.ravel()))
-        yield Reported(name, unit, weights, memory, memory_u, speed, frequency)
+        yield ReportedCoefficient(name, unit, weights, memory, memory_u, speed, frequency)
 
 
 def _memory(rig: SimulatedRig, frequency_hz: float) -> tuple[FloatArray, FloatArray]:
@@ -158,10 +158,12 @@ def _memory(rig: SimulatedRig, frequency_hz: float) -> tuple[FloatArray, FloatAr
     return rig.radiation.added_mass(omega), rig.radiation.damping(omega)
 
 
-def _merged(coefficients: Mapping[State, Sequence[Reported]]) -> Iterator[Reported]:
+def _merged(
+    coefficients: Mapping[State, Sequence[ReportedCoefficient]],
+) -> Iterator[ReportedCoefficient]:
     """Yield each coefficient once where it is the same at all states, with what it depends on."""
     for several in zip(*coefficients.values(), strict=True):
-        kinds: dict[object, list[Reported]] = {}
+        kinds: dict[object, list[ReportedCoefficient]] = {}
         for coefficient in several:
             kinds.setdefault((coefficient.memory, *coefficient.weights.items()), []).append(
                 coefficient

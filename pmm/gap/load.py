@@ -32,7 +32,7 @@ _ABOVE: Final = 1.2  # of the oscillator's largest frequency and eccentricity
 
 
 @dataclass(frozen=True, eq=False)
-class Loaded:
+class LoadedCampaign:
     """A campaign, read and observed.
 
     Attributes
@@ -65,7 +65,7 @@ def load_campaign(
     withheld: Sequence[str] = (),
     progress: Callable[[str], None] = lambda _: None,
     sensors: Sequence[str] = (),
-) -> Loaded:
+) -> LoadedCampaign:
     """Read and observe the runs of a campaign that oscillate, and its zero runs.
 
     Parameters
@@ -119,7 +119,7 @@ def load_campaign(
     rig = as_recorded(rig, (*runs, *at_rest), reference)
     resolved_runs, still = resolved(rig, (*runs, *at_rest))
     usable, usable_at_rest = resolved_runs[: len(runs)], resolved_runs[len(runs) :]
-    return Loaded(
+    return LoadedCampaign(
         campaign, rig, usable, left_out | unused, reference, usable_at_rest,
         _by_name(cut, still, unlike), damaged | harmed,
     )  # fmt: skip

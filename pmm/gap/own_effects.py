@@ -34,7 +34,7 @@ def chosen_effects(
     ConfigurationError
         If a name is not known or a file defines none.
     """
-    return _chosen(effects, without, Known(catalogue(), find, user_effects))
+    return _chosen(effects, without, KnownEffects(catalogue(), find, user_effects))
 
 
 def chosen_of_pendulums(
@@ -45,28 +45,28 @@ def chosen_of_pendulums(
     It raises what :func:`chosen_effects` raises.
     """
     return _chosen(
-        effects, without, Known(pendulum.by_name(), pendulum.find, pendulum.user_effects)
+        effects, without, KnownEffects(pendulum.by_name(), pendulum.find, pendulum.user_effects)
     )
 
 
 @dataclass(frozen=True)
-class Known(Generic[Kind]):
+class KnownEffects(Generic[Kind]):
     """A catalogue: its effects by name, how one is found, how a user's file is read."""
 
-    every: dict[str, Kind]
+    effects: dict[str, Kind]
     find: Callable[[str, dict[str, Kind]], Kind]
     read: Callable[[str], dict[str, Kind]]
 
 
 def _chosen(
-    effects: Sequence[str], without: Sequence[str], known_effects: Known[Kind]
+    effects: Sequence[str], without: Sequence[str], known_effects: KnownEffects[Kind]
 ) -> tuple[dict[str, Kind], dict[str, Kind]]:
     more: dict[str, Kind] = {}
     files = files_among(effects)
     for file in files:
         more |= known_effects.read(file)
     names = [name for name in effects if name not in files]
-    all_kinds = known_effects.every | more
+    all_kinds = known_effects.effects | more
     chosen = {name: known_effects.find(name, more) for name in names} | more if names else all_kinds
     for name in without:
         known_effects.find(name, more)
@@ -76,7 +76,7 @@ def _chosen(
     return kinds, more
 
 
-def tried(name: str, subject: str, does: Callable[[], FloatArray]) -> None:
+def try_effect(name: str, subject: str, does: Callable[[], FloatArray]) -> None:
     """Try an effect of the user's own, so that a fault in it is said by its name.
 
     Parameters
@@ -114,7 +114,7 @@ def try_own(kinds: Mapping[str, type[Effect]], rig: SimulatedRig, runs: Sequence
     """
     simulator = Simulator(rig, Stack.of(runs[:1]))
     for name, kind in kinds.items():
-        tried(name, f"run {runs[0].name}", partial(_predicted, simulator, kind))
+        try_effect(name, f"run {runs[0].name}", partial(_predicted, simulator, kind))
 
 
 def _predicted(simulator: Simulator, kind: type[Effect]) -> FloatArray:

@@ -31,7 +31,7 @@ class PendulumConclusion:
         Probability of something that the catalogue does not have.
     odd
         The record that alone is off, where that is the verdict.
-    apart
+    alike_causes
         By cause what these records cannot tell from it, itself first, with their probabilities.
     turned
         Runs under a known force that are half a turn off, which no cause explains.
@@ -41,7 +41,7 @@ class PendulumConclusion:
     names: tuple[str, ...]
     unknown: float = 0.0
     odd: str = ""
-    apart: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    alike_causes: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     turned: tuple[str, ...] = ()
 
     @property

@@ -174,7 +174,7 @@ def fitted(fit: Fit) -> str:
 
 
 def _law_columns(diagnosis: PendulumDiagnosis) -> tuple[Column[DampingLaw], ...]:
-    def said(law: DampingLaw) -> str:
+    def told_apart(law: DampingLaw) -> str:
         return "" if law is diagnosis.laws[0] else "yes" if law.told_apart else "no"
 
     def gaps(withheld: list[float]) -> str:
@@ -184,7 +184,7 @@ def _law_columns(diagnosis: PendulumDiagnosis) -> tuple[Column[DampingLaw], ...]
         word("law of damping", "name"),
         number("ln ratio", "log_ratio", _ONE),
         Column("withheld gap", lambda law: law.withheld, "withheld_u", gaps, "u", number=True),
-        Column("told apart", said, number=True),
+        Column("told apart", told_apart, number=True),
         Column(None, lambda law: law.told_apart, "told_apart"),
     )
 
@@ -197,7 +197,7 @@ def _how_far(diagnosis: PendulumDiagnosis) -> Iterator[Content]:
     for regime in diagnosis.regimes:
         title = f"withheld: {regime.name}"
         columns: tuple[Column[Foretold], ...] = (
-            Column(title, lambda foretold: _asked(foretold, diagnosis)),
+            Column(title, lambda foretold: _answer_name(foretold, diagnosis)),
             Column("gap", lambda foretold: foretold.gap, written=_ONE, unit="u", number=True),
             Column("shrinks by", lambda foretold: foretold.shrinkage, written=_SHARE, number=True),
             Column(
@@ -209,7 +209,7 @@ def _how_far(diagnosis: PendulumDiagnosis) -> Iterator[Content]:
         yield Table(title, columns, (regime.before, *regime.foretold))
 
 
-def _asked(foretold: Foretold, diagnosis: PendulumDiagnosis) -> str:
+def _answer_name(foretold: Foretold, diagnosis: PendulumDiagnosis) -> str:
     control = "wrong cause: " if foretold.causes == diagnosis.control and foretold.causes else ""
     return control + (", ".join(foretold.causes) or "no cause")
 

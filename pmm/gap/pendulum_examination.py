@@ -15,7 +15,7 @@ from analysis.gap.pendulum.settle import Settled, settle
 from analysis.gap.pendulum.trial import Trial
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
-from pmm.gap.own_effects import chosen_of_pendulums, files_among, tried
+from pmm.gap.own_effects import chosen_of_pendulums, files_among, try_effect
 from pmm.gap.pendulum import problem_of
 from pmm.gap.pendulum_file import PendulumCase, read_case
 
@@ -106,7 +106,7 @@ def _prepared(
     problem = problem_of(case, path, more)
     first = problem.trials[0]
     for name, kind in more.items():
-        tried(name, f"record {first.name}", partial(_typical, first, cause(kind)))
+        try_effect(name, f"record {first.name}", partial(_typical, first, cause(kind)))
     return problem, kinds
 
 

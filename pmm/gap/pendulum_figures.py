@@ -12,7 +12,7 @@ from analysis.gap.pendulum.search import named
 from analysis.gap.pendulum.swings import KINDS
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import plain
-from pmm.document.style import PALETTE, TRACE, drawn
+from pmm.document.style import PALETTE, TRACE, new_figure
 from pmm.gap.heat import AFTER, BEFORE, Dots, Grid, before_and_after, dotted, probability_bars
 from pmm.gap.pendulum_conclusion import ranking
 
@@ -103,10 +103,10 @@ def swings_figure(diagnosis: PendulumDiagnosis, at: int) -> "Figure":
     problem, after = diagnosis.problem, diagnosis.settled
     trial, nothing = problem.trials[at], np.zeros_like(problem.residual)
     curves = {
-        "simulated": (_told(problem, nothing), BEFORE),
-        "with causes": (_told(after.problem, after.best.signature), AFTER),
+        "simulated": (_fitted_observations(problem, nothing), BEFORE),
+        "with causes": (_fitted_observations(after.problem, after.best.signature), AFTER),
     }
-    with drawn(10.5, 5.0) as figure:
+    with new_figure(10.5, 5.0) as figure:
         axes = figure.subplots(2, 1, sharex=True)
         for panel, (kind, label) in zip(axes, _LABELS.items(), strict=True):
             row = KINDS.index(kind)
@@ -122,7 +122,7 @@ def swings_figure(diagnosis: PendulumDiagnosis, at: int) -> "Figure":
     return figure
 
 
-def _told(problem: PendulumProblem, signature: FloatArray) -> FloatArray:
+def _fitted_observations(problem: PendulumProblem, signature: FloatArray) -> FloatArray:
     """Return the observations as causes have them, with the release and tolerances that fit."""
     nuisances = problem.nuisances
     free = nuisances.columns @ nuisances.fitted(problem.residual - signature)

@@ -60,17 +60,17 @@ def _wrong(diagnosis: PendulumDiagnosis, concluded: PendulumConclusion) -> Itera
     damped = len(causes) < len(concluded.names)
     damping = [_damping(diagnosis.laws, rivals, concluded.names)] if damped else []
     cause = " and ".join([*damping, *causes])
-    said = _named(diagnosis, concluded, cause)
+    said = _cause_text(diagnosis, concluded, cause)
     yield f"{said[0].upper()}{said[1:]}"
     if concluded.strange:
         yield _strange(concluded)
-    for shares in concluded.apart.values():
+    for shares in concluded.alike_causes.values():
         yield _alike(shares)
     if rivals:
         yield _undecided(diagnosis.laws[0], rivals)
 
 
-def _named(diagnosis: PendulumDiagnosis, concluded: PendulumConclusion, cause: str) -> str:
+def _cause_text(diagnosis: PendulumDiagnosis, concluded: PendulumConclusion, cause: str) -> str:
     if math.isfinite(diagnosis.foretells):
         return cause_statement(cause, diagnosis.foretells, certain=concluded.adds)
     heading = "the cause" if concluded.adds else "the cause cannot be told; likeliest cause"
@@ -98,7 +98,7 @@ def _turned(runs: Sequence[str]) -> str:
 
 def _first(concluded: PendulumConclusion, name: str) -> tuple[str, ...]:
     """Return a cause with what these records cannot tell from it, where it is named at all."""
-    return tuple(concluded.apart.get(name, (name,))) if concluded.adds else (name,)
+    return tuple(concluded.alike_causes.get(name, (name,))) if concluded.adds else (name,)
 
 
 def _alike(shares: Mapping[str, float]) -> str:
@@ -177,7 +177,7 @@ def _told_by(concluded: PendulumConclusion) -> str:
     """Return the measurements that tell apart what these records cannot; empty if none is known."""
     how = {
         measurement: " and ".join(names)
-        for names in concluded.apart.values()
+        for names in concluded.alike_causes.values()
         for measurement in separating_measurements([name.partition(" of ")[0] for name in names])
     }
     return "; ".join(f"Tell {names} apart by {measurement}" for measurement, names in how.items())

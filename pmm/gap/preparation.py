@@ -21,7 +21,7 @@ from pmm.coefficients.settings import CoefficientSettings, settings_of
 from pmm.coefficients.systems import check_dimensions
 from pmm.gap.case import Case, read_case, stated_tolerances
 from pmm.gap.hold_out import held_out_runs
-from pmm.gap.load import Loaded, campaign_of, load_campaign
+from pmm.gap.load import LoadedCampaign, campaign_of, load_campaign
 from sim.effects.effect import Effect
 
 PHOTOCELL: Final = "photocell"
@@ -32,14 +32,14 @@ Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True, eq=False)
-class Prepared:
+class PreparedCampaign:
     """A campaign, read, observed and judged.
 
     Attributes
     ----------
     left_out
         Runs that are not used, by name, with the reason.
-    there
+    recentred
         The rig to begin with: moved to the coefficients that fit where the stated ones are far off.
     fitted, withheld
         The runs to fit, records at rest among them, and those that nobody looks at until the end.
@@ -57,7 +57,7 @@ class Prepared:
     campaign: Campaign
     case: Case
     left_out: Mapping[str, str]
-    there: Recentred
+    recentred: Recentred
     fitted: tuple[GapRun, ...]
     withheld: tuple[GapRun, ...]
     settings: Settings
@@ -74,7 +74,7 @@ def prepare(
     sensors: Sequence[str] = (),
     hold_out: Sequence[str] = (),
     progress: Progress = lambda _: None,
-) -> Prepared:
+) -> PreparedCampaign:
     """Read a campaign and say what of it can be used, and where the diagnosis begins.
 
     Parameters
@@ -122,7 +122,7 @@ def prepare(
         (withheld if record.name in held_out else fitted).append(record)
     cut = {name: said for name, said in loaded.cut_short.items() if name not in left_out}
     used = tuple(fitted), tuple(withheld)
-    return Prepared(
+    return PreparedCampaign(
         campaign, case, left_out, recentred, *used, settings, cut, reporting, loaded.damaged,
         commands.told,
     )  # fmt: skip
@@ -177,7 +177,7 @@ def _without_hull(campaign: Campaign) -> str:
 
 
 def _sorted(
-    loaded: Loaded, case: Case, on: Sequence[Effect], held_out: Sequence[str], file: Path
+    loaded: LoadedCampaign, case: Case, on: Sequence[Effect], held_out: Sequence[str], file: Path
 ) -> tuple[Recentred, list[GapRun], list[GapRun], dict[str, str]]:
     """Return the rig to begin with, the runs to fit and those withheld, and what is left out."""
     fitted = [run for run in loaded.runs if run.name not in held_out]

@@ -36,7 +36,7 @@ _PREFIX: Final = "next-"
 
 
 @dataclass(frozen=True, eq=False)
-class Pursued:
+class PursuedFolder:
     """A campaign's folder as a pursuit finds it.
 
     Attributes
@@ -59,7 +59,7 @@ class Pursued:
         return frozenset(made | {run.set_point for run in self.open})
 
 
-def pursued(folder: Path) -> Pursued:
+def read_pursued_folder(folder: Path) -> PursuedFolder:
     """Read a campaign's folder.
 
     Raises
@@ -75,7 +75,7 @@ def pursued(folder: Path) -> Pursued:
     made = {run.name for run in campaign.runs}
     planned = [run for path in plans for run in _planned(path, campaign)]
     opened = tuple(run for run in planned if run.name not in made)
-    return Pursued(folder, campaign, tuple(plans), opened)
+    return PursuedFolder(folder, campaign, tuple(plans), opened)
 
 
 def _number(path: Path) -> int:
@@ -119,7 +119,7 @@ def _run(plan: RunPlan) -> Run:
     )
 
 
-def write_round(pursuit: Pursued, proposals: Sequence[Proposal]) -> Path:
+def write_round(pursuit: PursuedFolder, proposals: Sequence[Proposal]) -> Path:
     """Write the plan of the next round, whole or not at all, and return where it is."""
     name = f"{_PREFIX}{_number(pursuit.plans[-1]) + 1 if pursuit.plans else 1}"
     path = pursuit.folder / f"{name}.toml"
@@ -138,7 +138,7 @@ def recorded(folder: Path, make: Maker | None, appear: Callable[[], bool]) -> di
         Waits until recordings may have appeared; returns whether to look again.
     """
     while True:
-        pursuit = pursued(folder)
+        pursuit = read_pursued_folder(folder)
         if pursuit.open and make is not None:
             make(folder, pursuit.campaign, [_run(plan) for plan in pursuit.open])
         missing = take_in(pursuit)
@@ -146,7 +146,7 @@ def recorded(folder: Path, make: Maker | None, appear: Callable[[], bool]) -> di
             return missing
 
 
-def take_in(pursuit: Pursued) -> dict[str, str]:
+def take_in(pursuit: PursuedFolder) -> dict[str, str]:
     """Append the open runs whose recordings have appeared; return the others with the reason.
 
     A recording that cannot be read has not appeared yet: it may still be copied.
@@ -181,7 +181,7 @@ def recording_of(folder: Path, run: Run) -> str | None:
     return next((name for name in names if (folder / name).is_file()), None)
 
 
-def _keys(run: Run, pursuit: Pursued, before: int) -> dict[str, Any]:
+def _keys(run: Run, pursuit: PursuedFolder, before: int) -> dict[str, Any]:
     """Return a run as the campaign file has it, ``before`` others having been appended with it."""
     records: tuple[Run | AtRest, ...] = (*pursuit.campaign.runs, *pursuit.campaign.at_rest)
     numbers = [record.number for record in records if record.number]

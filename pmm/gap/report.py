@@ -23,7 +23,7 @@ from pmm.gap.hull_report import Convention
 from pmm.gap.run_notes import command_notes, noise_notes, odd_note, odd_one, run_notes
 from pmm.gap.sizes import HowLarge, how_large, own_sizes
 from pmm.gap.steps import StepRow, step_row
-from pmm.gap.tables import ControlRow, Ranked, RegimeRow
+from pmm.gap.tables import ControlRow, RankedAnswer, RegimeRow
 from pmm.gap.words import Remedies, joined, sentences
 
 _SHOWN: Final = 8  # hypotheses of the ranking
@@ -57,7 +57,7 @@ class GapReport:
     notes: tuple[str, ...]
     contrasts: tuple[StepRow, ...]
     stages: dict[str, float]
-    ranking: tuple[Ranked, ...]
+    ranking: tuple[RankedAnswer, ...]
     effects: tuple[Marginal, ...]
     hidden: tuple[str, ...]
     controls: tuple[ControlRow, ...]
@@ -99,7 +99,7 @@ def gap_report(examined: Examined) -> GapReport:
         tuple(_regimes(examined)),
         convention,
         rows,
-        tuple(heat_cells(diagnosis.problem, examined.left)),
+        tuple(heat_cells(diagnosis.problem, examined.remainder)),
         examined.description,
         next_runs,
     )
@@ -109,7 +109,7 @@ def _difference(examined: Examined) -> FloatArray:
     """Return the difference whose size is told, in u: the effect's own, or what is left."""
     if examined.cause is not None:
         return examined.cause.signature
-    return left_by_step(examined.diagnosis.problem, examined.left)
+    return left_by_step(examined.diagnosis.problem, examined.remainder)
 
 
 def _notes(examined: Examined, odd: str) -> Iterator[str]:
@@ -148,7 +148,7 @@ def _of_cause(examined: Examined, cause: Fit) -> Iterator[str]:
         )
 
 
-def _ranking(examined: Examined) -> Iterator[Ranked]:
+def _ranking(examined: Examined) -> Iterator[RankedAnswer]:
     diagnosis = examined.diagnosis
     fits: dict[str, Fit] = {}
     for ranked_fit in diagnosis.weighed.ranked:
@@ -172,7 +172,7 @@ def _ranking(examined: Examined) -> Iterator[Ranked]:
             for how in separating_measurements([effect, *(twin for twin, _ in group)])
         ]
         withheld_u = examined.judged.by_answer.get(name, math.nan)
-        yield Ranked(name, float(shares[name]), withheld_u, stage, effects, alike, measure)
+        yield RankedAnswer(name, float(shares[name]), withheld_u, stage, effects, alike, measure)
 
 
 def _controls(examined: Examined) -> Iterator[ControlRow]:

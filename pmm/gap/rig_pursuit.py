@@ -11,7 +11,7 @@ from pathlib import Path
 from hardware.description.setpoint import SetPoint
 from pmm.design.design_file import DesignFile
 from pmm.design.grid import costs_s
-from pmm.gap.causes import CauseGoal, Found, Standing, Suggestion
+from pmm.gap.causes import CauseDiagnosis, CauseGoal, Standing, Suggestion
 from pmm.parallel import LocalProcesses
 from pmm.plan.duration import duration_rows
 from pmm.plan.run_plan import RunPlan
@@ -34,13 +34,13 @@ class RigPlace:
         if plan is None:
             fixed_runs = tuple(run for run in file.fixed if run.oscillates)
             return Standing((), 0.0, fixed_runs, (), frozenset(), time_left_s=file.time_s)
-        made = plan.made
+        made = plan.complete_runs
         self._last = made[-1] if made else None
         return Standing(
             tuple(run.name for run in made if run.oscillates),
             math.fsum(duration_rows(made, file.rig)),
             plan.given_left,
-            plan.left,
+            plan.runs_left,
             frozenset(run.set_point for run in plan.plan.runs if run.oscillates),
             time_left_s=file.time_s - plan.chosen_s(file.rig),
         )
@@ -84,17 +84,21 @@ def goal_of(file: DesignFile, folder: Path, *, apart: bool = True) -> CampaignGo
 
         chosen_effects(file.gap.effects, ())  # refuses names that nobody knows
     points = tuple(dict.fromkeys(run.set_point for run in file.grid.runs))
-    work = partial(_elsewhere if apart else _here, folder, file.gap.effects, points)
+    work = partial(_diagnose_in_process if apart else _diagnose, folder, file.gap.effects, points)
     return CauseGoal(RigPlace(file, folder), work, file.gap.least_log_odds, file.gap.batch)
 
 
-def _here(folder: Path, effects: tuple[str, ...], points: tuple[SetPoint, ...]) -> Found:
+def _diagnose(
+    folder: Path, effects: tuple[str, ...], points: tuple[SetPoint, ...]
+) -> CauseDiagnosis:
     from pmm.gap.examination import Options
     from pmm.gap.found_cause import diagnosed
 
     return diagnosed(folder, Options(effects, runs=points))
 
 
-def _elsewhere(folder: Path, effects: tuple[str, ...], points: tuple[SetPoint, ...]) -> Found:
+def _diagnose_in_process(
+    folder: Path, effects: tuple[str, ...], points: tuple[SetPoint, ...]
+) -> CauseDiagnosis:
     with LocalProcesses(1) as executor:
-        return executor.submit(_here, folder, effects, points).result()
+        return executor.submit(_diagnose, folder, effects, points).result()

@@ -47,7 +47,7 @@ class Size:
     per_cent: float
 
     @property
-    def said(self) -> str:
+    def sentence(self) -> str:
         """The size in a sentence: quantity, largest value with unit, share, run."""
         first = f"{self.per_cent:.2g} % of its first harmonic, "
         part = "" if math.isnan(self.per_cent) else first
@@ -55,14 +55,14 @@ class Size:
 
 
 @dataclass(frozen=True)
-class Spoiled:
+class SpoiledCoefficient:
     """The coefficient that is furthest off, in per cent, too large if positive."""
 
     name: str
     per_cent: float
 
     @property
-    def said(self) -> str:
+    def percentage(self) -> str:
         """By how much it is off, in per cent with its sign."""
         return f"{float(f'{self.per_cent:.2g}'):+g} %"
 
@@ -80,7 +80,7 @@ class HowLarge:
     """
 
     sizes: tuple[Size, ...]
-    coefficient: Spoiled | None
+    coefficient: SpoiledCoefficient | None
 
 
 def how_large(
@@ -98,17 +98,19 @@ def how_large(
     present = {step_of(component) for component in stack.components}
     steps = [step.what for step in walk if step.gap and step.what in present]
     steps = steps or [FORCE if FORCE in present else walk[-1].what]
-    return HowLarge(tuple(_largest(stack, change, step) for step in steps), spoiled(rows))
+    return HowLarge(
+        tuple(_largest(stack, change, step) for step in steps), spoiled_coefficient(rows)
+    )
 
 
-def spoiled(rows: Sequence[CoefficientRow]) -> Spoiled | None:
+def spoiled_coefficient(rows: Sequence[CoefficientRow]) -> SpoiledCoefficient | None:
     """Return the coefficient that is off most, of those that are off for their uncertainty.
 
     Without the effect that is named from with it; where none is, as fitted from what is stated.
     Of those that are no more than their uncertainty a per cent says nothing.
     """
     off_rows = [row for row in rows if row.off and row.is_told]
-    spoilt = [Spoiled(row.where, _per_cent(row)) for row in off_rows]
+    spoilt = [SpoiledCoefficient(row.where, _per_cent(row)) for row in off_rows]
     return max(spoilt, key=lambda coefficient: abs(coefficient.per_cent), default=None)
 
 

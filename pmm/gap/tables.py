@@ -14,7 +14,7 @@ from pmm.gap.words import joined
 
 
 @dataclass(frozen=True)
-class Ranked:
+class RankedAnswer:
     """One answer with its probability.
 
     Attributes
@@ -77,7 +77,7 @@ STEPS: Final[tuple[Column[StepRow], ...]] = (
     number("numbers", "count"),
     *data_only("beyond", "worst", "tells", "strained"),
 )
-RANKING: Final[tuple[Column[Ranked], ...]] = (
+RANKING: Final[tuple[Column[RankedAnswer], ...]] = (
     word("answer", "answer", joined),
     word("stage", "stage"),
     Column("parameters (95 %)", lambda row: "; ".join(parameters(row.effects))),

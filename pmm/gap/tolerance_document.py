@@ -16,7 +16,7 @@ from pmm.document.notation import written
 from pmm.gap.case import stated_tolerances
 from pmm.gap.examination import Options
 from pmm.gap.own_effects import chosen_effects
-from pmm.gap.preparation import Prepared, campaign_file, prepare
+from pmm.gap.preparation import PreparedCampaign, campaign_file, prepare
 
 SCHEMA: Final = "pmm-gap-tolerances-1"
 _LEARNT: Final = 0.9  # tolerances: a number known no better afterwards was not shown by these runs
@@ -106,10 +106,10 @@ def tolerance_document(folder: Path, options: Options) -> Document:
     return Document(ready.campaign.name, "what may be off without a gap", (section,), SCHEMA)
 
 
-def _rows(ready: Prepared, file: Path) -> Iterator[ToleranceRow]:
+def _rows(ready: PreparedCampaign, file: Path) -> Iterator[ToleranceRow]:
     tolerances, stated = ready.case.tolerances, stated_tolerances(file)
-    problem = problem_of(ready.there.rig, ready.fitted, ready.settings, ready.there.free)
-    moved = _shown(problem)
+    problem = problem_of(ready.recentred.rig, ready.fitted, ready.settings, ready.recentred.free)
+    moved = _shown_shifts(problem)
     commanded = {setting.key for setting in ready.commanded}
     for tolerance in fields(tolerances):
         metadata = tolerance.metadata
@@ -125,7 +125,7 @@ def _rows(ready: Prepared, file: Path) -> Iterator[ToleranceRow]:
         )
 
 
-def _shown(problem: Problem) -> dict[str, dict[str, float]]:
+def _shown_shifts(problem: Problem) -> dict[str, dict[str, float]]:
     """Return by how many tolerances each number that these runs show is off, and how sure that is.
 
     Beside all others that may be off.

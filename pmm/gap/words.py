@@ -123,11 +123,11 @@ def _steps(conclusion: Conclusion) -> str:
 
 def how_large_it_is(conclusion: Conclusion, large: HowLarge, effect_sizes: Sequence[str]) -> str:
     """Return how large the difference is, and by how much it puts a coefficient off."""
-    sizes, worst = " and ".join(size.said for size in large.sizes), large.coefficient
+    sizes, worst = " and ".join(size.sentence for size in large.sizes), large.coefficient
     if conclusion.adds:
-        put = f"it puts {worst.name} off by {worst.said}" if worst else _WITHIN
+        put = f"it puts {worst.name} off by {worst.percentage}" if worst else _WITHIN
         return f"{'; '.join([f'It changes {sizes}', put, *effect_sizes])}."
-    fitted = f"{worst.name} is fitted {worst.said} off what is stated" if worst else _WITHIN
+    fitted = f"{worst.name} is fitted {worst.percentage} off what is stated" if worst else _WITHIN
     if conclusion.unexplained:
         why = ", whatever the reason" if worst else ""
         return f"Rig and simulation differ in {sizes}; {fitted}{why}."

@@ -39,7 +39,7 @@ class Resolved:
 
     source: Source
     rows: RunRows
-    seen: "RunHarmonics | None"
+    run_harmonics: "RunHarmonics | None"
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Failure:
     flags: tuple[Flag, ...] = ()
 
     @property
-    def said(self) -> str:
+    def full_message(self) -> str:
         """The message, with the file's name."""
         is_named = Path(self.file).name in self.message
         return self.message if is_named else f"{self.file}: {self.message}"
@@ -166,6 +166,10 @@ def doubts(resolved: Sequence[Resolved]) -> Iterator[tuple[Path, tuple[Flag, ...
         campaign = source.campaign
         if path is None or campaign is None:
             continue
-        harmonics = [run.seen for run in resolved if run.source.campaign_path == path and run.seen]
+        harmonics = [
+            run.run_harmonics
+            for run in resolved
+            if run.source.campaign_path == path and run.run_harmonics
+        ]
         if flags := implausible(campaign, harmonics):
             yield path, flags

@@ -11,7 +11,7 @@ from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.campaign.recording_source import RAW, RecordingSource, open_recording
 from pmm.recorder.files import RECORDING
-from pmm.remote import here
+from pmm.remote import local_path
 
 if TYPE_CHECKING:
     from analysis.readers import ColumnMap
@@ -77,9 +77,9 @@ def find_sources(paths: Sequence[str]) -> SourceList:
     DataError
         For a campaign without any recording.
     ConfigurationError
-        If a campaign file is wrong, or a folder has none; or as :func:`pmm.remote.here`.
+        If a campaign file is wrong, or a folder has none; or as :func:`pmm.remote.local_path`.
     """
-    return sum((_find(here(path)) for path in paths), SourceList())
+    return sum((_find(local_path(path)) for path in paths), SourceList())
 
 
 def _find(path: Path) -> SourceList:

@@ -8,7 +8,7 @@ from analysis.inertia.corrections import without_entrained_air
 from analysis.inertia.elementary_functions import Value, sqrt
 from analysis.uncertainty.estimate import Estimate, exactly
 from analysis.uncertainty.monte_carlo import Assessment, assess
-from pmm.inertia.stated_values import given, given_or_none
+from pmm.inertia.stated_values import given_or_none, stated_value
 
 
 @dataclass(frozen=True)
@@ -64,11 +64,11 @@ def without_air(
     ratio = table.air_density_kg_m3 / table.body_density_kg_m3
     inputs = {
         "gyradius_in_air_m": assessment.budget.result,
-        "coefficient": given(air, "coefficient", "entrained_air"),
+        "coefficient": stated_value(air, "coefficient", "entrained_air"),
         "depth_m": depth or exactly(0.0, "m"),
     }
     if by_sway:
-        inputs["sway_coefficient"] = given(air, "sway_coefficient", "entrained_air")
+        inputs["sway_coefficient"] = stated_value(air, "sway_coefficient", "entrained_air")
     air_gyradius = given_or_none(air, "gyradius_m", "entrained_air")
     if air_gyradius is not None:
         inputs["air_gyradius_m"] = air_gyradius

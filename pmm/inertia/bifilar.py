@@ -21,8 +21,8 @@ from pmm.inertia.lines import line_share, yaw_off_lines
 from pmm.inertia.outcome import Finding, Outcome, PlaneAxes, assessed
 from pmm.inertia.properties import AXES
 from pmm.inertia.sketch import on_two_lines
-from pmm.inertia.stated_values import given, gravity_of
-from pmm.inertia.suspension import Suspended, hang
+from pmm.inertia.stated_values import gravity_of, stated_value
+from pmm.inertia.suspension import SuspensionResult, hang
 from pmm.inertia.workflow import workflow
 
 _APART = 3.0  # joint standard uncertainties that two methods of one suspension may differ by
@@ -43,7 +43,7 @@ def run(path: str) -> Outcome:
         test.findings += _findings(suspension, several=len(suspended) > 1)
         test.flags += suspension.flags
         test.periods += suspension.periods
-        depth = suspension.found.get("depth")
+        depth = suspension.assessments.get("depth")
         below_m = None if depth is None else depth.result.value
         held = suspension.table
         test.sketches.append(on_two_lines(held.name, held.half_spacing_m, held.line_m, below_m))
@@ -72,10 +72,10 @@ def _plane(gyradii: Mapping[str, Estimate]) -> Plane | None:
     return Plane.VERTICAL if "pitch" in gyradii else Plane.HORIZONTAL
 
 
-def _findings(suspension: Suspended, *, several: bool) -> Iterator[Finding]:
+def _findings(suspension: SuspensionResult, *, several: bool) -> Iterator[Finding]:
     where = f"{suspension.table.name}: " if several else ""
     prefix = f"{suspension.table.name}_" if several else ""
-    for key, assessment in suspension.found.items():
+    for key, assessment in suspension.assessments.items():
         if key == "depth":
             yield assessed(f"{prefix}depth_m", f"{where}CG below the suspension", assessment)
         else:
@@ -87,7 +87,7 @@ def _findings(suspension: Suspended, *, several: bool) -> Iterator[Finding]:
 
 
 def _results(
-    test: Experiment[BifilarTable], hung: list[Suspended]
+    test: Experiment[BifilarTable], hung: list[SuspensionResult]
 ) -> tuple[dict[str, Estimate], dict[str, Assessment]]:
     """Return each axis' gyradius: of the chosen method, over all suspensions that have it."""
     gyradii: dict[str, Estimate] = {}
@@ -121,17 +121,19 @@ def _results(
         test.findings.append(Finding(f"k_{axis}_m", f"{axis} gyradius", gyradii[axis], single))
     test.flags += [flag for suspension in hung for flag in _between_methods(suspension)]
     test.redundancy += [redundancy for suspension in hung for redundancy in _methods(suspension)]
-    if len([key for key in hung[0].found if key.startswith("yaw")]) > 1 and "yaw" in used:
-        method = next(key for key, assessment in hung[0].found.items() if assessment is used["yaw"])
+    if len([key for key in hung[0].assessments if key.startswith("yaw")]) > 1 and "yaw" in used:
+        method = next(
+            key for key, assessment in hung[0].assessments.items() if assessment is used["yaw"]
+        )
         test.notes.append(f"the {method} is the result (method in the file chooses another)")
     return gyradii, used
 
 
-def _between_methods(suspension: Suspended) -> Iterator[Flag]:
+def _between_methods(suspension: SuspensionResult) -> Iterator[Flag]:
     """Flag methods whose yaw gyradii differ by more than three times their joint uncertainty."""
     gyradii = [
         (key, assessment.result)
-        for key, assessment in suspension.found.items()
+        for key, assessment in suspension.assessments.items()
         if key.startswith("yaw by")
     ]
     for (first, a), (second, b) in combinations(gyradii, 2):
@@ -147,11 +149,11 @@ def _between_methods(suspension: Suspended) -> Iterator[Flag]:
             yield Flag("methods_disagree", Severity.WARNING, message)
 
 
-def _methods(suspension: Suspended) -> Iterator[Redundancy]:
+def _methods(suspension: SuspensionResult) -> Iterator[Redundancy]:
     """Yield how the yaw gyradii of several methods agree."""
     gyradii = {
         key: assessment.result
-        for key, assessment in suspension.found.items()
+        for key, assessment in suspension.assessments.items()
         if key.startswith("yaw by")
     }
     if len(gyradii) > 1:
@@ -160,14 +162,14 @@ def _methods(suspension: Suspended) -> Iterator[Redundancy]:
         yield best_fit(matrix, measured, subject=title, results=("k_yaw_m",), data=list(gyradii))[1]
 
 
-def _chosen(table: BifilarTable, suspension: Suspended, axis: str) -> Assessment | None:
+def _chosen(table: BifilarTable, suspension: SuspensionResult, axis: str) -> Assessment | None:
     """Return the method's that the file names, or else the surest."""
     if axis != "yaw":
-        return suspension.found.get(axis)
+        return suspension.assessments.get(axis)
     if table.method is not None:
-        return suspension.found.get(f"yaw by {table.method}")
+        return suspension.assessments.get(f"yaw by {table.method}")
     assessments = [
-        assessment for key, assessment in suspension.found.items() if key.startswith("yaw by")
+        assessment for key, assessment in suspension.assessments.items() if key.startswith("yaw by")
     ]
     return (
         min(assessments, key=lambda assessment: assessment.result.uncertainty)
@@ -190,12 +192,14 @@ def _tilts(
         runs = test.period(yaw_test, f"tilted[{number}]")
         at = next((s for s in table.suspensions if s.yaw is not None), table.suspensions[0])
         spacing, line = (
-            given(at, key, at.name) if getattr(yaw_test, key) is None else given(yaw_test, key)
+            stated_value(at, key, at.name)
+            if getattr(yaw_test, key) is None
+            else stated_value(yaw_test, key)
             for key in ("half_spacing_m", "line_m")
         )
         assessment = yaw_from_period(runs.period, spacing, line, gravity_of(table))
         if at.line_mass_kg:
-            share = line_share(at, given(table.model, "mass_kg", "model"))
+            share = line_share(at, stated_value(table.model, "mass_kg", "model"))
             assessment = yaw_off_lines(
                 yaw_test if yaw_test.half_spacing_m else at, share, assessment
             )

@@ -9,7 +9,7 @@ from pmm.inertia.bifilar_axes import TiltedTable
 from pmm.inertia.hanging import hanging_rules
 from pmm.inertia.job_table import JobTable
 from pmm.inertia.lines import line_rules
-from pmm.inertia.reading import one_of, together
+from pmm.inertia.reading import one_of, require_together
 from pmm.inertia.sources import PeriodSource
 
 
@@ -45,7 +45,7 @@ class BeatsTable:
         if "records" in table:
             yield from one_of(table, "records", "counting_error", needed=False)
         else:
-            yield from together(table, "beats", "oscillations")
+            yield from require_together(table, "beats", "oscillations")
 
 
 @dataclass(frozen=True)
@@ -151,9 +151,9 @@ def _measures(suspension: Mapping[str, Any]) -> bool:
 
 def _workflow_rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if "tare_again" in table:
-        yield from together(table, "tare_again", "check")
+        yield from require_together(table, "tare_again", "check")
     if "check" in table:
-        yield from together(table, "check", "tare")
+        yield from require_together(table, "check", "tare")
     rows, model = table.get("suspensions"), table.get("model", {})
     first = rows[0] if isinstance(rows, list) and rows else {}
     if "tare" not in table or not isinstance(first, dict):

@@ -67,7 +67,7 @@ def _putting(tables: Sequence[PartTable], labels: Sequence[str], signs: FloatArr
     """Return what puts the parts together for some inputs, numbers or trials; the rest as read."""
     read = [{key: estimate.value for key, estimate in table.measured().items()} for table in tables]
 
-    def put(inputs: Mapping[str, Any]) -> FloatArray:
+    def combine(inputs: Mapping[str, Any]) -> FloatArray:
         shape = np.broadcast_shapes(*(np.shape(value) for value in inputs.values()))
         rows = np.empty((len(tables), 10, *shape))
         for row, label, numbers in zip(rows, labels, read, strict=True):
@@ -79,7 +79,7 @@ def _putting(tables: Sequence[PartTable], labels: Sequence[str], signs: FloatArr
                 row[k] = product
         return combined(rows, signs)
 
-    return put
+    return combine
 
 
 def _reading(put: Put, key: str) -> Formula:

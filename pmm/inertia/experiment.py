@@ -14,7 +14,7 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag
 from hardware.description.oscillator import Plane
 from pmm.inertia.job_table import JobTable
-from pmm.inertia.outcome import Finding, Outcome, PlaneAxes, StaticTest, compare, once
+from pmm.inertia.outcome import Finding, Outcome, PlaneAxes, StaticTest, compare, without_repeats
 from pmm.inertia.properties import properties
 from pmm.inertia.reading import Job, read_job
 from pmm.inertia.sketch import Sketch
@@ -80,7 +80,7 @@ class Experiment(Generic[TableT]):
         """
         if self.table.photo is None:
             return None
-        path = self.job.beside(self.table.photo)
+        path = self.job.path_beside(self.table.photo)
         if path.suffix.lower() not in _PICTURES:
             raise ConfigurationError(
                 f"{self.job.path}: photo {self.table.photo}: name a file {' or '.join(_PICTURES)}"
@@ -159,7 +159,7 @@ class Experiment(Generic[TableT]):
             name,
             table.name,
             tuple(self.findings),
-            once(self.flags),
+            without_repeats(self.flags),
             tuple(self.periods),
             self.body,
             self.missing,

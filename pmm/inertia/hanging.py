@@ -9,8 +9,8 @@ from analysis.inertia.elementary_functions import Value, arctan, cos, sin
 from analysis.inertia.hanging import HangingCentre, PlumbLine, centre_of_lines
 from analysis.uncertainty.budget import derived
 from analysis.uncertainty.estimate import Estimate
-from pmm.inertia.reading import one_of, together
-from pmm.inertia.stated_values import given
+from pmm.inertia.reading import one_of, require_together
+from pmm.inertia.stated_values import stated_value
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class HangingLine:
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         """Two points, or an angle with a point or a distance."""
         yield from one_of(table, "to_x_m", "angle_deg", "angle_rad")
-        yield from together(table, "to_x_m", "to_z_m")
+        yield from require_together(table, "to_x_m", "to_z_m")
         for key in ("x_m", "z_m", "to_x_m"):
             yield from one_of(table, "distance_m", key, needed=False)
         if not {"x_m", "z_m", "distance_m"} & set(table):
@@ -69,13 +69,17 @@ class HangingLine:
         """
         name = self.name or f"line {place}"
         if self.to_x_m is not None:
-            x, z, to_x, to_z = (given(self, key) for key in ("x_m", "z_m", "to_x_m", "to_z_m"))
+            x, z, to_x, to_z = (
+                stated_value(self, key) for key in ("x_m", "z_m", "to_x_m", "to_z_m")
+            )
             return PlumbLine(name, x, z, _direction(x, z, to_x, to_z))
-        stated_angle = given(self, "angle_deg" if self.angle_deg is not None else "angle_rad")
+        stated_angle = stated_value(
+            self, "angle_deg" if self.angle_deg is not None else "angle_rad"
+        )
         angle = stated_angle.widened(common_angle_rad, label="hanging.common_angle")
         if self.distance_m is None:
-            return PlumbLine(name, given(self, "x_m"), given(self, "z_m"), angle)
-        inputs = {"distance": given(self, "distance_m"), "angle": angle}
+            return PlumbLine(name, stated_value(self, "x_m"), stated_value(self, "z_m"), angle)
+        inputs = {"distance": stated_value(self, "distance_m"), "angle": angle}
         return PlumbLine(
             name,
             derived("x", lambda distance, angle: distance * cos(angle), "m", **inputs),

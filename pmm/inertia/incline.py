@@ -11,7 +11,7 @@ from hardware.description.flags import Flag
 from pmm.configuration import STRICT_TABLE
 from pmm.inertia.outcome import Outcome, TargetTable, assessed, compare
 from pmm.inertia.reading import one_of, read_job
-from pmm.inertia.stated_values import given, without_uncertainty
+from pmm.inertia.stated_values import stated_value, without_uncertainty
 
 _LARGEST_RAD = 0.7
 
@@ -89,10 +89,14 @@ def run(path: str) -> Outcome:
         If the file is wrong, or a tilt cannot be.
     """
     table = read_job(path, InclineJob).table
-    mass, weight, seed = given(table, "mass_kg"), given(table, "weight_kg"), table.monte_carlo_seed
+    mass, weight, seed = (
+        stated_value(table, "mass_kg"),
+        stated_value(table, "weight_kg"),
+        table.monte_carlo_seed,
+    )
     if table.one_end is not None:
         end = table.one_end
-        lever, drop = given(end, "lever_m"), given(end, "drop_m")
+        lever, drop = stated_value(end, "lever_m"), stated_value(end, "drop_m")
         assessment = incline_from_one_end(
             weight, mass, lever, drop, _tilt(end, "one_end"), seed=seed
         )
@@ -100,9 +104,9 @@ def run(path: str) -> Outcome:
         ends = table.both_ends
         if ends is None:
             raise DataError("an incline test needs one end or both")
-        drops = (given(ends.stern, "drop_m"), given(ends.bow, "drop_m"))
+        drops = (stated_value(ends.stern, "drop_m"), stated_value(ends.bow, "drop_m"))
         tilts = (_tilt(ends.stern, "stern"), _tilt(ends.bow, "bow"))
-        length = given(ends, "length_m")
+        length = stated_value(ends, "length_m")
         assessment = incline_from_both_ends(weight, mass, length, drops, tilts, seed=seed)
     findings = (assessed("depth_m", "CG below the suspension point", assessment),)
     return Outcome(
@@ -123,7 +127,7 @@ def _tilt(table: TiltTable, where: str) -> Estimate:
     DataError
         If it can only be degrees given as radians.
     """
-    tilt = given(table, "tilt_deg" if table.tilt_deg is not None else "tilt_rad")
+    tilt = stated_value(table, "tilt_deg" if table.tilt_deg is not None else "tilt_rad")
     if abs(tilt.value) > _LARGEST_RAD:
         raise DataError(
             f"{where}: a tilt of {tilt.value:.3g} rad (limit {_LARGEST_RAD:g}): it seems to be "

@@ -10,7 +10,7 @@ from analysis.inertia.elementary_functions import Value, sqrt
 from analysis.uncertainty.budget import derived
 from analysis.uncertainty.estimate import Estimate
 from analysis.uncertainty.monte_carlo import Assessment, assess
-from pmm.inertia.stated_values import given
+from pmm.inertia.stated_values import stated_value
 
 # Lines over body: up to it rods stand for strings to 4.3e-4 of the gyradius; at twice, 1.4e-3.
 _MOST = 0.1
@@ -50,7 +50,7 @@ def line_share(table: Any, mass: Estimate) -> Estimate | None:
     """
     if not table.line_mass_kg:
         return None
-    lines = given(table, "line_mass_kg", table.name)
+    lines = stated_value(table, "line_mass_kg", table.name)
     return derived("share", lambda lines, mass: lines / mass, lines=lines, mass=mass)
 
 

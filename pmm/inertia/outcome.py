@@ -156,7 +156,7 @@ def assessed(name: str, words: str, assessment: Assessment) -> Finding:
     return Finding(name, words, assessment.result, assessment)
 
 
-def once(flags: Sequence[Flag]) -> tuple[Flag, ...]:
+def without_repeats(flags: Sequence[Flag]) -> tuple[Flag, ...]:
     """Return flags without repetitions, what matters most first."""
     order = {Severity.VOID: 0, Severity.WARNING: 1, Severity.NOTE: 2}
     return tuple(sorted(dict.fromkeys(flags), key=lambda flag: order[flag.severity]))

@@ -16,11 +16,11 @@ from pmm.inertia.air import air_rules, without_air
 from pmm.inertia.experiment import Experiment
 from pmm.inertia.hanging import hanging_rules
 from pmm.inertia.job_table import JobTable
-from pmm.inertia.outcome import Finding, Outcome, PlaneAxes, assessed, once
+from pmm.inertia.outcome import Finding, Outcome, PlaneAxes, assessed, without_repeats
 from pmm.inertia.reading import one_of
 from pmm.inertia.sketch import about_axis
 from pmm.inertia.sources import PeriodRuns, PeriodSource
-from pmm.inertia.stated_values import given, given_or_none, gravity_of
+from pmm.inertia.stated_values import given_or_none, gravity_of, stated_value
 from pmm.inertia.torsion import TorsionTable, about_rod, in_plane, stiffness
 
 
@@ -85,7 +85,7 @@ def run(path: str) -> Outcome:
         {} if swung.gyradius is None else {test.table.axis: swung.gyradius.result}
     )
     budgets = [] if swung.gyradius is None else [swung.gyradius.budget]
-    test.weigh(gyradii, budgets, once(test.flags))
+    test.weigh(gyradii, budgets, without_repeats(test.flags))
     planes = {"pitch": Plane.VERTICAL, "yaw": Plane.HORIZONTAL}
     return test.outcome("pendulum", planes.get(test.table.axis), axes=swung.axes)
 
@@ -120,11 +120,11 @@ def _on_axis(test: Experiment[PendulumJob]) -> _Swung:
     gravity, seed = gravity_of(table), table.monte_carlo_seed
     first = _period(test)
     if table.second is None:
-        depth = given(table, "depth_m")
+        depth = stated_value(table, "depth_m")
         gyradius = compound_pendulum(first, depth, gravity, seed=seed)
     else:
         second = test.period(table.second.period, "second.period", pendulum=True).period
-        apart = given(table.second, "apart_m")
+        apart = stated_value(table.second, "apart_m")
         below, gyradius = lamboley(first, second, apart, gravity, seed=seed)
         depth = below.budget.result
         test.findings.append(assessed("depth_m", "CG below the first axis", below))

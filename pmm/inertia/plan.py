@@ -14,9 +14,9 @@ from analysis.uncertainty.estimate import Estimate, exactly
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag
 from pmm.configuration import STRICT_TABLE
-from pmm.inertia.outcome import Finding, Outcome, TargetTable, compare, once
+from pmm.inertia.outcome import Finding, Outcome, TargetTable, compare, without_repeats
 from pmm.inertia.reading import read_job
-from pmm.inertia.stated_values import flags_of, given, gravity_of
+from pmm.inertia.stated_values import flags_of, gravity_of, stated_value
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ def run(path: str) -> Outcome:
         "plan",
         table.name,
         tuple(findings),
-        once(flags),
+        without_repeats(flags),
         missing=("a measurement (a plan is none)",),
         comparisons=compare(findings, table.targets),
         notes=tuple(notes),
@@ -133,8 +133,8 @@ def _plan_bifilar(
         _design(table, "k_yaw_m"),
         _design(table, "k_pitch_m"),
         _design(table, "depth_m"),
-        given(plan, "half_spacing_m"),
-        given(plan, "line_m"),
+        stated_value(plan, "half_spacing_m"),
+        stated_value(plan, "line_m"),
         gravity_of(table),
         period_scatter_relative=plan.period_scatter_relative,
     )
@@ -173,12 +173,12 @@ def _plan_swing(
     flags: list[Flag],
     notes: list[str],
 ) -> None:
-    mass, cg = given(plan, "mass_kg"), given(plan, "cg_below_pivot_m")
+    mass, cg = stated_value(plan, "mass_kg"), stated_value(plan, "cg_below_pivot_m")
     moment = derived("S", lambda cg, mass: cg * mass, "kg m", cg=cg, mass=mass)
-    state = SwingState(given(plan, "period_s"), mass, moment, gravity_of(table))
+    state = SwingState(stated_value(plan, "period_s"), mass, moment, gravity_of(table))
     forecast = forecast_swing(
         state,
-        given(table.expected, "mass_kg"),
+        stated_value(table.expected, "mass_kg"),
         plan.model_cg_below_pivot_m,
         _design(table, f"k_{plan.axis}_m"),
         period_scatter_relative=plan.period_scatter_relative,

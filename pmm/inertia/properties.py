@@ -20,7 +20,7 @@ from hardware.description.arrays import FloatArray
 from hardware.description.flags import Flag
 from pmm.inertia.hanging import HangingTable
 from pmm.inertia.reading import one_of
-from pmm.inertia.stated_values import given, given_or_none, unit_of
+from pmm.inertia.stated_values import given_or_none, stated_value, unit_of
 
 AXES = ("roll", "pitch", "yaw")
 _MOMENTS = ("ixx_kg_m2", "iyy_kg_m2", "izz_kg_m2")
@@ -137,19 +137,19 @@ class PartTable:
     def measured(self) -> dict[str, Estimate]:
         """Return mass, place, gyradii and products by :data:`MADE_OF`."""
         correlated_values = correlated(self, self.correlations)
-        values = {key: correlated_values.get(key) or given(self, key) for key in MADE_OF}
+        values = {key: correlated_values.get(key) or stated_value(self, key) for key in MADE_OF}
         if self.centre is not None:
             values |= {"x_m": self.centre.x, "z_m": self.centre.z}
         for axis, moment in zip(AXES, _MOMENTS, strict=True):
             if getattr(self, moment) is not None:
                 inputs = {
-                    "about": correlated_values.get(moment) or given(self, moment),
+                    "about": correlated_values.get(moment) or stated_value(self, moment),
                     "mass": values["mass_kg"],
                 }
                 values[f"k_{axis}_m"] = derived("k", _gyradius, "m", **inputs)
         if self.square_half_side_m is not None:
             keys = (f"k_{axis}_m" for axis in AXES)
-            values |= zip(keys, self._square(given(self, "square_half_side_m")), strict=True)
+            values |= zip(keys, self._square(stated_value(self, "square_half_side_m")), strict=True)
         return values
 
     def part(self) -> BodyPart:

@@ -29,7 +29,7 @@ class Job(Generic[Table]):
     table: Table
     columns: ColumnMap | None
 
-    def beside(self, name: str) -> Path:
+    def path_beside(self, name: str) -> Path:
         """Return where a file that the job names lies: beside the job's own."""
         return self.path.parent / name
 
@@ -115,7 +115,7 @@ def one_of(table: Mapping[str, Any], *keys: str, needed: bool = True) -> Iterato
         yield "", f"needs one of {', '.join(keys)}"
 
 
-def together(table: Mapping[str, Any], *keys: str) -> Iterator[tuple[str, str]]:
+def require_together(table: Mapping[str, Any], *keys: str) -> Iterator[tuple[str, str]]:
     """Yield a rule's message where some of these keys are given and others are not."""
     stated_keys = [key for key in keys if key in table]
     for key in keys:

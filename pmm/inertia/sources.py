@@ -21,7 +21,7 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag, Severity
 from pmm.inertia.channels import chosen_series, true_angles
 from pmm.inertia.reading import Job, one_of
-from pmm.inertia.stated_values import given
+from pmm.inertia.stated_values import stated_value
 
 _PARTS = 6  # of a single light gates' run
 
@@ -105,7 +105,7 @@ class AngledPeriod(PeriodSource):
     @property
     def angle(self) -> Estimate:
         """The angle in radians, in whichever unit it was stated."""
-        return given(self, "angle_deg" if self.angle_deg is not None else "angle_rad")
+        return stated_value(self, "angle_deg" if self.angle_deg is not None else "angle_rad")
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ class PeriodRuns:
         no runs.
     ratio
         Slow over fast period, where two oscillations are in each record.
-    records, whole, gates
+    records, whole_records, gates
         What was analysed, for figures; ``whole`` is each record with what was not used of it.
     redundancy
         How repeated runs agree.
@@ -137,7 +137,7 @@ class PeriodRuns:
     single: tuple[tuple[float, ...], ...] = ()
     ratio: Estimate | None = None
     records: tuple[RecordAnalysis, ...] = ()
-    whole: tuple[Series, ...] = ()
+    whole_records: tuple[Series, ...] = ()
     gates: tuple[tuple[Passages, PassageFit], ...] = ()
     flags: tuple[Flag, ...] = ()
     redundancy: tuple[Redundancy, ...] = ()
@@ -194,7 +194,7 @@ def _from_records(
     runs, all_series, flags = [], [], []
     for name in source.records:
         recording = read_recording(
-            job.beside(name), job.columns, sample_rate_hz=source.sample_rate_hz
+            job.path_beside(name), job.columns, sample_rate_hz=source.sample_rate_hz
         )
         series, series_flags = chosen_series(job, recording, source.channel, where)
         if source.inclinometer_radius_m is not None:
@@ -244,7 +244,7 @@ def _ratio(runs: Sequence[RecordAnalysis], where: str) -> Estimate | None:
 def _from_gates(job: Job[Any], source: PeriodSource, where: str) -> PeriodRuns:
     fits, flags = [], []
     for name in source.gates:
-        path = job.beside(name)
+        path = job.path_beside(name)
         events = read_gate_events(path, time=source.time_column, gates=source.gate_columns)
         gate_passages = passages(events)
         fits.append((gate_passages, fit_passages(gate_passages)))

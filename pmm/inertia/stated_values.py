@@ -32,7 +32,7 @@ def unit_of(key: str) -> tuple[str, float]:
     return next((unit for ending, unit in _ENDINGS.items() if key.endswith(ending)), ("1", 1.0))
 
 
-def given(table: object, key: str, place: str | None = None) -> Estimate:
+def stated_value(table: object, key: str, place: str | None = None) -> Estimate:
     """Return the value of a key with the standard uncertainty beside it, in SI units.
 
     Parameters
@@ -48,13 +48,13 @@ def given(table: object, key: str, place: str | None = None) -> Estimate:
 
 def given_or_none(table: object, key: str, place: str | None = None) -> Estimate | None:
     """Return the value of a key that may be left out."""
-    return None if getattr(table, key) is None else given(table, key, place)
+    return None if getattr(table, key) is None else stated_value(table, key, place)
 
 
 def gravity_of(table: Any) -> Estimate:
     """Return gravity less buoyancy; that of anywhere at sea level where none is given."""
     is_stated = table.gravity_m_s2 is not None
-    plain = given(table, "gravity_m_s2", "file") if is_stated else _GRAVITY_ANYWHERE
+    plain = stated_value(table, "gravity_m_s2", "file") if is_stated else _GRAVITY_ANYWHERE
     if not getattr(table, "body_density_kg_m3", None):
         return plain
     value = gravity_in_air(plain.value, table.air_density_kg_m3, table.body_density_kg_m3)

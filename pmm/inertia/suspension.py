@@ -34,29 +34,29 @@ from pmm.inertia.channels import chosen_series
 from pmm.inertia.lines import line_share, period_of_lines, pitch_off_lines, yaw_off_lines
 from pmm.inertia.reading import Job
 from pmm.inertia.sources import PeriodRuns, read_period
-from pmm.inertia.stated_values import given, gravity_of
+from pmm.inertia.stated_values import gravity_of, stated_value
 
 
 @dataclass(frozen=True)
-class Suspended:
+class SuspensionResult:
     """What one suspension gave.
 
     Attributes
     ----------
     yaw
         The yaw period, where it was measured.
-    found
+    assessments
         Assessments by axis (or ``depth``), and for yaw by method too.
     """
 
     table: SuspensionTable
     yaw: Estimate | None
-    found: dict[str, Assessment]
+    assessments: dict[str, Assessment]
     periods: tuple[PeriodRuns, ...]
     flags: tuple[Flag, ...]
 
 
-def hang(job: Job[BifilarTable], table: SuspensionTable) -> Suspended:
+def hang(job: Job[BifilarTable], table: SuspensionTable) -> SuspensionResult:
     """Read all periods of a suspension and turn them into gyradii and depth.
 
     Raises
@@ -80,18 +80,20 @@ def hang(job: Job[BifilarTable], table: SuspensionTable) -> Suspended:
     if table.beats is not None:
         count = _beats(job, table.beats, f"{where}.beats")
         by_beats = yaw_from_beats(
-            count, given(table, "half_spacing_m", table.name), yaw_slower=table.beats.yaw_slower
+            count,
+            stated_value(table, "half_spacing_m", table.name),
+            yaw_slower=table.beats.yaw_slower,
         )
         by_beats = yaw_off_lines(table, _share(job, table), by_beats, by_sway=True, seed=4)
         assessments["yaw by beats"] = without_air(job.table, by_beats, by_sway=True)
     _double_pendulum(job, table, where, (yaw, sway), assessments, periods, flags)
     flags += [flag for runs in periods for flag in runs.flags]
-    return Suspended(table, yaw, assessments, tuple(periods), tuple(flags))
+    return SuspensionResult(table, yaw, assessments, tuple(periods), tuple(flags))
 
 
 def _share(job: Job[BifilarTable], table: SuspensionTable) -> Estimate | None:
     return (
-        line_share(table, given(job.table.model, "mass_kg", "model"))
+        line_share(table, stated_value(job.table.model, "mass_kg", "model"))
         if table.line_mass_kg
         else None
     )
@@ -104,7 +106,7 @@ def _beats(job: Job[BifilarTable], table: BeatsTable, where: str) -> BeatCount:
     counts = []
     for name in table.records:
         recording = check_whole(
-            read_recording(job.beside(name), job.columns, sample_rate_hz=table.sample_rate_hz)
+            read_recording(job.path_beside(name), job.columns, sample_rate_hz=table.sample_rate_hz)
         )
         series, _ = chosen_series(job, recording, table.channel, where)
         part = usable_part(series).series
@@ -129,7 +131,7 @@ def _yaw(
 ) -> tuple[Estimate, Estimate | None]:
     """Yaw by its period and by the ratio; return the periods of yaw and, if known, of sway."""
     seed, where = job.table.monte_carlo_seed, f'suspensions["{table.name}"]'
-    gravity, spacing = gravity_of(job.table), given(table, "half_spacing_m", table.name)
+    gravity, spacing = gravity_of(job.table), stated_value(table, "half_spacing_m", table.name)
     runs = read_period(job, source, f"{where}.yaw", modes=source.oscillations)
     periods.append(runs)
     yaw, ratio = runs.period, None
@@ -143,7 +145,7 @@ def _yaw(
         ratio = runs.ratio if place == 1 else _inverse(runs.ratio)
     flags += check_yaw_axis(runs.where, yaw.value, table.line_m, gravity.value)
     by_period = yaw_from_period(
-        yaw, spacing, given(table, "line_m", table.name), gravity, seed=seed
+        yaw, spacing, stated_value(table, "line_m", table.name), gravity, seed=seed
     )
     share = _share(job, table)
     by_period = yaw_off_lines(table, share, by_period, seed=seed + 4)
@@ -190,10 +192,10 @@ def _double_pendulum(
         source: PendulumTable | None = getattr(table, axis)
         if source is None:
             continue
-        slow, fast = _both(job, source, f"{where}.{axis}", periods)
+        slow, fast = _two_periods(job, source, f"{where}.{axis}", periods)
         gravity = gravity_of(job.table)
         share, seed = _share(job, table), job.table.monte_carlo_seed + 20
-        lines = sway or period_of_lines(given(table, "line_m", table.name), gravity, share)
+        lines = sway or period_of_lines(stated_value(table, "line_m", table.name), gravity, share)
         result = pitch_from_periods(slow, fast, lines, gravity, seed=seed)
         result = pitch_off_lines(share, result, seed=seed + 2)
         assessments[axis], assessments["depth"] = result.gyradius, result.depth
@@ -201,7 +203,7 @@ def _double_pendulum(
             flags += resonance_flags(yaw.value, slow.value)
 
 
-def _both(
+def _two_periods(
     job: Job[BifilarTable], source: PendulumTable, where: str, periods: list[PeriodRuns]
 ) -> tuple[Estimate, Estimate]:
     if source.both is not None:

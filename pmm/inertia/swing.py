@@ -21,7 +21,7 @@ from pmm.inertia.air import without_air
 from pmm.inertia.experiment import Experiment
 from pmm.inertia.outcome import Finding, Outcome, StaticTest, assessed
 from pmm.inertia.sketch import about_axis
-from pmm.inertia.stated_values import given, given_or_none, gravity_of
+from pmm.inertia.stated_values import given_or_none, gravity_of, stated_value
 from pmm.inertia.swing_tables import StateTable, SwingTable
 from pmm.inertia.workflow import guide
 
@@ -48,10 +48,10 @@ class Moment:
 def first_moment(table: StateTable, mass: Estimate) -> Moment:
     """Return the first moment of a state of that mass."""
     if table.cg_below_pivot_m is not None:
-        cg = given(table, "cg_below_pivot_m")
+        cg = stated_value(table, "cg_below_pivot_m")
         return Moment(derived("S", lambda cg, mass: cg * mass, "kg m", cg=cg, mass=mass), cg)
     static = _tilts(table) if table.levers else None
-    moment = given(table, "moment_kg_m") if static is None else _scaled(table, static)
+    moment = stated_value(table, "moment_kg_m") if static is None else _scaled(table, static)
     return Moment(moment, distance(moment, mass), static)
 
 
@@ -73,7 +73,7 @@ def _scaled(table: StateTable, static: StaticResult) -> Estimate:
 
 
 @dataclass(frozen=True)
-class _Measured:
+class _MeasuredState:
     """One state, measured."""
 
     key: str
@@ -119,7 +119,7 @@ def _agreements(key: str, static: StaticResult) -> Iterator[Redundancy]:
         yield replace(redundancy, what=f"{key}: {redundancy.what}")
 
 
-def _lever_notes(measured: _Measured, static: StaticResult) -> Iterator[str]:
+def _lever_notes(measured: _MeasuredState, static: StaticResult) -> Iterator[str]:
     """Say what each lever alone gives."""
     for alone in static.alone:
         cg, offset = distance(alone.moment, measured.state.mass), alone.offset_rad
@@ -142,10 +142,10 @@ _WORDS = {
 _PLANES = {"pitch": Plane.VERTICAL, "yaw": Plane.HORIZONTAL}
 
 
-def _measure(test: Experiment[SwingTable], key: str) -> _Measured:
+def _measure(test: Experiment[SwingTable], key: str) -> _MeasuredState:
     table: StateTable = getattr(test.table, key)
     period = test.period(table.period, f"{key}.period", pendulum=True).period
-    mass, gravity = given(table, "mass_kg"), gravity_of(test.table)
+    mass, gravity = stated_value(table, "mass_kg"), gravity_of(test.table)
     moment = first_moment(table, mass)
     if moment.static is not None:
         series = tuple(lever.series() for lever in table.levers)
@@ -160,10 +160,10 @@ def _measure(test: Experiment[SwingTable], key: str) -> _Measured:
         assessed(f"{key}_i_pivot_kg_m2", f"{words}: inertia about the pivot", inertia.about_pivot),
         assessed(f"{key}_i_cg_kg_m2", f"{words}: inertia about its CG", inertia.about_cg),
     ]
-    return _Measured(key, state, inertia, moment)
+    return _MeasuredState(key, state, inertia, moment)
 
 
-def _two_pivots(test: Experiment[SwingTable], states: Mapping[str, _Measured]) -> None:
+def _two_pivots(test: Experiment[SwingTable], states: Mapping[str, _MeasuredState]) -> None:
     table = test.table
     if table.second_pivot is None:
         return
@@ -172,7 +172,7 @@ def _two_pivots(test: Experiment[SwingTable], states: Mapping[str, _Measured]) -
         PivotTest(first.state.period, first.moment.cg),
         PivotTest(second.state.period, second.moment.cg),
         first.state.mass,
-        given(table.second_pivot, "pivot_distance_m"),
+        stated_value(table.second_pivot, "pivot_distance_m"),
         first.state.gravity,
     )
     test.findings += [
@@ -190,14 +190,14 @@ def _two_pivots(test: Experiment[SwingTable], states: Mapping[str, _Measured]) -
         test.flags.append(Flag("two_pivots_disagree", Severity.WARNING, message))
 
 
-def _model(test: Experiment[SwingTable], states: Mapping[str, _Measured]) -> None:
+def _model(test: Experiment[SwingTable], states: Mapping[str, _MeasuredState]) -> None:
     """Take the empty swing off the loaded one."""
     if "loaded" not in states:
         test.missing = ("a table [loaded]",)
         return
     table = test.table
     model, loaded = table.model, states["loaded"]
-    mass = given(model, "mass_kg", "model")
+    mass = stated_value(model, "mass_kg", "model")
     result = model_on_swing(
         states["tare"].state,
         loaded.state,
@@ -237,7 +237,7 @@ _STEPS = {
 }
 
 
-def _workflow(test: Experiment[SwingTable], states: Mapping[str, _Measured]) -> str | None:
+def _workflow(test: Experiment[SwingTable], states: Mapping[str, _MeasuredState]) -> str | None:
     """Say which step is next, or bring all four together."""
     measured = {
         step: states[key].inertia.about_pivot.result
@@ -245,5 +245,5 @@ def _workflow(test: Experiment[SwingTable], states: Mapping[str, _Measured]) -> 
         if key in states
     }
     check = test.table.check
-    known_inertia = None if check is None else given(check, "known_inertia_kg_m2")
+    known_inertia = None if check is None else stated_value(check, "known_inertia_kg_m2")
     return guide(measured, _STEPS, known_inertia, "the pivot", test.findings, test.flags)

@@ -12,7 +12,7 @@ from pmm.inertia.air import air_rules
 from pmm.inertia.hanging import hanging_rules
 from pmm.inertia.job_table import JobTable
 from pmm.inertia.properties import ModelTable
-from pmm.inertia.reading import one_of, together
+from pmm.inertia.reading import one_of, require_together
 from pmm.inertia.sources import PeriodSource
 
 
@@ -120,6 +120,6 @@ class SwingTable(JobTable):
         if "loaded" in table and isinstance(model, dict) and "mass_kg" not in model:
             yield "model", "needs mass_kg, for the inertia of what is on the swing"
         if "tare_again" in table:
-            yield from together(table, "tare_again", "check")
+            yield from require_together(table, "tare_again", "check")
         if "check" in table:
-            yield from together(table, "check", "loaded")
+            yield from require_together(table, "check", "loaded")

@@ -16,7 +16,7 @@ from pmm.inertia.experiment import Experiment
 from pmm.inertia.outcome import Finding, PlaneAxes, assessed
 from pmm.inertia.reading import one_of
 from pmm.inertia.sources import AngledPeriod, PeriodSource
-from pmm.inertia.stated_values import given
+from pmm.inertia.stated_values import stated_value
 
 
 @dataclass(frozen=True)
@@ -67,8 +67,8 @@ class TorsionTable:
 def stiffness(test: Experiment[Any], table: TorsionTable, seed: int) -> Estimate:
     """Return the rod's stiffness, as given or by its bar."""
     if table.bar is None:
-        return given(table, "stiffness_n_m_rad")
-    inputs = {key: given(table.bar, key) for key in ("mass_kg", "length_m", "diameter_m")}
+        return stated_value(table, "stiffness_n_m_rad")
+    inputs = {key: stated_value(table.bar, key) for key in ("mass_kg", "length_m", "diameter_m")}
     inputs["period_s"] = test.period(table.bar.period, "torsion.bar.period").period
 
     def rod(mass_kg: Value, length_m: Value, diameter_m: Value, period_s: Value) -> Value:

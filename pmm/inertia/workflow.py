@@ -13,8 +13,8 @@ from hardware.description.flags import Flag
 from pmm.inertia.bifilar_tables import BifilarTable
 from pmm.inertia.experiment import Experiment
 from pmm.inertia.outcome import Finding
-from pmm.inertia.stated_values import given, gravity_of
-from pmm.inertia.suspension import Suspended
+from pmm.inertia.stated_values import gravity_of, stated_value
+from pmm.inertia.suspension import SuspensionResult
 
 _TABLES = {
     Step.TARE: "tare",
@@ -78,7 +78,7 @@ def guide(
     return None
 
 
-def workflow(test: Experiment[BifilarTable], hung: Sequence[Suspended]) -> str | None:
+def workflow(test: Experiment[BifilarTable], hung: Sequence[SuspensionResult]) -> str | None:
     """Read the steps beside the test and bring them together; return what is next.
 
     All steps hang from the lines of the first suspension, so they share its spacing and length, and
@@ -91,22 +91,24 @@ def workflow(test: Experiment[BifilarTable], hung: Sequence[Suspended]) -> str |
     first = hung[0]
     if first.yaw is not None:
         inertias[Step.TEST] = _inertia(
-            table, first, first.yaw, given(table.model, "mass_kg", "model")
+            table, first, first.yaw, stated_value(table.model, "mass_kg", "model")
         )
     for step, words in _WORDS.items():
         source = getattr(table, _TABLES[step])
         if source is None:
             continue
         period = test.period(source.period, f"{_TABLES[step]}.period").period
-        inertias[step] = _inertia(table, first, period, given(source, "mass_kg"))
+        inertias[step] = _inertia(table, first, period, stated_value(source, "mass_kg"))
         name = f"{_TABLES[step]}_i_yaw_kg_m2"
         test.findings.append(Finding(name, f"{words}: yaw inertia", inertias[step]))
-    known_inertia = None if table.check is None else given(table.check, "known_inertia_kg_m2")
+    known_inertia = (
+        None if table.check is None else stated_value(table.check, "known_inertia_kg_m2")
+    )
     return guide(inertias, _TABLES, known_inertia, "the vertical axis", test.findings, test.flags)
 
 
 def _inertia(
-    table: BifilarTable, suspension: Suspended, period: Estimate, mass: Estimate
+    table: BifilarTable, suspension: SuspensionResult, period: Estimate, mass: Estimate
 ) -> Estimate:
     """Return the inertia of what hangs."""
     lines = suspension.table
@@ -119,6 +121,6 @@ def _inertia(
         gyradius = yaw_without_lines(on_lines, share, half_spacing_m, by_sway=False)
         return mass_kg * gyradius**2
 
-    lengths = {key: given(lines, key, lines.name) for key in ("half_spacing_m", "line_m")}
+    lengths = {key: stated_value(lines, key, lines.name) for key in ("half_spacing_m", "line_m")}
     inputs = {"period_s": period, "mass_kg": mass, "gravity_m_s2": gravity_of(table)}
     return derived("I_yaw", inertia, "kg m2", **inputs, **lengths)

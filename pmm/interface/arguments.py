@@ -54,7 +54,7 @@ def checked(call: Callable[P, R]) -> Callable[P, R]:
         try:
             validated = model().model_validate(arguments)
         except ValidationError as error:
-            raise ConfigurationError(f"{call.__name__}: {_said(error)}") from None
+            raise ConfigurationError(f"{call.__name__}: {_validation_message(error)}") from None
         bound.arguments |= {name: getattr(validated, name) for name in arguments}
         return call(*bound.args, **bound.kwargs)
 
@@ -66,7 +66,7 @@ def text_of(path: FilePath | None) -> str | None:
     return None if path is None else str(path)
 
 
-def _said(error: ValidationError) -> str:
+def _validation_message(error: ValidationError) -> str:
     """Return the first thing that is wrong with each argument."""
     first = {fault["loc"][0]: fault for fault in reversed(error.errors(include_url=False))}
     return "; ".join(

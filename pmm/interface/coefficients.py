@@ -11,7 +11,7 @@ from analysis.coefficients.recommendation import table
 from pmm.coefficients.request import finished, requested
 from pmm.coefficients.workflow import CampaignOutcome, coefficients_of
 from pmm.document.content import Document
-from pmm.interface.result import Drawn, Result
+from pmm.interface.result import FigureAxes, Result
 from pmm.parallel import open_executor
 
 if TYPE_CHECKING:
@@ -79,15 +79,15 @@ class CoefficientsResult(Result):
             dataset[name].attrs["units"] = unit
         return dataset.assign_attrs(conventions="axes and signs: docs/conventions.md")
 
-    def plot_frequency(self) -> dict[str, Drawn]:
+    def plot_frequency(self) -> dict[str, FigureAxes]:
         """Draw coefficients over frequency, a figure for each speed; axes by the figure's name."""
         return self._plot_kind("frequency")
 
-    def plot_amplitude(self) -> dict[str, Drawn]:
+    def plot_amplitude(self) -> dict[str, FigureAxes]:
         """Draw coefficients over amplitude, where the campaign has several."""
         return self._plot_kind("amplitude")
 
-    def plot_budget(self) -> dict[str, Drawn]:
+    def plot_budget(self) -> dict[str, FigureAxes]:
         """Draw where the uncertainty of each coefficient comes from."""
         return self._plot_kind("budget")
 

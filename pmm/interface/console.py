@@ -117,14 +117,14 @@ class ConsoleClient(QueueCalls):
 
     def command(self, name: str) -> str:
         """Command ``start``, ``next``, ``hold``, ``reset``, ``stop`` or ``quick stop``."""
-        return self._said("/api/command", {"command": name})
+        return self._post("/api/command", {"command": name})
 
     def answer(self, text: str) -> str:
         """Answer the question that the rig asks its operator."""
         question = self.frame.get("question", "")
         if not question:
             raise ConsoleRefusalError("nothing is asked")
-        return self._said("/api/answer", {"question": question, "answer": text})
+        return self._post("/api/answer", {"question": question, "answer": text})
 
     def audit(self) -> list[Message]:
         """Return who did what with the present campaign, from its folder, the latest last."""
@@ -133,7 +133,7 @@ class ConsoleClient(QueueCalls):
 
     def take_control(self) -> str:
         """Take control from whoever has it."""
-        return self._said("/api/take-control", {"confirm": True})
+        return self._post("/api/take-control", {"confirm": True})
 
     def messages(self) -> Iterator[Message]:
         """Yield each message as it comes, until the console goes."""

@@ -41,7 +41,7 @@ class QueueCalls:
 
     def drop(self, number: int) -> str:
         """Take a plan out of the queue by its number, a key of ``known["plans"]``."""
-        return self._said("/api/plans/drop", {"number": number})
+        return self._post("/api/plans/drop", {"number": number})
 
     def edit(self, number: int, run: str, **settings: float) -> Message:
         """Change settings of a planned run; the plan is returned as :meth:`check` does.
@@ -60,11 +60,11 @@ class QueueCalls:
 
     def move(self, number: int, by: int, run: str = "") -> str:
         """Move a planned run, or a plan that waits, by so many places; earlier if negative."""
-        return self._said("/api/plans/move", {"number": number, "run": run, "by": by})
+        return self._post("/api/plans/move", {"number": number, "run": run, "by": by})
 
     def hold(self, number: int, run: str = "") -> str:
         """Pass a planned run, or all of a plan, over until it is released."""
-        return self._said("/api/plans/hold", {"number": number, "run": run, "held": True})
+        return self._post("/api/plans/hold", {"number": number, "run": run, "held": True})
 
     def note(self, number: int, text: str, run: str = "", author: str = "") -> str:
         """Keep a line on a run, or on the campaign, in its folder: the archive and reports show it.
@@ -77,21 +77,21 @@ class QueueCalls:
             Whose it is; by default the name under which the program runs.
         """
         body = {"number": number, "run": run, "text": text, "author": author or getuser()}
-        return self._said("/api/plans/note", body)
+        return self._post("/api/plans/note", body)
 
     def release(self, number: int, run: str = "") -> str:
         """Release what is held; at rest nothing moves before a start."""
-        return self._said("/api/plans/hold", {"number": number, "run": run, "held": False})
+        return self._post("/api/plans/hold", {"number": number, "run": run, "held": False})
 
     def approve(self, number: int) -> str:
         """Carry out what somebody has proposed, one of ``known["proposals"]`` by its number."""
-        return self._said("/api/proposals/approve", {"number": number})
+        return self._post("/api/proposals/approve", {"number": number})
 
     def refuse(self, number: int) -> str:
         """Do not carry out what somebody has proposed; whoever has proposed it withdraws it so."""
-        return self._said("/api/proposals/refuse", {"number": number})
+        return self._post("/api/proposals/refuse", {"number": number})
 
-    def _said(self, path: str, body: Message) -> str:
+    def _post(self, path: str, body: Message) -> str:
         return str(self._requests.ask(path, body)["said"])
 
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Final
 
 from pmm.coefficients.request import campaign_folder
 from pmm.design.design_file import DesignFile, read_design
-from pmm.design.measured_runs import after, measured
+from pmm.design.measured_runs import continued_design, read_measured_runs
 from pmm.design.run_selection import Design, design
 from pmm.document.content import Document
-from pmm.interface.result import Drawn, Result, Variable, dataset_of
+from pmm.interface.result import FigureAxes, Result, Variable, dataset_of
 from pmm.parallel import open_executor
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ class DesignResult(Result):
 
         return pd.DataFrame(
             {name: getattr(coefficient, name) for name in _VARIABLES}
-            for coefficient in self.design.known
+            for coefficient in self.design.expected_coefficients
         )
 
     def to_dataset(self) -> "xr.Dataset":
@@ -74,7 +74,7 @@ class DesignResult(Result):
         attributes = {"design": self.file.name, "conventions": signs}
         return dataset_of(frame, ["entry"], _VARIABLES, attributes)
 
-    def plot_uncertainty(self) -> Drawn:
+    def plot_uncertainty(self) -> FigureAxes:
         """Draw what is expected of each coefficient against tank time."""
         return self.plot("uncertainty")
 
@@ -85,5 +85,7 @@ def designed(path: Path, campaigns: Sequence[str | Path]) -> DesignResult:
     if campaigns:
         with open_executor(1) as executor:
             folders = [campaign_folder(str(campaign)) for campaign in campaigns]
-            file = after(file, [measured(file, folder, executor) for folder in folders])
+            file = continued_design(
+                file, [read_measured_runs(file, folder, executor) for folder in folders]
+            )
     return DesignResult(file, design(file))

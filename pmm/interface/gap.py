@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 from pmm.document.content import Document
 from pmm.gap.examination import Options
 from pmm.gap.report import GapReport, gap_report
-from pmm.interface.result import Drawn, Result, Variable, dataset_of
+from pmm.interface.result import FigureAxes, Result, Variable, dataset_of
 from pmm.parallel import open_executor
 
 if TYPE_CHECKING:
@@ -77,11 +77,11 @@ class GapResult(Result):
         }
         return dataset_of(self.to_dataframe(), ["answer"], _VARIABLES, attributes)
 
-    def plot_ranking(self) -> Drawn:
+    def plot_ranking(self) -> FigureAxes:
         """Draw the answers with their probabilities."""
         return self.plot("ranking")
 
-    def plot_walk(self) -> Drawn:
+    def plot_walk(self) -> FigureAxes:
         """Draw the gap step by step along the chain."""
         return self.plot("walk")
 

@@ -13,7 +13,7 @@ from pmm.harmonics.request import HarmonicsRequest
 from pmm.harmonics.resolving import Failure, Resolved, doubts, resolve
 from pmm.harmonics.rows import ChannelRows, GateRows, RunRows
 from pmm.harmonics.sources import Source, SourceList
-from pmm.interface.result import CONVENTIONS, Drawn, Result, Variable, dataset_of
+from pmm.interface.result import CONVENTIONS, FigureAxes, Result, Variable, dataset_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -128,7 +128,7 @@ class HarmonicsResult(Result):
 
         return tuple(FIGURES)
 
-    def plot(self, name: str, run: str | None = None) -> Drawn:
+    def plot(self, name: str, run: str | None = None) -> FigureAxes:
         """Draw a figure of one run's first gate and return its axes.
 
         Parameters
@@ -145,17 +145,17 @@ class HarmonicsResult(Result):
 
         if name not in FIGURES:
             raise ConfigurationError(f"no figure {name!r}; there are: {', '.join(FIGURES)}")
-        return self._drawn(FIGURES[name], self._source(run))
+        return self._draw(FIGURES[name], self._source(run))
 
-    def plot_gate(self, run: str | None = None) -> Drawn:
+    def plot_gate(self, run: str | None = None) -> FigureAxes:
         """Draw the record, its window and gate, and the fit; see :meth:`plot`."""
         return self.plot("gate", run)
 
-    def plot_phasors(self, run: str | None = None) -> Drawn:
+    def plot_phasors(self, run: str | None = None) -> FigureAxes:
         """Draw the harmonics as phasors with their regions; see :meth:`plot`."""
         return self.plot("phasors", run)
 
-    def plot_spectrum(self, run: str | None = None) -> Drawn:
+    def plot_spectrum(self, run: str | None = None) -> FigureAxes:
         """Draw the spectrum over the gate; see :meth:`plot`."""
         return self.plot("spectrum", run)
 
@@ -168,7 +168,7 @@ class HarmonicsResult(Result):
             raise ConfigurationError(f"{hint}; there are: {', '.join(names)}")
         return self.resolved[names.index(run)].source
 
-    def _drawn(self, draw: "Callable[[Analysis], Figure]", source: Source) -> Drawn:
+    def _draw(self, draw: "Callable[[Analysis], Figure]", source: Source) -> FigureAxes:
         figures: list[Figure] = []
         resolved_again = resolve(
             source,
@@ -177,8 +177,8 @@ class HarmonicsResult(Result):
             lambda analysis, _: figures.append(draw(analysis)),
         )
         if isinstance(resolved_again, Failure):
-            raise DataError(resolved_again.said)
-        return Drawn(figures[0].axes)
+            raise DataError(resolved_again.full_message)
+        return FigureAxes(figures[0].axes)
 
 
 def harmonics_of(source_list: SourceList, request: HarmonicsRequest) -> HarmonicsResult:
@@ -199,7 +199,7 @@ def harmonics_of(source_list: SourceList, request: HarmonicsRequest) -> Harmonic
     if not resolved:
         first = failures[0]
         kind = DataError if first.exit_status == DataError.exit_status else ConfigurationError
-        raise kind(first.said)
+        raise kind(first.full_message)
     return HarmonicsResult(resolved, failures, source_list.not_recorded, request)
 
 
@@ -211,12 +211,12 @@ def _rows(run: RunRows, gate: GateRows, channel: ChannelRows) -> Iterator[dict[s
         "periods": gate.periods,
     }
     mean = (channel.mean.value, channel.mean.half_width, *[math.nan] * 6)
-    yield {**run_columns, "order": 0, **_named(mean), **gate_columns}
+    yield {**run_columns, "order": 0, **_variables(mean), **gate_columns}
     for harmonic in channel.harmonics:
         parts = (harmonic.in_phase, harmonic.quadrature, harmonic.amplitude, harmonic.phase_deg)
         numbers = [number for part in parts for number in (part.value, part.half_width)]
-        yield {**run_columns, "order": harmonic.order, **_named(numbers), **gate_columns}
+        yield {**run_columns, "order": harmonic.order, **_variables(numbers), **gate_columns}
 
 
-def _named(numbers: Sequence[float]) -> dict[str, float]:
+def _variables(numbers: Sequence[float]) -> dict[str, float]:
     return dict(zip(list(_VARIABLES)[:8], numbers, strict=True))

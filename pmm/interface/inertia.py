@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from pmm.document.content import Document
 from pmm.inertia.outcome import Outcome
-from pmm.interface.result import Drawn, Result, Variable, dataset_of
+from pmm.interface.result import FigureAxes, Result, Variable, dataset_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -68,10 +68,10 @@ class InertiaResult(Result):
         }
         return dataset_of(self.to_dataframe(), ["name"], _VARIABLES, attributes)
 
-    def plot_budget(self) -> Drawn:
+    def plot_budget(self) -> FigureAxes:
         """Draw where the uncertainty of each finding comes from."""
         return self.plot("budget")
 
-    def plot_records(self) -> dict[str, Drawn]:
+    def plot_records(self) -> dict[str, FigureAxes]:
         """Draw the fit over each source's records; axes by the figure's name."""
         return self._plot_kind("record")

@@ -10,7 +10,7 @@ from hardware.description.errors import ConfigurationError
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.interface.arguments import Count, FilePath, checked, text_of
 from pmm.interface.records import RecordKind, Records
-from pmm.remote import here
+from pmm.remote import local_path
 
 # The first table or key that a file has tells what it is; a pendulum test has none of them.
 _TELLING: Final = {
@@ -40,7 +40,7 @@ def open(path: FilePath) -> Records:  # noqa: A001
     DataError
         If what lies elsewhere cannot be read.
     """
-    path = here(path)
+    path = local_path(path)
     if not path.exists():
         raise ConfigurationError(f"{path}: no such file or folder")
     if path.is_dir():

@@ -32,7 +32,7 @@ class Variable:
     meaning: str
 
 
-class Drawn(tuple["Axes", ...]):
+class FigureAxes(tuple["Axes", ...]):
     """The axes of a figure, which a notebook shows."""
 
     __slots__ = ()
@@ -74,7 +74,7 @@ class Result(ABC):
         """Names of the figures that :meth:`plot` draws."""
         return tuple(figure.name for figure in self.document.figures)
 
-    def plot(self, name: str) -> Drawn:
+    def plot(self, name: str) -> FigureAxes:
         """Draw a figure and return its axes, which a notebook shows; ``.figure`` is the figure.
 
         Raises
@@ -84,11 +84,11 @@ class Result(ABC):
         """
         for figure in self.document.figures:
             if figure.name == name:
-                return Drawn(figure.draw().axes)
+                return FigureAxes(figure.draw().axes)
         names = ", ".join(self.figures) or "none"
         raise ConfigurationError(f"no figure {name!r}; there are: {names}")
 
-    def _plot_kind(self, kind: str) -> dict[str, Drawn]:
+    def _plot_kind(self, kind: str) -> dict[str, FigureAxes]:
         """Draw all figures whose names are of a kind, by name."""
         return {name: self.plot(name) for name in self.figures if kind in name.split("-")}
 

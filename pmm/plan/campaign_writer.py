@@ -94,7 +94,7 @@ def _tables(folder: Path, plan: Plan, rig: RigFile, runs: Sequence[FinishedRun])
 
 def _handed_on(folder: Path, rig: RigFile, runs: Sequence[FinishedRun]) -> Iterator[str]:
     """Yield what the rig's file hands on, with what the runs tell of sensors and sampling."""
-    for name, table in {**rig.campaign, **_known(rig, runs)}.items():
+    for name, table in {**rig.campaign, **_recorded_tables(rig, runs)}.items():
         if name == "radiation" and isinstance(table, Mapping) and "file" in table:
             file = os.path.relpath(rig.path.resolve().parent / table["file"], folder.resolve())
             yield toml_table(name, {**table, "file": Path(file).as_posix()})
@@ -104,7 +104,7 @@ def _handed_on(folder: Path, rig: RigFile, runs: Sequence[FinishedRun]) -> Itera
             yield from (toml_table(name, row, array=True) for row in table)
 
 
-def _known(rig: RigFile, runs: Sequence[FinishedRun]) -> dict[str, Any]:
+def _recorded_tables(rig: RigFile, runs: Sequence[FinishedRun]) -> dict[str, Any]:
     simulation = rig.campaign.get("simulation", {})
     tables: dict[str, Any] = {"simulation": {**simulation, "sample_rate_hz": rig.sample_rate_hz}}
     if dynamometers := dynamometers_table(rig):

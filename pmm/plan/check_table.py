@@ -17,7 +17,7 @@ _OURS = "this project"
 _ITTC = "ITTC 7.5-02-06-02"
 
 
-def _own(quantity: str, rule: str, reason: str) -> Check:
+def _rig_limit(quantity: str, rule: str, reason: str) -> Check:
     """Return a check by a limit that the rig's file states."""
     moved = (
         "twice: what the rig allows is allowed twice as far, at the rig's risk; half: fewer runs"
@@ -31,37 +31,37 @@ def _stated(quantity: str, reason: str, which: str = "", source: str = _ITTC) ->
     return Check(quantity, f"{which}note; no limit stated", source, reason, moved)
 
 
-FREQUENCY: Final = _own(
+FREQUENCY: Final = _rig_limit(
     "frequency [Hz]",
     "refuse outside `oscillator.frequency_hz` or the shaft drive's range",
     "choose another frequency",
 )
-AMPLITUDE: Final = _own(
+AMPLITUDE: Final = _rig_limit(
     "amplitude [m]",
     "refuse outside `oscillator.eccentricity_m` or the eccentricity axis's range",
     "choose another amplitude; it is half the stroke",
 )
-STROKE: Final = _own(
+STROKE: Final = _rig_limit(
     "stroke [m]",
     "refuse above `limits.stroke_m`",
     "choose another amplitude; it is half the stroke",
 )
-STRUT_PHASE: Final = _own(
+STRUT_PHASE: Final = _rig_limit(
     "strut phase [rad]",
     "refuse outside the phase axis's range",
     "choose another phase, or another speed or frequency",
 )
-VELOCITY: Final = _own(
+VELOCITY: Final = _rig_limit(
     "strut velocity [m/s]",
     "refuse above `limits.velocity_m_s`",
     "lower the frequency or the amplitude",
 )
-ACCELERATION: Final = _own(
+ACCELERATION: Final = _rig_limit(
     "strut acceleration [m/s^2]",
     "refuse above `limits.acceleration_m_s2`",
     "lower the frequency or the amplitude",
 )
-STRUT_FORCE: Final = _own(
+STRUT_FORCE: Final = _rig_limit(
     "strut force, estimate [N]",
     "refuse above `oscillator.force_per_strut_n`",
     "lower the frequency or the amplitude",
@@ -74,8 +74,10 @@ GAUGE_FORCE: Final = Check(
     "half: warned of from 40 % on; twice: never warned of",
     (0.8,),
 )
-LOAD: Final = _own("load on {channel} [N]", "refuse above the gauge's full scale", "load it less")
-SPEED: Final = _own(
+LOAD: Final = _rig_limit(
+    "load on {channel} [N]", "refuse above the gauge's full scale", "load it less"
+)
+SPEED: Final = _rig_limit(
     "speed [m/s]",
     "refuse above `tank.highest_speed_m_s`, or the carriage's own `highest_speed_m_s`",
     "tow slower",
@@ -87,28 +89,28 @@ LED_SPEED: Final = Check(
     "tow faster, or lower the frequency or the amplitude",
     "nothing: below 0 it would turn back",
 )
-LED_ACCELERATION: Final = _own(
+LED_ACCELERATION: Final = _rig_limit(
     "carriage acceleration [m/s^2]",
     "`steady_ahead`: refuse above the carriage's own `acceleration_m_s2`, or the tank's",
     "lower the frequency or the amplitude",
 )
-STATIC_ANGLE: Final = _own(
+STATIC_ANGLE: Final = _rig_limit(
     "{channel} [rad]",
     "refuse outside the range of the axis that sets it",
     "choose another angle, or have it set by hand: leave the axis's table out",
 )
-WAY: Final = _own(
+WAY: Final = _rig_limit(
     "tank length [m]",
     "refuse above `tank.length_m` or the carriage's `track_m`, from rest to rest",
     "tow slower, or ask for fewer periods or less settling",
 )
-TURN_RATE: Final = _own(
+TURN_RATE: Final = _rig_limit(
     "rate of turn [rad/s]",
     "refuse above the carriage's own `highest_turn_rate_rad_s`",
     "tow slower, choose a larger radius, or have the circle driven by hand: leave the carriage's "
     "table out",
 )
-RADIUS: Final = _own(
+RADIUS: Final = _rig_limit(
     "radius of the circle [m]", "refuse outside `tank.radius_m`", "choose another radius"
 )
 TURNS: Final = Check(

@@ -34,7 +34,7 @@ READING_UNCERTAINTY: Final = 0.02
 FAR: Final = 2.0  # standard uncertainties of the estimate: 95 % lie within
 
 
-class Expected(NamedTuple):
+class ExpectedAmplitude(NamedTuple):
     """Amplitude of a gauge's first harmonic, in newtons, and its standard uncertainty."""
 
     amplitude_n: float
@@ -116,7 +116,7 @@ def single_sines(run: RunPlan) -> tuple[RunPlan, ...]:
     )
 
 
-def expected_readings(run: RunPlan, rig: RigFile) -> dict[str, Expected]:
+def expected_readings(run: RunPlan, rig: RigFile) -> dict[str, ExpectedAmplitude]:
     """Return what each strut's gauge should read; empty where the file tells too little.
 
     A calibration's matrix makes readings of forces, as it does in the rig. A memory of the water
@@ -134,7 +134,7 @@ def expected_readings(run: RunPlan, rig: RigFile) -> dict[str, Expected]:
     reading_u = READING_UNCERTAINTY * np.abs(readings)
     spread = np.sqrt((np.abs(parts) ** 2).sum(axis=0) + reading_u**2)
     return {
-        name: Expected(float(abs(reading)), float(u))
+        name: ExpectedAmplitude(float(abs(reading)), float(u))
         for name, reading, u in zip(FORCES, readings, spread, strict=True)
     }
 

@@ -21,14 +21,14 @@ def runs_of(
 ) -> tuple[RunPlan, ...]:
     """Return all runs of a plan in the order in which they are made."""
 
-    def made(entry: PlanEntry) -> list[RunPlan]:
+    def expanded(entry: PlanEntry) -> list[RunPlan]:
         turns = tables.order.scheme is Scheme.SNAKE and entry.kind in _ORDERED
         combine = snake if turns else all_of
         return expand(entry, tables.defaults, oscillator, channels, combine)
 
-    runs = in_order([made(run) for run in tables.runs], tables.order)
+    runs = in_order([expanded(run) for run in tables.runs], tables.order)
     if tables.control is not None:
-        control = made(tables.control.entry())[0]
+        control = expanded(tables.control.entry())[0]
         runs = with_control(runs, control, tables.control.every)
     if tables.zero is not None:
         runs = with_zeros(runs, tables.zero)

@@ -60,7 +60,7 @@ def edited(run: RunPlan, settings: Mapping[str, float], plan: Plan) -> RunPlan:
         periods=edited_run.periods,
         max_periods=max(edited_run.periods, 0 if run.target_relative is None else run.max_periods),
     )
-    return replace(now, changed=(*run.changed, *_told(run, now)))
+    return replace(now, changed=(*run.changed, *_changes(run, now)))
 
 
 def moved(runs: Sequence[RunPlan], name: str, by: int) -> tuple[RunPlan, ...]:
@@ -119,7 +119,7 @@ def _read(entry: Mapping[str, Any], plan: Plan) -> RunPlan:
     return runs_of(reading.tables, reading.rig.rig.oscillator, reading.channels)[0]
 
 
-def _told(before: RunPlan, now: RunPlan) -> list[str]:
+def _changes(before: RunPlan, now: RunPlan) -> list[str]:
     """Return what changed, in words."""
     pairs = [(key, getattr(before.set_point, key), getattr(now.set_point, key)) for key in _KEYS]
     pairs.append(("periods", before.periods, now.periods))

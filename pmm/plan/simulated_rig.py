@@ -130,14 +130,14 @@ def _departures(
         if key.partition(".")[0] in simulated.rig and not _agree(value, _at(simulated.rig, key)):
             simulated_value = _at(simulated.rig, key)
             text = (
-                f"{key} = {_shown(simulated_value)} is simulated, {name} states {_shown(value)}; "
+                f"{key} = {_text(simulated_value)} is simulated, {name} states {_text(value)}; "
                 f"take it out of {file} unless it is meant"
             )
             yield Departure(key, value, simulated_value, text)
     said = {key for key, _ in _leaves(stated)}
     for key, value in _leaves(own_tables):
         if key not in said:
-            text = f"{key} = {_shown(value)} is simulated as {file} states; {name} has no such key"
+            text = f"{key} = {_text(value)} is simulated as {file} states; {name} has no such key"
             yield Departure(key, None, value, text)
     yield from _unstated(stated, own_tables, name)
 
@@ -186,7 +186,7 @@ def _agree(stated: Any, simulated: Any) -> bool:
     return bool(stated == simulated) or (stated is False and simulated is None)
 
 
-def _shown(value: Any) -> str:
+def _text(value: Any) -> str:
     return f"{value:g}" if isinstance(value, float) else json.dumps(value, default=str)
 
 

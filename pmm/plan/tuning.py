@@ -40,7 +40,7 @@ class Tuning:
     ----------
     settings
         The present gains first, the proposed ones last.
-    record, found
+    record, identified_loop
         Of the test on the rig; ``None`` where only the stated data were looked at.
     ripples
         Of a plan's runs.
@@ -51,7 +51,7 @@ class Tuning:
     settings: tuple[LoopSetting, ...]
     unit: str
     record: SpeedRecord | None = None
-    found: IdentifiedLoop | None = None
+    identified_loop: IdentifiedLoop | None = None
     ripples: Sequence[RunRipple] = ()
     level: float = 0.95
 

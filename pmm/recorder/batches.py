@@ -35,7 +35,7 @@ class Batch:
     ----------
     sync
         Its SYNCs.
-    own, before
+    own_checksum, checksum_before
         Its checksum, and that of the batch before it; ``None`` in streams without.
     end
         Where it ends in the file.
@@ -43,8 +43,8 @@ class Batch:
 
     content: Any
     sync: IntArray
-    own: int | None
-    before: int | None
+    own_checksum: int | None
+    checksum_before: int | None
     end: int
 
 

@@ -19,7 +19,7 @@ from hardware.rig import Rig
 from hardware.rig_configuration import RigConfiguration, read_rig
 from hardware.serial_port import PortSettings
 from pmm.recorder.files import BUS, LINES
-from pmm.recorder.live_path import PATIENCE_CYCLES, LivePath, Taken
+from pmm.recorder.live_path import PATIENCE_CYCLES, CycleSamples, LivePath
 from pmm.recorder.recording import RunData
 
 _SYNC: Final = 0x080
@@ -28,7 +28,7 @@ _SYNC_COUNTS: Final = 240  # CiA 301: the counter runs from 1 to 240
 
 def decode(
     run: RunData, drivers: Iterable[EntryPoint] | None = None
-) -> tuple[list[Taken], list[str]]:
+) -> tuple[list[CycleSamples], list[str]]:
     """Return what each cycle of a run brought, and the faults that its devices reported, in words.
 
     Parameters
@@ -62,7 +62,7 @@ def _on_playback(run: RunData) -> dict[str, Any]:
     return tables
 
 
-def _played(run: RunData, rig_of: RigConfiguration) -> tuple[list[Taken], list[str]]:
+def _played(run: RunData, rig_of: RigConfiguration) -> tuple[list[CycleSamples], list[str]]:
     lines: dict[str, list[tuple[int, bytes]]] = {}
     for cycle, device, text in run.texts[LINES]:
         lines.setdefault(device, []).append((cycle, text.encode("latin-1")))

@@ -84,7 +84,7 @@ class Journal:
         return self._opened
 
     @property
-    def begun(self) -> bool:
+    def has_files(self) -> bool:
         """Whether the files were made: there is something to keep."""
         return self._begun
 
@@ -117,7 +117,7 @@ class Journal:
         if isinstance(error, PmmError):
             raise error.with_traceback(None)
         if error is not None:
-            raise self._named(error) from error
+            raise self._write_error(error) from error
 
     def finish(self) -> None:
         """Write what was handed over and end the thread; the files stay open. May be repeated."""
@@ -170,7 +170,7 @@ class Journal:
             os.close(stream.handle)
         self._streams = {}
 
-    def _named(self, error: Exception) -> DiskFullError | DataError:
+    def _write_error(self, error: Exception) -> DiskFullError | DataError:
         if isinstance(error, OSError) and is_full(error):
             return DiskFullError(
                 f"{self._folder}: {error.strerror}; what was written before is kept. Make room, "

@@ -14,7 +14,7 @@ from pmm.recorder.decoding import decode
 from pmm.recorder.disk import DiskFullError, free_bytes
 from pmm.recorder.files import BUS, LINES, PULSES, SAMPLES, set_aside
 from pmm.recorder.line_shapes import as_line
-from pmm.recorder.live_path import Taken, joined
+from pmm.recorder.live_path import CycleSamples, joined_samples
 from pmm.recorder.recording import RunData, marker_is_whole
 from pmm.recorder.samples import SampleWriter
 from pmm.whole_file import write_whole
@@ -83,9 +83,9 @@ def _with_whole(run: RunData, first: int, decoded: FloatArray) -> tuple[int, Flo
     return begin, values
 
 
-def _samples(run: RunData, taken: Sequence[Taken]) -> FloatArray:
+def _samples(run: RunData, taken: Sequence[CycleSamples]) -> FloatArray:
     """Return all samples that were decoded."""
-    values = joined(taken, len(run.header.channels))
+    values = joined_samples(taken, len(run.header.channels))
     if np.isnan(values).all():
         raise DataError(f"{run.folder}: holds no whole sample, and neither do {BUS} and {LINES}")
     return values
@@ -105,7 +105,7 @@ def _write_samples(run: RunData, first: int, values: FloatArray) -> None:
     part.replace(run.folder / SAMPLES)
 
 
-def _write_pulses(folder: Path, taken: Sequence[Taken]) -> None:
+def _write_pulses(folder: Path, taken: Sequence[CycleSamples]) -> None:
     lines = []
     for pulse in (pulse for each in taken for pulse in each.pulses):
         angle = None if np.isnan(pulse.shaft_angle_rad) else pulse.shaft_angle_rad

@@ -66,7 +66,7 @@ def _finite(value: Any) -> bool:
     return _number(value) and abs(value) < 1e300 and math.isfinite(value)
 
 
-def _whole(value: Any) -> bool:
+def _integer(value: Any) -> bool:
     return isinstance(value, int) and not isinstance(value, bool) and abs(value) < 2**53
 
 
@@ -92,28 +92,28 @@ def _each(shape: Shape) -> Shape:
     return lambda value: isinstance(value, dict) and all(map(shape, value.values()))
 
 
-_files: Final = _each(_table(bytes=_whole, sha256=_text))
+_files: Final = _each(_table(bytes=_integer, sha256=_text))
 _flags: Final = _all(_table(code=_text, severity=_text, message=_text))
 _FLAGGED: Final = _table(flags=_flags)
 _MARKER: Final = _table(outcome=_text, files=_files, flags=_flags)
 _MARKER_MORE: Final[Mapping[str, Shape]] = {
-    "first_sync": _whole,
-    "last_sync": _whole,
+    "first_sync": _integer,
+    "last_sync": _integer,
     "noise_rms": _each(_finite),
 }
 _READING: Final = _table(
     opened_s=_finite,
     closed_s=_finite,
-    periods=_whole,
+    periods=_integer,
     channels=_all(_text),
     coefficients=_all(_all(_number)),
 )
 _SHAPES: Final[Mapping[str, Shape]] = {
-    PULSES: _row(_whole, _finite, _finite_or_none),
-    EVENTS: _table(cycle=_whole, time_s=_finite, kind=_text, text=_text),
+    PULSES: _row(_integer, _finite, _finite_or_none),
+    EVENTS: _table(cycle=_integer, time_s=_finite, kind=_text, text=_text),
     HARMONICS: _reading,
-    LINES: _row(_whole, _text, _bytes),
-    CYCLES: _row(_whole, _finite, _finite, _finite, _whole),
+    LINES: _row(_integer, _text, _bytes),
+    CYCLES: _row(_integer, _finite, _finite, _finite, _integer),
 }
 
 

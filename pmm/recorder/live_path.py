@@ -25,7 +25,7 @@ At twice, what is recorded last before a device falls silent is shown, and flush
 
 
 @dataclass(frozen=True)
-class Taken:
+class CycleSamples:
     """What a cycle brought.
 
     Attributes
@@ -43,7 +43,7 @@ class Taken:
     pulses: tuple[Pulse, ...]
 
 
-def joined(taken: Sequence[Taken], channels: int) -> FloatArray:
+def joined_samples(taken: Sequence[CycleSamples], channels: int) -> FloatArray:
     """Return the samples of consecutive cycles, shape ``(channels, n)``."""
     return np.concatenate([np.empty((channels, 0)), *(cycle.values for cycle in taken)], axis=1)
 
@@ -108,7 +108,7 @@ class LivePath:
             sampled_device.take()
         self._pulses()
 
-    def step(self) -> Taken:
+    def step(self) -> CycleSamples:
         """Take what the rig's cycle brought; call it once after each."""
         number = self._rig.number
         for source in self._sources:
@@ -119,7 +119,7 @@ class LivePath:
         values = np.full((len(self.channels), self.next - first), math.nan)
         for source in self._sources:
             source.write(first, values)
-        return Taken(first, values, self._pulses())
+        return CycleSamples(first, values, self._pulses())
 
     def _pulses(self) -> tuple[Pulse, ...]:
         return () if self._rig.photocell is None else self._rig.photocell.take()
@@ -158,7 +158,7 @@ class GateResolver:
         """Tell whether a pulse counts: the samples around it have to be there."""
         return pulse.time_s >= self._usable_from_s
 
-    def push(self, taken: Taken) -> list[Harmonics]:
+    def push(self, taken: CycleSamples) -> list[Harmonics]:
         """Take a cycle's samples; return the readings that they made final."""
         values = taken.values[:, max(0, self._next - taken.first) :]
         self._next += values.shape[1]

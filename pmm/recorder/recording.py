@@ -132,7 +132,7 @@ def as_recording(run: RunData, flags: Sequence[Flag] = ()) -> Recording:
     if samples is None:
         raise DataError(f"{run.folder}: holds no whole sample; there is nothing to make of it")
     edges, unordered = _edges(run)
-    stored_flags = map(Flag.read, _told(run))
+    stored_flags = map(Flag.read, _stored_flags(run))
     return Recording(
         name=header.run_name,
         channels=header.channels,
@@ -201,7 +201,7 @@ def _header(folder: Path, samples: JournalSamples | None) -> RunHeader:
         return header
 
 
-def _told(run: RunData) -> list[dict[str, Any]]:
+def _stored_flags(run: RunData) -> list[dict[str, Any]]:
     return list(run.marker["flags"]) if run.marker else []
 
 

@@ -17,7 +17,7 @@ from pmm.recorder.campaign_owner import writer_of
 from pmm.recorder.decoding import decode
 from pmm.recorder.file_changes import changed_files
 from pmm.recorder.files import EVENTS, HARMONICS
-from pmm.recorder.live_path import GateResolver, Taken, as_record, joined
+from pmm.recorder.live_path import CycleSamples, GateResolver, as_record, joined_samples
 from pmm.recorder.recording import RunData, read_run
 from pmm.recorder.samples import JournalSamples
 
@@ -104,12 +104,12 @@ def replay(folder: Path, drivers: Iterable[EntryPoint] | None = None) -> Replay:
 
 
 def _compare(
-    run: RunData, samples: JournalSamples, taken: list[Taken], faults: list[str]
+    run: RunData, samples: JournalSamples, taken: list[CycleSamples], faults: list[str]
 ) -> Replay:
     recorded = samples[:, 0 : samples.sample_count]
     replayed = np.full(recorded.shape, np.nan)
     skipped = samples.first_sync - run.header.first_sync
-    decoded = joined(taken, recorded.shape[0])[:, skipped : skipped + samples.sample_count]
+    decoded = joined_samples(taken, recorded.shape[0])[:, skipped : skipped + samples.sample_count]
     replayed[:, : decoded.shape[1]] = decoded
     differing = ~((replayed == recorded) | (np.isnan(replayed) & np.isnan(recorded)))
     records, again_read = tuple(run.texts[HARMONICS]), resolve_again(run, taken)
@@ -127,7 +127,7 @@ def _compare(
     )
 
 
-def resolve_again(run: RunData, taken: Sequence[Taken]) -> tuple[Reading | None, ...]:
+def resolve_again(run: RunData, taken: Sequence[CycleSamples]) -> tuple[Reading | None, ...]:
     """Return each reading of the run's journal as the replay gives it; ``None`` where none comes.
 
     A reading is over a gate of so many periods that a resolver had found since it was armed: so one
@@ -173,7 +173,7 @@ def _armed(run: RunData) -> list[int]:
 
 
 def _gates(
-    run: RunData, taken: Sequence[Taken], start: int, periods: int
+    run: RunData, taken: Sequence[CycleSamples], start: int, periods: int
 ) -> Iterator[tuple[tuple[float, float], Reading]]:
     """Yield the readings of a resolver that begins at a SYNC, by their gates."""
     header = run.header

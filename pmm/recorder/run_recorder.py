@@ -147,9 +147,9 @@ class RunRecorder:
         return self._journal.opened(wait=wait)
 
     @property
-    def begun(self) -> bool:
+    def has_files(self) -> bool:
         """Whether the run has files of its own: there is something to keep."""
-        return self._journal.begun
+        return self._journal.has_files
 
     def samples(self, first_sync: int, values: FloatArray) -> None:
         """Take samples of consecutive SYNCs; shape ``(channels, n)``, NaN where there is none.

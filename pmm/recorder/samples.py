@@ -161,7 +161,7 @@ def read_samples(path: Path) -> JournalSamples | None:
         _gaps(syncs),
         max(batch.end for batch in stored_batches),
         changes,
-        ordered_batches[0].before == head_sum,
+        ordered_batches[0].checksum_before == head_sum,
         tuple(batch.content for batch in ordered_batches),
         syncs,
     )
@@ -183,14 +183,14 @@ def _changes(
     header: RunHeader,
 ) -> Iterator[str]:
     """Say what is not what was written, in words."""
-    if ordered_batches[0].own is None:
+    if ordered_batches[0].own_checksum is None:
         return
     if list(stored_batches) != list(ordered_batches):
         yield "its batches are not in the order in which they were written"
-    if ordered_batches[0].before != head_sum:
+    if ordered_batches[0].checksum_before != head_sum:
         yield "its beginning, or its first batch, is damaged or missing"
     for batch, after in pairwise(ordered_batches):
-        if after.before != batch.own:
+        if after.checksum_before != batch.own_checksum:
             lost = int(batch.sync[-1]) + 1, int(after.sync[0]) - 1
             times = " to ".join(f"{at / header.sample_rate_hz:.3f} s" for at in lost)
             yield f"what lay between is damaged or missing: SYNC {lost[0]} to {lost[1]} ({times})"

@@ -200,13 +200,13 @@ def _harmonic_cells() -> tuple[Column[Row], ...]:
 
 
 def _interval(key: str, half_width: str) -> Any:
-    def told(row: Row) -> str:
+    def interval_text(row: Row) -> str:
         if row[key] is None:
             return NOT_KNOWN
         half = row[half_width]
         return rounded(row[key], 0.0 if half is None else half)
 
-    return told
+    return interval_text
 
 
 def show_document(shown_run: ShownRun) -> Document:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pmm.archive.trends import Trend
-from pmm.document.style import PALETTE, STEADY_SHADE, TRACE, drawn
+from pmm.document.style import PALETTE, STEADY_SHADE, TRACE, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -21,7 +21,7 @@ def trend_figure(trend: Trend) -> "Figure":
     halves = np.array([row["half_width"] or 0.0 for row in trend.rows])
     low, high = np.array([(point.low, point.high) for point in trend.chart]).T
     outside = np.array([point.outside for point in trend.chart])
-    with drawn(7.5, 3.6) as figure:
+    with new_figure(7.5, 3.6) as figure:
         axes = figure.subplots()
         if np.isfinite(low).any():
             axes.vlines(times, low, high, color=STEADY_SHADE, linewidth=12.0,

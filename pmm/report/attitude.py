@@ -66,7 +66,7 @@ class HeelRow(_RowOfRun):
 _Row = TypeVar("_Row", bound=_RowOfRun)
 
 
-def _told(
+def _estimate_column(
     heading: str,
     key: str,
     factor: float,
@@ -75,18 +75,20 @@ def _told(
 ) -> Column[Any]:
     """Return a column of values with uncertainties of a row's channel, as far as it has them."""
 
-    def told(row: _RowOfRun) -> str:
+    def estimate_text(row: _RowOfRun) -> str:
         channel: AttitudeChannel | None = getattr(row, key)
         estimate = None if channel is None else estimate_of(channel)
         return (
             NOT_KNOWN if estimate is None else rounded(factor * estimate[0], factor * estimate[1])
         )
 
-    return Column(heading, told, unit=unit, number=True)
+    return Column(heading, estimate_text, unit=unit, number=True)
 
 
 def _mean(heading: str, key: str, factor: float, unit: str) -> Column[Any]:
-    return _told(heading, key, factor, unit, lambda channel: (channel.mean, channel.mean_u))
+    return _estimate_column(
+        heading, key, factor, unit, lambda channel: (channel.mean, channel.mean_u)
+    )
 
 
 def _harmonic(heading: str, key: str, order: int, factor: float, unit: str) -> Column[Any]:
@@ -95,7 +97,7 @@ def _harmonic(heading: str, key: str, order: int, factor: float, unit: str) -> C
             return None
         return channel.amplitude[order - 1], channel.amplitude_u[order - 1]
 
-    return _told(f"{heading}, harmonic {order}", key, factor, unit, amplitude)
+    return _estimate_column(f"{heading}, harmonic {order}", key, factor, unit, amplitude)
 
 
 _HEAD: Final[tuple[Column[Any], ...]] = (

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 from hardware.description.heel import Held
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import Figure
-from pmm.document.style import PALETTE, drawn
+from pmm.document.style import PALETTE, new_figure
 from pmm.report.attitude import AttitudeRow, HeelRow, attitude_rows, heel_rows
 
 if TYPE_CHECKING:
@@ -115,7 +115,7 @@ def heel_figure(rows: Sequence[HeelRow]) -> "Drawing":
 def _figure(
     panel_rows: Sequence[Sequence[_Panel]], rows: Sequence[Any], height: float
 ) -> "Drawing":
-    with drawn(10.0, height * len(panel_rows)) as figure:
+    with new_figure(10.0, height * len(panel_rows)) as figure:
         panels = figure.subplots(len(panel_rows), 2, squeeze=False)
         for axes_row, panel_row in zip(panels, panel_rows, strict=True):
             for axes, panel in zip(axes_row, panel_row, strict=True):

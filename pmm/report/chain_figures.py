@@ -14,7 +14,7 @@ from pmm.campaign.campaign import Campaign
 from pmm.campaign.order import place_in
 from pmm.campaign.runs import Run
 from pmm.document.labels import display, plain
-from pmm.document.style import PALETTE, TRACE, drawn, write_figure
+from pmm.document.style import PALETTE, TRACE, new_figure, write_figure
 from sim import signals
 from sim.effects.effect import Effect
 from sim.effects.switching import switch_on
@@ -115,7 +115,7 @@ def chain_figure(
     """
     panels = _panels(nominal.values)
     columns = 1 if changed is None else 2
-    with drawn(
+    with new_figure(
         4.4 + 4.2 * (columns - 1),
         0.9 + 1.5 * len(panels),
         "\n".join(plain(line) for line in (title, subtitle) if line),

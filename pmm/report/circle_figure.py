@@ -14,7 +14,7 @@ from analysis.coefficients.term_waves import MOVES, waves_of
 from analysis.coefficients.terms import term_of
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import Figure
-from pmm.document.style import PALETTE, drawn
+from pmm.document.style import PALETTE, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,7 +44,7 @@ def circle_figure(cycles: Sequence[BodyCycle], coefficients: CampaignCoefficient
     for cycle in cycles:
         key = (round(cycle.speed_m_s, 2), round(math.degrees(cycle.drift_rad), 2))
         groups.setdefault(key, []).append(cycle)
-    with drawn(6.4, 5.6) as figure:
+    with new_figure(6.4, 5.6) as figure:
         panels = figure.subplots(2, 1, sharex=True)
         for row, (axes, (load, label)) in enumerate(zip(panels, _LOADS, strict=True)):
             for k, ((speed, drift), group) in enumerate(

@@ -8,14 +8,14 @@ from pmm.document.content import Column, Table, data_only, number, word
 from pmm.document.notation import degrees, rounded, written
 
 
-def _known(value: float, uncertainty: float) -> str:
+def _text(value: float, uncertainty: float) -> str:
     return rounded(value, uncertainty) if uncertainty else f"{value:.4g}"
 
 
 _CIRCLES: Final[tuple[Column[SteadyTurn], ...]] = (
     word("run", "run"),
-    Column("radius", lambda turn: _known(turn.radius_m, turn.u_radius_m), unit="m", number=True),
-    Column("r", lambda turn: _known(turn.turn_rate_rad_s, turn.u_turn_rate_rad_s), unit="rad/s",
+    Column("radius", lambda turn: _text(turn.radius_m, turn.u_radius_m), unit="m", number=True),
+    Column("r", lambda turn: _text(turn.turn_rate_rad_s, turn.u_turn_rate_rad_s), unit="rad/s",
            number=True),
     number("U", "speed_m_s", written(".4g"), "m/s"),
     Column("drift", lambda turn: degrees(turn.drift_rad), unit="deg", number=True),

@@ -10,10 +10,10 @@ from analysis.coefficients.names import PLACES, name_of, place_of
 from pmm.report.coefficient_panels import (
     MOST_SERIES,
     axis_label,
-    beside,
     finish,
     grid,
     points,
+    series_offset,
     settle,
 )
 
@@ -42,7 +42,7 @@ def amplitude_figure(coefficients: CampaignCoefficients, speed_m_s: float) -> "F
             largest = 1e3 * max(_lever(coefficients, k) for _, rows in series for k in rows)
             for frequency, rows in series:
                 number = frequencies.index(frequency)
-                offset = largest * beside(number, len(frequencies))
+                offset = largest * series_offset(number, len(frequencies))
                 positions = [1e3 * _lever(coefficients, k) + offset for k in rows]
                 points(panel, coefficients, rows, positions, f"{frequency:.3g} Hz", number)
                 values += coefficients.values[rows].tolist()

@@ -11,7 +11,7 @@ from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.recommendation import recommended
 from pmm.document.labels import plain
 from pmm.document.notation import rounded
-from pmm.document.style import PALETTE, drawn
+from pmm.document.style import PALETTE, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,7 +43,7 @@ def budget_figure(
 ) -> "Figure":
     """Draw for each value its interval in per cent of it, and what each kind of input adds."""
     budgets = [budget(coefficients, k) for k in rows]
-    with drawn(
+    with new_figure(
         10.5,
         1.5 + 0.27 * len(rows),
         plain(f"How well each value is known, {speed_m_s:g} m/s; {coefficients.normalisation}"),

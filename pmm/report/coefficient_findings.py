@@ -81,7 +81,7 @@ def findings(coefficients: CampaignCoefficients) -> Iterator[Content]:
     yield Table("Which form the data support", _FORMS, coefficients.choices, titled=True)
     yield Table("Repeats that stand off", _OUTLIERS, coefficients.outliers, titled=True)
     yield Table("What these runs do not tell", missing, coefficients.missing, titled=True)
-    yield from beside(coefficients)
+    yield from comparison_tables(coefficients)
     for kind in dict.fromkeys(check.kind for check in coefficients.checks):
         rows = [check for check in coefficients.checks if check.kind == kind]
         agree = sum(row.agrees for row in rows)
@@ -89,7 +89,7 @@ def findings(coefficients: CampaignCoefficients) -> Iterator[Content]:
         yield Table(name, _CHECKS, rows, titled=True, folded=agree == len(rows))
 
 
-def beside(coefficients: CampaignCoefficients) -> tuple[Content, ...]:
+def comparison_tables(coefficients: CampaignCoefficients) -> tuple[Content, ...]:
     """Return the values beside other arrangements' and tables' from elsewhere."""
     name = "Other arrangements of the rig"
     return (

@@ -13,10 +13,10 @@ from pmm.document.style import PALETTE, TRACE
 from pmm.report.coefficient_panels import (
     MOST_SERIES,
     axis_label,
-    beside,
     finish,
     grid,
     points,
+    series_offset,
     settle,
 )
 from pmm.report.coefficient_tables import amplitudes
@@ -62,7 +62,7 @@ def frequency_figure(
             values = []
             for label, rows in series[name]:
                 number = labels.index(label)
-                offset = widest * beside(number, len(labels))
+                offset = widest * series_offset(number, len(labels))
                 positions = [coefficients.entries[k].frequency_hz + offset for k in rows]
                 points(panel, coefficients, rows, positions, label, number)
                 values += coefficients.values[rows].tolist()

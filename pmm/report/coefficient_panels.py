@@ -9,7 +9,7 @@ import numpy as np
 
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from pmm.document.labels import plain
-from pmm.document.style import PALETTE, drawn
+from pmm.document.style import PALETTE, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -29,14 +29,14 @@ def grid(
 ) -> Iterator[tuple["Figure", list["Axes"]]]:
     """Give a figure to draw on, with a panel for each name, in two columns."""
     rows = math.ceil(len(names) / _COLUMNS)
-    with drawn(_WIDTH, _HEIGHT * rows + 1.1, plain(title)) as figure:
+    with new_figure(_WIDTH, _HEIGHT * rows + 1.1, plain(title)) as figure:
         panels = figure.subplots(rows, _COLUMNS, squeeze=False, sharex=one_axis).ravel().tolist()
         for panel in panels[len(names) :]:
             panel.set_visible(False)
         yield figure, panels[: len(names)]
 
 
-def beside(number: int, count: int) -> float:
+def series_offset(number: int, count: int) -> float:
     """Return by what part of the axis a series stands aside, so that none hides another."""
     return _ASIDE * (number - (count - 1) / 2.0)
 

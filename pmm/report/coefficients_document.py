@@ -32,7 +32,7 @@ from pmm.report.attitude import attitude_table, heel_table
 from pmm.report.attitude_figure import attitude_figures
 from pmm.report.circle_figure import circle_figures
 from pmm.report.circle_table import circle_table
-from pmm.report.coefficient_findings import beside, findings
+from pmm.report.coefficient_findings import comparison_tables, findings
 from pmm.report.coefficient_plots import figures
 from pmm.report.coefficient_tables import (
     alternatives_tables,
@@ -63,7 +63,7 @@ def coefficients_document(outcome: CampaignOutcome) -> Document:
             Section("", (Text((f"{run_count}, {coefficients.plane}, {coefficients.form} form",)),)),
             Section("", (*conclusion(coefficients), *_conditions(outcome), notes)),
             Section("", (*memory_contents(outcome), memory_data(outcome))),
-            Section("", (*beside(coefficients), *alternatives_tables(coefficients))),
+            Section("", (*comparison_tables(coefficients), *alternatives_tables(coefficients))),
             Section("", tuple(Data(key, value) for key, value in _data(outcome).items())),
         ),
         SCHEMA,
@@ -106,7 +106,7 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
             Section("Memory of the water", tuple(memory_contents(outcome))),
             Section("What was found", tuple(findings(coefficients))),
             Section("What was flagged", (Text(("Nothing.",)) if flags.empty else flags,)),
-            Section("Uncertainty", (_given(outcome), budget_table(coefficients))),
+            Section("Uncertainty", (_stated_table(outcome), budget_table(coefficients))),
             Section(
                 "Runs",
                 (_runs(outcome), circle_table(outcome.turns), decay_table(outcome.decays)),
@@ -226,7 +226,7 @@ def _runs(outcome: CampaignOutcome) -> Table[ReadRecording]:
     return Table("Recordings", columns, outcome.runs, titled=True)
 
 
-def _given(outcome: CampaignOutcome) -> Table[tuple[str, str]]:
+def _stated_table(outcome: CampaignOutcome) -> Table[tuple[str, str]]:
     """Return what was stated: the body that was taken off and standard uncertainties."""
     body = {} if outcome.body is None else asdict(outcome.body)
     stated = zip(STATED, outcome.stated.vector, strict=True)

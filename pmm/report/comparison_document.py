@@ -24,7 +24,7 @@ _MS: Final = 1e3
 class _Row:
     """One number that was found: in the unit in which people read it, with its half-width."""
 
-    what: str
+    name: str
     value: float
     half_width: float
     unit: str
@@ -43,7 +43,7 @@ class _Part:
 
 
 _FOUND: Final[tuple[Column[_Row], ...]] = (
-    Column("", lambda row: row.what),
+    Column("", lambda row: row.name),
     Column("", lambda row: rounded(row.value, row.half_width), number=True),
     Column("", lambda row: row.unit),
     Column("", lambda row: row.meaning),
@@ -129,7 +129,7 @@ def _rows(comparison: ChannelComparison, level: float) -> Sequence[_Row]:
 
 
 def _data(comparison: ChannelComparison, level: float) -> Sequence[Data]:
-    def both(estimate: Estimate | None) -> dict[str, object] | None:
+    def estimate_data(estimate: Estimate | None) -> dict[str, object] | None:
         if estimate is None:
             return None
         return {
@@ -147,12 +147,12 @@ def _data(comparison: ChannelComparison, level: float) -> Sequence[Data]:
         "to_s": comparison.to_s,
         "mid_s": comparison.mid_s,
         "band_hz": comparison.band_hz,
-        "gain": both(comparison.gain),
-        "lag": both(comparison.lag_s),
+        "gain": estimate_data(comparison.gain),
+        "lag": estimate_data(comparison.lag_s),
         "lag_modulo_s": comparison.modulo_s,
-        "clock_rate": both(comparison.clock_rate),
-        "levers": {name: both(arm) for name, arm in comparison.levers.items()},
-        "dead_band": both(comparison.dead_band),
+        "clock_rate": estimate_data(comparison.clock_rate),
+        "levers": {name: estimate_data(arm) for name, arm in comparison.levers.items()},
+        "dead_band": estimate_data(comparison.dead_band),
         "dead_band_found": comparison.dead_band_found,
         "over_time": _parts(comparison.over_time, comparison, level),
         "over_frequency": _parts(comparison.over_frequency, comparison, level),

@@ -8,7 +8,7 @@ from analysis.comparison.result import ChannelComparison
 from analysis.uncertainty.freedom import student_factor
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import shown_name
-from pmm.document.style import FIT, PALETTE, TRACE, drawn
+from pmm.document.style import FIT, PALETTE, TRACE, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,12 +31,12 @@ def comparison_figure(comparison: ChannelComparison, level: float = 0.95) -> "Fi
         Probability of the intervals.
     """
     factor = float(student_factor(np.array([np.inf]), level)[0])
-    with drawn(
+    with new_figure(
         10.5, 8.5, f"{shown_name(comparison.second)} over {shown_name(comparison.first)}"
     ) as figure:
         grid = figure.add_gridspec(4, 2)
         _enlarged(figure.add_subplot(grid[0, :]), comparison)
-        _left(figure.add_subplot(grid[1, :]), comparison)
+        _plot_remainder(figure.add_subplot(grid[1, :]), comparison)
         times, bins = comparison.over_time, comparison.over_frequency
         line_ms = 1e3 * (
             comparison.clock_rate.value * (times.at - comparison.mid_s) + comparison.lag_s.value
@@ -77,7 +77,7 @@ def _enlarged(axes: "Axes", comparison: ChannelComparison) -> None:
     axes.set_ylabel(f"{shown_name(comparison.second)}\n({comparison.unit})")
 
 
-def _left(axes: "Axes", comparison: ChannelComparison) -> None:
+def _plot_remainder(axes: "Axes", comparison: ChannelComparison) -> None:
     trace = comparison.trace
     step = -(-len(trace.time_s) // _POINTS)
     axes.plot(

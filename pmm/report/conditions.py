@@ -52,16 +52,18 @@ def condition_columns(
             return None
         return reynolds_number(speed_m_s(row), length_m, water)
 
-    yield Column("Fn", froude(length_m), "froude_number", _known(".4f"), number=True)
-    yield Column("Re", reynolds, "reynolds_number", _known(".4g"), number=True)
-    yield Column("F_nh", froude(_depth_m(water)), "depth_froude_number", _known(".3f"), number=True)
+    yield Column("Fn", froude(length_m), "froude_number", _formatter(".4f"), number=True)
+    yield Column("Re", reynolds, "reynolds_number", _formatter(".4g"), number=True)
+    yield Column(
+        "F_nh", froude(_depth_m(water)), "depth_froude_number", _formatter(".3f"), number=True
+    )
 
 
 def _itself(speed_m_s: float) -> float:
     return speed_m_s
 
 
-def _known(form: str) -> Callable[[float | None], str]:
+def _formatter(form: str) -> Callable[[float | None], str]:
     return lambda value: "" if value is None else written(form)(value)
 
 

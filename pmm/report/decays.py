@@ -9,7 +9,7 @@ from pmm.coefficients.decays import Decay
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import Column, Figure, Table
 from pmm.document.notation import rounded
-from pmm.document.style import PALETTE, drawn
+from pmm.document.style import PALETTE, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
@@ -61,7 +61,7 @@ def decay_figures(outcome: CampaignOutcome) -> Iterator[Figure]:
 
 def decay_figure(decays: Sequence[Decay]) -> "Drawing":
     """Draw a panel for each speed."""
-    with drawn(7.2, 0.8 + 2.2 * len(decays)) as figure:
+    with new_figure(7.2, 0.8 + 2.2 * len(decays)) as figure:
         panels = figure.subplots(len(decays), 1, sharex=True, squeeze=False)[:, 0]
         for axes, decay in zip(panels, decays, strict=True):
             for k, (run, record) in enumerate(zip(decay.runs, decay.records, strict=True)):

@@ -95,17 +95,24 @@ def design_document(file: DesignFile, design: Design, target: Path | None) -> Do
         Where the plan is written; nowhere if ``None``.
     """
     rows = [
-        _Row(place, step, _buys(before, step.known))
+        _Row(place, step, _buys(before, step.expected_coefficients))
         for place, (before, step) in enumerate(
-            zip((design.now, *(step.known for step in design.steps)), design.steps, strict=False), 1
+            zip(
+                (design.expected_now, *(step.expected_coefficients for step in design.steps)),
+                design.steps,
+                strict=False,
+            ),
+            1,
         )
     ]
     is_complete = bool(file.cycles) and not design.steps
     contents = (
-        Text((_said(file, design), "")),
-        Table("Known so far", _MEASURED, design.now if file.cycles else (), titled=True),
+        Text((_summary(file, design), "")),
+        Table("Known so far", _MEASURED, design.expected_now if file.cycles else (), titled=True),
         Table("Runs", _STEPS, rows),
-        Table("Coefficients", _KNOWN, () if is_complete else design.known, titled=True),
+        Table(
+            "Coefficients", _KNOWN, () if is_complete else design.expected_coefficients, titled=True
+        ),
         Notes([Note("warning", message) for message in design.why], key="unmet"),
         Notes([Note("note", message) for message in _left_out(file)]),
         Figure("uncertainty", _CAPTION, partial(design_figure, file.name, design)),
@@ -115,14 +122,17 @@ def design_document(file: DesignFile, design: Design, target: Path | None) -> Do
         Data("candidates", len(file.grid.runs)),
         Data("left_out", file.grid.left_out),
         Data("runs_made", len(file.cycles)),
-        Data("known", [_known_data(coefficient) for coefficient in design.now]),
+        Data("known", [_known_data(coefficient) for coefficient in design.expected_now]),
         Data("steps", [_step_data(step) for step in design.steps]),
-        Data("coefficients", [_known_data(coefficient) for coefficient in design.known]),
+        Data(
+            "coefficients",
+            [_known_data(coefficient) for coefficient in design.expected_coefficients],
+        ),
     )
     return Document("", "design of a plan", (Section("", contents),), SCHEMA)
 
 
-def _said(file: DesignFile, design: Design) -> str:
+def _summary(file: DesignFile, design: Design) -> str:
     runs = sum(step.repeats for step in design.steps)
     time = clock(design.steps[-1].time_s) if design.steps else clock(0.0)
     ends = (
@@ -185,7 +195,7 @@ def _step_data(step: DesignStep) -> dict[str, Any]:
         "repeats": step.repeats,
         "time_s": step.time_s,
         "standard_uncertainties": [
-            _finite(coefficient.standard_uncertainty) for coefficient in step.known
+            _finite(coefficient.standard_uncertainty) for coefficient in step.expected_coefficients
         ],
     }
 

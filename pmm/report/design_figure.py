@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from analysis.design.expectation import ExpectedCoefficient
 from pmm.design.run_selection import Design
-from pmm.document.style import PALETTE, TRACE, drawn
+from pmm.document.style import PALETTE, TRACE, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -15,12 +15,16 @@ _STYLES = ("-", "--", ":", "-.")
 
 def design_figure(name: str, design: Design) -> "Figure":
     """Draw a line for each coefficient: uncertainty over what is asked for, run by run."""
-    with drawn(7.2, 4.2) as figure:
+    with new_figure(7.2, 4.2) as figure:
         axes = figure.subplots()
         hours = [step.time_s / 3600.0 for step in design.steps]
-        for k, last in enumerate(design.known):
-            ratios = [_ratio(step.known[k]) if _same(step.known, k, last) else math.nan
-                      for step in design.steps]  # fmt: skip
+        for k, last in enumerate(design.expected_coefficients):
+            ratios = [
+                _ratio(step.expected_coefficients[k])
+                if _same(step.expected_coefficients, k, last)
+                else math.nan
+                for step in design.steps
+            ]
             label = f"{last.name} at {last.where}" if last.where else last.name
             colour, style = PALETTE[k % len(PALETTE)], _STYLES[k // len(PALETTE) % len(_STYLES)]
             axes.plot(hours, ratios, style, color=colour, marker="o", markersize=2.5, label=label)
@@ -29,11 +33,15 @@ def design_figure(name: str, design: Design) -> "Figure":
         axes.yaxis.set_major_formatter(_plain)
         axes.yaxis.set_minor_formatter(_plain)
         axes.set_xlabel("tank time [h]")
-        targeted = any(math.isfinite(coefficient.wanted) for coefficient in design.known)
+        targeted = any(
+            math.isfinite(coefficient.wanted) for coefficient in design.expected_coefficients
+        )
         over = "what is asked for" if targeted else "the believed value"
         axes.set_ylabel(f"expected standard uncertainty over {over}")
-        if design.known:
-            figure.legend(loc="outside right upper", ncols=1 + len(design.known) // 17)
+        if design.expected_coefficients:
+            figure.legend(
+                loc="outside right upper", ncols=1 + len(design.expected_coefficients) // 17
+            )
         figure.suptitle(f"{name}: what the runs are expected to tell")
     return figure
 

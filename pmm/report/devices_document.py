@@ -126,8 +126,10 @@ def _last(heard: Heard) -> str:
 def scan_document(survey: Survey, wrong: Sequence[str]) -> Document:
     """Return who answers; ``wrong`` is what is missing or does not fit."""
     nodes = [_Node(node, survey.names.get(node.node_id, "")) for node in survey.nodes]
-    heard = Table("Ports", _HEARD, tuple(survey.heard.items()), "ports", by=lambda row: row[0])
-    modbus = Table("Modbus", _ASKED, tuple(survey.asked.items()), "modbus")
+    heard = Table(
+        "Ports", _HEARD, tuple(survey.heard_ports.items()), "ports", by=lambda row: row[0]
+    )
+    modbus = Table("Modbus", _ASKED, tuple(survey.modbus_devices.items()), "modbus")
     nodes_table = Table("Nodes", _NODES, nodes, "nodes")
     return _document("scan", nodes_table, heard, modbus, Data("wrong", wrong))
 
@@ -158,7 +160,7 @@ def values_table(rows: Sequence[DeviceRow]) -> Table[DeviceRow]:
 
 def values_document(shown: Shown) -> Document:
     """Return what devices read now, and the faults that they reported."""
-    return _document("read", values_table(shown.rows), Data("said", shown.said))
+    return _document("read", values_table(shown.rows), Data("said", shown.faults))
 
 
 def move_document(axis: str, wanted: float, unit: str, reading: Reading) -> Document:
@@ -193,7 +195,7 @@ def photocell_document(record: PhotocellRecord) -> Document:
         "photocell",
         Table("Intervals", _INTERVALS, record.intervals, "intervals"),
         Data("pulses", record.pulses),
-        Data("said", record.said),
+        Data("said", record.driver_messages),
         Data("good", record.good),
     )
 

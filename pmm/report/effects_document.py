@@ -82,7 +82,7 @@ def effect_document(case: EffectAtSetPoint) -> Document:
                         else ("no harmonic of a recorded channel changes here",),
                         faint=bool(changes),
                     ),
-                    Text([f"beside the harmonics: {line}" for line in _beside(case.lines)]),
+                    Text([f"beside the harmonics: {line}" for line in _line_texts(case.lines)]),
                     Data("effects", [_data(case)]),
                 ),
             ),
@@ -181,7 +181,7 @@ def _remarks(case: EffectAtSetPoint) -> Iterator[str]:
         )
 
 
-def _beside(lines: Lines) -> Iterator[str]:
+def _line_texts(lines: Lines) -> Iterator[str]:
     """Yield the lines of each channel; those of a band as one."""
     for channel in dict.fromkeys(channel for channel, _ in lines):
         sizes = {

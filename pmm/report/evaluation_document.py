@@ -149,10 +149,10 @@ def _calibration(calibration: Calibration | None) -> Iterator[Content]:
 
 def _tows(tows: Sequence[Tow]) -> Table[Tow]:
     def load(name: str, key: str, unit: str) -> Column[Tow]:
-        def told(tow: Tow) -> str:
+        def value_text(tow: Tow) -> str:
             return _with_width(getattr(tow, key), getattr(tow, f"{name}_half_width"))
 
-        return Column(name, told, unit=unit, number=True)
+        return Column(name, value_text, unit=unit, number=True)
 
     columns = (
         word("run", "run"),

@@ -10,7 +10,7 @@ from hardware.description.channels import DISPLACEMENTS
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import Column, Figure, Table, data_only, number, word
 from pmm.document.notation import written
-from pmm.document.style import PALETTE, drawn
+from pmm.document.style import PALETTE, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
@@ -78,7 +78,7 @@ def following_figures(outcome: CampaignOutcome) -> Iterator[Figure]:
 
 def following_figure(rows: Sequence[Following]) -> "Drawing":
     """Draw rms and peak, amplitude error and phase over frequency, a colour for each strut."""
-    with drawn(10.0, 3.2) as figure:
+    with new_figure(10.0, 3.2) as figure:
         size, gain, phase = figure.subplots(1, 3)
         for name, colour in zip(DISPLACEMENTS, PALETTE, strict=False):
             strut_rows = [row for row in rows if row.channel == name]

@@ -14,7 +14,15 @@ from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from pmm.document.labels import Display, axis_label, display, loads_first, shown_name
 from pmm.document.notation import counted
-from pmm.document.style import FIT, GATE_SHADE, PALETTE, RECORD_SHADE, STEADY_SHADE, TRACE, drawn
+from pmm.document.style import (
+    FIT,
+    GATE_SHADE,
+    PALETTE,
+    RECORD_SHADE,
+    STEADY_SHADE,
+    TRACE,
+    new_figure,
+)
 from pmm.harmonics.rows import window_kind
 from pmm.report.envelope import Trace, overview, zigzag
 
@@ -61,7 +69,7 @@ def gate_figure(analysis: Analysis, reading_index: int = 0) -> "Figure":
     reading = reading_of(analysis, reading_index)
     order = loads_first(analysis.recording)
     curves = _curves(analysis, reading, max(60, _POINTS // (2 * len(order))))
-    with drawn(
+    with new_figure(
         10.5, 1.3 + 1.9 * len(order), f"{shown_name(reading.run)}: {caption(reading)}"
     ) as figure:
         heights = (2.2, 1.0) * len(order)

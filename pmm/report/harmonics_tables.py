@@ -94,19 +94,19 @@ def _channel_rows(channel: ChannelRows, run: str = "") -> Iterator[_Row]:
     unit = display(channel.unit)
     name = f"{plain(channel.name)} [{unit.label}]"
 
-    def told(value: Value) -> str:
+    def value_text(value: Value) -> str:
         return rounded(
             *floored(value.value * unit.factor, value.half_width * unit.factor,
                      channel.size * unit.factor)
         )  # fmt: skip
 
-    yield _Row(run, name, "mean", told(channel.mean))
+    yield _Row(run, name, "mean", value_text(channel.mean))
     if channel.drift_per_s:
         slope, _ = floored(channel.drift_per_s, 0.0, channel.size)
         yield _Row(run, name, "drift per s", rounded(slope * unit.factor, math.nan))
     for row in channel.harmonics:
         amplitude, _ = floored(row.amplitude.value, row.amplitude.half_width, channel.size)
-        in_phase, quadrature, size = map(told, (row.in_phase, row.quadrature, row.amplitude))
+        in_phase, quadrature, size = map(value_text, (row.in_phase, row.quadrature, row.amplitude))
         faint = not (row.is_significant and amplitude)
         yield _Row(
             run, name, str(row.order), in_phase, quadrature, size, _phase(row, amplitude), faint

@@ -6,7 +6,7 @@ import numpy as np
 
 from analysis.inertia.record import ModeAnalysis, RecordAnalysis
 from pmm.document.labels import display, plain, shown_name
-from pmm.document.style import PALETTE, TRACE, drawn
+from pmm.document.style import PALETTE, TRACE, new_figure
 from pmm.inertia.sources import PeriodRuns
 from pmm.report.inertia_record import MOST_RUNS
 
@@ -26,7 +26,9 @@ def amplitude_figure(runs: PeriodRuns) -> "Figure":
     weight left out; the point there is their mean with the uncertainty of fits and choice.
     """
     count = len(runs.records[0].modes)
-    with drawn(10.5, 1.2 + 3.4 * count, f"{plain(runs.where)}: period against amplitude") as figure:
+    with new_figure(
+        10.5, 1.2 + 3.4 * count, f"{plain(runs.where)}: period against amplitude"
+    ) as figure:
         for mode in range(count):
             axes = figure.add_subplot(count, 1, mode + 1)
             for number, run in enumerate(runs.records[:MOST_RUNS]):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from analysis.uncertainty.monte_carlo import Assessment
 from pmm.document.labels import plain
 from pmm.document.notation import rounded
-from pmm.document.style import PALETTE, TRACE, drawn
+from pmm.document.style import PALETTE, TRACE, new_figure
 from pmm.inertia.outcome import Finding, Outcome
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ def budget_figure(outcome: Outcome) -> "Figure":
     """Draw the shares of each result's variance, and its intervals by budget and Monte Carlo."""
     rows = outcome.budgeted
     sizes = [1.2 + 0.28 * len(_lines(assessment)) for _, assessment in rows]
-    with drawn(
+    with new_figure(
         10.5, 1.0 + sum(sizes), f"{plain(outcome.name)}: where the uncertainty comes from"
     ) as figure:
         grid = figure.add_gridspec(len(rows), 2, width_ratios=(2.2, 1.0), height_ratios=sizes)

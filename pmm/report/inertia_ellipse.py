@@ -7,7 +7,7 @@ import numpy as np
 
 from analysis.inertia.principal_axes import inertia_ellipse
 from pmm.document.labels import plain
-from pmm.document.style import FIT, PALETTE, TRACE, drawn
+from pmm.document.style import FIT, PALETTE, TRACE, new_figure
 from pmm.inertia.outcome import PlaneAxes
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ def ellipse_figure(name: str, plane_axes: PlaneAxes) -> "Figure":
     The radius in a direction is the inverse of the gyradius about it; bars on the measured axes
     are one standard uncertainty.
     """
-    with drawn(8.0, 6.2, f"{plain(name)}: inertia ellipse") as figure:
+    with new_figure(8.0, 6.2, f"{plain(name)}: inertia ellipse") as figure:
         axes = figure.add_subplot()
         points = inertia_ellipse(plane_axes.roll_m, plane_axes.yaw_m, plane_axes.angle_rad, 721)
         axes.plot(points[:, 0], points[:, 1], color=PALETTE[0], lw=1.4, label="1/gyradius")

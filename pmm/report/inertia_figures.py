@@ -13,7 +13,7 @@ import numpy as np
 
 from pmm.document import content
 from pmm.document.labels import plain, shown_name
-from pmm.document.style import FIT, PALETTE, TRACE, drawn
+from pmm.document.style import FIT, PALETTE, TRACE, new_figure
 from pmm.inertia.outcome import Outcome, StaticTest
 from pmm.inertia.sources import PeriodRuns
 from pmm.report.inertia_amplitude import amplitude_figure
@@ -81,7 +81,7 @@ def _file_name(where: str) -> str:
 
 def gates_figure(runs: PeriodRuns) -> "Figure":
     """Draw the time of each whole swing, and below the residual of the passages' times."""
-    with drawn(10.5, 6.0, f"{plain(runs.where)}: light gates") as figure:
+    with new_figure(10.5, 6.0, f"{plain(runs.where)}: light gates") as figure:
         axes = figure.add_subplot(2, 1, 1)
         rest = figure.add_subplot(2, 1, 2, sharex=axes)
         for number, (gate, fit) in enumerate(runs.gates[:MOST_RUNS]):
@@ -113,7 +113,7 @@ def line_figure(outcome: Outcome, errors: Mapping[str, Sequence[tuple[float, flo
         By reading: line length in m, and metres per second.
     """
     values = {finding.name: finding.estimate.value for finding in outcome.findings}
-    with drawn(10.5, 4.6, f"{plain(outcome.name)}: lines for the pitch gyradius") as figure:
+    with new_figure(10.5, 4.6, f"{plain(outcome.name)}: lines for the pitch gyradius") as figure:
         axes = figure.add_subplot()
         for number, (reading, rows) in enumerate(errors.items()):
             line, error = np.array(rows).T
@@ -139,7 +139,7 @@ def static_figure(test: StaticTest) -> "Figure":
     """
     pooled = test.result.pooled
     slope, offset = 1.0 / pooled.moment.value, pooled.offset_rad.value
-    with drawn(10.5, 6.0, f"{plain(test.where)}: tilts under weights") as figure:
+    with new_figure(10.5, 6.0, f"{plain(test.where)}: tilts under weights") as figure:
         grid = figure.add_gridspec(2, 1, height_ratios=(2.0, 1.0))
         axes = figure.add_subplot(grid[0])
         rest = figure.add_subplot(grid[1], sharex=axes)

@@ -9,7 +9,7 @@ from analysis.inertia.record import RecordAnalysis
 from analysis.inertia.series import Series
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import display, plain, shown_name
-from pmm.document.style import FIT, STEADY_SHADE, TRACE, drawn
+from pmm.document.style import FIT, STEADY_SHADE, TRACE, new_figure
 from pmm.inertia.sources import PeriodRuns
 from pmm.report.envelope import zigzag
 
@@ -28,7 +28,7 @@ _FIT_POINTS_PER_PERIOD = 24
 def record_figure(runs: PeriodRuns) -> "Figure":
     """Draw each record with its used part and the fit, and the residual below on its own scale."""
     records = runs.records[:MOST_RUNS]
-    with drawn(
+    with new_figure(
         10.5, 1.3 + 2.5 * len(records), f"{plain(runs.where)}: fit over record{_and_more(runs)}"
     ) as figure:
         grid = figure.add_gridspec(2 * len(records), 1, height_ratios=(2.0, 1.0) * len(records))
@@ -36,7 +36,7 @@ def record_figure(runs: PeriodRuns) -> "Figure":
         for place, run in enumerate(records):
             axes = figure.add_subplot(grid[2 * place])
             rest = figure.add_subplot(grid[2 * place + 1], sharex=axes)
-            handles = _draw_run(axes, run, runs.whole[place])
+            handles = _draw_run(axes, run, runs.whole_records[place])
             _draw_rest(rest, run)
             axes.tick_params(labelbottom=False)
             if place == len(records) - 1:

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from pmm.document.labels import plain
-from pmm.document.style import PALETTE, TRACE, drawn
+from pmm.document.style import PALETTE, TRACE, new_figure
 from pmm.inertia.sketch import Sketch
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ _BESIDE: Final = 0.08  # between measures, of the drawing's size
 
 def setup_figure(name: str, sketches: tuple[Sketch, ...]) -> "Figure":
     """Draw each set-up to its scale, with its measures."""
-    with drawn(max(5.0 * len(sketches), 7.0), 5.0, f"{plain(name)}: set-up") as figure:
+    with new_figure(max(5.0 * len(sketches), 7.0), 5.0, f"{plain(name)}: set-up") as figure:
         for place, sketch in enumerate(sketches, 1):
             _draw(figure.add_subplot(1, len(sketches), place), sketch)
     return figure
@@ -64,7 +64,7 @@ def photo_figure(path: Path) -> "Figure":
     step = -(-max(pixels.shape[:2]) // _WIDEST_PX)
     shown = pixels[::step, ::step]
     height, width = shown.shape[:2]
-    with drawn(8.0, 8.0 * height / width) as figure:
+    with new_figure(8.0, 8.0 * height / width) as figure:
         axes = figure.add_subplot()
         axes.imshow(shown, cmap="gray" if shown.ndim == 2 else None)
         axes.axis("off")

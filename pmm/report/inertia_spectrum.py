@@ -9,7 +9,7 @@ from analysis.inertia.record import RecordAnalysis
 from analysis.inertia.spectrum import spectrum
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import display, plain, shown_name
-from pmm.document.style import FIT, PALETTE, TRACE, drawn
+from pmm.document.style import FIT, PALETTE, TRACE, new_figure
 from pmm.inertia.sources import PeriodRuns
 from pmm.report.envelope import zigzag
 from pmm.report.inertia_record import MOST_RUNS, residual_on_grid, thin
@@ -30,7 +30,7 @@ def spectrum_figure(runs: PeriodRuns) -> "Figure":
     its bounds, and quiet moments are a beat period apart.
     """
     beating = len(runs.records[0].fit.modes) == 2
-    with drawn(10.5, 4.2 + 3.0 * beating) as figure:
+    with new_figure(10.5, 4.2 + 3.0 * beating) as figure:
         title = "spectrum and beats" if beating else "spectrum"
         figure.suptitle(f"{plain(runs.where)}: {title}")
         axes = figure.add_subplot(1 + beating, 1, 1)

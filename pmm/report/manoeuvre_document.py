@@ -132,7 +132,13 @@ def _depth(keeping: DepthKeeping) -> tuple[Content, ...]:
         f"roots at {file.speed_m_s:g} m/s; weight and buoyancy are taken as equal",
         f"intervals from {counted(keeping.draws, 'draw')} of the derivatives",
     )
-    return Text(head), _doubts(keeping), _table(keeping), Text(tuple(_said(keeping))), _at(keeping)
+    return (
+        Text(head),
+        _doubts(keeping),
+        _table(keeping),
+        Text(tuple(_stability_sentences(keeping))),
+        _at(keeping),
+    )
 
 
 def _doubts(result: Prediction | DepthKeeping) -> Notes:
@@ -147,7 +153,7 @@ def _at(result: Prediction | DepthKeeping) -> Table[float]:
     return conditions_table([file.speed_m_s], ship, file.water)
 
 
-def _said(keeping: DepthKeeping) -> Iterator[str]:
+def _stability_sentences(keeping: DepthKeeping) -> Iterator[str]:
     index, critical = keeping.quantities[:2]
     if not math.isfinite(critical.value):
         yield "stable at every speed" if index.value > 0.0 else "stable at no speed"

@@ -7,7 +7,7 @@ import numpy as np
 from analysis.manoeuvring.march import Log
 from analysis.manoeuvring.ship import PSI, X, Y
 from hardware.description.arrays import FloatArray
-from pmm.document.style import PALETTE, drawn
+from pmm.document.style import PALETTE, new_figure
 from pmm.manoeuvre.prediction import SIDES, Prediction
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ _FAINT = 0.18
 def turning_figure(prediction: Prediction) -> "Figure":
     """Draw the tracks of both turning circles, advance up and starboard to the right."""
     length = prediction.ship.hull.length_m
-    with drawn(9.0, 4.6) as figure:
+    with new_figure(9.0, 4.6) as figure:
         axes = figure.add_subplot()
         for colour, side in zip(PALETTE, SIDES, strict=False):
             _, states, _ = _histories(prediction.logs[side])
@@ -42,7 +42,7 @@ def turning_figure(prediction: Prediction) -> "Figure":
 def zigzag_figure(prediction: Prediction) -> "Figure":
     """Draw heading and rudder of both zig-zags that begin to starboard."""
     unit = prediction.ship.hull.length_m / prediction.ship.approach_m_s
-    with drawn(9.0, 6.0) as figure:
+    with new_figure(9.0, 6.0) as figure:
         for place, angle in enumerate((10, 20), 1):
             axes = figure.add_subplot(2, 1, place)
             times, states, rudders = _histories(prediction.logs[f"{angle}"])
@@ -61,7 +61,7 @@ def spiral_figure(prediction: Prediction) -> "Figure":
     """Draw the spiral: both ways of the rudder, with the interval of each angle."""
     spiral, tail = prediction.spiral, 0.5 * (1.0 - prediction.level)
     rudder = np.degrees(spiral.rudder_rad)
-    with drawn(7.0, 4.5) as figure:
+    with new_figure(7.0, 4.5) as figure:
         axes = figure.add_subplot()
         ways = (("to port", spiral.down, PALETTE[0], ">-"), ("back", spiral.up, PALETTE[1], "<-"))
         for label, rates, colour, style in ways:

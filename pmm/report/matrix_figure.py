@@ -9,7 +9,7 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.kinds import RunKind
-from pmm.document.style import FIT, PALETTE, TRACE, drawn
+from pmm.document.style import FIT, PALETTE, TRACE, new_figure
 from pmm.plan.findings import PlanVerdict
 from pmm.plan.limits import limit_findings
 from pmm.plan.plan import Plan
@@ -42,7 +42,7 @@ def matrix_figure(plan: Plan, rig: RigFile) -> "Figure":
     groups = _groups(plan.runs)
     across = min(_ACROSS, max(1, len(groups)))
     down = max(1, math.ceil(len(groups) / across))
-    with drawn(
+    with new_figure(
         1.0 + 3.4 * across, 0.9 + 2.7 * down, f"{plan.name}: {len(plan.runs)} runs"
     ) as figure:
         axes = figure.subplots(down, across, squeeze=False, sharex=True, sharey=True)

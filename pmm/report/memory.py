@@ -49,7 +49,7 @@ class _End:
 def memory_contents(outcome: CampaignOutcome) -> Iterator[Content]:
     """Yield what was found of the memory, where there are enough frequencies at rest."""
     for memory in outcome.memories:
-        yield Text(("", *_said(memory)))
+        yield Text(("", *_sentences(memory)))
         yield Notes([Note("warning", text) for text in _doubts(memory)])
         yield from _tables(memory, outcome.result.level)
 
@@ -59,7 +59,7 @@ def memory_data(outcome: CampaignOutcome) -> Data:
     return Data("memory", [_data(memory, outcome.result.level) for memory in outcome.memories])
 
 
-def _said(memory: "MeasuredMemory") -> Iterator[str]:
+def _sentences(memory: "MeasuredMemory") -> Iterator[str]:
     low, high = band_hz(memory)
     where = f"{memory.measured.motions} at rest from {low:.3g} to {high:.3g} Hz"
     if not memory.chosen.states:

@@ -9,7 +9,7 @@ import numpy as np
 
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import Figure
-from pmm.document.style import PALETTE, drawn
+from pmm.document.style import PALETTE, new_figure
 from pmm.report.memory import UNITS, band_hz
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def memory_figure(memory: "MeasuredMemory", level: float) -> "Drawing":
         measured.shaped(values) for values in (curves.values, curves.half_width(level))
     )
     rows = len(measured.elements)
-    with drawn(8.0, 2.2 * rows + 0.8) as figure:
+    with new_figure(8.0, 2.2 * rows + 0.8) as figure:
         panels = figure.subplots(rows, 2, squeeze=False, sharex=True)
         for k, (names, pair) in enumerate(zip(measured.names, measured.elements, strict=True)):
             for kind in (0, 1):

@@ -10,7 +10,7 @@ from analysis.resolver.analysis import Analysis
 from analysis.resolver.harmonics import Harmonics
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import Display, display, loads_first, shown_name
-from pmm.document.style import PALETTE, drawn
+from pmm.document.style import PALETTE, new_figure
 from pmm.report.gate import caption, reading_of, single_periods
 from pmm.report.region import Ellipse, ellipses
 
@@ -63,7 +63,7 @@ def phasor_figure(analysis: Analysis, reading_index: int = 0) -> "Figure":
     phasors = _phasors(analysis, reading)
     blocks = _blocks(analysis, reading)
     abreast = min(reading.order, _PANELS_ABREAST)
-    with drawn(
+    with new_figure(
         max(7.5, 2.8 * abreast),
         0.4 + 5.8 * len(blocks),
         f"{shown_name(reading.run)}: {caption(reading)}",

@@ -135,7 +135,7 @@ def _turning(heading: str, unit: str, cell: Callable[[_Row], str]) -> Column[_Ro
 # Amplitudes are half the stroke.
 _RUNS: Final[tuple[Column[_Row], ...]] = (
     number("", "number"),
-    Column("run", lambda row: _named(row.run)),
+    Column("run", lambda row: _run_name(row.run)),
     _turning("f", "Hz", lambda row: f"{row.run.set_point.frequency_hz:g}"),
     _turning("ampl.", "mm", lambda row: f"{1e3 * row.run.set_point.eccentricity_m:.6g}"),
     _turning("phase", "deg", lambda row: f"{math.degrees(row.run.set_point.strut_phase_rad):.1f}"),
@@ -191,7 +191,7 @@ def _peaks(row: _Row, rig: RigFile) -> dict[str, float | None]:
     }
 
 
-def _named(run: RunPlan) -> str:
+def _run_name(run: RunPlan) -> str:
     """Return the run's name, and its kind where the name does not say it."""
     says = run.kind is RunKind.OSCILLATION or run.name.startswith(run.kind)
     return run.name if says else f"{run.name} ({run.kind})"

@@ -45,7 +45,7 @@ class Recovery:
     empty: str = ""
 
     @property
-    def done(self) -> str:
+    def outcome(self) -> str:
         """What was done, in words."""
         if self.run is None:
             why = "the program ended before anything was written" if self.empty else "see the error"
@@ -75,7 +75,7 @@ _RECOVERIES: Final[tuple[Column[Recovery], ...]] = (
     _of_run("frames", "frames"),
     Column("bytes not whole", lambda row: sum(row.run.lost_tail_bytes.values()) if row.run else 0,
            number=True),
-    Column("what was done", lambda row: row.done),
+    Column("what was done", lambda row: row.outcome),
     *(_of_run(key) for key in ("path", "lost_tail_bytes", "was_whole", "flags", "changed")),
     _if_any("error", "error"),
     _if_any("empty", "nothing_written"),
@@ -123,7 +123,7 @@ def replay_document(replay: Replay) -> Document:
 
 
 @dataclass(frozen=True)
-class _Beside:
+class _FirstHarmonics:
     """First harmonic of a channel: in phase and quadrature as recorded, and again."""
 
     channel: str
@@ -133,7 +133,7 @@ class _Beside:
     quadrature_again: float
 
 
-def _last_reading(replay: Replay) -> Iterator[Table[_Beside]]:
+def _last_reading(replay: Replay) -> Iterator[Table[_FirstHarmonics]]:
     """Yield the last reading of both."""
     if not replay.recorded_readings:
         return
@@ -147,7 +147,7 @@ def _last_reading(replay: Replay) -> Iterator[Table[_Beside]]:
         number("quadrature 1 again", "quadrature_again", form),
     )
     rows = [
-        _Beside(channel, *_first(recorded_reading, i), *_first(replayed_reading, i))
+        _FirstHarmonics(channel, *_first(recorded_reading, i), *_first(replayed_reading, i))
         for i, channel in enumerate(recorded_reading["channels"])
     ]
     name = (

@@ -9,7 +9,7 @@ from analysis.response.distortion import Degree, distortions
 from analysis.response.frequency_response import frequency_response, phasors_of
 from hardware.description.channels import Channel, Quantity
 from pmm.document.labels import shown_name
-from pmm.document.style import PALETTE, TRACE, drawn
+from pmm.document.style import PALETTE, TRACE, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,7 +38,7 @@ def response_figure(
         for name, unit in zip(reading.channel_names, reading.units, strict=True)
         if name != motion and Channel("", unit).quantity in (Quantity.FORCE, Quantity.MOMENT)
     ] or [name for name in reading.channel_names if name != motion]
-    with drawn(4.5 * len(outputs), 9.0) as figure:
+    with new_figure(4.5 * len(outputs), 9.0) as figure:
         panels = figure.subplots(4, len(outputs), squeeze=False, sharex=True)
         for column, output in enumerate(outputs):
             _column(panels[:, column].tolist(), reading, motion, output, orders)

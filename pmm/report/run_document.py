@@ -14,7 +14,7 @@ SCHEMA: Final = "pmm-run-control-1"
 def run_document(job: RunJob, report: RunReport, *, dry_run: bool) -> Document:
     """Return how the runs of a plan ended; ``docs/run-control.md`` describes the keys."""
     contents = (
-        Text(_said(job, report, dry_run=dry_run)),
+        Text(_lines(job, report, dry_run=dry_run)),
         Data("plan", job.plan.path),
         Data("folder", job.folder),
         Data("dry_run", dry_run),
@@ -32,7 +32,7 @@ def complete_runs(report: RunReport) -> int:
     return sum(outcome.outcome == RunEnd.COMPLETE for outcome in report.outcomes)
 
 
-def _said(job: RunJob, report: RunReport, *, dry_run: bool) -> list[str]:
+def _lines(job: RunJob, report: RunReport, *, dry_run: bool) -> list[str]:
     if dry_run:
         return [f"{job.plan.path}: {len(job.runs)} runs would be recorded to {job.folder}"]
     if not job.runs:

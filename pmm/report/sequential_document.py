@@ -21,7 +21,7 @@ from pmm.document.content import (
     word,
 )
 from pmm.document.notation import clock, counted, written
-from pmm.document.style import PALETTE, TRACE, drawn
+from pmm.document.style import PALETTE, TRACE, new_figure
 from pmm.sequential.look import Decision, KnownCause, KnownTarget, Look, in_words, read_decisions
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def look_lines(look: Look) -> Iterator[str]:
     """Yield what an operator is told after a run: what is known, and what is to be made."""
     heading = f"after {counted(len(look.runs), 'run')}, {clock(look.time_s)}"
     causes = [f"{cause.name} {cause.probability:.3f}" for cause in look.causes]
-    words = "; ".join([*map(_in_words, look.known), *causes]) or "nothing is known yet"
+    words = "; ".join([*map(_in_words, look.known_targets), *causes]) or "nothing is known yet"
     yield f"{heading}: {words}"
     yield from look.notes
     if look.ending is not None:
@@ -87,7 +87,7 @@ def look_lines(look: Look) -> Iterator[str]:
         for k, (run, why) in enumerate(zip(look.proposed, look.whys, strict=True), 1):
             yield f"  {k}. {in_words(run)}{f' ({why})' if why else ''}"
     else:
-        yield f"as planned: {counted(len(look.kept), 'run')} more, {clock(look.left_s)}"
+        yield f"as planned: {counted(len(look.kept_runs), 'run')} more, {clock(look.left_s)}"
 
 
 def sequential_document(
@@ -102,7 +102,7 @@ def sequential_document(
     """
     last = decisions[-1]
     contents = (
-        Text([waiting or _said(name, last)]),
+        Text([waiting or _summary(name, last)]),
         *_contents(name, decisions),
         Data("folder", folder),
         Data("ending", "waiting" if waiting else last.ending),
@@ -117,7 +117,7 @@ def story(folder: Path, name: str) -> Iterator[Section]:
     """Yield what was known after each run of a folder's campaign, where it chose its runs."""
     decisions = read_decisions(folder)
     if decisions:
-        contents = (Text([_said(name, decisions[-1])]), *_contents(name, decisions))
+        contents = (Text([_summary(name, decisions[-1])]), *_contents(name, decisions))
         yield Section("Run after run", contents)
 
 
@@ -140,7 +140,7 @@ def _contents(name: str, decisions: Sequence[Decision]) -> tuple[Content, ...]:
 
 def sequential_figure(name: str, decisions: Sequence[Decision]) -> "Drawing":
     """Draw a line for each target: uncertainty over what is asked for, run by run."""
-    with drawn(7.2, 4.2) as figure:
+    with new_figure(7.2, 4.2) as figure:
         axes = figure.subplots()
         hours = [decision.time_s / 3600.0 for decision in decisions]
         names = dict.fromkeys(target.name for decision in decisions for target in decision.known)
@@ -160,7 +160,7 @@ def sequential_figure(name: str, decisions: Sequence[Decision]) -> "Drawing":
     return figure
 
 
-def _said(name: str, last: Decision) -> str:
+def _summary(name: str, last: Decision) -> str:
     ending = last.ending or "not at its end; --resume goes on"
     remark = f" ({last.remark})" if last.ending and last.remark else ""
     return f"{name}: {counted(len(last.runs), 'run')}, {clock(last.time_s)}; {ending}{remark}"

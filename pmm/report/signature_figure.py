@@ -11,7 +11,7 @@ from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.channels import FORCE_AFT, FORCE_FORE
 from hardware.description.setpoint import SetPoint
 from pmm.document.labels import display, shown_name
-from pmm.document.style import PALETTE, drawn, write_figure
+from pmm.document.style import PALETTE, new_figure, write_figure
 from sim.effects.agreement import phasor
 from sim.effects.effect import Effect
 from sim.effects.situation import Situation
@@ -118,7 +118,7 @@ def signature_figure(effect: Effect, grid: SignatureGrid, title: str) -> "Figure
     displacement, the velocity or the acceleration shows it in how the curves fan out.
     """
     keys = _largest(grid)
-    with drawn(8.4, 1.4 + 1.9 * len(keys), f"{effect.code} {effect.title}\n{title}") as figure:
+    with new_figure(8.4, 1.4 + 1.9 * len(keys), f"{effect.code} {effect.title}\n{title}") as figure:
         axes = figure.subplots(len(keys), 2, squeeze=False, sharex=True)
         for row, key in zip(axes, keys, strict=True):
             _draw_row(row, key, grid, circles=effect.repeats)

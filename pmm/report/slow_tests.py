@@ -14,7 +14,7 @@ from analysis.coefficients.terms import VELOCITY_LETTERS, term_of
 from analysis.coefficients.tows import Tow
 from hardware.description.kinds import RunKind
 from pmm.document.notation import rounded
-from pmm.document.style import FIT, PALETTE, drawn
+from pmm.document.style import FIT, PALETTE, new_figure
 from pmm.evaluation.control_chart import Chart
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def restoring_figure(tests: Sequence[Restoring], tracks: Sequence[Track]) -> "Fi
     """
     motions = list(dict.fromkeys(test.motion for test in tests))
     title = "Restoring: loads of the struts on the model"
-    with drawn(1.2 + 3.4 * len(motions), 5.2, title) as figure:
+    with new_figure(1.2 + 3.4 * len(motions), 5.2, title) as figure:
         panels = figure.subplots(2, len(motions), squeeze=False, sharex="col")
         for column, motion in enumerate(motions):
             pairs = [(test, track) for test, track in zip(tests, tracks, strict=True)
@@ -66,7 +66,7 @@ def _width(pair: tuple[Restoring, Track]) -> float:
 def drift_figure(tows: Sequence[Tow], coefficients: CampaignCoefficients) -> "Figure":
     """Return force and moment over the velocity across the model, with the fitted curves."""
     title = "Static drift: loads of the water on the model, about the midpoint"
-    with drawn(6.4, 5.2, title) as figure:
+    with new_figure(6.4, 5.2, title) as figure:
         panels = figure.subplots(2, 1, sharex=True)
         loads = ((0, "force_n", "force"), (1, "moment_n_m", "moment"))
         static = coefficients.rows(method=STATIC_DRIFT)
@@ -126,7 +126,7 @@ def resistance_figure(tows: Sequence[Tow]) -> "Figure":
     if any(not math.isnan(tow.resistance_n) for tow in tows):
         rows.insert(0, ("resistance_n", "resistance", "N"))
     title = "Straight tow: mean loads of the water on the model"
-    with drawn(6.4, 1.7 * len(rows) + 0.7, title) as figure:
+    with new_figure(6.4, 1.7 * len(rows) + 0.7, title) as figure:
         panels = figure.subplots(len(rows), 1, sharex=True)
         speeds = np.array([tow.speed_m_s for tow in tows])
         for panel, (value, name, unit) in zip(panels, rows, strict=True):
@@ -144,7 +144,7 @@ def chart_figure(charts: Sequence[Chart]) -> "Figure":
     """Return one panel a quantity over the numbers of the repeats."""
     from matplotlib.ticker import MaxNLocator
 
-    with drawn(7.0, 1.8 * len(charts) + 0.6) as figure:
+    with new_figure(7.0, 1.8 * len(charts) + 0.6) as figure:
         panels = figure.subplots(len(charts), 1, sharex=True, squeeze=False)[:, 0]
         for panel, chart in zip(panels, charts, strict=True):
             numbers = range(1, chart.values.size + 1)

@@ -12,7 +12,7 @@ from analysis.resolver.weights import gate_weights
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import axis_label, display, loads_first, shown_name
 from pmm.document.notation import counted
-from pmm.document.style import FIT, PALETTE, TRACE, drawn
+from pmm.document.style import FIT, PALETTE, TRACE, new_figure
 from pmm.report.envelope import tops
 from pmm.report.gate import caption, fitted, gate_sums, reading_of
 
@@ -45,7 +45,7 @@ def spectrum_figure(analysis: Analysis, reading_index: int = 0) -> "Figure":
     reading = reading_of(analysis, reading_index)
     order = loads_first(analysis.recording)
     frequency_hz, amplitude, periods = gate_spectrum(analysis, reading)
-    with drawn(
+    with new_figure(
         10.5, 3.3 + 1.7 * len(order), f"{shown_name(reading.run)}: {caption(reading)}"
     ) as figure:
         grid = figure.add_gridspec(len(order) + 1, 1, height_ratios=[*(1.0 for _ in order), 1.25])

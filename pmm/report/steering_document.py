@@ -103,7 +103,10 @@ def _contents(steering: CampaignSteering, level: float) -> tuple[Content, ...]:
     return (
         _parameters(rows, level),
         Notes(
-            [Note("doubt", doubt) for doubt in doubts(parameters, steering.runs, steering.known)],
+            [
+                Note("doubt", doubt)
+                for doubt in doubts(parameters, steering.runs, steering.particulars)
+            ],
             "doubts",
         ),
         Notes(
@@ -166,7 +169,7 @@ def _fit(steering: CampaignSteering) -> Iterator[str]:
 
 
 def _propulsion(steering: CampaignSteering, factor: float) -> Table[SelfPropulsion]:
-    def told(heading: str, key: str, unit: str, u: str) -> Column[SelfPropulsion]:
+    def value_column(heading: str, key: str, unit: str, u: str) -> Column[SelfPropulsion]:
         return Column(
             heading,
             lambda point: rounded(getattr(point, key), factor * getattr(point, u)),
@@ -176,9 +179,9 @@ def _propulsion(steering: CampaignSteering, factor: float) -> Table[SelfPropulsi
 
     columns: tuple[Column[SelfPropulsion], ...] = (
         number("U", "speed_m_s", written("g"), "m/s"),
-        told("resistance", "resistance_n", "N", "resistance_u"),
-        told("thrust", "thrust_n", "N", "thrust_u"),
-        told("revolutions", "rate_hz", "1/s", "rate_u"),
+        value_column("resistance", "resistance_n", "N", "resistance_u"),
+        value_column("thrust", "thrust_n", "N", "thrust_u"),
+        value_column("revolutions", "rate_hz", "1/s", "rate_u"),
         number("J", "advance", written(".4g")),
         *_conditions(steering),
         *data_only("resistance_n", "resistance_u", "thrust_n", "thrust_u", "rate_hz", "rate_u"),
@@ -225,7 +228,9 @@ def _tows(steering: CampaignSteering, factor: float) -> Table[SteeredRun]:
 
     def unit(run: SteeredRun) -> float:
         """Return rho n² D⁵, by which a torque becomes K_Q."""
-        return steering.known.density_kg_m3 * run.rate_hz**2 * steering.known.diameter_m**5
+        return (
+            steering.particulars.density_kg_m3 * run.rate_hz**2 * steering.particulars.diameter_m**5
+        )
 
     columns: tuple[Column[SteeredRun], ...] = (
         word("run", "run"),

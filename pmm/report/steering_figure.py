@@ -9,7 +9,7 @@ from analysis.steering.inflow import INFLOW, behind
 from analysis.steering.observations import SteeringRuns
 from hardware.description.arrays import FloatArray
 from pmm.document.notation import degrees
-from pmm.document.style import PALETTE, TRACE, drawn
+from pmm.document.style import PALETTE, TRACE, new_figure
 from pmm.steering.workflow import CampaignSteering
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ _MARKS = (("o", "-"), ("s", "--"), ("^", ":"), ("D", "-."))
 
 def steering_figure(steering: CampaignSteering) -> "Figure":
     """Draw normal force over rudder angle, and force ahead over thrust."""
-    with drawn(10.0, 4.4) as figure:
+    with new_figure(10.0, 4.4) as figure:
         left, right = figure.subplots(1, 2)
         _normal_force(left, steering)
         _load_variation(right, steering)
@@ -36,7 +36,10 @@ def _normal_force(axes: "Axes", steering: CampaignSteering) -> None:
         _looks(), groups.items(), strict=False
     ):
         u, v, r = runs.motions[:, condition]
-        drift, turning = degrees(np.arctan2(-v, u)), r * steering.known.length_m / np.hypot(u, v)
+        drift, turning = (
+            degrees(np.arctan2(-v, u)),
+            r * steering.particulars.length_m / np.hypot(u, v),
+        )
         angles = np.degrees(runs.rudder_rad[rows])
         axes.errorbar(
             angles, runs.values[4, rows], 2.0 * runs.uncertainty[4, rows], fmt=mark, color=colour,
@@ -72,7 +75,7 @@ def _fitted(
     if "epsilon" not in parameters.names:
         return None
     length, values = (
-        steering.known.length_m,
+        steering.particulars.length_m,
         dict(zip(parameters.names, parameters.values, strict=True)),
     )
     inflow = np.array([values.get(name, 0.0) for name in INFLOW])
@@ -82,7 +85,7 @@ def _fitted(
     unit = np.ones((5, _POINTS))
     runs = SteeringRuns(("",) * _POINTS, motion, over, np.full(_POINTS, rate_hz), unit, unit)
     wake = np.full(_POINTS, parameters.wakes[3, condition])
-    return np.degrees(over), behind(runs, steering.known, wake, inflow)[1]
+    return np.degrees(over), behind(runs, steering.particulars, wake, inflow)[1]
 
 
 def _load_variation(axes: "Axes", steering: CampaignSteering) -> None:

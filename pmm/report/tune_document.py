@@ -56,8 +56,8 @@ _NUMBERS: Final[tuple[Column[_Number], ...]] = (
 def tune_document(tuning: Tuning) -> Document:
     """Return what is told of a speed loop; ``docs/devices.md`` describes the keys."""
     contents: list[Content] = [Data("job", "tune"), Text(_answer(tuning), strong=True)]
-    if tuning.found is not None and tuning.record is not None:
-        loop, record = tuning.found, tuning.record
+    if tuning.identified_loop is not None and tuning.record is not None:
+        loop, record = tuning.identified_loop, tuning.record
         contents += [
             Table("Found", _NUMBERS, _numbers(loop, tuning), "found"),
             Figure("lag", "What the ramps make of the shaft's angle, measured and of the loop "

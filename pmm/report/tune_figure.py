@@ -7,7 +7,7 @@ import numpy as np
 
 from analysis.speed_loop.identification import IdentifiedLoop, SpeedRecord
 from analysis.speed_loop.loop import ShaftLoop
-from pmm.document.style import FIT, PALETTE, TRACE, drawn
+from pmm.document.style import FIT, PALETTE, TRACE, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -17,7 +17,7 @@ _POINTS: Final = 600
 _SPANS: Final = 5.0  # of one over the slowest crossover, that a step is shown for
 
 
-class Named(Protocol):
+class NamedLoop(Protocol):
     """A setting of the loop and its name."""
 
     @property
@@ -29,11 +29,11 @@ class Named(Protocol):
         """The loop."""
 
 
-def bode_figure(settings: Sequence[Named]) -> "Figure":
+def bode_figure(settings: Sequence[NamedLoop]) -> "Figure":
     """Draw magnitude and phase of the open loops, and the speed per load torque."""
     frequency_hz = np.logspace(*_DECADES, _POINTS)
     omega = 2.0 * np.pi * frequency_hz
-    with drawn(9.0, 8.0) as figure:
+    with new_figure(9.0, 8.0) as figure:
         magnitude, phase, load = figure.subplots(3, 1, sharex=True)
         for setting, color in zip(settings, PALETTE, strict=False):
             load.loglog(frequency_hz, np.abs(setting.loop.load_response(omega)), color=color)
@@ -55,7 +55,7 @@ def bode_figure(settings: Sequence[Named]) -> "Figure":
     return figure
 
 
-def step_figure(settings: Sequence[Named]) -> "Figure":
+def step_figure(settings: Sequence[NamedLoop]) -> "Figure":
     """Draw the speed after a step of the set-point, and after a load of 1 N m."""
     import control  # type: ignore[import-untyped]
 
@@ -64,7 +64,7 @@ def step_figure(settings: Sequence[Named]) -> "Figure":
     ]
     slowest = min((setting.loop.margins.crossover_hz for setting in stable_settings), default=1.0)
     time_s = np.linspace(0.0, _SPANS / slowest, _POINTS)
-    with drawn(9.0, 5.5) as figure:
+    with new_figure(9.0, 5.5) as figure:
         setpoint, load = figure.subplots(2, 1, sharex=True)
         for setting, color in zip(settings, PALETTE, strict=False):
             if setting in stable_settings:
@@ -84,7 +84,7 @@ def step_figure(settings: Sequence[Named]) -> "Figure":
 def record_figure(record: SpeedRecord, loop: IdentifiedLoop) -> "Figure":
     """Draw by how much the shaft is behind its trapezoid, and what the loop found leaves."""
     since = record.time_s - record.time_s[0]
-    with drawn(9.0, 5.0) as figure:
+    with new_figure(9.0, 5.0) as figure:
         lag, residual = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
         lag.plot(since, 1e3 * loop.lag_rad, color=TRACE, label="measured")
         lag.plot(since, 1e3 * loop.fitted_rad, "--", color=FIT, label="loop found")

@@ -15,7 +15,7 @@ from pmm.coefficients.wave_runs import WaveRun
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import Column, Figure, Table, data_only, word
 from pmm.document.notation import NOT_KNOWN, rounded
-from pmm.document.style import PALETTE, drawn
+from pmm.document.style import PALETTE, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -128,7 +128,7 @@ def wave_figures(outcome: CampaignOutcome) -> Iterator[Figure]:
 
 def wave_figure(runs: Sequence[WaveRun]) -> "Drawing":
     """Draw force and moment over the lines' frequencies, a colour for each run."""
-    with drawn(6.8, 5.2) as figure:
+    with new_figure(6.8, 5.2) as figure:
         panels = figure.subplots(2, 1, sharex=True)
         for k, run in enumerate(runs):
             weights = dict(_weights(run))

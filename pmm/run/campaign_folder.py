@@ -109,7 +109,7 @@ def finished_runs(folder: Path, plan: Plan, rig: RigFile) -> tuple[FinishedRun, 
         if header.run_name != run_folder.name:
             continue
         run = RunPlan.from_json(header.plan_json, str(path))
-        marker, made = read_marker(run_folder) or {}, now.made(header, run)
+        marker, made = read_marker(run_folder) or {}, now.origin(header, run)
         finished_run = FinishedRun(
             run,
             f"{run.name}/{RECORDING}",

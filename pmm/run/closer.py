@@ -40,7 +40,7 @@ class Closing:
         self._future: Future[str] | None = executor.submit(self._work) if executor else None
         self._file = "" if executor else self._work()
 
-    def done(self) -> bool:
+    def is_closed(self) -> bool:
         """Whether the recording is closed and the outcome can be taken."""
         return self._future is None or self._future.done()
 
@@ -67,7 +67,7 @@ class Closing:
         except Exception as error:  # whatever it is, the loop goes on and the journals stay
             why = error if isinstance(error, PmmError | OSError) else as_fault("recorder", error)
             self._outcome = RunEnd.FAULT
-            if not self._measurement.journal.begun:
+            if not self._measurement.journal.has_files:
                 self._reason = self._reason or str(why)
                 return ""
             said = f"the recording was not completed: {why}; `pmm recover` makes one"
@@ -114,7 +114,7 @@ class Closer:
 
     def closed(self) -> RunOutcome | None:
         """Return how a run ended, once, in the cycle in which its recording is complete."""
-        if self._closing is None or not self._closing.done():
+        if self._closing is None or not self._closing.is_closed():
             return None
         closing, self._closing = self._closing, None
         return self._keep(closing.result())

@@ -52,7 +52,7 @@ class Conduct:
         Cycle in which the present state was entered.
     rested_since
         Cycle since which the shaft has been at rest: calm water is counted from there.
-    told
+    command_given
         Whether the present state has given its command.
     placed
         Where each axis was last sent.
@@ -84,7 +84,7 @@ class Conduct:
     surroundings: Surroundings = field(default_factory=Surroundings)
     since: int = 0
     rested_since: int | None = None
-    told: bool = False
+    command_given: bool = False
     pushed: int = 0
     restless: int = 0
     astray: int = 0
@@ -112,7 +112,7 @@ class Conduct:
     def go(self, state: State) -> None:
         """Enter a state in the present cycle; raises as the state machine does."""
         self.machine.go(state)
-        self.since, self.told = self.rig.number, False
+        self.since, self.command_given = self.rig.number, False
 
     @property
     def state(self) -> State:

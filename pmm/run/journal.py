@@ -16,7 +16,7 @@ class RunJournal(Protocol):
     """Keeps a run; :class:`pmm.recorder.run_recorder.RunRecorder` does it on disk."""
 
     @property
-    def begun(self) -> bool:
+    def has_files(self) -> bool:
         """Whether there is something to keep, and to recover if it cannot be closed."""
         ...
 

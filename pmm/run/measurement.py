@@ -16,15 +16,15 @@ from hardware.description.known_loads import LoadStep
 from hardware.errors import HardwareError
 from hardware.rig import Rig
 from hardware.roles import Pulse
-from pmm.plan.force_estimate import Expected
+from pmm.plan.force_estimate import ExpectedAmplitude
 from pmm.plan.run_plan import RunPlan
 from pmm.recorder.header import LiveSettings
-from pmm.recorder.live_path import GateResolver, Taken, as_record, header_channels
+from pmm.recorder.live_path import CycleSamples, GateResolver, as_record, header_channels
 from pmm.run.errors import GateVoidError, RecordingError
 from pmm.run.gate import Gate, GateState
 from pmm.run.journal import RunJournal
 from pmm.run.push_record import PushRecord
-from pmm.run.readings import Means, beside, far_text, needles, rows_of, worst_relative
+from pmm.run.readings import Means, far_text, needles, rows_of, with_expected, worst_relative
 from pmm.run.status import ChannelReading
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ _TRIES = 3  # gates of a run; the third void one ends it
 
 
 @contextmanager
-def kept(run: str) -> Iterator[None]:
+def recorder_faults(run: str) -> Iterator[None]:
     """Turn what a recorder raises into a fault of the run, which stops it along the profile."""
     try:
         yield
@@ -72,7 +72,7 @@ class Measurement:
         run: RunPlan,
         journal: RunJournal,
         live: LiveSettings,
-        expected: Mapping[str, Expected] = MappingProxyType({}),
+        expected: Mapping[str, ExpectedAmplitude] = MappingProxyType({}),
     ) -> None:
         self.run, self.journal = run, journal
         self.channels = header_channels(rig)
@@ -100,7 +100,7 @@ class Measurement:
         RecordingError
             If its folder cannot be made, holds a run, or its disk has no room for this one.
         """
-        with kept(self.run.name):
+        with recorder_faults(self.run.name):
             return self.journal.opened(wait=wait)
 
     def arm(self) -> None:
@@ -123,7 +123,7 @@ class Measurement:
         self.gate.hold()
         self.gate.pulse(self._rig.number / self._rate_hz)
 
-    def cycle(self, taken: Taken, lateness_s: float, now_s: float) -> None:
+    def cycle(self, taken: CycleSamples, lateness_s: float, now_s: float) -> None:
         """Take what came in a cycle.
 
         Raises
@@ -132,13 +132,13 @@ class Measurement:
             If the recorder cannot keep it.
         """
         self._next = taken.first + taken.values.shape[1]
-        with kept(self.run.name):
+        with recorder_faults(self.run.name):
             self.journal.cycle_statistics(lateness_s)
             self.journal.samples(taken.first, taken.values)
             for pulse in taken.pulses:
                 self.journal.pulse(pulse)
         if self._resolving is not None:
-            self._heard(self._resolving.push(taken))
+            self._take_readings(self._resolving.push(taken))
             self._judge(self._resolving.resolver)
         if self._towed is not None and self.gate.state is GateState.OPEN:
             self._speeds.append(taken.values[self._towed])
@@ -147,7 +147,7 @@ class Measurement:
             self._push.take(taken.values)
         for pulse in taken.pulses:
             self._pulse(pulse)
-        with kept(self.run.name):
+        with recorder_faults(self.run.name):
             self.journal.tick(now_s)
 
     def pushing(self) -> None:
@@ -187,7 +187,7 @@ class Measurement:
         self._tell_speed()
         if self._resolving is None:
             return
-        self._heard(self._resolving.resolver.finish())
+        self._take_readings(self._resolving.resolver.finish())
         self.reading = self._resolving.resolver.so_far()
         periods = 0 if self.reading is None else self.reading.periods
         if periods != self.gate.periods:
@@ -205,19 +205,19 @@ class Measurement:
     def event(self, kind: str, text: str) -> None:
         """Write down what happened."""
         number = self._rig.number
-        with kept(self.run.name):
+        with recorder_faults(self.run.name):
             self.journal.event(number, number / self._rate_hz, kind, text)
 
     def rows(self) -> tuple[ChannelReading, ...]:
         """Return what is known of the channels by now: final, else the needles, else nothing."""
         if self.gate.state is GateState.HELD and self.reading is not None:
-            return beside(rows_of(self.reading), self._expected)
+            return with_expected(rows_of(self.reading), self._expected)
         if self._resolving is not None:
             resolver = self._resolving.resolver
             if resolver.finished > max(self.reading.periods if self.reading else 0, 1):
                 self.reading = resolver.so_far()
             rows = needles(self.channels, resolver.provisional(), self.reading)
-            return beside(rows, self._expected)
+            return with_expected(rows, self._expected)
         return self._means.rows()
 
     def _pulse(self, pulse: Pulse) -> None:
@@ -233,9 +233,9 @@ class Measurement:
         self.gate.pulse(pulse.time_s)
         if self.gate.state is not before:
             self.event("gate", f"{self.gate.state} at {pulse.time_s:.6f} s")
-        self._heard(readings)
+        self._take_readings(readings)
 
-    def _heard(self, readings: Sequence[Harmonics]) -> None:
+    def _take_readings(self, readings: Sequence[Harmonics]) -> None:
         if self._resolving is not None:
             self._tell_spikes(self._resolving)
         for reading in readings:
@@ -266,7 +266,7 @@ class Measurement:
             self.note("spike", Severity.WARNING, text)
 
     def _keep(self, reading: Harmonics) -> None:
-        with kept(self.run.name):
+        with recorder_faults(self.run.name):
             self.journal.harmonic(as_record(reading))
 
     def _judge(self, resolver: LiveResolver) -> None:

@@ -96,10 +96,10 @@ class Interrupts:
     def counted(self) -> Iterator[None]:
         """Count them for as long as the context lasts."""
         handlers: dict[signal.Signals, Callable[..., None] | signal.Handlers] = {
-            **dict.fromkeys(_known(_STOPS), self._take),
-            **dict.fromkeys(_known(_HALTS), signal.SIG_IGN),
+            **dict.fromkeys(_available_signals(_STOPS), self._take),
+            **dict.fromkeys(_available_signals(_HALTS), signal.SIG_IGN),
         }
-        for signum in _known(_HANGS_UP):
+        for signum in _available_signals(_HANGS_UP):
             if signal.getsignal(signum) is not signal.SIG_IGN:
                 handlers[signum] = self._hang_up
         before = {signum: signal.signal(signum, handler) for signum, handler in handlers.items()}
@@ -110,7 +110,7 @@ class Interrupts:
                 signal.signal(signum, handler)
 
 
-def _known(names: Sequence[str]) -> list[signal.Signals]:
+def _available_signals(names: Sequence[str]) -> list[signal.Signals]:
     """Return the signals of these names that the system has."""
     return [signal.Signals[name] for name in names if name in signal.Signals.__members__]
 

@@ -32,8 +32,8 @@ def _homing(c: Conduct) -> State | None:
     if turns or not all(axis.enabled for axis in c.rig.powered()):
         return None
     axes = c.rig.axes()
-    if not c.told:
-        c.told = True
+    if not c.command_given:
+        c.command_given = True
         for axis in axes:
             if not axis.homed:
                 axis.home()
@@ -54,10 +54,10 @@ def _enter_setting(c: Conduct) -> None:
 def _setting(c: Conduct) -> State | None:
     """Set the axes, after the operator has done what is asked."""
     check_standing(c)
-    if not c.questions.done() or not all(axis.enabled for axis in c.rig.powered()):
+    if not c.questions.ask_on() or not all(axis.enabled for axis in c.rig.powered()):
         return None
-    if not c.told:
-        c.told = True
+    if not c.command_given:
+        c.command_given = True
         if c.rig.path is not None and c.present.oscillates:
             c.rig.path.follow(c.present.set_point.lines)
         for axis, wanted in c.axes():
@@ -99,13 +99,13 @@ def _at_speed(c: Conduct) -> bool:
 
 def _starting(c: Conduct) -> State | None:
     """Bring carriage and shaft to speed, once the recorder is open: nothing moves unrecorded."""
-    if not c.recording.opened(wait=c.waits) or not c.questions.done() or not _at_speed(c):
+    if not c.recording.opened(wait=c.waits) or not c.questions.ask_on() or not _at_speed(c):
         return None
     shaft = c.rig.shaft
     if not c.present.oscillates or shaft is None:
         return State.SETTLING
-    if not c.told:
-        c.told = True
+    if not c.command_given:
+        c.command_given = True
         c.rested_since = None
         shaft.turn(c.present.set_point.frequency_hz)
         c.leads = c.speed_path is not None
@@ -150,7 +150,7 @@ def _gate_open(c: Conduct) -> State | None:
     gate = c.recording.gate
     if not _by_pulses(c):
         _push(c)
-        c.questions.done()
+        c.questions.ask_on()
         if c.elapsed_s >= _gate_s(c.present) and not c.questions.present:
             c.recording.close_by_time()
     else:

@@ -21,19 +21,19 @@ class PlannedRuns:
     ----------
     runs
         All of them, in order.
-    held
+    held_runs
         Names of the runs that are passed over until they are released.
     """
 
     def __init__(self, runs: Sequence[RunPlan], ended: Callable[[RunPlan], bool]) -> None:
         self._ended = ended
-        self.held: frozenset[str] = frozenset()
+        self.held_runs: frozenset[str] = frozenset()
         self._set(tuple(runs))
 
     @property
-    def left(self) -> list[RunPlan]:
+    def runs_left(self) -> list[RunPlan]:
         """Runs that are under way or still to be made, and not held."""
-        return [run for run in self.runs if run.name not in self.held and not self._ended(run)]
+        return [run for run in self.runs if run.name not in self.held_runs and not self._ended(run)]
 
     def number(self, run: RunPlan) -> int:
         """Return the place of a run, from 1."""
@@ -55,9 +55,9 @@ class PlannedRuns:
                 raise RunStateError(f"{run.name} has begun; only runs still to be made are changed")
         planned = (*begun.values(), *(run for run in runs if run.name not in begun))
         passed = frozenset(held) - set(begun)
-        if (planned, passed) == (self.runs, self.held):
+        if (planned, passed) == (self.runs, self.held_runs):
             raise RunStateError(UNCHANGED)
-        self.held = passed
+        self.held_runs = passed
         self._set(planned)
 
     def _set(self, runs: tuple[RunPlan, ...]) -> None:

@@ -11,7 +11,7 @@ from analysis.resolver.live_resolver import Provisional
 from analysis.uncertainty.freedom import student_factor
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
-from pmm.plan.force_estimate import Expected
+from pmm.plan.force_estimate import ExpectedAmplitude
 from pmm.run.status import ChannelReading
 
 
@@ -81,8 +81,8 @@ class Means:
         )
 
 
-def beside(
-    rows: Sequence[ChannelReading], expected: Mapping[str, Expected]
+def with_expected(
+    rows: Sequence[ChannelReading], expected: Mapping[str, ExpectedAmplitude]
 ) -> tuple[ChannelReading, ...]:
     """Return the rows with what the plan estimates; without an interval yet none is far."""
     compared_rows = []

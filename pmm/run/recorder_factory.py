@@ -23,7 +23,7 @@ from pmm.recorder.header import LiveSettings, RunHeader
 from pmm.recorder.live_path import header_channels, sampled_devices
 from pmm.recorder.run_recorder import RunRecorder
 from pmm.run.journal import Taps
-from pmm.run.measurement import Measurement, kept
+from pmm.run.measurement import Measurement, recorder_faults
 
 _FRAMES_A_CYCLE: Final = 3.0  # of each node: process data both ways, and its share of the rest
 _MEGA: Final = 1e6
@@ -73,7 +73,7 @@ class RecorderFactory:
         try left is moved aside.
         """
         watch = self._watch()
-        with kept(run.name):
+        with recorder_faults(run.name):
             recorder = RunRecorder(
                 self.folder / run.name,
                 self._header(run),

@@ -28,7 +28,7 @@ from pmm.run.stopper import Stopper
 from pmm.run.view import View
 
 if TYPE_CHECKING:
-    from pmm.recorder.live_path import Taken
+    from pmm.recorder.live_path import CycleSamples
 
 _FINAL: Final = frozenset({State.STOPPED, State.FAULT, State.DONE})
 
@@ -73,7 +73,7 @@ class RunControl:
         executor: Executor | None = None,
     ) -> None:
         self.rig = rig
-        self.taken: Taken | None = None
+        self.taken: CycleSamples | None = None
         self.free_bytes: Callable[[], int | None] = lambda: None
         self._clock, self._view = clock, view
         self._conduct = c = Conduct(rig, rig_file, begin, waits=executor is None)
@@ -136,7 +136,7 @@ class RunControl:
     @property
     def finished(self) -> bool:
         """Whether nothing more happens without a command."""
-        more = self.state is State.DONE and bool(self.planned.left)
+        more = self.state is State.DONE and bool(self.planned.runs_left)
         settled = not self._closer.busy and self.measurement is None
         return self.state in _FINAL and not more and settled and not self._stopper.winding_down
 
@@ -227,7 +227,7 @@ class RunControl:
         if not self._stopper.at_rest():
             return None
         self._closer.close(c, c.ending)
-        if c.leaves_plan or all(run.name == c.present.name for run in self.planned.left):
+        if c.leaves_plan or all(run.name == c.present.name for run in self.planned.runs_left):
             self._stopper.power_off()
         return State.STOPPED if c.leaves_plan else State.DONE
 
@@ -244,9 +244,9 @@ class RunControl:
 
     def _go_on(self) -> State | None:
         """Take the next run once the last one's recording is closed."""
-        if self._closer.busy or not self.planned.left:
+        if self._closer.busy or not self.planned.runs_left:
             return None
-        self._conduct.take(self.planned.left[0])
+        self._conduct.take(self.planned.runs_left[0])
         return State.SETTING
 
     def _start(self) -> None:
@@ -254,9 +254,9 @@ class RunControl:
             raise RunStateError(
                 "the last run's recording is still being completed; start again soon"
             )
-        if not self.planned.left:
+        if not self.planned.runs_left:
             raise RunStateError("all runs are done or held; nothing to start")
-        self._conduct.take(self.planned.left[0])
+        self._conduct.take(self.planned.runs_left[0])
         enter(self._conduct, State.HOMING)
 
     def _skip(self) -> None:

@@ -59,7 +59,7 @@ class Sources:
         self._folder, self._plan, self._rig = folder, plan, rig
         self._planned = {run.name: run for run in plan.runs}
 
-    def made(self, header: RunHeader, run: RunPlan) -> RunOrigin:
+    def origin(self, header: RunHeader, run: RunPlan) -> RunOrigin:
         """Return what a recorded run was made from.
 
         Parameters
@@ -186,13 +186,13 @@ def _leaves(value: Any, place: Place = ()) -> Iterator[tuple[Place, Any]]:
 
 def _was(before: Any, now: Any) -> str:
     if before is _UNSET:
-        return f"was not set, is {_said(now)}"
+        return f"was not set, is {_value_text(now)}"
     if now is _UNSET:
-        return f"was {_said(before)}, is not set"
-    return f"was {_said(before)}, is {_said(now)}"
+        return f"was {_value_text(before)}, is not set"
+    return f"was {_value_text(before)}, is {_value_text(now)}"
 
 
-def _said(value: Any) -> str:
+def _value_text(value: Any) -> str:
     return "none" if value is None else json.dumps(value, default=str, ensure_ascii=False)
 
 

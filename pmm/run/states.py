@@ -143,7 +143,7 @@ class FaultRow:
         Whether it leads there only where a command of run control's own has failed.
     takes_power
         Whether axes lose their power as soon as they rest, one by one, not when all do.
-    heard
+    axes_heard
         Whether the axes are still heard, so that their rest can be waited for.
     """
 
@@ -153,7 +153,7 @@ class FaultRow:
     within: frozenset[State] = frozenset(State)
     own_only: bool = False
     takes_power: bool = False
-    heard: bool = True
+    axes_heard: bool = True
 
 
 FAULTS: Final[Mapping[Reaction, FaultRow]] = MappingProxyType(
@@ -181,7 +181,7 @@ FAULTS: Final[Mapping[Reaction, FaultRow]] = MappingProxyType(
             "as a quick stop; waits 3 s, then says to look",
             _S.FAULT,
             takes_power=True,
-            heard=False,
+            axes_heard=False,
         ),
     }
 )

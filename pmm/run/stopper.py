@@ -40,20 +40,20 @@ class Stopper:
             If an axis still moves after its time, and nobody is asked for anything.
         """
         c = self._conduct
-        if c.told and c.towed:  # on its way back the carriage has a deadline of its own
-            return c.questions.done() and not c.moving
+        if c.command_given and c.towed:  # on its way back the carriage has a deadline of its own
+            return c.questions.ask_on() and not c.moving
         if c.moving:
             late = c.elapsed_s > _REST_S + c.ramp_s
             if late and not c.questions.present:
                 raise _still_moving(heard=True)
             return False
-        if not c.told:
-            c.told = True
+        if not c.command_given:
+            c.command_given = True
             c.rested_since = c.rig.number if c.rested_since is None else c.rested_since
             if c.rig.shaft is not None:
                 c.rig.shaft.disable()
             self._send_back()
-        return c.questions.done() and not c.moving
+        return c.questions.ask_on() and not c.moving
 
     def _send_back(self) -> None:
         """Send the carriage back where the run has towed, or have it brought back."""
@@ -68,7 +68,7 @@ class Stopper:
     def begin(self, cause: HardwareError) -> None:
         """Begin to wind down in a fault; the rig has told the axes to stop already."""
         self.winding_down, self._power_taken = True, False
-        self._heard = FAULTS[cause.reaction].heard
+        self._heard = FAULTS[cause.reaction].axes_heard
 
     def wound_down(self) -> bool:
         """Go on in a fault; tell whether this is the cycle in which it ends, with the power off.

@@ -213,7 +213,7 @@ class Questions:
         """Drop all demands that are not answered yet."""
         self._open.clear()
 
-    def done(self) -> bool:
+    def ask_on(self) -> bool:
         """Ask on; tell whether everything is answered."""
         while self._open:
             answer = self._prompt(self._open[0])
@@ -234,7 +234,7 @@ def drift_prompt(geometry: Geometry) -> str:
         case DriftBy.STRUTS_OFFSET if geometry.has_table:
             return f"set the turntable's mean angle: {angle}"
         case DriftBy.STRUTS_OFFSET:
-            return f"set the struts' mean positions apart: {_apart(geometry)}, for {angle}"
+            return f"set the struts' mean positions apart: {_offset_text(geometry)}, for {angle}"
 
 
 def _turned(straight: str, turned: str, angle_rad: float) -> str:
@@ -281,7 +281,7 @@ def _angle(geometry: Geometry) -> str:
     return f"{abs(angle):.4f} rad ({math.degrees(abs(angle)):.2f} deg), bow {to[angle < 0.0]}"
 
 
-def _apart(geometry: Geometry) -> str:
+def _offset_text(geometry: Geometry) -> str:
     offset = float(geometry.offset_m)
     to = ("down", "up") if geometry.plane is Plane.VERTICAL else ("to starboard", "to port")
     fore, aft = to if offset >= 0.0 else to[::-1]

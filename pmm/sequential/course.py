@@ -68,18 +68,18 @@ class CampaignCourse(Generic[JobT]):
             If a file is wrong, or the rig refuses a run; nothing is made of it then.
         """
         question = self.approval.question
-        if question and (yield from self._asked(question, "yn"))[0] == "n":
+        if question and (yield from self._ask(question, "yn"))[0] == "n":
             return
         self.approval.begin()
         while True:
-            look = yield from self._away(self.goal.look)
+            look = yield from self._do_aside(self.goal.look)
             self.show(look)
             look, who = yield from self._decided(look)
             decision = look.decision(who)
             keep_decision(self.folder, decision)
             job: JobT | None = None
             if look.ending is not Ending.REJECTED:
-                job = yield from self._away(partial(self._following, look))
+                job = yield from self._do_aside(partial(self._following, look))
             if job is None:
                 self.ended = decision
                 return
@@ -89,7 +89,7 @@ class CampaignCourse(Generic[JobT]):
         due = self.goal.plan(look)
         return self.open_job(due) if due else None
 
-    def _away(self, work: Callable[[], T]) -> Generator[None, None, T]:
+    def _do_aside(self, work: Callable[[], T]) -> Generator[None, None, T]:
         """Do what takes long, and yield nothing meanwhile."""
         if self.executor is None:
             return work()
@@ -107,12 +107,12 @@ class CampaignCourse(Generic[JobT]):
         question = _CHANGE if look.before else _FIRST
         letters = "ykn" if look.before else "yn"
         while True:
-            answer = yield from self._asked(question, letters)
+            answer = yield from self._ask(question, letters)
             decided = _decided(look, answer)
             if decided is not None:
                 return decided, _BY_OPERATOR
 
-    def _asked(self, question: str, letters: str) -> Generator[None, None, str]:
+    def _ask(self, question: str, letters: str) -> Generator[None, None, str]:
         """Return what the operator answers, asked until it begins with one of some letters."""
         while True:
             answer = self.answers(question)

@@ -106,7 +106,7 @@ def carry_out_campaign(
         course = stack.enter_context(
             campaign_course(file, goal, asked, answers, screen.show, executor)
         )
-        jobs = _told(course.jobs(), screen.job)
+        jobs = _tell_jobs(course.jobs(), screen.job)
         first = next_job(jobs, answers, screen.tell)
         report = RunReport()
         if first is not None:
@@ -192,7 +192,9 @@ def _opened(asked: CampaignRequest, folder: Path, stack: ExitStack, names: Seque
     return job
 
 
-def _told(jobs: Iterator[RunJob | None], tell: Callable[[RunJob], None]) -> Iterator[RunJob | None]:
+def _tell_jobs(
+    jobs: Iterator[RunJob | None], tell: Callable[[RunJob], None]
+) -> Iterator[RunJob | None]:
     """Yield what follows, each job told first, in the thread that shows it."""
     for job in jobs:
         if job is not None:

@@ -39,16 +39,16 @@ class GrowingPlan:
     ----------
     entries
         Behind those that are made in any case, as the file has them: one run each.
-    done
+    complete_names
         Names of all runs that are complete.
     """
 
     plan: Plan
     entries: tuple[Mapping[str, Any], ...]
-    done: frozenset[str]
+    complete_names: frozenset[str]
 
     @property
-    def chosen(self) -> tuple[RunPlan, ...]:
+    def chosen_runs(self) -> tuple[RunPlan, ...]:
         """Runs that were chosen, in their order."""
         names = {entry["name"] for entry in self.entries}
         return tuple(
@@ -56,25 +56,27 @@ class GrowingPlan:
         )
 
     @property
-    def made(self) -> tuple[RunPlan, ...]:
+    def complete_runs(self) -> tuple[RunPlan, ...]:
         """All runs that are complete, in the plan's order."""
-        return tuple(run for run in self.plan.runs if run.name in self.done)
+        return tuple(run for run in self.plan.runs if run.name in self.complete_names)
 
     @property
-    def open(self) -> tuple[RunPlan, ...]:
+    def open_runs(self) -> tuple[RunPlan, ...]:
         """All runs that are not complete."""
-        return tuple(run for run in self.plan.runs if run.name not in self.done)
+        return tuple(run for run in self.plan.runs if run.name not in self.complete_names)
 
     @property
-    def left(self) -> tuple[RunPlan, ...]:
+    def runs_left(self) -> tuple[RunPlan, ...]:
         """Chosen runs that are not complete."""
-        return tuple(run for run in self.chosen if run.name not in self.done)
+        return tuple(run for run in self.chosen_runs if run.name not in self.complete_names)
 
     @property
     def given_left(self) -> tuple[RunPlan, ...]:
         """Runs that are made in any case and are not complete, zero and control runs apart."""
-        apart = {run.name for run in self.chosen}
-        return tuple(run for run in self.open if run.name not in apart and run.kind not in _BETWEEN)
+        apart = {run.name for run in self.chosen_runs}
+        return tuple(
+            run for run in self.open_runs if run.name not in apart and run.kind not in _BETWEEN
+        )
 
     @property
     def due(self) -> tuple[RunPlan, ...]:
@@ -83,8 +85,8 @@ class GrowingPlan:
         In the end these are the closing zero runs. A closing control run is none of them: whatever
         is added later would find it in its way.
         """
-        runs = self.open
-        upto = self.left[:1] or self.given_left[-1:]
+        runs = self.open_runs
+        upto = self.runs_left[:1] or self.given_left[-1:]
         if upto:
             return runs[: runs.index(upto[0]) + 1]
         return tuple(run for run in runs if run.kind is RunKind.ZERO)
@@ -93,19 +95,19 @@ class GrowingPlan:
     def closed(self) -> bool:
         """Whether the zero run behind the last run was made."""
         runs = self.plan.runs
-        return bool(runs) and runs[-1].kind is RunKind.ZERO and runs[-1].name in self.done
+        return bool(runs) and runs[-1].kind is RunKind.ZERO and runs[-1].name in self.complete_names
 
     def chosen_s(self, rig: RigFile) -> float:
         """Return the tank time of the chosen runs that were made, with what stands between them."""
-        names = {run.name for run in self.chosen}
-        rows = zip(self.made, duration_rows(self.made, rig), strict=True)
+        names = {run.name for run in self.chosen_runs}
+        rows = zip(self.complete_runs, duration_rows(self.complete_runs, rig), strict=True)
         return math.fsum(
             time_s for run, time_s in rows if run.name in names or run.kind in _BETWEEN
         )
 
     def made_entries(self) -> Iterator[Mapping[str, Any]]:
         """Yield the entries whose runs are complete."""
-        names = {run.entry for run in self.made}
+        names = {run.entry for run in self.complete_runs}
         yield from (entry for entry in self.entries if entry["name"] in names)
 
 
@@ -158,7 +160,7 @@ def write_growing(
     target = folder / PLAN
     entries = [] if before is None else list(before.made_entries())
     if before is not None and before.closed and runs:
-        entries.append(_apart(design, len(entries)))
+        entries.append(_separating_zero(design, len(entries)))
     first = 1 + sum("motion" in entry for entry in entries)
     entries += [run_entry(run, number) for number, run in enumerate(runs, first)]
     tables = [*design.plan_table.get("runs", []), *entries]
@@ -169,7 +171,7 @@ def write_growing(
     write_whole(target, "\n".join(text))
 
 
-def _apart(design: DesignFile, number: int) -> Mapping[str, Any]:
+def _separating_zero(design: DesignFile, number: int) -> Mapping[str, Any]:
     """Return a record at rest that keeps runs apart from those that a zero run has closed."""
     zero = design.tables.zero or ZeroTable()
     return {"kind": "zero", "name": f"apart-{number:02d}", "duration_s": zero.duration_s}

@@ -132,7 +132,7 @@ class Look:
 
     Attributes
     ----------
-    kept
+    kept_runs
         Planned runs that stay; none where ``proposed`` takes their place.
     proposed, costs_s, reasons
         Runs that are to be planned anew, not named yet, the tank time of each, and why each is
@@ -145,8 +145,8 @@ class Look:
 
     runs: tuple[str, ...]
     time_s: float
-    known: tuple[KnownTarget, ...]
-    kept: tuple[RunPlan, ...] = ()
+    known_targets: tuple[KnownTarget, ...]
+    kept_runs: tuple[RunPlan, ...] = ()
     proposed: tuple[RunPlan, ...] = ()
     costs_s: tuple[float, ...] = ()
     left_s: float = 0.0
@@ -167,7 +167,7 @@ class Look:
     def as_before(self) -> "Look":
         """The same with the plan as it was."""
         return replace(
-            self, kept=self.before, proposed=(), costs_s=(), reasons=(), left_s=self.before_s,
+            self, kept_runs=self.before, proposed=(), costs_s=(), reasons=(), left_s=self.before_s,
             remark="the plan stays",
         )  # fmt: skip
 
@@ -194,14 +194,14 @@ class Look:
         """Return it as it is kept."""
         ended = self.ending
         return Decision(
-            self.runs, self.time_s, self.known, tuple(run.name for run in self.kept),
+            self.runs, self.time_s, self.known_targets, tuple(run.name for run in self.kept_runs),
             tuple(map(in_words, self.proposed)), self.left_s, approved,
             "" if ended is None else str(ended), self.remark, self.notes, self.causes,
         )  # fmt: skip
 
 
 @dataclass(frozen=True)
-class _Kept:
+class _DecisionFile:
     decisions: tuple[Decision, ...] = field(default_factory=tuple)
 
 
@@ -233,7 +233,7 @@ def read_decisions(folder: Path) -> tuple[Decision, ...]:
         table = json.loads(path.read_text(encoding="utf-8"))
     except ValueError as error:
         raise ConfigurationError(f"{path}: damaged ({error}); take it out to go on") from error
-    content = validate(_Kept, table, faults) if isinstance(table, Mapping) else None
+    content = validate(_DecisionFile, table, faults) if isinstance(table, Mapping) else None
     if content is None or faults:
         raise as_error(path, faults or [Fault((), "holds no decisions")], {})
     return content.decisions

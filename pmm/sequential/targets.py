@@ -15,8 +15,13 @@ from analysis.design.expectation import ExpectedCoefficient
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.design.design_file import DesignFile
 from pmm.design.grid import costs_s
-from pmm.design.measured_runs import Measured, after, measured, repeats_said
-from pmm.design.run_selection import Design, beyond_runs, design, foreseen
+from pmm.design.measured_runs import (
+    MeasuredRuns,
+    continued_design,
+    read_measured_runs,
+    repeats_said,
+)
+from pmm.design.run_selection import Design, beyond_runs, design, expected_after
 from pmm.document.notation import clock
 from pmm.plan.duration import duration_rows
 from pmm.plan.run_plan import RunPlan
@@ -34,23 +39,23 @@ class _Standing:
     """A campaign's folder as it is: its plan, what was measured, what cannot be used and why."""
 
     plan: GrowingPlan | None
-    found: Measured | None
+    measurement: MeasuredRuns | None
     unusable: dict[str, str]
 
     @property
-    def left(self) -> tuple[RunPlan, ...]:
-        return () if self.plan is None else self.plan.left
+    def runs_left(self) -> tuple[RunPlan, ...]:
+        return () if self.plan is None else self.plan.runs_left
 
     @property
     def names(self) -> tuple[str, ...]:
         """Oscillations that are complete."""
-        made = () if self.plan is None else self.plan.made
+        made = () if self.plan is None else self.plan.complete_runs
         return tuple(run.name for run in made if run.oscillates)
 
     def repeats(self, stated: float) -> Iterator[str]:
         """Yield which scatter between repeats is counted on."""
-        if self.found is not None and self.found.cycles:
-            yield from filter(None, [repeats_said(self.found.cycles, stated)])
+        if self.measurement is not None and self.measurement.cycles:
+            yield from filter(None, [repeats_said(self.measurement.cycles, stated)])
 
 
 class TargetGoal:
@@ -86,17 +91,23 @@ class TargetGoal:
             *(why for why, row in hopeless),
             *standing.repeats(self._file.noise.repeat_relative),
         )
-        made = () if standing.plan is None else standing.plan.made
+        made = () if standing.plan is None else standing.plan.complete_runs
         look = Look(
             standing.names,
             math.fsum(duration_rows(made, self._file.rig)),
-            tuple(_known([*best_design.now, *(row for _, row in hopeless)] if file.cycles else [])),
+            tuple(
+                _known_targets(
+                    [*best_design.expected_now, *(row for _, row in hopeless)]
+                    if file.cycles
+                    else []
+                )
+            ),
             notes=notes,
         )
         has_fixed = (
             bool(self._file.fixed) if standing.plan is None else bool(standing.plan.given_left)
         )
-        planned_runs = _offered(standing.left, file)
+        planned_runs = _offered(standing.runs_left, file)
         ending = _ending(best_design, file, planned_runs, hopeless=bool(hopeless))
         if ending is not None and not has_fixed:
             return replace(look, ending=ending[0], remark=ending[1])
@@ -116,7 +127,7 @@ class TargetGoal:
         new_s = math.fsum(each_s)
         why = self._why_new(best_design, file, planned_runs, new_s, left_s)
         if not why or not new:
-            return replace(look, kept=tuple(planned_runs), left_s=left_s)
+            return replace(look, kept_runs=tuple(planned_runs), left_s=left_s)
         return replace(
             look,
             proposed=new,
@@ -139,10 +150,10 @@ class TargetGoal:
         if not planned_runs:
             return "the plan so far does not do" if file.cycles else "the first plan"
         candidates = [CandidateRun(run.set_point, run.periods, math.inf) for run in planned_runs]
-        would = foreseen(file, candidates)
-        if _missing(would) > _missing(best_design.known) + _WORSE:
+        would = expected_after(file, candidates)
+        if _missing(would) > _missing(best_design.expected_coefficients) + _WORSE:
             worst = max(would, key=_short)
-            return f"the runs that were planned would leave {_said(worst)}"
+            return f"the runs that were planned would leave {_uncertainty_text(worst)}"
         if left_s > file.time_s:
             return f"the runs that were planned take longer than {clock(file.time_s)}, what is left"
         return f"saves {clock(left_s - new_s)}" if left_s > _LONGER * new_s else ""
@@ -151,10 +162,12 @@ class TargetGoal:
         plan = read_growing(self._folder, self._file)
         if plan is None or not (self._folder / CAMPAIGN_FILE).is_file():
             return _Standing(plan, None, {})
-        if not any(run.oscillates for run in plan.made):
+        if not any(run.oscillates for run in plan.complete_runs):
             return _Standing(plan, None, {})
-        measurement = measured(self._file, self._folder, self._executor)
-        places = [k for k, cycle in enumerate(measurement.cycles) if cycle.name in plan.done]
+        measurement = read_measured_runs(self._file, self._folder, self._executor)
+        places = [
+            k for k, cycle in enumerate(measurement.cycles) if cycle.name in plan.complete_names
+        ]
         measurement = replace(
             measurement,
             candidates=tuple(measurement.candidates[k] for k in places),
@@ -163,19 +176,19 @@ class TargetGoal:
         usable = {cycle.name for cycle in measurement.cycles}
         unusable = {
             run.name: measurement.failed.get(run.name, "it is left out")
-            for run in plan.chosen
-            if run.name in plan.done and run.name not in usable
+            for run in plan.chosen_runs
+            if run.name in plan.complete_names and run.name not in usable
         }
         return _Standing(plan, measurement, unusable)
 
     def _going_on(self, standing: _Standing) -> DesignFile:
         """Return the design after what was made, with the time and the candidates that are left."""
-        measurement, plan, file = standing.found, standing.plan, self._file
+        measurement, plan, file = standing.measurement, standing.plan, self._file
         if measurement is not None and measurement.cycles:
-            file = after(file, [measurement])
+            file = continued_design(file, [measurement])
         if plan is None:
             return file
-        made = [run for run in plan.chosen if run.name in plan.done]
+        made = [run for run in plan.chosen_runs if run.name in plan.complete_names]
         barred = {run.set_point for run in made if run.name in standing.unusable}
         places = [k for k, run in enumerate(file.grid.runs) if run.set_point not in barred]
         grid = replace(
@@ -208,14 +221,14 @@ def _designed(
     while True:
         best_design = design(file)
         short = zip(
-            [row for row in best_design.known if not row.met],
+            [row for row in best_design.expected_coefficients if not row.met],
             best_design.why,
             strict=True,
         )
         bad = [(why, row) for row, why in short if math.isfinite(row.wanted) and beyond_runs(row)]
         if not bad:
             return file, best_design, hopeless
-        now = {(row.name, row.where): row for row in best_design.now}
+        now = {(row.name, row.where): row for row in best_design.expected_now}
         hopeless += [(why, now.get((row.name, row.where), row)) for why, row in bad]
         names = {row.name for _, row in bad}
         targets = tuple(target for target in file.targets if target.name not in names)
@@ -228,12 +241,12 @@ def _ending(
     best_design: Design, file: DesignFile, planned_runs: Sequence[RunPlan], *, hopeless: bool
 ) -> tuple[Ending, str] | None:
     """Return why nothing more is to be made, and more of it; ``None`` where something is."""
-    wanted = [row for row in best_design.now if math.isfinite(row.wanted)]
+    wanted = [row for row in best_design.expected_now if math.isfinite(row.wanted)]
     if file.cycles and wanted and all(row.met for row in wanted):
         return (Ending.EXHAUSTED, "all other targets are met") if hopeless else (Ending.MET, "")
     if best_design.steps or (planned_runs and not hopeless):
         return None
-    short = [_said(row) for row in wanted if file.cycles and not row.met]
+    short = [_uncertainty_text(row) for row in wanted if file.cycles and not row.met]
     cheapest_s = min(
         (candidate.cost_s + candidate.setting_s for candidate in file.grid.candidates),
         default=math.inf,
@@ -244,7 +257,7 @@ def _ending(
     return Ending.EXHAUSTED, "; ".join(["no run of the grid helps", *short])
 
 
-def _known(rows: Sequence[ExpectedCoefficient]) -> Iterator[KnownTarget]:
+def _known_targets(rows: Sequence[ExpectedCoefficient]) -> Iterator[KnownTarget]:
     for row in rows:
         if math.isfinite(row.wanted):
             name = f"{row.name} at {row.where}" if row.where else row.name
@@ -268,7 +281,7 @@ def _missing(rows: Sequence[ExpectedCoefficient]) -> float:
     return math.fsum(map(_short, rows))
 
 
-def _said(row: ExpectedCoefficient) -> str:
+def _uncertainty_text(row: ExpectedCoefficient) -> str:
     where = f" at {row.where}" if row.where else ""
     if row.message:
         return f"{row.name}{where} unknown ({row.message})"

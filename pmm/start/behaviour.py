@@ -139,7 +139,7 @@ def at_rest(watched: Sequence[RecordingBehaviour]) -> list[bool]:
     ]
     if not timed:
         return [False] * len(watched)
-    cleanest = min(timed, key=lambda recording: recording.line.beside if recording.line else 1.0)
+    cleanest = min(timed, key=lambda recording: recording.line.residual if recording.line else 1.0)
     amplitudes = {
         name: abs(column.part.first)
         for name, column in cleanest.columns.items()

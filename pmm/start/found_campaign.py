@@ -95,7 +95,7 @@ class FoundCampaign:
     ----------
     columns
         Channels of the rig, sure or not, and columns that keep their names.
-    others
+    other_columns
         Names of columns that are not taken.
     by_order
         Whether nothing but the order of the names says which strut is aft.
@@ -116,7 +116,7 @@ class FoundCampaign:
     runs: tuple[FoundRun, ...] = ()
     at_rest: tuple[FoundRest, ...] = ()
     columns: tuple[FoundColumn, ...] = ()
-    others: tuple[str, ...] = ()
+    other_columns: tuple[str, ...] = ()
     by_order: bool = False
     mapped: bool = True
     reference: str = ""

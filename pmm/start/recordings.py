@@ -90,7 +90,7 @@ def find_campaign(paths: Sequence[Path], folder: Path) -> FoundCampaign:
             if stands
         ),
         columns=tuple(columns),
-        others=tuple(name for name in everything if name not in taken),
+        other_columns=tuple(name for name in everything if name not in taken),
         by_order=by_order_of_names(columns),
         mapped=not all(find_reader(path).own_channels for path in paths),
         reference=reference,

@@ -49,7 +49,7 @@ class RoleEvidence(NamedTuple):
     """One reason for or against a role, with its power of ten."""
 
     odds: float
-    said: str
+    reason: str
 
 
 @dataclass(frozen=True)
@@ -156,9 +156,9 @@ def _total(odds: FloatArray, choice: Mapping[int, int]) -> float:
 def _doubt(reasons: Sequence[RoleEvidence], instead: Sequence[str]) -> str:
     if instead:
         return f"{' and '.join(instead)} may be it as well"
-    against = [reason.said for reason in reasons if reason.odds < 0.0]
+    against = [reason.reason for reason in reasons if reason.odds < 0.0]
     return "; ".join(against) or "nothing but " + " and ".join(
-        reason.said for reason in reasons if reason.odds > 0.0
+        reason.reason for reason in reasons if reason.odds > 0.0
     )
 
 
@@ -218,16 +218,16 @@ def _displacement(behaviour: Behaviour, watch: RecordingBehaviour) -> Iterator[R
     if not behaviour.part.carried or behaviour.turn:
         yield RoleEvidence(-np.inf, "it does not move at the line")
         return
-    clean = float(np.clip(-np.log10(max(behaviour.part.beside, 1e-12)) - _CLEAN, -1.0, 1.0))
+    clean = float(np.clip(-np.log10(max(behaviour.part.residual, 1e-12)) - _CLEAN, -1.0, 1.0))
     yield RoleEvidence(
-        _DOES * clean, f"{100.0 * behaviour.part.beside:.2g} % of it is beside the line"
+        _DOES * clean, f"{100.0 * behaviour.part.residual:.2g} % of it is beside the line"
     )
     like = [
         motion
         for motion in watch.columns.values()
         if motion.unit == behaviour.unit and motion.part.carried
     ]
-    driver = min(like, key=lambda motion: motion.part.beside)
+    driver = min(like, key=lambda motion: motion.part.residual)
     apart = abs(behaviour.part.first) / max(abs(driver.part.first), 1e-300)
     if not 1.0 - _OTHER_STRUT < apart < 1.0 / (1.0 - _OTHER_STRUT):
         yield RoleEvidence(
@@ -252,7 +252,7 @@ def _angle(behaviour: Behaviour, _: RecordingBehaviour) -> Iterator[RoleEvidence
 
 
 def _speed(behaviour: Behaviour, _: RecordingBehaviour) -> Iterator[RoleEvidence]:
-    if behaviour.part.carried and behaviour.part.beside < _SWINGS:
+    if behaviour.part.carried and behaviour.part.residual < _SWINGS:
         yield RoleEvidence(_AGAINST, "it swings with the line")
     elif behaviour.spread <= _EVEN * abs(behaviour.mean):
         yield RoleEvidence(_DOES, "it is even")

@@ -45,9 +45,9 @@ class SharedLine:
         Its frequency, even over the stretch in which it is there, by least squares.
     channel
         The column that carries it most purely.
-    beside
+    residual
         Share of that column's variance that is neither in the line nor in its harmonics.
-    others
+    other_columns
         Columns that carry it too.
     doubt
         Why it may be none of the rig's; empty where it is sure.
@@ -56,8 +56,8 @@ class SharedLine:
     reference: PhaseReference
     frequency_hz: float
     channel: str
-    beside: float
-    others: tuple[str, ...]
+    residual: float
+    other_columns: tuple[str, ...]
     doubt: str = ""
 
 
@@ -65,7 +65,7 @@ class Share(NamedTuple):
     """Of a column's variance without a drift: in the first harmonic, and in none."""
 
     first: float = 0.0
-    beside: float = 1.0
+    residual: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -78,13 +78,13 @@ class LinePart:
         First harmonic ``S_1 + i C_1``, in the column's unit.
     carried
         Whether it is well above its own scatter from period to period.
-    beside
+    residual
         Share of the variance that is in no harmonic.
     """
 
     first: complex = 0.0
     carried: bool = False
-    beside: float = 1.0
+    residual: float = 1.0
 
 
 NO_PART: Final = LinePart()
@@ -99,28 +99,31 @@ def shared_line(recording: Recording) -> SharedLine | None:
         With all its columns; one in which nothing moves is none of a run.
     """
     names = sorted(recording.channel_names)
-    references = {name: reference for name in names if (reference := _own(recording, name))}
+    references = {
+        name: reference for name in names if (reference := _own_reference(recording, name))
+    }
     asked = {
         name: reference for name, reference in references.items() if not _few(reference)
     } or references
     lines = sorted(
-        (_alone(recording, *item) for item in asked.items()), key=lambda line: line.beside
+        (_line_of_column(recording, *item) for item in asked.items()),
+        key=lambda line: line.residual,
     )
-    judged = [_judged(recording, line) for line in _apart(lines)]
+    judged = [_judged(recording, line) for line in _distinct_lines(lines)]
     if not judged:
         return None
     line, _ = max(judged, key=lambda pair: pair[1])
     return replace(line, doubt=_doubt(line, len(asked) > 1))
 
 
-def _alone(recording: Recording, name: str, reference: PhaseReference) -> SharedLine:
+def _line_of_column(recording: Recording, name: str, reference: PhaseReference) -> SharedLine:
     """Return the line that a column would be of by itself."""
     even = _even(recording, name, reference)
-    beside = shares(recording, even, [name])[name].beside
+    beside = shares(recording, even, [name])[name].residual
     return SharedLine(reference, even.frequency_hz, name, beside, ())
 
 
-def _apart(lines: Sequence[SharedLine]) -> list[SharedLine]:
+def _distinct_lines(lines: Sequence[SharedLine]) -> list[SharedLine]:
     """Return the first of all that are one line: the cleanest."""
     clean_lines: list[SharedLine] = []
     for line in lines:
@@ -141,13 +144,15 @@ def _judged(recording: Recording, line: SharedLine) -> tuple[SharedLine, float]:
         sorted(name for name, share in column_shares.items() if share.first > _SHARED)
     )
     alike = max([_ALONE, *(share.first for share in column_shares.values())])
-    return replace(line, others=other_names), -math.log10(max(line.beside, _PUREST)) * alike
+    return replace(line, other_columns=other_names), -math.log10(
+        max(line.residual, _PUREST)
+    ) * alike
 
 
 def _doubt(line: SharedLine, rivals: bool) -> str:
-    if line.beside > _LARGEST_BESIDE:
-        return f"{100.0 * line.beside:.0f} % of the cleanest column, {line.channel}, is no line"
-    if rivals and not line.others:
+    if line.residual > _LARGEST_BESIDE:
+        return f"{100.0 * line.residual:.0f} % of the cleanest column, {line.channel}, is no line"
+    if rivals and not line.other_columns:
         return f"{line.channel} has it alone, other columns keep another time"
     return "so few periods keep time that noise might do so" if _few(line.reference) else ""
 
@@ -156,7 +161,7 @@ def _few(reference: PhaseReference) -> bool:
     return any(flag.code == _FEW for flag in reference.flags)
 
 
-def _own(recording: Recording, name: str) -> PhaseReference | None:
+def _own_reference(recording: Recording, name: str) -> PhaseReference | None:
     """Return the phase by one column alone, if it has a fundamental."""
     try:
         return from_signal(recording, name)
@@ -223,7 +228,7 @@ def parts_in(
     """Return what columns have of a line; nothing where no period of one is whole."""
     column_shares = shares(recording, reference, names)
     return [
-        _part(recording.select([name]), reference, column_shares[name].beside) for name in names
+        _part(recording.select([name]), reference, column_shares[name].residual) for name in names
     ]
 
 

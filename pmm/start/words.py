@@ -62,11 +62,11 @@ AFT: Final = (
 
 def says(name: str, words: Sequence[str]) -> bool:
     """Tell whether a name has one of some words: short ones alone, long ones within others."""
-    parts = [part.casefold() for part in re.findall(r"[^\W\d_]+", _apart(name))]
+    parts = [part.casefold() for part in re.findall(r"[^\W\d_]+", _spaced(name))]
     return any(_has(part, word) for part in parts for word in words)
 
 
-def _apart(name: str) -> str:
+def _spaced(name: str) -> str:
     """Put blanks where a name written together begins anew: ForceAft."""
     return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
 

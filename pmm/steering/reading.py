@@ -20,7 +20,7 @@ from hardware.description.channels import (
 from hardware.description.errors import DataError
 from pmm.campaign.recording_source import open_recording
 from pmm.coefficients.reading import read_cycle
-from pmm.coefficients.tasks import Failed, Task
+from pmm.coefficients.tasks import FailedRecording, Task
 from pmm.steering.instants import Instant, instants
 
 GAUGES: Final = (PROPELLER_THRUST.name, RUDDER_NORMAL_FORCE.name)
@@ -72,26 +72,28 @@ class SteeredRun:
         return math.atan2(-self.motion[1], self.motion[0])
 
 
-def read_gauge_zeros(task: Task) -> ZeroReading | Failed:
+def read_gauge_zeros(task: Task) -> ZeroReading | FailedRecording:
     """Return what the gauges behind the model read in a zero run, as far as it has them."""
     try:
         recording = open_recording(task.source)
         names = tuple(name for name in _TARED if name in recording.channel_names)
         return zero_reading(recording, 0.0, names)
     except DataError as error:
-        return Failed(task.name, str(task.source.path), str(error), error.exit_status)
+        return FailedRecording(task.name, str(task.source.path), str(error), error.exit_status)
 
 
-def read_steered(task: Task, zeros: Mapping[str, ZeroReading]) -> list[SteeredRun] | Failed:
+def read_steered(
+    task: Task, zeros: Mapping[str, ZeroReading]
+) -> list[SteeredRun] | FailedRecording:
     """Read a run; ``task`` has its zero runs, ``zeros`` what the gauges behind the model read."""
     result = read_cycle(task)
-    if isinstance(result, Failed):
+    if isinstance(result, FailedRecording):
         return result
     assert result.cycle is not None  # noqa: S101 - only a zero run has none
     try:
         return list(_steered(task, result.cycle, zeros))
     except DataError as error:
-        return Failed(task.name, result.file, str(error), error.exit_status)
+        return FailedRecording(task.name, result.file, str(error), error.exit_status)
 
 
 def _steered(

@@ -20,7 +20,7 @@ from pmm.campaign.water import TankWater
 from pmm.coefficients.reading import read_zero
 from pmm.coefficients.settings import settings_of
 from pmm.coefficients.stated_inputs import chain_of, oscillator_of
-from pmm.coefficients.tasks import Failed, Task
+from pmm.coefficients.tasks import FailedRecording, Task
 from pmm.coefficients.work import Work, work_of
 from pmm.steering.instants import HARMONICS, only_sways
 from pmm.steering.reading import GAUGES, SteeredRun, read_gauge_zeros, read_steered, zeroed_names
@@ -45,11 +45,11 @@ class CampaignSteering:
 
     name: str
     settings: SteeringSettings
-    known: Particulars
+    particulars: Particulars
     tows: tuple[SteeredRun, ...]
     runs: SteeringRuns
     parameters: SteeringParameters
-    failed: tuple[Failed, ...]
+    failed: tuple[FailedRecording, ...]
     left_out: tuple[Flag, ...] = ()
     water: TankWater | None = None
 
@@ -135,24 +135,26 @@ def _work(campaign: Campaign, folder: Path) -> Work:
     )
 
 
-def _tows(work: Work) -> tuple[list[SteeredRun], list[Failed]]:
+def _tows(work: Work) -> tuple[list[SteeredRun], list[FailedRecording]]:
     wanted = [task for task in work.runs if not only_sways(task)]
     names = zeroed_names(wanted)
-    failed: list[Failed] = []
+    failed: list[FailedRecording] = []
     strut_zeros, gauge_zeros = {}, {}
     for task in work.zeros:
         if task.name not in names:
             continue
         struts, gauges = read_zero(task), read_gauge_zeros(task)
-        failed += [reading for reading in (struts, gauges) if isinstance(reading, Failed)][:1]
-        if not isinstance(struts, Failed) and struts.zero is not None:
+        failed += [reading for reading in (struts, gauges) if isinstance(reading, FailedRecording)][
+            :1
+        ]
+        if not isinstance(struts, FailedRecording) and struts.zero is not None:
             strut_zeros[task.name] = struts.zero
         if isinstance(gauges, ZeroReading):
             gauge_zeros[task.name] = gauges
     runs: list[SteeredRun] = []
     for task in wanted:
         result = read_steered(task.with_zeros(strut_zeros), gauge_zeros)
-        if isinstance(result, Failed):
+        if isinstance(result, FailedRecording):
             failed.append(result)
         else:
             runs += result

@@ -8,7 +8,7 @@ import pytest
 from benchmarks import live_values
 from benchmarks.live_values import Counted, Feed
 from pmm.console.live.outlet import OutletStatus
-from pmm.console.messages import Frame, Told
+from pmm.console.messages import Frame, LoopMessage
 
 if TYPE_CHECKING:
     from pmm.console.live.process import Publishing
@@ -21,7 +21,7 @@ class _Process:
         self.counted, self.lost, self.dropped, self.slow = counted, lost, dropped, slow
         self.carried = self.drops = self.waiting = self.most = self.naps = 0
 
-    def take(self, message: Told) -> None:
+    def take(self, message: LoopMessage) -> None:
         if not isinstance(message, Frame):
             return
         self.waiting += self.slow

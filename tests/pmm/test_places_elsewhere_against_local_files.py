@@ -13,8 +13,8 @@ import pmm
 from benchmarks.campaign_folder import make_campaign
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.cli import cli
-from pmm.parallel import seen
-from pmm.remote import here, url_of
+from pmm.parallel import task_folder
+from pmm.remote import local_path, url_of
 
 RUNS = 2
 
@@ -118,13 +118,13 @@ def test_only_what_changed_is_copied_again(
         return get(one, *args, **options)
 
     monkeypatch.setattr(files, "get_file", noted)
-    target = here(there)
+    target = local_path(there)
     assert sorted(copied) == ["campaign.toml", "run-0000.nc", "run-0001.nc"]
     copied.clear()
-    assert here(there) == target
+    assert local_path(there) == target
     assert not copied
     system[0].pipe(f"{there}/campaign.toml", b"name = 'a longer one'")
-    assert here(there) == target
+    assert local_path(there) == target
     assert copied == ["campaign.toml"]
     assert (target / "campaign.toml").read_bytes() == b"name = 'a longer one'"
 
@@ -132,9 +132,9 @@ def test_only_what_changed_is_copied_again(
 def test_a_worker_of_another_computer_makes_its_own_copy_of_the_path_that_it_is_sent(
     there: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    sent = here(there)
+    sent = local_path(there)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "another"))
-    mine = seen(sent)
+    mine = task_folder(sent)
     assert mine.is_relative_to(tmp_path / "another")
     assert {one.name: one.read_bytes() for one in mine.iterdir()} == {
         one.name: one.read_bytes() for one in sent.iterdir()
@@ -159,14 +159,14 @@ def test_what_cannot_be_had_is_said_with_its_url(
     url: str, error: type[Exception], message: str
 ) -> None:
     with pytest.raises(error, match=message):
-        here(url)
+        local_path(url)
 
 
 def test_plain_paths_and_files_by_url_are_themselves(folder: Path) -> None:
-    assert here(folder) == folder
-    assert here(str(folder)) == folder
-    assert here("run.nc:channel") == Path("run.nc:channel")
-    assert here(f"file://{folder}") == folder
+    assert local_path(folder) == folder
+    assert local_path(str(folder)) == folder
+    assert local_path("run.nc:channel") == Path("run.nc:channel")
+    assert local_path(f"file://{folder}") == folder
 
 
 def test_nothing_is_written_elsewhere(there: str, tmp_path: Path) -> None:

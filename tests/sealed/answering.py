@@ -14,7 +14,7 @@ from platform import node
 from typing import Any, Final
 
 from hardware.description.errors import DataError
-from pmm.parallel import as_done, open_executor, seen
+from pmm.parallel import as_done, open_executor, task_folder
 from tests.sealed.pool import each
 from tests.sealed.rows import SHARING, answered_by, missing, prepared
 
@@ -128,7 +128,7 @@ def answered_there(asked: Asked) -> tuple[Asked, dict[str, dict[str, Any]]]:
     DataError
         If this computer does not see the case, or lacks what a row needs.
     """
-    seen(asked.folder)
+    task_folder(asked.folder)
     for row in asked.rows:
         if needs := missing(row):
             raise DataError(f"{row}: {needs} is not installed on {node()} (extra peers)")

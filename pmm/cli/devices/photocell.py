@@ -74,7 +74,7 @@ def _tell(terminal: Terminal, pulse: "Pulse") -> None:
 
 
 def _complain(record: "PhotocellRecord") -> None:
-    for message in record.said:
+    for message in record.driver_messages:
         error_line(message)
     if not record.enough:
         error_line(f"{len(record.pulses)} pulses in the time; check lamp, slot, cable and input")

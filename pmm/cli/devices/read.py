@@ -45,7 +45,7 @@ def read(once: bool, seconds: float | None, as_json: bool, **options: Any) -> No
         values = look(ONCE_S) if once else _live(look, seconds, terminal, screen)
     if as_json or once:
         show(values_document(values), as_json=as_json)
-    for message in () if as_json else values.said[-_LATEST:]:
+    for message in () if as_json else values.faults[-_LATEST:]:
         error_line(message)
 
 

@@ -25,9 +25,9 @@ def scan(listen_s: float, as_json: bool, **options: Any) -> None:
     with busy("scanning"):
         survey = _survey(Target(**options), listen_s)
     silent = [
-        f"{name}: {port.what}" for name, port in survey.heard.items() if port.what == "silent"
+        f"{name}: {port.what}" for name, port in survey.heard_ports.items() if port.what == "silent"
     ]
-    faults = survey.wrong + silent
+    faults = survey.faults + silent
     show(scan_document(survey, faults), as_json=as_json)
     for line in () if as_json else faults:
         error_line(line)

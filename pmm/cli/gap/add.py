@@ -44,7 +44,7 @@ def add(campaign: str, effect: str | None, jobs: int | None, as_json: bool, **op
     from hardware.description.errors import ConfigurationError
     from pmm.campaign.file_names import CAMPAIGN_FILE
     from pmm.cli.screen import pasted
-    from pmm.gap.appended_tables import Added, stated
+    from pmm.gap.appended_tables import Added, stated_parameters
     from pmm.gap.load import campaign_of
 
     looks, folder = Looks(**options), Path(campaign)
@@ -56,7 +56,7 @@ def add(campaign: str, effect: str | None, jobs: int | None, as_json: bool, **op
         _refuse_twice(path, (effect,))
     causes = _effects(_examined(looks, path, effect, jobs), effect)
     _refuse_twice(path, [cause.name for cause in causes])
-    additions = [Added(cause.name, stated(cause)) for cause in causes]
+    additions = [Added(cause.name, stated_parameters(cause)) for cause in causes]
     files = [word for file in looks.files for word in ("--effects", file)]
     command = pasted("gap", campaign, *files)
     add_and_say(path, additions, campaign_of, command=command, schema=_SCHEMA, as_json=as_json)
@@ -142,7 +142,7 @@ def add_and_say(
 
     backup = append_tables(path, [addition.table for addition in additions], reader)
     contents = (
-        Text([f"added {addition.said}" for addition in additions]),
+        Text([f"added {addition.text}" for addition in additions]),
         Text((f"{path}; as it was: {backup}", command)),
         Data("file", path),
         Data("kept", backup),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import click
 
 from pmm.cli.gap.add import add_and_say, check_appendable
-from pmm.cli.gap.options import CATALOGUE, MOST, Chosen
+from pmm.cli.gap.options import CATALOGUE, MOST, CatalogueOptions
 from pmm.cli.options import JSON
 
 if TYPE_CHECKING:
@@ -40,13 +40,13 @@ def add_pendulum(
     from pmm.gap.pendulum_examination import PendulumOptions
     from pmm.gap.pendulum_file import read_case
 
-    choice, path = Chosen(**options), Path(file)
+    choice, path = CatalogueOptions(**options), Path(file)
     known_names = [effect.name for effect in read_case(path).effects]
     check_appendable(path)
     refuse_twice(path, known_names, causes)
     after = _settled(path, causes, PendulumOptions(choice.effects, choice.without, most))
     refuse_twice(path, known_names, after.best.names)
-    additions = [Added(effect.name, _told(effect)) for effect in after.best.effects]
+    additions = [Added(effect.name, _parameters(effect)) for effect in after.best.effects]
     command = pasted(
         "gap",
         "pendulum",
@@ -75,6 +75,6 @@ def _settled(path: Path, causes: tuple[str, ...], options: "PendulumOptions") ->
     return diagnosis.settled
 
 
-def _told(effect: object) -> dict[str, float | str]:
+def _parameters(effect: object) -> dict[str, float | str]:
     """Return an effect's parameters; what is left to the record is left out."""
     return {key: value for key, value in asdict(cast("Any", effect)).items() if value != ""}

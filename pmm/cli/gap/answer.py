@@ -23,7 +23,7 @@ class CaseTask:
 
 
 @dataclass(frozen=True)
-class Answered:
+class CaseAnswer:
     """What came of a case: the text of its answer, or why it could not be diagnosed."""
 
     case: str
@@ -130,7 +130,7 @@ def _answered(
     return sorted(failures)
 
 
-def answer_one(task: CaseTask) -> Answered:
+def answer_one(task: CaseTask) -> CaseAnswer:
     """Diagnose one case.
 
     Raises
@@ -139,14 +139,14 @@ def answer_one(task: CaseTask) -> Answered:
         If its folder is not there for this process.
     """
     from hardware.description.errors import PmmError
-    from pmm.parallel import seen
+    from pmm.parallel import task_folder
 
-    folder = seen(task.case)
+    folder = task_folder(task.case)
     try:
         content = diagnosed(folder, task.left_out)
     except (PmmError, OSError) as error:
-        return Answered(task.case.name, failed=f"{task.case.name}: {error}")
-    return Answered(task.case.name, json.dumps(content, indent=1, allow_nan=False) + "\n")
+        return CaseAnswer(task.case.name, failed=f"{task.case.name}: {error}")
+    return CaseAnswer(task.case.name, json.dumps(content, indent=1, allow_nan=False) + "\n")
 
 
 def diagnosed(folder: Path, left_out: tuple[str, ...] = ()) -> dict[str, Any]:
@@ -158,11 +158,11 @@ def diagnosed(folder: Path, left_out: tuple[str, ...] = ()) -> dict[str, Any]:
 
     kinds = {name: kind for name, kind in catalogue().items() if name not in left_out}
     preparation = prepare(folder, kinds)
-    diagnosis = diagnose(preparation.there.rig, preparation.fitted, preparation.settings)
+    diagnosis = diagnose(preparation.recentred.rig, preparation.fitted, preparation.settings)
     return answer_of(
         folder.name,
         diagnosis,
-        preparation.there.free,
+        preparation.recentred.free,
         preparation.case.held_out,
         preparation.case.tolerances,
     )

@@ -62,9 +62,9 @@ def diagnose(
     from pmm.gap.preparation import campaign_file
     from pmm.gap.report import gap_report
     from pmm.gap.tolerance_document import tolerance_document
-    from pmm.remote import here
+    from pmm.remote import local_path
 
-    looks, path = Looks(**options), here(campaign)
+    looks, path = Looks(**options), local_path(campaign)
     file = campaign_file(path)
     inputs = [("CAMPAIGN", file), ("CAMPAIGN", file.parent / CASE_FILE), *looks.read]
     files.check_files({"--page": page, "--plan": plan}, inputs)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Chosen:
+class CatalogueOptions:
     """The options that choose from the catalogue, by their names on the command line."""
 
     effects: tuple[str, ...]
@@ -59,7 +59,7 @@ class Chosen:
 
 
 @dataclass(frozen=True)
-class Looks(Chosen):
+class Looks(CatalogueOptions):
     """Those and the options of a campaign's runs."""
 
     sensors: str | None

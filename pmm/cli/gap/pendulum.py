@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pmm.cli.gap.options import CATALOGUE, MOST, Chosen
+from pmm.cli.gap.options import CATALOGUE, MOST, CatalogueOptions
 from pmm.cli.options import JSON
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def pendulum(
     from pmm.gap.pendulum_document import document
     from pmm.gap.pendulum_examination import PendulumOptions, examine_pendulum
 
-    choice, path = Chosen(**catalogue_options), Path(file)
+    choice, path = CatalogueOptions(**catalogue_options), Path(file)
     check_files({"--page": page}, [("FILE.toml", path), *choice.read])
     check_folder(plot, "--plot")
     options = PendulumOptions(choice.effects, choice.without, most)

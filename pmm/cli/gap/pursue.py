@@ -84,7 +84,7 @@ def pursue(
     from pmm.gap.causes import CauseGoal
     from pmm.gap.folder_place import FolderPlace, simulated_by
     from pmm.gap.found_cause import found_of
-    from pmm.gap.pursuit import pursued, recorded
+    from pmm.gap.pursuit import read_pursued_folder, recorded
     from pmm.report.sequential_document import look_lines, sequential_document
     from pmm.run.operator import standard_input
     from pmm.sequential.approval import approval_of
@@ -93,7 +93,7 @@ def pursue(
     from pmm.sequential.look import read_decisions
 
     looks, path = Looks(**options), Path(folder)
-    campaign = pursued(path).campaign
+    campaign = read_pursued_folder(path).campaign
     make = None if simulated is None else simulated_by(Path(simulated), campaign)
     answers, tell, appear = standard_input(), messages().print, _waiting(60.0 * wait)
     goal = CauseGoal(

@@ -50,7 +50,7 @@ class EpicsOutlet(Outlet):
         from caproto import get_server_address_list
         from caproto.asyncio.server import Context
 
-        first = await self._next()
+        first = await self._next_tick()
         counts = {"carried": LiveValue(0), "dropped": LiveValue(0)}
         self._variables = {k: _variable(v) for k, v in {**first.values, **counts}.items()}
         self._shown = {}
@@ -75,9 +75,9 @@ class EpicsOutlet(Outlet):
                 await serving
 
     async def _show(self) -> None:
-        tick = await self._next()
-        self._open()
-        self._done()
+        tick = await self._next_tick()
+        self._note_connected()
+        self._count_carried()
         status = self.status()
         counts = {"carried": LiveValue(status.carried), "dropped": _dropped(status.dropped)}
         for name, value in {**tick.values, **counts}.items():

@@ -58,7 +58,7 @@ class MqttOutlet(Outlet):
         client.pending_calls_threshold = 2 * _TOGETHER  # below it nothing is unusual
         try:
             async with client:
-                self._open()
+                self._note_connected()
                 self._units = {}
                 turn, sent = asyncio.Lock(), dict[int, Tick]()
                 senders = (self._publish(client, turn, sent) for _ in range(_TOGETHER))
@@ -89,12 +89,12 @@ class MqttOutlet(Outlet):
         """
         while True:
             async with turn:  # ticks go in their order, and units before them
-                tick = await self._next()
+                tick = await self._next_tick()
                 sent[id(tick)] = tick
                 await self._tell_units(client, tick)
             await self._send(client, "live", message(tick))
             del sent[id(tick)]
-            self._done()
+            self._count_carried()
 
     async def _tell_units(self, client: "Client", tick: Tick) -> None:
         units = {name: value.unit for name, value in tick.values.items()}

@@ -92,18 +92,18 @@ class Outlet(ABC):
             If it cannot.
         """
 
-    def _open(self) -> None:
+    def _note_connected(self) -> None:
         """Note that it is connected."""
         self._connected, self._trouble = True, ""
 
-    async def _next(self) -> Tick:
+    async def _next_tick(self) -> Tick:
         """Wait for a tick, and take the oldest."""
         while not self._waiting:
             await asyncio.sleep(_LOOK_S)
         with self._lock:
             return self._waiting.popleft()
 
-    def _done(self) -> None:
+    def _count_carried(self) -> None:
         """Count a tick that was carried."""
         with self._lock:
             self._carried += 1

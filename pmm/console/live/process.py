@@ -14,7 +14,7 @@ from pmm.console.link import Link
 from pmm.console.live.live_settings import OutletSettings
 from pmm.console.live.outlet import Outlet, OutletStatus
 from pmm.console.live.values import LiveTable, Tick
-from pmm.console.messages import Frame, Hello, Told
+from pmm.console.messages import Frame, Hello, LoopMessage
 from pmm.console.worker_process import yield_to_the_loop
 
 SILENT_S: Final = 2.0  # without a tick: then nobody vouches for the values any more
@@ -38,7 +38,7 @@ class Publishing:
         theirs.close()
         self._link: Link[tuple[OutletStatus, ...]] = Link(ours, _MOST_FRAMES)
 
-    def take(self, message: Told) -> None:
+    def take(self, message: LoopMessage) -> None:
         """Hand on what the loop tells of itself."""
         if isinstance(message, Frame):
             self._link.frame(message)

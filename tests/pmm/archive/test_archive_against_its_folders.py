@@ -16,7 +16,7 @@ from pmm.archive.database import open_archive
 from pmm.archive.indexing import add_folder
 from pmm.archive.notebook import NoteLine, read_notes, write_note
 from pmm.archive.queries import campaigns
-from pmm.archive.results import Analysed, Analyses, GapVerdict
+from pmm.archive.results import AnalysedCampaign, Analyses, GapVerdict
 from pmm.cli import cli
 from tests.pmm.coefficients.campaigns import vertical_campaign
 
@@ -252,9 +252,9 @@ def test_made_again_from_the_folders_it_answers_the_same(copy: Path) -> None:
 def test_what_is_known_is_not_computed_again(copy: Path) -> None:
     calls = []
 
-    def analyse(folder: Path) -> Analysed:
+    def analyse(folder: Path) -> AnalysedCampaign:
         calls.append(folder.name)
-        return Analysed(refused=("one: no gate",))
+        return AnalysedCampaign(refused=("one: no gate",))
 
     wanted = Analyses(analyse, lambda _: GapVerdict("effect", "m1", 0.9))
     with open_archive(copy / "a.sqlite") as connection:
@@ -301,9 +301,9 @@ def test_what_changed_or_vanished_is_said(copy: Path) -> None:
 
 @pytest.mark.slow
 def test_a_folder_that_changes_while_it_is_analysed_is_refused(copy: Path) -> None:
-    def analyse(folder: Path) -> Analysed:
+    def analyse(folder: Path) -> AnalysedCampaign:
         (folder / "one-0.6-20.nc").unlink()
-        return Analysed()
+        return AnalysedCampaign()
 
     with (
         open_archive(copy / "a.sqlite") as connection,

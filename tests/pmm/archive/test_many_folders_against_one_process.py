@@ -9,7 +9,7 @@ import pytest
 from hardware.description.errors import DataError, PmmError
 from pmm.archive.database import open_archive
 from pmm.archive.indexing import AddedFolder, add_folders
-from pmm.archive.results import Analysed, Analyses, CoefficientValue
+from pmm.archive.results import AnalysedCampaign, Analyses, CoefficientValue
 from pmm.parallel import InThisProcess, LocalProcesses
 from tests.pmm.coefficients.campaigns import vertical_campaign
 
@@ -17,14 +17,16 @@ NOW = "2026-01-01T00:00:00+00:00"
 COUNT = 6
 
 
-def counted(folder: Path) -> Analysed:
+def counted(folder: Path) -> AnalysedCampaign:
     """Find something that belongs to the folder alone, and leave a trace of having done so."""
     with (folder.parent / "computed").open("a", encoding="utf-8") as file:
         file.write(f"{folder.name}\n")
     if folder.name == "bad":
         raise DataError(f"{folder}: refused")
     value = float(folder.name)
-    return Analysed(coefficients=(CoefficientValue("Z_w", "kg", 0.0, value, value, 0.1, 0.2),))
+    return AnalysedCampaign(
+        coefficients=(CoefficientValue("Z_w", "kg", 0.0, value, value, 0.1, 0.2),)
+    )
 
 
 def _computed(place: Path) -> list[str]:

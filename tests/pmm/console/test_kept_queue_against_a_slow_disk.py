@@ -45,8 +45,8 @@ def test_who_changed_it_waits_and_nobody_else(tmp_path: Path) -> None:
         keeper.begin()
         await _begun(journal, 1)
         names.append("one.toml")
-        keeper.changed()  # while the writing before is under way
-        waits = asyncio.ensure_future(keeper.kept())
+        keeper.note_change()  # while the writing before is under way
+        waits = asyncio.ensure_future(keeper.wait_written())
         journal.let.release()
         await _begun(journal, 2)  # the event loop goes on
         assert journal.plans == []
@@ -65,7 +65,7 @@ def test_a_full_disk_is_said_in_the_answer(tmp_path: Path) -> None:
     async def changes() -> str:
         keeper = QueueKeeper(QueueJournal(tmp_path / "file", Path("rig")), KeptQueue, said.append)
         keeper.begin()
-        return await keeper.kept()
+        return await keeper.wait_written()
 
     found = asyncio.run(changes())
     assert found.startswith("the queue is not kept: ")

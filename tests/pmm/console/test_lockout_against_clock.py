@@ -32,7 +32,7 @@ def test_each_wrong_token_doubles_the_wait_up_to_the_longest() -> None:
     one = Lockout(clock)
     waits = []
     for _ in range(40):
-        one.wrong("10.0.0.7")
+        one.count_wrong("10.0.0.7")
         waits.append(one.wait_s("10.0.0.7"))
         clock.now_s += waits[-1]
     doubled = [2.0**k for k in range(40)]
@@ -40,7 +40,7 @@ def test_each_wrong_token_doubles_the_wait_up_to_the_longest() -> None:
     assert waits[:free] == [0.0] * free
     assert waits[free:] == [min(wait, LONGEST_LOCKOUT_S) for wait in doubled][: 40 - free]
     assert one.wait_s("10.0.0.8") == 0.0
-    one.right("10.0.0.7")
+    one.forget_wrong("10.0.0.7")
     assert one.wait_s("10.0.0.7") == 0.0
 
 
@@ -49,7 +49,7 @@ def test_the_addresses_of_one_network_are_one(first: int, second: int) -> None:
     one = Lockout(Clock())
     for host in (first, second) * WRONG_TOKENS:
         parts = [f"{host >> shift & 0xFFFF:x}" for shift in (48, 32, 16, 0)]
-        one.wrong("2001:db8:0:1:" + ":".join(parts))
+        one.count_wrong("2001:db8:0:1:" + ":".join(parts))
     assert one.wait_s("2001:db8:0:1::1") > 0.0
     assert one.wait_s("2001:db8:0:2::1") == 0.0
 
@@ -58,7 +58,7 @@ def test_what_is_remembered_is_bounded() -> None:
     one = Lockout(Clock())
     for number in range(3 * MOST_ADDRESSES):
         for _ in range(WRONG_TOKENS):
-            one.wrong(f"10.{number >> 16}.{number >> 8 & 255}.{number & 255}")
+            one.count_wrong(f"10.{number >> 16}.{number >> 8 & 255}.{number & 255}")
     assert len(one._counts) == MOST_ADDRESSES
 
 

@@ -33,7 +33,7 @@ def _queue(one: Shown, number: int) -> None:
     files = [one.bench.folder / "design" / name for name in ("design.toml", "rig.toml")]
     plan = Plan("heave-pitch", *files, (), "", "0" * 64)
     queued = QueuedPlan(number, plan, one.bench.folder / "made", (), chooses=True)
-    assert one.order(OrderKind.QUEUE, plan=queued).done
+    assert one.order(OrderKind.QUEUE, plan=queued).carried_out
 
 
 def _asked(one: Shown, within: int = 6000) -> str:
@@ -46,7 +46,7 @@ def _asked(one: Shown, within: int = 6000) -> str:
 
 
 def _stop(one: Shown) -> None:
-    assert one.order(OrderKind.COMMAND, "stop").done
+    assert one.order(OrderKind.COMMAND, "stop").carried_out
     one.until(State.STOPPED)
 
 
@@ -56,7 +56,7 @@ def _answer(one: Shown, answer: str) -> None:
         LoopOrder(next(one.numbers), OrderKind.ANSWER, answer, question, None, 0)
     )
     one.station.step()
-    assert [reply for reply in one.heard.told if isinstance(reply, Reply)][-1].done
+    assert [reply for reply in one.heard.told if isinstance(reply, Reply)][-1].carried_out
 
 
 def _settings(one: Shown) -> list[str]:
@@ -106,7 +106,7 @@ def test_taken_out_it_leaves_the_rig_and_its_folder_as_they_are(shown: Shown) ->
 
 def test_taken_out_while_it_asks_it_has_planned_nothing(shown: Shown) -> None:
     assert _asked(shown).startswith("Approve of these runs?")
-    assert shown.order(OrderKind.DROP, "1").done
+    assert shown.order(OrderKind.DROP, "1").carried_out
     for _ in range(50):
         shown.station.step()
     assert shown.station._answers.question == ""
@@ -140,7 +140,7 @@ def test_a_run_that_is_left_for_the_next_is_made_again_where_it_is_still_due(sho
         shown.until(State.SETTLING)
         made.append(shown.station.control.status().run)
         if len(made) < 3:
-            assert shown.order(OrderKind.COMMAND, "next").done
+            assert shown.order(OrderKind.COMMAND, "next").carried_out
             shown.until(State.DONE)
     assert made[2] == made[0] != made[1]
     assert shown.heard.notices("alarm") == []

@@ -10,7 +10,7 @@ import pytest
 from pmm.console.encoding import EncodedText
 from pmm.console.limits import MOST_WAITING
 from pmm.console.queued_plan import PackedPlan, QueuedPlan
-from pmm.console.worker_tasks import Queued, ReadyPlan
+from pmm.console.worker_tasks import QueuedPlans, ReadyPlan
 from pmm.plan.plan import Plan
 from tests.pmm.console.serving import OWN, SESSION, served
 
@@ -27,7 +27,7 @@ def _ready(folder: str) -> ReadyPlan:
 def test_what_a_frame_tells_of_is_kept_and_the_rest_is_bounded(seed: int) -> None:
     """A queue that takes, begins and drops plans at random; its frames come late or not at all."""
     generator = np.random.default_rng(seed)
-    queued, waiting, present, frame = Queued(), deque[int](), 0, (0,)
+    queued, waiting, present, frame = QueuedPlans(), deque[int](), 0, (0,)
     for count in range(1000):
         kind = generator.choice(["queue", "begin", "drop"], p=[0.5, 0.3, 0.2])
         if kind == "queue" and len(waiting) < MOST_WAITING:
@@ -48,7 +48,7 @@ def test_what_a_frame_tells_of_is_kept_and_the_rest_is_bounded(seed: int) -> Non
 
 
 def test_a_finished_plan_leaves_its_folder_alone() -> None:
-    queued = Queued()
+    queued = QueuedPlans()
     for folder in ("first", "second", "first"):
         queued.add(_ready(folder))
     queued.at_hand((2, 3))

@@ -12,7 +12,7 @@ import numpy as np
 from hardware.pacing import FreeRunning
 from pmm.console.answers import BrowserAnswers
 from pmm.console.limits import MOST_WAITING
-from pmm.console.messages import Frame, LoopOrder, Notice, OrderKind, Reply, Told
+from pmm.console.messages import Frame, LoopMessage, LoopOrder, Notice, OrderKind, Reply
 from pmm.console.pacing import CountingPacer
 from pmm.console.queued_plan import QueuedPlan
 from pmm.console.quick_stop import QuickStop
@@ -32,14 +32,14 @@ class Heard:
     """Takes what the loop tells, in place of the pipe."""
 
     frames: list[Frame] = field(default_factory=list)
-    told: list[Told] = field(default_factory=list)
+    told: list[LoopMessage] = field(default_factory=list)
     waiting: list[LoopOrder] = field(default_factory=list)
     lost: bool = False
 
     def frame(self, frame: Frame) -> None:
         self.frames.append(frame)
 
-    def tell(self, message: Told) -> None:
+    def tell(self, message: LoopMessage) -> None:
         self.told.append(message)
 
     def orders(self) -> list[LoopOrder]:
@@ -120,12 +120,12 @@ def test_a_plan_beyond_the_limit_is_refused_and_room_is_made_by_dropping_one(
 ) -> None:
     with _shown(tmp_path) as one:
         for number in range(MOST_WAITING + 1):  # the first is taken at once: nothing waits for it
-            assert one.queue(number + 1, f"plan-{number}", _short("a")).done
+            assert one.queue(number + 1, f"plan-{number}", _short("a")).carried_out
         refused = one.queue(1000, "one-more", _short("a"))
-        assert not refused.done
+        assert not refused.carried_out
         assert refused.text.startswith(f"{MOST_WAITING} plans wait already")
-        assert one.order(OrderKind.DROP, "2").done
-        assert one.queue(1000, "one-more", _short("a")).done
+        assert one.order(OrderKind.DROP, "2").carried_out
+        assert one.queue(1000, "one-more", _short("a")).carried_out
 
 
 def _short(name: str) -> RunPlan:
@@ -136,9 +136,9 @@ def test_plans_follow_each_other_and_every_point_of_a_trace_is_shown_once(tmp_pa
     with _shown(tmp_path) as one:
         for _ in range(40):
             one.station.step()
-        assert one.queue(1, "first", _short("a"), _short("b")).done
-        assert one.queue(2, "second", _short("a")).done
-        assert one.order(OrderKind.COMMAND, "start").done
+        assert one.queue(1, "first", _short("a"), _short("b")).carried_out
+        assert one.queue(2, "second", _short("a")).carried_out
+        assert one.order(OrderKind.COMMAND, "start").carried_out
         for _ in range(20000):
             one.station.step()
             if len(one.heard.notices("outcome")) == 3 and one.station.at_rest:
@@ -172,7 +172,7 @@ def test_a_run_that_is_stopped_leaves_the_reading_of_its_whole_periods(tmp_path:
         one.until(State.GATE_OPEN)
         for _ in range(5 * 50 + 30):  # into the sixth period
             one.station.step()
-        assert one.order(OrderKind.COMMAND, "stop").done
+        assert one.order(OrderKind.COMMAND, "stop").carried_out
         for _ in range(1000):
             one.station.step()
         told = [o for o in one.heard.told if isinstance(o, Notice) and o.kind == "outcome"]
@@ -192,11 +192,11 @@ def test_a_plan_that_is_queued_when_all_is_done_moves_nothing_before_start(tmp_p
         one.until(State.DONE)
         for _ in range(100):
             one.station.step()
-        assert one.queue(2, "second", _short("b")).done
+        assert one.queue(2, "second", _short("b")).carried_out
         for _ in range(300):
             one.station.step()
         assert one.station.at_rest
-        assert one.order(OrderKind.COMMAND, "start").done
+        assert one.order(OrderKind.COMMAND, "start").carried_out
         one.until(State.GATE_OPEN)
         assert one.station.control.status().run == "b"
         one.quick_stop.press()
@@ -209,11 +209,11 @@ def test_a_plan_behind_a_stopped_one_waits_for_the_operator(tmp_path: Path) -> N
         one.queue(2, "second", _short("b"))
         one.order(OrderKind.COMMAND, "start")
         one.until(State.GATE_OPEN)
-        assert one.order(OrderKind.COMMAND, "stop").done
+        assert one.order(OrderKind.COMMAND, "stop").carried_out
         for _ in range(1000):
             one.station.step()
         assert one.station.control.state in (State.STOPPED, State.IDLE)
-        assert one.order(OrderKind.COMMAND, "start").done
+        assert one.order(OrderKind.COMMAND, "start").carried_out
         one.until(State.GATE_OPEN)
         assert one.station.control.status().run == "b"
         one.quick_stop.press()
@@ -230,19 +230,19 @@ def test_orders_that_make_no_sense_are_refused_and_change_nothing(tmp_path: Path
             (OrderKind.ANSWER, "5", "nobody asks"),
         ):
             reply = one.order(kind, text)
-            assert not reply.done
+            assert not reply.carried_out
             assert why in reply.text
-        assert not one.queue(1, "empty").done
+        assert not one.queue(1, "empty").carried_out
         one.queue(2, "plan", _short("a"))
         one.queue(3, "later", _short("b"))
         one.order(OrderKind.COMMAND, "start")
         one.until(State.STARTING)
         assert "under way" in one.order(OrderKind.DROP, "2").text
-        assert one.order(OrderKind.DROP, "3").done
+        assert one.order(OrderKind.DROP, "3").carried_out
         one.quick_stop.press()
         one.until(State.STOPPED)
-        assert one.order(OrderKind.DROP, "2").done
-        assert not one.order(OrderKind.COMMAND, "start").done
+        assert one.order(OrderKind.DROP, "2").carried_out
+        assert not one.order(OrderKind.COMMAND, "start").carried_out
 
 
 def test_a_quick_stop_is_on_the_bus_in_the_cycle_that_finds_it_before_any_order(
@@ -274,9 +274,9 @@ def test_what_was_ordered_before_a_quick_stop_does_not_move_the_rig_after_it(
             one.station.step()
         assert one.station.at_rest
         reply = next(o for o in one.heard.told if isinstance(o, Reply) and o.number == 9)
-        assert not reply.done
+        assert not reply.carried_out
         assert "there was a quick stop after this" in reply.text
-        assert one.order(OrderKind.COMMAND, "start").done
+        assert one.order(OrderKind.COMMAND, "start").carried_out
         one.quick_stop.press()
         one.until(State.STOPPED)
 
@@ -289,7 +289,7 @@ def test_runs_that_are_held_are_passed_over_and_released_at_rest_wait_for_start(
         one.queue(1, "plan", *runs)
         plan = one.station._plans.present
         assert plan is not None
-        assert one.order(OrderKind.CHANGE, plan=replace(plan, held=frozenset("a"))).done
+        assert one.order(OrderKind.CHANGE, plan=replace(plan, held_runs=frozenset("a"))).carried_out
         one.order(OrderKind.COMMAND, "start")
         one.until(State.GATE_OPEN)
         assert one.station.control.status().run == "b"
@@ -297,7 +297,7 @@ def test_runs_that_are_held_are_passed_over_and_released_at_rest_wait_for_start(
         for _ in range(50):
             one.station.step()
         assert one.station.control.finished
-        assert one.order(OrderKind.CHANGE, plan=plan).done
+        assert one.order(OrderKind.CHANGE, plan=plan).carried_out
         for _ in range(300):
             one.station.step()
         assert one.station.at_rest
@@ -314,7 +314,7 @@ def test_a_plan_whose_runs_are_held_gives_way_and_makes_none_of_them_twice(tmp_p
         one.queue(1, "plan", _short("a"), _short("b"))
         whole = one.station._plans.present
         assert whole is not None
-        one.order(OrderKind.CHANGE, plan=replace(whole, held=frozenset("b")))
+        one.order(OrderKind.CHANGE, plan=replace(whole, held_runs=frozenset("b")))
         one.queue(2, "other", _short("c"))
         one.order(OrderKind.COMMAND, "start")
         for _ in range(20000):
@@ -324,7 +324,9 @@ def test_a_plan_whose_runs_are_held_gives_way_and_makes_none_of_them_twice(tmp_p
         assert one.heard.notices("outcome") == ["a, complete", "c, complete"]
         for _ in range(50):
             one.station.step()
-        assert one.order(OrderKind.CHANGE, plan=whole).done  # as the server has it: a with it
+        assert one.order(
+            OrderKind.CHANGE, plan=whole
+        ).carried_out  # as the server has it: a with it
         assert one.station.at_rest
         one.order(OrderKind.COMMAND, "start")
         one.until(State.GATE_OPEN)
@@ -347,9 +349,9 @@ def test_a_run_that_has_begun_is_no_other_any_more(tmp_path: Path) -> None:
             ((a, b), "a", "nothing changes"),
         ):
             refused = one.order(
-                OrderKind.CHANGE, plan=replace(plan, runs=runs, held=frozenset(held))
+                OrderKind.CHANGE, plan=replace(plan, runs=runs, held_runs=frozenset(held))
             )
-            assert not refused.done
+            assert not refused.carried_out
             assert why in refused.text
         assert one.station._plans.present == plan
         one.quick_stop.press()

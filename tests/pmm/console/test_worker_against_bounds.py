@@ -19,7 +19,7 @@ from pmm.console.queued_plan import QueuedPlan, pack, unpack
 from pmm.console.worker_process import (
     BusyError,
     NotWorkedOutError,
-    Shared,
+    SharedAnswer,
     WorkerProcess,
     WorkLimits,
 )
@@ -116,7 +116,7 @@ def test_those_who_ask_meanwhile_share_the_next_answer() -> None:
             await asyncio.sleep(0.01)
             return asked
 
-        one = Shared(answer)
+        one = SharedAnswer(answer)
         first = asyncio.ensure_future(one.get())
         await asyncio.sleep(0.001)
         others = await asyncio.gather(*(one.get() for _ in range(100)))

@@ -198,7 +198,7 @@ def test_the_photocell_is_tested_with_the_shaft_turning(words, verdicts, said) -
         turn(rig, rig.shaft, 1.0)
         found = watch(rig, 5, 20.0, count)
     assert [one.verdict for one in found.intervals][: len(verdicts)] == verdicts
-    assert bool(found.said) is said
+    assert bool(found.driver_messages) is said
     assert found.good is not said
     assert seen == [one.number for one in found.pulses]
 

@@ -14,7 +14,13 @@ from hypothesis import strategies as st
 from analysis.recording import Recording
 from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError, DataError
-from pmm.campaign.calibrated_recording import APPLIED, CARRIED, calibrated, carried, provenance_of
+from pmm.campaign.calibrated_recording import (
+    APPLIED,
+    CARRIED,
+    calibrated,
+    carried_calibration,
+    provenance_of,
+)
 from pmm.campaign.calibration import Calibration, read_calibration, write_calibration
 from pmm.cli import cli
 from pmm.evaluation.run_results import read_results
@@ -64,7 +70,7 @@ def test_any_part_of_the_samples_is_the_matrix_s_inverse(
 def test_what_a_recording_carries_is_what_was_kept(tmp_path: Path) -> None:
     one = read_calibration(write_calibration(made(), tmp_path / "calibration.toml"))
     kept = record(np.ones((3, 4)), provenance=provenance_of(one))
-    found = carried(kept)
+    found = carried_calibration(kept)
     assert found is not None
     assert (found.channels, found.made, found.expires) == (GAUGES, MADE, EXPIRES)
     assert (found.file, found.sha256) == ("calibration.toml", one.sha256)
@@ -72,7 +78,7 @@ def test_what_a_recording_carries_is_what_was_kept(tmp_path: Path) -> None:
     applied = calibrated(kept)
     assert CARRIED not in applied.provenance
     assert json.loads(applied.provenance[APPLIED])["matrix"] == MATRIX.tolist()
-    assert carried(applied) is None
+    assert carried_calibration(applied) is None
     assert calibrated(applied) is applied
     with pytest.raises(DataError, match="was applied to it already"):
         calibrated(applied, one)

@@ -9,7 +9,7 @@ from analysis.gap.design.proposals import OSCILLATION, Proposal
 from hardware.description.errors import DataError
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.setpoint import SetPoint
-from pmm.gap.causes import CauseGoal, Found, Standing, Suggestion
+from pmm.gap.causes import CauseDiagnosis, CauseGoal, Standing, Suggestion
 from pmm.gap.found_cause import suggestions
 from pmm.plan.run_plan import RunPlan
 from pmm.sequential.look import Ending, KnownCause, Look
@@ -25,9 +25,11 @@ def proposal(k: int, gain: float, force_n: float = 0.0) -> Proposal:
 REST = Proposal("rest", None, 0.0, 11.0, BETWEEN)
 
 
-def found(sure: float, *proposals: Proposal, outside: tuple[str, ...] = ()) -> Found:
+def found(sure: float, *proposals: Proposal, outside: tuple[str, ...] = ()) -> CauseDiagnosis:
     causes = (KnownCause("cable", sure, 0.95, ("friction",)), KnownCause("none", 1 - sure, 0.95))
-    return Found(("said",), sure, "it is known", causes, suggestions((REST, *proposals)), outside)
+    return CauseDiagnosis(
+        ("said",), sure, "it is known", causes, suggestions((REST, *proposals)), outside
+    )
 
 
 def run(point: SetPoint) -> RunPlan:
@@ -60,16 +62,16 @@ UNSURE = found(0.6, proposal(4, 9.0), proposal(0, 8.0), proposal(1, 7.0, 5.0), p
                proposal(3, 2.0), proposal(1, 0.5))  # fmt: skip
 
 
-def look(there: Standing, diagnosis: Found, batch: int = 1) -> Look:
+def look(there: Standing, diagnosis: CauseDiagnosis, batch: int = 1) -> Look:
     return CauseGoal(Rig(there), lambda: diagnosis, batch=batch).look()
 
 
 def test_what_is_given_is_made_before_anything_is_diagnosed() -> None:
-    def never() -> Found:
+    def never() -> CauseDiagnosis:
         raise AssertionError
 
-    given = CauseGoal(Rig(replace(MADE, given=(run(SET_POINTS[1]),))), never).look()
-    assert [one.set_point for one in given.kept] == SET_POINTS[1:2]
+    given = CauseGoal(Rig(replace(MADE, given_runs=(run(SET_POINTS[1]),))), never).look()
+    assert [one.set_point for one in given.kept_runs] == SET_POINTS[1:2]
     assert (given.causes, given.ending, given.left_s) == ((), None, 10.0)
 
 
@@ -84,12 +86,12 @@ def test_new_runs_of_the_rig_alone_are_proposed_each_with_its_reason() -> None:
 
 
 def test_one_class_over_the_limit_ends_it_whatever_is_approved_of() -> None:
-    left = replace(MADE, left=(run(SET_POINTS[3]),))
+    left = replace(MADE, runs_left=(run(SET_POINTS[3]),))
     known = look(left, found(0.96, proposal(2, 9.0), outside=("the cable disconnected",)))
     assert known.ending is Ending.KNOWN
     assert known.remark == "it is known"
     stays = look(left, found(0.95, proposal(2, 9.0)))
-    assert (stays.ending, [one.set_point for one in stays.kept]) == (None, SET_POINTS[3:4])
+    assert (stays.ending, [one.set_point for one in stays.kept_runs]) == (None, SET_POINTS[3:4])
     assert stays.proposed == ()
 
 

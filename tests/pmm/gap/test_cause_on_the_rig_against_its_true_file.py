@@ -82,7 +82,7 @@ def test_what_truly_is_other_is_known_and_the_story_is_told(tmp_path: Path) -> N
 def test_the_diagnosis_goes_to_a_process_of_its_own(tmp_path: Path) -> None:
     goal = goal_of(read_design(written(tmp_path)), tmp_path / "c")
     assert isinstance(goal, CauseGoal)
-    there = pickle.loads(pickle.dumps(goal.found))  # noqa: S301 (our own)
+    there = pickle.loads(pickle.dumps(goal.diagnose))  # noqa: S301 (our own)
     with pytest.raises(ConfigurationError, match="no such folder"):
         there()  # nothing was recorded; that is what it says from there
 

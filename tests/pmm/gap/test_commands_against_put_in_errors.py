@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 from hardware.description.channels import COMMANDS
-from pmm.gap.preparation import Prepared, prepare
+from pmm.gap.preparation import PreparedCampaign, prepare
 from pmm.gap.run_notes import command_notes
 from tests.pmm.gap.rigs import run, short
 
@@ -34,7 +34,7 @@ def rig(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def ready(rig: Path) -> Prepared:
+def ready(rig: Path) -> PreparedCampaign:
     return prepare(rig, {})
 
 
@@ -51,8 +51,8 @@ def test_the_simulated_drive_records_what_it_was_told(rig: Path) -> None:
             assert np.abs(values - basis @ found).max() < 1e-9
 
 
-def test_the_diagnosis_begins_with_the_errors(ready: Prepared) -> None:
-    own = ready.there.rig
+def test_the_diagnosis_begins_with_the_errors(ready: PreparedCampaign) -> None:
+    own = ready.recentred.rig
     for link, added_m in zip((own.linkage_aft, own.linkage_fore), ADDED_M, strict=True):
         assert link.eccentricity_m(0.02) == pytest.approx(0.02 + added_m, abs=5e-6)
     assert own.linkage_fore.phase_error_rad == pytest.approx(PHASE_RAD, abs=1e-4)
@@ -60,7 +60,7 @@ def test_the_diagnosis_begins_with_the_errors(ready: Prepared) -> None:
     assert ready.left_out == {}
 
 
-def test_it_says_so(ready: Prepared) -> None:
+def test_it_says_so(ready: PreparedCampaign) -> None:
     notes = list(command_notes(SimpleNamespace(ready=ready)))  # type: ignore[arg-type]
     assert [one.split(":")[0] for one in notes] == [
         "eccentricity aft", "eccentricity fore", "frequency", "strut phase",
@@ -77,5 +77,5 @@ def test_a_stated_tolerance_goes_before(rig: Path) -> None:
         found = prepare(rig, {})
     finally:
         case.unlink()
-    assert found.there.rig.linkage_fore.phase_error_rad == 0.0
+    assert found.recentred.rig.linkage_fore.phase_error_rad == 0.0
     assert found.settings.tolerances.strut_phase_rad == 0.002

@@ -27,9 +27,9 @@ from pmm.gap.conclusion import Conclusion, Weighing, verdict_of
 from pmm.gap.document import document
 from pmm.gap.hull_report import Convention
 from pmm.gap.report import GapReport
-from pmm.gap.sizes import HowLarge, Size, spoiled
+from pmm.gap.sizes import HowLarge, Size, spoiled_coefficient
 from pmm.gap.steps import StepRow
-from pmm.gap.tables import ControlRow, Ranked, RegimeRow
+from pmm.gap.tables import ControlRow, RankedAnswer, RegimeRow
 from pmm.gap.words import Remedies, sentences
 from tests.pmm.gap.rigs import FEW, made, rewritten, run, with_friction
 
@@ -185,14 +185,16 @@ def reports(draw: st.DrawFn) -> GapReport:
     found = Conclusion(verdict, weighing, walk, remains)
     coefficients = (draw(rows(named=named)),)
     size = Size("forces", draw(st.floats(1e-6, 1e4)), "N", "harmonic 1 of force_aft", "run-1", 1.0)
-    large = HowLarge((size,), spoiled(coefficients))
+    large = HowLarge((size,), spoiled_coefficient(coefficients))
     todo = Remedies(
         draw(st.sampled_from(["", "run-7"])), draw(st.sampled_from([(), ("a weight",)]))
     )
     near = "nearest, but not it: " * (not named) + weighing.best
     takes = weighing.takes
     controls = (ControlRow(near, 10.0, 10.0 * (1.0 - takes), takes, takes, takes),)
-    ranking = tuple(Ranked(name, p, 0.3, "", [], {}, []) for name, p in weighing.shares.items())
+    ranking = tuple(
+        RankedAnswer(name, p, 0.3, "", [], {}, []) for name, p in weighing.shares.items()
+    )
     return GapReport(
         "hand", ("run-1",), (), {}, found, sentences(found, large, ("force 0.3 N",), todo), large,
         ("a note of 3 u",), walk[:1], {"structure": 1.0}, ranking, (), (),

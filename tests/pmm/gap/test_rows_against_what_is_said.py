@@ -5,7 +5,7 @@ import math
 import pytest
 
 from pmm.document.notation import NOT_KNOWN, percent
-from pmm.gap.sizes import Spoiled
+from pmm.gap.sizes import SpoiledCoefficient
 from pmm.gap.tables import ControlRow, interval, parameters, shrinks
 from tests.pmm.gap.rigs import run
 
@@ -30,7 +30,7 @@ def test_what_is_not_known_is_a_dash() -> None:
     ("per_cent", "said"), [(412.3, "+410 %"), (-0.0312, "-0.031 %"), (11.7, "+12 %")]
 )
 def test_by_how_much_a_coefficient_is_off_has_no_power_of_ten(per_cent: float, said: str) -> None:
-    assert Spoiled("M_q", per_cent).said == said
+    assert SpoiledCoefficient("M_q", per_cent).percentage == said
 
 
 def test_a_parameter_that_is_held_has_no_interval() -> None:

@@ -14,7 +14,7 @@ def test_the_fit_reaches_the_envelope() -> None:
     time_s = np.arange(int(900 * rate_hz)) / rate_hz
     values = 0.1 * np.exp(-time_s / 600.0) * np.cos(2.0 * np.pi * time_s / period_s + 0.3)
     run = analyse_record(Series("long", "sway", "m", rate_hz, 0.0, values))
-    runs = PeriodRuns("period", "1 record", (), records=(run,), whole=(run.part.series,))
+    runs = PeriodRuns("period", "1 record", (), records=(run,), whole_records=(run.part.series,))
     axes = record_figure(runs).axes[0]
     fit = next(line for line in axes.lines if line.get_label() == "fit")
     x, y = (np.asarray(one, dtype=float) for one in (fit.get_xdata(), fit.get_ydata()))

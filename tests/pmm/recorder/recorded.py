@@ -21,9 +21,9 @@ from hardware.roles import Pulse, Reading
 from pmm.recorder.disk import DiskFullError
 from pmm.recorder.header import LiveSettings, RunHeader
 from pmm.recorder.live_path import (
+    CycleSamples,
     GateResolver,
     LivePath,
-    Taken,
     as_record,
     header_channels,
     sampled_devices,
@@ -100,7 +100,7 @@ class Session:
 
     def record(
         self, folder: Path, cycles: int, live: LiveSettings, *, readings: bool = True
-    ) -> tuple[RunRecorder, list[Taken]]:
+    ) -> tuple[RunRecorder, list[CycleSamples]]:
         """Record some cycles; the recorder is not closed."""
         first = self.rig.number + 1
         rate_hz, channels = self.rig.configuration.sample_rate_hz, header_channels(self.rig)

@@ -16,7 +16,7 @@ from hardware.raw_log import FramePacker, container, file_header
 from hardware.raw_log_reading import read_frames
 from hardware.roles import SampleBlock
 from pmm.recorder.header import LiveSettings
-from pmm.recorder.live_path import GateResolver, LivePath, Taken, as_record, joined
+from pmm.recorder.live_path import CycleSamples, GateResolver, LivePath, as_record, joined_samples
 from pmm.recorder.replay import replay
 from pmm.recorder.run_recorder import RunEnd, RunRecorder
 from sim.devices.bench_file import DRIVERS
@@ -132,7 +132,7 @@ def _armed_by_hand(recorder, taken, at: int) -> list[dict]:
     readings = []
     for k in range(0, len(taken), 50):
         part = taken[k : k + 50]
-        readings += resolving.push(Taken(part[0].first, joined(part, count), ()))
+        readings += resolving.push(CycleSamples(part[0].first, joined_samples(part, count), ()))
         for pulse in (one for each in part for one in each.pulses):
             readings += resolving.resolver.pulse(pulse.time_s) if resolving.takes(pulse) else []
     told = [as_record(one) for one in readings]

@@ -12,7 +12,7 @@ from hardware.description.kinds import RunKind
 from pmm.recorder.batches import read_batches
 from pmm.recorder.decoding import decode
 from pmm.recorder.files import SAMPLES
-from pmm.recorder.live_path import joined
+from pmm.recorder.live_path import joined_samples
 from pmm.recorder.recording import RunData, read_run
 from pmm.recorder.replay import replay
 from pmm.recorder.samples import SampleWriter
@@ -27,7 +27,7 @@ FORCES = 0x184, 0x185
 
 def written_again(run: RunData) -> bytes:
     """Return the file of samples as a replay writes it, cut into the run's own batches."""
-    values = joined(decode(run, DRIVERS)[0], len(run.header.channels))
+    values = joined_samples(decode(run, DRIVERS)[0], len(run.header.channels))
     writer = SampleWriter(run.header)
     head, first = writer.head(), run.header.first_sync
     schema = run.samples.batches[0].schema.with_metadata(None)

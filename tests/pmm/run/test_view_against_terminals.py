@@ -154,7 +154,10 @@ def test_what_stays_on_the_terminal_is_the_end(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setenv("COLUMNS", "80")
     said = io.StringIO()
     control = Control(replace(STATUS, alarms=()))
-    with Terminal(said) as terminal, LiveView(terminal, lambda: 0.0, lambda: "").shown() as view:
+    with (
+        Terminal(said) as terminal,
+        LiveView(terminal, lambda: 0.0, lambda: "").drawn_live() as view,
+    ):
         view.show(control)  # type: ignore[arg-type]
         control.outcomes.append(ENDED)
         control._status = replace(STATUS, state=State.FAULT)

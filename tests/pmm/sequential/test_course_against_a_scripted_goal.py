@@ -29,7 +29,7 @@ from pmm.sequential.look import (
 
 ONE = RunPlan("", RunKind.OSCILLATION, Motion.HEAVE, SetPoint(1.0, 0.01), periods=4)
 FIRST = Look((), 0.0, (), proposed=(ONE,), left_s=10.0, remark="the first plan")
-KEPT = Look(("a",), 10.0, (), kept=(ONE,), left_s=10.0)
+KEPT = Look(("a",), 10.0, (), kept_runs=(ONE,), left_s=10.0)
 LAST = Look(("a", "b"), 20.0, (KnownTarget("Z_w", "N s/m", 1.0, 0.1, 0.2),), ending=Ending.MET)
 
 
@@ -135,7 +135,7 @@ def test_what_is_decided_again_takes_the_place_of_what_was(tmp_path: Path) -> No
 
 def test_who_is_interrupted_before_the_next_run_keeps_what_was_decided(tmp_path: Path) -> None:
     keep_decision(tmp_path, FIRST.decision("the operator"))
-    keep_decision(tmp_path, Look((), 0.0, (), kept=(ONE,), left_s=10.0).decision())
+    keep_decision(tmp_path, Look((), 0.0, (), kept_runs=(ONE,), left_s=10.0).decision())
     assert read_decisions(tmp_path) == (FIRST.decision("the operator"),)
     ended = Look((), 0.0, (), ending=Ending.EXHAUSTED).decision()
     keep_decision(tmp_path, ended)

@@ -24,8 +24,8 @@ def weighed_of(case: Path) -> dict[str, Any]:
     from sim.effects.catalogue import catalogue
 
     ready = prepare(case, catalogue())
-    free = ready.there.free
-    problem = problem_of(ready.there.rig, ready.fitted, ready.settings, free)
+    free = ready.recentred.free
+    problem = problem_of(ready.recentred.rig, ready.fitted, ready.settings, free)
     weighed = weigh(problem, catalogue(), free=free)
     found: dict[str, Any] = {
         f"{name}|share": share for name, share in weighed.answers.by_answer.items()
