@@ -118,7 +118,7 @@ def _run_faults(table: dict[str, Any]) -> Iterator[Fault]:
     for place, run in runs:
         run_oscillator = run.recorded_with.oscillator if run.recorded_with is not None else None
         if (rig := run_oscillator or oscillator) is not None:
-            yield from _beyond(rig, run, place)
+            yield from _oscillator_faults(rig, run, place)
     zeros = [record.name for _, record in rest if record.kind is RunKind.ZERO]
     for place, record in records:
         yield from _zero_faults(record, place, zeros)
@@ -163,7 +163,7 @@ def _kind_faults(record: AtRest, place: Place) -> Iterator[Fault]:
         yield Fault((*place, "release_deg"), f"is of no use to a run of kind {record.kind}")
 
 
-def _beyond(oscillator: Oscillator, run: Run, place: Place) -> Iterator[Fault]:
+def _oscillator_faults(oscillator: Oscillator, run: Run, place: Place) -> Iterator[Fault]:
     try:
         check_within(oscillator, run.set_point)
     except ConfigurationError as error:

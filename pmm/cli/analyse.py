@@ -185,7 +185,7 @@ def analyse(files: tuple[str, ...], plot: str | None, as_json: bool, **options: 
     _check(selection.sources, request, plot)
     resolved: list[Resolved] = []
     failures: list[Failure] = []
-    for outcome in _each(selection.sources, request, plot):
+    for outcome in _resolve_each(selection.sources, request, plot):
         if isinstance(outcome, Failure):
             failures.append(outcome)
             _tell(outcome)
@@ -209,7 +209,7 @@ def analyse(files: tuple[str, ...], plot: str | None, as_json: bool, **options: 
         click.get_current_context().exit(min(statuses))
 
 
-def _each(
+def _resolve_each(
     sources: "Sequence[Source]", request: "HarmonicsRequest", plot: str | None
 ) -> "Iterator[Resolved | Failure]":
     """Resolve one run after the other; said on a terminal while it lasts.

@@ -74,7 +74,7 @@ def add(folders: tuple[str, ...], analysed: bool, gap: bool, jobs: int | None,
         open_archive(Path(file), create=True) as connection,
         open_executor(1 if scheduler is None and jobs is None else jobs, scheduler) as executor,
     ):
-        outcomes = add_folders(connection, map(Path, folders), analyses, _now(), executor)
+        outcomes = add_folders(connection, map(Path, folders), analyses, _now_utc(), executor)
         for outcome in show_progress(outcomes, "folders", len(folders)):
             if isinstance(outcome, PmmError):
                 error_line(str(outcome))
@@ -87,7 +87,7 @@ def add(folders: tuple[str, ...], analysed: bool, gap: bool, jobs: int | None,
         click.get_current_context().exit(min(statuses))
 
 
-def _now() -> str:
+def _now_utc() -> str:
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
@@ -188,7 +188,7 @@ def note(run: str, text: str, campaign: str | None, author: str | None, file: st
 
     with open_archive(Path(file)) as connection:
         filed_run = the_run(connection, run, campaign)
-        line = NoteLine(_now(), run, author or getuser(), text)
+        line = NoteLine(_now_utc(), run, author or getuser(), text)
         path = note_run(connection, filed_run, line)
     messages().print(f"written: {path}")
 

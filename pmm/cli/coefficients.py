@@ -123,7 +123,7 @@ def analysed(
     tell_writers(folders)
     settings, path = requested(folders[0], options)
     jobs = options["jobs"]
-    if jobs is None and options["scheduler"] is None and _few(folders, settings):
+    if jobs is None and options["scheduler"] is None and _is_little_work(folders, settings):
         jobs = 1
     with open_executor(jobs, options["scheduler"]) as executor, _show_steps() as progress:
         outcome = coefficients_of(folders, settings, executor, progress, hashed=hashed)
@@ -151,7 +151,7 @@ def finish(outcome: "CampaignOutcome") -> None:
         click.get_current_context().exit(min(statuses))
 
 
-def _few(folders: Sequence[Path], settings: "CoefficientSettings") -> bool:
+def _is_little_work(folders: Sequence[Path], settings: "CoefficientSettings") -> bool:
     """Whether there is too little to do for starting processes."""
     from pmm.campaign.campaign_file import read_campaign
     from pmm.campaign.file_names import CAMPAIGN_FILE

@@ -152,12 +152,12 @@ def _recordings(
     work: Work, executor: Executor, progress: Progress, *, with_dry: bool
 ) -> list[ReadRecording | FailedRecording]:
     """Read the zero runs, and then all that they are taken off."""
-    zeros = _all(read_zero, work.zeros, "reading zero runs", executor, progress)
+    zeros = _read_all(read_zero, work.zeros, "reading zero runs", executor, progress)
     by_name = {
         zero.name: zero.zero for zero in zeros if isinstance(zero, ReadRecording) and zero.zero
     }
     tasks = (*work.runs, *(work.dry if with_dry else ()))
-    recordings = _all(
+    recordings = _read_all(
         read_cycle, [task.with_zeros(by_name) for task in tasks], "reading runs", executor, progress
     )
     return [*zeros, *recordings]
@@ -168,7 +168,7 @@ def _is_motion_asked(cycles: Sequence[BodyCycle]) -> bool:
     return any(flag.code == MOTION_ASKED.code for cycle in cycles for flag in cycle.flags)
 
 
-def _all(
+def _read_all(
     reader: Callable[[Task], ReadRecording | FailedRecording],
     tasks: Sequence[Task],
     step: str,

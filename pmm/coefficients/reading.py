@@ -144,7 +144,7 @@ def _check_units(recording: Recording, joint: Joint) -> None:
 
 
 def _at_rest(task: Task, recording: Recording) -> ReadRecording:
-    reading = zero_reading(recording, 0.0, (*FORCES, *_besides(task, recording)))
+    reading = zero_reading(recording, 0.0, (*FORCES, *_other_channels(task, recording)))
     point = task.set_point
     position, flags = rest_of(task, recording)
     zero = Zero(
@@ -160,7 +160,7 @@ def _at_rest(task: Task, recording: Recording) -> ReadRecording:
 
 
 def _turning(task: Task, recording: Recording) -> ReadRecording:
-    names = (*_USED, *_besides(task, recording))
+    names = (*_USED, *_other_channels(task, recording))
     if task.set_point.steady_ahead:
         names = (*names, CARRIAGE_SPEED.name)
     channels = tuple(name for name in names if name in recording.channel_names)
@@ -199,7 +199,7 @@ def _towed(task: Task, recording: Recording) -> ReadRecording:
     spread = (0.0, 0.0)
     if task.kind is RunKind.CIRCLE:
         task, spread = as_driven(task, recording)
-    reading = zero_reading(recording, 0.0, (*FORCES, *_besides(task, recording)))
+    reading = zero_reading(recording, 0.0, (*FORCES, *_other_channels(task, recording)))
     struts = static_cycle(task.name, reading, task.oscillator, task.set_point)
     struts, flags = zeroed(struts, task, recording)
     if not struts.mean_known:
@@ -253,7 +253,7 @@ def response_of(amplifier: AmplifierTable) -> Response:
     return lambda s: delay(s) * filtered(s)
 
 
-def _besides(task: Task, recording: Recording) -> tuple[str, ...]:
+def _other_channels(task: Task, recording: Recording) -> tuple[str, ...]:
     """The surge gauge and, of a model that heels, roll gauge and inclinometer: those there are."""
     names = (FORCE_X.name, *((ROLL_MOMENT.name, HEEL_ANGLE.name) if task.heel is not None else ()))
     return tuple(name for name in names if name in recording.channel_names)

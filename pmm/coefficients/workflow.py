@@ -191,7 +191,7 @@ def coefficients_of(
         *(cycle.about(settings.point_ahead_m) for cycle in circles),
     )
     if not cycles:
-        raise DataError(_nothing(folders, parts))
+        raise DataError(_no_runs_message(folders, parts))
     turns = (*_joined(part.turns for part in parts), *turns)
     stated = largest([part.stated for part in parts])
     doubts = (
@@ -225,7 +225,7 @@ def request_of(settings: CoefficientSettings, stated: StatedUncertainties) -> Re
     )
 
 
-def _nothing(folders: Sequence[Path], parts: Sequence[CampaignCycles]) -> str:
+def _no_runs_message(folders: Sequence[Path], parts: Sequence[CampaignCycles]) -> str:
     folder_text = ", ".join(map(str, folders))
     missing = _joined(part.work.not_recorded for part in parts)
     if failures := _joined(part.failed for part in parts):

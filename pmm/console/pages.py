@@ -60,7 +60,7 @@ class Pages:
 
 def pages_in(folders: Iterable[Path]) -> dict[Path, list[str]]:
     """Return the names of the pages in folders and in the folders directly in them."""
-    places = dict.fromkeys(place for folder in folders for place in (folder, *_within(folder)))
+    places = dict.fromkeys(place for folder in folders for place in (folder, *_subfolders(folder)))
     return {folder: [page.name for page in _pages(folder)] for folder in places}
 
 
@@ -68,7 +68,7 @@ def _page(folder: Path, name: str) -> Path | None:
     return next((page for page in _pages(folder) if page.name == name), None)
 
 
-def _within(folder: Path) -> list[Path]:
+def _subfolders(folder: Path) -> list[Path]:
     return [
         entry for entry in _entries(folder) if entry.is_dir() and not entry.name.startswith(".")
     ]

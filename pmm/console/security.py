@@ -109,7 +109,7 @@ class Door:
             (self.propose_token, VisitorRole.PROPOSE),
             (self.watch_token, VisitorRole.WATCH),
         )
-        fit = [role for secret, role in roles if secret and _same(token, secret)]
+        fit = [role for secret, role in roles if secret and _is_same(token, secret)]
         if not fit:
             return None
         value, visitor = secrets.token_urlsafe(32), Visitor(fit[0], name)
@@ -176,7 +176,7 @@ class Guard:
         return None
 
 
-def _same(text: str, reference: str) -> bool:
+def _is_same(text: str, reference: str) -> bool:
     return hmac.compare_digest(text.encode(), reference.encode())
 
 

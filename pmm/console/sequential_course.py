@@ -63,19 +63,19 @@ class ChoosingCampaign:
             If a file is wrong, or the rig refuses a run.
         """
         if self._made and state in _ENDED:
-            if not self._yes(_AGAIN):
+            if not self._confirms(_AGAIN):
                 return None
             self._made = False
         if self._next is None:
             self._next = next(self._jobs)
-        if self._next is None or not (self._agreed or self._yes(_BEGIN)):
+        if self._next is None or not (self._agreed or self._confirms(_BEGIN)):
             return None
         self._agreed = True
         plan, self._next = self._next, None
         self._made = True
         return plan
 
-    def _yes(self, question: str) -> bool:
+    def _confirms(self, question: str) -> bool:
         return (self._answers(question) or "")[:1].lower() == "y"
 
     def _answered(self, question: str) -> str | None:

@@ -266,10 +266,10 @@ class SharedAnswer(Generic[T]):
     async def get(self) -> T:
         """Return an answer that was begun after this question."""
         if self._next is None:
-            self._next = asyncio.ensure_future(self._after(self._present))
+            self._next = asyncio.ensure_future(self._ask_after(self._present))
         return await asyncio.shield(self._next)
 
-    async def _after(self, before: "asyncio.Future[T] | None") -> T:
+    async def _ask_after(self, before: "asyncio.Future[T] | None") -> T:
         if before is not None:
             await asyncio.wait([before])
         self._present, self._next = self._next, None

@@ -170,7 +170,9 @@ def _design(
     if faults or belief is None:
         raise as_error(path, faults, original)
     made_runs = tuple(
-        CandidateRun(run.set_point, run.periods, np.inf) for run in fixed if _tells(run)
+        CandidateRun(run.set_point, run.periods, np.inf)
+        for run in fixed
+        if _tells_coefficients(run)
     )
     return DesignFile(
         plan.name or path.resolve().parent.name, path, plan_table, reading.rig_path, rig,
@@ -186,7 +188,7 @@ def _gap_faults(gap: GapTable | None) -> Iterator[Fault]:
         yield Fault(("gap", "batch"), f"= {gap.batch} should be from 1 to 5")
 
 
-def _tells(run: RunPlan) -> bool:
+def _tells_coefficients(run: RunPlan) -> bool:
     kinds = (RunKind.OSCILLATION, RunKind.CONTROL)
     return run.kind in kinds and run.set_point.medium is Medium.WATER
 

@@ -97,11 +97,11 @@ def _excluding(findings: Iterable[PlanFinding], limits: DesignLimits) -> Iterato
     """Yield the quantities for which a run is no candidate."""
     for finding in findings:
         warned = finding.verdict is PlanVerdict.WARN and limits.advised
-        if finding.verdict is PlanVerdict.REFUSE or warned or _beyond(finding, limits):
+        if finding.verdict is PlanVerdict.REFUSE or warned or _is_beyond_limit(finding, limits):
             yield finding.quantity
 
 
-def _beyond(finding: PlanFinding, limits: DesignLimits) -> bool:
+def _is_beyond_limit(finding: PlanFinding, limits: DesignLimits) -> bool:
     """Whether a run's number is beyond the design's own limit."""
     limited = {
         table.ANGLE_TO_FLOW.quantity: limits.angle_to_flow_deg,

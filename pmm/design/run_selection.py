@@ -82,7 +82,9 @@ def design(file: DesignFile) -> Design:
     steps = _steps(file, choices)
     after = steps[-1].expected_coefficients if steps else now
     used_s = math.fsum(_costs_s(file, choices))
-    reasons = tuple(_why(coefficient, file, used_s) for coefficient in after if not coefficient.met)
+    reasons = tuple(
+        _unmet_reason(coefficient, file, used_s) for coefficient in after if not coefficient.met
+    )
     return Design(steps, now, after, reasons)
 
 
@@ -183,7 +185,7 @@ def _scatter_variance(coefficient: ExpectedCoefficient) -> float:
     return coefficient.wanted**2 - (1.0 - scatter) * coefficient.standard_uncertainty**2
 
 
-def _why(coefficient: ExpectedCoefficient, file: DesignFile, used_s: float) -> str:
+def _unmet_reason(coefficient: ExpectedCoefficient, file: DesignFile, used_s: float) -> str:
     """Return why a target is not met, and what would help."""
     condition = f" at {coefficient.where}" if coefficient.where else ""
     has_limit = math.isfinite(file.time_s)

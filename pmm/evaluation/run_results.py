@@ -112,10 +112,12 @@ def _results(folder: Path) -> Iterator[RunResult]:
         ):
             continue
         header = RunHeader.read(run_folder / HEADER)
-        yield RunResult(run_folder, header, json.loads(header.plan_json), _first(run_folder))
+        yield RunResult(
+            run_folder, header, json.loads(header.plan_json), _first_harmonics(run_folder)
+        )
 
 
-def _first(folder: Path) -> dict[str, complex]:
+def _first_harmonics(folder: Path) -> dict[str, complex]:
     """Return the first harmonics of the gate: the last reading that was written."""
     readings, _ = read_lines(folder / HARMONICS)
     if not readings:

@@ -94,7 +94,7 @@ def _fixed(value: float) -> dict[str, float]:
 def next_run(proposal: Proposal) -> dict[str, Any]:
     """Return a proposed run as the plan and the sealed rig take it."""
     if proposal.set_point is None:
-        return {"kind": str(proposal.kind), **_besides(proposal)}
+        return {"kind": str(proposal.kind), **_further_settings(proposal)}
     return {
         "kind": proposal.kind,
         "frequency_hz": proposal.set_point.frequency_hz,
@@ -107,7 +107,7 @@ def next_run(proposal: Proposal) -> dict[str, Any]:
     }
 
 
-def _besides(proposal: Proposal) -> dict[str, Any]:
+def _further_settings(proposal: Proposal) -> dict[str, Any]:
     if proposal.kind == FurtherMeasurement.CHECK_WEIGHT:
         return {"weight_n": proposal.force_n, "strut": proposal.strut}
     if proposal.kind == FurtherMeasurement.INJECTION:

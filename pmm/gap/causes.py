@@ -151,12 +151,12 @@ class CauseGoal:
                 "no runs can be proposed; [oscillator] in the campaign file, or [rig] in a "
                 "case.toml beside it, says what the rig can do"
             )
-        return self._next(look, standing, diagnosis)
+        return self._with_next_runs(look, standing, diagnosis)
 
     def _keep_runs(self, look: Look, runs: Sequence[RunPlan]) -> Look:
         return replace(look, kept_runs=tuple(runs), left_s=math.fsum(self.place.costs_s(runs)))
 
-    def _next(self, look: Look, standing: Standing, diagnosis: CauseDiagnosis) -> Look:
+    def _with_next_runs(self, look: Look, standing: Standing, diagnosis: CauseDiagnosis) -> Look:
         """Return the look with the runs that are proposed, or why there are none."""
         worth = (
             suggestion for suggestion in diagnosis.suggestions if suggestion.gain >= self.least

@@ -140,7 +140,7 @@ def coefficient_rows(examined: Examined) -> tuple[Convention, tuple[CoefficientR
     convention, derivatives = reported_coefficients(
         examined.ready.reporting, simulator.rig, points, examined.campaign.memory
     )
-    plain, cured = _fits(examined)
+    plain, cured = _fit_pair(examined)
     numbers = [
         ReportedCoefficient(name, UNITS[name], {name: 1.0})
         for name in plain.names
@@ -183,7 +183,7 @@ def _row(
     )
 
 
-def _fits(examined: Examined) -> tuple[_Fit, _Fit | None]:
+def _fit_pair(examined: Examined) -> tuple[_Fit, _Fit | None]:
     """Return the fit without and with the effect that is named; ``None`` where none is.
 
     Of coefficients that are the same in all runs, on a rig that only its settings are off of: so

@@ -56,12 +56,12 @@ def document(report: GapReport) -> Document:
 def _sections(report: GapReport) -> Iterator[Section]:
     """Yield what there is to show, in the order in which it is read."""
     yield _answer(report)
-    yield _where(report)
-    yield _which(report)
+    yield _stage_section(report)
+    yield _answer_section(report)
     yield _how_far(report)
     yield _coefficients(report)
     yield _remains(report)
-    yield _next(report)
+    yield _next_section(report)
 
 
 def _answer(report: GapReport) -> Section:
@@ -89,7 +89,7 @@ def _answer(report: GapReport) -> Section:
     )
 
 
-def _where(report: GapReport) -> Section:
+def _stage_section(report: GapReport) -> Section:
     shares = [f"{name} {share:.2f}" for name, share in report.stages.items() if share > 0.005]
     stage = f"Stage, by the answers' probabilities: {', '.join(shares)}."
     conclusion = report.conclusion
@@ -105,7 +105,7 @@ def _where(report: GapReport) -> Section:
     )
 
 
-def _which(report: GapReport) -> Section:
+def _answer_section(report: GapReport) -> Section:
     lines = [_ANSWERS]
     lines += [
         f"What would tell {joined(row.answer)} from what looks the same: {measure}."
@@ -173,7 +173,7 @@ def _remains(report: GapReport) -> Section:
     return Section("What remains", (Text(lines), *drawn, table))
 
 
-def _next(report: GapReport) -> Section:
+def _next_section(report: GapReport) -> Section:
     lines = [_ODDS.format(", ".join(run["between"])) for run in report.next_runs[:1]]
     return Section("Next", (Text(lines), Table("Next", NEXT, report.next_runs, "next_runs")))
 

@@ -98,7 +98,9 @@ def load_campaign(
             _check_single(run)
             recording = _at_once(open_recording(RecordingSource.of(campaign, run, path.parent)))
             damaged |= damage_of(run.name, recording)
-            observed = observe(_only(recording, sensors), campaign.reference, campaign.analysis)
+            observed = observe(
+                _sensors_alone(recording, sensors), campaign.reference, campaign.analysis
+            )
             followed, unlike[run.name] = _followed(recording)
             readings.append((run, observed, followed))
         except (PmmError, OSError) as error:
@@ -197,7 +199,7 @@ def _at_once(recording: Recording) -> Recording:
     return replace(recording, samples=recording.samples[:, 0:count])
 
 
-def _only(recording: Recording, sensors: Sequence[str]) -> Recording:
+def _sensors_alone(recording: Recording, sensors: Sequence[str]) -> Recording:
     if not sensors:
         return recording
     edges = recording.photocell_edges_s if "photocell" in sensors else None

@@ -112,20 +112,20 @@ def _sections(name: str, examined: ExaminedPendulum) -> Iterator[Section]:
     )
     heat = Figure("heat", _HEAT, partial(figures.heat_map, diagnosis))
     yield Section("Where", (Text((_E,)), heat, Table("Where", WHERE, diagnosis.where, "where")))
-    yield Section("Which", tuple(_which(diagnosis)))
+    yield Section("Which", tuple(_answer_contents(diagnosis)))
     laws = Table("Laws of damping", _law_columns(diagnosis), diagnosis.laws, "laws")
     yield Section("Laws of damping", (Text((_LAWS,) if diagnosis.laws else ()), laws))
     yield Section("How far", tuple(_how_far(diagnosis)))
     yield Section("Records", tuple(_records(diagnosis)))
     yield _remains(diagnosis)
-    yield _next(diagnosis)
+    yield _next_section(diagnosis)
 
 
 def _numbers(diagnosis: PendulumDiagnosis) -> Iterator[Data]:
     """Yield what programs alone get."""
     verdict, answers = diagnosis.verdict, diagnosis.weighed.answers
     yield Data("verdict", verdict.said)
-    yield Data("best", _best(diagnosis))
+    yield Data("best", _best_answer(diagnosis))
     yield Data(
         "probabilities", {key: share for key, share in answers.by_answer.items() if share > 1e-9}
     )
@@ -138,14 +138,14 @@ def _numbers(diagnosis: PendulumDiagnosis) -> Iterator[Data]:
     yield Data("rivals", [named(rival) for rival in diagnosis.rivals or ()])
 
 
-def _best(diagnosis: PendulumDiagnosis) -> tuple[str, ...]:
+def _best_answer(diagnosis: PendulumDiagnosis) -> tuple[str, ...]:
     """Return the most probable answer: causes, none, or what it is besides."""
     best = diagnosis.weighed.answers.best
     calm = best in (NONE, COEFFICIENTS)
     return () if calm else effects_in(best) or (best,)
 
 
-def _which(diagnosis: PendulumDiagnosis) -> Iterator[Content]:
+def _answer_contents(diagnosis: PendulumDiagnosis) -> Iterator[Content]:
     sets = {" and ".join(named(fit)): fit for fit in diagnosis.weighed.sets.values()}
     sets[" and ".join(named(diagnosis.best))] = diagnosis.settled.best
     answers: tuple[Column[tuple[str, float]], ...] = (
@@ -239,7 +239,7 @@ def _odds(ln_evidence: float) -> str:
     return f"at odds of {math.exp(ln_evidence):.2g} to 1"
 
 
-def _next(diagnosis: PendulumDiagnosis) -> Section:
+def _next_section(diagnosis: PendulumDiagnosis) -> Section:
     lines: tuple[str, ...] = ()
     if diagnosis.proposals and diagnosis.rivals is not None:
         first, second = (" + ".join(named(rival)) for rival in diagnosis.rivals)

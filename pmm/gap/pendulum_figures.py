@@ -31,13 +31,16 @@ def heat_map(diagnosis: PendulumDiagnosis) -> "Figure":
     count = max(trial.windows.count for trial in problem.trials)
     columns = [str(at + 1) if at % _EACH == 0 else "" for at in range(count)]
     breaks = [at for at in range(1, len(pairs)) if pairs[at][0] != pairs[at - 1][0]]
-    maps = [_map(problem, pairs, residual) for residual in (as_stated(problem), _after(diagnosis))]
+    maps = [
+        _map(problem, pairs, residual)
+        for residual in (as_stated(problem), _remainder_after(diagnosis))
+    ]
     titles = ("as stated", "with the best answer")
     grid = Grid(names, columns, breaks, titles, "window of the record")
     return before_and_after(grid, maps, "E/u")
 
 
-def _after(diagnosis: PendulumDiagnosis) -> FloatArray:
+def _remainder_after(diagnosis: PendulumDiagnosis) -> FloatArray:
     return remainder(diagnosis.settled.problem, diagnosis.settled.best)
 
 

@@ -36,11 +36,13 @@ def sentences(diagnosis: PendulumDiagnosis) -> tuple[str, str, str]:
 def what_is_wrong(diagnosis: PendulumDiagnosis, concluded: PendulumConclusion) -> str:
     """Return what separates the record from its simulation, and what of it is open."""
     if concluded.turned:
-        return f"{_turned(concluded.turned)}."
-    return f"{'; '.join(_wrong(diagnosis, concluded))}."
+        return f"{_turned_sentence(concluded.turned)}."
+    return f"{'; '.join(_verdict_sentences(diagnosis, concluded))}."
 
 
-def _wrong(diagnosis: PendulumDiagnosis, concluded: PendulumConclusion) -> Iterator[str]:
+def _verdict_sentences(
+    diagnosis: PendulumDiagnosis, concluded: PendulumConclusion
+) -> Iterator[str]:
     if concluded.verdict == NONE:
         yield _no_gap(diagnosis)
         return
@@ -55,7 +57,9 @@ def _wrong(diagnosis: PendulumDiagnosis, concluded: PendulumConclusion) -> Itera
         return
     rivals = open_laws(diagnosis.laws)
     causes = [
-        " or ".join(_first(concluded, name)) for name in concluded.names if name not in DAMPING
+        " or ".join(_alike_names(concluded, name))
+        for name in concluded.names
+        if name not in DAMPING
     ]
     damped = len(causes) < len(concluded.names)
     damping = [_damping(diagnosis.laws, rivals, concluded.names)] if damped else []
@@ -90,13 +94,13 @@ def _no_gap(diagnosis: PendulumDiagnosis) -> str:
     return f"No gap: the record and its simulation agree{once} within what the record can tell"
 
 
-def _turned(runs: Sequence[str]) -> str:
+def _turned_sentence(runs: Sequence[str]) -> str:
     subject, verb = ("Records", "are") if len(runs) > 1 else ("Record", "is")
     sign = "half a turn off: the force or the reading has the other sign there"
     return f"{subject} {' and '.join(runs)} {verb} {sign}"
 
 
-def _first(concluded: PendulumConclusion, name: str) -> tuple[str, ...]:
+def _alike_names(concluded: PendulumConclusion, name: str) -> tuple[str, ...]:
     """Return a cause with what these records cannot tell from it, where it is named at all."""
     return tuple(concluded.alike_causes.get(name, (name,))) if concluded.adds else (name,)
 

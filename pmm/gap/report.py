@@ -77,7 +77,7 @@ def gap_report(examined: Examined) -> GapReport:
     ranking, odd = tuple(_ranking(examined)), odd_one(examined)
     large = how_large(stack, _difference(examined), concluded.walk, rows)
     sizes = () if examined.cause is None else tuple(own_sizes(examined.cause))
-    next_runs = tuple(_next(proposal) for proposal in diagnosis.proposals[:PROPOSED])
+    next_runs = tuple(_next_row(proposal) for proposal in diagnosis.proposals[:PROPOSED])
     measures = tuple(how for row in ranking for how in row.measure)
     run = next_runs[0]["said"] if next_runs else ""
     todo = Remedies(odd, measures, run)
@@ -202,7 +202,7 @@ def _regimes(examined: Examined) -> Iterator[RegimeRow]:
         yield RegimeRow(str(prediction.regime), gap_of(prediction.left), *after)
 
 
-def _next(proposal: Proposal) -> dict[str, Any]:
+def _next_row(proposal: Proposal) -> dict[str, Any]:
     return {
         "run": next_run(proposal),
         "said": str(proposal),

@@ -37,15 +37,15 @@ def noise_notes(examined: Examined) -> Iterator[str]:
 def command_notes(examined: Examined) -> Iterator[str]:
     """Yield what commands and measured positions told of the settings."""
     for setting in examined.ready.commanded:
-        added = "" if setting.added_m is None else f" and {_off(setting.added_m)}"
+        added = "" if setting.added_m is None else f" and {_text(setting.added_m)}"
         yield (
-            f"{setting.name}: {_off(setting.off)}{added} off, by command and measured position of "
+            f"{setting.name}: {_text(setting.off)}{added} off, by command and measured position of "
             f"{setting.runs} runs; the simulation has it so, within {setting.key} = "
             f"{setting.tolerance:.2g}"
         )
 
 
-def _off(estimate: Estimate) -> str:
+def _text(estimate: Estimate) -> str:
     unit = "" if estimate.unit == "1" else f" {estimate.unit}"
     return f"{estimate.value:+.3g} ± {estimate.half_width():.2g}{unit}"
 

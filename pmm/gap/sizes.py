@@ -152,11 +152,11 @@ def _size(stack: Stack, step: str, run: int, which: Component, value: float) -> 
         f"{unit.label}{trend}",
         f"{_of_order(which)} of {which.channel}",
         gap_run.name,
-        100.0 * value / _first(gap_run, which.channel),
+        100.0 * value / _first_amplitude(gap_run, which.channel),
     )
 
 
-def _first(run: GapRun, channel: str) -> float:
+def _first_amplitude(run: GapRun, channel: str) -> float:
     """Return the amplitude of a channel's first harmonic; NaN where it is no measure."""
     parts = (Part.IN_PHASE, Part.QUADRATURE)
     first = math.hypot(*(run.observed.value(channel, part, 1) for part in parts))

@@ -51,16 +51,16 @@ def sentences(
 def what_is_wrong(conclusion: Conclusion) -> str:
     """Return what separates rig and simulation, and how probable that is."""
     said = {
-        NONE: _none,
+        NONE: _no_gap_text,
         COEFFICIENTS: _coefficients,
         ODD_RUN: _odd_run,
-        UNKNOWN: _unknown,
+        UNKNOWN: _unknown_text,
         EFFECT: _effect,
     }
     return f"{said[conclusion.verdict](conclusion)}."
 
 
-def _none(conclusion: Conclusion) -> str:
+def _no_gap_text(conclusion: Conclusion) -> str:
     if conclusion.unexplained:
         return (
             f"Nothing that was considered explains the difference in {_steps(conclusion)}: that "
@@ -88,7 +88,7 @@ def _odd_run(conclusion: Conclusion) -> str:
     )
 
 
-def _unknown(conclusion: Conclusion) -> str:
+def _unknown_text(conclusion: Conclusion) -> str:
     weighing = conclusion.weighing
     outside = OUTSIDE
     if weighing.restricted is not None:

@@ -48,7 +48,7 @@ def _edges_s(analysis: "Analysis") -> FloatArray:
     return np.append(steady.opened_s[:periods], steady.closed_s[periods - 1])
 
 
-def _nothing(analysis: "Analysis") -> FloatArray:
+def _empty_rows(analysis: "Analysis") -> FloatArray:
     reading = analysis.readings[0]
     return np.full((len(reading.channel_names), 2 * reading.order), np.nan)
 
@@ -62,7 +62,7 @@ def _gated(analysis: "Analysis", periods: int) -> FloatArray:
 
     edges_s = _edges_s(analysis)
     if len(edges_s) <= periods:
-        return _nothing(analysis)
+        return _empty_rows(analysis)
     first = gated_readings(
         analysis.recording,
         analysis.reference,
@@ -94,5 +94,5 @@ def _needles(analysis: "Analysis") -> FloatArray:
     window = analysis.recording.between(reading.opened_s, reading.closed_s)
     needles = running_average(window, analysis.reference, harmonics=analysis.settings.harmonics)
     if not needles.settled[-1]:
-        return _nothing(analysis)
+        return _empty_rows(analysis)
     return _interleaved(needles.in_phase[..., -1], needles.quadrature[..., -1])

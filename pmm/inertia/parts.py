@@ -201,8 +201,8 @@ def run_ballast(path: str) -> Outcome:
         part(
             weight.name,
             exactly(weight.mass_kg, "kg"),
-            _exactly(place),
-            _exactly(weight.gyradii_m),
+            _exact_place(place),
+            _exact_place(weight.gyradii_m),
         )
         for weight, place in zip(weights, rows, strict=True)
     ]
@@ -226,7 +226,7 @@ def run_ballast(path: str) -> Outcome:
     )
 
 
-def _exactly(triple: Sequence[float] | FloatArray) -> tuple[Estimate, Estimate, Estimate]:
+def _exact_place(triple: Sequence[float] | FloatArray) -> tuple[Estimate, Estimate, Estimate]:
     x, y, z = (exactly(float(value), "m") for value in triple)
     return x, y, z
 

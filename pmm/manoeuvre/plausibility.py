@@ -125,7 +125,7 @@ def doubts_of_ship(file: ShipFile, ship: Ship) -> tuple[str, ...]:
         "N_r over Inoue's": -first("N_r") / (0.54 * k),
         "Y_r/m": first("Y_r") / mass,
         "-Y_d/(rho/2 L d U²)": -force / (ideal / particulars.length_m * file.speed_m_s**2),
-        "rudder's lever N_d/(-Y_d L)": _over(moment, -force) / particulars.length_m,
+        "rudder's lever N_d/(-Y_d L)": _ratio(moment, -force) / particulars.length_m,
     }
     if file.rudder is not None:
         values["H_R/d"] = file.rudder.height_m / particulars.draught_m
@@ -150,13 +150,13 @@ def doubts_of_body(file: SubmergedFile, body: SubmergedBody) -> tuple[str, ...]:
         / particulars.inertia_kg_m2,
         "-Z_w/m": -first["Z_w"] / mass,
         "-M_q/m": -first["M_q"] / mass,
-        "lever M_w/(-Z_w L)": _over(first["M_w"], -first["Z_w"]),
+        "lever M_w/(-Z_w L)": _ratio(first["M_w"], -first["Z_w"]),
         "-Z_q/m": -first["Z_q"] / mass,
     }
     return tuple(_doubts(BODY, values))
 
 
-def _over(numerator: float, denominator: float) -> float:
+def _ratio(numerator: float, denominator: float) -> float:
     return numerator / denominator if denominator else math.nan
 
 

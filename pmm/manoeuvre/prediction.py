@@ -121,7 +121,7 @@ def predict(file: ShipFile, trials: int, seed: int, level: float, progress: Prog
             log = logs.setdefault(f"{angle}", Log()) if side == "starboard" else None
             zigzags[side, angle] = zigzag(ship, sign * size, size, 2, log)
     progress("spiral")
-    spiral_ship = replace(ship, hull=_first(ship.hull, _SPIRAL_SHIPS))
+    spiral_ship = replace(ship, hull=_first_draws(ship.hull, _SPIRAL_SHIPS))
     spiral_curve = spiral(spiral_ship, _SPIRAL_LARGEST, _SPIRAL_STEP)
     straight = straight_course(ship)
     return Prediction(file, ship, level, turns, zigzags, spiral_curve, straight, logs)
@@ -142,5 +142,5 @@ def ship_of(file: ShipFile, trials: int, seed: int) -> Ship:
     return Ship(hull, file.propeller, file.rudder, *mass, file.speed_m_s, helm)
 
 
-def _first(hull: HullLoads, count: int) -> HullLoads:
+def _first_draws(hull: HullLoads, count: int) -> HullLoads:
     return replace(hull, values={name: value[:count] for name, value in hull.values.items()})

@@ -75,7 +75,7 @@ def _turning(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
         velocity_peak_m_s(run, oscillator),
         acceleration_peak_m_s2(run, oscillator),
     )
-    yield from _led(run, rig)
+    yield from _drive_bounds(run, rig)
     for check, value, limit, where in (
         (table.VELOCITY, velocity, limits.velocity_m_s, peak_place(run, 1, "of a strut")),
         (
@@ -90,7 +90,7 @@ def _turning(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
             yield _Bound(check, value, 0.0, limit, where)
 
 
-def _led(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
+def _drive_bounds(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
     """Yield what drives of the struts' own may do, each strut with the time of its peak."""
     settings = None if rig.hardware.shaft is None else rig.hardware.shaft.settings
     if not isinstance(settings, PathShaftSettings):

@@ -54,7 +54,7 @@ def _table(**shapes: Shape) -> Shape:
     return fits
 
 
-def _all(shape: Shape) -> Shape:
+def _list_of(shape: Shape) -> Shape:
     return lambda value: isinstance(value, list) and all(map(shape, value))
 
 
@@ -88,25 +88,25 @@ def _reading(value: Any) -> bool:
     ) * [len(value["coefficients"][0]) if value["coefficients"] else 0]
 
 
-def _each(shape: Shape) -> Shape:
+def _table_of(shape: Shape) -> Shape:
     return lambda value: isinstance(value, dict) and all(map(shape, value.values()))
 
 
-_files: Final = _each(_table(bytes=_integer, sha256=_text))
-_flags: Final = _all(_table(code=_text, severity=_text, message=_text))
+_files: Final = _table_of(_table(bytes=_integer, sha256=_text))
+_flags: Final = _list_of(_table(code=_text, severity=_text, message=_text))
 _FLAGGED: Final = _table(flags=_flags)
 _MARKER: Final = _table(outcome=_text, files=_files, flags=_flags)
 _MARKER_MORE: Final[Mapping[str, Shape]] = {
     "first_sync": _integer,
     "last_sync": _integer,
-    "noise_rms": _each(_finite),
+    "noise_rms": _table_of(_finite),
 }
 _READING: Final = _table(
     opened_s=_finite,
     closed_s=_finite,
     periods=_integer,
-    channels=_all(_text),
-    coefficients=_all(_all(_number)),
+    channels=_list_of(_text),
+    coefficients=_list_of(_list_of(_number)),
 )
 _SHAPES: Final[Mapping[str, Shape]] = {
     PULSES: _row(_integer, _finite, _finite_or_none),

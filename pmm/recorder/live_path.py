@@ -62,21 +62,21 @@ class _Source:
         """Take what has come by cycle ``number``."""
         for piece in (taken := self.device.take()):
             if self.offset is None:
-                off = number - _last(taken[-1])
+                off = number - _last_number(taken[-1])
                 self.offset = 0 if abs(off) <= PATIENCE_CYCLES else off
             block = SampleBlock(piece.first + self.offset, piece.values)
             self.waiting.append(block)
-            self.last = _last(block)
+            self.last = _last_number(block)
 
     def write(self, first: int, values: FloatArray) -> None:
         """Write what lies in samples from ``first`` on, and keep what lies beyond."""
         end = first + values.shape[1]
         for block in self.waiting:
-            a, b = max(block.first, first), min(_last(block) + 1, end)
+            a, b = max(block.first, first), min(_last_number(block) + 1, end)
             if a < b:
                 part = block.values[:, a - block.first : b - block.first]
                 values[self.rows, a - first : b - first] = part
-        self.waiting = [block for block in self.waiting if _last(block) >= end]
+        self.waiting = [block for block in self.waiting if _last_number(block) >= end]
 
 
 class LivePath:
@@ -188,5 +188,5 @@ def as_record(reading: Harmonics) -> dict[str, Any]:
     }
 
 
-def _last(block: SampleBlock) -> int:
+def _last_number(block: SampleBlock) -> int:
     return block.first + int(block.values.shape[1]) - 1

@@ -56,14 +56,14 @@ def trend_document(trends: tuple[Trend, ...], probability: float) -> Document:
         Table("Trend", columns, rows, "trend"),
         Data("name", name),
         Data("probability", probability),
-        Notes(list(_outside(rows, probability))),
+        Notes(list(_outlier_notes(rows, probability))),
         Text(list(_too_few(trends)), faint=True),
     )
     figures = Section("Figures", tuple(trend_figures(trends)))
     return Document(name, "trend", (Section("", contents), figures), f"{SCHEMA}-trend")
 
 
-def _outside(rows: list[_TrendRow], probability: float) -> Iterator[Note]:
+def _outlier_notes(rows: list[_TrendRow], probability: float) -> Iterator[Note]:
     for entry in rows:
         if entry.point.outside:
             yield Note(

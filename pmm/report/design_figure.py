@@ -21,7 +21,7 @@ def design_figure(name: str, design: Design) -> "Figure":
         for k, last in enumerate(design.expected_coefficients):
             ratios = [
                 _ratio(step.expected_coefficients[k])
-                if _same(step.expected_coefficients, k, last)
+                if _is_same(step.expected_coefficients, k, last)
                 else math.nan
                 for step in design.steps
             ]
@@ -50,7 +50,9 @@ def _plain(value: float, _: float) -> str:
     return f"{value:g}"
 
 
-def _same(coefficients: tuple[ExpectedCoefficient, ...], k: int, last: ExpectedCoefficient) -> bool:
+def _is_same(
+    coefficients: tuple[ExpectedCoefficient, ...], k: int, last: ExpectedCoefficient
+) -> bool:
     return k < len(coefficients) and (coefficients[k].name, coefficients[k].where) == (
         last.name,
         last.where,

@@ -107,7 +107,7 @@ _HEARD: Final[tuple[Column[tuple[str, Heard]], ...]] = (
     Column("per second", lambda row: row[1].rate_hz, "per_second", written(".4g"), number=True),
     Column("lost", lambda row: row[1].lost, "lost", number=True),
     Column("refused", lambda row: row[1].refused, "refused", number=True),
-    Column("last", lambda row: _last(row[1])),
+    Column("last", lambda row: _last_lines(row[1])),
     Column(None, lambda row: {str(kind): line.value for kind, line in row[1].last.items()}, "last"),
 )  # fmt: skip
 
@@ -118,7 +118,7 @@ _ASKED: Final[tuple[Column[tuple[str, str]], ...]] = (
 )
 
 
-def _last(heard: Heard) -> str:
+def _last_lines(heard: Heard) -> str:
     lines = [f"{kind} {line.value:g}" for kind, line in heard.last.items()]
     return ", ".join(lines) or heard.first_refused
 

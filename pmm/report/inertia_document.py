@@ -51,7 +51,7 @@ PERIODS: Final[tuple[Column[_Period], ...]] = (
     Column("how", lambda row: row[1]),
     Column("T ± u", lambda row: _value(row[2]), unit="s", number=True),
     Column("dof", lambda row: _freedom(row[2]), number=True),
-    Column("runs", lambda row: _few(row[3]), unit="s", number=True),
+    Column("runs", lambda row: _first_runs(row[3]), unit="s", number=True),
 )
 FITS: Final[tuple[Column[FormFit], ...]] = (
     word("fit of", "record"),
@@ -120,7 +120,7 @@ def document(outcome: Outcome, fits: Sequence[FormFit] | None = None) -> Documen
         "mass properties",
         (
             Section("Periods", tuple(_periods(outcome.periods))),
-            Section("Fits", tuple(_fits(fits))),
+            Section("Fits", tuple(_fit_contents(fits))),
             Section("Results", (results, *_numbers(outcome))),
             Section("Agreement", (agreement_table(outcome.agreements),)),
             Section("Budgets", tuple(_budgets(outcome))),
@@ -132,7 +132,7 @@ def document(outcome: Outcome, fits: Sequence[FormFit] | None = None) -> Documen
     )
 
 
-def _fits(fits: Sequence[FormFit] | None) -> Iterator[Content]:
+def _fit_contents(fits: Sequence[FormFit] | None) -> Iterator[Content]:
     yield Table("Fits", FITS, fits or (), "fits")
     if fits is not None and not fits:
         yield Text(["F1 to F4 are forms of one oscillation; no record here has just one"])
@@ -146,11 +146,11 @@ def _periods(periods: Sequence[PeriodRuns]) -> Iterator[Content]:
         for runs in (group.single[number] if number < len(group.single) else (),)
     )
     yield Table("Periods", PERIODS, rows)
-    yield Text([_used(run) for runs in periods for run in runs.records], faint=True)
+    yield Text([_use_text(run) for runs in periods for run in runs.records], faint=True)
     yield Data("periods", [_period(runs) for runs in periods])
 
 
-def _used(run: Any) -> str:
+def _use_text(run: Any) -> str:
     decays = ", ".join(
         f"time constant {mode.decay.time_constant_s:.4g} s, beta {mode.decay.beta:z.2f} ± "
         f"{mode.decay.beta_uncertainty:.1g}"
@@ -292,6 +292,6 @@ def _interval(finding: Finding) -> tuple[float, float]:
     return finding.assessment.interval if finding.assessment else finding.estimate.interval()
 
 
-def _few(runs: tuple[float, ...]) -> str:
+def _first_runs(runs: tuple[float, ...]) -> str:
     text = " ".join(f"{run:.5g}" for run in runs[:4])
     return f"{text} ..." if len(runs) > 4 else text

@@ -147,7 +147,9 @@ def _last_reading(replay: Replay) -> Iterator[Table[_FirstHarmonics]]:
         number("quadrature 1 again", "quadrature_again", form),
     )
     rows = [
-        _FirstHarmonics(channel, *_first(recorded_reading, i), *_first(replayed_reading, i))
+        _FirstHarmonics(
+            channel, *_first_harmonic(recorded_reading, i), *_first_harmonic(replayed_reading, i)
+        )
         for i, channel in enumerate(recorded_reading["channels"])
     ]
     name = (
@@ -157,7 +159,7 @@ def _last_reading(replay: Replay) -> Iterator[Table[_FirstHarmonics]]:
     yield Table(name, columns, rows, titled=True)
 
 
-def _first(reading: Mapping[str, Any] | None, channel: int) -> tuple[float, float]:
+def _first_harmonic(reading: Mapping[str, Any] | None, channel: int) -> tuple[float, float]:
     """Return a reading's first harmonic of a channel; NaN where there is no reading."""
     if reading is None:
         return float("nan"), float("nan")

@@ -52,9 +52,9 @@ _STEPS: Final[tuple[Column[Decision], ...]] = (
     Column("runs", lambda row: len(row.runs), number=True),
     Column("last", lambda row: row.runs[-1] if row.runs else ""),
     number("tank time", "time_s", clock),
-    Column("met", lambda row: f"{_met(row.known)} of {len(row.known)}" if row.known else ""),
-    Column("least known", lambda row: _least(row.known)),
-    Column("then", lambda row: _then(row)),
+    Column("met", lambda row: f"{_met_count(row.known)} of {len(row.known)}" if row.known else ""),
+    Column("least known", lambda row: _least_known(row.known)),
+    Column("then", lambda row: _next_step(row)),
     word("approved by", "approved"),
 )
 
@@ -176,11 +176,11 @@ def _in_words(target: KnownTarget) -> str:
     )
 
 
-def _met(targets: Sequence[KnownTarget]) -> int:
+def _met_count(targets: Sequence[KnownTarget]) -> int:
     return sum(target.met for target in targets)
 
 
-def _least(targets: Sequence[KnownTarget]) -> str:
+def _least_known(targets: Sequence[KnownTarget]) -> str:
     unmet = [target for target in targets if not target.met]
     if not unmet:
         return ""
@@ -191,7 +191,7 @@ def _least(targets: Sequence[KnownTarget]) -> str:
     return f"{worst}: {ratios[worst]:.3g} times what is asked"
 
 
-def _then(decision: Decision) -> str:
+def _next_step(decision: Decision) -> str:
     if decision.ending:
         return decision.ending
     if decision.added:

@@ -168,7 +168,7 @@ def _changes(where: str, before: Any, now: Any) -> list[str]:
     places = [key for key in {**old, **new} if old.get(key, _UNSET) != new.get(key, _UNSET)]
     lines = [
         f"{where} {place_text(key, now if key in new else before)}"
-        f"{_was(old.get(key, _UNSET), new.get(key, _UNSET))}"
+        f"{_change_text(old.get(key, _UNSET), new.get(key, _UNSET))}"
         for key in places[:_MOST]
     ]
     more = len(places) - _MOST
@@ -184,7 +184,7 @@ def _leaves(value: Any, place: Place = ()) -> Iterator[tuple[Place, Any]]:
         yield place, value
 
 
-def _was(before: Any, now: Any) -> str:
+def _change_text(before: Any, now: Any) -> str:
     if before is _UNSET:
         return f"was not set, is {_value_text(now)}"
     if now is _UNSET:

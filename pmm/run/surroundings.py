@@ -237,7 +237,7 @@ def drift_prompt(geometry: Geometry) -> str:
             return f"set the struts' mean positions apart: {_offset_text(geometry)}, for {angle}"
 
 
-def _turned(straight: str, turned: str, angle_rad: float) -> str:
+def _turning_prompt(straight: str, turned: str, angle_rad: float) -> str:
     to, by = _side_and_size(angle_rad)
     return f"{f'{turned} {to} by {by}' if angle_rad else straight}; press Enter when it is so"
 
@@ -267,8 +267,12 @@ def _propeller(rate_hz: float) -> str:
 
 # What people set, the set-point's key for it, and what they are asked.
 _SETTINGS: Final[tuple[tuple[str, str, Callable[[float], str]], ...]] = (
-    ("heel", "heel_rad", partial(_turned, "set the model upright", "heel the model to")),
-    ("rudder", "rudder_angle_rad", partial(_turned, "lay it amidships", "lay it to turn to")),
+    ("heel", "heel_rad", partial(_turning_prompt, "set the model upright", "heel the model to")),
+    (
+        "rudder",
+        "rudder_angle_rad",
+        partial(_turning_prompt, "lay it amidships", "lay it to turn to"),
+    ),
     ("propeller", "revolutions_hz", _propeller),
 )
 

@@ -38,7 +38,7 @@ class Approval(Protocol):
 
 
 @dataclass(frozen=True)
-class _Always:
+class _StandingApproval:
     covering: bool
     name: str = "all, beforehand"
     question: str = ""
@@ -126,7 +126,7 @@ def approval_of(
         If all is to be approved on a real rig, or the envelope's file is wrong.
     """
     if choice is None:
-        return _Always(covering=False)
+        return _StandingApproval(covering=False)
     if choice != _ALL:
         return Envelope(Path(choice), _envelope(Path(choice)), clock)
     if not simulated:
@@ -134,7 +134,7 @@ def approval_of(
             "--approve all is for the simulated rig; on a real one give an envelope of set-points "
             "that somebody attends, or approve of each change"
         )
-    return _Always(covering=True)
+    return _StandingApproval(covering=True)
 
 
 def _envelope(path: Path) -> EnvelopeTable:

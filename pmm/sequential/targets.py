@@ -111,9 +111,9 @@ class TargetGoal:
         ending = _ending(best_design, file, planned_runs, hopeless=bool(hopeless))
         if ending is not None and not has_fixed:
             return replace(look, ending=ending[0], remark=ending[1])
-        return self._next(look, best_design, file, planned_runs, made)
+        return self._with_next_runs(look, best_design, file, planned_runs, made)
 
-    def _next(
+    def _with_next_runs(
         self,
         look: Look,
         best_design: Design,

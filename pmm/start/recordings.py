@@ -85,7 +85,7 @@ def find_campaign(paths: Sequence[Path], folder: Path) -> FoundCampaign:
             if not stands
         ),
         at_rest=tuple(
-            _rest(look, names[look.path], folder, sure)
+            _found_rest(look, names[look.path], folder, sure)
             for look, stands in zip(looks, rests, strict=True)
             if stands
         ),
@@ -211,7 +211,7 @@ def _speed_m_s(look: _Look, sure: dict[str, FoundColumn]) -> float | None:
     return 0.0 if abs(mean) < _CALM_M_S else _rounded(mean, 4)
 
 
-def _rest(look: _Look, name: str, folder: Path, sure: dict[str, FoundColumn]) -> FoundRest:
+def _found_rest(look: _Look, name: str, folder: Path, sure: dict[str, FoundColumn]) -> FoundRest:
     speed_m_s = _speed_m_s(look, sure)
     is_known = speed_m_s is not None or words.says(name, _ZERO)
     doubt = "" if is_known else "nothing says whether the carriage stood"

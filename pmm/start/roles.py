@@ -258,7 +258,7 @@ def _speed(behaviour: Behaviour, _: RecordingBehaviour) -> Iterator[RoleEvidence
         yield RoleEvidence(_DOES, "it is even")
 
 
-def _along(_one: Behaviour, _watch: RecordingBehaviour) -> Iterator[RoleEvidence]:
+def _surge_force(_one: Behaviour, _watch: RecordingBehaviour) -> Iterator[RoleEvidence]:
     yield RoleEvidence(-_NAME, "few rigs have a gauge along the model")
 
 
@@ -272,6 +272,6 @@ _DOING: Final[Mapping[str, Callable[[Behaviour, RecordingBehaviour], Iterator[Ro
     FORCE.name: _force,
     ANGLE.name: _angle,
     SPEED.name: _speed,
-    ALONG.name: _along,
+    ALONG.name: _surge_force,
     PULSES.name: _pulses,
 }

@@ -103,7 +103,7 @@ def shared_line(recording: Recording) -> SharedLine | None:
         name: reference for name in names if (reference := _own_reference(recording, name))
     }
     asked = {
-        name: reference for name, reference in references.items() if not _few(reference)
+        name: reference for name, reference in references.items() if not _has_few_periods(reference)
     } or references
     lines = sorted(
         (_line_of_column(recording, *item) for item in asked.items()),
@@ -118,7 +118,7 @@ def shared_line(recording: Recording) -> SharedLine | None:
 
 def _line_of_column(recording: Recording, name: str, reference: PhaseReference) -> SharedLine:
     """Return the line that a column would be of by itself."""
-    even = _even(recording, name, reference)
+    even = _even_reference(recording, name, reference)
     beside = shares(recording, even, [name])[name].residual
     return SharedLine(reference, even.frequency_hz, name, beside, ())
 
@@ -154,10 +154,14 @@ def _doubt(line: SharedLine, rivals: bool) -> str:
         return f"{100.0 * line.residual:.0f} % of the cleanest column, {line.channel}, is no line"
     if rivals and not line.other_columns:
         return f"{line.channel} has it alone, other columns keep another time"
-    return "so few periods keep time that noise might do so" if _few(line.reference) else ""
+    return (
+        "so few periods keep time that noise might do so"
+        if _has_few_periods(line.reference)
+        else ""
+    )
 
 
-def _few(reference: PhaseReference) -> bool:
+def _has_few_periods(reference: PhaseReference) -> bool:
     return any(flag.code == _FEW for flag in reference.flags)
 
 
@@ -169,7 +173,7 @@ def _own_reference(recording: Recording, name: str) -> PhaseReference | None:
         return None
 
 
-def _even(recording: Recording, name: str, reference: PhaseReference) -> PhaseReference:
+def _even_reference(recording: Recording, name: str, reference: PhaseReference) -> PhaseReference:
     """Return a reference that turns evenly, as fast as fits a column's samples best.
 
     One step of Gauss and Newton from the reference's mean: where the wave ``S sin + C cos`` needs a

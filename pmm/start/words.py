@@ -63,7 +63,7 @@ AFT: Final = (
 def says(name: str, words: Sequence[str]) -> bool:
     """Tell whether a name has one of some words: short ones alone, long ones within others."""
     parts = [part.casefold() for part in re.findall(r"[^\W\d_]+", _spaced(name))]
-    return any(_has(part, word) for part in parts for word in words)
+    return any(_has_word(part, word) for part in parts for word in words)
 
 
 def _spaced(name: str) -> str:
@@ -71,7 +71,7 @@ def _spaced(name: str) -> str:
     return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
 
 
-def _has(part: str, word: str) -> bool:
+def _has_word(part: str, word: str) -> bool:
     if len(word) <= _AS_IT_IS:
         return part == word
     return part.startswith(word) or (len(word) >= _LONG and word in part)

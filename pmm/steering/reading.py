@@ -111,7 +111,7 @@ def _steered(
         name: zeros[name] for name in task.zero_names if name is not None and name in zeros
     }
     gauges = (*GAUGES, _TORQUE) if _TORQUE in channels else GAUGES
-    rest = {name: _rest(recording, name, run_zeros, tared=task.tared) for name in gauges}
+    rest = {name: _rest_reading(recording, name, run_zeros, tared=task.tared) for name in gauges}
     angle, rate = _angle(task, recording, run_zeros), _rate(task, recording)
     by_zero = {(zero, name): u for name in GAUGES for zero, u in rest[name][1].items()}
     for instant in _instants(task, recording, cycle, gauges):
@@ -151,7 +151,7 @@ def _instants(
 def _angle(task: Task, recording: Recording, zeros: Mapping[str, ZeroReading]) -> float:
     if RUDDER_ANGLE.name not in recording.channel_names:
         return task.set_point.rudder_angle_rad
-    offset, _ = _rest(recording, RUDDER_ANGLE.name, zeros, tared=task.tared)
+    offset, _ = _rest_reading(recording, RUDDER_ANGLE.name, zeros, tared=task.tared)
     return float(recording.values(RUDDER_ANGLE.name).mean()) - offset
 
 
@@ -170,7 +170,7 @@ def _rate(task: Task, recording: Recording) -> float:
     return rate
 
 
-def _rest(
+def _rest_reading(
     recording: Recording, name: str, zeros: Mapping[str, ZeroReading], *, tared: bool
 ) -> tuple[float, dict[str, float]]:
     """Return what a channel reads at rest, and the uncertainty that each zero run adds to it."""

@@ -78,7 +78,7 @@ def steering_of(folder: Path, settings_path: Path | None = None) -> CampaignStee
     tows, failed = _tows(work)
     if not tows:
         messages = "; ".join(failure.message for failure in failed)
-        raise DataError(messages or _nothing(folder))
+        raise DataError(messages or _no_runs_message(folder))
     particulars, runs = settings.particulars(density), steering_runs(tows)
     parameters = identified(runs, particulars, settings.towing_force_n)
     return CampaignSteering(
@@ -110,7 +110,7 @@ def _sways(task: Task) -> Flag:
     return Flag("run_left_out", Severity.NOTE, why, None, (task.name,))
 
 
-def _nothing(folder: Path) -> str:
+def _no_runs_message(folder: Path) -> str:
     return (
         f"{folder / CAMPAIGN_FILE}: no recorded tow has a turning propeller or a laid rudder; give "
         "revolutions_hz and rudder_angle_deg of the runs in [[at_rest]]"
