@@ -12,7 +12,13 @@ from pmm.archive import database
 from pmm.archive.database import open_archive
 from pmm.archive.indexing import add_folder
 from pmm.archive.notebook import NOTES_FILE
-from pmm.archive.results import Analysed, Analyses, CoefficientValue, GapVerdict, HarmonicValue
+from pmm.archive.results import (
+    AnalysedCampaign,
+    Analyses,
+    CoefficientValue,
+    GapVerdict,
+    HarmonicValue,
+)
 from pmm.cli import cli
 from tests.pmm.coefficients.campaigns import vertical_campaign
 
@@ -20,9 +26,9 @@ NOW = "2026-01-01T00:00:00+00:00"
 RUN = "one-0.7-20"
 
 
-def analysed(_: Path) -> Analysed:
+def analysed(_: Path) -> AnalysedCampaign:
     harmonic = HarmonicValue(RUN, 1, "force_aft", 1, "N", 1.0, 2.0, 0.1, 0.1)
-    return Analysed((harmonic,), (CoefficientValue("Z_w", "kg", 0.0, 0.7, 3.0, 0.1, 0.2),))
+    return AnalysedCampaign((harmonic,), (CoefficientValue("Z_w", "kg", 0.0, 0.7, 3.0, 0.1, 0.2),))
 
 
 ALL = Analyses(analysed, lambda _: GapVerdict("none", None, None))
@@ -46,7 +52,7 @@ def folder(tmp_path: Path) -> Path:
 def test_results_that_another_process_kept_meanwhile_are_there_once(folder: Path) -> None:
     file = folder.parent / "archive.sqlite"
 
-    def beside(_: Path) -> Analysed:
+    def beside(_: Path) -> AnalysedCampaign:
         with open_archive(file) as other:
             assert add_folder(other, folder, ALL, NOW).computed == ("analysis", "diagnosis")
         return analysed(folder)
