@@ -92,7 +92,7 @@ def test_nothing_is_said_of_what_pip_laid_down(ours: Environment) -> None:
     assert ours.run("pmm").stdout == "our command\n"
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("taken", ["pmm", "hardware"])
 def test_the_distribution_that_overwrites_a_package_is_named(taken: str, ours: Environment) -> None:
     ours.install(f"the-other-{taken}", "0.33.0", {f"{taken}/__init__.py": STRANGERS})

@@ -17,7 +17,7 @@ _QUICK = [
 ]
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", _QUICK)
 def test_quick_run_measures_and_is_kept(name: str, tmp_path: Path) -> None:
     if name == "evidence":

@@ -33,6 +33,7 @@ def _line(ours: float, theirs: float, alike: list[bool], *, said: float = 0.0) -
     return {"campaign": "A", "rows": rows, "alike": kept, "counts": True, "verdict": "gap"}
 
 
+@pytest.mark.slow
 def test_figures_are_those_by_hand() -> None:
     """Class: 2 of 4 right beside the oracle's 3; thinned: 3 of 4 alike; what is cut is no part."""
     same, other = [True, True], [True, False]

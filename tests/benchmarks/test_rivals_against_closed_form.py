@@ -13,6 +13,7 @@ _PERIODS = 40
 _TRUTH = Truth(1.0, 0.0, draw_coefficients((0.5, 1.0, 0.3, 0.1), 2, np.random.default_rng(1)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "needs", "tolerance"),
     [

@@ -20,6 +20,7 @@ def test_the_page_of_checks_is_the_scripts() -> None:
     assert (DOCS / "plan-checks.md").read_text(encoding="utf-8") == plan_checks.page()
 
 
+@pytest.mark.slow
 def test_types_found_in_the_sources_are_those_of_the_running_program() -> None:
     import pmm.run.errors  # noqa: F401
     from analysis.resolver.reference import NoReferenceError

@@ -117,6 +117,7 @@ def test_harmonics_of_what_jumps(
         np.testing.assert_allclose(found, expected, rtol=0.0, atol=2e-5 * largest)
 
 
+@pytest.mark.slow
 @given(st.sampled_from(CORNERED), st.sampled_from(Point), st.sampled_from(SYSTEMS), parts)
 def test_compiled_and_array_form_agree(
     law: ForceLaw, point: Point, system: HullSystem, numbers: list[float]

@@ -40,7 +40,7 @@ def sized(problem: Problem, said: str) -> Effect:
     return build(said.format(10.0**low))
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(("said", "seed"), list(zip(WEAK, SEEDS, strict=True)))
 def test_it_is_named(said: str, seed: int, rig: SimulatedRig, problem: Problem) -> None:
     there = sized(problem, said)

@@ -36,6 +36,7 @@ def test_gyradius_to_a_thousandth_and_centre_of_gravity_to_a_millimetre() -> Non
     assert worst["depth_mm"] < 1.0
 
 
+@pytest.mark.slow
 def test_the_period_scatters_as_the_noise_allows() -> None:
     assert bound_ratio(500, 3) == pytest.approx(1.0, abs=0.1)
 

@@ -112,6 +112,7 @@ def found(campaign: tuple[Path, Any]) -> CampaignOutcome:
     return outcome_of(campaign[0])
 
 
+@pytest.mark.slow
 def test_size_amplitude_and_phase_are_those_of_the_integrated_drives(
     campaign: tuple[Path, Any], found: CampaignOutcome
 ) -> None:

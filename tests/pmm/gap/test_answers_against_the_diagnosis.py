@@ -26,6 +26,7 @@ def answered(rig: Path, folder: Path, monkeypatch: pytest.MonkeyPatch) -> dict[s
     return found
 
 
+@pytest.mark.slow
 def test_coefficients_that_had_to_be_moved_are_the_answer(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -39,6 +39,7 @@ def told(folder: Path, *options: str) -> dict[str, Any]:
     return dict(json.loads(done.stdout))
 
 
+@pytest.mark.slow
 def test_a_rig_that_is_as_it_is_believed_has_no_gap(tmp_path: Path) -> None:
     assert told(tmp_path)["verdict"] == "none"
 

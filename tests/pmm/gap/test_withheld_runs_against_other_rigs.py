@@ -25,6 +25,7 @@ def said(campaign: Path, *options: str) -> dict[str, Any]:
     return document
 
 
+@pytest.mark.slow
 def test_what_the_same_rig_made_is_foretold(rubbing: Path) -> None:
     found = said(rubbing, "--hold-out", "frequency=1.1")
     assert found["verdict"] == "effect"

@@ -43,6 +43,7 @@ def found() -> dict[str, tuple[np.ndarray, float]]:
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["initial turning", "overshoot"])
 def test_the_truth_lies_in_as_many_intervals_as_is_said(name: str, found) -> None:  # type: ignore[no-untyped-def]
     """95 % of 300; three standard deviations of that share are 3.8 %."""

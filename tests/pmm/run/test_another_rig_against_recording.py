@@ -23,6 +23,7 @@ amplitudes_mm = 20.0
 """
 
 
+@pytest.mark.slow
 def test_half_the_mass_is_seen(tmp_path: Path) -> None:
     for name in ("rig.toml", "simulated.toml"):
         text = (EXAMPLE / name).read_text(encoding="utf-8")

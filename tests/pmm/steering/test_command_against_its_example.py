@@ -152,6 +152,7 @@ def test_people_read_names_intervals_and_the_numbers_that_are_known(
     assert not re.search(r" Re(?! =)\s", text)
 
 
+@pytest.mark.slow
 def test_what_is_left_out_is_named_and_what_would_tell_the_rest(tows: Path, tmp_path: Path) -> None:
     """Sway in place of yaw, and a tow that states no rudder and no revolutions."""
     ahead = "drift_deg = 0.0\n"

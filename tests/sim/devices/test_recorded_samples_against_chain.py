@@ -47,7 +47,7 @@ def taken(plant: Plant, count: int) -> dict[str, list[float]]:
     return found
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [vertical_rig, loaded_rig])
 @settings(max_examples=6, deadline=None)
 @given(at=st.lists(st.integers(1, 200), min_size=1, max_size=4), vain=st.booleans())
