@@ -4,6 +4,8 @@ import json
 import math
 from pathlib import Path
 
+import pytest
+
 from analysis.readers import read_recording
 from tests.pmm.run.processes import pmm
 from tests.sim.devices.benches import ROOT
