@@ -12,7 +12,7 @@ from starlette.responses import Response
 
 from hardware.description.errors import PmmError
 from pmm.console.audit import CommandRecord, keep, latest
-from pmm.console.desk import NotInControlError
+from pmm.console.desk import Holder, NotInControlError
 from pmm.console.encoding import encode_answer
 from pmm.console.hub import Hub
 from pmm.console.limits import LARGEST_PLAN, LARGEST_REQUEST
@@ -27,10 +27,12 @@ from pmm.console.requests import (
     AnswerPosted,
     CommandPosted,
     DecisionPosted,
+    GivePosted,
     NotePosted,
     PlanPosted,
     Posted,
     TakePosted,
+    validation_message,
 )
 from pmm.console.security import VisitorRole
 from pmm.console.worker_process import Workers
@@ -119,6 +121,10 @@ class PageActions:
         """Give control to the session that asks for it."""
         return await self._do(request, TakePosted, "take control", self._take)
 
+    async def give(self, request: Request) -> Response:
+        """Take control back from the session that has it and wants it no more."""
+        return await self._do(request, GivePosted, "give control", self._give)
+
     async def check(self, request: Request) -> Response:
         """Read and check a plan; nothing is changed, so whoever watches may do it."""
         return await self._do(request, PlanPosted, "check", self._check)
@@ -144,7 +150,7 @@ class PageActions:
             reply = await act(kind.model_validate_json(body), who)
             status, answer, present = 200, reply.answer(), reply.present
         except ValidationError as error:
-            status, answer = 422, {"error": _validation_message(error)}
+            status, answer = 422, {"error": validation_message(error)}
         except NotInControlError as error:
             status, answer = 403, {"error": str(error)}
         except RefusedError as error:
@@ -235,13 +241,13 @@ class PageActions:
         return of_reply(await self._loop.order(OrderKind.ANSWER, posted.answer, posted.question))
 
     async def _check(self, posted: PlanPosted, who: Requester) -> ActionReply:
-        worker = self._workers.for_whom(in_control=self._hub.desk.holder == who.session)
+        worker = self._workers.for_whom(in_control=self._in_control(who))
         picture = await worker.run(check_plan_text, self._plans, posted.name, posted.text)
         return ActionReply("", picture)
 
     async def _note(self, posted: NotePosted, who: Requester) -> ActionReply:
         who.visitor.require(VisitorRole.PROPOSE)
-        worker = self._workers.for_whom(in_control=self._hub.desk.holder == who.session)
+        worker = self._workers.for_whom(in_control=self._in_control(who))
         plan = self.changes.queued.plan(posted.number)
         await worker.run(keep_note, plan, posted, self._utc())
         about = posted.run or plan.bare.plan.name
@@ -257,15 +263,16 @@ class PageActions:
         who.visitor.require(VisitorRole.OPERATE)
         self._hub.desk.require(who.session)
 
+    def _in_control(self, who: Requester) -> bool:
+        return self._hub.desk.seen_from(who.session) is Holder.YOU
+
     async def _take(self, posted: TakePosted, who: Requester) -> ActionReply:
         who.visitor.require(VisitorRole.OPERATE)
         self._hub.desk.take_over(who.session)
         self._hub.news.set()
         return ActionReply("this browser has control")
 
-
-def _validation_message(error: ValidationError) -> str:
-    return "; ".join(
-        f"{'.'.join(map(str, fault['loc'])) or 'body'}: {fault['msg']}"
-        for fault in error.errors(include_url=False, include_input=False)
-    )
+    async def _give(self, _posted: GivePosted, who: Requester) -> ActionReply:
+        self._hub.desk.give_back(who.session)
+        self._hub.news.set()
+        return ActionReply("nobody has control")

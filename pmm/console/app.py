@@ -14,6 +14,7 @@ from secrets import token_urlsafe
 from typing import Any, Final
 
 from anyio.to_thread import run_sync
+from pydantic import ValidationError
 from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import FileResponse, JSONResponse, Response
@@ -37,7 +38,7 @@ from pmm.console.pages import Pages
 from pmm.console.plans import Plans
 from pmm.console.quick_stop import QuickStop
 from pmm.console.request_body import TooLargeError, body_of, who_asks
-from pmm.console.requests import TokenPosted
+from pmm.console.requests import TokenPosted, validation_message
 from pmm.console.security import COOKIE, VISITOR, Guard
 from pmm.console.worker_process import SharedAnswer, Workers
 from pmm.console.worker_tasks import look_around
@@ -129,8 +130,10 @@ class Console:
         who = who_asks(request)
         try:
             posted = TokenPosted.model_validate_json(await body_of(request))
-        except (ValueError, TooLargeError):
-            return JSONResponse({"error": "no token"}, 422)
+        except ValidationError as error:
+            return JSONResponse({"error": validation_message(error)}, 422)
+        except TooLargeError as error:
+            return JSONResponse({"error": str(error)}, 422)
         left_s = ceil(self._lockout.wait_s(who.address))  # nothing is awaited until it is counted
         if left_s:
             return JSONResponse({"error": _WAIT.format(left_s)}, 429, {"retry-after": str(left_s)})
@@ -209,6 +212,7 @@ def _routes(console: Console) -> list[BaseRoute]:
         "/api/command": act.command,
         "/api/answer": act.answer,
         "/api/take-control": act.take,
+        "/api/give-control": act.give,
         "/api/plans/check": act.check,
         "/api/plans/queue": act.queue,
         "/api/plans/drop": act.drop,

@@ -20,8 +20,8 @@ class NotInControlError(PmmError):
 class Desk:
     """Gives control to one session.
 
-    It stays there when that session's page is closed, until another one takes it over: what a
-    reload or a lost network interrupts is not given away.
+    It stays there when that session's page is closed, until that session gives it back or another
+    one takes it over: what a reload or a lost network interrupts is not given away.
     """
 
     def __init__(self) -> None:
@@ -45,6 +45,11 @@ class Desk:
     def take_over(self, session: str) -> None:
         """Give control to a session, on its explicit wish."""
         self._holder = session
+
+    def give_back(self, session: str) -> None:
+        """Take control from a session that has done; raises as :meth:`require` does."""
+        self.require(session)
+        self._holder = ""
 
     def require(self, session: str) -> None:
         """Refuse a session that only watches.

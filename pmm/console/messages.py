@@ -34,7 +34,8 @@ class LoopOrder:
     Attributes
     ----------
     text
-        A command's name, an answer, or the number of a queued plan and by how much it moves.
+        A command's name, an answer, the number of a queued plan and by how much it moves, or that
+        of the last frame before the folder of a plan that is to be queued was looked at.
     question
         What an answer is to.
     quick_stops

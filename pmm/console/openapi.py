@@ -11,6 +11,7 @@ from pmm.console.requests import (
     DecisionPosted,
     DropPosted,
     EditPosted,
+    GivePosted,
     HoldPosted,
     MovePosted,
     NotePosted,
@@ -26,6 +27,7 @@ POSTS: Final[dict[str, tuple[type[Posted], str, bool]]] = {
     "/api/command": (CommandPosted, "Command run control; a quick stop needs no control.", True),
     "/api/answer": (AnswerPosted, "Answer the rig's question.", True),
     "/api/take-control": (TakePosted, "Take control.", False),
+    "/api/give-control": (GivePosted, "Give control back, for whoever takes it next.", True),
     "/api/plans/check": (PlanPosted, "Read and check a plan; nothing is changed.", False),
     "/api/plans/queue": (PlanPosted, "Queue a plan.", True),
     "/api/plans/drop": (DropPosted, "Take a plan out of the queue.", True),
@@ -76,8 +78,10 @@ def description() -> dict[str, Any]:
         "components": {
             "schemas": {
                 **schemas["$defs"],
-                "Taken": _object({"said": "what happened", "plan": None}),
-                "Refused": _object({"error": "why not, in a sentence"}),
+                "Taken": _object(
+                    said=_text("what happened"), plan={"type": "object"}, number={"type": "integer"}
+                ),
+                "Refused": _object(error=_text("why not, in a sentence")),
             },
             "securitySchemes": {
                 "cookie": {"type": "apiKey", "in": "cookie", "name": "pmm-console"}
@@ -118,9 +122,9 @@ def _answer(text: str, model: str) -> dict[str, Any]:
     return {"description": text, "content": {"application/json": {"schema": schema}}}
 
 
-def _object(properties: dict[str, str | None]) -> dict[str, Any]:
-    fields = {
-        name: {"type": "object"} if text is None else {"type": "string", "description": text}
-        for name, text in properties.items()
-    }
-    return {"type": "object", "properties": fields}
+def _object(**properties: dict[str, str]) -> dict[str, Any]:
+    return {"type": "object", "properties": properties}
+
+
+def _text(about: str) -> dict[str, str]:
+    return {"type": "string", "description": about}

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 from pmm.console.limits import MOST_WAITING
 from pmm.console.queued_plan import QueuedPlan
@@ -15,6 +16,7 @@ class PlansInHand:
 
     present: QueuedPlan | None = None
     waiting: list[QueuedPlan] = field(default_factory=list)
+    _completed: dict[tuple[Path, str], int] = field(default_factory=dict)
 
     @property
     def number(self) -> int:
@@ -57,19 +59,58 @@ class PlansInHand:
             raise RunStateError(f"no plan {number} waits")
         return plans[0]
 
-    def require_room(self, plan: QueuedPlan) -> None:
-        """Refuse one more plan where as many wait as may.
+    def accepted(self, plan: QueuedPlan, frame: int) -> QueuedPlan:
+        """Return a plan that may wait, without the runs completed since its folder was looked at.
+
+        Parameters
+        ----------
+        frame
+            Number of the last frame before the look.
 
         Raises
         ------
         RunStateError
-            With the limit.
+            If none of its runs is left, or as many plans wait as may.
         """
+        plan = replace(
+            plan,
+            runs=tuple(
+                run for run in plan.runs if self._completed.get((plan.folder, run.name), 0) <= frame
+            ),
+        )
+        if not plan.runs and not plan.chooses:
+            raise RunStateError(f"{plan.plan.name}: all its runs are complete in {plan.folder}")
         if len(self.waiting) >= MOST_WAITING:
             raise RunStateError(
                 f"{MOST_WAITING} plans wait already, which is the limit; take one out, or queue "
                 f"{plan.plan.name} when the next of them has begun"
             )
+        return plan
+
+    def complete(self, run: str, frame: int) -> list[QueuedPlan]:
+        """Leave a run that the present plan has completed out of those that wait for its folder.
+
+        Parameters
+        ----------
+        frame
+            Number of the first frame after it.
+
+        Returns
+        -------
+            The plans of which no run is left; they wait no more.
+        """
+        if self.present is None:
+            return []
+        folder, before = self.present.folder, self.waiting
+        self._completed[folder, run] = frame
+        now = [
+            replace(plan, runs=tuple(one for one in plan.runs if one.name != run))
+            if plan.folder == folder
+            else plan
+            for plan in before
+        ]
+        self.waiting[:] = [plan for plan in now if plan.chooses or plan.runs]
+        return [plan for plan in now if not (plan.chooses or plan.runs)]
 
     def drop(self, number: int) -> QueuedPlan:
         """Take a plan that waits out, and return it."""

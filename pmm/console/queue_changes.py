@@ -43,15 +43,18 @@ class ActionReply:
         The answer; empty or ``None`` where there is nothing to say.
     present
         Number of the plan to which it belongs; ``None`` where the loop was not asked.
+    number
+        Of the plan that was queued; ``None`` where none was.
     """
 
     text: str
     plan: EncodedText | None = None
     present: int | None = None
+    number: int | None = None
 
     def answer(self) -> dict[str, Any]:
         """Return the fields that the page gets, without those that say nothing."""
-        parts = {"said": self.text or None, "plan": self.plan}
+        parts = {"said": self.text or None, "number": self.number, "plan": self.plan}
         return {key: value for key, value in parts.items() if value is not None}
 
 
@@ -118,15 +121,21 @@ class QueueChanges:
     async def _queue(self, posted: PlanPosted) -> ActionReply:
         worker = self._workers.for_whom(in_control=True)
         async with self._changing:
+            frame = self._frame
             ready = await worker.run(ready_plan, self._plans, posted.name, posted.text)
-            reply = await self._add(ready)
+            reply = await self._add(ready, frame)
+            number = self.queued.count
         self._tell_plans()
-        return of_reply(reply, ready.picture)
+        return replace(of_reply(reply, ready.picture), number=number)
 
-    async def _add(self, ready: ReadyPlan, changes: tuple[RunPosted, ...] = ()) -> Reply:
+    async def _add(
+        self, ready: ReadyPlan, frame: int, changes: tuple[RunPosted, ...] = ()
+    ) -> Reply:
+        """Queue a plan whose folder was looked at after a frame."""
         number = self.queued.add(ready, changes)
         try:
-            return await self._loop.order(OrderKind.QUEUE, plan=self.queued.plan(number))
+            plan = self.queued.plan(number)
+            return await self._loop.order(OrderKind.QUEUE, str(frame), plan=plan)
         except PmmError:
             self.queued.drop(number)
             raise
@@ -181,12 +190,12 @@ class QueueChanges:
 
     async def _queue_again(self, plan: KeptPlan) -> int:
         """Queue a plan again; return its number now, 0 if nothing of it is left to be made."""
-        worker = self._workers.for_whom(in_control=True)
+        worker, frame = self._workers.for_whom(in_control=True), self._frame
         try:
             ready = await worker.run(restored_plan, self._plans, plan)
             if ready is None:
                 return 0
-            await self._add(ready, plan.changes)
+            await self._add(ready, frame, plan.changes)
         except PmmError as error:
             self._hub.say("alarm", f"{plan.name} is not in the queue again: {error}")
             return 0

@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from pmm.console.limits import LARGEST_PLAN
 from pmm.run.states import Command
@@ -90,8 +90,20 @@ class TakePosted(Posted):
     confirm: Literal[True]
 
 
+class GivePosted(Posted):
+    """Nothing: the session that gives control back is in the header."""
+
+
 class TokenPosted(Posted):
     """The token, and the name that the log has for whoever gives it."""
 
     token: str = Field(max_length=500)
     name: str = Field(default="", max_length=100)
+
+
+def validation_message(error: ValidationError) -> str:
+    """Return what is wrong with a body in a line; what was posted is not repeated."""
+    return "; ".join(
+        f"{'.'.join(map(str, fault['loc'])) or 'body'}: {fault['msg']}"
+        for fault in error.errors(include_url=False, include_input=False)
+    )

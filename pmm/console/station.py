@@ -185,7 +185,7 @@ class Station:
         return {
             OrderKind.COMMAND: lambda: self._command(Command(order.text)),
             OrderKind.ANSWER: lambda: self._answer(order),
-            OrderKind.QUEUE: lambda: self._queue(order.queued),
+            OrderKind.QUEUE: lambda: self._queue(order.queued, int(order.text)),
             OrderKind.DROP: lambda: self._drop(int(order.text)),
             OrderKind.CHANGE: lambda: self._change(order.queued),
             OrderKind.MOVE: lambda: self._move(*map(int, order.text.split())),
@@ -202,10 +202,8 @@ class Station:
         self.control.request(command)
         return f"{command} taken; state: {self.control.state}"
 
-    def _queue(self, plan: QueuedPlan) -> str:
-        if not plan.runs and not plan.chooses:
-            raise RunStateError(f"{plan.plan.name}: all its runs are complete in {plan.folder}")
-        self._plans.require_room(plan)
+    def _queue(self, plan: QueuedPlan, frame: int) -> str:
+        plan = self._plans.accepted(plan, frame)
         self._writer.begin(plan)
         self._plans.waiting.append(plan)
         runs = "runs to be chosen" if plan.chooses else counted(len(plan.runs), "run")

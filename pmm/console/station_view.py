@@ -10,11 +10,14 @@ from pmm.console.messages import Frame, LoopOrder, Needles, Notice
 from pmm.console.pacing import CountingPacer
 from pmm.console.picture import NeedleReader, allowed, axes_of, bus_of, following, present_run
 from pmm.console.plans_in_hand import PlansInHand
+from pmm.console.queued_plan import QueuedPlan
 from pmm.console.traces import TraceBuffer
 from pmm.console.writing import Writer
 from pmm.recorder.live_path import header_channels
+from pmm.recorder.run_recorder import RunEnd
 from pmm.run.run_control import RunControl
 from pmm.run.states import State
+from pmm.run.status import RunOutcome
 
 TICK_S: Final = 0.04
 
@@ -81,15 +84,21 @@ class StationView:
                 self.notice("alarm", text)
         for outcome in control.outcomes[self._told_outcomes :]:
             self._told_outcomes += 1
-            if self._plans.present is None:
-                continue
-            plan = self._plans.present
-            self._link.tell(
-                Notice("outcome", self._time_s, f"{outcome.run}, {outcome.outcome}", outcome,
-                       self._latest, plan.number, plan.folder)
-            )  # fmt: skip
-            self._latest = None
-            self._writer.write(plan, self._link.tell)
+            if self._plans.present is not None:
+                self._tell_outcome(self._plans.present, outcome)
+
+    def _tell_outcome(self, plan: QueuedPlan, outcome: RunOutcome) -> None:
+        """Tell how a run ended and have it written down; plans that wait leave it out."""
+        self._link.tell(
+            Notice("outcome", self._time_s, f"{outcome.run}, {outcome.outcome}", outcome,
+                   self._latest, plan.number, plan.folder)
+        )  # fmt: skip
+        self._latest = None
+        self._writer.write(plan, self._link.tell)
+        done = outcome.outcome == RunEnd.COMPLETE
+        for empty in self._plans.complete(outcome.run, self.next_frame) if done else []:
+            self._writer.let_go(empty.number)
+            self.notice("queue", f"{empty.plan.name}: out of the queue, all its runs are complete")
 
     @property
     def next_frame(self) -> int:

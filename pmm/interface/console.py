@@ -5,7 +5,7 @@ import queue
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from getpass import getuser
 from pathlib import Path
 from typing import Any, Final, Self
@@ -15,10 +15,11 @@ from websockets.sync.client import ClientConnection
 from websockets.sync.client import connect as open_stream
 from websockets.typing import Origin
 
-from hardware.description.errors import ConfigurationError
+from hardware.description.errors import ConfigurationError, PmmError
 from pmm.interface.arguments import checked
 from pmm.interface.console_queue import QueueCalls
 from pmm.interface.console_requests import ConsoleRefusalError, ConsoleRequests, Message
+from pmm.interface.console_run import FollowedPlan, rests
 
 _STREAM_S: Final = 60.0  # until the console answers: it may have just been started
 _LISTS: Final = {
@@ -28,7 +29,6 @@ _LISTS: Final = {
 }
 _PARTS: Final = ("plans", "figures", "campaign", "live", "proposals")
 _UNDER_WAY: Final = 3  # frames that may be of before a command's answer
-_BROKEN: Final = ("stopped", "fault")
 
 
 @checked
@@ -61,7 +61,8 @@ def connect(
 class ConsoleClient(QueueCalls):
     """A console that is driven from Python; :func:`connect` opens it.
 
-    It is one more browser to the console: the first that comes has control, another may take it.
+    It is one more browser to the console: the first that comes has control, another may take it,
+    and closing gives it back.
     A thread of its own takes what the console tells, whatever the program does meanwhile.
 
     Raises
@@ -97,7 +98,10 @@ class ConsoleClient(QueueCalls):
         self.close()
 
     def close(self) -> None:
-        """Leave the console; the rig goes on with what it does."""
+        """Give control back and leave the console; the rig goes on with what it does."""
+        with suppress(PmmError):  # a console that has gone has no control to take
+            if self._has_control(self.known):
+                self._post("/api/give-control", {})
         self._held.close()
 
     @property
@@ -133,7 +137,9 @@ class ConsoleClient(QueueCalls):
 
     def take_control(self) -> str:
         """Take control from whoever has it."""
-        return self._post("/api/take-control", {"confirm": True})
+        said = self._post("/api/take-control", {"confirm": True})
+        self.wait(self._has_control, _STREAM_S)
+        return said
 
     def messages(self) -> Iterator[Message]:
         """Yield each message as it comes, until the console goes."""
@@ -168,9 +174,11 @@ class ConsoleClient(QueueCalls):
         timeout_s: float,
         answers: Callable[[str], str] | None = None,
     ) -> list[Message]:
-        """Queue a plan, start it, wait for its end, and return its runs as they ended.
+        """Queue a plan, wait for its turn and its end, and return its runs as they ended.
 
-        After a stop a run may be missing that is still being written.
+        Where the rig rests it is started; a plan that is under way ends first. Runs that the folder
+        holds complete are not made again. After a stop a run may be missing that is still being
+        written.
 
         Parameters
         ----------
@@ -183,41 +191,60 @@ class ConsoleClient(QueueCalls):
         ------
         ConsoleRefusalError
             If it is refused or not done in time, if the rig asks and nobody answers, or if it ends
-            in a fault; the rig is left as it is, but for the fault's own stop.
+            in a fault or rests before the plan has begun. A plan that has not begun is taken out
+            of the queue again; one that has begun is left as it is, but for the fault's own stop.
+            The text says which.
         """
-        entry = self.queue(plan)
-        finished_count = len(self.known["finished"])
-        last_id = max((notice["id"] for notice in self.known["notices"]), default=0)
-        self.command("start")
-        start_number, prefix = self.frame["n"] + _UNDER_WAY, f"{entry['name']}: "
+        before = self.known
+        plan_followed = FollowedPlan(self.queue(plan), before)
+        try:
+            self._follow(plan_followed, time.monotonic() + timeout_s, answers)
+        except ConsoleRefusalError as error:
+            raise ConsoleRefusalError(f"{error}; {self._without(plan_followed)}") from None
+        return plan_followed.runs(self.known)
 
-        def over(state: Mapping[str, Any]) -> bool:
-            if entry["chooses"]:  # how many runs there will be is not known
-                return any(
-                    notice["id"] > last_id
-                    and notice["kind"] != "queue"
-                    and notice["text"].startswith(prefix)
-                    for notice in state["notices"]
-                )
-            return len(state["finished"]) >= finished_count + len(entry["runs"])
+    def _follow(
+        self, plan: FollowedPlan, end_s: float, answers: Callable[[str], str] | None
+    ) -> None:
+        """Start a queued plan where the rig rests, and wait until it has ended."""
+        self._wait_until(plan.told, end_s)
+        start_number = self.frame["n"]
+        if rests(self.known):
+            self.command("start")
+            start_number = self.frame["n"] + _UNDER_WAY
 
         def ended(state: Mapping[str, Any]) -> bool:
-            frame = state["frame"]
-            broken = frame["n"] >= start_number and frame["state"] in _BROKEN
-            return over(state) or broken or bool(frame["question"])
+            broken = state["frame"]["n"] >= start_number and rests(state)
+            return plan.over(state) or broken or bool(state["frame"]["question"])
 
-        end_s = time.monotonic() + timeout_s
-        self.wait(ended, timeout_s)
+        self._wait_until(ended, end_s)
         while question := self.frame["question"]:
             if answers is None:
                 raise ConsoleRefusalError(f"the rig asks {question!r}; give answers")
             self.answer(answers(question))
             self.wait(lambda state, asked=question: state["frame"]["question"] != asked, _STREAM_S)  # type: ignore[misc]
-            self.wait(ended, end_s - time.monotonic())
+            self._wait_until(ended, end_s)
         if self.frame["state"] == "fault":
             raise ConsoleRefusalError("the rig is in a fault: " + self.known["notices"][-1]["text"])
-        runs: list[Message] = self.known["finished"][finished_count:]
-        return runs
+        if not (plan.over(self.known) or plan.begun(self.known)):
+            raise ConsoleRefusalError(f"the rig was stopped before {plan.name} had begun")
+
+    def _without(self, plan: FollowedPlan) -> str:
+        """Take a plan that has not begun out of the queue; return what became of it."""
+        if plan.begun(self.known):
+            return f"{plan.name} has begun and is left as it is"
+        try:
+            self.drop(plan.number)
+        except PmmError as error:
+            return f"{plan.name} may still be in the queue: {error}"
+        return f"{plan.name} is taken out of the queue"
+
+    def _wait_until(self, until: Callable[[Mapping[str, Any]], bool], end_s: float) -> None:
+        self.wait(until, round(max(0.0, end_s - time.monotonic()), 1))
+
+    @staticmethod
+    def _has_control(state: Mapping[str, Any]) -> bool:
+        return bool(state["desk"]["holder"] == "you")
 
     def _opened(self, held: ExitStack) -> ClientConnection:
         cookies = self._requests.cookies

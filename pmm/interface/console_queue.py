@@ -35,9 +35,13 @@ class QueueCalls:
         return plan_entry
 
     def queue(self, plan: str | Path) -> Message:
-        """Queue a plan, and return it as :meth:`check` does; nothing moves before a start."""
-        plan_entry: Message = self._requests.ask("/api/plans/queue", _plan(plan))["plan"]
-        return plan_entry
+        """Queue a plan, and return it as :meth:`check` does; at rest nothing moves before a start.
+
+        Its ``number`` is there where it was not only proposed.
+        """
+        answer = self._requests.ask("/api/plans/queue", _plan(plan))
+        number = {"number": answer["number"]} if "number" in answer else {}
+        return {**answer["plan"], **number}
 
     def drop(self, number: int) -> str:
         """Take a plan out of the queue by its number, a key of ``known["plans"]``."""

@@ -8,9 +8,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+import pytest
 
 from pmm.console.client import WAITING, Client
-from pmm.console.desk import Desk, Holder
+from pmm.console.desk import Desk, Holder, NotInControlError
 from pmm.console.hub import Hub, send_round
 from pmm.console.messages import Bus, ChannelInfo, Frame, Hello, Notice, SignalTrace
 from pmm.console.traces import POINTS
@@ -212,3 +213,9 @@ def test_control_stays_with_the_first_until_it_is_taken() -> None:
     assert (desk.seen_from("a"), desk.seen_from("b")) == (Holder.YOU, Holder.OTHER)
     desk.take_over("b")
     assert (desk.seen_from("a"), desk.seen_from("b")) == (Holder.OTHER, Holder.YOU)
+    with pytest.raises(NotInControlError):
+        desk.give_back("a")
+    desk.give_back("b")
+    assert (desk.seen_from("a"), desk.seen_from("b")) == (Holder.NOBODY, Holder.NOBODY)
+    desk.arrive("a")
+    assert desk.seen_from("a") is Holder.YOU

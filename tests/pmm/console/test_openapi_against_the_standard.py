@@ -14,6 +14,7 @@ _RIGHT = {
     "/api/command": {"command": "hold"},
     "/api/answer": {"question": "?", "answer": "yes"},
     "/api/take-control": {"confirm": True},
+    "/api/give-control": {},
     "/api/plans/check": {"name": "plan.toml"},
     "/api/plans/queue": {"name": "plan.toml"},
     "/api/plans/drop": {"number": 1},

@@ -33,7 +33,7 @@ def _queue(one: Shown, number: int) -> None:
     files = [one.bench.folder / "design" / name for name in ("design.toml", "rig.toml")]
     plan = Plan("heave-pitch", *files, (), "", "0" * 64)
     queued = QueuedPlan(number, plan, one.bench.folder / "made", (), chooses=True)
-    assert one.order(OrderKind.QUEUE, plan=queued).carried_out
+    assert one.order(OrderKind.QUEUE, "0", plan=queued).carried_out
 
 
 def _asked(one: Shown, within: int = 6000) -> str:

@@ -14,6 +14,7 @@ from analysis.resolver.settings import ResolverSettings
 from hardware.description.errors import ConfigurationError
 from pmm.cli import cli
 from pmm.interface.console_requests import ConsoleRefusalError
+from pmm.interface.console_run import FollowedPlan
 from tests.docs.blocks import blocks
 from tests.pmm.console.chromium import console, plan, rig_in
 
@@ -69,8 +70,10 @@ def test_the_program_of_the_page_runs(tmp_path: Path, capsys: pytest.CaptureFixt
     rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
     rig.with_name("plan.toml").write_text(plan("page"), encoding="utf-8")
     with console(rig, out, "--speed", "8") as one:
-        exec(block.text.replace("http://127.0.0.1:8063", one.address))  # noqa: S102 - our page
-    assert "[('run-f1-a20', 'complete', 5)]" in capsys.readouterr().out
+        for made in (1, 0):  # it may be run again, and makes nothing twice
+            exec(block.text.replace("http://127.0.0.1:8063", one.address))  # noqa: S102 - our page
+            said = capsys.readouterr().out
+            assert said.count("[('run-f1-a20', 'complete', 5)]") == made
 
 
 def test_a_run_is_stopped_and_a_plan_taken_out(tmp_path: Path) -> None:
@@ -90,6 +93,64 @@ def test_a_run_is_stopped_and_a_plan_taken_out(tmp_path: Path) -> None:
         assert client.known["finished"][-1]["outcome"] == "stopped"
         with pytest.raises(ConsoleRefusalError, match=r"did not come in 0\.2 s"):
             client.wait(lambda known: known["frame"]["state"] == "gate open", 0.2)
+
+
+@pytest.mark.slow
+def test_a_plan_waits_for_its_turn_behind_the_one_that_is_under_way(tmp_path: Path) -> None:
+    rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
+    with console(rig, out, "--speed", "8") as one, pmm.connect(one.address) as client:
+        client.queue(plan("first"))
+        client.command("start")
+        client.wait(lambda known: known["frame"]["gate"] == "open", WITHIN_S)
+        (made,) = client.run(plan("second"), WITHIN_S)
+        assert (Path(made["folder"]).name, made["outcome"]) == ("second", "complete")
+        ended = [Path(entry["folder"]).name for entry in client.known["finished"]]
+        assert ended == ["first", "second"]
+
+
+def test_a_plan_that_had_no_turn_is_taken_out_and_control_is_given_back(tmp_path: Path) -> None:
+    rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
+    with console(rig, out) as one:
+        with pmm.connect(one.address) as client:
+            client.queue(plan("long", periods=500))
+            client.command("start")
+            for name, timeout_s in (("late", 0.5), ("later", 0.0)):
+                with pytest.raises(ConsoleRefusalError, match=rf"not come in .*; {name} is taken"):
+                    client.run(plan(name), timeout_s)
+            client.command("stop")
+            client.wait(lambda known: known["frame"]["state"] == "stopped", WITHIN_S)
+            client.wait(lambda known: known["frame"]["queue"] == [], WITHIN_S)
+        with pmm.connect(one.address) as again:
+            assert again.known["desk"]["holder"] == "you"
+
+
+@pytest.mark.parametrize(
+    ("frame", "ended", "over", "begun"),
+    [
+        ({"plan": 1, "queue": [2], "state": "gate open"}, [], False, False),
+        ({"plan": 2, "state": "idle"}, [], False, False),
+        ({"plan": 2, "state": "starting"}, [], False, True),
+        ({"plan": 2, "state": "done"}, ["r"], True, True),
+        ({"plan": 2, "state": "done"}, [], False, True),  # its recording is being completed
+        ({"plan": 2, "state": "done", "next": ["s"]}, ["r"], False, True),
+        ({"plan": 3, "state": "idle"}, ["r"], True, False),
+        ({"plan": 1, "state": "done"}, [], True, False),  # somebody has taken it out
+    ],
+)
+def test_where_a_plan_stands_follows_from_a_frame(
+    frame: dict[str, object], ended: list[str], over: bool, begun: bool
+) -> None:
+    entry = {"name": "b", "number": 2, "folder": "b", "chooses": False}
+    before = {"finished": [{"run": "r", "folder": "b"}], "notices": []}
+    followed = FollowedPlan(entry, before)
+    others = [{"run": "r", "folder": "a"}]
+    state = {
+        "frame": {"queue": [], "next": [], "run": "r", **frame},
+        "finished": [*before["finished"], *others, *({"run": r, "folder": "b"} for r in ended)],
+        "notices": [],
+    }
+    assert (followed.over(state), followed.begun(state)) == (over, begun)
+    assert [one["run"] for one in followed.runs(state)] == ended
 
 
 @pytest.mark.slow

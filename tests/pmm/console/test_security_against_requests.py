@@ -139,6 +139,25 @@ def test_a_token_is_asked_for_where_one_is_set(tmp_path: Path) -> None:
         assert one.post("/api/command", {"command": "quick stop"})[0] == 200
 
 
+def test_a_login_that_is_no_such_body_is_told_what_is_wrong_without_the_token(
+    tmp_path: Path,
+) -> None:
+    with served(tmp_path, token=TOKEN) as one:
+        for body, named in (
+            ({"token": TOKEN, "name": "a" * 101}, "name: "),
+            ({"name": "a"}, "token: "),
+            ({"token": TOKEN, "name": "a" * (1 << 15)}, "larger than"),
+        ):
+            status, said = one.post("/login", body)
+            assert status == 422
+            assert named in str(said["error"])
+            assert TOKEN not in str(said["error"])
+        form = one.browser.post("/login", data={"token": TOKEN}, headers={"origin": OWN})
+        assert form.status_code == 422
+        assert "body: Invalid JSON" in form.json()["error"]
+        assert TOKEN not in form.text
+
+
 def test_who_has_the_token_for_watching_stops_quickly_and_does_nothing_else(
     tmp_path: Path,
 ) -> None:

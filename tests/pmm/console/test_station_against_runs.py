@@ -68,15 +68,16 @@ class Shown:
         replies = [one for one in self.heard.told if isinstance(one, Reply)]
         return replies[-1]
 
-    def queue(self, number: int, name: str, *runs: RunPlan) -> Reply:
-        """Queue a plan."""
+    def queue(self, number: int, name: str, *runs: RunPlan, looked: int = 0) -> Reply:
+        """Queue a plan whose folder was looked at after so many frames."""
         folder = self.bench.folder / name
         folder.mkdir(exist_ok=True)
         files = [self.bench.folder / one for one in ("plan.toml", "rig.toml")]
         for one in files:
             one.write_text(f"# {name}", encoding="utf-8")
         plan = Plan(name, *files, runs, "", "0" * 64)
-        return self.order(OrderKind.QUEUE, plan=QueuedPlan(number, plan, folder, runs))
+        queued = QueuedPlan(number, plan, folder, runs)
+        return self.order(OrderKind.QUEUE, str(looked), plan=queued)
 
     def until(self, state: State, within: int = 6000) -> None:
         """Step until a state is reached."""
@@ -161,6 +162,28 @@ def test_plans_follow_each_other_and_every_point_of_a_trace_is_shown_once(tmp_pa
         assert abs(steps_s.mean() - 0.04) < 0.02 / len(
             steps_s
         )  # first and last frame, a cycle each
+
+
+def test_what_a_plan_completes_is_left_out_of_those_behind_it(tmp_path: Path) -> None:
+    with _shown(tmp_path) as one:
+        a, b, c = map(_short, "abc")
+        for number, runs in ((1, (a, b)), (2, (a, b, c)), (3, (a, b))):
+            assert one.queue(number, "plan", *runs).carried_out
+        one.order(OrderKind.COMMAND, "start")
+        for _ in range(20000):
+            one.station.step()
+            if len(one.heard.notices("outcome")) >= 3 and one.station.at_rest:
+                break
+        for _ in range(300):
+            one.station.step()
+        assert one.station.at_rest
+        assert one.heard.notices("outcome") == ["a, complete", "b, complete", "c, complete"]
+        assert {path.parent.name for path in (tmp_path / "plan").glob("*/run.nc")} == set("abc")
+        assert "plan: out of the queue, all its runs are complete" in one.heard.notices("queue")
+        frame = one.heard.frames[-1].number
+        looked_before = one.queue(4, "plan", a, b)
+        assert "all its runs are complete" in looked_before.text
+        assert one.queue(5, "plan", a, looked=frame).carried_out  # moved away meanwhile
 
 
 def test_a_run_that_is_stopped_leaves_the_reading_of_its_whole_periods(tmp_path: Path) -> None:
