@@ -80,9 +80,9 @@ def plausibility_flags(
 def _of_displacements(runs: Sequence[RunHarmonics]) -> Iterator[Flag]:
     for name in DISPLACEMENTS:
         amplitudes = [
-            (abs(run.first[name]), run.set_point.eccentricity_m) for run in _with(runs, name)
+            (abs(run.first[name]), run.set_point.eccentricity_m) for run in _runs_with(runs, name)
         ]
-        ratio = _usual([measured / set_m for measured, set_m in amplitudes if set_m > 0.0])
+        ratio = _usual_ratio([measured / set_m for measured, set_m in amplitudes if set_m > 0.0])
         unit = mistaken(ratio, DISPLACEMENT_AFT.unit, _NEAR)
         if unit:
             yield _units(name, f"{ratio:.3g} times the set-points' eccentricity", unit)
@@ -93,15 +93,19 @@ def _of_forces(
 ) -> Iterator[Flag]:
     units: set[str] = set()
     for name in FORCES if body is not None else ():
-        inertial = [_inertia_n(run.set_point, body, half_spacing_m) for run in _with(runs, name)]
-        measured = [abs(run.first[name]) for run in _with(runs, name)]
+        inertial = [
+            _inertia_n(run.set_point, body, half_spacing_m) for run in _runs_with(runs, name)
+        ]
+        measured = [abs(run.first[name]) for run in _runs_with(runs, name)]
         ratio = _median([a / b for a, b in zip(measured, inertial, strict=True) if b > 0.0])
         if math.isfinite(ratio) and not _PLAUSIBLE[0] < ratio < _PLAUSIBLE[1]:
             units.add(name)
-            yield _units(name, f"{ratio:.2g} times the force of the model's inertia", _meant(ratio))
+            yield _units(
+                name, f"{ratio:.2g} times the force of the model's inertia", _likely_unit(ratio)
+            )
     pairs = [run for run in runs if set(FORCES) <= set(run.first)]
     sizes = [tuple(abs(run.first[name]) for name in FORCES) for run in pairs]
-    ratio = _usual([aft / fore for aft, fore in sizes if fore > 0.0])
+    ratio = _usual_ratio([aft / fore for aft, fore in sizes if fore > 0.0])
     unit = mistaken(ratio, FORCE_AFT.unit, _NEAR)
     if unit and not units:
         ratio_words = f"{ratio:.3g} times {FORCES[1]} in all runs, on one rigid model"
@@ -119,7 +123,7 @@ def _inertia_n(set_point: SetPoint, body: Body | None, half_spacing_m: float | N
     return effective_kg * (2.0 * math.pi * set_point.frequency_hz) ** 2 * set_point.eccentricity_m
 
 
-def _meant(ratio: float) -> str:
+def _likely_unit(ratio: float) -> str:
     for factor, words in mistaken_units(FORCE_AFT.unit).items():
         if _TYPICAL[0] < ratio / factor < _TYPICAL[1]:
             return words
@@ -142,7 +146,7 @@ def _of_strut_signs(runs: Sequence[RunHarmonics]) -> Iterator[Flag]:
     aft, fore = DISPLACEMENTS
     pairs = [run for run in runs if {aft, fore} <= set(run.first)]
     turns = [
-        _angle(run.first[fore], run.first[aft] * _turned(run.set_point.strut_phase_rad))
+        _angle(run.first[fore], run.first[aft] * _unit_phasor(run.set_point.strut_phase_rad))
         for run in pairs
     ]
     if _in_most([abs(turn) > _OPPOSITE_RAD for turn in turns]):
@@ -161,7 +165,7 @@ def _of_force_signs(runs: Sequence[RunHarmonics]) -> Iterator[Flag]:
         yield _opposite(wrong, f"it pushes against {partner} in all runs and takes work out")
         return
     for name in FORCES:
-        stiffnesses = [_stiffness(run, name) for run in _with(runs, name)]
+        stiffnesses = [_stiffness(run, name) for run in _runs_with(runs, name)]
         if _in_most(
             [stiffness.imag < -0.1 * abs(stiffness) for stiffness in stiffnesses]
         ) and _alone(runs, name):
@@ -171,17 +175,17 @@ def _of_force_signs(runs: Sequence[RunHarmonics]) -> Iterator[Flag]:
 def _alone(runs: Sequence[RunHarmonics], name: str) -> bool:
     """Whether the work of all gauges together is negative: a single one's may well be."""
     total = [sum(_stiffness(run, each).imag for each in FORCES if each in run.first)
-             for run in _with(runs, name)]  # fmt: skip
+             for run in _runs_with(runs, name)]  # fmt: skip
     return _in_most([each < 0.0 for each in total])
 
 
 def _stiffness(run: RunHarmonics, force: str) -> complex:
     """Return force over displacement of its strut, as the set-point has it; N/m."""
     phase = run.set_point.strut_phase_rad if force == FORCE_FORE.name else 0.0
-    return run.first[force] / (run.set_point.eccentricity_m * _turned(phase))
+    return run.first[force] / (run.set_point.eccentricity_m * _unit_phasor(phase))
 
 
-def _turned(phase_rad: float) -> complex:
+def _unit_phasor(phase_rad: float) -> complex:
     return complex(math.cos(phase_rad), math.sin(phase_rad))
 
 
@@ -189,7 +193,7 @@ def _angle(phasor: complex, reference: complex) -> float:
     return float(np.angle(phasor * reference.conjugate()))
 
 
-def _with(runs: Sequence[RunHarmonics], name: str) -> list[RunHarmonics]:
+def _runs_with(runs: Sequence[RunHarmonics], name: str) -> list[RunHarmonics]:
     return [run for run in runs if name in run.first]
 
 
@@ -201,7 +205,7 @@ def _median(values: Sequence[float]) -> float:
     return float(np.median(values)) if values else math.nan
 
 
-def _usual(ratios: Sequence[float]) -> float:
+def _usual_ratio(ratios: Sequence[float]) -> float:
     """Return the middle of ratios that are alike in all runs; NaN where they are not."""
     positive = [ratio for ratio in ratios if ratio > 0.0 and math.isfinite(ratio)]
     if len(positive) < _FEW or float(np.ptp(np.log(positive))) > _STEADY:

@@ -44,7 +44,7 @@ class Spike:
         How far the worst of them lies from the cubic, with its sign, in the channel's unit.
     curvature
         The largest second difference at it.
-    instead
+    replacement
         The cubic's values, shape ``(stop - start,)``.
     """
 
@@ -52,7 +52,7 @@ class Spike:
     stop: int
     size: float
     curvature: float
-    instead: FloatArray
+    replacement: FloatArray
 
     def moved(self, samples: int) -> "Spike":
         """Return the spike as counted from a sample so many earlier."""
@@ -78,9 +78,9 @@ class Pulses:
     def spikes(self) -> tuple[Spike, ...]:
         """Return the pulses that are spikes: those that stand out, and do not recur as motion."""
         tall = [pulse for pulse in self.candidates if pulse.curvature > STANDS_OUT * self.rest]
-        return tuple(pulse for pulse in tall if not _recur(self._like(pulse)))
+        return tuple(pulse for pulse in tall if not _recur(self._pulses_like(pulse)))
 
-    def _like(self, spike: Spike) -> FloatArray:
+    def _pulses_like(self, spike: Spike) -> FloatArray:
         """Return the places of all pulses that bend an eighth as much or more."""
         starts = [
             pulse.start
@@ -200,7 +200,7 @@ def _window(
     values = np.array(samples[row : row + 1, first:stop][0])
     for spike in spikes:
         within = slice(max(spike.start - first, 0), max(spike.stop - first, 0))
-        values[within] = spike.instead[max(first - spike.start, 0) :][: values[within].size]
+        values[within] = spike.replacement[max(first - spike.start, 0) :][: values[within].size]
     good = np.flatnonzero(np.isfinite(values))
     place, values = good + first, values[good]
     bend = np.abs(np.diff(values, n=2))

@@ -10,7 +10,7 @@ import numpy as np
 
 from analysis.gap.forward.problem import Problem
 from analysis.gap.inference.gaussian import null_evidence, scales
-from analysis.gap.search.engine import Engine, fitted, looked_at
+from analysis.gap.search.engine import Engine, fit_leading, looked_at
 from analysis.gap.search.fit import Fit, bounds
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from hardware.description.arrays import FloatArray
@@ -64,7 +64,7 @@ def run(quick: bool, report: Report) -> Outcome:
 def _row(problem: Problem, name: str, size: float, quick: bool) -> Row:
     none = null_evidence(problem.residual, problem.nuisances)
     seen = looked_at(problem, [find(name)], Engine())
-    fit = fitted(problem, seen, none, Engine())[0]
+    fit = fit_leading(problem, seen, none, Engine())[0]
     found, error, calls = _nested(problem, fit, 20 if quick else 200)
     return {
         "effect": name,

@@ -47,7 +47,7 @@ def _said(problem: PendulumProblem, without: tuple[str, ...] = ()) -> tuple[str,
     """Return what is said, the causes that are named, and how sure that is."""
     causes = [one for one in causes_for(problem.trials) if one.name not in without]
     verdict = judge(weigh(problem, causes, most=1))
-    return verdict.said, set(verdict.best.names), verdict.probability
+    return verdict.outcome, set(verdict.best.names), verdict.probability
 
 
 def _nulls(generator: Generator, count: int) -> Row:

@@ -237,7 +237,7 @@ def _distortions(seeds: int) -> tuple[list[Row], dict[str, float]]:
         response = frequency_response(reading, DISPLACEMENTS[0], FORCES[0], orders)
         told = {one.degree: one for one in distortions(reading, response)}
         levels.append(told[Degree.ODD])
-        even.append(told[Degree.EVEN].told)
+        even.append(told[Degree.EVEN].is_significant)
     size = np.array([one.level for one in levels])
     row: Row = {
         "put in, N": put_in,
@@ -245,7 +245,7 @@ def _distortions(seeds: int) -> tuple[list[Row], dict[str, float]]:
         "standard deviation": float(size.std()),
         "as told": float(np.mean([one.uncertainty for one in levels])),
         "over the lines": float(np.mean([one.relative for one in levels])),
-        "told from noise": float(np.mean([one.told for one in levels])),
+        "told from noise": float(np.mean([one.is_significant for one in levels])),
         "even ones told": float(np.mean(even)),
     }
     measured = {

@@ -11,7 +11,7 @@ import numpy as np
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import Belief
 from analysis.design.candidate import CandidateRun
-from analysis.design.expectation import expected, made_up
+from analysis.design.expectation import expected_coefficients, made_up
 from analysis.design.noise import Noise
 from analysis.design.regression import DesignTarget, prospects
 from analysis.design.selection import select
@@ -109,7 +109,7 @@ def _noise_seen(tank: Tank, made: Sequence[Made]) -> float:
     ratios = [
         one.scatter[row]
         * tank.base.candidates[one.candidate].measured_s
-        / tank.base.told[row].after_1_s[tank.base.motion[one.candidate]]
+        / tank.base.residuals[row].after_1_s[tank.base.motion[one.candidate]]
         for one in made
         for row in (0, 1)
     ]
@@ -228,7 +228,7 @@ def _times(quick: bool) -> tuple[list[Row], dict[str, float]]:
     told = time.process_time()
     found = select(known, targets)
     chosen = [runs[k] for k in found.chosen]
-    expected(chosen, made_up(chosen, belief, noise), targets, belief, stated)
+    expected_coefficients(chosen, made_up(chosen, belief, noise), targets, belief, stated)
     ended = time.process_time()
     select(known, targets, made=found.chosen[: len(found.chosen) // 2])
     anew = time.process_time()

@@ -78,9 +78,9 @@ def scaled(known: Prospects, force_n: float, repeat_relative: float) -> Prospect
             after_1_s=force_n**2 * one.after_1_s,
             of_repeats=repeat_relative**2 * one.of_repeats,
         )
-        for row, one in known.told.items()
+        for row, one in known.residuals.items()
     }
-    return replace(known, told=told)
+    return replace(known, residuals=told)
 
 
 @dataclass(frozen=True)
@@ -183,7 +183,7 @@ class Tank:
         motion = self.base.motion[candidate]
         numbers, shown = np.zeros((2, 6)), np.zeros((2, 6))
         for row, places in self.columns.items():
-            told = self.exact.told[row]
+            told = self.exact.residuals[row]
             scatter = told.after_1_s[motion] / one.measured_s
             spread = np.sqrt(scatter + told.of_repeats[motion])
             mean = told.columns[motion][:, places] @ self.truth[places]
@@ -211,7 +211,7 @@ class Tank:
         shown_2 = np.zeros(2)
         for motion, some in kinds.items():
             for row in (0, 1):
-                size_2 = self.base.told[row].of_repeats[motion][:2].mean()
+                size_2 = self.base.residuals[row].of_repeats[motion][:2].mean()
                 first = np.stack([one.numbers[row][:2] for one in some])
                 within = np.mean([one.scatter[row][:2] for one in some])
                 apart = ((first - first.mean(axis=0)) ** 2).sum() / 2.0
@@ -230,7 +230,7 @@ class Tank:
         size = len(self.truth)
         values, variance, freedom = np.zeros(size), np.zeros(size), np.zeros(size)
         for row, places in self.columns.items():
-            told = self.base.told[row]
+            told = self.base.residuals[row]
             shown = np.stack([one.scatter[row] for one in made])
             repeats = repeating.relative_2[row] * told.of_repeats[motion]
             whole = shown + repeats

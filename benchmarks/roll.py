@@ -10,7 +10,7 @@ from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.strut_cycle import StrutCycle
 from benchmarks.coefficients_campaigns import Scatter, scattered
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
-from hardware.description.heel import HeelGauges, Held
+from hardware.description.heel import HeelGauges, RollConstraint
 from tests.analysis.coefficients.test_heel_against_point_masses import (
     MATRIX,
     TERMS,
@@ -74,7 +74,7 @@ def _row(name: str, shares: list[float]) -> Row:
 def _inside(exact: list[StrutCycle], generator: np.random.Generator) -> np.ndarray:
     """Return which intervals of one campaign hold the truth, shape ``(terms,)``."""
     off = generator.standard_normal(4)
-    body, heel = body_and_heel(Held.SET, HeelGauges.UPRIGHT)
+    body, heel = body_and_heel(RollConstraint.SET, HeelGauges.UPRIGHT)
     body = replace(body, cg_z_m=body.cg_z_m + off[0] * _STATED.cg_z_m)
     roll = 1.0 + off[1] * _STATED.roll_gauge_relative
     force = 1.0 + off[2] * _STATED.force_gain_relative

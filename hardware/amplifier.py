@@ -219,9 +219,9 @@ class Amplifier:
             return SensorInvalidError(
                 self.name, f"{channel.name} is not valid (status 0x{status:02X}); check the gauge"
             )
-        return self._stuck(i, raw)
+        return self._stuck_fault(i, raw)
 
-    def _stuck(self, i: int, raw: int | float) -> HardwareError | None:
+    def _stuck_fault(self, i: int, raw: int | float) -> HardwareError | None:
         self._repeats[i] = self._repeats[i] + 1 if raw == self._raw[i] else 0
         self._raw[i] = raw
         limit = self._settings.stuck_s * self.sample_rate_hz

@@ -134,9 +134,7 @@ class AnalogueLink(AskedLink):
         for at, value in self._objects.items():
             self._node.sdo.write(at, value)
 
-    def _asked(
-        self, cycle: Cycle, following: Following
-    ) -> tuple[list[Answer], list[HardwareError]]:
+    def _poll(self, cycle: Cycle, following: Following) -> tuple[list[Answer], list[HardwareError]]:
         answers: list[Answer] = []
         if any(stream.last == cycle.number for stream in self._node.streams):
             for channel in self._inputs:

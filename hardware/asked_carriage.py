@@ -35,7 +35,7 @@ class AskedCarriage(AskedDevice):
     """
 
     def __init__(self, name: str, settings: AskedCarriageSettings, services: Services) -> None:
-        registers = settings.asked
+        registers = settings.signals
         super().__init__(
             name, settings, services, registers.read(), registers.status, registers.command
         )
@@ -56,17 +56,17 @@ class AskedCarriage(AskedDevice):
     @property
     def measured_speed_m_s(self) -> float:
         """Speed that it reads; NaN before, and in silence."""
-        return self.values["speed"] if self._link.heard else math.nan
+        return self.values["speed"] if self._link.is_answering else math.nan
 
     @property
     def measured_turn_rate_rad_s(self) -> float:
         """Rate of turn that it reads; NaN before and in silence, 0 where it goes straight."""
-        return self.values.get("turn_rate", 0.0) if self._link.heard else math.nan
+        return self.values.get("turn_rate", 0.0) if self._link.is_answering else math.nan
 
     @property
     def position_m(self) -> float:
         """Place along the track; NaN where nothing reads it."""
-        return self.values.get("position", math.nan) if self._link.heard else math.nan
+        return self.values.get("position", math.nan) if self._link.is_answering else math.nan
 
     @property
     def returns(self) -> bool:
@@ -111,7 +111,7 @@ class AskedCarriage(AskedDevice):
                 "reach, settle and stop; take it back, or run slower",
             )
         self._go(speed_m_s, turn_rate_rad_s)
-        self.within(
+        self.set_deadline(
             RAMP_MARGIN * ramp_s + 3.0 * self._settings.settle_s,
             f"{speed_m_s:g} m/s within {self.tolerance_m_s:g} m/s",
         )
@@ -130,7 +130,7 @@ class AskedCarriage(AskedDevice):
             raise NotReadyError(self.name, "does not run; it is led from run_at on")
         self._check_speed(speed_m_s)
         self._goal_m_s = speed_m_s
-        self.tell(self._settings.asked.set_speed, speed_m_s)
+        self.tell(self._settings.signals.set_speed, speed_m_s)
 
     def go_back(self) -> None:
         """Go back to the start, if its place is known; raises :class:`NotReadyError` as above."""
@@ -141,7 +141,7 @@ class AskedCarriage(AskedDevice):
         self._go(-speed)
         self._returning = True
         takes_s = way_m / speed + 3.0 * speed / self._settings.acceleration_m_s2
-        self.within(RAMP_MARGIN * takes_s + REST_DEADLINE_S, "the start of the track")
+        self.set_deadline(RAMP_MARGIN * takes_s + REST_DEADLINE_S, "the start of the track")
 
     def stop(self) -> None:
         """Come to rest on the ramp, under power."""
@@ -153,7 +153,7 @@ class AskedCarriage(AskedDevice):
     def quick_stop(self) -> None:
         """Come to rest as fast as the carriage's own controller does without its enable."""
         self._set(0.0)
-        self.done()
+        self.cancel_deadline()
         self._wants_power = False
 
     def disable(self) -> None:
@@ -182,7 +182,9 @@ class AskedCarriage(AskedDevice):
         self._samples.append((cycle.number, read[: len(self.channels)]))
         if fresh:
             self._pursue()
-            wrong = [error for error in self._beyond() if type(error) not in self._known]
+            wrong = [
+                error for error in self._implausible_readings() if type(error) not in self._known
+            ]
             self._known |= {type(error) for error in wrong}
             faults += wrong
         if faults and not self._wants_power:
@@ -227,16 +229,16 @@ class AskedCarriage(AskedDevice):
     def _come_to_rest(self, event: str) -> None:
         """Wait for rest: for as long as the ramp takes from the highest speed."""
         ramp_s = self.speed_m_s.high / self._settings.acceleration_m_s2
-        self.within(RAMP_MARGIN * ramp_s + REST_DEADLINE_S, event)
+        self.set_deadline(RAMP_MARGIN * ramp_s + REST_DEADLINE_S, event)
 
     def _set(self, speed_m_s: float, turn_rate_rad_s: float = 0.0) -> None:
         if (speed_m_s, turn_rate_rad_s) != (self._goal_m_s, self._turn_rad_s):
             self._steady_s = None
         self._goal_m_s, self._turn_rad_s, self._returning = speed_m_s, turn_rate_rad_s, False
-        self.tell(self._settings.asked.set_speed, speed_m_s)
-        if self._settings.asked.set_turn_rate is not None and speed_m_s:
+        self.tell(self._settings.signals.set_speed, speed_m_s)
+        if self._settings.signals.set_turn_rate is not None and speed_m_s:
             # At rest it keeps the last: on its ramp the carriage stays on the circle.
-            self.tell(self._settings.asked.set_turn_rate, turn_rate_rad_s)
+            self.tell(self._settings.signals.set_turn_rate, turn_rate_rad_s)
 
     def _pursue(self) -> None:
         """Look at what was read: whether the goal is kept, or the way back is at its end."""
@@ -249,7 +251,7 @@ class AskedCarriage(AskedDevice):
         elif self._steady_s is None:
             self._steady_s = self._now_s
         if self.at_speed or not self.moving:
-            self.done()
+            self.cancel_deadline()
 
     @property
     def _astray_m_s(self) -> float:
@@ -266,13 +268,13 @@ class AskedCarriage(AskedDevice):
             self._come_to_rest("rest at the start of the track")
             return
         fastest = math.sqrt(self._settings.acceleration_m_s2 * way_m)
-        self.tell(self._settings.asked.set_speed, -min(self._settings.return_speed_m_s, fastest))
+        self.tell(self._settings.signals.set_speed, -min(self._settings.return_speed_m_s, fastest))
 
     @property
     def _braking_m(self) -> float:
         return self.measured_speed_m_s**2 / (2.0 * self._settings.acceleration_m_s2)
 
-    def _beyond(self) -> Iterator[HardwareError]:
+    def _implausible_readings(self) -> Iterator[HardwareError]:
         settings, speed, highest = self._settings, self.measured_speed_m_s, self.speed_m_s.high
         if abs(speed) > CARRIAGE_PLAUSIBLE * highest:
             yield SensorInvalidError(

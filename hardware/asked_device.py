@@ -71,13 +71,13 @@ class AskedDevice:
     def enabled(self) -> bool:
         """Whether it is under power, as far as it says, and in the program's hand."""
         refused = False in (self._says("remote"), self._says("ready"))
-        return self._wants_power and self._link.heard and not refused
+        return self._wants_power and self._link.is_answering and not refused
 
     @property
-    def heard(self) -> bool:
+    def is_answering(self) -> bool:
         """Whether it answers, and has told all that is read."""
         is_complete = not any(map(math.isnan, self.values.values()))
-        return self._link.is_open and self._link.heard and is_complete
+        return self._link.is_open and self._link.is_answering and is_complete
 
     def reconnect(self) -> None:
         """Open a lost port again, and ask anew; raises as :meth:`reset_fault`."""
@@ -104,8 +104,8 @@ class AskedDevice:
         """
         self._wants_power, self._resets = False, True
         self._known.clear()
-        self.done()
-        if self.heard:
+        self.cancel_deadline()
+        if self.is_answering:
             self._life = None
             self._link.forget()
         else:
@@ -115,11 +115,11 @@ class AskedDevice:
         """Close the port."""
         self._link.close()
 
-    def within(self, seconds: float, event: str) -> None:
-        """Set the deadline for what is waited for; :meth:`done` takes it back."""
+    def set_deadline(self, seconds: float, event: str) -> None:
+        """Set the deadline for what is waited for; :meth:`cancel_deadline` takes it back."""
         self._deadline_s, self._waiting_for = self._now_s + seconds, event
 
-    def done(self) -> None:
+    def cancel_deadline(self) -> None:
         """Cancel the deadline: what was commanded has been reached."""
         self._deadline_s = math.inf
 
@@ -132,14 +132,14 @@ class AskedDevice:
         self._now_s = cycle.time_s
         answers, faults = self._link.exchange(cycle, self._following)
         fresh = [self._take(answer) for answer in answers]
-        wrong = [error for error in self._wrong() if type(error) not in self._known]
+        wrong = [error for error in self._device_faults() if type(error) not in self._known]
         self._known |= {type(error) for error in wrong}
         return any(fresh), faults + wrong
 
     def _says(self, name: str) -> bool | None:
         return None if self._status is None else self._status.says(name, self._word)
 
-    def _wrong(self) -> Iterator[HardwareError]:
+    def _device_faults(self) -> Iterator[HardwareError]:
         if self._says("alarm"):
             yield DriveFaultError(
                 self.name, "reports an alarm; clear its cause at its panel, then reset"
@@ -151,14 +151,14 @@ class AskedDevice:
                 "is in a person's hand (local); turn its switch to remote, reset and start again",
             )
         stood_s = 0.0 if self._life is None else self._now_s - self._life[1]
-        if self._link.heard and stood_s > self._silent_s:
+        if self._link.is_answering and stood_s > self._silent_s:
             yield SilentPortError(
                 self.name,
                 f"answers, but its counter stands for {stood_s:.2f} s (limit "
                 f"{self._silent_s:g} s): what it says is old; look whether its program runs",
             )
         if self._now_s > self._deadline_s:
-            self.done()
+            self.cancel_deadline()
             values = ", ".join(f"{name} {value:.6g}" for name, value in self.values.items())
             yield TransitionTimeoutError(
                 self.name,
@@ -187,7 +187,7 @@ class AskedDevice:
     def _following(self) -> RegisterRequest | None:
         """Return what is written where it is due, and what is read in turn with it."""
         self._read_next = not self._read_next
-        if not self._read_next and (write := self._due()) is not None:
+        if not self._read_next and (write := self._due_request()) is not None:
             return write
         if not self._spans:
             return None
@@ -195,19 +195,19 @@ class AskedDevice:
         self._turn += 1
         return RegisterRequest(function, address, count)
 
-    def _due(self) -> RegisterRequest | None:
+    def _due_request(self) -> RegisterRequest | None:
         command = self._command
         if command is not None:
             word = command.word(enable=self._wants_power, reset=self._resets, toggle=self._toggle)
-            if not self._stands(command.address, (word,)):
+            if not self._is_written(command.address, (word,)):
                 self._resets, self._toggle = False, not self._toggle
                 return RegisterRequest(WRITE, command.address, 1, (word,))
         for address, words in self._told.items():
-            if not self._stands(address, words):
+            if not self._is_written(address, words):
                 return RegisterRequest(WRITE, address, len(words), words)
         return None
 
-    def _stands(self, address: int, words: tuple[int, ...]) -> bool:
+    def _is_written(self, address: int, words: tuple[int, ...]) -> bool:
         last_words, since_s = self._kept.get(address, ((), -math.inf))
         fresh = self._now_s - since_s < self._refresh_s
         return fresh and last_words == self._untoggled(address, words)

@@ -93,7 +93,7 @@ class AskedLink(ABC):
         return True
 
     @property
-    def heard(self) -> bool:
+    def is_answering(self) -> bool:
         """Whether the device answers and refuses nothing."""
         return self._answers
 
@@ -123,7 +123,7 @@ class AskedLink(ABC):
     ) -> tuple[list[Answer], list[HardwareError]]:
         """Take the answers of the cycle and ask for what follows; return both, faults once each."""
         now_s = cycle.time_s
-        answers, faults = self._asked(cycle, following)
+        answers, faults = self._poll(cycle, following)
         refused = any(isinstance(fault, ModbusError) for fault in faults)
         since_s = now_s if answers or refused or self._heard_s is None else self._heard_s
         self._heard_s = since_s
@@ -144,9 +144,7 @@ class AskedLink(ABC):
         )
 
     @abstractmethod
-    def _asked(
-        self, cycle: Cycle, following: Following
-    ) -> tuple[list[Answer], list[HardwareError]]:
+    def _poll(self, cycle: Cycle, following: Following) -> tuple[list[Answer], list[HardwareError]]:
         """Return the answers of the cycle, and what went wrong; ask for what follows."""
 
 
@@ -173,15 +171,13 @@ class PortLink(AskedLink):
         """Close the port."""
         self._port.close()
 
-    def _asked(
-        self, cycle: Cycle, following: Following
-    ) -> tuple[list[Answer], list[HardwareError]]:
+    def _poll(self, cycle: Cycle, following: Following) -> tuple[list[Answer], list[HardwareError]]:
         answers: list[Answer] = []
         now_s = cycle.time_s
         try:
             for line in self._port.lines():
                 self._asked_s = None
-                answers += self._understood(line)
+                answers += self._answers_in(line)
             due = self._asked_s is None or now_s - self._asked_s > self._settings.answer_s
             request = following() if due and self._port.is_open else None
             if request is not None:
@@ -194,7 +190,7 @@ class PortLink(AskedLink):
         return answers, []
 
     @abstractmethod
-    def _understood(self, line: bytes) -> Iterator[Answer]:
+    def _answers_in(self, line: bytes) -> Iterator[Answer]:
         """Yield the answers of a line; raise what it shows."""
 
     @abstractmethod

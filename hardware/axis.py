@@ -221,7 +221,7 @@ class DriveAxis:
         self.settled = False
         self._stale_cycles = 0
         self.drive.mode, self.drive.extra = mode, ControlWord(0)
-        self.drive.within(4 * STEP_CYCLES + RAMP_MARGIN * time_s * self._rate_hz, event)
+        self.drive.set_deadline(4 * STEP_CYCLES + RAMP_MARGIN * time_s * self._rate_hz, event)
         self._step = _Step.MODE
 
     def _break_off(self) -> None:
@@ -232,7 +232,7 @@ class DriveAxis:
 
     def _abandon(self) -> None:
         self._step, self.drive.extra = _Step.IDLE, ControlWord(0)
-        self.drive.done()
+        self.drive.cancel_deadline()
 
     def _pursue(self, status: StatusWord) -> None:
         if self._step is _Step.MODE and self.drive.in_mode:

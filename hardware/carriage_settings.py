@@ -88,7 +88,7 @@ class AskedCarriageSettings(AskedSettings):
 
     @property
     @abstractmethod
-    def asked(self) -> "CarriageRegisters | CarriageLines | CarriageVoltages":
+    def signals(self) -> "CarriageRegisters | CarriageLines | CarriageVoltages":
         """What it is asked and told."""
 
     def __post_init__(self) -> None:
@@ -107,7 +107,7 @@ class AskedCarriageSettings(AskedSettings):
             )
         if self.return_speed_m_s > self.highest_speed_m_s:
             raise ConfigurationError("return_speed_m_s is above highest_speed_m_s; lower it")
-        if (self.track_m is None) != (self.asked.position is None):
+        if (self.track_m is None) != (self.signals.position is None):
             raise ConfigurationError("track_m and position belong together; give both")
         if self.track_m is not None and not self.track_m[0] < self.track_m[1]:
             raise ConfigurationError(
@@ -117,12 +117,12 @@ class AskedCarriageSettings(AskedSettings):
         self._check_turning()
         slowest = -self.return_speed_m_s if self.track_m is not None else 0.0
         for speed in (self.highest_speed_m_s, slowest):
-            self.asked.set_speed.written(speed)
+            self.signals.set_speed.written(speed)
 
     def _check_turning(self) -> None:
         set_register, read, most = (
-            self.asked.set_turn_rate,
-            self.asked.turn_rate,
+            self.signals.set_turn_rate,
+            self.signals.turn_rate,
             self.highest_turn_rate_rad_s,
         )
         if most < 0.0 or len({set_register is None, read is None, most == 0.0}) > 1:
@@ -147,7 +147,7 @@ class ModbusCarriageSettings(AskedCarriageSettings, ModbusSettings):
     registers: CarriageRegisters
 
     @property
-    def asked(self) -> CarriageRegisters:
+    def signals(self) -> CarriageRegisters:
         """Its registers."""
         return self.registers
 
@@ -197,7 +197,7 @@ class LineCarriageSettings(AskedCarriageSettings, LineSettings):
     lines: CarriageLines
 
     @property
-    def asked(self) -> CarriageLines:
+    def signals(self) -> CarriageLines:
         """Its lines."""
         return self.lines
 
@@ -240,7 +240,7 @@ class AnalogueCarriageSettings(AskedCarriageSettings, AnalogueSettings):
     voltages: CarriageVoltages
 
     @property
-    def asked(self) -> CarriageVoltages:
+    def signals(self) -> CarriageVoltages:
         """Its voltages."""
         return self.voltages
 

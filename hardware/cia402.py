@@ -110,7 +110,7 @@ TRANSITIONS: Final[dict[tuple[DriveState, DriveCommand], tuple[int, DriveState]]
 }
 
 
-def _decoded() -> tuple[DriveState, ...]:
+def _decode_table() -> tuple[DriveState, ...]:
     """Return the state of each pattern of the status word's low seven bits."""
     table = []
     for word in range(0x80):
@@ -119,7 +119,7 @@ def _decoded() -> tuple[DriveState, ...]:
     return tuple(table)
 
 
-_STATES: Final = _decoded()
+_STATES: Final = _decode_table()
 
 
 def state_of(status_word: int) -> DriveState:

@@ -166,11 +166,11 @@ class Drive:
         self._machine.reset_fault()
         self._strayed = False
 
-    def within(self, cycles: float, event: str) -> None:
-        """Set the deadline for what the axis waits for; :meth:`done` takes it back."""
+    def set_deadline(self, cycles: float, event: str) -> None:
+        """Set the deadline for what the axis waits for; :meth:`cancel_deadline` takes it back."""
         self._deadline, self._waiting_for = round(cycles), event
 
-    def done(self) -> None:
+    def cancel_deadline(self) -> None:
         """Take the deadline back."""
         self._deadline = None
 
@@ -193,17 +193,17 @@ class Drive:
         try:
             self._machine.tick(status, at_rest=self.motion.at_rest)
         except DriveFaultError as error:
-            raise self._named() from error
+            raise self._drive_fault() from error
         finally:
-            self._put()
+            self._write_control()
         self._watch(status)
 
-    def _put(self) -> None:
+    def _write_control(self) -> None:
         extra = int(self.extra) if self.enabled else 0
         self.node.put(CONTROL_WORD, self._machine.word | extra)
         self.node.put(MODE, self.mode)
 
-    def _named(self) -> HardwareError:
+    def _drive_fault(self) -> HardwareError:
         code = int(self.node.values[ERROR_CODE])
         if code == _FOLLOWING_ERROR_CODE:
             return FollowingError(self.node.name, f"outside its window (error 0x{code:04X})")

@@ -89,7 +89,7 @@ class LineLink(PortLink):
         self._sent[text] = request
         return (text + self._ending).encode()
 
-    def _understood(self, line: bytes) -> Iterator[Answer]:
+    def _answers_in(self, line: bytes) -> Iterator[Answer]:
         asked, _, said = line.decode("ascii", "replace").partition("\t")
         query = next((query for query in self._reads() if query.text(()) == asked), None)
         if query is None:  # what was told: the reply alone counts

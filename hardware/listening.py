@@ -13,7 +13,7 @@ _POLL_S = 0.01
 
 
 @dataclass
-class Heard:
+class PortLines:
     """What was heard on a port.
 
     Attributes
@@ -39,10 +39,10 @@ class Heard:
     _sequence: Unwrapped = field(default_factory=lambda: Unwrapped(SEQUENCE_MODULUS))
     _before: int | None = None
     _began_us: int | None = None
-    _begun: bool = False
+    _has_begun: bool = False
 
     @property
-    def what(self) -> str:
+    def device_kind(self) -> str:
         """What the device is, told from its lines."""
         if self.counts[LineKind.ANGLE]:
             return "inclinometer"
@@ -63,7 +63,7 @@ class Heard:
         except LineError:
             self._refuse(raw[:60].decode("latin-1").strip())
             return None
-        self._begun = True
+        self._has_begun = True
         number = self._sequence.take(line.sequence)
         if self._before is not None:
             self.lost += max(number - self._before - 1, 0)
@@ -77,8 +77,8 @@ class Heard:
 
     def _refuse(self, text: str) -> None:
         """Count a refused line; the very first may have begun before the port was opened."""
-        self.refused += self._begun
-        self._begun = True
+        self.refused += self._has_begun
+        self._has_begun = True
         self.first_refused = self.first_refused or text
 
 
@@ -87,8 +87,8 @@ def listen(
     seconds: float,
     clock: Callable[[], float],
     sleep: Callable[[float], None],
-    heard: Heard | None = None,
-) -> Heard:
+    heard: PortLines | None = None,
+) -> PortLines:
     """Listen to a port for a time; what is heard is added to ``heard``, if that is given.
 
     Raises
@@ -96,7 +96,7 @@ def listen(
     UnpluggedError
         If the port fails meanwhile.
     """
-    heard, end = heard or Heard(), clock() + seconds
+    heard, end = heard or PortLines(), clock() + seconds
     while clock() < end:
         try:
             lines = port.lines()

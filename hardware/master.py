@@ -13,7 +13,7 @@ from hardware.bus_owner import is_private, owned_bus
 from hardware.dictionary import PdoLayout
 from hardware.errors import HardwareError, as_fault
 from hardware.node import Node, PdoStream
-from hardware.other_master import Company
+from hardware.other_master import OtherMasterWatch
 from hardware.sdo import GuardedNetwork
 from hardware.supervision import OPERATIONAL, ErrorFrames, Supervisor
 
@@ -67,7 +67,7 @@ class Master:
         self._supervised: dict[int, tuple[Callable[..., None], int]] = {}
         self._number = 0
         self._commanded = False  # whether any node's state was commanded
-        self._company = Company(configuration)
+        self._company = OtherMasterWatch(configuration)
         self._operating = False
         self._missing = 0
         beat_cycles = configuration.heartbeat_ms / 1000.0 * configuration.sync_rate_hz
@@ -204,7 +204,7 @@ class Master:
         that has met another.
         """
         try:
-            if self._commanded and not self._company.met:
+            if self._commanded and not self._company.is_other_heard:
                 self._send(_NMT, bytes((_PRE_OPERATIONAL, 0)))
         except HardwareError:
             pass  # a lost bus cannot be told anything

@@ -56,7 +56,7 @@ class ModbusAxisSettings(ModbusSettings):
     settle_s: float = 1.0
 
     @property
-    def asked(self) -> AxisRegisters:
+    def signals(self) -> AxisRegisters:
         """Its registers."""
         return self.registers
 
@@ -87,7 +87,7 @@ class ModbusAxis(AskedDevice):
     @property
     def position(self) -> float:
         """The angle that it reads, in rad; NaN before, and in silence."""
-        return self.values["position"] if self._link.heard else math.nan
+        return self.values["position"] if self._link.is_answering else math.nan
 
     @property
     def homed(self) -> bool:
@@ -105,13 +105,13 @@ class ModbusAxis(AskedDevice):
     def moving(self) -> bool:
         """Whether it has moved lately, is on its way, or is not heard."""
         stood_s = -1.0 if self._stood is None else self._now_s - self._stood[1]
-        on_its_way = self._goal is not None and not self._near(self._goal)
+        on_its_way = self._goal is not None and not self._is_near(self._goal)
         return math.isnan(self.position) or on_its_way or stood_s < self._settings.settle_s
 
     @property
     def settled(self) -> bool:
         """Whether it stands where it was sent."""
-        return self._goal is not None and self._near(self._goal) and not self.moving
+        return self._goal is not None and self._is_near(self._goal) and not self.moving
 
     def home(self) -> None:
         """Read where it is. Raises as :meth:`move_to` does."""
@@ -133,15 +133,15 @@ class ModbusAxis(AskedDevice):
         self._goal = position
         self.tell(self._settings.registers.set_position, position)
         takes_s = abs(position - self.position) / self._settings.speed
-        self.within(
+        self.set_deadline(
             RAMP_MARGIN * takes_s + REST_DEADLINE_S + self._settings.settle_s,
             f"{position:g} rad within {self._settings.tolerance:g} rad",
         )
 
     def stop(self) -> None:
         """Stay where it is; one that has arrived stays arrived."""
-        self.done()
-        if self._goal is None or self._near(self._goal):
+        self.cancel_deadline()
+        if self._goal is None or self._is_near(self._goal):
             return
         if self.homed:
             self.tell(self._settings.registers.set_position, self.position)
@@ -165,20 +165,23 @@ class ModbusAxis(AskedDevice):
         """Take what came; raises as :meth:`AskedDevice.exchange` says."""
         fresh, faults = self.exchange(cycle)
         if fresh:
-            if self._stood is None or not abs(self.position - self._stood[0]) <= self._still:
+            if (
+                self._stood is None
+                or not abs(self.position - self._stood[0]) <= self._rest_tolerance
+            ):
                 self._stood = (self.position, self._now_s)
             if self.settled:
-                self.done()
+                self.cancel_deadline()
         if faults and not self._wants_power:
             self.stop()
         raise_worst(faults)
 
     @property
-    def _still(self) -> float:
+    def _rest_tolerance(self) -> float:
         """How far it may wander and is said to stand."""
         return 0.5 * self._settings.tolerance
 
-    def _near(self, goal: float) -> bool:
+    def _is_near(self, goal: float) -> bool:
         return abs(self.position - goal) <= self._settings.tolerance
 
     def _require_power(self) -> None:

@@ -56,7 +56,7 @@ class ModbusLink(PortLink):
         self._requests, self._unit_id, self._number = DecodePDU(True), settings.unit_id, 0
         super().__init__(name, settings, services.port(name, settings.port))
 
-    def _understood(self, line: bytes) -> Iterator[Answer]:
+    def _answers_in(self, line: bytes) -> Iterator[Answer]:
         asked, said = (bytes.fromhex(part) for part in line.decode("ascii").split(" "))
         if asked[0] != said[0]:
             raise LineError(

@@ -74,7 +74,7 @@ class EncoderMotion:
         self._disturbed = self._now
 
     @property
-    def known(self) -> bool:
+    def is_current(self) -> bool:
         """Whether there are positions, and they are not stale."""
         return len(self._track) > 1 and self._now - self._track[-1][0] <= self._gap
 
@@ -82,21 +82,21 @@ class EncoderMotion:
     def at_rest(self) -> bool:
         """Whether the positions have stayed where they are; unknown and stale ones have not."""
         fresh = self._now - self._disturbed > self._window or not self._disturbed
-        if not self.known or not fresh or len(self._counts) <= self._window:
+        if not self.is_current or not fresh or len(self._counts) <= self._window:
             return False
         return max(self._counts) - min(self._counts) <= self._allowed
 
     @property
     def speed(self) -> float:
         """Speed over :data:`SPEED_WINDOW_S`, with its sign; NaN while it is not known."""
-        if not self.known:
+        if not self.is_current:
             return math.nan
         (first, start), (last, end) = self._track[0], self._track[-1]
         return (end - start) / (last - first) * self.sample_rate_hz / self._counts_per_unit
 
     def __str__(self) -> str:
         """Say how fast it moves, for messages."""
-        if not self.known:
+        if not self.is_current:
             return "its position is not known, which counts as moving"
         rest = f"rest is below {self._rest_speed:g} {self._unit}"
         return f"it moves at {self.speed:.4g} {self._unit} ({rest})"

@@ -52,10 +52,10 @@ class MappedObjects:
                 except HardwareError as error:
                     yield ObjectValue(node.node_id, f"{at}", str(error))
                     continue
-                yield _decoded(node, at, raw)
+                yield _decode(node, at, raw)
 
 
-def _decoded(node: FoundNode, at: Entry, raw: bytes) -> ObjectValue:
+def _decode(node: FoundNode, at: Entry, raw: bytes) -> ObjectValue:
     dictionary = _dictionary(node.profile)
     od_variable = None if dictionary is None else variable(dictionary, at)
     if od_variable is not None and od_variable.data_type in datatypes.NUMBER_TYPES:

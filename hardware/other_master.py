@@ -22,7 +22,7 @@ _COMMANDS: Final = {
 }
 
 
-class Company:
+class OtherMasterWatch:
     """Notices another master on a bus, from :meth:`begin` on."""
 
     def __init__(self, configuration: BusConfiguration) -> None:
@@ -36,7 +36,7 @@ class Company:
         self._awaited: Counter[tuple[int, bytes]] = Counter()
 
     @property
-    def met(self) -> bool:
+    def is_other_heard(self) -> bool:
         """Whether another master was heard, since :meth:`forget` at the latest."""
         return bool(self._said)
 
@@ -67,12 +67,12 @@ class Company:
         said = command_in(frame, self._configuration.master_node, self._rpdos)
         if not operating:
             said = said or question_in(frame)
-        if not said or self._own(frame):
+        if not said or self._is_own(frame):
             return ""
         self._said[said] = None
         return said
 
-    def _own(self, frame: can.Message) -> bool:
+    def _is_own(self, frame: can.Message) -> bool:
         """Whether it is this controller's own frame, come back."""
         message = frame.arbitration_id, bytes(frame.data)
         if not self._awaited[message]:

@@ -84,7 +84,7 @@ _GUARD: Final = threading.RLock()
 _HELD: Final[dict[Path, Ownership]] = {}
 
 
-def own(path: Path, message: str, *, patience_s: float = PATIENCE_S) -> Ownership:
+def acquire(path: Path, message: str, *, patience_s: float = PATIENCE_S) -> Ownership:
     """Own what a lock file stands for.
 
     Parameters
@@ -109,7 +109,7 @@ def own(path: Path, message: str, *, patience_s: float = PATIENCE_S) -> Ownershi
 
 
 def own_together(path: Path, message: str, kind: type[T], *, patience_s: float = PATIENCE_S) -> T:
-    """Own as :func:`own`, but together with the other parts of this process; they share one.
+    """Own as :func:`acquire`, but together with the other parts of this process; they share one.
 
     Parameters
     ----------
@@ -154,8 +154,8 @@ def machine_lock(key: str) -> Path:
 
 
 def own_on_machine(key: str) -> Ownership:
-    """Own a device that all users of this machine share; as :func:`own`."""
-    return own(machine_lock(key), "in use")
+    """Own a device that all users of this machine share; as :func:`acquire`."""
+    return acquire(machine_lock(key), "in use")
 
 
 def _owned(path: Path, message: str, patience_s: float, kind: type[T]) -> T:

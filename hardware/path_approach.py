@@ -114,17 +114,17 @@ class PathApproach:
         if self._ramp is None or (self._due and self._ramp.at_rest):
             if not all(strut.drive.in_mode for strut in self._struts):
                 return points
-            self._ramp = self._started(points, wanted)
+            self._ramp = self._start_ramp(points, wanted)
         self._ramp.step(1.0 / self._rate_hz)
         share = 1.0 if self._ramp.arrived else self._ramp.position * self._share
         led = np.asarray(self._from + share * (self._goal - self._from))
-        if self._ramp.at_rest and not self._due and (not self._ramp.arrived or self._there()):
+        if self._ramp.at_rest and not self._due and (not self._ramp.arrived or self._is_at_goal()):
             self._ramp = None
             for strut in self._struts:
-                strut.drive.done()
+                strut.drive.cancel_deadline()
         return led
 
-    def _started(self, points: FloatArray, wanted: FloatArray) -> Ramp:
+    def _start_ramp(self, points: FloatArray, wanted: FloatArray) -> Ramp:
         self._due = False
         self._from, self._goal = points, wanted
         way = float(np.abs(self._goal - self._from).max())
@@ -133,10 +133,10 @@ class PathApproach:
         time_s = way / self._speed_m_s + 2.0 * self._speed_m_s / slope
         for strut in self._struts:
             limit = 4 * STEP_CYCLES + RAMP_MARGIN * time_s * self._rate_hz
-            strut.drive.within(limit, "way to the path")
+            strut.drive.set_deadline(limit, "way to the path")
         return Ramp(way, self._speed_m_s, slope)
 
-    def _there(self) -> bool:
+    def _is_at_goal(self) -> bool:
         """Whether the struts stand at the goal by their encoders."""
         return all(
             abs(strut.position - goal) <= strut.near and strut.drive.motion.at_rest

@@ -261,7 +261,7 @@ class PathShaft:
         self._target_hz = self._speed_hz = 0.0
         self._approach.drop()
         for strut in self.struts:
-            strut.drive.done()
+            strut.drive.cancel_deadline()
 
     def _wanted(self) -> np.ndarray:
         """Return where the path has the struts now."""

@@ -123,7 +123,7 @@ class ProbePhotocell:
         if self._since is None:
             self._since = self._shaft.counts
         if before is None or before == self._edges:
-            self._absent(self._since)
+            self._missing_faults(self._since)
             return
         at, last = self._shaft.position_near(latched), self._pulse
         self._pulse = self._since = at
@@ -140,7 +140,7 @@ class ProbePhotocell:
     def _turns(self, counts: int) -> float:
         return abs(counts / self._shaft.settings.counts_per_turn)
 
-    def _absent(self, since: int) -> None:
+    def _missing_faults(self, since: int) -> None:
         turns = self._turns(self._shaft.counts - since)
         if turns > _DEAD_TURNS and self._told is not PhotocellDeadError:
             self._told = PhotocellDeadError

@@ -175,7 +175,7 @@ class SerialPhotocell(SerialInstrument):
                 self.name, f"{periods:.3f} periods between pulses (limit {_MISSED_PERIODS})"
             )
 
-    def _absent(self, now_s: float) -> Iterator[HardwareError]:
+    def _missing_faults(self, now_s: float) -> Iterator[HardwareError]:
         """Yield which pulses are missing by now."""
         if self._period_s is None:
             return

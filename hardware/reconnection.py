@@ -23,7 +23,7 @@ def reconnect(devices: Sequence[Device], cycle: Callable[[], object], period_s: 
     """
     port_devices = [device for device in devices if isinstance(device, Reconnecting)]
     for tries in reversed(range(RECONNECT_TRIES)):
-        lost = [device for device in port_devices if not device.heard]
+        lost = [device for device in port_devices if not device.is_answering]
         if not lost:
             return
         try:
@@ -36,7 +36,7 @@ def reconnect(devices: Sequence[Device], cycle: Callable[[], object], period_s: 
                     error.device, f"{said} ({RECONNECT_TRIES} tries); plug in and reset"
                 ) from error
         for _ in range(round(RECONNECT_S / period_s)):
-            if all(device.heard for device in lost):
+            if all(device.is_answering for device in lost):
                 break
             with suppress(HardwareError):
                 cycle()

@@ -188,11 +188,11 @@ class Rig:
 
     def stop(self) -> None:
         """Profile stop of all axes; an axis that refuses does not keep the others from it."""
-        self._each(lambda axis: axis.stop())
+        self._command_each(lambda axis: axis.stop())
 
     def quick_stop(self) -> None:
         """Quick stop of all axes; an axis that refuses does not keep the others from it."""
-        self._each(lambda axis: axis.quick_stop())
+        self._command_each(lambda axis: axis.quick_stop())
 
     def reset(self) -> None:
         """Forget the latched faults and reset those of the devices: on the operator's demand.
@@ -250,7 +250,7 @@ class Rig:
         axes = (self.eccentricity, self.phase, *self.angles.values())
         return tuple(axis for axis in axes if axis is not None)
 
-    def _each(self, command: Callable[[Powered], None]) -> None:
+    def _command_each(self, command: Callable[[Powered], None]) -> None:
         failed = []
         for axis in self.powered():
             try:

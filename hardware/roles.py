@@ -71,7 +71,7 @@ class Reconnecting(Device, Protocol):
     """A device behind a port that may be lost and come back."""
 
     @property
-    def heard(self) -> bool:
+    def is_answering(self) -> bool:
         """Whether the device at the port answers."""
         ...
 

@@ -85,7 +85,7 @@ class SerialInstrument(ABC):
                 self._take(line, cycle)
             except HardwareError as error:
                 faults.append(error)
-        faults += [*self._silence(cycle.time_s), *self._absent(cycle.time_s)]
+        faults += [*self._silence(cycle.time_s), *self._missing_faults(cycle.time_s)]
         if faults:
             raise worst(faults)
 
@@ -93,7 +93,7 @@ class SerialInstrument(ABC):
     def _take(self, line: SerialLine, cycle: Cycle) -> None:
         """Take one line; raise what it shows."""
 
-    def _absent(self, now_s: float) -> Iterator[HardwareError]:
+    def _missing_faults(self, now_s: float) -> Iterator[HardwareError]:
         """Yield what else is missing by now."""
         yield from ()
 

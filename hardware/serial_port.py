@@ -239,7 +239,7 @@ class SerialPort:
             # nothing would not.
             arrived = self._port.read(_CHUNK) if self._port.in_waiting else b""
         except OSError as error:  # SerialException is one
-            raise self._lost("reading", error) from error
+            raise self._lost_port("reading", error) from error
         return self._splitter.split(arrived)
 
     def write(self, data: bytes) -> None:
@@ -256,7 +256,7 @@ class SerialPort:
             self._port.write(data)
             self._splitter.sent(data)
         except OSError as error:
-            raise self._lost("writing", error) from error
+            raise self._lost_port("writing", error) from error
 
     def recover(self, now_s: float) -> bool:
         """Try to open a lost port again, ever less often; for idle times. Tell whether it is open.
@@ -293,7 +293,7 @@ class SerialPort:
         if owned is not None:
             owned.release()
 
-    def _lost(self, action: str, error: OSError) -> UnpluggedError:
+    def _lost_port(self, action: str, error: OSError) -> UnpluggedError:
         self.close()
         return UnpluggedError(
             self._name, f"{action} {self._settings.url} failed: {error}; plug in and reset"

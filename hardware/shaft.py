@@ -155,13 +155,13 @@ class DriveShaft:
         check_speed(self, frequency_hz)
         check_enabled(self)
         self._aim(frequency_hz)
-        self.drive.within(self._cycles(frequency_hz), f"run-up to {frequency_hz:g} Hz")
+        self.drive.set_deadline(self._cycles(frequency_hz), f"run-up to {frequency_hz:g} Hz")
 
     def stop(self) -> None:
         """Decelerate along the profile, then stand under power."""
         self._aim(0.0)
         if self.enabled:
-            self.drive.within(self._cycles(0.0), "profile stop")
+            self.drive.set_deadline(self._cycles(0.0), "profile stop")
 
     def quick_stop(self) -> None:
         """Decelerate on the quick-stop ramp."""
@@ -201,7 +201,7 @@ class DriveShaft:
             angle = _TURN * counts / self.settings.counts_per_turn
             self._samples.append((number, (angle,)))
         if self.at_speed or not self.moving:
-            self.drive.done()
+            self.drive.cancel_deadline()
         self.drive.tick()
 
     def take(self) -> tuple[SampleBlock, ...]:
@@ -245,7 +245,7 @@ class DriveShaft:
         if self._target_hz and not frequency_hz:
             self.motion.disturb()  # the encoder has not shown yet what the drive was told last
         self._target_hz = frequency_hz
-        self.drive.done()
+        self.drive.cancel_deadline()
         self.drive.node.put(TARGET_VELOCITY, round(frequency_hz * self._velocity_per_hz))
 
 

@@ -22,13 +22,13 @@ class SimulatedTables:
         Its file.
     rig
         All that is simulated.
-    own
+    file_tables
         What the file itself states, beside what it takes from a rig's file.
     """
 
     file: str
     rig: Mapping[str, Any]
-    own: Mapping[str, Any]
+    file_tables: Mapping[str, Any]
 
 
 def simulated_behind(bus: BusConfiguration | None) -> SimulatedTables | None:

@@ -76,7 +76,9 @@ class Chain:
         for stage in self.stages:
             if stage.name == name:
                 return stage
-        raise ConfigurationError(_unknown("stage", name, [stage.name for stage in self.stages]))
+        raise ConfigurationError(
+            _unknown_name("stage", name, [stage.name for stage in self.stages])
+        )
 
     def change(self, name: str, change: Callable[[Stage[Any]], Stage[Any]]) -> "Chain":
         """Return the chain with ``change`` applied to one stage: how an effect is switched on.
@@ -147,7 +149,7 @@ class Chain:
         signals = {signal.name: signal for signal in self.signals}
         for name in supply:
             if name not in signals:
-                raise ConfigurationError(_unknown("signal", name, list(signals)))
+                raise ConfigurationError(_unknown_name("signal", name, list(signals)))
         for signal in self.inputs:
             if signal.name not in supply:
                 raise ConfigurationError(
@@ -203,7 +205,7 @@ def _check_writes(stage: Stage[Any], names: set[str]) -> None:
             )
 
 
-def _unknown(kind: str, name: str, names: list[str]) -> str:
+def _unknown_name(kind: str, name: str, names: list[str]) -> str:
     near = get_close_matches(name, names, n=3, cutoff=0.4)
     hint = f"; did you mean {', '.join(near)}?" if near else ""
     return f"the chain has no {kind} {name!r}{hint} ({kind}s: {', '.join(names)})"

@@ -142,12 +142,14 @@ class SimulatedRig:
                 reflected_inertia(hull.system.mass, set_point),
             )
             stages = (carriage, Coupled(loaded, mechanism, hull))
-        commands = self._told(mechanism, set_point.frequency_hz)
+        commands = self._command_stages(mechanism, set_point.frequency_hz)
         behind = (*commands, *self._sensed(hull), self.dynamometers, self.acquisition)
         pulses = () if self.photocell is None else (self.photocell,)
         return (*stages, *behind, *pulses)
 
-    def _told(self, mechanism: Mechanism, frequency_hz: float) -> tuple["Stage[Any]", ...]:
+    def _command_stages(
+        self, mechanism: Mechanism, frequency_hz: float
+    ) -> tuple["Stage[Any]", ...]:
         """Return the stage of the commands, where they are recorded."""
         names = recorded(self.acquisition, COMMANDS)
         return (StrutCommand(mechanism, self.drive, frequency_hz),) if names else ()

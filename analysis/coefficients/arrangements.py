@@ -13,7 +13,7 @@ import numpy as np
 
 from analysis.coefficients.campaign_records import OtherArrangement
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.form_choice import DECIDES, times
+from analysis.coefficients.form_choice import DECIDES, ratio_text
 from hardware.description.arrangement import Arrangement
 from hardware.description.arrays import FloatArray
 from hardware.description.flags import Flag, Severity
@@ -104,11 +104,14 @@ def _message(
     if verdict == BETTER:
         return (
             f"the recordings fit {alternative} better than {stated}, which is stated "
-            f"({times(ratio)} as likely; {DECIDES:g} decides); it would move {change}: look at the "
-            "rig, and correct [oscillator]"
+            f"({ratio_text(ratio)} as likely; {DECIDES:g} decides); it would move {change}: look "
+            "at the rig, and correct [oscillator]"
         )
     if verdict == WORSE:
-        return f"the recordings bear {stated} out ({times(1.0 / ratio)} as likely as {alternative})"
+        return (
+            f"the recordings bear {stated} out ({ratio_text(1.0 / ratio)} as likely as "
+            f"{alternative})"
+        )
     if verdict == OPEN:
         return (
             f"the recordings do not tell {stated} from {alternative}, which would move {change}: "

@@ -86,7 +86,7 @@ def of_struts(
     driven = (*_DRIVEN, *((k, 0) for k in range(2, channels)))
     maps = per_part(orders + 1, channels, driven, omega)
     parts = struts.real.values
-    stated = np.array([[value] for value in _given(geometry)])
+    stated = np.array([[value] for value in _stated_geometry(geometry)])
     inputs = np.concatenate((parts @ maps, stated * np.ones(maps.shape[-1])))
     values, slope = pointwise(lambda waves: _model(geometry, waves, len(roll)), inputs)
     gauged = len(driven)
@@ -153,7 +153,7 @@ def _rate(geometry: Geometry, omega: float) -> Waves:
     return np.asarray(np.fft.irfft(1j * omega * order * np.fft.rfft(varies), varies.size))
 
 
-def _given(geometry: Geometry) -> tuple[float, ...]:
+def _stated_geometry(geometry: Geometry) -> tuple[float, ...]:
     return (
         float(geometry.half_spacing_m),
         float(geometry.speed_m_s),

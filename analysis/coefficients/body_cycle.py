@@ -37,11 +37,11 @@ _SAME_MOTION = 1e-2
 _STEPS = 720  # of a base period, in which the peak of many lines is sought
 
 
-def _nothing() -> FloatArray:
+def _zero_matrix() -> FloatArray:
     return np.zeros((2, 2))
 
 
-def _unread() -> ComplexArray:
+def _no_phasors() -> ComplexArray:
     return np.zeros((0, 0), dtype=np.complex128)
 
 
@@ -106,7 +106,7 @@ class BodyCycle:
     orders: int
     medium: Medium = Medium.WATER
     body: Body | None = None
-    restoring: FloatArray = field(default_factory=_nothing)
+    restoring: FloatArray = field(default_factory=_zero_matrix)
     point_ahead_m: float = 0.0
     drift_rad: float = 0.0
     mean_known: bool = False
@@ -114,7 +114,7 @@ class BodyCycle:
     sensitivity: FloatArray = field(default_factory=lambda: np.zeros((0, len(STATED))))
     tare: Tare = field(default_factory=Tare)
     arrangement: Arrangement = field(default_factory=Arrangement)
-    readings: ComplexArray = field(default_factory=_unread)
+    readings: ComplexArray = field(default_factory=_no_phasors)
     rudder_rad: float = 0.0
     heel: Heel | None = None
     heel_rad: float = 0.0
@@ -163,7 +163,7 @@ class BodyCycle:
         return self._at(LOADS)
 
     @property
-    def taken(self) -> FloatArray:
+    def load_magnitudes(self) -> FloatArray:
         """Magnitudes of the struts' loads from inertia, weight and restoring at the fundamental.
 
         Of each, force and moment about the midpoint; shape ``(3, 2)``.

@@ -123,7 +123,7 @@ def assemble(
     )
     _check_wanted(coefficients, cycles, request)
     extended = with_zero_frequency(coefficients) if request.zero_frequency else coefficients
-    alternatives = tuple(_others(coefficients, extended, blocks, cycles))
+    alternatives = tuple(_other_arrangements(coefficients, extended, blocks, cycles))
     return replace(
         extended,
         checks=consistency(extended, cycles),
@@ -132,7 +132,7 @@ def assemble(
     )
 
 
-def _others(
+def _other_arrangements(
     coefficients: CampaignCoefficients,
     extended: CampaignCoefficients,
     blocks: Sequence[GroupCoefficients],
@@ -145,9 +145,9 @@ def _others(
     coefficients, extended
         Without and with the values at zero frequency.
     """
-    if not all(block.others for block in blocks):
+    if not all(block.refits for block in blocks):
         return
-    for readings in zip(*(block.others for block in blocks), strict=True):
+    for readings in zip(*(block.refits for block in blocks), strict=True):
         values = np.concatenate([reading.values for reading in readings])
         if len(extended.entries) > len(coefficients.entries) and np.isfinite(values).all():
             uncertain = UncertainValues(values, coefficients.uncertain.contributions)
@@ -155,7 +155,7 @@ def _others(
         evidence = sum(reading.evidence for reading in readings)
         first = readings[0]
         yield other_arrangement(
-            extended, cycles[0].arrangement, first.key, first.other, values, evidence
+            extended, cycles[0].arrangement, first.key, first.alternative, values, evidence
         )
 
 
@@ -208,7 +208,7 @@ def with_zero_frequency(coefficients: CampaignCoefficients) -> CampaignCoefficie
         rows = coefficients.at_each_frequency(name, speed)
         if len(rows) < 2:
             continue
-        row_values = coefficients.uncertain.taken(rows)
+        row_values = coefficients.uncertain.select(rows)
         label = f"{name} at {speed:g} m/s"
         frequencies = [coefficients.entries[k].frequency_hz for k in rows]
         values.append(extrapolate(label, frequencies, row_values).uncertain)

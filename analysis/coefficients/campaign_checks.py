@@ -35,9 +35,9 @@ def consistency(
     coefficients: CampaignCoefficients, cycles: Sequence[BodyCycle]
 ) -> tuple[ConsistencyCheck, ...]:
     """Return all checks that the campaign allows."""
-    pairs = [*_two_tests(coefficients), *_static(coefficients), *_single(coefficients)]
-    value_pairs = [_compared(coefficients, *pair) for pair in pairs] + restoring_pairs(cycles)
-    return checked(value_pairs, coefficients.level)
+    pairs = [*_two_tests(coefficients), *_static(coefficients), *_single_runs(coefficients)]
+    value_pairs = [_pair(coefficients, *pair) for pair in pairs] + restoring_pairs(cycles)
+    return consistency_checks(value_pairs, coefficients.level)
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,10 +48,10 @@ class Pair:
     name: str
     unit: str
     texts: tuple[str, str]
-    both: UncertainValues
+    estimates: UncertainValues
 
 
-def checked(pairs: Sequence[Pair], level: float) -> tuple[ConsistencyCheck, ...]:
+def consistency_checks(pairs: Sequence[Pair], level: float) -> tuple[ConsistencyCheck, ...]:
     """Compare the first value of each pair with the second.
 
     The intervals are so wide that with the probability ``level`` no check of a good campaign fails:
@@ -65,11 +65,11 @@ def _two_tests(coefficients: CampaignCoefficients) -> Iterator[tuple[str, int, i
     """Linear coefficients at one frequency and speed, of neighbouring amplitudes.
 
     Where the load was found to be curved they differ by nature: there each run is held against the
-    fit of all (:func:`_single`).
+    fit of all (:func:`_single_runs`).
     """
     names = dict.fromkeys((entry.name, entry.speed_m_s) for entry in coefficients.entries)
     for name, speed in names:
-        if coefficients.curved(name, speed):
+        if coefficients.is_nonlinear(name, speed):
             continue
         rows = coefficients.rows(name, method=LINEAR, speed_m_s=speed)
         for first, second in pairwise(rows):
@@ -91,7 +91,7 @@ def _static(coefficients: CampaignCoefficients) -> Iterator[tuple[str, int, int]
             yield STATIC, row, dynamic[0]
 
 
-def _single(coefficients: CampaignCoefficients) -> Iterator[tuple[str, int, int]]:
+def _single_runs(coefficients: CampaignCoefficients) -> Iterator[tuple[str, int, int]]:
     """Each run alone against all runs together."""
     by_run: dict[tuple[str, str], list[int]] = {}
     for k in coefficients.rows(method=HIGHER_ORDER):
@@ -104,16 +104,16 @@ def _single(coefficients: CampaignCoefficients) -> Iterator[tuple[str, int, int]
             yield SINGLE, row, k
 
 
-def _compared(coefficients: CampaignCoefficients, kind: str, first: int, second: int) -> Pair:
+def _pair(coefficients: CampaignCoefficients, kind: str, first: int, second: int) -> Pair:
     entry, second_entry = coefficients.entries[first], coefficients.entries[second]
-    values = coefficients.uncertain.taken([first, second])
-    texts = (_where(entry), _where(second_entry))
+    values = coefficients.uncertain.select([first, second])
+    texts = (_entry_text(entry), _entry_text(second_entry))
     return Pair(kind, entry.name, entry.unit, texts, values)
 
 
 def _check(pair: Pair, level: float) -> ConsistencyCheck:
     """Compare the first of two values with the second."""
-    name, unit, texts, values = pair.name, pair.unit, pair.texts, pair.both
+    name, unit, texts, values = pair.name, pair.unit, pair.texts, pair.estimates
     difference = values.mapped(np.array([[1.0, -1.0]]))
     change, spread = float(difference.values[0]), float(difference.standard_uncertainty[0])
     freedom = float(difference.degrees_of_freedom[0])
@@ -140,7 +140,7 @@ def _check(pair: Pair, level: float) -> ConsistencyCheck:
     )
 
 
-def _where(entry: CoefficientEntry) -> str:
+def _entry_text(entry: CoefficientEntry) -> str:
     unnamed = len(entry.runs) - _NAMED
     names = ", ".join(entry.runs[:_NAMED]) + (f" and {unnamed} more" if unnamed > 0 else "")
     return f"{entry.method} at {entry.frequency_hz:.4g} Hz ({names})"

@@ -125,7 +125,8 @@ def _single_runs(
         run_fits: list[tuple[str, CycleFit]] = []
         try_form(run_fits, [], SINGLE_RUN, [cycle], forms, choice, orders, request)
         fits += [
-            (method, fit.beside(_LEFT_OUT, _left_out(fit, joint_fit))) for method, fit in run_fits
+            (method, fit.with_input(_LEFT_OUT, _left_out(fit, joint_fit)))
+            for method, fit in run_fits
         ]
     return fits
 
@@ -181,7 +182,7 @@ def try_form(
             rival[name] - taken[name] if name in rival.names else 0.0 for name in taken.names
         ]
         label = f"form of the {choice.load}: {form}"
-        fits[-1] = (method, taken.beside(label, math.sqrt(weight) * np.array(changes)[:, None]))
+        fits[-1] = (method, taken.with_input(label, math.sqrt(weight) * np.array(changes)[:, None]))
 
 
 def _try(

@@ -13,7 +13,7 @@ from analysis.coefficients.line_cycles import names_of_lines
 from analysis.coefficients.names import Form
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from hardware.description.errors import ConfigurationError
-from hardware.description.heel import Held
+from hardware.description.heel import RollConstraint
 from hardware.description.setpoint import Medium
 
 _SAME_FREQUENCY = 5e-3
@@ -80,7 +80,7 @@ def check_campaign(cycles: Sequence[BodyCycle]) -> None:
     twice = [name for name, count in Counter(cycle.name for cycle in cycles).items() if count > 1]
     faults = [f"two runs are called {name!r}; rename one" for name in twice]
     for cycle in cycles:
-        faults += [*_other_rig(cycle, cycles[0]), *_incomplete(cycle)]
+        faults += [*_other_rig(cycle, cycles[0]), *_missing_data(cycle)]
     faults += _other_bodies(cycles)
     if faults:
         raise ConfigurationError("the campaign cannot be solved: " + "; ".join(faults))
@@ -111,7 +111,7 @@ def _other_bodies(cycles: Sequence[BodyCycle]) -> Iterator[str]:
             )
 
 
-def _incomplete(cycle: BodyCycle) -> Iterator[str]:
+def _missing_data(cycle: BodyCycle) -> Iterator[str]:
     dry = any(flag.code == "dry_run_taken_off" for flag in cycle.flags)
     if cycle.medium is Medium.AIR:
         yield f"{cycle.name} was run in air; take it off as a dry run, or leave it out"
@@ -151,7 +151,7 @@ def plan(
     groups = []
     for speed in _classes([cycle.speed_m_s for cycle in cycles], _SAME_SPEED, 0.01):
         speed_cycles = [
-            cycle for cycle in cycles if _near(cycle.speed_m_s, speed, _SAME_SPEED, 0.01)
+            cycle for cycle in cycles if _is_near(cycle.speed_m_s, speed, _SAME_SPEED, 0.01)
         ]
         static = [cycle for cycle in speed_cycles if cycle.frequency_hz == 0.0]
         if static:
@@ -159,10 +159,10 @@ def plan(
         moving = [cycle for cycle in speed_cycles if cycle.frequency_hz > 0.0]
         for frequency in _classes([c.frequency_hz for c in moving], _SAME_FREQUENCY, 0.0):
             frequency_cycles = [
-                c for c in moving if _near(c.frequency_hz, frequency, _SAME_FREQUENCY, 0.0)
+                c for c in moving if _is_near(c.frequency_hz, frequency, _SAME_FREQUENCY, 0.0)
             ]
             groups += _by_amplitude(frequency_cycles, request)
-        lined = [run for run in line_runs if _near(run.speed_m_s, speed, _SAME_SPEED, 0.01)]
+        lined = [run for run in line_runs if _is_near(run.speed_m_s, speed, _SAME_SPEED, 0.01)]
         if lined and request.nonlinear:
             lines = {name for run in lined for name in names_of_lines(run)}
             sines = [
@@ -177,11 +177,13 @@ def _by_amplitude(cycles: Sequence[BodyCycle], request: Request) -> list[Group]:
     sizes = _classes([strut_amplitude(cycle) for cycle in straight], _SAME_AMPLITUDE, 0.0)
     classes = [
         tuple(
-            cycle for cycle in straight if _near(strut_amplitude(cycle), size, _SAME_AMPLITUDE, 0.0)
+            cycle
+            for cycle in straight
+            if _is_near(strut_amplitude(cycle), size, _SAME_AMPLITUDE, 0.0)
         )
         for size in sizes
     ]
-    columns = [_told(group, request.form) for group in classes]
+    columns = [_determined_motions(group, request.form) for group in classes]
     amplitude_groups = [group for group, motions in zip(classes, columns, strict=True) if motions]
     if (
         straight
@@ -198,11 +200,11 @@ def _by_amplitude(cycles: Sequence[BodyCycle], request: Request) -> list[Group]:
 
 def set_heel_of(cycle: BodyCycle) -> float:
     """Return the heel at which a run's model was fixed; 0 where it is upright or free to roll."""
-    fixed = cycle.heel is not None and cycle.heel.held is Held.SET
+    fixed = cycle.heel is not None and cycle.heel.held is RollConstraint.SET
     return cycle.heel_rad if fixed else 0.0
 
 
-def _told(cycles: Sequence[BodyCycle], form: Form) -> tuple[int, ...]:
+def _determined_motions(cycles: Sequence[BodyCycle], form: Form) -> tuple[int, ...]:
     """Which motions' coefficients these runs determine."""
     return identifiable_motions(fundamental_velocities(cycles, form))
 
@@ -213,7 +215,7 @@ def strut_amplitude(cycle: BodyCycle) -> float:
     return float(max(abs(way + arm), abs(way - arm)))
 
 
-def _near(value: float, centre: float, relative: float, least: float) -> bool:
+def _is_near(value: float, centre: float, relative: float, least: float) -> bool:
     return abs(value - centre) <= relative * max(abs(centre), least)
 
 
@@ -221,6 +223,6 @@ def _classes(values: Sequence[float], relative: float, least: float) -> list[flo
     """Return one value of each cluster, in rising order."""
     centres: list[float] = []
     for value in sorted(values):
-        if not centres or not _near(value, centres[-1], relative, least):
+        if not centres or not _is_near(value, centres[-1], relative, least):
             centres.append(value)
     return centres

@@ -17,7 +17,7 @@ from hardware.description.errors import ConfigurationError
 
 
 @dataclass(frozen=True)
-class Carried:
+class QuotedMass:
     """The mass that is quoted with the coefficients, and what they were divided by.
 
     Attributes
@@ -36,8 +36,8 @@ class Carried:
     stated: StatedUncertainties = field(default_factory=StatedUncertainties)
 
 
-def quoted(
-    coefficients: CampaignCoefficients, quoting: Quoting, carried: Carried = Carried()
+def quote(
+    coefficients: CampaignCoefficients, quoting: Quoting, carried: QuotedMass = QuotedMass()
 ) -> CampaignCoefficients:
     """Return the campaign as it is quoted; tables beside it were held against what it was.
 
@@ -59,7 +59,7 @@ def quoted(
         uncertain = uncertain.plus(label, parts)
     return replace(
         coefficients,
-        normalisation=coefficients.normalisation + quoting.told(coefficients.plane),
+        normalisation=coefficients.normalisation + quoting.description(coefficients.plane),
         entries=tuple(
             replace(entry, name=quoting.name(entry.name)) for entry in coefficients.entries
         ),
@@ -77,7 +77,9 @@ def _factors(coefficients: CampaignCoefficients, quoting: Quoting) -> FloatArray
     )
 
 
-def _shifts(coefficients: CampaignCoefficients, quoting: Quoting, carried: Carried) -> FloatArray:
+def _shifts(
+    coefficients: CampaignCoefficients, quoting: Quoting, carried: QuotedMass
+) -> FloatArray:
     """Return what is added to each entry, in the table's system."""
     shifts = []
     for entry in coefficients.entries:
@@ -90,12 +92,12 @@ def _shifts(coefficients: CampaignCoefficients, quoting: Quoting, carried: Carri
     return np.array(shifts)
 
 
-def _system(carried: Carried, speed_m_s: float) -> Normalisation | None:
+def _system(carried: QuotedMass, speed_m_s: float) -> Normalisation | None:
     return None if carried.system is None else carried.system(speed_m_s)
 
 
 def _slopes(
-    coefficients: CampaignCoefficients, quoting: Quoting, carried: Carried
+    coefficients: CampaignCoefficients, quoting: Quoting, carried: QuotedMass
 ) -> dict[str, FloatArray]:
     """Return what each stated input does to the shifts, per standard deviation."""
     stated, shifts = carried.stated, _shifts(coefficients, quoting, carried)
@@ -118,7 +120,7 @@ def _slopes(
 
 
 def _row(
-    row: ReferenceRow, coefficients: CampaignCoefficients, quoting: Quoting, carried: Carried
+    row: ReferenceRow, coefficients: CampaignCoefficients, quoting: Quoting, carried: QuotedMass
 ) -> ReferenceRow:
     term = term_of(row.name, coefficients.plane)
     factor = quoting.factor(term)

@@ -158,7 +158,7 @@ class CampaignCoefficients:
             )
         return rows[0]
 
-    def curved(self, name: str, speed_m_s: float) -> bool:
+    def is_nonlinear(self, name: str, speed_m_s: float) -> bool:
         """Whether a coefficient's load was found not to be linear in oscillations at a speed."""
         rows = self.rows(name, speed_m_s=speed_m_s)
         moving = [self.entries[k] for k in rows if self.entries[k].frequency_hz > 0.0]
@@ -171,7 +171,7 @@ class CampaignCoefficients:
         The fit of all amplitudes goes first; a linear value of one amplitude (the smallest) serves
         only where the load was found linear, for it holds what the amplitude adds.
         """
-        methods = (HIGHER_ORDER,) if self.curved(name, speed_m_s) else (HIGHER_ORDER, LINEAR)
+        methods = (HIGHER_ORDER,) if self.is_nonlinear(name, speed_m_s) else (HIGHER_ORDER, LINEAR)
         single: dict[float, int] = {}
         for method in methods:
             for k in self.rows(name, method=method, speed_m_s=speed_m_s):
@@ -192,14 +192,14 @@ class CampaignCoefficients:
         """Return what part of one value's variance each input has, largest first."""
         return self.uncertain.shares(row)
 
-    def taken(self, rows: Sequence[int]) -> "CampaignCoefficients":
+    def select(self, rows: Sequence[int]) -> "CampaignCoefficients":
         """Return some of the entries, with all that was found."""
         chosen = list(rows)
         trials = self.trials
         return replace(
             self,
             entries=tuple(self.entries[k] for k in chosen),
-            uncertain=self.uncertain.taken(chosen),
+            uncertain=self.uncertain.select(chosen),
             trials=TrialColumns(
                 trials.count,
                 trials.standard_uncertainty[chosen],

@@ -35,7 +35,7 @@ class GroupCoefficients:
 
     Attributes
     ----------
-    others
+    refits
         What they would be under other arrangements of the rig; empty where that is not known.
     """
 
@@ -45,7 +45,7 @@ class GroupCoefficients:
     choices: tuple[FormChoice, ...] = ()
     missing: tuple[Missing, ...] = ()
     flags: tuple[Flag, ...] = ()
-    others: tuple[Refits, ...] = ()
+    refits: tuple[Refits, ...] = ()
 
 
 def solve_group(group: Group, request: Request) -> GroupCoefficients:
@@ -64,7 +64,7 @@ def _linear(cycles: Sequence[BodyCycle], request: Request) -> GroupCoefficients:
     except DataError:
         alternatives = refits(cycles, [], [])
         return GroupCoefficients(
-            (), UncertainValues(np.zeros(0)), no_trials(0), missing=missing, others=alternatives
+            (), UncertainValues(np.zeros(0)), no_trials(0), missing=missing, refits=alternatives
         )
     fit = linear.fit
     entries = tuple(
@@ -91,7 +91,7 @@ def _linear(cycles: Sequence[BodyCycle], request: Request) -> GroupCoefficients:
         trials,
         missing=missing,
         flags=flags,
-        others=alternatives,
+        refits=alternatives,
     )
 
 

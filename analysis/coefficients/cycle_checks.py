@@ -103,7 +103,9 @@ def _check_apart(problem: CycleProblem, matrix: np.ndarray, terms: list[Term]) -
         ", ".join(cycle.name for cycle in problem.numbers.cycles),
     )
     size = np.sqrt((matrix**2).sum(axis=0))
-    still = [t for t, s in zip(terms, size, strict=True) if not s > _STILL * _typical(t, problem)]
+    still = [
+        t for t, s in zip(terms, size, strict=True) if not s > _STILL * _typical_size(t, problem)
+    ]
     if still:
         names = ", ".join(name_of_term(term, plane) for term in still)
         raise DataError(
@@ -122,7 +124,7 @@ def _check_apart(problem: CycleProblem, matrix: np.ndarray, terms: list[Term]) -
     )
 
 
-def _typical(term: Term, problem: CycleProblem) -> float:
+def _typical_size(term: Term, problem: CycleProblem) -> float:
     """Size of a term if both motions moved the struts as much as the greatest one does."""
     half = problem.numbers.cycles[0].half_spacing_m
     across, turn = np.abs(problem.numbers.moved[:, 1:3]).max(axis=(0, 2))

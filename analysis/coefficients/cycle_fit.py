@@ -49,7 +49,7 @@ class CycleFit:
         Weighted squares of the residuals by load, as :data:`LOAD_WORDS`, shape ``(4,)``.
     data
         Numbers fitted by load, shape ``(4,)``.
-    more
+    further_inputs
         Inputs besides scatter and what is stated.
     """
 
@@ -60,14 +60,14 @@ class CycleFit:
     data: FloatArray
     problem: CycleProblem
     stated: StatedUncertainties
-    more: tuple[Contribution, ...] = ()
+    further_inputs: tuple[Contribution, ...] = ()
 
     @cached_property
     def uncertain(self) -> UncertainValues:
         """The values with what scatter, stated uncertainties and other inputs add."""
-        return UncertainValues(self.values, (*_contributions(self), *self.more))
+        return UncertainValues(self.values, (*_contributions(self), *self.further_inputs))
 
-    def beside(self, label: str, parts: FloatArray, freedom: float = np.inf) -> "CycleFit":
+    def with_input(self, label: str, parts: FloatArray, freedom: float = np.inf) -> "CycleFit":
         """Return the fit with one more input.
 
         Parameters
@@ -78,7 +78,7 @@ class CycleFit:
             Degrees of freedom of the input's standard deviation.
         """
         source = Contribution(label, freedom, np.arange(len(self.values)), parts)
-        return replace(self, more=(*self.more, source))
+        return replace(self, further_inputs=(*self.further_inputs, source))
 
     def with_misfit(self, label: str, row: int) -> "CycleFit":
         """Return the fit with what one load's residuals scatter beyond its runs' own scatter.
@@ -94,7 +94,7 @@ class CycleFit:
         weighted = self.problem.weighted(self.problem.nominal[0][..., columns], row)
         parts = np.zeros((len(self.values), weighted.shape[0]))
         parts[columns] = np.linalg.pinv(weighted)
-        return self.beside(label, np.sqrt(excess) * parts, self._spare(row))
+        return self.with_input(label, np.sqrt(excess) * parts, self._degrees_of_freedom(row))
 
     def __getitem__(self, name: str) -> float:
         """Return one coefficient."""
@@ -111,15 +111,15 @@ class CycleFit:
             Shape ``(trials, cycles, numbers)``.
         """
         design, loads = self.problem.design(parts)
-        values = self.problem.solved(design, loads)
+        values = self.problem.coefficients(design, loads)
         return values, self.problem.squares(design, loads, values)
 
     def misfit(self, *rows: int) -> float:
         """Return the root of ``chi_square`` per degree of freedom; NaN without any left over."""
-        spare = sum(self._spare(row) for row in rows)
+        spare = sum(self._degrees_of_freedom(row) for row in rows)
         return float(np.sqrt(self.chi_square[list(rows)].sum() / spare)) if spare > 0 else math.nan
 
-    def _spare(self, row: int) -> float:
+    def _degrees_of_freedom(self, row: int) -> float:
         """Degrees of freedom of one load's residuals."""
         return float(self.data[row]) - sum(term.row == row for term in self.terms)
 
@@ -170,7 +170,7 @@ def fit_terms(
 
     It raises what :func:`fit_cycles` raises.
     """
-    fitted = [_fitted(cycle, orders) for cycle in cycles]
+    fitted = [_fitted_orders(cycle, orders) for cycle in cycles]
     all_orders = tuple(sorted(set().union(*fitted)))
     highest = max((cycle.orders for cycle in cycles if cycle.lines), default=0)
     highest = highest or min(cycle.orders for cycle in cycles)
@@ -178,7 +178,7 @@ def fit_terms(
     even = np.repeat(chosen[..., None], len(LOAD_WORDS), axis=2)
     first = CycleProblem(CycleNumbers(tuple(cycles), highest, form), terms, all_orders, even)
     check_determined(first)
-    problem = first.weighed(_weights(first, first.solve_nominal()))
+    problem = first.with_weights(_weights(first, first.solve_nominal()))
     nominal = problem.solve_nominal()
     chi_square = problem.squares(*problem.nominal, nominal)
     data = np.zeros(len(LOAD_WORDS))
@@ -187,7 +187,7 @@ def fit_terms(
     return CycleFit(names, terms, nominal, chi_square, data, problem, stated)
 
 
-def _fitted(cycle: BodyCycle, orders: tuple[int, ...]) -> set[int]:
+def _fitted_orders(cycle: BodyCycle, orders: tuple[int, ...]) -> set[int]:
     """Return which harmonics of a cycle are fitted: of a motion of many lines all up to the last.
 
     What is not linear mixes its lines into every harmonic.
@@ -217,7 +217,7 @@ def _weights(problem: CycleProblem, first: FloatArray) -> FloatArray:
             variances[k, :, row] = residual_variance(problem, cycle, slope[k])
     if not np.isfinite(variances).all():
         return problem.weights
-    periods = np.array([_fewest(cycle) for cycle in problem.numbers.cycles])[:, None, None]
+    periods = np.array([_least_freedom(cycle) for cycle in problem.numbers.cycles])[:, None, None]
     present = problem.weights
     mean = (present * variances).sum(axis=0) / np.maximum(present.sum(axis=0), 1.0)
     shrunk = trusted(variances, periods, mean)
@@ -250,7 +250,7 @@ def trusted(variance: FloatArray, degrees_of_freedom: FloatArray, mean: FloatArr
     return np.asarray(trust * variance + (1.0 - trust) * mean)
 
 
-def _fewest(cycle: BodyCycle) -> float:
+def _least_freedom(cycle: BodyCycle) -> float:
     return min(
         (source.degrees_of_freedom for source in cycle.phasors.real.contributions), default=np.inf
     )
@@ -273,7 +273,7 @@ def _luck(problem: CycleProblem, degrees_of_freedom: float) -> float:
 def _contributions(fit: CycleFit) -> tuple[Contribution, ...]:
     """Scatter by source, of all cycles that share it, then each stated uncertainty."""
     problem, stated = fit.problem, fit.stated
-    slopes = problem.followed(fit.values)
+    slopes = problem.sensitivities(fit.values)
     all_rows, contributions = np.arange(len(problem.terms)), []
     by_stated = np.zeros((len(all_rows), len(STATED)))
     labels = [

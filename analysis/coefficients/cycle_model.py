@@ -53,21 +53,21 @@ class CycleProblem:
         parts
             Shape ``(trials, cycles, numbers)``.
         """
-        return self.solved(*self.design(parts))
+        return self.coefficients(*self.design(parts))
 
     def solve_nominal(self) -> FloatArray:
         """Return the coefficients of the cycles as they are, ``(terms,)``."""
         design, loads = self.nominal
-        return np.asarray(self.solved(design[None], loads[None])[0])
+        return np.asarray(self.coefficients(design[None], loads[None])[0])
 
-    def weighed(self, weights: FloatArray) -> "CycleProblem":
+    def with_weights(self, weights: FloatArray) -> "CycleProblem":
         """Return the same problem, all that was worked out included, with other weights."""
         problem = replace(self, weights=weights)
         results = {name: self.__dict__[name] for name in _WORKED_OUT if name in self.__dict__}
         problem.__dict__.update(results)
         return problem
 
-    def solved(self, design: FloatArray, loads: FloatArray) -> FloatArray:
+    def coefficients(self, design: FloatArray, loads: FloatArray) -> FloatArray:
         """Return the coefficients, ``(trials, terms)``, of what :meth:`design` returns."""
         solution = np.empty((len(design), len(self.terms)))
         for row, columns in self.rows:
@@ -157,7 +157,7 @@ class CycleProblem:
         by_motion = self.numbers.follow(pull[:, None] * self.apart.T[None, :, None, :])
         return self._load_slope(row) - by_motion
 
-    def followed(self, values: FloatArray) -> FloatArray:
+    def sensitivities(self, values: FloatArray) -> FloatArray:
         """Return how fitted coefficients follow each cycle's numbers, ``(cycles, terms, numbers)``.
 
         Parameters

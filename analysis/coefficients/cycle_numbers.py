@@ -50,16 +50,16 @@ class CycleNumbers:
     @cached_property
     def parts(self) -> FloatArray:
         """The cycles' numbers, shape ``(cycles, numbers)``."""
-        return np.stack([self.whole(cycle, interleaved(cycle.hull.phasors.values))
+        return np.stack([self.of_cycle(cycle, interleaved(cycle.hull.phasors.values))
                          for cycle in self.cycles])  # fmt: skip
 
-    def whole(self, cycle: BodyCycle, rows: FloatArray) -> FloatArray:
-        """Return a cycle's numbers, of its hull's phasors as :meth:`filled` takes them."""
-        parts = self.filled(cycle, rows)
+    def of_cycle(self, cycle: BodyCycle, rows: FloatArray) -> FloatArray:
+        """Return a cycle's numbers, of its hull's phasors as :meth:`padded` takes them."""
+        parts = self.padded(cycle, rows)
         parts[_TURN] = cycle.turn_rate_rad_s
         return parts
 
-    def filled(self, cycle: BodyCycle, rows: FloatArray) -> FloatArray:
+    def padded(self, cycle: BodyCycle, rows: FloatArray) -> FloatArray:
         """Return what stands by a cycle's own phasors as it stands by its numbers here.
 
         Parameters
@@ -79,11 +79,11 @@ class CycleNumbers:
 
     def scatter(self, cycle: BodyCycle, source: Contribution) -> FloatArray:
         """Return how a cycle's numbers follow the deviates of a source, ``(numbers, k)``."""
-        return self.filled(cycle, source.dense(2 * len(cycle.phasors.names)))
+        return self.padded(cycle, source.dense(2 * len(cycle.phasors.names)))
 
     def sensitivity(self, cycle: BodyCycle) -> FloatArray:
         """Return how a cycle's numbers follow what is stated, ``(numbers, len(STATED))``."""
-        sensitivity = self.filled(cycle, cycle.hull.sensitivity)
+        sensitivity = self.padded(cycle, cycle.hull.sensitivity)
         sensitivity[_PACE, STATED.index("frequency_relative")] = 1.0
         sensitivity[_TURN, STATED.index("turn_rate_relative")] = cycle.turn_rate_rad_s
         return sensitivity

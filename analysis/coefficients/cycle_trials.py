@@ -45,7 +45,7 @@ def draw_cycles(fit: CycleFit, count: int, seed: tuple[int, int]) -> FloatArray:
     generator = np.random.default_rng(np.random.SeedSequence(seed[0], spawn_key=(seed[1],)))
     problem, numbers = fit.problem, fit.problem.numbers
     scatter = DeviateDraws(count, generator)
-    deviations = fit.stated.drawn(count, generator)
+    deviations = fit.stated.draw(count, generator)
     ways = []
     for cycle in numbers.cycles:
         cycle_ways = [

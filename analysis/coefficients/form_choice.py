@@ -187,20 +187,21 @@ def _verdict(criteria: Mapping[str, float]) -> tuple[str, str, float, str]:
     rivals = [form for form in (CUBIC, QUADRATIC) if form != best]
     over_linear, over_rivals = ratio((LINEAR_FORM,)), ratio(rivals)
     if (verdict := min(over_linear, over_rivals)) >= DECIDES:
-        return best, best, verdict, f"{best} is {times(verdict)} as well supported as the next"
+        return best, best, verdict, f"{best} is {ratio_text(verdict)} as well supported as the next"
     if over_linear < DECIDES:
         taken, close, verdict = LINEAR_FORM, LINEAR_FORM, over_linear
     else:
         taken, close = best, rivals[0]
     reason = (
-        f"{best} is {times(verdict)} as well supported as {close} (evidence ratio; {DECIDES:g} is "
-        f"needed): {taken} is fitted, with what the others give in its intervals; to tell them, "
-        "take a larger range of amplitudes (or of drift angles, and more sizes), or more periods"
+        f"{best} is {ratio_text(verdict)} as well supported as {close} (evidence ratio; "
+        f"{DECIDES:g} is needed): {taken} is fitted, with what the others give in its intervals; "
+        "to tell them, take a larger range of amplitudes (or of drift angles, and more sizes), or "
+        "more periods"
     )
     return NOT_SEPARABLE, taken, verdict, reason
 
 
-def times(ratio: float) -> str:
+def ratio_text(ratio: float) -> str:
     """Return an evidence ratio in words; very large ones are given as a bound."""
     return f"{ratio:.3g} times" if ratio < BEYOND_DOUBT else f"over {BEYOND_DOUBT:g} times"
 

@@ -237,7 +237,7 @@ def loads_asked(
         return np.asarray(held)
 
     still = np.broadcast_to(tare.place_m[..., None], translation.shape)
-    tared = tare.tared(static(still, drift))
+    tared = tare.missing_loads(static(still, drift))
     loads += static(translation, rotation + drift)
     loads[..., : tared.shape[-2], :] -= tared
     in_roll = np.zeros_like(loads[..., :1, :])

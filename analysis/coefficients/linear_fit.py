@@ -117,7 +117,7 @@ def _retained(
         pace = abs(moved[k, place.column]) / (cycle.half_spacing_m if place.column else 1.0)
         part = abs(float(value)) * pace
         part *= 2.0 * np.pi * cycle.frequency_hz if place.inertial else 1.0
-        largest = max(abs(cycle.loads[place.row]), *cycle.taken[:, place.row])
+        largest = max(abs(cycle.loads[place.row]), *cycle.load_magnitudes[:, place.row])
         ratios.append(part / max(part, largest, 1e-300))
     return np.array(ratios)
 

@@ -95,7 +95,7 @@ class Phasors:
         """Return some of the phasors, in this order."""
         rows = [self.index(name) for name in names]
         units = tuple(self.units[row] for row in rows)
-        return Phasors(tuple(names), units, self.real.taken(parts_of(rows)))
+        return Phasors(tuple(names), units, self.real.select(parts_of(rows)))
 
     def referred_to(self, name: str) -> "Phasors":
         """Turn all phases so that this phasor's own is zero (fundamentals only).

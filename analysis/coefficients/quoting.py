@@ -74,7 +74,7 @@ class Quoting:
     names: Names = Names.PLAIN
     with_mass: bool = False
 
-    def told(self, plane: Plane) -> str:
+    def description(self, plane: Plane) -> str:
         """Return what a table's head says of it, behind the system."""
         return _TOLD[self.names] + (_TOLD_MASS[plane] if self.with_mass else "")
 

@@ -43,7 +43,7 @@ class Refits:
 
     Attributes
     ----------
-    key, other
+    key, alternative
         The arrangement's key, and its value in place of the one that is stated.
     values
         Of the coefficients, in the order of the fits, shape ``(n,)``; NaN where the recordings do
@@ -53,7 +53,7 @@ class Refits:
     """
 
     key: str
-    other: str
+    alternative: str
     values: FloatArray
     evidence: float
 
@@ -141,7 +141,7 @@ def _gross(cycles: Sequence[BodyCycle], way: Arrangement) -> tuple[FloatArray, T
 def _refitted(fit: CycleFit, table: Mapping[str, FloatArray]) -> tuple[FloatArray, FloatArray]:
     problem = fit.problem
     parts = np.stack(
-        [problem.numbers.whole(cycle, table[cycle.name]) for cycle in problem.numbers.cycles]
+        [problem.numbers.of_cycle(cycle, table[cycle.name]) for cycle in problem.numbers.cycles]
     )
     return fit.refitted(np.moveaxis(parts, -1, 0))
 

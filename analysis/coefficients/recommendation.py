@@ -48,7 +48,7 @@ def recommended(coefficients: CampaignCoefficients) -> tuple[int, ...]:
     """
     spread = coefficients.uncertain.standard_uncertainty
     kinds = dict.fromkeys((entry.name, entry.speed_m_s) for entry in coefficients.entries)
-    curved = {kind: coefficients.curved(*kind) for kind in kinds}
+    curved = {kind: coefficients.is_nonlinear(*kind) for kind in kinds}
 
     def order(k: int) -> tuple[int, float, float]:
         """By method and frequency; then the smallest amplitude of a curve, else the surest."""

@@ -92,7 +92,7 @@ def table_of_matrices(
     )
 
 
-def compared(coefficients: CampaignCoefficients, table: ReferenceTable) -> CampaignCoefficients:
+def compare(coefficients: CampaignCoefficients, table: ReferenceTable) -> CampaignCoefficients:
     """Return the campaign with the table's values beside its own: linear and zero frequency.
 
     Raises

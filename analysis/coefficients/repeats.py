@@ -153,7 +153,7 @@ def _groups(cycles: Sequence[BodyCycle]) -> list[list[BodyCycle]]:
     groups: list[list[BodyCycle]] = []
     for cycle in (cycle for cycle in cycles if cycle.frequency_hz > 0.0):
         for group in groups:
-            if _same(group[0], cycle):
+            if _is_same_motion(group[0], cycle):
                 group.append(cycle)
                 break
         else:
@@ -166,7 +166,7 @@ def _ratio(first: BodyCycle, second: BodyCycle) -> complex:
     return complex(np.vdot(first_motion, second_motion) / np.vdot(first_motion, first_motion))
 
 
-def _same(first: BodyCycle, second: BodyCycle) -> bool:
+def _is_same_motion(first: BodyCycle, second: BodyCycle) -> bool:
     if abs(second.frequency_hz - first.frequency_hz) > _SAME_FREQUENCY * first.frequency_hz:
         return False
     if abs(second.speed_m_s - first.speed_m_s) > 1e-2 * max(abs(first.speed_m_s), 0.01):
@@ -181,7 +181,7 @@ def _same(first: BodyCycle, second: BodyCycle) -> bool:
 
 def _size(cycle: BodyCycle) -> FloatArray:
     """Largest part of each load at the fundamental: measured, or what is taken off."""
-    return np.asarray(np.maximum(np.abs(cycle.loads), cycle.taken.max(axis=0)) + 1e-300)
+    return np.asarray(np.maximum(np.abs(cycle.loads), cycle.load_magnitudes.max(axis=0)) + 1e-300)
 
 
 def _kind(cycles: Sequence[BodyCycle]) -> RepeatedMotion:

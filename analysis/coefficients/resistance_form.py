@@ -18,7 +18,7 @@ from typing import Final
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_records import FormChoice
 from analysis.coefficients.cycle_fit import CycleFit, fit_cycles, fit_terms
-from analysis.coefficients.form_choice import DECIDES, times
+from analysis.coefficients.form_choice import DECIDES, ratio_text
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.terms import LOAD_WORDS, SURGE
 from hardware.description.errors import DataError
@@ -69,8 +69,8 @@ def fit_surge(
     count, weight = len(names), 1.0 / (1.0 + 1.0 / ratio)
     criteria = (squares[0] / dispersion + 2.0 * count, squares[1] / dispersion + 2.0 * count)
     reason = (
-        f"a resistance that goes with u^2 as the model turns is {times(ratio)} as well supported "
-        "as a constant one: X_0 is that at the carriage's speed"
+        f"a resistance that goes with u^2 as the model turns is {ratio_text(ratio)} as well "
+        "supported as a constant one: X_0 is that at the carriage's speed"
     )
     return squared, FormChoice(
         LOAD_WORDS[SURGE],

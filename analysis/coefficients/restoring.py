@@ -109,13 +109,13 @@ def restoring_of(
     DataError
         If translation and rotation move together: one run cannot tell their stiffness apart.
     """
-    column = _moved(cycle)
+    column = _motion_index(cycle)
     motion = ("translation", "rotation")[column]
     first = _first(cycle).referred_to(motion)
     values, widths = _stiffness(first, motion)
     square = (2.0 * math.pi * cycle.frequency_hz) ** 2
     inertia = -square * (_mass(body, cycle.plane) + added_mass)[:, column]
-    expected = _expected(body, hydrostatic, cycle)
+    expected = _expected_restoring(body, hydrostatic, cycle)
     load = ("force", "moment")[column]
     ratio = first[load]
     return Restoring(
@@ -139,7 +139,7 @@ def track_of(restoring: Restoring, cycle: BodyCycle) -> Track:
     """Return force and moment over the displacement, as the harmonics 1 to 3 draw them."""
     theta = np.linspace(0.0, 2.0 * math.pi, _POINTS)
 
-    def drawn(name: str) -> FloatArray:
+    def waveform(name: str) -> FloatArray:
         return np.asarray(
             sum(
                 np.imag(cycle.phasors[at_order(name, n)] * np.exp(1j * n * theta))
@@ -147,8 +147,8 @@ def track_of(restoring: Restoring, cycle: BodyCycle) -> Track:
             )
         )
 
-    return Track(drawn("rotation" if restoring.rotates else "translation"), drawn("force"),
-                 drawn("moment"))  # fmt: skip
+    return Track(waveform("rotation" if restoring.rotates else "translation"), waveform("force"),
+                 waveform("moment"))  # fmt: skip
 
 
 def _first(cycle: BodyCycle) -> Phasors:
@@ -156,7 +156,7 @@ def _first(cycle: BodyCycle) -> Phasors:
     return replace(chosen, names=_CHANNELS)
 
 
-def _moved(cycle: BodyCycle) -> int:
+def _motion_index(cycle: BodyCycle) -> int:
     """Return which motion it is: 0 for the translation, 1 for the rotation."""
     first = _first(cycle)
     sizes = np.array([abs(first["translation"]), cycle.half_spacing_m * abs(first["rotation"])])
@@ -187,7 +187,9 @@ def _mass(body: Body | None, plane: Plane) -> FloatArray:
     return np.zeros((2, 2)) if body is None else mass_matrix(body, plane)
 
 
-def _expected(body: Body | None, hydrostatic: FloatArray, cycle: BodyCycle) -> FloatArray | None:
+def _expected_restoring(
+    body: Body | None, hydrostatic: FloatArray, cycle: BodyCycle
+) -> FloatArray | None:
     """Return what the struts feel of hydrostatics and weight; ``None`` where nothing is given."""
     below_surface = body is not None and body.displaced_kg is not None
     if not (hydrostatic.any() or below_surface):

@@ -112,7 +112,7 @@ def _of_decay(
         for k in coefficients.rows("K_phi")
         if abs(coefficients.entries[k].speed_m_s - decay.speed_m_s) <= _SAME_M_S
     ]
-    flow = coefficients.uncertain.taken(rows[:1])
+    flow = coefficients.uncertain.select(rows[:1])
     k_phi = float(flow.values[0]) if rows else 0.0
 
     def damping_and_added(inputs: Waves) -> Waves:

@@ -44,7 +44,7 @@ def run_agreement(fit: CycleFit, row: int) -> Redundancy:
     chance, departure = np.ones(runs), np.zeros(runs)
     for k in range(runs if freedom > each else 0):
         rest = owner != k
-        solved = _solved(matrix[rest], target[rest])
+        solved = _solve(matrix[rest], target[rest])
         if solved is None:
             continue
         without[k] = solved
@@ -62,7 +62,7 @@ def run_agreement(fit: CycleFit, row: int) -> Redundancy:
     )
 
 
-def _solved(matrix: FloatArray, target: FloatArray) -> FloatArray | None:
+def _solve(matrix: FloatArray, target: FloatArray) -> FloatArray | None:
     """Return the coefficients, or ``None`` where these runs do not determine them."""
     size = np.linalg.norm(matrix, axis=0)
     if not (size > 0.0).all() or np.linalg.cond(matrix / size) > _DETERMINED:

@@ -93,7 +93,7 @@ class StatedUncertainties:
         of_inertia = self.inertia_degrees_of_freedom if name == "inertia_kg_m2" else 0.0
         return of_inertia if of_inertia > 0.0 else np.inf
 
-    def drawn(self, count: int, generator: Generator) -> FloatArray:
+    def draw(self, count: int, generator: Generator) -> FloatArray:
         """Draw deviations, shape ``(count, len(STATED))``: Student's t where repeats are behind."""
         deviations = generator.standard_normal((count, len(STATED))) * self.vector
         for k, name in enumerate(STATED):

@@ -35,7 +35,7 @@ from hardware.description.channels import (
 )
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag
-from hardware.description.heel import Heel, HeelGauges, Held
+from hardware.description.heel import Heel, HeelGauges, RollConstraint
 from hardware.description.oscillator import Oscillator
 from hardware.description.setpoint import SetPoint
 
@@ -119,7 +119,7 @@ class StrutCycle:
             If a model that is free to roll was not measured in heel.
         """
         measured = at_order(HEEL_ANGLE.name, 0) in self.phasors.names
-        if heel.held is Held.FREE and not measured:
+        if heel.held is RollConstraint.FREE and not measured:
             raise DataError(
                 f"{self.name}: no channel {HEEL_ANGLE.name}, and the model is free to roll: record "
                 "its heel, or fix it and say so in [heel]"
@@ -130,7 +130,7 @@ class StrutCycle:
         heel_phasors = Phasors.of(names, ("rad",) * len(names), rest)
         kept_names = [name for name in self.phasors.names if name not in names]
         phasors = self.phasors.select(kept_names)
-        if heel.held is Held.FREE:
+        if heel.held is RollConstraint.FREE:
             record = self.phasors.select(names)
             shifted = record.real.values + heel_phasors.real.values
             heel_phasors = replace(record, real=replace(record.real, values=shifted))

@@ -55,7 +55,7 @@ class Tare:
             np.stack([tare.place_m for tare in tares]), np.stack([tare.of_load for tare in tares])
         )
 
-    def tared(self, load: FloatArray) -> FloatArray:
+    def missing_loads(self, load: FloatArray) -> FloatArray:
         """Return what is missing from the loads of a run that was tared under a load at rest.
 
         Parameters

@@ -25,9 +25,11 @@ def least_lag(
     if period_s is None:
         return best.model, None
     for _ in range(_TURNS):
-        best = _inside(problem, best, period_s)
+        best = _fit_inside(problem, best, period_s)
         limit = _limit(best)
-        neighbours = [_moved(problem, best, turns * period_s) for turns in (-1.0, 1.0, -0.5, 0.5)]
+        neighbours = [
+            _fit_moved(problem, best, turns * period_s) for turns in (-1.0, 1.0, -0.5, 0.5)
+        ]
         growth = [_growth(best, neighbour) for neighbour in neighbours]
         if min(growth) < -limit:
             nearest = neighbours[int(np.argmin(growth))]
@@ -85,7 +87,7 @@ def _period(problem: ComparisonProblem, best: ComparisonFit, most_lag_s: float) 
     return float(below[0] + top) / fine / problem.second.rate_hz
 
 
-def _inside(problem: ComparisonProblem, best: ComparisonFit, margin_s: float) -> ComparisonFit:
+def _fit_inside(problem: ComparisonProblem, best: ComparisonFit, margin_s: float) -> ComparisonFit:
     """Fit again where the first channel is there a period before and after."""
     margin = int(margin_s * problem.second.rate_hz) + 2
     if 4 * margin > best.count:
@@ -97,7 +99,9 @@ def _inside(problem: ComparisonProblem, best: ComparisonFit, margin_s: float) ->
     return fit(problem, replace(best.model, alignment=where))
 
 
-def _moved(problem: ComparisonProblem, best: ComparisonFit, later_s: float) -> ComparisonFit | None:
+def _fit_moved(
+    problem: ComparisonProblem, best: ComparisonFit, later_s: float
+) -> ComparisonFit | None:
     where = best.model.alignment
     model = replace(best.model, alignment=replace(where, lag_s=where.lag_s + later_s))
     try:

@@ -9,7 +9,7 @@ import numpy as np
 
 from analysis.comparison.ambiguity import least_lag
 from analysis.comparison.band import Band, find_band, track, without_line
-from analysis.comparison.estimates import ComparedSignal, FittedComparison, told
+from analysis.comparison.estimates import ComparedSignal, FittedComparison, channel_comparison
 from analysis.comparison.even_grid import on_even_grid
 from analysis.comparison.first_guess import Alignment, first_guess
 from analysis.comparison.fit import ComparisonFit, fit
@@ -58,8 +58,8 @@ def compare(
     most_lag_s = _most_lag(leading[0], following, settings)
     problem = _problem(leading, following, settings, most_lag_s)
     try:
-        model, modulo_s = least_lag(problem, _grown(problem, most_lag_s), most_lag_s)
-        straight = _settled(problem, model)
+        model, modulo_s = least_lag(problem, _fit_growing(problem, most_lag_s), most_lag_s)
+        straight = _fit_all(problem, model)
         best, dead_band = straight, None
         if settings.order == 0 and not settings.levers:
             best, dead_band = _with_dead_band(problem, straight)
@@ -69,8 +69,10 @@ def compare(
             "gain and lag explain half of its power; is it the same motion, at the same time? "
             "Allow a larger lag, or state the derivative, the band or the part of the record"
         ) from None
-    fitted = FittedComparison(problem, best, modulo_s, dead_band, seen=best is not straight)
-    return told(fitted, leading, following, settings)
+    fitted = FittedComparison(
+        problem, best, modulo_s, dead_band, has_dead_band=best is not straight
+    )
+    return channel_comparison(fitted, leading, following, settings)
 
 
 def _signal(recording: Recording, name: str, from_s: float, to_s: float) -> ComparedSignal:
@@ -130,7 +132,7 @@ def _problem(
     return ComparisonProblem(Warped(*tracks), len(tracks), second, band.motion_hz, low_hz, high_hz)
 
 
-def _grown(problem: ComparisonProblem, most_lag_s: float) -> ComparisonFit:
+def _fit_growing(problem: ComparisonProblem, most_lag_s: float) -> ComparisonFit:
     """Fit where most happens, then on twice as much, until nothing is left out.
 
     From each length to the next the lag's error stays far below the quarter of a period that a
@@ -149,7 +151,7 @@ def _grown(problem: ComparisonProblem, most_lag_s: float) -> ComparisonFit:
         model = replace(model, alignment=replace(model.alignment, stretch=wider))
 
 
-def _settled(problem: ComparisonProblem, model: Model) -> ComparisonFit:
+def _fit_all(problem: ComparisonProblem, model: Model) -> ComparisonFit:
     """Fit on all samples that both have, the lag that of their middle."""
     count = problem.second.derivatives.shape[1]
     where = replace(model.alignment, stretch=slice(0, count))
@@ -177,13 +179,15 @@ def _with_dead_band(
         if half >= _SEEN * u:  # its noise is the lowest that there can be
             bent = fit(problem, narrow_fit.model)
             half, u = _half(problem, bent)
-            if half >= _SEEN * u and _explains(problem, straight, bent):
-                u = math.hypot(u, bent.spread_of(bent.heard) / abs(bent.model.gains[0]))
-                return bent.knowing(problem.channels + 2, u), np.array([half, u])
+            if half >= _SEEN * u and _dead_band_explains(problem, straight, bent):
+                u = math.hypot(u, bent.spread_of(bent.first_noise_power) / abs(bent.model.gains[0]))
+                return bent.with_uncertainty(problem.channels + 2, u), np.array([half, u])
     return straight, np.array([half, math.hypot(u, half)])
 
 
-def _explains(problem: ComparisonProblem, straight: ComparisonFit, bent: ComparisonFit) -> bool:
+def _dead_band_explains(
+    problem: ComparisonProblem, straight: ComparisonFit, bent: ComparisonFit
+) -> bool:
     """Tell whether a dead band explains most of what stands out where it makes something.
 
     Other things bend a sensor's line too, and a play that is wide enough swallows the noise of the
@@ -191,7 +195,7 @@ def _explains(problem: ComparisonProblem, straight: ComparisonFit, bent: Compari
     """
     if bent.count != straight.count:
         return False
-    noise = bent.noise + straight.heard
+    noise = bent.noise + straight.first_noise_power
     bent_bins = np.abs(bent.columns[problem.channels + 2] * bent.model.parameters[-1]) ** 2 > noise
     before, after = (
         model_fit.squares_under(noise, bent_bins) - 2.0 * bent_bins.sum()

@@ -41,10 +41,10 @@ class FittedComparison:
     fit: ComparisonFit
     modulo_s: float | None
     dead_band: FloatArray | None
-    seen: bool
+    has_dead_band: bool
 
 
-def told(
+def channel_comparison(
     fitted: FittedComparison,
     leading: Sequence[ComparedSignal],
     following: ComparedSignal,
@@ -61,7 +61,7 @@ def told(
     stretched = (1.0 - where.rate) ** min(settings.order, 0)  # a derivative on the other's clock
     unit = following.unit or "1"
     gains = [
-        _gain(fit, k, gain_wider, stretched, _over(unit, signal.unit or "1", settings.order))
+        _gain(fit, k, gain_wider, stretched, _gain_unit(unit, signal.unit or "1", settings.order))
         for k, signal in enumerate(leading)
     ]
     band = None
@@ -86,7 +86,7 @@ def told(
         clock_rate=Estimate.of(where.rate, in_time * u[channels + 1], "s/s", fit.freedom),
         levers=dict(zip(settings.levers, gains[1:], strict=True)),
         dead_band=band,
-        dead_band_found=fitted.seen,
+        dead_band_found=fitted.has_dead_band,
         over_time=times,
         over_frequency=frequencies,
         trace=_trace(problem, fit, time_s),
@@ -112,7 +112,7 @@ def _gain(fit: ComparisonFit, row: int, wider: float, stretched: float, unit: st
     return middle.widened(float(abs(value) * drawn / 2.0 / np.sqrt(3.0)))
 
 
-def _over(second: str, first: str, order: int) -> str:
+def _gain_unit(second: str, first: str, order: int) -> str:
     """Return the unit of a gain."""
     first_unit, second_unit = _per_second(first, max(order, 0)), _per_second(second, max(-order, 0))
     return "1" if first_unit == second_unit else f"{second_unit} per {first_unit}"
@@ -136,11 +136,11 @@ def _trace(problem: ComparisonProblem, fit: ComparisonFit, time_s: FloatArray) -
     expected = gains @ np.array(leaders)
     line = np.polynomial.Polynomial.fit(time_s, shown - expected, 1)
     highest = 2 * int(np.flatnonzero(fit.stands_out)[-1] + fit.first_bin)
-    traces = (_below(wave, highest) for wave in (shown, expected + line(time_s)))
+    traces = (_low_pass(wave, highest) for wave in (shown, expected + line(time_s)))
     return ComparedTrace(time_s, *traces)
 
 
-def _below(values: FloatArray, highest: int) -> FloatArray:
+def _low_pass(values: FloatArray, highest: int) -> FloatArray:
     """Return values without what lies above a bin."""
     from scipy.fft import irfft, rfft
 

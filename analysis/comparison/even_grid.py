@@ -45,7 +45,7 @@ def on_even_grid(recording: Recording, names: Sequence[str]) -> Recording:
     knots_hz = min(_KNOTS * edge_hz, _FEWER * rate_hz)
     count = int(np.floor((stamps_s[-1] - stamps_s[0]) * knots_hz)) + 1
     grid_s = stamps_s[0] + np.arange(count) / knots_hz
-    fitted = _fitted((stamps_s - stamps_s[0]) * knots_hz, values, count)
+    fitted = _fit_splines((stamps_s - stamps_s[0]) * knots_hz, values, count)
     after = np.clip(np.searchsorted(stamps_s, grid_s), 1, stamps_s.size - 1)
     fitted[:, np.diff(stamps_s)[after - 1] > max(_LONGEST / edge_hz, _LEAST_GAP / rate_hz)] = np.nan
     return replace(
@@ -53,7 +53,7 @@ def on_even_grid(recording: Recording, names: Sequence[str]) -> Recording:
     )
 
 
-def _fitted(places: FloatArray, values: FloatArray, count: int) -> FloatArray:
+def _fit_splines(places: FloatArray, values: FloatArray, count: int) -> FloatArray:
     """Return splines with knots at whole numbers, fitted to values at some places, at the knots."""
     from scipy.interpolate import BSpline
     from scipy.linalg import solveh_banded

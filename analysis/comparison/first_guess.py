@@ -61,7 +61,9 @@ def first_guess(
     from_mid_s = time_s[stretch].reshape(count, size).mean(axis=1) - mid_s
     steps = int(_STEPS * FASTEST * motion_hz * count * size / second.rate_hz / 2.0) + 1
     rates = np.linspace(-FASTEST, FASTEST, 2 * steps + 1)
-    tried = [_along(correlation, power, rate * from_mid_s * second.rate_hz) for rate in rates]
+    tried = [
+        _line_correlation(correlation, power, rate * from_mid_s * second.rate_hz) for rate in rates
+    ]
     score = np.array(tried)
     row, place = _slowest(score, reach)
     return Alignment(float((reach - place) / second.rate_hz), float(rates[row]), mid_s, stretch)
@@ -88,7 +90,7 @@ def _correlograms(pieces: FloatArray, first: FloatArray) -> tuple[FloatArray, Fl
     return correlation, total[:, size:] - total[:, :-size]
 
 
-def _along(correlation: FloatArray, power: FloatArray, moved: FloatArray) -> FloatArray:
+def _line_correlation(correlation: FloatArray, power: FloatArray, moved: FloatArray) -> FloatArray:
     """Return the correlation along one line, for each lag; ``moved`` samples of each piece."""
     shift = np.rint(moved).astype(np.int64)
     lags = np.arange(correlation.shape[1])

@@ -96,24 +96,24 @@ class ComparisonFit:
         return self.spread_of(self.noise)
 
     @cached_property
-    def heard(self) -> FloatArray:
+    def first_noise_power(self) -> FloatArray:
         """Power of what is left that goes as the first channel does where that carries nothing.
 
         It is the first channel's own noise, shape ``(bins,)``, also between and under the lines.
         """
         free, reach = ~self.stands_out, _reach(self.shape)
         cross = self.residual * self.shape.conj() * free
-        size = np.hypot(_around(cross.real, reach), _around(cross.imag, reach))
-        first_power = _around(np.abs(self.shape) ** 2 * free, reach)
-        share = np.maximum(_around(free.astype(np.float64), reach), 0.5 / (2 * reach + 1))
+        size = np.hypot(_local_mean(cross.real, reach), _local_mean(cross.imag, reach))
+        first_power = _local_mean(np.abs(self.shape) ** 2 * free, reach)
+        share = np.maximum(_local_mean(free.astype(np.float64), reach), 0.5 / (2 * reach + 1))
         heard = size**2 / np.maximum(first_power, _ROUNDING * self.power.mean()) / share
-        return np.asarray(np.minimum(heard, _around(np.abs(self.residual) ** 2, reach)))
+        return np.asarray(np.minimum(heard, _local_mean(np.abs(self.residual) ** 2, reach)))
 
     def spread_of(self, power: FloatArray) -> float:
         """Return one standard deviation of a part of that power, in the second channel's unit."""
         return float(np.sqrt(2.0 * power.sum() / (self.taper**2).mean()) / self.count)
 
-    def knowing(self, row: int, u: float) -> "ComparisonFit":
+    def with_uncertainty(self, row: int, u: float) -> "ComparisonFit":
         """Return the same with a parameter's uncertainty, and what follows of it for the others."""
         slope = self.covariance[row] / self.covariance[row, row]
         growth = (u**2 - self.covariance[row, row]) * np.outer(slope, slope)
@@ -144,20 +144,20 @@ def fit(problem: ComparisonProblem, model: Model, *, lines: bool = False) -> Com
     for step in range(_STEPS):
         linear = linearised(problem, model)
         if noise.size != linear.target.size:
-            noise, bins = np.ones(linear.target.size), _strongest(linear)
+            noise, bins = np.ones(linear.target.size), _strongest_bins(linear)
         if not step:
             model = replace(model, gains=_gains(linear, bins, noise))
         columns = linear.columns(model.gains, bins)
-        theta, inverse = _solved(columns, linear.left(model.gains), noise)
-        before, model = model, _moved(model, theta)
-        nuisances = linear.others(before.gains)
-        residual = linear.left(model.gains) - theta[problem.channels :] @ nuisances
+        theta, inverse = _solve(columns, linear.residual(model.gains), noise)
+        before, model = model, _moved_model(model, theta)
+        nuisances = linear.other_derivatives(before.gains)
+        residual = linear.residual(model.gains) - theta[problem.channels :] @ nuisances
         hidden = (columns.conj() * (inverse @ columns)).sum(axis=0).real if step else 0.0
         noise, reach = _smoothed(np.abs(residual) ** 2 + hidden, linear.target, lines=lines)
-        power = _around(np.abs(model.gains @ linear.channels) ** 2, 1)
+        power = _local_mean(np.abs(model.gains @ linear.channels) ** 2, 1)
         bins = power > _STANDS_OUT * noise
         if not bins.any():
-            bins = _strongest(linear)
+            bins = _strongest_bins(linear)
         taken = np.abs(model.parameters - before.parameters)  # a dead band stays at none
         if step >= _FEWEST and (taken <= _SETTLED * np.sqrt(np.diag(inverse))[: len(taken)]).all():
             break
@@ -176,11 +176,11 @@ def fit(problem: ComparisonProblem, model: Model, *, lines: bool = False) -> Com
 
 def _gains(linear: Linear, bins: BoolArray, noise: FloatArray) -> FloatArray:
     columns = np.concatenate((linear.channels * bins, linear.drift))
-    theta, _ = _solved(columns, linear.target, noise)
+    theta, _ = _solve(columns, linear.target, noise)
     return theta[: len(linear.channels)]
 
 
-def _solved(
+def _solve(
     columns: ComplexArray, target: ComplexArray, noise: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the parameters and the inverse of the normal equations."""
@@ -192,7 +192,7 @@ def _solved(
     return inverse @ right / scale, inverse / np.outer(scale, scale)
 
 
-def _moved(model: Model, theta: FloatArray) -> Model:
+def _moved_model(model: Model, theta: FloatArray) -> Model:
     at = len(model.gains)
     where = model.alignment
     alignment = replace(where, lag_s=where.lag_s + theta[at], rate=where.rate + theta[at + 1])
@@ -202,9 +202,9 @@ def _moved(model: Model, theta: FloatArray) -> Model:
     return Model(alignment, model.gains + theta[:at], half)
 
 
-def _strongest(linear: Linear) -> BoolArray:
+def _strongest_bins(linear: Linear) -> BoolArray:
     """Return the bins in which both carry the most, for a start: a derivative lifts noise."""
-    power = _around(np.abs(linear.channels[0] * linear.target), 1)
+    power = _local_mean(np.abs(linear.channels[0] * linear.target), 1)
     return np.asarray(power >= 0.01 * power.max())
 
 
@@ -212,7 +212,7 @@ def _reach(spectrum: ComplexArray) -> int:
     return int(np.clip(len(spectrum) // 10, 1, _WIDEST))
 
 
-def _around(values: FloatArray, reach: int) -> FloatArray:
+def _local_mean(values: FloatArray, reach: int) -> FloatArray:
     from scipy.ndimage import uniform_filter1d
 
     return np.asarray(uniform_filter1d(values, 2 * reach + 1, mode="reflect"))
@@ -234,9 +234,9 @@ def _smoothed(power: FloatArray, target: ComplexArray, *, lines: bool) -> tuple[
     if lines:
         usual = median_filter(power, 2 * reach + 1, mode="reflect") / np.log(2.0)
         return np.maximum(usual, floor), reach
-    noise = _around(power, reach)
+    noise = _local_mean(power, reach)
     for _ in range(_FLATTER):  # smoothed flat: a steep spectrum is no lower beside its foot
-        noise = noise * _around(power / noise, reach)
+        noise = noise * _local_mean(power / noise, reach)
     return np.maximum(noise, floor), reach
 
 
@@ -248,7 +248,7 @@ def _covariance(columns: ComplexArray, noise: FloatArray, linear: Linear) -> Flo
     """
     from scipy.fft import irfft, rfft
 
-    _, inverse = _solved(columns, linear.target, noise)
+    _, inverse = _solve(columns, linear.target, noise)
     count, last = len(linear.taper), linear.first_bin + linear.target.size
     padded = np.zeros((len(columns), count // 2 + 1), dtype=complex)
     padded[:, linear.first_bin : last] = columns / noise

@@ -73,19 +73,19 @@ class Linear:
     drift: ComplexArray
     first_bin: int
 
-    def others(self, gains: FloatArray) -> ComplexArray:
+    def other_derivatives(self, gains: FloatArray) -> ComplexArray:
         """Return the derivatives by all but the gains."""
         side = () if self.side is None else (gains[0] * self.side,)
         return np.array([gains @ self.motions, gains @ self.slides, *side, *self.drift])
 
-    def left(self, gains: FloatArray) -> ComplexArray:
+    def residual(self, gains: FloatArray) -> ComplexArray:
         """Return what the channels leave of the second one."""
         residual: ComplexArray = self.target - gains @ self.channels - gains[0] * self.by_play
         return residual
 
     def columns(self, gains: FloatArray, stands_out: BoolArray) -> ComplexArray:
         """Return the derivatives, without the channels where they are noise."""
-        rows = np.concatenate((self.channels, self.others(gains)))
+        rows = np.concatenate((self.channels, self.other_derivatives(gains)))
         rows[: len(self.channels) + 2] *= stands_out
         if self.side is not None:
             rows[0] += self.by_play
@@ -147,7 +147,7 @@ def play_at(problem: ComparisonProblem, model: Model, time_s: FloatArray) -> Pla
     fine = int(np.ceil(_A_PERIOD * problem.motion_hz / rate_hz))
     steps_s = time_s[0] + np.arange((len(time_s) - 1) * fine + 1) / (fine * rate_hz)
     leader = problem.first.values(model.alignment.times_s(steps_s), 0)
-    return follow(leader, model.half).every(fine)
+    return follow(leader, model.half).decimated(fine)
 
 
 def _fast(count: int) -> int:

@@ -78,7 +78,7 @@ def over_time(problem: ComparisonProblem, fit: ComparisonFit) -> Parts:
     part_values = [_part(*values[:, a:b]) for a, b in pairwise(edges)]
     times_s = problem.second.time_s[fit.start : fit.start + fit.count]
     middles = [float(times_s[a:b].mean()) for a, b in pairwise(edges)]
-    return _gathered(middles, part_values)
+    return _parts(middles, part_values)
 
 
 def over_frequency(problem: ComparisonProblem, fit: ComparisonFit) -> Parts:
@@ -104,7 +104,7 @@ def over_frequency(problem: ComparisonProblem, fit: ComparisonFit) -> Parts:
         part_values.append(_part(*rows))
         power = np.abs(fit.shape[group]) ** 2
         frequencies_hz.append(float((group + fit.first_bin) @ power / power.sum()) * step_hz)
-    return _gathered(frequencies_hz, part_values)
+    return _parts(frequencies_hz, part_values)
 
 
 def _widened(bins: BoolArray, reach: int) -> BoolArray:
@@ -122,6 +122,6 @@ def _part(shape: FloatArray, motion: FloatArray, residual: FloatArray) -> FloatA
     return np.array([gain, spread[0], lag, spread[1]])
 
 
-def _gathered(places: list[float], part_values: list[FloatArray]) -> Parts:
+def _parts(places: list[float], part_values: list[FloatArray]) -> Parts:
     gain, gain_u, lag, lag_u = np.array(part_values).T
     return Parts(np.array(places), 1.0 + gain, gain_u, lag, lag_u)

@@ -15,14 +15,14 @@ class ComparedTrace:
 
     Attributes
     ----------
-    shown
+    measured
         The second channel, shape ``(samples,)``.
     expected
         What gain, lag, clock rate and dead band make of the first one.
     """
 
     time_s: FloatArray
-    shown: FloatArray
+    measured: FloatArray
     expected: FloatArray
 
 

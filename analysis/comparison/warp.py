@@ -81,7 +81,7 @@ class Play:
     side: FloatArray
     pushed: BoolArray
 
-    def every(self, step: int) -> "Play":
+    def decimated(self, step: int) -> "Play":
         """Return one of so many samples."""
         return Play(self.values[::step], self.side[::step], self.pushed[::step])
 

@@ -38,7 +38,7 @@ _LOADS = 3
 CHANNELS = (*DISPLACEMENTS, *FORCES)
 
 
-def _nothing() -> FloatArray:
+def _zero_matrix() -> FloatArray:
     return np.zeros((2, 2))
 
 
@@ -60,7 +60,7 @@ class Belief:
     body: Body
     values: Mapping[str, float]
     form: Form = Form.MANOEUVRING
-    restoring: FloatArray = field(default_factory=_nothing)
+    restoring: FloatArray = field(default_factory=_zero_matrix)
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
@@ -138,13 +138,15 @@ def _read(points: Sequence[SetPoint], belief: Belief) -> ComplexArray:
     struts = driven(parts, 2.0 * math.pi * frequency[:, 0])
     moving = motion(geometry, struts)
     tare = Tare.of(geometry, struts, _LOADS)
-    exerted = _asked(moving, points, belief, tare) - _of_water(moving, geometry, belief)
+    exerted = _required_loads(moving, points, belief, tare) - _of_water(moving, geometry, belief)
     gauges = readings(geometry, moving.line_rad, exerted)[:, : len(FORCES)]
     forces = from_interleaved(harmonics(gauges, ORDERS))
     return np.concatenate((moved, forces.reshape(*moved.shape[:2], len(FORCES))), axis=2)
 
 
-def _asked(moving: MotionWaves, points: Sequence[SetPoint], belief: Belief, tare: Tare) -> Waves:
+def _required_loads(
+    moving: MotionWaves, points: Sequence[SetPoint], belief: Belief, tare: Tare
+) -> Waves:
     """What inertia, weight and restoring ask of the struts, ``(points, 3, instants)``."""
     plane = belief.oscillator.plane
     drift = np.array([[point.drift_rad] for point in points])

@@ -73,7 +73,7 @@ def made_up(candidates: Sequence[CandidateRun], belief: Belief, noise: Noise) ->
     return [noise.repeating(cycle) for cycle in believed_cycles(names, points, belief, scatter)]
 
 
-def expected(
+def expected_coefficients(
     candidates: Sequence[CandidateRun],
     cycles: Sequence[BodyCycle],
     targets: Sequence[DesignTarget],
@@ -94,7 +94,7 @@ def expected(
     )
 
 
-def fitted(
+def fit_cycles(
     fit: DesignFit, cycles: Sequence[BodyCycle], belief: Belief, stated: StatedUncertainties
 ) -> CycleFit:
     """Return the fit of some cycles.
@@ -112,7 +112,7 @@ def _rows(
     names = list(belief.values)
     wanted_places = [k for k in fit.places if not fit.wanted or names[k] in fit.wanted]
     try:
-        uncertain, reason = fitted(fit, cycles, belief, stated).uncertain, ""
+        uncertain, reason = fit_cycles(fit, cycles, belief, stated).uncertain, ""
     except DataError as error:
         uncertain, reason = None, str(error)
     for k in wanted_places:
@@ -125,12 +125,12 @@ def _rows(
             np.nan if uncertain is None else float(uncertain.values[place]),
             fit.wanted.get(names[k], np.nan),
             np.inf if uncertain is None else float(uncertain.standard_uncertainty[place]),
-            {} if uncertain is None else _gathered(uncertain.shares(place)),
+            {} if uncertain is None else _pooled_shares(uncertain.shares(place)),
             reason,
         )
 
 
-def _gathered(shares: Mapping[str, float]) -> dict[str, float]:
+def _pooled_shares(shares: Mapping[str, float]) -> dict[str, float]:
     """Return shares with all runs' scatter as one, largest first."""
     total: dict[str, float] = {}
     for label, share in shares.items():

@@ -108,7 +108,7 @@ class DesignFit:
 
 
 @dataclass(frozen=True, eq=False)
-class Told:
+class LoadResiduals:
     """Of all motions: columns, variances and slopes of one load's residuals.
 
     Shapes ``(m, 2 orders, p)``, ``(m, 2 orders)`` twice, ``(m, 2 orders, s)``.
@@ -133,7 +133,7 @@ class Prospects:
     candidates: tuple[CandidateRun, ...]
     belief: Belief
     motion: IntArray
-    told: Mapping[int, Told]
+    residuals: Mapping[int, LoadResiduals]
 
     def regressions(
         self, targets: Sequence[DesignTarget], like: Sequence[int] = ()
@@ -153,7 +153,7 @@ class Prospects:
     def _regression(self, fit: DesignFit, like: Sequence[int]) -> Regression:
         names = tuple(list(self.belief.values)[k] for k in fit.places)
         wanted = np.array([fit.wanted.get(name, np.inf) for name in names])
-        motions, load_values = self.motion[fit.members], self.told[fit.row]
+        motions, load_values = self.motion[fit.members], self.residuals[fit.row]
         numbers = [2 * HIGHER.index(n) + part for n in fit.orders for part in (0, 1)]
         runs = [self.candidates[k] for k in fit.members]
         time = np.array([run.measured_s for run in runs])[:, None]
@@ -192,7 +192,9 @@ def prospects(
     points = list(dict.fromkeys(candidate.point for candidate in candidates))
     places = {point: k for k, point in enumerate(points)}
     motion = np.array([places[candidate.point] for candidate in candidates])
-    return Prospects(tuple(candidates), belief, motion, _told(points, belief, noise, stated))
+    return Prospects(
+        tuple(candidates), belief, motion, _load_residuals(points, belief, noise, stated)
+    )
 
 
 def fits_of(
@@ -240,17 +242,17 @@ def _by_load(
             yield DesignFit(row, places, orders, members, wanted, where)
 
 
-def _told(
+def _load_residuals(
     points: Sequence[SetPoint], belief: Belief, noise: Noise, stated: StatedUncertainties
-) -> dict[int, Told]:
-    pieces: dict[int, list[Told]] = {}
+) -> dict[int, LoadResiduals]:
+    pieces: dict[int, list[LoadResiduals]] = {}
     for first in range(0, len(points), _AT_ONCE):
         cycles = _of_a_second(points[first : first + _AT_ONCE], belief, noise)
         for row, piece in _of_cycles(cycles, belief, stated):
             pieces.setdefault(row, []).append(piece)
     return {
-        row: Told(*(np.concatenate([getattr(piece, key) for piece in row_pieces])
-                     for key in Told.__dataclass_fields__))
+        row: LoadResiduals(*(np.concatenate([getattr(piece, key) for piece in row_pieces])
+                     for key in LoadResiduals.__dataclass_fields__))
         for row, row_pieces in pieces.items()
     }  # fmt: skip
 
@@ -267,7 +269,7 @@ def _of_a_second(points: Sequence[SetPoint], belief: Belief, noise: Noise) -> li
 
 def _of_cycles(
     cycles: Sequence[BodyCycle], belief: Belief, stated: StatedUncertainties
-) -> Iterator[tuple[int, Told]]:
+) -> Iterator[tuple[int, LoadResiduals]]:
     even = np.ones((len(cycles), len(HIGHER), 3))
     numbers = CycleNumbers(tuple(cycles), ORDERS, belief.form)
     problem = CycleProblem(numbers, belief.terms, HIGHER, even)
@@ -282,5 +284,7 @@ def _of_cycles(
         after, repeats = np.repeat(variances, 2, axis=-1)
         yield (
             row,
-            Told(problem.nominal[0], after, repeats, np.einsum("kbn,kns->kbs", slopes, spread)),
+            LoadResiduals(
+                problem.nominal[0], after, repeats, np.einsum("kbn,kns->kbs", slopes, spread)
+            ),
         )

@@ -104,7 +104,7 @@ def deliverables_of(
     angle = 2.0 * math.pi * np.arange(samples) / samples
     columns = {"t": angle / (2.0 * math.pi * cycle.frequency_hz)}
     columns |= {name: _wave(phasor, samples) for name, phasor in phasors.items()}
-    columns |= _ahead(cycle, columns)
+    columns |= _surge_columns(cycle, columns)
     return Deliverables(
         cycle.plane,
         cycle.frequency_hz,
@@ -136,7 +136,7 @@ def _rows(cycle: BodyCycle, name: str) -> ComplexArray:
     return np.array(cycle.phasors.values[places])
 
 
-def _ahead(cycle: BodyCycle, columns: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+def _surge_columns(cycle: BodyCycle, columns: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
     """Return x, u and du/dt: x of the carriage, the others along the model's own axis."""
     rate = 2j * math.pi * cycle.frequency_hz * np.arange(cycle.orders + 1)
     ahead, samples = _rows(cycle, AHEAD_CHANNEL), len(columns["t"])

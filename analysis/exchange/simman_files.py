@@ -92,11 +92,11 @@ def _description_text(deliverables: Deliverables) -> str:
         (item.name, getattr(deliverables.description, item.name))
         for item in fields(deliverables.description)
     ]
-    lines = (f"{key} = {_shown(value)}" for key, value in rows if value not in (None, ""))
+    lines = (f"{key} = {_as_text(value)}" for key, value in rows if value not in (None, ""))
     return "\n".join(lines) + "\n"
 
 
-def _shown(value: Any) -> str:
+def _as_text(value: Any) -> str:
     return repr(float(value)) if isinstance(value, float) else str(value)
 
 

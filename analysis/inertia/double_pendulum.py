@@ -116,18 +116,18 @@ def gyradius_error_per_period(
 ) -> float:
     """Error of the gyradius per error of both periods, m/s (eq 19, figure 16)."""
 
-    def both(k: float, depth: float) -> np.ndarray:
+    def periods(k: float, depth: float) -> np.ndarray:
         return np.array(mode_periods(k, depth, line_m, gravity_m_s2))
 
     step = 1e-5
-    by_k = (both(gyradius_m * (1 + step), depth_m) - both(gyradius_m * (1 - step), depth_m)) / (
-        2.0 * step * gyradius_m
-    )
+    by_k = (
+        periods(gyradius_m * (1 + step), depth_m) - periods(gyradius_m * (1 - step), depth_m)
+    ) / (2.0 * step * gyradius_m)
     if reading is LineLengthReading.FIXED:
         return float(np.hypot(*(1.0 / by_k)))
-    by_depth = (both(gyradius_m, depth_m * (1 + step)) - both(gyradius_m, depth_m * (1 - step))) / (
-        2.0 * step * depth_m
-    )
+    by_depth = (
+        periods(gyradius_m, depth_m * (1 + step)) - periods(gyradius_m, depth_m * (1 - step))
+    ) / (2.0 * step * depth_m)
     inverse = np.linalg.inv(np.column_stack([by_k, by_depth]))
     return float(np.hypot(*inverse[0]))
 

@@ -71,5 +71,5 @@ def centre_of_lines(lines: Sequence[PlumbLine], *, subject: str = "plumb lines")
     crossing_point, agreement = best_fit(
         matrix, crossings, subject=subject, results=IN_PLANE, data=names
     )
-    ahead, down = (Estimate(crossing_point.taken([k]), "m") for k in (0, 1))
+    ahead, down = (Estimate(crossing_point.select([k]), "m") for k in (0, 1))
     return HangingCentre(ahead, down, agreement)

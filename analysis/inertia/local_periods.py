@@ -101,7 +101,7 @@ def local_periods(
             f"least {FEWEST_SWINGS * count:g} are needed to see how the period changes with the "
             "amplitude; record longer or release from further out"
         )
-    rest = values - _others(fit, mode, time_s)
+    rest = values - _other_modes(fit, mode, time_s)
     edges = np.linspace(time_s[0], time_s[-1], count + 1)
     fitted = [_part(time_s, rest, low, high, period) for low, high in pairwise(edges)]
     periods = [part for part in fitted if part is not None]
@@ -114,7 +114,7 @@ def local_periods(
     return _counted_through(periods, where)
 
 
-def _others(fit: DampedFit, mode: int, time_s: FloatArray) -> FloatArray:
+def _other_modes(fit: DampedFit, mode: int, time_s: FloatArray) -> FloatArray:
     total = np.zeros(time_s.shape)
     t = time_s - fit.start_s
     for k, neighbour in enumerate(fit.modes):

@@ -72,11 +72,11 @@ class BodyPart:
             if value > 0.0:
                 slope[k, [0, 4 + k]] = -0.5 * value / mass, 0.5 / (mass * value)
         gyradii = self.uncertain.carried(values, slope)
-        roll, pitch, yaw = (Estimate(gyradii.taken([k]), "m") for k in range(3))
+        roll, pitch, yaw = (Estimate(gyradii.select([k]), "m") for k in range(3))
         return roll, pitch, yaw
 
     def _estimate(self, k: int, unit: str) -> Estimate:
-        return Estimate(self.uncertain.taken([k]), unit)
+        return Estimate(self.uncertain.select([k]), unit)
 
 
 _NO_PRODUCTS = (exactly(0.0, "kg m2"), exactly(0.0, "kg m2"), exactly(0.0, "kg m2"))
@@ -143,10 +143,12 @@ def combine(name: str, parts: Sequence[BodyPart], *, without: Sequence[BodyPart]
             "whole"
         )
 
-    def put(rows: FloatArray) -> FloatArray:
+    def combined_parts(rows: FloatArray) -> FloatArray:
         return combined(rows.reshape(-1, _SIZE), signs)
 
-    return BodyPart(name, inputs.carried(np.asarray(put(at)), jacobian(put, at)))
+    return BodyPart(
+        name, inputs.carried(np.asarray(combined_parts(at)), jacobian(combined_parts, at))
+    )
 
 
 def combined(rows: FloatArray, signs: FloatArray) -> FloatArray:

@@ -36,7 +36,7 @@ class PlaneInertia:
 
     def estimate(self, index: int) -> Estimate:
         """Return Ixx (0), Izz (1) or Ixz (2)."""
-        return Estimate(self.uncertain.taken([index]), "kg m2")
+        return Estimate(self.uncertain.select([index]), "kg m2")
 
     @property
     def principal_angle(self) -> Estimate:

@@ -31,7 +31,7 @@ from analysis.inertia.checks import check_amplitude_effect, check_record
 from analysis.inertia.damped_fit import DampedFit, fit_damped
 from analysis.inertia.local_periods import LocalPeriods, local_periods
 from analysis.inertia.regime import of_one_regime
-from analysis.inertia.repeats import KnownScatter, Repeated, combine_runs, single_run
+from analysis.inertia.repeats import KnownScatter, RepeatedValue, combine_runs, single_run
 from analysis.inertia.series import Series, UsablePart, usable_part
 from analysis.uncertainty.estimate import Estimate
 from hardware.description.errors import DataError
@@ -193,7 +193,7 @@ def from_runs(
     *,
     known_scatter: KnownScatter | None = None,
     subject: str = "period",
-) -> Repeated:
+) -> RepeatedValue:
     """Return the period of several releases with the scatter between them.
 
     One run alone rests on the scatter known from elsewhere or on that between its own parts, and is

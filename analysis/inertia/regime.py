@@ -80,14 +80,14 @@ def change_of_regime(series: Series, part: UsablePart) -> RegimeChange | None:
     if spare < 1.0 or time.size < 2 * edge + 4 * _STEPS_A_PERIOD:
         return None
     residuals = {at: _step(time, amplitude, at) for at in range(edge, time.size - edge)
-            if at % _STEPS_A_PERIOD == 0 and _whole(time, at)}  # fmt: skip
+            if at % _STEPS_A_PERIOD == 0 and _is_continuous(time, at)}  # fmt: skip
     if not residuals:
         return None
     rough = min(residuals, key=lambda at: residuals[at][0])
     candidates = range(rough - _STEPS_A_PERIOD, rough + _STEPS_A_PERIOD + 1)
     within = (at for at in candidates if edge <= at < time.size - edge)
     (least, before, after), best = min((_step(time, amplitude, at), at) for at in within)
-    smooth_residual = _left(_own_way(time, amplitude), amplitude)
+    smooth_residual = _residual_squares(_own_way(time, amplitude), amplitude)
     step = abs(after - before)
     if smooth_residual - least < SURE * least / spare or step < max(
         LEAST_STEP * before, part.floor
@@ -113,7 +113,7 @@ def of_one_regime(series: Series, part: UsablePart) -> tuple[UsablePart, tuple[F
         f"{change.after:.3g} {series.unit} as no decay by itself does (stopped by hand, touched, "
         f"pushed?); the record is used {words[0]}"
     )
-    because = f"{part.because}, of which {words[1]} the change of regime at {change.time_s:.4g} s"
+    because = f"{part.reason}, of which {words[1]} the change of regime at {change.time_s:.4g} s"
     flag = Flag("regime_change", Severity.WARNING, message, series.channel)
     return part.cut(ends[0], ends[1], because), (flag,)
 
@@ -124,7 +124,7 @@ def _longer(series: Series, part: UsablePart) -> Series:
     return cut(series, start, stop + (FEWEST_SWINGS + 1.0) * part.period_s)
 
 
-def _whole(time: FloatArray, at: int) -> bool:
+def _is_continuous(time: FloatArray, at: int) -> bool:
     """Return whether there is no gap in the swings around a moment."""
     steps = np.diff(time[at - 2 * _STEPS_A_PERIOD : at + 2 * _STEPS_A_PERIOD])
     return bool(steps.max() < 2.0 * steps.min())
@@ -146,7 +146,7 @@ def _own_way(time: FloatArray, amplitude: FloatArray) -> FloatArray:
     return np.asarray(matrix / np.abs(matrix).max(axis=0))
 
 
-def _left(matrix: FloatArray, amplitude: FloatArray) -> float:
+def _residual_squares(matrix: FloatArray, amplitude: FloatArray) -> float:
     solved = np.linalg.lstsq(matrix, amplitude, rcond=None)[0]
     return float(((amplitude - matrix @ solved) ** 2).sum())
 

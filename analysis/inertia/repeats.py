@@ -19,7 +19,7 @@ from hardware.description.flags import Flag, Severity
 
 
 @dataclass(frozen=True)
-class Repeated:
+class RepeatedValue:
     """One value from several runs.
 
     Attributes
@@ -59,7 +59,7 @@ def combine_runs(
     known_scatter: KnownScatter | None = None,
     subject: str = "period",
     names: Sequence[str] = (),
-) -> Repeated:
+) -> RepeatedValue:
     """Combine runs of the same set-up.
 
     Parameters
@@ -92,19 +92,21 @@ def combine_runs(
     if len(runs) > 1:
         agreement = _agreement(runs, known_scatter, subject, names)
         wide, cause = (
-            (1.0, "") if fit_u > spread else (_over(spread, fit_u), "the scatter between runs")
+            (1.0, "")
+            if fit_u > spread
+            else (_scatter_ratio(spread, fit_u), "the scatter between runs")
         )
-        by_fits = (len(runs) - 1) * _over(scatter, fit_u) ** 2
+        by_fits = (len(runs) - 1) * _scatter_ratio(scatter, fit_u) ** 2
         chi_squared = agreement.chi_squared if known_scatter else by_fits
         agreements = (replace(agreement, chi_squared=chi_squared, widening=wide, cause=cause),)
     flags = (
         *_scatter_flags(subject, spread, fit_u),
         *(flag for redundancy in agreements for flag in redundancy.flags()),
     )
-    return Repeated(estimate, tuple(values.tolist()), scatter, fit_u, flags, agreements)
+    return RepeatedValue(estimate, tuple(values.tolist()), scatter, fit_u, flags, agreements)
 
 
-def _over(scatter: float, fit_u: float) -> float:
+def _scatter_ratio(scatter: float, fit_u: float) -> float:
     return scatter / fit_u if fit_u > 0.0 else math.nan
 
 
@@ -149,7 +151,7 @@ def _scatter_flags(subject: str, scatter: float, fit_u: float) -> tuple[Flag, ..
     return (Flag("scatter_exceeds_fit", Severity.NOTE, message),)
 
 
-def single_run(local: LocalPeriods, zero: Estimate, *, subject: str = "period") -> Repeated:
+def single_run(local: LocalPeriods, zero: Estimate, *, subject: str = "period") -> RepeatedValue:
     """Stand in for repeats with the parts of one run, where there is no other.
 
     The scatter of the parts about their mean is taken for that between runs, undivided: parts of
@@ -162,4 +164,4 @@ def single_run(local: LocalPeriods, zero: Estimate, *, subject: str = "period") 
     )
     estimate = zero.widened(spread, float(local.period_s.size - 1))
     flag = Flag("single_run", Severity.WARNING, message)
-    return Repeated(estimate, (zero.value,), spread, zero.uncertainty, (flag,))
+    return RepeatedValue(estimate, (zero.value,), spread, zero.uncertainty, (flag,))

@@ -19,7 +19,7 @@ _STRAIGHT: Final = 0.99  # along an axis, where products of inertia do not matte
 _AXES: Final = ("ixx", "iyy", "izz")
 
 
-def impossible(body: BodyPart) -> tuple[Flag, ...]:
+def impossible_moments(body: BodyPart) -> tuple[Flag, ...]:
     """Flag moments and products of inertia that no body has, by more than their uncertainty.
 
     Moments that are zero were not given, and nothing is said of them.

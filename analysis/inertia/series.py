@@ -135,7 +135,7 @@ class UsablePart:
         Standard deviation of what changes from sample to sample.
     floor
         Amplitude at which the record is taken to have died out.
-    because
+    reason
         In words, why it starts and ends there.
     """
 
@@ -145,7 +145,7 @@ class UsablePart:
     last_amplitude: float
     noise_rms: float
     floor: float
-    because: str
+    reason: str
 
     def cut(self, start_s: float, stop_s: float, because: str) -> "UsablePart":
         """Return the stretch from ``start_s`` to ``stop_s``, and in words why."""
@@ -154,7 +154,7 @@ class UsablePart:
         envelope = envelope_of(chosen.roughly_even().values, size)
         first, last = end_amplitudes(envelope, 0, envelope.size, size)
         return replace(
-            self, series=chosen, first_amplitude=first, last_amplitude=last, because=because
+            self, series=chosen, first_amplitude=first, last_amplitude=last, reason=because
         )
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.inertia.repeats import Repeated
+from analysis.inertia.repeats import RepeatedValue
 from analysis.uncertainty.estimate import Estimate, joint
 from analysis.uncertainty.redundancy import scattered_fit
 from hardware.description.errors import DataError
@@ -26,7 +26,7 @@ def stopwatch_period(
     *,
     reaction_s: float = REACTION_S,
     subject: str = "stopwatch",
-) -> Repeated:
+) -> RepeatedValue:
     """Return the period of one swing.
 
     Several readings give their mean and the scatter between them; a single one rests on the
@@ -67,7 +67,7 @@ def stopwatch_period(
         "s",
     )
     if len(reading_periods) < 2:
-        return Repeated(mean, (usual,), math.nan, mean.uncertainty)
+        return RepeatedValue(mean, (usual,), math.nan, mean.uncertainty)
     names = [f"reading {k}" for k in range(1, len(reading_periods) + 1)]
     agreement = scattered_fit(
         np.ones((len(reading_periods), 1)),
@@ -85,7 +85,7 @@ def stopwatch_period(
         estimate = Estimate.of(mean.value, between, "s", float(periods.size - 1))
         wide, cause = between / mean.uncertainty, "the scatter between readings"
     agreement = replace(agreement, chi_squared=chi_squared, widening=wide, cause=cause)
-    return Repeated(
+    return RepeatedValue(
         estimate,
         tuple(periods.tolist()),
         scatter,

@@ -72,16 +72,18 @@ def swing_inertia(state: SwingState, *, seed: int = 0) -> SwingInertia:
     """
     _check(state)
 
-    def pivot(period_s: Value, mass_kg: Value, moment_kg_m: Value, gravity_m_s2: Value) -> Value:
+    def about_pivot(
+        period_s: Value, mass_kg: Value, moment_kg_m: Value, gravity_m_s2: Value
+    ) -> Value:
         return pivot_inertia(period_s, mass_kg, moment_kg_m / mass_kg, gravity_m_s2)
 
-    def own(period_s: Value, mass_kg: Value, moment_kg_m: Value, gravity_m_s2: Value) -> Value:
+    def about_cg(period_s: Value, mass_kg: Value, moment_kg_m: Value, gravity_m_s2: Value) -> Value:
         return inertia_at_cg(period_s, mass_kg, moment_kg_m / mass_kg, gravity_m_s2)
 
     inputs = state.inputs
     return SwingInertia(
-        assess("I_P", pivot, inputs, unit="kg m2", seed=seed),
-        assess("I_CG", own, inputs, unit="kg m2", seed=seed + 1),
+        assess("I_P", about_pivot, inputs, unit="kg m2", seed=seed),
+        assess("I_CG", about_cg, inputs, unit="kg m2", seed=seed + 1),
     )
 
 
@@ -148,11 +150,11 @@ def model_on_swing(
     require_positive("model", mass_kg=model_mass)
     inputs = _difference(tare, loaded.period, loaded.moment, model_mass)
 
-    def below(tare_moment_kg_m: Value, total_moment_kg_m: Value, model_mass_kg: Value) -> Value:
+    def depth(tare_moment_kg_m: Value, total_moment_kg_m: Value, model_mass_kg: Value) -> Value:
         return (total_moment_kg_m - tare_moment_kg_m) / model_mass_kg
 
     few = {k: inputs[k] for k in ("tare_moment_kg_m", "total_moment_kg_m", "model_mass_kg")}
-    cg = assess("d_M", below, few, unit="m", seed=seed)
+    cg = assess("d_M", depth, few, unit="m", seed=seed)
     inertia = assess("I_M", model_inertia, inputs, unit="kg m2", seed=seed + 1)
     _refuse_nothing(inertia.budget.result)
     k = assess("k_M", model_gyradius, inputs, unit="m", seed=seed + 2)

@@ -112,10 +112,10 @@ def distance(moment: Estimate, mass_kg: Estimate) -> Estimate:
     """
     require_positive("swing", mass_kg=mass_kg)
     inputs = {"moment_kg_m": moment, "mass_kg": mass_kg}
-    return derived("CG below the pivot", _below, "m", **inputs)
+    return derived("CG below the pivot", _depth, "m", **inputs)
 
 
-def _below(moment_kg_m: Value, mass_kg: Value) -> Value:
+def _depth(moment_kg_m: Value, mass_kg: Value) -> Value:
     return moment_kg_m / mass_kg
 
 

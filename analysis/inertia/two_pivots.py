@@ -83,12 +83,12 @@ def check_two_pivots(
     from_periods = lamboley_depth(
         first.period.value, second.period.value, pivot_distance.value, gravity.value
     )
-    bad = (_fails(distance), _fails(inertia))
+    bad = (_differs(distance), _differs(inertia))
     reasons = _reasons(bad, distance, from_periods, first, second, pivot_distance)
     return TwoPivotCheck(distance, inertia, from_periods, not any(bad), reasons)
 
 
-def _fails(difference: Estimate) -> bool:
+def _differs(difference: Estimate) -> bool:
     return abs(difference.value) > LIMIT * difference.uncertainty
 
 

@@ -136,7 +136,7 @@ def zigzag(
         event = heading_beyond(-side * angle, -side)
         now = march(ship, now, -side * size, event, longest, steps, log)
         side = -side
-    return ZigZag(_way(track.moments) / ship.hull.length_m, np.array(beyond))
+    return ZigZag(_track_length(track.moments) / ship.hull.length_m, np.array(beyond))
 
 
 def spiral(ship: Ship, largest_rad: float, step_rad: float) -> Spiral:
@@ -168,7 +168,7 @@ def _turning(ship: Ship, now: ShipState) -> tuple[FloatArray, FloatArray]:
     return r * length / speed, length / speed * (dr - r * (u * du + v * dv) / speed**2)
 
 
-def _way(moments: list[ShipState]) -> FloatArray:
+def _track_length(moments: list[ShipState]) -> FloatArray:
     """Return how far each ship went, m: chords of the track."""
     places = np.array([moment.state[[X, Y]] for moment in moments])
     return np.asarray(np.hypot(*np.diff(places, axis=0).swapaxes(0, 1)).sum(axis=0))

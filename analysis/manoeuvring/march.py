@@ -87,7 +87,7 @@ def march(
         if until is not None:
             hit = running & (until(moved) >= 0.0) & (until(now.state) < 0.0)
             if hit.any():
-                durations = np.where(hit, _when(ship, now, rate, durations, until), durations)
+                durations = np.where(hit, _event_time(ship, now, rate, durations, until), durations)
                 moved = _stepped(ship, now, rate, durations)
             running = running & ~hit
         arrived = durations == reach
@@ -115,7 +115,7 @@ def _stepped(ship: Ship, now: ShipState, rate: FloatArray, durations: FloatArray
     return np.asarray(now.state + durations / 6.0 * (first + 2.0 * second + 2.0 * third + fourth))
 
 
-def _when(
+def _event_time(
     ship: Ship, now: ShipState, rate: FloatArray, durations: FloatArray, until: Event
 ) -> FloatArray:
     """Return how long each step lasts until the event, by secants."""

@@ -11,7 +11,7 @@ _SMALL = 1e-6  # of the approach speed, or of U/L
 
 
 @dataclass(frozen=True)
-class Straight:
+class CourseStability:
     """Stability of straight course, shape ``(n,)`` each.
 
     Attributes
@@ -30,9 +30,9 @@ class Straight:
     root: FloatArray
 
 
-def straight_course(ship: Ship) -> Straight:
+def straight_course(ship: Ship) -> CourseStability:
     """Return the stability on straight course at the approach speed."""
-    return Straight(
+    return CourseStability(
         _criterion(ship, _slopes(ship, bare=True)),
         _criterion(ship, _slopes(ship, bare=False)),
         _root(ship),

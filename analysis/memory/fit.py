@@ -39,7 +39,7 @@ _SHARE: Final = 2.0 / 3.0  # of the values that a fit may have numbers for
 def fit_measured(measured: MeasuredMatrix) -> MeasuredMemory:
     """Return the memory with the number of states that the values bear best, by the criterion."""
     samples, unit, middle = _scaled(measured)
-    plain_fits = {states: _plain(samples, states) for states in _counts(samples)}
+    plain_fits = {states: _plain_fit(samples, states) for states in _counts(samples)}
     orders = {states: _order(samples, fractions) for states, fractions in plain_fits.items()}
     spread = max(1.0, min(order.unconditioned / order.freedom for order in orders.values()))
     price = math.log(2 * samples.values.size)
@@ -54,7 +54,7 @@ def fit_measured(measured: MeasuredMatrix) -> MeasuredMemory:
     ):
         if criterion(order, order.unconditioned) > least + DOUBTED:
             break  # the condition can only add to it
-        fractions = tried[order.states] = _conditioned(samples, plain_fits[order.states])
+        fractions = tried[order.states] = _passive(samples, plain_fits[order.states])
         squares = _squares(samples, fractions)
         criterion_value = criterion(order, squares)
         orders[order.states] = replace(order, chi_square=squares, criterion=criterion_value)
@@ -93,7 +93,7 @@ def _scaled(measured: MeasuredMatrix) -> tuple[SampledTable, FloatArray, float]:
     return SampledTable(omega / middle, matrix, weights, None, steady=True), unit, middle
 
 
-def _plain(samples: SampledTable, states: int) -> PartialFractions:
+def _plain_fit(samples: SampledTable, states: int) -> PartialFractions:
     poles = fitted_poles(samples, states) if states else np.zeros(0, np.complex128)
     return fitted_residues(samples, poles)[0]
 
@@ -108,19 +108,19 @@ def _squares(samples: SampledTable, fit: PartialFractions) -> float:
     return float(np.sum(fit.deviations(samples) ** 2))
 
 
-def _conditioned(samples: SampledTable, plain: PartialFractions) -> PartialFractions:
+def _passive(samples: SampledTable, plain: PartialFractions) -> PartialFractions:
     """Return the best fit that nowhere gives energy back, from one that may."""
     passive = passive_fit(samples, plain.poles) if plain.poles.size else plain
     lowest = float(np.linalg.eigvalsh(symmetric(passive.steady))[0])
-    return _held(samples, passive) if lowest < 0.0 else passive
+    return _with_steady_damping(samples, passive) if lowest < 0.0 else passive
 
 
-def _held(samples: SampledTable, fractions: PartialFractions) -> PartialFractions:
+def _with_steady_damping(samples: SampledTable, fractions: PartialFractions) -> PartialFractions:
     """Return the fit with the nearest steady damping that is not negative."""
     values, vectors = np.linalg.eigh(symmetric(fractions.steady))
     damping = vectors @ np.diag(np.maximum(values, 0.0)) @ vectors.T
     steady = damping[np.triu_indices(len(damping))]
     rest = samples.values - steady[:, None] / (1j * samples.omega)
     held = replace(samples, values=rest, steady=False)
-    refitted = passive_fit(held, fractions.poles) if fractions.poles.size else _plain(held, 0)
+    refitted = passive_fit(held, fractions.poles) if fractions.poles.size else _plain_fit(held, 0)
     return replace(refitted, steady=steady)

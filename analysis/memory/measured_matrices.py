@@ -149,7 +149,7 @@ def _matrix(
         for readings in element
         for frequency in hertz
     ]
-    values = coefficients.uncertain.taken([k for group in row_groups for k in group])
+    values = coefficients.uncertain.select([k for group in row_groups for k in group])
     values = values.scaled(np.full(len(values), coefficients.form.sign))
     columns, variances = list(_columns(row_groups)), own_variance(values)
     shift, signs = np.zeros(len(values)), np.zeros((len(row_groups), 2))

@@ -62,7 +62,7 @@ class MeasuredMemory:
         Of mass, shape ``(2, 2)``, and of frequency (rad/s).
     orders
         What was tried; :attr:`chosen` is the one that was taken.
-    others
+    alternatives
         Fits of other numbers of states that are not ruled out, each with its weight.
     """
 
@@ -72,7 +72,7 @@ class MeasuredMemory:
     middle: float
     orders: tuple[Order, ...]
     chosen: Order
-    others: tuple[tuple[float, PartialFractions], ...]
+    alternatives: tuple[tuple[float, PartialFractions], ...]
 
     @property
     def poles(self) -> ComplexArray:
@@ -123,12 +123,12 @@ class MeasuredMemory:
         leaves beyond scatter; beyond the measured band they are extrapolated.
         """
         slope = _real_rows(self._slopes(omega_rad_s), omega_rad_s, self._units)
-        best_values = self._told(self.fit, omega_rad_s)
+        best_values = self._added_mass_and_damping(self.fit, omega_rad_s)
         squares = [
-            weight * (self._told(fit, omega_rad_s) - best_values) ** 2
-            for weight, fit in self.others
+            weight * (self._added_mass_and_damping(fit, omega_rad_s) - best_values) ** 2
+            for weight, fit in self.alternatives
         ]
-        curves = self._known.carried(best_values, slope @ self._numbers)
+        curves = self._measured_values.carried(best_values, slope @ self._numbers)
         return curves.plus(STATES, np.sqrt(np.sum(squares, axis=0))) if squares else curves
 
     def ends(self) -> UncertainValues:
@@ -137,14 +137,14 @@ class MeasuredMemory:
         rows = [e * count + count - 2 + k for e in range(len(self._units)) for k in (0, 1)]
         scale = np.stack([self._units, self._units * self.middle], axis=1).ravel()
         values = np.stack([self.infinite, self.steady], axis=1).ravel()
-        return self._known.carried(values, scale[:, None] * self._numbers[rows])
+        return self._measured_values.carried(values, scale[:, None] * self._numbers[rows])
 
     def rates(self) -> UncertainValues:
         """Return real parts of the poles, then imaginary parts of the pairs, rad/s."""
         poles = self.poles
         values = np.append(poles.real, poles.imag[poles.imag != 0.0])
         return (
-            self._known.carried(values, self.middle * self._numbers[-values.size :])
+            self._measured_values.carried(values, self.middle * self._numbers[-values.size :])
             if len(values)
             else UncertainValues(values)
         )
@@ -184,7 +184,7 @@ class MeasuredMemory:
         """How many numbers each element has of its own: residues, end value, steady damping."""
         return max(int(self.fit.residues.shape[1]) - 1, 0) + 2
 
-    def _told(self, fit: PartialFractions, omega_rad_s: FloatArray) -> FloatArray:
+    def _added_mass_and_damping(self, fit: PartialFractions, omega_rad_s: FloatArray) -> FloatArray:
         """Return A and B of a fit, in the order of what was measured, SI units."""
         omega = omega_rad_s / self.middle
         values = (fit.residues @ basis(fit.poles, omega).T + fit.ends(omega)) * self._units[:, None]
@@ -215,7 +215,7 @@ class MeasuredMemory:
         return np.asarray(np.linalg.pinv(system / size, rcond=_ROUNDING) / size[:, None] * weights)
 
     @cached_property
-    def _known(self) -> UncertainValues:
+    def _measured_values(self) -> UncertainValues:
         """What was measured, with what the memory leaves of it beyond scatter."""
         uncertain, beyond = self.measured.uncertain, self.misfit**2 - 1.0
         if beyond <= 0.0:

@@ -67,7 +67,7 @@ class TomlTable:
         self.fault(key, f"= {value!r} should be a {'positive' if positive else 'finite'} number")
         return None
 
-    def whole(self, key: str) -> int | None:
+    def whole_number(self, key: str) -> int | None:
         """Return a whole number from 0 up."""
         value = self.get(key)
         if value is None or (isinstance(value, int) and value is not True and value >= 0):
@@ -149,7 +149,7 @@ def parse_column_map(table: Mapping[str, object], origin: str) -> ColumnMap:
         layout=TextLayout(
             separator=top.text("separator"),
             decimal=top.one_of("decimal", (".", ",")),
-            skip_rows=top.whole("skip_rows") or 0,
+            skip_rows=top.whole_number("skip_rows") or 0,
             missing=_texts(top, "missing"),
         ),
         keep_others=bool(top.flag("keep_others")),
@@ -219,7 +219,7 @@ def _photocell(top: TomlTable) -> PhotocellColumn | None:
         column=table.text("column"),
         threshold=table.number("threshold"),
         edge=Edge(table.one_of("edge", tuple(Edge)) or Edge.RISING),
-        edges_s=_times(table, "edges_s"),
+        edges_s=_time_list(table, "edges_s"),
         edges_file=table.text("edges_file"),
     )
     table.finish()
@@ -261,7 +261,7 @@ def _texts(table: TomlTable, key: str) -> tuple[str, ...]:
     return ()
 
 
-def _times(table: TomlTable, key: str) -> tuple[float, ...] | None:
+def _time_list(table: TomlTable, key: str) -> tuple[float, ...] | None:
     value = table.get(key)
     if isinstance(value, list) and all(is_number(item) for item in value):
         return tuple(float(item) for item in value)

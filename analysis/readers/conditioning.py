@@ -51,7 +51,7 @@ class WithoutSpikes:
         for row, in_row in zip(values, spikes, strict=True):
             for spike in in_row:
                 inside = (numbers >= spike.start) & (numbers < spike.stop)
-                row[inside] = spike.instead[numbers[inside] - spike.start]
+                row[inside] = spike.replacement[numbers[inside] - spike.start]
         return values
 
 

@@ -59,7 +59,9 @@ class Damage:
         for name, bad in self.blocks.items():
             count = edges if name == schema.EDGE_TIME else recording.sample_count
             damaged = stretches(bad, block_of(name), count)
-            stretch_words = [_said(name, *stretch, recording) for stretch in damaged[:_NAMED]]
+            stretch_words = [
+                _stretch_text(name, *stretch, recording) for stretch in damaged[:_NAMED]
+            ]
             unnamed = len(damaged) - len(stretch_words)
             places = ", ".join(stretch_words) + (
                 f" and {unnamed} more stretches" if unnamed else ""
@@ -188,7 +190,7 @@ def _attribute_flags(file: Any, sums: Sums) -> Iterator[Flag]:
             yield _flag(f"{text}; {_REMEDY}", None if name in (RUN, *_INSTEAD) else name)
 
 
-def _said(name: str, start: int, stop: int, recording: Recording) -> str:
+def _stretch_text(name: str, start: int, stop: int, recording: Recording) -> str:
     if name == schema.EDGE_TIME:
         return f"photocell pulses {start + 1} to {stop}"
     first_s, last_s = recording.time_s(start, start + 1)[0], recording.time_s(stop - 1, stop)[0]

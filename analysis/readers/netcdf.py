@@ -36,7 +36,7 @@ from analysis.recording import Recording
 from hardware.description import dataset as schema
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
-from hardware.description.room import said
+from hardware.description.room import file_error_text
 
 _CANNOT: Final = {errno.EOPNOTSUPP, errno.ENOSYS, errno.EINVAL}  # not every disk can take room
 
@@ -167,7 +167,7 @@ def write_recording(recording: Recording, path: str | Path, *, overwrite: bool =
         _refuse_existing(path, overwrite)
         part.replace(path)
     except OSError as error:
-        raise DataError(f"{said(error, path)}; the recording is not written") from None
+        raise DataError(f"{file_error_text(error, path)}; the recording is not written") from None
     finally:
         part.unlink(missing_ok=True)
     return path

@@ -49,9 +49,9 @@ def find_reader(path: Path) -> Reader:
     """
     plain = _unpacked(path)
     ending = plain.suffix.lower().removeprefix(".")
-    reader = _load(_found()[ending]) if ending in _found() else None
+    reader = _load(_entry_points()[ending]) if ending in _entry_points() else None
     if reader is None or not (reader.text or plain is path):
-        endings = ", ".join(f".{ending}" for ending in _found())
+        endings = ", ".join(f".{ending}" for ending in _entry_points())
         raise DataError(
             f"{path}: the kind of file is not known; its name should end in {endings}, or in "
             "that of a text file with .gz behind"
@@ -66,7 +66,7 @@ def name_of(path: Path) -> str:
 
 def text_endings() -> tuple[str, ...]:
     """Return what names of text files end in, packed ones among them."""
-    texts = [f".{name}" for name, entry in _found().items() if _load(entry).text]
+    texts = [f".{name}" for name, entry in _entry_points().items() if _load(entry).text]
     return tuple(f"{ending}{packed}" for ending in texts for packed in ("", _PACKED))
 
 
@@ -75,7 +75,7 @@ def _unpacked(path: Path) -> Path:
 
 
 @cache
-def _found() -> Mapping[str, EntryPoint]:
+def _entry_points() -> Mapping[str, EntryPoint]:
     return {entry_point.name: entry_point for entry_point in entry_points(group=GROUP)}
 
 

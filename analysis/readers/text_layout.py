@@ -125,7 +125,7 @@ def layout_of(head: str, layout: TextLayout, where: str) -> FoundLayout:
     bare = FoundLayout((), separator, decimal, 0, missing)
     first = bare.cells(body[0][1])
     if _is_data(bare, first):
-        return _headless(bare, first, comments, body[0][0] - 1, where)
+        return _headless_layout(bare, first, comments, body[0][0] - 1, where)
     return _with_header(bare, _without_titles(bare, body), where)
 
 
@@ -170,7 +170,7 @@ def too_few_cells(where: str, line: int, cells: int, columns: int) -> DataError:
     )
 
 
-def _headless(
+def _headless_layout(
     bare: FoundLayout,
     first: list[str],
     comments: list[tuple[int, str]],
@@ -184,7 +184,7 @@ def _headless(
         names = _with_units(above, bare.cells(lines[1])) or names
     if len(names) != len(first):
         names = [""] * len(first)
-    return _headed(bare, names, first, first_line, where)
+    return _headed_layout(bare, names, first, first_line, where)
 
 
 def _with_header(bare: FoundLayout, body: list[tuple[int, str]], where: str) -> FoundLayout:
@@ -200,10 +200,10 @@ def _with_header(bare: FoundLayout, body: list[tuple[int, str]], where: str) -> 
         names.append("")  # every row ends with a separator
     if len(cells) > len(names):
         raise too_many_cells(where, first_number, len(cells), len(names))
-    return _headed(bare, names, cells, last_line, where)
+    return _headed_layout(bare, names, cells, last_line, where)
 
 
-def _headed(
+def _headed_layout(
     bare: FoundLayout, names: Sequence[str], first: Sequence[str], first_line: int, where: str
 ) -> FoundLayout:
     if len(names) > MOST_COLUMNS:

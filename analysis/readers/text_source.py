@@ -81,7 +81,7 @@ class LineStream:
             self._raw: IO[bytes] = source.path.open("rb", buffering=0)
         except OSError as error:
             raise DataError(f"{source.path}: cannot be read: {error.strerror}") from None
-        counted = _Counted(self._raw, self._hash)
+        counted = _HashedFile(self._raw, self._hash)
         packed = source.path.suffix.lower() == ".gz" and self._size > 0
         self._file = gzip.GzipFile(fileobj=cast("IO[bytes]", counted)) if packed else counted
 
@@ -171,7 +171,7 @@ def decoded(text: bytes) -> str:
         return text.decode("latin-1")
 
 
-class _Counted:
+class _HashedFile:
     """A file whose bytes are hashed as they are read."""
 
     def __init__(self, raw: IO[bytes], digest: "hashlib._Hash") -> None:

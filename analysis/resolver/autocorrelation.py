@@ -77,7 +77,7 @@ class _Spectra:
 
 
 @dataclass(frozen=True)
-class _Witness:
+class _ScatterTest:
     """Sum of squares of the scatter around each harmonic, in variances of a mean in white noise.
 
     Attributes
@@ -125,7 +125,7 @@ def widened(residuals: FloatArray, cycles: FloatArray, gate_periods: int, line: 
         quiet.append(np.trace(products, axis1=1, axis2=2))
     if len(numbers) > 1 + line:
         # In white noise a part has twice a mean's variance.
-        witness = _Witness(np.stack(quiet, axis=1) / 2.0 / block, 2 * (count - 1))
+        witness = _ScatterTest(np.stack(quiet, axis=1) / 2.0 / block, 2 * (count - 1))
         means = _blocks(residuals[:, :, :1], block)
         wider[:, :, :1] *= _factors(means, _spectra(*spectrum_key, line=line), witness)
     return wider
@@ -137,7 +137,9 @@ def _blocks(values: FloatArray, block: int) -> FloatArray:
     return np.asarray(values[first:].reshape(-1, block, *values.shape[1:]).mean(axis=1))
 
 
-def _factors(blocks: FloatArray, spectra: _Spectra, witness: _Witness | None = None) -> FloatArray:
+def _factors(
+    blocks: FloatArray, spectra: _Spectra, witness: _ScatterTest | None = None
+) -> FloatArray:
     """Return the factors of sequences that share a spectrum, shape ``(channels, sequences)``."""
     contrasts = np.einsum("bn,bcs->csn", spectra.contrasts, blocks)
     freedom = contrasts.shape[-1]
@@ -196,9 +198,9 @@ def _spectra(
     identity = np.eye(contrasts.shape[1])
     covariances, variance, around = [identity], [1.0], [np.ones(orders)]
     for doubled in _colours(opening[-1] + block):
-        covariance = contrasts.T @ _averaged(doubled, distances, block) @ contrasts * block
+        covariance = contrasts.T @ _mean_covariance(doubled, distances, block) @ contrasts * block
         share = len(covariance) / np.trace(covariance)
-        long = float(_averaged(doubled, np.zeros(1), gate_periods)[0]) * gate_periods
+        long = float(_mean_covariance(doubled, np.zeros(1), gate_periods)[0]) * gate_periods
         parts = _parts(doubled, orders)
         for size in _SIZES:
             covariances.append(identity + size * share * covariance)
@@ -249,7 +251,7 @@ def _beat(length: float) -> Doubled:
     return doubled
 
 
-def _averaged(doubled: Doubled, distances: FloatArray, length: float) -> FloatArray:
+def _mean_covariance(doubled: Doubled, distances: FloatArray, length: float) -> FloatArray:
     """Return the covariance of averages over stretches of some length that open so far apart."""
     neighbours = doubled(distances + length) + doubled(np.abs(distances - length))
     return np.asarray((neighbours - 2.0 * doubled(distances)) / length**2)
@@ -259,7 +261,7 @@ def _parts(doubled: Doubled, orders: int) -> FloatArray:
     """Variance of the parts of harmonics 1 to N of one period over that in white noise."""
     cells = 32 * orders
     lag = np.arange(cells) / cells
-    covariance = _averaged(doubled, lag, 1.0 / cells) * (1.0 - lag) * 2.0 / cells
+    covariance = _mean_covariance(doubled, lag, 1.0 / cells) * (1.0 - lag) * 2.0 / cells
     covariance[0] /= 2.0
     turned = np.cos(2.0 * np.pi * np.outer(np.arange(1.0, orders + 1.0), lag))
     return np.asarray(turned @ covariance)

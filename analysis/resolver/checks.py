@@ -27,7 +27,7 @@ _STRAIGHT = 0.2  # largest distance from an even turning, of the whole turn
 def gate_flags(gate: PeriodSums, result: Harmonics) -> tuple[Flag, ...]:
     """Return the flags of one gate: gaps, few periods, speed, drift, transient."""
     sound = usable(gate)
-    flags = [*_gap(gate, sound), *_few(result), *_speed(gate), *_drift(result)]
+    flags = [*_gap(gate, sound), *_few_periods(result), *_speed(gate), *_drift(result)]
     if sound.period_count >= 2 * _FEW_PERIODS:
         flags += _transient(solve_periods(sound), result)
     return tuple(flags)
@@ -41,7 +41,7 @@ def _gap(gate: PeriodSums, sound: PeriodSums) -> list[Flag]:
     return [Flag("void_periods", Severity.VOID, message)]
 
 
-def _few(result: Harmonics) -> list[Flag]:
+def _few_periods(result: Harmonics) -> list[Flag]:
     if result.interval_source is IntervalSource.NONE:
         message = "a single period has no scatter, so no interval is given; gate more periods"
         return [Flag("no_interval", Severity.WARNING, message)]
@@ -166,7 +166,7 @@ def frequency_flags(
     if len(phasors) < _FEWEST:
         return ()
     # Where periods were left out one turn spans several; the median does not mind a few.
-    row = _strongest(phasors)
+    row = _strongest_row(phasors)
     per_period = _turn(phasors[:, row])
     if per_period is None:
         return ()
@@ -179,7 +179,7 @@ def frequency_flags(
     return (Flag("frequency_differs", Severity.WARNING, message, names[row]),)
 
 
-def _strongest(phasors: ComplexArray) -> int:
+def _strongest_row(phasors: ComplexArray) -> int:
     """Row of the channel whose amplitude is largest against its change from period to period."""
     size = np.abs(phasors)
     change = np.abs(np.diff(size, axis=0)).mean(axis=0)

@@ -67,14 +67,14 @@ class AverageState:
     ----------
     start_s
         Time of the first sample, at which every needle stands at zero.
-    taken
+    sample_count
         Samples taken so far.
     memory
         Of the filters, shape ``(channels, 2 * harmonics, 1)``; ``None`` before the first sample.
     """
 
     start_s: float
-    taken: int = 0
+    sample_count: int = 0
     memory: FloatArray | None = None
 
 
@@ -144,14 +144,14 @@ class RunningAverage:
             If a sample is missing: the filter would never recover.
         """
         check_values(values, self.channel_names)
-        numbers = np.arange(state.taken, state.taken + values.shape[1])
+        numbers = np.arange(state.sample_count, state.sample_count + values.shape[1])
         times_s = state.start_s + numbers / self.sample_rate_hz
         self._refuse_missing(values, times_s)
         inputs = products(values, cycles(times_s), self.harmonics)
         shown, memory = self._low_pass(inputs, state.memory)
         settled = numbers / self.sample_rate_hz >= SETTLED_AFTER * self.time_constant_s
         needles = NeedleReadings(times_s, shown[:, 0::2], shown[:, 1::2], settled)
-        return AverageState(state.start_s, state.taken + len(numbers), memory), needles
+        return AverageState(state.start_s, state.sample_count + len(numbers), memory), needles
 
     def _refuse_missing(self, values: FloatArray, times_s: FloatArray) -> None:
         rows, columns = np.nonzero(~np.isfinite(values))

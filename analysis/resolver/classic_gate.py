@@ -93,7 +93,7 @@ class GatedIntegrator:
             state = self._pulse(_integrate(state, first, inputs, number), number, pulse_s, cycles)
         return replace(
             _integrate(state, first, inputs, last),
-            taken=last + 1,
+            sample_count=last + 1,
             reached=float(last),
             last=inputs[..., -1],
             waiting_pulses_s=waiting[len(due) :],
@@ -129,12 +129,12 @@ class GatedIntegrator:
         cycles: Callable[[FloatArray], FloatArray],
     ) -> tuple[int, FloatArray]:
         """Products of the block, with the last sample of the one before in front."""
-        numbers = np.arange(state.taken, state.taken + values.shape[1])
+        numbers = np.arange(state.sample_count, state.sample_count + values.shape[1])
         times_s = state.start_s + numbers / self.sample_rate_hz
         inputs = products(values, cycles(times_s), self.harmonics)
         if state.last is None:
-            return state.taken, inputs
-        return state.taken - 1, np.concatenate((state.last[..., None], inputs), axis=-1)
+            return state.sample_count, inputs
+        return state.sample_count - 1, np.concatenate((state.last[..., None], inputs), axis=-1)
 
     def _pulse(
         self,

@@ -50,7 +50,7 @@ class IntegratorState:
     ----------
     start_s
         Time of the first sample.
-    taken
+    sample_count
         Samples taken so far.
     waiting_pulses_s
         Pulses that came ahead of their samples.
@@ -67,7 +67,7 @@ class IntegratorState:
 
     start_s: float
     gate: GatingState = GatingState.ARMED
-    taken: int = 0
+    sample_count: int = 0
     waiting_pulses_s: tuple[float, ...] = ()
     opened_s: float = np.nan
     pulses: int = 0

@@ -60,7 +60,7 @@ def running_average(
     for start in range(0, recording.sample_count, length):
         values = recording.samples[:, start : start + length]
         state, needles = mode.advance(state, values, reference.cycles_at)
-        parts.append(_thinned(needles, keep_every))
+        parts.append(_decimated(needles, keep_every))
     return NeedleReadings(
         np.concatenate([part.times_s for part in parts]),
         np.concatenate([part.in_phase for part in parts], axis=-1),
@@ -69,7 +69,7 @@ def running_average(
     )
 
 
-def _thinned(needles: NeedleReadings, stride: int) -> NeedleReadings:
+def _decimated(needles: NeedleReadings, stride: int) -> NeedleReadings:
     """Copy, so that what is not kept can be freed."""
     selection = slice(None, None, stride)
     return NeedleReadings(

@@ -30,11 +30,11 @@ def first_harmonics(recording: Recording, analysis: Analysis) -> RunHarmonics | 
     first = dict(_first(reading))
     for name in CHECKED:
         if name in recording.channel_names and name not in reading.channel_names:
-            first |= _beside(recording, analysis, name)
+            first |= _unresolved_channel(recording, analysis, name)
     return RunHarmonics(recording.name, set_point, reading.frequency_hz, first)
 
 
-def _beside(recording: Recording, analysis: Analysis, name: str) -> dict[str, complex]:
+def _unresolved_channel(recording: Recording, analysis: Analysis, name: str) -> dict[str, complex]:
     """Return a channel that was not resolved; nothing where no period of it is whole."""
     gate = analysis.steady_sums.edges_cycles[: analysis.readings[0].periods + 1]
     try:

@@ -43,16 +43,16 @@ class GeneralSums:
             return np.ones(len(gates.opening), dtype=np.bool_)
         starts_early = gates.opening < REACH - 1
         ends_late = gates.closing >= self.recording.sample_count - REACH
-        return np.asarray(self._bent(gates) | starts_early | ends_late)
+        return np.asarray(self._is_bent(gates) | starts_early | ends_late)
 
-    def _bent(self, gates: Gates) -> BoolArray:
+    def _is_bent(self, gates: Gates) -> BoolArray:
         """Tell in which periods the phase does not run straight."""
         inside = 1e-9 * (gates.closing_cycle - gates.opening_cycle)
         knots = self.reference.cycles
         after = np.searchsorted(knots, gates.opening_cycle + inside, side="right")
         return np.asarray(np.searchsorted(knots, gates.closing_cycle - inside, side="left") > after)
 
-    def empty(self, periods: int) -> Sums:
+    def empty_sums(self, periods: int) -> Sums:
         """Room for the sums of some periods."""
         size = 2 * len(self.orders) + 1
         channels = len(self.recording.channels)
@@ -72,7 +72,7 @@ class GeneralSums:
             return self.reference.cycles_at(self.recording.start_s + since_start_s)
 
         # The few samples beyond either edge take part in the same line, as in the quick sums.
-        straight = self.taper is None and not self._bent(gate)[0]
+        straight = self.taper is None and not self._is_bent(gate)[0]
         turned = gate.cycles_of_first if straight else cycles
         return sum_any(block, gate, turned, self.orders, self.taper)
 

@@ -149,7 +149,7 @@ class LiveResolver:
         return self._close_periods(reach=0)
 
     @property
-    def finished(self) -> int:
+    def finished_periods(self) -> int:
         """How many periods of the gate are final."""
         return len(self._done)
 

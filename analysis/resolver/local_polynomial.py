@@ -71,7 +71,7 @@ def resolve_local(
     drift = fit_drift(plain, plain) if take_out_drift else no_drift(plain)
     gram, moment = gate_sums(plain, drift.slope)
     coefficients: FloatArray = np.linalg.solve(gram, moment.T).T.astype(np.float64)
-    local = _beside(recording, reference, edges_cycles, coefficients, drift.slope)
+    local = _local_residuals(recording, reference, edges_cycles, coefficients, drift.slope)
     leak, residuals = _leaks(local)
     coefficients[:, 1::2] -= leak.real
     coefficients[:, 2::2] -= leak.imag
@@ -103,7 +103,7 @@ def _powers(bins: FloatArray) -> FloatArray:
     return np.asarray((bins / np.abs(bins).max())[:, None] ** np.arange(DEGREE + 1))
 
 
-def _beside(
+def _local_residuals(
     recording: Recording,
     reference: PhaseReference,
     edges_cycles: FloatArray,

@@ -52,7 +52,7 @@ class SpikeWatch:
             for row, bend in enumerate(bends):
                 taken += self._of_channel(values, row, bend, first, until)
         for spike in taken:
-            values[spike.row, spike.spike.start : spike.spike.stop] = spike.spike.instead
+            values[spike.row, spike.spike.start : spike.spike.stop] = spike.spike.replacement
         return taken
 
     def _of_channel(

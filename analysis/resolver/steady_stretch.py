@@ -46,7 +46,7 @@ class Limit:
 
 
 @dataclass(frozen=True)
-class _Judged:
+class _FirstHarmonics:
     """What the first harmonics are judged by.
 
     Phasors have shape ``(periods, channels)``, the usual amplitudes ``size`` and what is
@@ -106,9 +106,9 @@ def limits(values: PeriodValues, stretch: Stretch, tolerance: float) -> list[Lim
     return limits_met
 
 
-def _judge(values: PeriodValues, tolerance: float) -> _Judged:
+def _judge(values: PeriodValues, tolerance: float) -> _FirstHarmonics:
     phasors = values.coefficients[:, :, 1] + 1j * values.coefficients[:, :, 2]
-    size = np.array([_usual(column) for column in np.abs(phasors).T])
+    size = np.array([_usual_amplitude(column) for column in np.abs(phasors).T])
     mean = values.coefficients[:, :, 0]
     rounding = _ROUNDING * np.abs(np.where(np.isfinite(mean), mean, 0.0)).max(axis=0)
     noise = np.maximum([_noise(column) for column in phasors.T], rounding)
@@ -116,10 +116,10 @@ def _judge(values: PeriodValues, tolerance: float) -> _Judged:
     # A channel of noise alone says nothing about where the motion is.
     telling = size > 2.0 * _NOISE * noise
     present = (np.abs(phasors) > _PRESENT * size) | ~telling
-    return _Judged(phasors, size, allowed, np.asarray(present))
+    return _FirstHarmonics(phasors, size, allowed, np.asarray(present))
 
 
-def _usual(amplitude: FloatArray) -> float:
+def _usual_amplitude(amplitude: FloatArray) -> float:
     finite = amplitude[np.isfinite(amplitude)]
     return float(np.quantile(finite, 0.9)) if finite.size else 0.0
 

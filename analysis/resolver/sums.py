@@ -194,16 +194,16 @@ def _sum_stretch(general: GeneralSums, gates: Gates, bent: BoolArray) -> Sums:
     first = max(0, int(gates.opening[0]) + 1 - REACH)
     block = general.recording.samples[:, first : int(gates.closing[-1]) + REACH + 1]
     block_gates = gates.counted_from(first)
-    sums = general.empty(len(bent))
+    sums = general.empty_sums(len(bent))
     if not bent.all():
-        _put(sums, ~bent, sum_straight(block, block_gates[~bent], len(general.orders)))
+        _store(sums, ~bent, sum_straight(block, block_gates[~bent], len(general.orders)))
     for k in np.flatnonzero(bent):
-        _put(sums, k, general.sum(block, first, block_gates[slice(k, k + 1)]))
+        _store(sums, k, general.sum(block, first, block_gates[slice(k, k + 1)]))
     gram, moment, ramp = sums
     return gram, moment, ramp + gram[:, 0] * first
 
 
-def _put(into: Sums, where: BoolArray | np.intp, sums: Sums) -> None:
+def _store(into: Sums, where: BoolArray | np.intp, sums: Sums) -> None:
     for target, part in zip(into, sums, strict=True):
         target[where] = part
 

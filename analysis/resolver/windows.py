@@ -53,16 +53,16 @@ def analyse_windows(
             f"{', '.join(names)}"
         )
     if not any(delays_s.values()):
-        return _apart(recording, choice, settings, shared)
+        return _split_by_window(recording, choice, settings, shared)
     analyses: list[Analysis] = []
     for delay_s in sorted({delays_s.get(name, 0.0) for name in names}):
         delayed_names = tuple(name for name in names if delays_s.get(name, 0.0) == delay_s)
         late = replace(settings, channels=delayed_names, delay_s=delay_s)
-        analyses += _apart(recording, choice, late, analyse(recording, choice, late))
+        analyses += _split_by_window(recording, choice, late, analyse(recording, choice, late))
     return tuple(analyses)
 
 
-def _apart(
+def _split_by_window(
     recording: Recording, choice: ReferenceChoice, settings: ResolverSettings, shared: Analysis
 ) -> tuple[Analysis, ...]:
     """Take an analysis apart where one channel spoils the window of another."""

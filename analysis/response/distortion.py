@@ -59,7 +59,7 @@ class Distortion:
     chance: float
 
     @property
-    def told(self) -> bool:
+    def is_significant(self) -> bool:
         """Whether it is more than noise."""
         return self.chance < SURE
 

@@ -122,7 +122,7 @@ def in_waves(
     )
     span_s = time_s[-1] - time_s[0]
     wave_hz = _measured_hz(recording.name, time_s, values[0], expected)
-    lines = _apart(recording.name, wave_hz, shaft_hz, span_s)
+    lines = _line_frequencies(recording.name, wave_hz, shaft_hz, span_s)
     turns = analysis.reference.cycles_at(time_s)
     line_waves = [_wave(time_s - time_s[0], frequency) for frequency in lines.values()]
     harmonics = [_wave(turns, float(n)) for n in range(1, _HARMONICS + 1)]
@@ -137,7 +137,7 @@ def in_waves(
         for k, (name, hz) in enumerate(lines.items())
     )
     result = InWaves(recording.name, point, expected, wave_hz, names, wave_lines)
-    return result, _without(recording, result, time_s[0])
+    return result, _without_waves(recording, result, time_s[0])
 
 
 def _wave(time: FloatArray, frequency: float) -> FloatArray:
@@ -171,7 +171,7 @@ def _measured_hz(run: str, time_s: FloatArray, probe: FloatArray, expected_hz: f
     return wave_hz
 
 
-def _apart(run: str, wave_hz: float, shaft_hz: float, span_s: float) -> dict[str, float]:
+def _line_frequencies(run: str, wave_hz: float, shaft_hz: float, span_s: float) -> dict[str, float]:
     """Return the frequencies of the lines that can be told from all before them, by name."""
     least_hz = _APART / span_s
     taken_hz = [0.0, *(n * shaft_hz for n in range(1, _HARMONICS + 1))]
@@ -207,7 +207,7 @@ def _noise(residual: FloatArray, cycles: float) -> FloatArray:
     return np.asarray(np.sqrt(2.0 * noise_bins.mean(axis=1) / size))
 
 
-def _without(recording: Recording, waves: InWaves, start_s: float) -> Recording:
+def _without_waves(recording: Recording, waves: InWaves, start_s: float) -> Recording:
     """Return the recording with the waves' lines taken off its gauges, over its whole length."""
     rows = [recording.index(name) for name in waves.channels[1:]]
     channel_rows = list(range(len(recording.channels)))

@@ -133,7 +133,7 @@ def identified(
         )
     )
     return IdentifiedLoop(
-        _with(motor, fit.numbers, delay_s),
+        _loop_with(motor, fit.numbers, delay_s),
         inertia,
         gain if _gain_shows(motor) else None,
         bearing,
@@ -170,7 +170,7 @@ def _fit(record: SpeedRecord, motor: Servo | ShuntMotor, delay_s: float, start: 
     # What the clock of the drive and the place of its zero add: a line, taken off both.
     line = np.stack([np.ones_like(record.time_s), record.time_s - record.time_s.mean()], axis=1)
     basis = np.linalg.qr(line)[0]
-    command_rad = _told(record, 0.0)
+    command_rad = _trapezoid_angle(record, 0.0)
 
     def numbers(scaled: FloatArray) -> FloatArray:
         all_four = start.copy()
@@ -178,26 +178,26 @@ def _fit(record: SpeedRecord, motor: Servo | ShuntMotor, delay_s: float, start: 
         return all_four
 
     def lag(scaled: FloatArray) -> FloatArray:
-        return _lag(record, _with(motor, numbers(scaled), delay_s), numbers(scaled))
+        return _lag(record, _loop_with(motor, numbers(scaled), delay_s), numbers(scaled))
 
-    def left(scaled: FloatArray) -> FloatArray:
+    def residual(scaled: FloatArray) -> FloatArray:
         error = record.angle_rad - command_rad + lag(scaled)
         return np.asarray(error - basis @ (basis.T @ error))
 
     begin = start / scale
     begin[2] += _BEARING  # off its bound, from which a search hardly leaves
     outcome = least_squares(
-        left, begin[free], bounds=(lowest[free], np.inf), x_scale="jac", ftol=1e-10, xtol=1e-10
+        residual, begin[free], bounds=(lowest[free], np.inf), x_scale="jac", ftol=1e-10, xtol=1e-10
     )
     freedom = len(record.time_s) - len(free) - line.shape[1]
     noise = math.sqrt(2.0 * outcome.cost / freedom)
     jacobian, spread = np.asarray(outcome.jac), np.zeros(4)
     inverse = np.linalg.inv(jacobian.T @ jacobian)
     spread[free] = noise * scale[free] * np.sqrt(np.diag(inverse))
-    return _Fit(numbers(outcome.x), spread, noise, freedom, lag(outcome.x), left(outcome.x))
+    return _Fit(numbers(outcome.x), spread, noise, freedom, lag(outcome.x), residual(outcome.x))
 
 
-def _with(motor: Servo | ShuntMotor, numbers: FloatArray, delay_s: float) -> ShaftLoop:
+def _loop_with(motor: Servo | ShuntMotor, numbers: FloatArray, delay_s: float) -> ShaftLoop:
     """Return the loop with inertia, proportional gain and bearing of the numbers."""
     inertia, gain, bearing, _ = map(float, numbers)
     controller = replace(motor.loop, proportional=gain)
@@ -205,7 +205,7 @@ def _with(motor: Servo | ShuntMotor, numbers: FloatArray, delay_s: float) -> Sha
     return ShaftLoop(turned, controller, inertia - motor.shaft_inertia_kg_m2, delay_s)
 
 
-def _told(record: SpeedRecord, late_s: float) -> FloatArray:
+def _trapezoid_angle(record: SpeedRecord, late_s: float) -> FloatArray:
     """Return the trapezoid's angle from the first sample on, so much later."""
     since = record.time_s - record.time_s[0]
     angle = record.speed_rad_s * since
@@ -221,7 +221,7 @@ def _lag(record: SpeedRecord, loop: ShaftLoop, numbers: FloatArray) -> FloatArra
     count = math.ceil(span_s / _GRID_S) + 2
     response = _angles(loop, inertia, bearing, count)
     grid = _GRID_S * np.arange(len(response))
-    behind = _told(record, 0.0) - _told(record, late_s)
+    behind = _trapezoid_angle(record, 0.0) - _trapezoid_angle(record, late_s)
     for at_s, jump in record.corners:
         since = np.maximum(record.time_s - at_s - late_s, 0.0)
         behind = behind - jump * np.interp(since, grid, response)

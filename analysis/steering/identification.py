@@ -75,11 +75,11 @@ def identified(
     loads, flow = load_factors(runs), inflow(runs, particulars)
     ratios = tuple(_ratio(fit) for fit in (loads, flow))
     values, slopes, names = _parameters(runs, particulars, loads, flow, ratios)
-    scaled = runs.followed(slopes)
+    scaled = runs.following_slopes(slopes)
     wake = _wakes(runs, flow, ratios[1])
     points = tuple(
         self_propulsion(k, runs, particulars, loads, flow, max(1.0, *ratios), towing_force_n)
-        for k in runs.straight
+        for k in runs.straight_runs
     )
     misfits = (ratios[0], ratios[1])
     return SteeringParameters(names, values, scaled @ scaled.T, flow.missing, misfits, wake, points)
@@ -108,7 +108,7 @@ def _parameters(
     load_slopes = np.fmax(1.0, ratios[0]) * np.tensordot(by_factors, loads.by_data[:4], 1)
     flow_slopes = np.fmax(1.0, ratios[1]) * flow.by_data
     rows = [(OF_LOADS[0], of_loads[0], load_slopes[0])]
-    straight = [flow.names.index(wake_name(int(k))) for k in runs.straight]
+    straight = [flow.names.index(wake_name(int(k))) for k in runs.straight_runs]
     if straight:
         share = np.full(len(straight), 1.0 / len(straight))
         rows.append(
@@ -129,6 +129,6 @@ def _parameters(
 
 def _wakes(runs: SteeringRuns, flow: Inflow, ratio: float) -> FloatArray:
     wake_rows = [flow.names.index(wake_name(k)) for k in range(runs.conditions)]
-    followed = runs.followed(flow.by_data[wake_rows])
+    followed = runs.following_slopes(flow.by_data[wake_rows])
     u = np.fmax(1.0, ratio) * np.sqrt((followed**2).sum(axis=1))
     return np.concatenate((runs.motions, [flow.values[wake_rows]], [u]))

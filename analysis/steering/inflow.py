@@ -86,14 +86,16 @@ def inflow(runs: SteeringRuns, particulars: Particulars) -> Inflow:
     def model(unknown: FloatArray) -> FloatArray:
         values = fixed.copy()
         values[free] = unknown[runs.conditions :]
-        return behind(runs, particulars, unknown[: runs.conditions][runs.condition], values)
+        return propeller_and_rudder(
+            runs, particulars, unknown[: runs.conditions][runs.condition], values
+        )
 
-    def left(scaled: FloatArray) -> FloatArray:
+    def residual(scaled: FloatArray) -> FloatArray:
         error = (runs.values[3:] - model(scaled * scale)) / runs.uncertainty[3:]
         return np.asarray(error.ravel())
 
     start = np.concatenate((wakes, fixed[free])) / scale
-    outcome = least_squares(left, start, method="lm", xtol=1e-12, ftol=1e-12)
+    outcome = least_squares(residual, start, method="lm", xtol=1e-12, ftol=1e-12)
     if not outcome.success:
         raise DataError(f"thrust and normal force could not be fitted: {outcome.message}")
     jacobian: FloatArray = -np.asarray(outcome.jac)
@@ -120,7 +122,7 @@ def inflow(runs: SteeringRuns, particulars: Particulars) -> Inflow:
     )
 
 
-def behind(
+def propeller_and_rudder(
     runs: SteeringRuns, particulars: Particulars, wake: FloatArray, values: FloatArray
 ) -> FloatArray:
     """Return thrust and normal force, shape ``(2, n)``.
@@ -175,7 +177,7 @@ def thrust_identity(runs: SteeringRuns, particulars: Particulars) -> FloatArray:
 
 
 def _check_neutral(runs: SteeringRuns) -> None:
-    straight = np.isin(runs.condition, runs.straight)
+    straight = np.isin(runs.condition, runs.straight_runs)
     angles = np.unique(np.round(runs.rudder_rad[straight], 4))
     if len(angles) < _ANGLES:
         raise DataError(

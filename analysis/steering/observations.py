@@ -94,7 +94,7 @@ class SteeringRuns:
         if faults:
             raise DataError("; ".join(faults))
 
-    def followed(self, slopes: FloatArray) -> FloatArray:
+    def following_slopes(self, slopes: FloatArray) -> FloatArray:
         """Return what follows the measured numbers by slopes, per standard deviate of their errors.
 
         Parameters
@@ -133,7 +133,7 @@ class SteeringRuns:
         return int(self.condition.max()) + 1
 
     @cached_property
-    def straight(self) -> IntArray:
+    def straight_runs(self) -> IntArray:
         """Conditions of straight course."""
         moved = np.abs(self.motions[1:]).max(axis=0)
         return np.flatnonzero(moved < 10.0 * _SAME * self.speed_m_s.max())

@@ -66,7 +66,7 @@ def self_propulsion(
     hull, wake = 4 + condition, flow.names.index(wake_name(condition))
     nominal = np.array([loads.values[0], loads.values[hull], flow.values[wake]])
     slopes = np.stack((loads.by_data[0], loads.by_data[hull], flow.by_data[wake]))
-    spread = runs.followed(slopes)
+    spread = runs.following_slopes(slopes)
     speed = float(runs.motions[0, condition])
     if towing_force_n >= -nominal[1] > 0.0:
         raise DataError(

@@ -84,7 +84,7 @@ def draw(
     inputs: Mapping[str, Estimate], trials: int, generator: Generator
 ) -> dict[str, FloatArray]:
     """Draw a formula's arguments jointly, each of shape ``(trials,)``."""
-    drawn = joint(inputs.values()).drawn(trials, generator)
+    drawn = joint(inputs.values()).draw(trials, generator)
     return dict(zip(inputs, drawn, strict=True))
 
 

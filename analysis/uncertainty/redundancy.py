@@ -100,11 +100,11 @@ class Redundancy:
         order = np.argsort(-square, kind="stable")
         if not self._departs:
             return (self.data[order[0]],)
-        reach = _ALIKE * max(np.nan_to_num(self._rest(square.max())), 1.0)
+        reach = _ALIKE * max(np.nan_to_num(self._remaining_square(square.max())), 1.0)
         suspects = [k for k in order if square.max() - square[k] < reach]
         return () if len(suspects) == len(self.data) else tuple(self.data[k] for k in suspects)
 
-    def _rest(self, square: float) -> float:
+    def _remaining_square(self, square: float) -> float:
         """Return chi-squared per degree of freedom without a datum that departs by this square."""
         if math.isnan(self.probability):
             return math.nan
@@ -119,7 +119,7 @@ class Redundancy:
         """Return ``data_disagree`` where they do not agree."""
         if self.agree:
             return ()
-        message = f"{self.what}: {self._how_far()}{self._which()}{self._wider()}"
+        message = f"{self.what}: {self._how_far()}{self._which_text()}{self._widening_text()}"
         return (Flag("data_disagree", Severity.WARNING, message),)
 
     def _how_far(self) -> str:
@@ -130,7 +130,7 @@ class Redundancy:
             f"{self.degrees_of_freedom}, probability {self.probability:.2g})"
         )
 
-    def _which(self) -> str:
+    def _which_text(self) -> str:
         if self.degrees_of_freedom < 2:
             return "; which of them is wrong cannot be told: measure one more"
         if not self.stands_out:
@@ -144,14 +144,14 @@ class Redundancy:
             )
         )
         size = float(abs(self.departure[first]))
-        rest = self._rest(size**2)
+        rest = self._remaining_square(size**2)
         chi_words = "" if math.isnan(rest) else f", and chi-squared {rest:.3g} a degree of freedom"
         return (
             f"; {self.data[first]}{alternatives} stands {size:.3g} standard uncertainties from "
             f"what the others let expect: look at it; without it {answer}{chi_words}"
         )
 
-    def _wider(self) -> str:
+    def _widening_text(self) -> str:
         if not self.widening > 1.0:
             return ""
         return f"; the uncertainty is {self.widening:.3g} times as large, by {self.cause}"
@@ -197,7 +197,7 @@ def best_fit(
     agreement = Redundancy(
         subject, tuple(results), tuple(data), fitted.values, without, departure,
         _two_sided(departure, measured.mapped(unseen).degrees_of_freedom),
-        chi_squared, freedom, _beyond(chi_squared, freedom, measured, unseen),
+        chi_squared, freedom, _probability_beyond(chi_squared, freedom, measured, unseen),
     )  # fmt: skip
     ratio = math.sqrt(chi_squared / max(freedom, 1))
     if agreement.agree or not ratio > 1.0:
@@ -253,7 +253,7 @@ def scattered_fit(
     return Redundancy(*names, solved, without, departure, chance, math.nan, freedom, math.nan)
 
 
-def _beyond(
+def _probability_beyond(
     chi_squared: float, freedom: int, measured: UncertainValues, unseen: FloatArray
 ) -> float:
     """Return the probability of a larger chi-squared, by uncertainties of so many repeats.

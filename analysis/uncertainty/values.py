@@ -76,7 +76,7 @@ class UncertainValues:
 
     def covariance(self, rows: Sequence[int] | None = None) -> FloatArray:
         """Return the covariance of all values, or of some, shape ``(n, n)``."""
-        chosen = self if rows is None else self.taken(rows)
+        chosen = self if rows is None else self.select(rows)
         size = len(chosen)
         total = np.zeros((size, size))
         for contribution in chosen.contributions:
@@ -130,7 +130,7 @@ class UncertainValues:
         }
         return dict(sorted(named.items(), key=lambda item: -item[1]))
 
-    def taken(self, rows: Sequence[int]) -> "UncertainValues":
+    def select(self, rows: Sequence[int]) -> "UncertainValues":
         """Return some of the values, in this order."""
         chosen = np.asarray(rows, dtype=np.int64)
         place = np.full(len(self), -1)
@@ -184,7 +184,7 @@ class UncertainValues:
         )
         return UncertainValues(values, tuple(carried_contributions))
 
-    def drawn(self, trials: int, generator: Generator) -> FloatArray:
+    def draw(self, trials: int, generator: Generator) -> FloatArray:
         """Draw all values jointly, shape ``(n, trials)``."""
         normal = [
             generator.standard_normal((contribution.parts.shape[1], trials))

@@ -16,7 +16,7 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 
 
-class Held(StrEnum):
+class RollConstraint(StrEnum):
     """How the model is held in roll."""
 
     SET = "set"
@@ -60,7 +60,7 @@ class Heel:
         If a model that is free to roll lacks inertia or metacentric height.
     """
 
-    held: Held
+    held: RollConstraint
     gauges: HeelGauges = HeelGauges.UPRIGHT
     inertia_kg_m2: float | None = None
     product_kg_m2: float | None = None
@@ -71,7 +71,7 @@ class Heel:
     def __post_init__(self) -> None:
         needed = {"inertia_kg_m2": self.inertia_kg_m2, "gm_m": self.gm_m}
         missing = [key for key, value in needed.items() if value is None]
-        if self.held is Held.FREE and missing:
+        if self.held is RollConstraint.FREE and missing:
             raise ConfigurationError(
                 f'heel: held = "free" needs {" and ".join(missing)}; a swing and an inclining test '
                 "tell them"

@@ -14,7 +14,7 @@ def is_full(error: OSError) -> bool:
     return error.errno in _FULL
 
 
-def said(error: OSError, path: "Path | str | None" = None) -> str:
+def file_error_text(error: OSError, path: "Path | str | None" = None) -> str:
     """Return what went wrong with a file, and the remedy where there is no room for it.
 
     Parameters

@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 from hardware.description.errors import DataError, PmmError
-from hardware.description.room import said
+from hardware.description.room import file_error_text
 from pmm.cli.group import CommandGroup
 
 _LINES = {
@@ -50,7 +50,7 @@ class Commands(CommandGroup):
         except BrokenPipeError:
             raise
         except OSError as error:
-            refusal = DataError(said(error))
+            refusal = DataError(file_error_text(error))
             _show(refusal.with_traceback(error.__traceback__), with_traceback=ctx.params["debug"])
             ctx.exit(refusal.exit_status)
         except KeyboardInterrupt:

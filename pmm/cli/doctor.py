@@ -62,5 +62,5 @@ def _devices(path: Path, listen_s: float) -> Iterator[MachineFinding]:
         return
     answering = {node.node_id for node in survey.nodes}
     names = [name for node, name in survey.names.items() if node in answering]
-    ports = [name for name, port in survey.heard_ports.items() if port.what != "silent"]
+    ports = [name for name, port in survey.heard_ports.items() if port.device_kind != "silent"]
     yield from check_rig(path, [*names, *ports, *survey.modbus_devices], survey.faults)

@@ -127,13 +127,13 @@ def _room_said(command: str) -> "Iterator[None]":
     try:
         yield
     except OSError as error:
-        from hardware.description.room import is_full, said
+        from hardware.description.room import file_error_text, is_full
         from pmm.run.session import RunFailedError
 
         if not is_full(error):
             raise
         raise RunFailedError(
-            f"{said(error)}; what is recorded is kept\nwhen there is room: {command}"
+            f"{file_error_text(error)}; what is recorded is kept\nwhen there is room: {command}"
         ) from error
 
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.names import Form
-from analysis.coefficients.reference import ReferenceTable, compared, table_of_matrices
+from analysis.coefficients.reference import ReferenceTable, compare, table_of_matrices
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
@@ -77,11 +77,11 @@ def with_references(
 ) -> CampaignCoefficients:
     """Return the campaign with all tables of one system beside its own values.
 
-    It raises what :func:`analysis.coefficients.reference.compared` raises.
+    It raises what :func:`analysis.coefficients.reference.compare` raises.
     """
     for reference in references:
         if reference.system is system:
-            coefficients = compared(
+            coefficients = compare(
                 coefficients, replace(reference.table, normalisation=coefficients.normalisation)
             )
     return coefficients

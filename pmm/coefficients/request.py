@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
-from analysis.coefficients.campaign_quoting import Carried, quoted
+from analysis.coefficients.campaign_quoting import QuotedMass, quote
 from analysis.coefficients.names import Form
 from analysis.coefficients.quoting import Names
 from hardware.description.errors import ConfigurationError
@@ -118,13 +118,13 @@ def finished(outcome: CampaignOutcome, settings: CoefficientSettings) -> Campaig
     )
     if settings.system is not System.DIMENSIONAL:
         coefficients = with_references(coefficients, references, settings.system)
-    coefficients = quoted(coefficients, settings.quoting, _carried(outcome, settings))
+    coefficients = quote(coefficients, settings.quoting, _carried(outcome, settings))
     return replace(
         outcome, result=coefficients, left_out=(*outcome.left_out, *flags, *reference_flags)
     )
 
 
-def _carried(outcome: CampaignOutcome, settings: CoefficientSettings) -> Carried:
+def _carried(outcome: CampaignOutcome, settings: CoefficientSettings) -> QuotedMass:
     """Return the mass that is quoted with the coefficients, and the table's system.
 
     Raises
@@ -133,7 +133,7 @@ def _carried(outcome: CampaignOutcome, settings: CoefficientSettings) -> Carried
         If the mass is asked for and not known.
     """
     if not settings.with_mass:
-        return Carried()
+        return QuotedMass()
     if outcome.body is None:
         raise ConfigurationError(
             "--with-mass needs the model's mass, which dry runs do not tell; take --inertia model"
@@ -141,4 +141,4 @@ def _carried(outcome: CampaignOutcome, settings: CoefficientSettings) -> Carried
     plain = settings.system is System.DIMENSIONAL
     system = None if plain else system_of(settings.system, outcome.settings.ship, outcome.body)
     arm = outcome.body.cg_x_m - settings.point_ahead_m
-    return Carried(outcome.body.mass_kg, arm, system, outcome.stated)
+    return QuotedMass(outcome.body.mass_kg, arm, system, outcome.stated)

@@ -53,7 +53,7 @@ def in_system(
             f"{rest_count} values at rest have no meaning in the system {system} and are left out"
         )
         flags = (*flags, Flag("at_rest_left_out", Severity.NOTE, text))
-    return without_dimensions(coefficients.taken(moving), by_speed, stated), flags
+    return without_dimensions(coefficients.select(moving), by_speed, stated), flags
 
 
 def _assumed(ship: ShipTable) -> tuple[Flag, ...]:

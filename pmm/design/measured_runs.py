@@ -16,7 +16,7 @@ from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.repeats import Repeatability, repeatability, with_repeats
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.candidate import CandidateRun
-from analysis.design.expectation import SCATTER, ExpectedCoefficient, expected, made_up
+from analysis.design.expectation import SCATTER, ExpectedCoefficient, expected_coefficients, made_up
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.campaign.campaign_file import read_campaign
 from pmm.campaign.file_names import CAMPAIGN_FILE
@@ -153,7 +153,8 @@ def _noise_shown(file: DesignFile) -> float:
         return 1.0
     cycles = (made_up(file.made_runs, file.belief, file.noise), file.cycles)
     believed, shown = (
-        expected(file.made_runs, group, file.targets, file.belief, file.stated) for group in cycles
+        expected_coefficients(file.made_runs, group, file.targets, file.belief, file.stated)
+        for group in cycles
     )
     pairs = zip(map(_scatter, shown), map(_scatter, believed), strict=True)
     ratios = [

@@ -9,7 +9,13 @@ from typing import Final
 
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.design.candidate import CandidateRun
-from analysis.design.expectation import REPEATS, SCATTER, ExpectedCoefficient, expected, made_up
+from analysis.design.expectation import (
+    REPEATS,
+    SCATTER,
+    ExpectedCoefficient,
+    expected_coefficients,
+    made_up,
+)
 from analysis.design.regression import prospects
 from analysis.design.selection import select
 from pmm.design.design_file import DesignFile
@@ -121,7 +127,7 @@ def _expected_now(file: DesignFile) -> tuple[ExpectedCoefficient, ...]:
     if not file.made_runs:
         return ()
     cycles = file.cycles or made_up(file.made_runs, file.belief, file.noise)
-    return expected(file.made_runs, cycles, file.targets, file.belief, file.stated)
+    return expected_coefficients(file.made_runs, cycles, file.targets, file.belief, file.stated)
 
 
 def _steps(file: DesignFile, choices: list[tuple[int, int]]) -> tuple[DesignStep, ...]:
@@ -140,7 +146,9 @@ def _steps(file: DesignFile, choices: list[tuple[int, int]]) -> tuple[DesignStep
             file.grid.runs[candidate],
             repeats,
             start_s + time_s,
-            expected(order[:end], cycles[:end], file.targets, file.belief, file.stated),
+            expected_coefficients(
+                order[:end], cycles[:end], file.targets, file.belief, file.stated
+            ),
         )
         for (candidate, repeats), end, time_s in zip(
             choices, ends, accumulate(_costs_s(file, choices)), strict=True
@@ -166,7 +174,9 @@ def expected_after(
 ) -> tuple[ExpectedCoefficient, ...]:
     """Return what is expected of each coefficient after some runs beside those that were made."""
     order = [*file.made_runs, *extra_runs]
-    return expected(order, _cycles(file, order), file.targets, file.belief, file.stated)
+    return expected_coefficients(
+        order, _cycles(file, order), file.targets, file.belief, file.stated
+    )
 
 
 def _cycles(file: DesignFile, order: Sequence[CandidateRun]) -> list[BodyCycle]:

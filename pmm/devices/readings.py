@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from hardware.bus import BusConfiguration
-from hardware.listening import Heard, listen
+from hardware.listening import PortLines, listen
 from hardware.master import Master
 from hardware.objects import MappedObjects
 from hardware.rig import Rig
@@ -64,7 +64,7 @@ def of_bus(bus: BusConfiguration) -> Iterator[Look]:
 @contextmanager
 def of_port(settings: PortSettings) -> Iterator[Look]:
     """Open a port alone, and give what listens to it."""
-    heard = Heard()
+    heard = PortLines()
     with closing(SerialPort("port", settings)) as port:
 
         def look(seconds: float) -> Shown:
@@ -74,8 +74,8 @@ def of_port(settings: PortSettings) -> Iterator[Look]:
         yield look
 
 
-def _port_rows(heard: Heard) -> Iterator[DeviceRow]:
-    yield DeviceRow("port", "is", heard.what)
+def _port_rows(heard: PortLines) -> Iterator[DeviceRow]:
+    yield DeviceRow("port", "is", heard.device_kind)
     yield DeviceRow("port", "lines", float(sum(heard.counts.values())))
     for kind, line in heard.last.items():
         yield DeviceRow("port", f"last {kind}", line.value)

@@ -9,7 +9,7 @@ from hardware.asked_device import spans
 from hardware.asked_link import AskedSettings, read_once
 from hardware.bus import BusConfiguration
 from hardware.errors import HardwareError
-from hardware.listening import Heard, listen
+from hardware.listening import PortLines, listen
 from hardware.master import Master
 from hardware.modbus_link import ModbusSettings
 from hardware.scan import Ear, FoundNode, scan
@@ -42,7 +42,7 @@ class Survey:
 
     nodes: tuple[FoundNode, ...]
     names: dict[int, str]
-    heard_ports: dict[str, Heard]
+    heard_ports: dict[str, PortLines]
     faults: list[str]
     modbus_devices: dict[str, str] = field(default_factory=dict)
 
@@ -57,7 +57,7 @@ def survey_rig(tables: DeviceTables, listen_s: float) -> Survey:
     """
     rig = tables.configuration()
     expected = _expected(tables)
-    heard: dict[str, Heard] = {}
+    heard: dict[str, PortLines] = {}
     faults: list[str] = []
     nodes = _scan(rig.bus, listen_s) if rig.bus is not None else ()
     asks = [part for part in rig.parts() if isinstance(part.settings, AskedSettings)]
@@ -84,7 +84,7 @@ def survey_bus(bus: BusConfiguration, listen_s: float) -> Survey:
 
 def survey_port(settings: PortSettings, listen_s: float) -> Survey:
     """Listen to a serial port of which nothing is known."""
-    heard: dict[str, Heard] = {}
+    heard: dict[str, PortLines] = {}
     faults: list[str] = []
     _hear("port", settings, listen_s, heard, faults)
     return Survey((), {}, heard, faults)
@@ -100,7 +100,11 @@ def _scan(bus: BusConfiguration, listen_s: float) -> tuple[FoundNode, ...]:
 
 
 def _hear(
-    name: str, settings: PortSettings, seconds: float, heard: dict[str, Heard], faults: list[str]
+    name: str,
+    settings: PortSettings,
+    seconds: float,
+    heard: dict[str, PortLines],
+    faults: list[str],
 ) -> None:
     try:
         port = SerialPort(name, settings)
@@ -117,7 +121,7 @@ def _hear(
 
 def _ask(name: str, settings: Any, answers: dict[str, str], faults: list[str]) -> None:
     """Read what a device shows that says nothing by itself, once; nothing is written."""
-    places = spans(settings.asked.read().values(), settings.asked.status)
+    places = spans(settings.signals.read().values(), settings.signals.status)
     try:
         register_count = read_once(name, settings, places)
     except HardwareError as error:

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from analysis.gap.design.forecast import forecast, further, planned
+from analysis.gap.design.forecast import forecast, planned, with_further_runs
 from analysis.gap.design.measurements import INJECTED_HZ
 from analysis.gap.design.proposals import Proposal
 from analysis.gap.forward.free_numbers import Free
@@ -75,7 +75,7 @@ def effect_rows(fit: Fit) -> Iterator[dict[str, Any]]:
     at = 0
     for candidate in fit.candidates:
         forms = {parameter.name for parameter in candidate.kind.parameters() if parameter.forms}
-        held = {name: value for name, value in candidate.held.items() if name not in forms}
+        held = {name: value for name, value in candidate.fixed_values.items() if name not in forms}
         parameters = {name: _fixed(value) for name, value in held.items()}
         for axis in candidate.axes:
             unit, wide = float(fit.units[at]), _TWO_SIDED * float(spread[at])
@@ -128,7 +128,7 @@ class _Foretold:
     ) -> None:
         self._names = [run.name for run in held_out]
         runs = [planned(problem, run.set_point, at) for at, run in enumerate(held_out)]
-        self._there = further(problem, runs, free, tolerances) if runs else None
+        self._there = with_further_runs(problem, runs, free, tolerances) if runs else None
         self._problem, self._named = problem, named
 
     def as_dict(self) -> dict[str, Any]:

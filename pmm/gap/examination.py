@@ -23,7 +23,7 @@ from analysis.gap.judge.withheld import Predicted, gap_of, predict_withheld, shr
 from analysis.gap.observe.components import GapRun, Stack
 from analysis.gap.observe.regimes import Regime, chosen_regime, regimes
 from analysis.gap.quality.recentring import Recentred, repeating_only
-from analysis.gap.search.fit import Fit, at
+from analysis.gap.search.fit import Fit, linearised_at
 from analysis.gap.search.polynomial import polynomial
 from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
@@ -224,7 +224,7 @@ def _judged(
     ]
     fitted_rows = ~np.isin(joint.simulator.stack.run, regime.runs)
     fits = {
-        name: None if fit is None else at(joint, fit.candidates, fit.units)
+        name: None if fit is None else linearised_at(joint, fit.candidates, fit.units)
         for name, fit in asked.items()
     }
     judgement = _foretold(
@@ -253,7 +253,7 @@ def _joint(
         for run in pooled([*fitted, *withheld], problem.simulator.rig, tolerances)
     ]
     old = problem.simulator
-    simulator = Simulator(old.rig, Stack.of(runs), old.on, old.reference_channel)
+    simulator = Simulator(old.rig, Stack.of(runs), old.active_effects, old.reference_channel)
     return Problem(simulator, tolerated(simulator, free, tolerances))
 
 
@@ -278,7 +278,7 @@ def _foretold(
 
 def _gap(predicted: Sequence[Predicted]) -> float:
     """Return the gap over all that was foretold; NaN where nothing was."""
-    residuals = [prediction.left for prediction in predicted]
+    residuals = [prediction.remainder for prediction in predicted]
     return gap_of(np.concatenate(residuals)) if residuals else math.nan
 
 
@@ -289,7 +289,12 @@ def _by_run(
 
     def split_by_run(predictions: tuple[Predicted, ...]) -> tuple[Predicted, ...]:
         return tuple(
-            replace(prediction, regime=run, rows=rows, left=prediction.left[rows[prediction.rows]])
+            replace(
+                prediction,
+                regime=run,
+                rows=rows,
+                remainder=prediction.remainder[rows[prediction.rows]],
+            )
             for prediction in predictions
             for run in runs
             for rows in [prediction.rows & np.isin(problem.simulator.stack.run, run.runs)]

@@ -84,7 +84,7 @@ def _run(
     body = floating
     if over is not None:
         body, transfer = over.at(floating, 1.0 / period_s)
-        force = force.by(transfer) if transfer is not None else force
+        force = force.of_wave(transfer) if transfer is not None else force
     for sensor in run.measured:
         yield _driven_trial(run, body, force, _gate(run, sensor, read))
 

@@ -9,7 +9,7 @@ from typing import Final
 from analysis.gap.observe.components import GapRun
 from analysis.gap.observe.following import Following, following
 from analysis.gap.observe.observation import Observed, observe
-from analysis.gap.observe.sensors import as_recorded, resolved
+from analysis.gap.observe.sensors import as_recorded, with_resolution
 from analysis.recording import Recording
 from hardware.description.channels import COMMANDS
 from hardware.description.errors import ConfigurationError, DataError, PmmError
@@ -119,7 +119,7 @@ def load_campaign(
         if (said := cut_short(observed_run.analysis))
     }
     rig = as_recorded(rig, (*runs, *at_rest), reference)
-    resolved_runs, still = resolved(rig, (*runs, *at_rest))
+    resolved_runs, still = with_resolution(rig, (*runs, *at_rest))
     usable, usable_at_rest = resolved_runs[: len(runs)], resolved_runs[len(runs) :]
     return LoadedCampaign(
         campaign, rig, usable, left_out | unused, reference, usable_at_rest,

@@ -7,7 +7,7 @@ from typing import Final
 from analysis.gap.inference.answers import COEFFICIENTS, NONE, ODD_RUN, UNKNOWN, Answers
 from analysis.gap.pendulum.diagnose import PendulumDiagnosis
 from analysis.gap.pendulum.remainder import turned_runs
-from analysis.gap.pendulum.search import named
+from analysis.gap.pendulum.search import cause_names
 from analysis.gap.pendulum.verdict import CAUSE, UNTOLD, Verdict, open_causes
 from analysis.gap.search.fit import Fit
 
@@ -60,10 +60,10 @@ def conclusion_of(diagnosis: PendulumDiagnosis) -> PendulumConclusion:
     answers, verdict = diagnosis.weighed.answers, diagnosis.verdict
     odd = max(answers.odd_runs, key=lambda run: answers.odd_runs[run], default="")
     return PendulumConclusion(
-        verdict.said,
-        named(verdict.best),
+        verdict.outcome,
+        cause_names(verdict.best),
         answers.by_answer[UNKNOWN],
-        odd if verdict.said == ODD_RUN else "",
+        odd if verdict.outcome == ODD_RUN else "",
         open_causes(diagnosis.weighed, verdict),
         turned_runs(diagnosis.problem, diagnosis.settled),
     )
@@ -89,7 +89,7 @@ def parameters(best: Fit) -> dict[str, dict[str, dict[str, float]]]:
     spread = best.posterior.covariance.diagonal() ** 0.5
     causes: dict[str, dict[str, dict[str, float]]] = {}
     for at, axis in enumerate(best.axes):
-        rows = causes.setdefault(best.names[best.whose[at]], {})
+        rows = causes.setdefault(best.names[best.effect_index[at]], {})
         value = axis.value(float(best.units[at]))
         each = axis.deviation * (abs(value) if axis.is_log else 1.0)
         rows[axis.parameter.name] = {"value": value, "uncertainty": each * float(spread[at])}

@@ -8,8 +8,8 @@ from typing import Any, Final
 from analysis.gap.inference.answers import COEFFICIENTS, NONE, effects_in
 from analysis.gap.pendulum.diagnose import PendulumDiagnosis
 from analysis.gap.pendulum.laws import DampingLaw
-from analysis.gap.pendulum.search import named
-from analysis.gap.pendulum.withheld import Foretold
+from analysis.gap.pendulum.search import cause_names
+from analysis.gap.pendulum.withheld import WithheldPrediction
 from analysis.gap.search.fit import Fit
 from pmm.document.content import (
     Column,
@@ -76,7 +76,7 @@ ALTERNATIVES: Final = (
     number("ln ratio", "log_ratio", _ONE),
 )
 NEXT: Final[tuple[Column[Any], ...]] = (
-    Column("next run", lambda proposal: proposal.what, "what"),
+    Column("next run", lambda proposal: proposal.record, "what"),
     Column(
         "would tell them apart",
         lambda proposal: proposal.gain,
@@ -111,7 +111,9 @@ def _sections(name: str, examined: ExaminedPendulum) -> Iterator[Section]:
         ),
     )
     heat = Figure("heat", _HEAT, partial(figures.heat_map, diagnosis))
-    yield Section("Where", (Text((_E,)), heat, Table("Where", WHERE, diagnosis.where, "where")))
+    yield Section(
+        "Where", (Text((_E,)), heat, Table("Where", WHERE, diagnosis.gap_by_kind, "where"))
+    )
     yield Section("Which", tuple(_answer_contents(diagnosis)))
     laws = Table("Laws of damping", _law_columns(diagnosis), diagnosis.laws, "laws")
     yield Section("Laws of damping", (Text((_LAWS,) if diagnosis.laws else ()), laws))
@@ -124,7 +126,7 @@ def _sections(name: str, examined: ExaminedPendulum) -> Iterator[Section]:
 def _numbers(diagnosis: PendulumDiagnosis) -> Iterator[Data]:
     """Yield what programs alone get."""
     verdict, answers = diagnosis.verdict, diagnosis.weighed.answers
-    yield Data("verdict", verdict.said)
+    yield Data("verdict", verdict.outcome)
     yield Data("best", _best_answer(diagnosis))
     yield Data(
         "probabilities", {key: share for key, share in answers.by_answer.items() if share > 1e-9}
@@ -135,7 +137,7 @@ def _numbers(diagnosis: PendulumDiagnosis) -> Iterator[Data]:
     yield Data("causes", verdict.by_cause)
     yield Data("parameters", parameters(diagnosis.settled.best))
     yield Data("withheld", diagnosis.regimes)
-    yield Data("rivals", [named(rival) for rival in diagnosis.rivals or ()])
+    yield Data("rivals", [cause_names(rival) for rival in diagnosis.rivals or ()])
 
 
 def _best_answer(diagnosis: PendulumDiagnosis) -> tuple[str, ...]:
@@ -146,8 +148,8 @@ def _best_answer(diagnosis: PendulumDiagnosis) -> tuple[str, ...]:
 
 
 def _answer_contents(diagnosis: PendulumDiagnosis) -> Iterator[Content]:
-    sets = {" and ".join(named(fit)): fit for fit in diagnosis.weighed.sets.values()}
-    sets[" and ".join(named(diagnosis.best))] = diagnosis.settled.best
+    sets = {" and ".join(cause_names(fit)): fit for fit in diagnosis.weighed.sets.values()}
+    sets[" and ".join(cause_names(diagnosis.best))] = diagnosis.settled.best
     answers: tuple[Column[tuple[str, float]], ...] = (
         Column("answer", lambda row: row[0]),
         Column("parameters (u)", lambda row: fitted(sets[row[0]]) if sets.get(row[0]) else ""),
@@ -196,7 +198,7 @@ def _how_far(diagnosis: PendulumDiagnosis) -> Iterator[Content]:
         yield Figure("withheld", _WITHHELD, partial(figures.withheld_figure, diagnosis))
     for regime in diagnosis.regimes:
         title = f"withheld: {regime.name}"
-        columns: tuple[Column[Foretold], ...] = (
+        columns: tuple[Column[WithheldPrediction], ...] = (
             Column(title, lambda foretold: _answer_name(foretold, diagnosis)),
             Column("gap", lambda foretold: foretold.gap, written=_ONE, unit="u", number=True),
             Column("shrinks by", lambda foretold: foretold.shrinkage, written=_SHARE, number=True),
@@ -209,7 +211,7 @@ def _how_far(diagnosis: PendulumDiagnosis) -> Iterator[Content]:
         yield Table(title, columns, (regime.before, *regime.foretold))
 
 
-def _answer_name(foretold: Foretold, diagnosis: PendulumDiagnosis) -> str:
+def _answer_name(foretold: WithheldPrediction, diagnosis: PendulumDiagnosis) -> str:
     control = "wrong cause: " if foretold.causes == diagnosis.control and foretold.causes else ""
     return control + (", ".join(foretold.causes) or "no cause")
 
@@ -223,10 +225,10 @@ def _records(diagnosis: PendulumDiagnosis) -> Iterator[Figure]:
 def _remains(diagnosis: PendulumDiagnosis) -> Section:
     columns: tuple[Column[Any], ...] = (
         word("where", "kind"),
-        Column("verdict", lambda row: "gap" if row.beyond else "no gap"),
+        Column("verdict", lambda row: "gap" if row.is_beyond_noise else "no gap"),
         number("E/u", "after", _TWO),
     )
-    table = Table("Remainder", columns, diagnosis.where)
+    table = Table("Remainder", columns, diagnosis.gap_by_kind)
     return Section("What remains", (table,))
 
 
@@ -242,7 +244,7 @@ def _odds(ln_evidence: float) -> str:
 def _next_section(diagnosis: PendulumDiagnosis) -> Section:
     lines: tuple[str, ...] = ()
     if diagnosis.proposals and diagnosis.rivals is not None:
-        first, second = (" + ".join(named(rival)) for rival in diagnosis.rivals)
+        first, second = (" + ".join(cause_names(rival)) for rival in diagnosis.rivals)
         lines = (
             "Records that a further test can make, by the odds at which the right one of two "
             f"answers would then stand at least, whichever is right: {first}, or {second}.",

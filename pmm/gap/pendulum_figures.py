@@ -8,7 +8,7 @@ import numpy as np
 from analysis.gap.pendulum.diagnose import PendulumDiagnosis
 from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.remainder import as_stated, remainder
-from analysis.gap.pendulum.search import named
+from analysis.gap.pendulum.search import cause_names
 from analysis.gap.pendulum.swings import KINDS
 from hardware.description.arrays import FloatArray
 from pmm.document.labels import plain
@@ -66,7 +66,7 @@ def ranking_figure(diagnosis: PendulumDiagnosis) -> "Figure":
 def withheld_figure(diagnosis: PendulumDiagnosis) -> "Figure":
     """Draw the gap of each withheld regime without a cause, with the best set and the control."""
     rows = [regime.name for regime in diagnosis.regimes]
-    best, control = named(diagnosis.best), diagnosis.control
+    best, control = cause_names(diagnosis.best), diagnosis.control
     series = [
         Dots(
             "without a cause",

@@ -86,10 +86,10 @@ def _strange(concluded: PendulumConclusion) -> str:
 
 
 def _no_gap(diagnosis: PendulumDiagnosis) -> str:
-    kinds = [row.kind for row in diagnosis.where if row.out_of_tolerance]
+    kinds = [row.kind for row in diagnosis.gap_by_kind if row.out_of_tolerance]
     if kinds:
         return f"Nothing that was considered explains the difference in {' and '.join(kinds)}"
-    fitted = any(row.gap for row in diagnosis.where)
+    fitted = any(row.gap for row in diagnosis.gap_by_kind)
     once = " once what is known within tolerances is fitted," if fitted else ""
     return f"No gap: the record and its simulation agree{once} within what the record can tell"
 
@@ -172,7 +172,7 @@ def what_to_do(diagnosis: PendulumDiagnosis, concluded: PendulumConclusion) -> s
     odd = " and ".join(concluded.turned) or concluded.odd
     if odd:
         return f"Correct {odd}, or leave it out of the file, and look again."
-    if concluded.verdict == NONE and not any(row.out_of_tolerance for row in diagnosis.where):
+    if concluded.verdict == NONE and not any(row.out_of_tolerance for row in diagnosis.gap_by_kind):
         return "Nothing has to be done."
     return f"{tell or 'Look at what remains, below, and record longer or from another release'}."
 
@@ -193,5 +193,5 @@ def _would_tell(diagnosis: PendulumDiagnosis) -> str:
         return ""
     first = diagnosis.proposals[0]
     if first.gain > math.log(TOLD_APART):
-        return f"Make the record that would tell it: {first.what}"
-    return f"No further record within reach would tell it: {first.what} comes nearest"
+        return f"Make the record that would tell it: {first.record}"
+    return f"No further record within reach would tell it: {first.record} comes nearest"

@@ -11,7 +11,7 @@ from analysis.gap.judge.diagnosis import Settings
 from analysis.gap.observe.components import GapRun
 from analysis.gap.observe.observation import COMPARED
 from analysis.gap.quality.recentring import Recentred
-from analysis.gap.quality.recordings import doubts, judged
+from analysis.gap.quality.recordings import doubts, judge_recordings
 from analysis.water import Water
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag
@@ -112,7 +112,7 @@ def prepare(
     settings = Settings(
         kinds,
         case.tolerances,
-        on=tuple(on),
+        active_effects=tuple(on),
         choices=case.choices(campaign),
         reference_channel=loaded.reference_channel,
         moved=recentred.units,
@@ -124,7 +124,7 @@ def prepare(
     used = tuple(fitted), tuple(withheld)
     return PreparedCampaign(
         campaign, case, left_out, recentred, *used, settings, cut, reporting, loaded.damaged,
-        commands.told,
+        commands.known_settings,
     )  # fmt: skip
 
 
@@ -183,7 +183,7 @@ def _sorted(
     fitted = [run for run in loaded.runs if run.name not in held_out]
     withheld = [run for run in loaded.runs if run.name in held_out]
     reference = loaded.reference_channel
-    recentred, findings = judged(loaded.rig, fitted, case.tolerances, on, reference)
+    recentred, findings = judge_recordings(loaded.rig, fitted, case.tolerances, on, reference)
     if withheld:
         names = {run.name for run in withheld}
         all_doubts = doubts(recentred.rig, loaded.runs, on, reference)

@@ -196,10 +196,10 @@ def _regimes(examined: Examined) -> Iterator[RegimeRow]:
     judged = examined.judged
     for number, prediction in enumerate(judged.plain):
         after = [
-            gap_of(part[number].left) if part else math.nan
+            gap_of(part[number].remainder) if part else math.nan
             for part in (judged.cured, judged.rival, judged.free_form)
         ]
-        yield RegimeRow(str(prediction.regime), gap_of(prediction.left), *after)
+        yield RegimeRow(str(prediction.regime), gap_of(prediction.remainder), *after)
 
 
 def _next_row(proposal: Proposal) -> dict[str, Any]:

@@ -39,8 +39,8 @@ def command_notes(examined: Examined) -> Iterator[str]:
     for setting in examined.ready.commanded:
         added = "" if setting.added_m is None else f" and {_text(setting.added_m)}"
         yield (
-            f"{setting.name}: {_text(setting.off)}{added} off, by command and measured position of "
-            f"{setting.runs} runs; the simulation has it so, within {setting.key} = "
+            f"{setting.name}: {_text(setting.deviation)}{added} off, by command and measured "
+            f"position of {setting.runs} runs; the simulation has it so, within {setting.key} = "
             f"{setting.tolerance:.2g}"
         )
 
@@ -70,7 +70,7 @@ def _not_foretold(examined: Examined) -> Iterator[str]:
     if cause is None or not judged.chosen or not judged.cured:
         return
     for plain, cured in zip(judged.plain, judged.cured, strict=True):
-        before, after = gap_of(plain.left), gap_of(cured.left)
+        before, after = gap_of(plain.remainder), gap_of(cured.remainder)
         if after > max(1.0, 0.5 * before):
             yield (
                 f"{cured.regime} is not foretold: {' and '.join(cause.names)} leaves {after:.3g} u "

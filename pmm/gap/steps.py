@@ -7,7 +7,15 @@ from typing import Final
 import numpy as np
 
 from analysis.gap.forward.problem import Problem
-from analysis.gap.locate.walk import CHAIN, Gap, Walk, gap_of, left_by_step, step_of, strained
+from analysis.gap.locate.walk import (
+    CHAIN,
+    Gap,
+    Walk,
+    gap_of,
+    left_by_step,
+    step_of,
+    strained_numbers,
+)
 from hardware.description.arrays import FloatArray
 
 _TOLD: Final = 2  # numbers that are out of their tolerance
@@ -66,7 +74,7 @@ def step_row(gap: Gap) -> StepRow:
     """Return a part of the difference as a row."""
     strains = dict(gap.strained)
     return StepRow(
-        gap.what, gap.rms, gap.count, gap.beyond, gap.worst, gap.stated, gap.tells, strains
+        gap.step, gap.rms, gap.count, gap.is_beyond_noise, gap.worst, gap.stated, gap.tells, strains
     )
 
 
@@ -78,7 +86,7 @@ def walk_rows(walk: Walk) -> tuple[StepRow, ...]:
 def remains(problem: Problem, residual: FloatArray) -> Iterator[StepRow]:
     """Yield what an answer leaves of a whitened difference, step by step along the chain."""
     remainder = left_by_step(problem, residual)
-    out = strained(problem, residual + problem.stated - problem.residual)
+    out = strained_numbers(problem, residual + problem.stated - problem.residual)
     stack = problem.simulator.stack
     for step in CHAIN:
         rows = np.array([step_of(component) == step for component in stack.components])

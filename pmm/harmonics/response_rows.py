@@ -132,7 +132,7 @@ def _of(
             float(np.sqrt((distortion.noise**2).mean())),
             distortion.relative,
             distortion.chance,
-            distortion.told,
+            distortion.is_significant,
         )
         for distortion in distortions(reading, response)
     )

@@ -9,7 +9,7 @@ from analysis.inertia.ballast import BallastTarget, Weight, place_ballast
 from analysis.inertia.parts import PRODUCTS, BodyPart, combine, part
 from analysis.inertia.plane_inertia import inertias_at
 from analysis.inertia.result import MassProperties
-from analysis.inertia.second_moments import impossible
+from analysis.inertia.second_moments import impossible_moments
 from analysis.uncertainty.estimate import Estimate, exactly
 from analysis.uncertainty.monte_carlo import Assessment
 from hardware.description.arrays import FloatArray
@@ -146,10 +146,10 @@ def _impossible(parts: Sequence[BodyPart], combined: BodyPart) -> tuple[Flag, ..
     Where some moments of a part were not given the whole lacks them too.
     """
     masks = [body.parameters[4:7] > 0.0 for body in parts]
-    flags = tuple(flag for body in parts for flag in impossible(body))
+    flags = tuple(flag for body in parts for flag in impossible_moments(body))
     if flags or any(mask.any() and not mask.all() for mask in masks):
         return flags
-    return impossible(combined)
+    return impossible_moments(combined)
 
 
 def _budgeted(

@@ -12,7 +12,7 @@ from analysis.inertia.elementary_functions import Value, sqrt
 from analysis.inertia.hanging import HangingCentre
 from analysis.inertia.parts import MADE_OF, BodyPart, combine, part
 from analysis.inertia.result import MassProperties
-from analysis.inertia.second_moments import impossible
+from analysis.inertia.second_moments import impossible_moments
 from analysis.uncertainty.budget import Budget, derived
 from analysis.uncertainty.estimate import Estimate, exactly, fresh_label
 from analysis.uncertainty.values import Contribution, UncertainValues
@@ -63,7 +63,7 @@ def correlated(table: object, entries: Sequence[CorrelationTable]) -> dict[str, 
     values = np.array([getattr(table, key) for key in keys], dtype=np.float64)
     uncertain_values = UncertainValues(values, (contribution,))
     return {
-        key: Estimate(uncertain_values.taken([k]), unit_of(key)[0]) for k, key in enumerate(keys)
+        key: Estimate(uncertain_values.select([k]), unit_of(key)[0]) for k, key in enumerate(keys)
     }
 
 
@@ -216,7 +216,7 @@ def properties(
     if set(gyradii) == set(AXES):
         roll, pitch, yaw = (gyradii[axis] for axis in AXES)
         nothing = exactly(0.0, "m")
-        flags = (*flags, *impossible(part(name, mass, (x, nothing, z), (roll, pitch, yaw))))
+        flags = (*flags, *impossible_moments(part(name, mass, (x, nothing, z), (roll, pitch, yaw))))
     return MassProperties(name, mass, x, z, dict(gyradii), tuple(budgets), tuple(flags)), ()
 
 

@@ -10,7 +10,7 @@ from analysis.inertia.gates import Passages, passages, read_gate_events
 from analysis.inertia.modulation import remove_modulation
 from analysis.inertia.passage_fit import PassageFit, fit_passages
 from analysis.inertia.record import RecordAnalysis, analyse_record, from_runs
-from analysis.inertia.repeats import KnownScatter, Repeated, combine_runs
+from analysis.inertia.repeats import KnownScatter, RepeatedValue, combine_runs
 from analysis.inertia.series import Series
 from analysis.inertia.stopwatch import StopwatchReading, stopwatch_period
 from analysis.readers import read_recording
@@ -221,7 +221,7 @@ def _from_records(
 
 def _undamped(
     runs: Sequence[RecordAnalysis], mode: int, source: PeriodSource, where: str
-) -> Repeated:
+) -> RepeatedValue:
     """Join the runs' periods at no amplitude and take the damping of small swings out."""
     joined = from_runs(runs, mode, known_scatter=source.known_scatter, subject=where)
     period = joined.estimate.value

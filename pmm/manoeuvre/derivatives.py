@@ -114,8 +114,8 @@ def _measured(
             f"{file.coefficients}: no values at coefficients_speed_m_s = {speed:g}; there are "
             f"{', '.join(f'{speed:g}' for speed in speeds)} m/s"
         )
-    system, uncertain_values = file.system_at(speed), coefficients.uncertain.taken(rows)
-    draws = np.column_stack((uncertain_values.values, uncertain_values.drawn(trials, generator)))
+    system, uncertain_values = file.system_at(speed), coefficients.uncertain.select(rows)
+    draws = np.column_stack((uncertain_values.values, uncertain_values.draw(trials, generator)))
     names = [coefficients.entries[k].name for k in rows]
     propelled_runs = {
         run for flag in coefficients.flags if flag.code == PROPELLED for run in flag.runs

@@ -20,7 +20,7 @@ from analysis.manoeuvring.manoeuvres import (
 )
 from analysis.manoeuvring.march import Log
 from analysis.manoeuvring.ship import Ship
-from analysis.manoeuvring.stability import Straight, straight_course
+from analysis.manoeuvring.stability import CourseStability, straight_course
 from hardware.description.arrays import FloatArray
 from hardware.description.oscillator import Plane
 from pmm.manoeuvre.derivatives import derivatives_of
@@ -46,7 +46,7 @@ class Prediction:
     turns: dict[str, TurningCircle]
     zigzags: dict[tuple[str, int], ZigZag]
     spiral: Spiral
-    straight: Straight
+    straight: CourseStability
     logs: dict[str, Log]
 
     @cached_property

@@ -123,7 +123,7 @@ def _departures(
     stated: Mapping[str, Any], simulated: SimulatedTables, name: str
 ) -> Iterator[Departure]:
     file = Path(simulated.file).name
-    own_tables = dict(simulated.own)
+    own_tables = dict(simulated.file_tables)
     if "oscillator" in own_tables:
         own_tables["oscillator"] = with_preset(own_tables["oscillator"])
     for key, value in _leaves(stated):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from hardware.description.heel import Held
+from hardware.description.heel import RollConstraint
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import Figure
 from pmm.document.style import PALETTE, new_figure
@@ -104,7 +104,7 @@ def attitude_figure(rows: Sequence[AttitudeRow]) -> "Drawing":
 def heel_figure(rows: Sequence[HeelRow]) -> "Drawing":
     """Draw the roll moment where there is a gauge for it, the heel where the model is free."""
     measured = any(row.moment is not None for row in rows)
-    free = any(row.held == Held.FREE for row in rows)
+    free = any(row.held == RollConstraint.FREE for row in rows)
     panel_rows = [
         *([_OF_MOMENT] if measured else []),
         *([_OF_HEEL] if free or not measured else []),

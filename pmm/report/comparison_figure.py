@@ -66,10 +66,10 @@ def comparison_figure(comparison: ChannelComparison, level: float = 0.95) -> "Fi
 def _enlarged(axes: "Axes", comparison: ChannelComparison) -> None:
     trace = comparison.trace
     half_s = _PERIODS / 2.0 / max(comparison.motion_hz, 1e-12)
-    power = trace.shown**2
+    power = trace.measured**2
     middle_s = float(trace.time_s @ power / power.sum())
     near = np.abs(trace.time_s - middle_s) <= half_s
-    axes.plot(trace.time_s[near], trace.shown[near], color=TRACE, label="second channel")
+    axes.plot(trace.time_s[near], trace.measured[near], color=TRACE, label="second channel")
     axes.plot(
         trace.time_s[near], trace.expected[near], "--", color=FIT, label="expected of the first"
     )
@@ -81,7 +81,7 @@ def _plot_remainder(axes: "Axes", comparison: ChannelComparison) -> None:
     trace = comparison.trace
     step = -(-len(trace.time_s) // _POINTS)
     axes.plot(
-        trace.time_s[::step], (trace.shown - trace.expected)[::step], color=PALETTE[0], lw=0.6
+        trace.time_s[::step], (trace.measured - trace.expected)[::step], color=PALETTE[0], lw=0.6
     )
     axes.set_ylabel(f"what is left\n({comparison.unit})")
     axes.set_xlabel("time on the second's clock (s)")

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from hardware.listening import Heard
+from hardware.listening import PortLines
 from hardware.roles import Reading
 from hardware.scan import FoundNode
 from hardware.serial_port import PluggedPort
@@ -99,9 +99,9 @@ _NODES: Final[tuple[Column[_Node], ...]] = (
     *(_of_node(key) for key in
       ("device_type", "vendor", "product", "revision", "serial", "name")),
 )  # fmt: skip
-_HEARD: Final[tuple[Column[tuple[str, Heard]], ...]] = (
+_HEARD: Final[tuple[Column[tuple[str, PortLines]], ...]] = (
     Column("port", lambda row: row[0]),
-    Column("is", lambda row: row[1].what, "is"),
+    Column("is", lambda row: row[1].device_kind, "is"),
     Column("lines", lambda row: {str(kind): count for kind, count in row[1].counts.items()},
            "lines", lambda counts: str(sum(counts.values())), number=True),
     Column("per second", lambda row: row[1].rate_hz, "per_second", written(".4g"), number=True),
@@ -118,7 +118,7 @@ _ASKED: Final[tuple[Column[tuple[str, str]], ...]] = (
 )
 
 
-def _last_lines(heard: Heard) -> str:
+def _last_lines(heard: PortLines) -> str:
     lines = [f"{kind} {line.value:g}" for kind, line in heard.last.items()]
     return ", ".join(lines) or heard.first_refused
 

@@ -156,7 +156,7 @@ def _use_text(run: Any) -> str:
         f"{mode.decay.beta_uncertainty:.1g}"
         for mode in run.modes
     )
-    return f"used {run.part.series.name}: {run.part.because}; {decays}"
+    return f"used {run.part.series.name}: {run.part.reason}; {decays}"
 
 
 def _period(runs: PeriodRuns) -> dict[str, Any]:
@@ -165,7 +165,7 @@ def _period(runs: PeriodRuns) -> dict[str, Any]:
         "how": runs.how,
         "periods": [estimate_numbers(period) for period in runs.periods],
         "runs_s": runs.single,
-        "used": [run.part.because for run in runs.records],
+        "used": [run.part.reason for run in runs.records],
         "decay": [[_decay(mode.decay) for mode in run.modes] for run in runs.records],
     }
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analysis.steering.inflow import INFLOW, behind
+from analysis.steering.inflow import INFLOW, propeller_and_rudder
 from analysis.steering.observations import SteeringRuns
 from hardware.description.arrays import FloatArray
 from pmm.document.notation import degrees
@@ -85,12 +85,12 @@ def _fitted(
     unit = np.ones((5, _POINTS))
     runs = SteeringRuns(("",) * _POINTS, motion, over, np.full(_POINTS, rate_hz), unit, unit)
     wake = np.full(_POINTS, parameters.wakes[3, condition])
-    return np.degrees(over), behind(runs, steering.particulars, wake, inflow)[1]
+    return np.degrees(over), propeller_and_rudder(runs, steering.particulars, wake, inflow)[1]
 
 
 def _load_variation(axes: "Axes", steering: CampaignSteering) -> None:
     runs, slope = steering.runs, steering.parameters["1-t_P"]
-    for mark, condition in zip("osD^v", runs.straight, strict=False):
+    for mark, condition in zip("osD^v", runs.straight_runs, strict=False):
         rows = runs.condition == condition
         amidships = np.abs(runs.rudder_rad[rows]) < np.radians(0.5)
         thrust, along = runs.values[3, rows][amidships], runs.values[0, rows][amidships]

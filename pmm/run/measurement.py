@@ -214,7 +214,7 @@ class Measurement:
             return with_expected(rows_of(self.reading), self._expected)
         if self._resolving is not None:
             resolver = self._resolving.resolver
-            if resolver.finished > max(self.reading.periods if self.reading else 0, 1):
+            if resolver.finished_periods > max(self.reading.periods if self.reading else 0, 1):
                 self.reading = resolver.so_far()
             rows = needles(self.channels, resolver.provisional(), self.reading)
             return with_expected(rows, self._expected)
@@ -274,7 +274,7 @@ class Measurement:
         target = self.run.target_relative
         if target is None or self.gate.state is not GateState.OPEN:
             return
-        periods = resolver.finished
+        periods = resolver.finished_periods
         if (
             periods <= self._judged
             or periods < max(self.run.periods, 2)

@@ -81,7 +81,7 @@ class CoupledMarch:
             self._check_unsettled(float(self.block.time_s[bad]))
             return None
         after = marched_state(course) if self.hull.system.states else hull_state
-        force = self.hull.forces_over(self.block, self.flow_m_s).whole(
+        force = self.hull.forces_over(self.block, self.flow_m_s).all_forces(
             outputs[:, :6], outputs[:, 6:8] + course.loads[TORQUE_DEGREE:, :2]
         )
         return shaft, course, after, self._signals(shaft.motion, course.struts[1:], force)

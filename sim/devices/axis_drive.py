@@ -105,7 +105,7 @@ class AxisDrive(SimulatedDrive):
         values[POSITION] = wrapped(self.position * self._per_unit + self._shift)
         values[VELOCITY] = round(speed * self._per_speed * sense)
 
-    def taken(self, counts: Number) -> float:
+    def limited_position(self, counts: Number) -> float:
         """Return where a set-point leads, the position limits kept."""
         low, high = self.number(_LOWEST), self.number(_HIGHEST)
         limited = min(max(counts, low), high) if low < high else counts
@@ -124,7 +124,7 @@ class AxisDrive(SimulatedDrive):
 
     def _take_set_point(self) -> None:
         self.bits = int(StatusWord.SET_POINT_ACKNOWLEDGED)
-        self._go(self.taken(self.values[TARGET_POSITION]), _SPEED, ACCELERATION)
+        self._go(self.limited_position(self.values[TARGET_POSITION]), _SPEED, ACCELERATION)
 
     def _home(self) -> None:
         self.bits = 0

@@ -12,7 +12,7 @@ from sim.devices.axis_drive import AxisDrive
 from sim.devices.drive import SimulatedDrive
 from sim.devices.modbus_devices import Controller
 from sim.devices.node import SimulatedNode
-from sim.devices.serial_devices import SimulatedInclinometer, Talker, held
+from sim.devices.serial_devices import SimulatedInclinometer, Talker, constant_angle
 from sim.devices.shaft_drive import ShaftDrive
 from sim.devices.strut_drive import StrutDrive
 from sim.devices.world import World
@@ -163,7 +163,7 @@ def _tilt(world: World, part: str, angle_rad: str) -> None:
     """Somebody holds the inclinometer at an angle in radians."""
     talker = _talker(world, part)
     if isinstance(talker, SimulatedInclinometer):
-        talker.angles = held(float(angle_rad))
+        talker.angles = constant_angle(float(angle_rad))
 
 
 def _missed(world: World, count: str) -> None:

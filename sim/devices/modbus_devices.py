@@ -201,7 +201,7 @@ class SimulatedCarriage(Controller):
         self._settings, self._really, self._runs = settings, driven, runs
         self._ramp_m_s = self._told_m_s = self._curvature = 0.0
         self.position_m = settings.track_m[0] if settings.track_m is not None else 0.0
-        self.show(settings.asked.position, self.position_m)
+        self.show(settings.signals.position, self.position_m)
 
     def _open(self, name: str, settings: AskedCarriageSettings) -> None:
         if not isinstance(settings, ModbusCarriageSettings):
@@ -211,7 +211,7 @@ class SimulatedCarriage(Controller):
     def move(self, step_s: float) -> None:
         """Go on along the ramp and the track."""
         settings = self._settings
-        wanted = self.number(settings.asked.set_speed) if self.driven else 0.0
+        wanted = self.number(settings.signals.set_speed) if self.driven else 0.0
         most = settings.acceleration_m_s2 * step_s
         self._ramp_m_s += min(max(wanted - self._ramp_m_s, -most), most)
         late = abs(self._ramp_m_s - self._told_m_s) >= settings.acceleration_m_s2 * _STEP_S
@@ -221,13 +221,13 @@ class SimulatedCarriage(Controller):
         speed, turn = self._really()
         self.position_m += speed * step_s
         if not self.stale:
-            self.show(settings.asked.speed, speed)
-            self.show(settings.asked.position, self.position_m)
-            self.show(settings.asked.turn_rate, turn)
+            self.show(settings.signals.speed, speed)
+            self.show(settings.signals.position, self.position_m)
+            self.show(settings.signals.turn_rate, turn)
 
     def _per_radius(self, wanted_m_s: float) -> float:
         """Return one over the circle's radius; on the ramp down that which it has."""
-        register = self._settings.asked.set_turn_rate
+        register = self._settings.signals.set_turn_rate
         if register is not None and wanted_m_s:
             self._curvature = self.number(register) / wanted_m_s
         return self._curvature

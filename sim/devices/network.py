@@ -39,7 +39,7 @@ class Wire(canopen.Network):
         self.outlets: list[deque[can.Message]] = []
         self.rpdos: dict[int, Callable[[bytes | bytearray], None]] = {}
         self.guarded: dict[int, Callable[[], int]] = {}
-        self.on_sync: Callable[[], None] = _nothing
+        self.on_sync: Callable[[], None] = _do_nothing
         self.hearing: list[Callable[[int], None]] = []
         self.time_s = 0.0
         self.number = 0
@@ -100,5 +100,5 @@ class _Unused:
         """Nothing to stop."""
 
 
-def _nothing() -> None:
+def _do_nothing() -> None:
     return

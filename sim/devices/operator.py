@@ -64,7 +64,7 @@ class SimulatedOperator:
             return float(question.value)
         plant = self._world.plant
         if question.part in ANGLE_KEYS:
-            return float(getattr(plant.around, ANGLE_KEYS[question.part]))
+            return float(getattr(plant.conditions, ANGLE_KEYS[question.part]))
         eccentricity_m, phase_rad = plant.linkage
         return {"eccentricity": eccentricity_m, "phase": phase_rad}.get(question.part, 0.0)
 

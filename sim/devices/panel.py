@@ -28,10 +28,10 @@ class SimulatedPanel(SimulatedCarriage):
             if self.mute or not self.cable.plugged:
                 return
             self._heard_s = self._time_s
-            said = "ERROR" if self.refuses else self._said(line.decode("ascii", "replace"))
+            said = "ERROR" if self.refuses else self._reply(line.decode("ascii", "replace"))
             self.cable.waiting += said.encode()[: -2 if self.torn else None] + self._ending
 
-    def _said(self, asked: str) -> str:
+    def _reply(self, asked: str) -> str:
         for line in self._every:
             if (answer := self._answer_to(line, asked)) is not None:
                 return answer

@@ -31,7 +31,13 @@ from sim.devices.modbus_devices import SimulatedAngle, SimulatedCarriage
 from sim.devices.network import Wire
 from sim.devices.panel import SimulatedPanel
 from sim.devices.plant import Plant, PlantConditions
-from sim.devices.serial_devices import Angles, SimulatedInclinometer, Talker, Timestamper, held
+from sim.devices.serial_devices import (
+    Angles,
+    SimulatedInclinometer,
+    Talker,
+    Timestamper,
+    constant_angle,
+)
 from sim.devices.shaft_drive import ShaftDrive
 from sim.devices.strut_drive import PositionLoop, StrutDrive
 from sim.rig import SimulatedRig
@@ -66,7 +72,7 @@ class Scene:
     around: PlantConditions = field(default_factory=PlantConditions)
     eccentricity_m: float = 0.0
     strut_phase_rad: float = 0.0
-    angles: Angles = field(default_factory=held)
+    angles: Angles = field(default_factory=constant_angle)
     strut_loop: PositionLoop = field(default_factory=PositionLoop)
 
 

@@ -174,7 +174,7 @@ class Plant:
         self._led |= {name: np.array([value]) for name, value in zip(names, motion, strict=True)}
 
     @property
-    def around(self) -> PlantConditions:
+    def conditions(self) -> PlantConditions:
         """The conditions outside the rig that hold now."""
         return self._around
 

@@ -86,7 +86,7 @@ class Timestamper(_Sayer):
 Angles = Callable[[int], float]
 
 
-def held(angle_rad: float = 0.0) -> Angles:
+def constant_angle(angle_rad: float = 0.0) -> Angles:
     """Return the angles of an inclinometer that nobody moves."""
     return lambda _number: angle_rad
 

@@ -100,7 +100,7 @@ class StrutDrive(AxisDrive):
         self._following = False
         self._new = False
         self._missed = 0
-        super().__init__(wire, name, settings, sample_rate_hz, position, _unheard)
+        super().__init__(wire, name, settings, sample_rate_hz, position, _ignore_position)
 
     @property
     def standing(self) -> bool:
@@ -194,7 +194,7 @@ class StrutDrive(AxisDrive):
         heard = self.wire.synchronous
         if new and heard:
             self._missed = 0
-            self._next = self.taken(self.values[TARGET_POSITION])
+            self._next = self.limited_position(self.values[TARGET_POSITION])
             return True
         self._missed += 1
         if self._missed > _ALLOWED:
@@ -209,5 +209,5 @@ class StrutDrive(AxisDrive):
 _STILL_M_S = 1e-4
 
 
-def _unheard(_position: float) -> None:
+def _ignore_position(_position: float) -> None:
     """Stand where an axis tells its position alone: a strut tells its whole motion."""

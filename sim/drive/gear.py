@@ -67,7 +67,7 @@ def geared(motor: Motor | None, gear: Gear, added_inertia_kg_m2: float) -> Linea
     motor
         ``None`` for one that turns as it is told.
     """
-    front = _told() if motor is None else closed_loop(motor, 0.0)
+    front = _ideal_motor() if motor is None else closed_loop(motor, 0.0)
     m, inertia = len(front.A), gear.crank_inertia_kg_m2 + added_inertia_kg_m2
     opening = np.hstack([front.C[0], -1.0, 0.0])
     rate = np.hstack([front.C[1], 0.0, -1.0])
@@ -88,6 +88,6 @@ def geared(motor: Motor | None, gear: Gear, added_inertia_kg_m2: float) -> Linea
     return LinearSystem(A, B, C, D)
 
 
-def _told() -> LinearSystem:
+def _ideal_motor() -> LinearSystem:
     """Return a motor that does not deviate."""
     return LinearSystem(np.zeros((0, 0)), np.zeros((0, 1)), np.zeros((3, 0)), np.zeros((3, 1)))

@@ -13,11 +13,11 @@ def closed_loop(motor: Motor, added_inertia_kg_m2: float) -> LinearSystem:
 
     Input: load torque (N m). Outputs: angle (rad), speed (rad/s), acceleration (rad/s2).
     """
-    return _closed(as_rows(np.hstack(motor.plant(added_inertia_kg_m2))), motor.loop)
+    return _closed_loop(as_rows(np.hstack(motor.plant(added_inertia_kg_m2))), motor.loop)
 
 
 @lru_cache(maxsize=256)
-def _closed(plant: Rows, loop: SpeedLoop) -> LinearSystem:
+def _closed_loop(plant: Rows, loop: SpeedLoop) -> LinearSystem:
     """Return the loop of a plant, A and B side by side, and its controller."""
     import control  # type: ignore[import-untyped]
 

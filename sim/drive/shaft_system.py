@@ -50,7 +50,7 @@ class MarchedShaft(NamedTuple):
         ``(n, 4)`` and ``(2, 4)``.
     at_once
         From this sample's inputs alone, where the state is known already.
-    told
+    unloaded
         Angle, speed, acceleration without the struts' load, and the opening of a gear's clearance
         then: ``(samples, 4)``.
     states, torques
@@ -73,7 +73,7 @@ class MarchedShaft(NamedTuple):
     to_outputs: FloatArray
     by_torque: FloatArray
     at_once: FloatArray
-    told: FloatArray
+    unloaded: FloatArray
     states: FloatArray
     torques: FloatArray
     motion: FloatArray

@@ -6,7 +6,7 @@ import numpy as np
 
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
-from sim.effects.measurement import later, of_forces, with_force_channels
+from sim.effects.measurement import delayed_rig, of_forces, with_force_channels
 from sim.effects.situation import Situation
 from sim.rig import SimulatedRig
 
@@ -34,7 +34,7 @@ class ChannelSkew(Effect):
         # No sample shows what is yet to come: where a force is ahead, all others are later.
         ahead_s = max(0.0, *(-delay for delay in delays))
         return with_force_channels(
-            later(rig, ahead_s),
+            delayed_rig(rig, ahead_s),
             lambda digitiser, i: replace(digitiser, delay_s=digitiser.delay_s + delays[i]),
         )
 

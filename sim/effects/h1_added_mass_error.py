@@ -43,14 +43,14 @@ class AddedMassError(Effect):
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this added mass on top of what its water has."""
-        return with_more(rig, added_mass=self._more(rig, set_point))
+        return with_more(rig, added_mass=self._added_mass_change(rig, set_point))
 
     def signature(self, situation: Situation) -> Signature:
         """Return ``s dA`` times the velocity through the water."""
-        more = self._more(situation.rig, situation.set_point).astype(np.complex128)
+        more = self._added_mass_change(situation.rig, situation.set_point).astype(np.complex128)
         return load(situation, lambda s: np.complex128(s) * more)
 
-    def _more(self, rig: SimulatedRig, set_point: SetPoint) -> FloatArray:
+    def _added_mass_change(self, rig: SimulatedRig, set_point: SetPoint) -> FloatArray:
         added_mass = np.diag(added_mass_at(rig, 2.0 * np.pi * set_point.frequency_hz))
         more: FloatArray = np.diag(added_mass * (self.translation, self.rotation))
         return more

@@ -43,14 +43,14 @@ class DampingError(Effect):
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this damping on top of what its water has."""
-        return with_more(rig, damping=self._more(rig, set_point))
+        return with_more(rig, damping=self._damping_change(rig, set_point))
 
     def signature(self, situation: Situation) -> Signature:
         """Return ``dB`` times the velocity through the water."""
-        more = self._more(situation.rig, situation.set_point).astype(np.complex128)
+        more = self._damping_change(situation.rig, situation.set_point).astype(np.complex128)
         return load(situation, lambda _: more)
 
-    def _more(self, rig: SimulatedRig, set_point: SetPoint) -> FloatArray:
+    def _damping_change(self, rig: SimulatedRig, set_point: SetPoint) -> FloatArray:
         damping = np.diag(damping_at(rig, 2.0 * np.pi * set_point.frequency_hz))
         more: FloatArray = np.diag(damping * (self.translation, self.rotation))
         return more

@@ -136,7 +136,7 @@ def of_law(
         return {}
     total = np.zeros((highest + 1, 2), dtype=np.complex128)
     for point in points:
-        along, motion = _at(situation, point)
+        along, motion = _point_in_struts(situation, point)
         size, phase = abs(motion), float(np.angle(motion))
         total += np.outer([wave(order, size, phase, point) for order in range(highest + 1)], along)
     changes: dict[tuple[str, int], complex] = {}
@@ -174,7 +174,7 @@ def of_hull_law(
     return changes
 
 
-def _at(situation: Situation, point: Point) -> tuple[FloatArray, complex]:
+def _point_in_struts(situation: Situation, point: Point) -> tuple[FloatArray, complex]:
     """Return a point's direction in strut coordinates, and what a law there depends on."""
     if point in STRUTS:
         strut = STRUTS.index(point)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, Signature, StageName, parameter
 from sim.effects.friction import UNLIKE, share_at
-from sim.effects.measurement import of_forces, squared, with_gauges
+from sim.effects.measurement import of_forces, squared_forces, with_gauges
 from sim.effects.situation import Situation
 from sim.effects.typical import even_share, force_n
 from sim.gauges.characteristic import Curve
@@ -62,5 +62,5 @@ class QuadraticGauge(Effect):
 
     def signature(self, situation: Situation) -> Signature:
         """Return q times the harmonics of the force squared."""
-        squares = squared(situation)
+        squares = squared_forces(situation)
         return of_forces(situation, lambda order, _: self.curvature_1_n * squares[order])

@@ -119,7 +119,7 @@ class Temperature(Effect):
         gain, zero = self.gain_1_k * self.rise_k, self.zero_n_k * self.rise_k
 
         def change(order: int, force: ComplexArray) -> ComplexArray:
-            more = self._more(situation, order) if situation.in_water else np.zeros(2)
+            more = self._load_change(situation, order) if situation.in_water else np.zeros(2)
             total: ComplexArray = gain * force + (1.0 + gain) * more
             return total + zero if order == 0 else total
 
@@ -129,7 +129,7 @@ class Temperature(Effect):
     def _factors(self) -> tuple[float, float]:
         return 1.0 + self.density_1_k * self.rise_k, 1.0 + self.damping_1_k * self.rise_k
 
-    def _more(self, situation: Situation, order: int) -> ComplexArray:
+    def _load_change(self, situation: Situation, order: int) -> ComplexArray:
         """Return what the water's loads change by."""
         (dense, viscous), water = self._factors, situation.rig.water
         s, to = 1j * order * situation.omega, situation.system.to_motion

@@ -47,8 +47,8 @@ class GaugesTurned(Effect):
         on_rig = oscillator.joint is Joint.SLIDES_ON_RIG
         line = np.arcsin(part) if on_rig else np.arctan(part)
         readings = np.stack(read)
-        changed = period.harmonics((_turned(readings, line, oscillator.pivot, oscillator.gauges,
-                                            on_rig) - readings).T)  # fmt: skip
+        changed = period.harmonics((_turned_readings(
+            readings, line, oscillator.pivot, oscillator.gauges, on_rig) - readings).T)  # fmt: skip
         changes: dict[tuple[str, int], complex] = {}
         for k, name in enumerate(_READINGS):
             changes[name, 0] = complex(changed[0, k])
@@ -57,7 +57,7 @@ class GaugesTurned(Effect):
         return changes
 
 
-def _turned(
+def _turned_readings(
     readings: FloatArray, line: FloatArray, pivot: Pivot, gauges: Gauges, on_rig: bool
 ) -> FloatArray:
     """Return what gauges on the other body read, from aft, fore and along, ``(3, instants)``."""

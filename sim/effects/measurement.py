@@ -48,7 +48,7 @@ def settled_more(settling_s: float, as_far_s: float) -> float:
     return -as_far_s / (settling_s * math.expm1(-as_far_s / settling_s))
 
 
-def later(rig: SimulatedRig, delay_s: float) -> SimulatedRig:
+def delayed_rig(rig: SimulatedRig, delay_s: float) -> SimulatedRig:
     """Return the rig with all its channels and the photocell's pulses later by as much."""
     if not delay_s:
         return rig
@@ -84,7 +84,7 @@ def of_waves(situation: Situation, change: Callable[[str, int], complex]) -> Sig
     }
 
 
-def squared(situation: Situation) -> ComplexArray:
+def squared_forces(situation: Situation) -> ComplexArray:
     """Return the harmonics of each strut's force squared, shape ``(orders + 1, 2)``.
 
     With F = sum H_n exp(i n th) in two-sided form the square is a convolution; for a force with one

@@ -157,26 +157,26 @@ class Dynamometers:
         self, state: DynamometerState, block: Block, inputs: Signals
     ) -> tuple[DynamometerState, Signals]:
         """Return the readings of both dynamometers over the block."""
-        aft, fore = self._felt(*(inputs[signal.name] for signal in self.reads))
+        aft, fore = self._with_cross_talk(*(inputs[signal.name] for signal in self.reads))
         aft_state, aft_reading = self.aft.read(state[0], block, aft)
         fore_state, fore_reading = self.fore.read(state[1], block, fore)
-        return (aft_state, fore_state), self._written(aft_reading, fore_reading)
+        return (aft_state, fore_state), self._by_signal(aft_reading, fore_reading)
 
-    def _felt(self, aft: ValuesT, fore: ValuesT) -> tuple[ValuesT, ValuesT]:
+    def _with_cross_talk(self, aft: ValuesT, fore: ValuesT) -> tuple[ValuesT, ValuesT]:
         if self.cross_talk_aft or self.cross_talk_fore:
             return aft + self.cross_talk_aft * fore, fore + self.cross_talk_fore * aft
         return aft, fore
 
-    def _written(self, aft: ValuesT, fore: ValuesT) -> dict[str, ValuesT]:
+    def _by_signal(self, aft: ValuesT, fore: ValuesT) -> dict[str, ValuesT]:
         return {signal.name: value for signal, value in zip(self.writes, (aft, fore), strict=True)}
 
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
         """Return the harmonics of the readings; the drift of the zero is left out."""
         if self.aft.is_straight and self.fore.is_straight:
-            felt = self._felt(*(inputs[signal.name] for signal in self.reads))
+            felt = self._with_cross_talk(*(inputs[signal.name] for signal in self.reads))
             gauges = zip((self.aft, self.fore), felt, strict=True)
             read = (gauge.gain * force + period.constant(gauge.offset_n) for gauge, force in gauges)
-            return period, self._written(*read)
+            return period, self._by_signal(*read)
         steady = Dynamometers(
             self.aft.without_drift(),
             self.fore.without_drift(),

@@ -60,7 +60,7 @@ def follow_with_play(
     speeds = v + a * half
     turning = (np.abs(v) < np.abs(a) * half) & (a != 0.0)
     extremes = np.where(turning, d - v**2 / (2.0 * np.where(turning, a, 1.0)), ends)
-    after = _held(state.position, extremes, ends, half_play_m)
+    after = _positions_behind(state.position, extremes, ends, half_play_m)
     before = np.concatenate([[state.position], after[:-1]])
     slack = half_play_m * (1.0 - 1e-12)
     pushed = ((ends - after >= slack) & (speeds > 0.0)) | ((after - ends >= slack) & (speeds < 0.0))
@@ -98,7 +98,9 @@ def _contact(
         return sign * speed, gap / (mean * step_s)
 
 
-def _held(start: float, extremes: FloatArray, ends: FloatArray, half_play_m: float) -> FloatArray:
+def _positions_behind(
+    start: float, extremes: FloatArray, ends: FloatArray, half_play_m: float
+) -> FloatArray:
     """Return where what is behind the joint is, after each extreme and the end that follows it."""
     position, positions = start, []
     for extreme, end in zip(extremes.tolist(), ends.tolist(), strict=True):

@@ -56,7 +56,7 @@ class LawBalance:
         """
         harmonics_given = np.stack([laws.real, laws.imag], axis=1)
         answer = np.empty_like(harmonics_given)
-        _answer(self._given(y), harmonics_given, answer)
+        _answer(self._arguments(y), harmonics_given, answer)
         harmonics: ComplexArray = answer[:, 0] + 1j * answer[:, 1]
         return harmonics
 
@@ -66,10 +66,10 @@ class LawBalance:
         Shape ``(orders + 1, 3)``: at the struts and along the model.
         """
         force = np.empty((len(y), 3), dtype=np.complex128)
-        settled = _balance(self._given(y), self.give is not None, force)
+        settled = _balance(self._arguments(y), self.give is not None, force)
         return force if settled else None
 
-    def _given(self, y: ComplexArray) -> tuple[Any, ...]:
+    def _arguments(self, y: ComplexArray) -> tuple[Any, ...]:
         return *self._laws, y, *self._whatever_moves
 
     @cached_property

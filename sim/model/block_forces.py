@@ -63,7 +63,7 @@ class BlockForces:
         force[:, :2] += linear
         return force
 
-    def whole(self, motion: FloatArray, at_struts: FloatArray) -> FloatArray:
+    def all_forces(self, motion: FloatArray, at_struts: FloatArray) -> FloatArray:
         """Return all forces, for the model's motion and those at the struts."""
         along = self._forces(self.laws, self.system.numbers, motion, at_struts)[:, 2:]
         return np.hstack([at_struts, along])
@@ -105,7 +105,7 @@ class BlockForces:
         states, motion, linear = under(loads)
         tail = np.vstack([history[start:], loads])[-LOAD_DEGREE:]
         after = HullState(_value(states[-1]), _value(struts[-1]), tuple(map(_value, tail)))
-        return after, self.whole(motion, linear + loads[:, :2])
+        return after, self.all_forces(motion, linear + loads[:, :2])
 
     @property
     def acts_back(self) -> bool:
@@ -127,7 +127,7 @@ class BlockForces:
 
         def respond(loads: FloatArray) -> FloatArray:
             nonlocal outputs
-            course.given[:, :2] = loads
+            course.external_loads[:, :2] = loads
             outputs = march_model(marching, course)
             return loads if outputs is None else swept(outputs)
 
@@ -140,7 +140,7 @@ class BlockForces:
             self._check_unsettled()
             return None
         force = outputs[:, 6:8] + course.loads[LOAD_DEGREE:, :2]
-        return marched_state(course), self.whole(outputs[:, :6], force)
+        return marched_state(course), self.all_forces(outputs[:, :6], force)
 
     def _check_unsettled(self) -> None:
         """Refuse a clearance that the march could not solve: sweeps cannot either."""
@@ -179,7 +179,7 @@ class BlockForces:
         course.loads[:LOAD_DEGREE] = history[:, :loads]
         course.instants[:, 1] = self._extra
         course.instants[:, 2] = instants.speed_m_s
-        return course._replace(known=start)
+        return course._replace(is_start_known=start)
 
     def at_first_sample(self, struts: FloatArray) -> HullState:
         """Return the state at a run's first sample: mounting and water at rest under the load."""

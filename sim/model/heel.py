@@ -12,7 +12,7 @@ import numpy as np
 
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.body import Body
-from hardware.description.heel import Heel, HeelGauges, Held, righting_moment
+from hardware.description.heel import Heel, HeelGauges, RollConstraint, righting_moment
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.mechanism.geometry import BodyMotion, gauge_readings
 from sim.model.heel_terms import HeelTerms
@@ -45,7 +45,7 @@ class Heeling:
     @property
     def free(self) -> bool:
         """Whether it rolls by itself."""
-        return self.heel.held is Held.FREE or self.release_rad != 0.0
+        return self.heel.held is RollConstraint.FREE or self.release_rad != 0.0
 
     @property
     def righting(self) -> tuple[float, float]:
@@ -65,7 +65,7 @@ class Heeling:
             From there, and after another release, the model begins at its own.
         """
         if not self.free:
-            return self._still(len(at.u)), ()
+            return self._rest_roll(len(at.u)), ()
         state = before[:-1] if before and before[-1] == self.release_rad else ()
         first = self.rest_rad + self.release_rad
         roll, after = march_roll(self._course(at), first, state, step_s)
@@ -74,7 +74,7 @@ class Heeling:
     def settled(self, at: BodyMotion, period: Period) -> FloatArray:
         """Return phi, p and pdot over a period that repeats."""
         if not self.free:
-            return self._still(period.points)
+            return self._rest_roll(period.points)
         course, s = self._course(at), period.s
         stiff, damping = course.slopes()
         operator = course.inertia * s**2 + damping * s + stiff
@@ -90,7 +90,7 @@ class Heeling:
 
     def readings(self, numbers: FloatArray, at: BodyMotion, roll: FloatArray) -> FloatArray:
         """Return what the gauges read more, aft, fore and along, then roll moment and heel."""
-        asked = self._asked(at, roll)
+        asked = self._strut_loads(at, roll)
         held = 0.0 * asked[3] if self.free else asked[3]
         forces = gauge_readings(numbers, at.cosine, at.sine, *asked[:3])
         return np.stack((*forces, held, roll[0]))
@@ -100,12 +100,12 @@ class Heeling:
         heeled = self.heel.gauges is HeelGauges.HEELED
         return np.cos(heel_rad) if heeled else np.ones_like(heel_rad)
 
-    def _still(self, count: int) -> FloatArray:
+    def _rest_roll(self, count: int) -> FloatArray:
         roll = np.zeros((3, count))
         roll[0] = self.rest_rad
         return roll
 
-    def _asked(self, at: BodyMotion, roll: FloatArray) -> FloatArray:
+    def _strut_loads(self, at: BodyMotion, roll: FloatArray) -> FloatArray:
         """Return the struts' loads ahead, across, about and in roll, shape ``(4, n)``."""
         phi, p, p_rate = roll
         sine, cosine = np.sin(phi), np.cos(phi)

@@ -98,7 +98,7 @@ class Hull(ModelParameters):
         instants = Instants(block.time_s, 1.0 / block.sample_rate_hz, flow)
         rolled = state.roll
         if not self.system.states:
-            force = self._over(instants).on_rigid_mounting(struts)
+            force = self._block_forces(instants).on_rigid_mounting(struts)
         else:
             state, force = self._with_memory(state, struts, instants)
         rows = np.ascontiguousarray(force.T)
@@ -115,7 +115,7 @@ class Hull(ModelParameters):
             rows[:3] += surging_readings(self.system.numbers, struts, flow, gain)
         if self.waves is not None:
             rows = self._in_waves(self.waves, rows, struts, flow, block.time_s)
-        return state, self._written(rows)
+        return state, self._by_signal(rows)
 
     def _in_waves(
         self,
@@ -143,7 +143,7 @@ class Hull(ModelParameters):
         rows[:2] *= heeling.on_gauges(roll[0])
         return rows
 
-    def _written(self, rows: NDArray[ValueT]) -> dict[str, NDArray[ValueT]]:
+    def _by_signal(self, rows: NDArray[ValueT]) -> dict[str, NDArray[ValueT]]:
         return {signal.name: row for signal, row in zip(self.writes, rows, strict=True)}
 
     def as_of(self, time_s: FloatArray, step_s: float) -> "tuple[Hull, int]":
@@ -171,9 +171,9 @@ class Hull(ModelParameters):
 
     def forces_over(self, block: Block, flow_m_s: FloatArray) -> BlockForces:
         """Return the forces over a block, at the flow's speed at each sample."""
-        return self._over(Instants(block.time_s, 1.0 / block.sample_rate_hz, flow_m_s))
+        return self._block_forces(Instants(block.time_s, 1.0 / block.sample_rate_hz, flow_m_s))
 
-    def _over(self, instants: Instants, marching: Marching | None = None) -> BlockForces:
+    def _block_forces(self, instants: Instants, marching: Marching | None = None) -> BlockForces:
         return BlockForces(self.laws, self.system, instants, marching)
 
     def _with_memory(
@@ -189,7 +189,9 @@ class Hull(ModelParameters):
             part_instants = instants._replace(
                 time_s=instants.time_s[part], speed_m_s=instants.speed_m_s[part]
             )
-            forces_here = hull._over(part_instants, marching_of(hull.laws, hull.system, step_s))
+            forces_here = hull._block_forces(
+                part_instants, marching_of(hull.laws, hull.system, step_s)
+            )
             state, force = forces_here.with_memory(state, struts[part], _holds(hull, step_s))
             forces.append(force)
             first += count
@@ -204,13 +206,13 @@ class Hull(ModelParameters):
         if self.mounting.joint is not None:
             return period, hull._settled(period, inputs)
         y = np.stack([inputs[signal.name] for signal in self.reads[:2]], axis=1)
-        rows = _steadily(hull, period).balanced(y).T
+        rows = _hull_steady(hull, period).balanced(y).T
         if self.waves is not None:  # of a frequency of their own: no part of the period
             calm_hull = replace(hull, waves=None)
             _, calm = calm_hull.steady(period, inputs)
             return period, {**calm, signals.WAVE_PROBE.name: period.constant(0.0)}
         if self.steering is None and self.heeling is None:
-            return period, self._written(rows)
+            return period, self._by_signal(rows)
         struts = np.stack([period.values(inputs[signal.name]) for signal in self.reads[:6]], axis=1)
         flow = np.full(period.points, hull.carriage_speed_m_s)
         if self.steering is not None:
@@ -223,7 +225,7 @@ class Hull(ModelParameters):
             roll = self.heeling.settled(at, period)
             values = self._heeled(self.heeling, period.values(rows.T).T, at, roll)
             rows = period.harmonics(values.T).T
-        return period, self._written(rows)
+        return period, self._by_signal(rows)
 
     def at_speed(self, inputs: Spectra) -> "Hull":
         """Return the model at the carriage's mean speed."""
@@ -246,7 +248,7 @@ class Hull(ModelParameters):
 
 
 @lru_cache(maxsize=256)
-def _steadily(hull: Hull, period: Period) -> HullSteady:
+def _hull_steady(hull: Hull, period: Period) -> HullSteady:
     """Return the model over a period, kept: a rig's motion changes more often than its model."""
     return HullSteady(hull.laws, hull.system, hull.carriage_speed_m_s, period)
 

@@ -63,24 +63,24 @@ class Course(NamedTuple):
     states, loads
         At the three samples before the first and, once solved, at each: ``(samples + 3, n)`` and
         ``(samples + 3, m)``, with the first m of the six loads, those that are there.
-    given
+    external_loads
         Loads that come from elsewhere, ``(samples, m)``.
     instants
         Time, speed beyond the mean, and speed, ``(samples, 3)``.
     scale
         What a change of the loads, then of the torques, counts relative to.
-    known
+    is_start_known
         1 where the state at the first sample is known, else 0.
     """
 
     struts: FloatArray
     states: FloatArray
     loads: FloatArray
-    given: FloatArray
+    external_loads: FloatArray
     instants: FloatArray
     step_s: float
     scale: FloatArray
-    known: int
+    is_start_known: int
 
 
 @compile_loop
@@ -225,9 +225,14 @@ def march(
     both struts; opening of both gauges), shape ``(samples, 8)``, or 10 where
     the gauges have a clearance, and all that the shaft does, if it is driven.
     """
-    struts, states, loads, start = course.struts, course.states, course.loads, course.known
+    struts, states, loads, start = course.struts, course.states, course.loads, course.is_start_known
     step, before, after, by_loads = model.step, model.before, model.after, model.by_loads
-    base_loads, driven, motion, torques = course.given, shaft.driven, shaft.told, shaft.torques
+    base_loads, driven, motion, torques = (
+        course.external_loads,
+        shaft.driven,
+        shaft.unloaded,
+        shaft.torques,
+    )
     laws, hull, by_speed, gap = table.laws, table.hull, model.by_speed, model.gap
     instants, step_s, scale = course.instants, course.step_s, course.scale
     by_torque, numbers, cogging, shaft_gap = (

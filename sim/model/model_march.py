@@ -135,8 +135,8 @@ def march_model(marching: Marching, course: "Course") -> FloatArray | None:
     """Fill in states and loads; return the outputs, or ``None`` if a sample does not settle."""
     from sim.model.march import march
 
-    columns = OUTPUTS if course.given.shape[1] == LOADS else OUTPUTS - 2
-    outputs = np.empty((len(course.given), columns))
+    columns = OUTPUTS if course.external_loads.shape[1] == LOADS else OUTPUTS - 2
+    outputs = np.empty((len(course.external_loads), columns))
     shaft, links = _undriven()
     bad = march(marching.model, marching.table, course, shaft, links, outputs)
     return None if bad >= 0 else outputs

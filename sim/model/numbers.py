@@ -137,10 +137,10 @@ def weight_less_buoyancy(hull: ModelParameters) -> FloatArray:
         return np.zeros(3)
     body = hull.body
     weight = body.mass_kg * np.array([1.0, body.cg_x_m, body.cg_z_m])
-    return STANDARD_GRAVITY_M_S2 * (weight - _borne(hull))
+    return STANDARD_GRAVITY_M_S2 * (weight - _displaced_mass(hull))
 
 
-def _borne(hull: ModelParameters) -> FloatArray:
+def _displaced_mass(hull: ModelParameters) -> FloatArray:
     """Return what the water bears: mass, and its moments ahead and below."""
     body = hull.body
     if not hull.afloat:

@@ -75,11 +75,11 @@ class OpenWater:
                 f"open-water table from {low:g} to {high:g}: extend the table, or change "
                 "carriage speed or revolutions"
             )
-        return np.asarray(_through(self)(advance)).T
+        return np.asarray(_interpolator(self)(advance)).T
 
 
 @lru_cache(maxsize=16)
-def _through(table: OpenWater) -> "PchipInterpolator":
+def _interpolator(table: OpenWater) -> "PchipInterpolator":
     from scipy.interpolate import PchipInterpolator
 
     columns = np.stack((table.thrust, table.torque), axis=1)

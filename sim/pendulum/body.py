@@ -102,7 +102,7 @@ class FreeBody:
     @property
     def reads(self) -> tuple[Signal, ...]:
         """What the release hands over."""
-        held = tuple(coordinate.held for coordinate in self.body.coordinates)
+        held = tuple(coordinate.held_position for coordinate in self.body.coordinates)
         return (RELEASE_HOLD, *held, *(coordinate.kick for coordinate in self.body.coordinates))
 
     @property
@@ -126,7 +126,7 @@ class FreeBody:
         samples = np.stack([inputs[signal.name] for signal in self.reads]).astype(np.float64)
         out = np.empty((len(self.writes), block.count))
         sliding = np.array(state.sliding)
-        model, tables, steps = _prepared(self.body, block.sample_rate_hz)
+        model, tables, steps = _kernel_arguments(self.body, block.sample_rate_hz)
         clock = (block.first, block.count, 1.0 / block.sample_rate_hz, steps)
         after, free = kernel.run(
             model, tables, clock, samples, np.array(state.motion), sliding, state.free, out
@@ -136,7 +136,7 @@ class FreeBody:
 
 
 @lru_cache(maxsize=16)
-def _prepared(body: SwingingBody, sample_rate_hz: float) -> tuple[object, object, int]:
+def _kernel_arguments(body: SwingingBody, sample_rate_hz: float) -> tuple[object, object, int]:
     """Return model, tables and steps a sample, as the compiled loop takes them."""
     rows = np.array([resistance.row for resistance in body.resistances])
     damping = np.diag(rows[:, 0])

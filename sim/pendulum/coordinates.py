@@ -34,7 +34,7 @@ class Coordinate:
         return Signal(f"{self.name}_acceleration", f"{self.unit}/s2")
 
     @property
-    def held(self) -> Signal:
+    def held_position(self) -> Signal:
         """Where it is held before the release."""
         return Signal(f"held_{self.name}", self.unit)
 

@@ -146,7 +146,7 @@ def _repeating(body: DrivenBody, linear: ComplexArray) -> FloatArray:
 def _period(body: DrivenBody, state: FloatArray) -> FloatArray:
     """Return displacement and rate over a period from a state, shape ``(2, samples + 1)``."""
     (coordinate,) = body.coordinates
-    rows = (RELEASE_HOLD, coordinate.held, coordinate.kick)
+    rows = (RELEASE_HOLD, coordinate.held_position, coordinate.kick)
     signals = np.repeat([[0.0], *state[:, None]], _SAMPLES + 1, axis=1)
     held = {row.name: values for row, values in zip(rows, signals, strict=True)}
     rate_hz = _SAMPLES * body.force.omega_rad_s / (2.0 * math.pi)

@@ -70,7 +70,7 @@ def rubbing(sign: FloatArray, loads: FloatArray) -> FloatArray:
 
 
 @compile_loop
-def holding(sign: FloatArray, loads: FloatArray) -> IntArray:
+def held_coordinates(sign: FloatArray, loads: FloatArray) -> IntArray:
     """Return the numbers of the coordinates that dry friction holds at rest."""
     stuck, count = np.empty(sign.size, dtype=np.int64), 0
     for i in range(sign.size):
@@ -89,7 +89,7 @@ def motion(model: Any, t: float, x: FloatArray, sign: FloatArray) -> tuple[Float
     a = accelerate(model, t, q, v, load)
     if not model[6]:
         return a, held
-    stuck = holding(sign, model[4])
+    stuck = held_coordinates(sign, model[4])
     square, right = np.empty((stuck.size, stuck.size)), np.empty(stuck.size)
     columns = np.empty((stuck.size, n))
     for j in range(stuck.size):
@@ -112,7 +112,7 @@ def motion(model: Any, t: float, x: FloatArray, sign: FloatArray) -> tuple[Float
 def pattern(sign: FloatArray, loads: FloatArray) -> int:
     """Number the set of coordinates that friction holds: bit i for coordinate i."""
     number = 0
-    for i in holding(sign, loads):
+    for i in held_coordinates(sign, loads):
         number += 1 << i
     return number
 
@@ -171,7 +171,7 @@ def settle(model: Any, t: float, x: FloatArray, sign: FloatArray) -> None:
 
 
 @compile_loop
-def turned(model: Any, t: float, x: FloatArray, sign: FloatArray) -> bool:
+def has_turned(model: Any, t: float, x: FloatArray, sign: FloatArray) -> bool:
     """Tell whether a sliding coordinate has reversed, or a held one broken loose."""
     n = sign.size
     for i in range(n):
@@ -201,7 +201,7 @@ def interval(
             level += 1
         now = t + step * steps / parts
         after = advance(model, tables, now, step, level, x, sign)
-        new = turned(model, now + step / 2.0**level, after, sign)
+        new = has_turned(model, now + step / 2.0**level, after, sign)
         if new and level < deepest:
             level += 1
             continue

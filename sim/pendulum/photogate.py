@@ -107,7 +107,7 @@ class Photogate:
         """Return the edges up to the block's last sample."""
         flag, first = self._flag(state, block, inputs)
         edges, blocked = self._edges(flag, block.sample_rate_hz)
-        chance, is_seen, missing = self._seen(state, blocked)
+        chance, is_seen, missing = self._detected(state, blocked)
         jitter, delays = draw_normal(state.jitter, edges.size)
         times = (first + edges) / block.sample_rate_hz + self.jitter_rms_s * delays
         last = state.last
@@ -138,7 +138,7 @@ class Photogate:
         order = np.argsort(edges, kind="stable")
         return edges[order], blocked[order]
 
-    def _seen(
+    def _detected(
         self, state: PhotogateState, blocked: FloatArray
     ) -> tuple[NoiseState, BoolArray, bool]:
         """Draw for each entry whether the passage is seen; its exit follows it."""

@@ -56,7 +56,7 @@ class Release:
     @property
     def writes(self) -> tuple[Signal, ...]:
         """Whether it is held, where, and with what rate it is let go."""
-        held = tuple(coordinate.held for coordinate in self.coordinates)
+        held = tuple(coordinate.held_position for coordinate in self.coordinates)
         return (RELEASE_HOLD, *held, *(coordinate.kick for coordinate in self.coordinates))
 
     def start(self, sample_rate_hz: float, seed: int) -> tuple[float, ...]:

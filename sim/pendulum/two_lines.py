@@ -45,7 +45,7 @@ def attitude_rates(
 
 
 @compile_loop
-def solved(a: float, b: float, c: float, right: FloatArray) -> tuple[float, float]:
+def solve_two(a: float, b: float, c: float, right: FloatArray) -> tuple[float, float]:
     """Return the solution of ``a x + b y = right[0]``, ``b x + c y = right[1]``."""
     det = a * c - b * b
     return (right[0] * c - b * right[1]) / det, (a * right[1] - b * right[0]) / det
@@ -125,7 +125,7 @@ def suspended(
     m00 = inner(line[0], line[0]) / mass + inner(lever[0], eased[0])
     m01 = inner(line[0], line[1]) / mass + inner(lever[0], eased[1])
     m11 = inner(line[1], line[1]) / mass + inner(lever[1], eased[1])
-    pull0, pull1 = solved(m00, m01, m11, right)
+    pull0, pull1 = solve_two(m00, m01, m11, right)
     pulled = combine(pull0, line[0], pull1, line[1])
     centre = combine(1.0, c0, -1.0 / mass, pulled)
     turning = combine(1.0, w0, -1.0, combine(pull0, eased[0], pull1, eased[1]))

@@ -14,7 +14,7 @@ import pytest
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign import Request, campaign_coefficients
 from analysis.coefficients.names import Form
-from analysis.coefficients.reference import compared, table_of_matrices
+from analysis.coefficients.reference import compare, table_of_matrices
 from analysis.coefficients.strut_cycle import measured_cycle
 from analysis.readers.dataset import from_dataset
 from analysis.resolver.analysis import analyse
@@ -81,7 +81,7 @@ def test_a_hull_comes_back_within_half_a_percent_or_its_interval(name: str, plan
     frequency = table.omega_rad_s / (2.0 * math.pi)
     request = Request(Form.SEAKEEPING, level=0.99, zero_frequency=False)
     found = campaign_coefficients(campaign(table), request)
-    beside = compared(
+    beside = compare(
         found, table_of_matrices(name, plane, frequency, table.added_mass, table.damping)
     ).references
     own = [row for row in beside if row.name[1] == row.name[2]]  # a33, b33, a55, b55 ...

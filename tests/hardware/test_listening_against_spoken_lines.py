@@ -8,7 +8,7 @@ import pytest
 from hardware import serial_port
 from hardware.errors import PortOpenError
 from hardware.lines import LineKind
-from hardware.listening import Heard, listen
+from hardware.listening import PortLines, listen
 from hardware.serial_port import PortSettings, SerialPort
 from tests.hardware.rigs import Talker
 
@@ -17,7 +17,7 @@ from tests.hardware.rigs import Talker
 def heard():
     """What is heard of a talker that says something before each look."""
 
-    def of(*sayings) -> Heard:
+    def of(*sayings) -> PortLines:
         now = [0.0]
         with Talker() as talker:
             port = SerialPort("port", PortSettings(talker.url))
@@ -42,7 +42,7 @@ def says(kind: LineKind, time_s: float, value: float):
 
 def test_an_inclinometer_is_known_by_its_lines(heard) -> None:
     found = heard(*(says(LineKind.ANGLE, i / 256.0, 0.5) for i in range(20)))
-    assert found.what == "inclinometer"
+    assert found.device_kind == "inclinometer"
     assert found.rate_hz == pytest.approx(256.0, rel=1e-4)
     assert (found.lost, found.refused) == (0, 0)
     assert found.last[LineKind.ANGLE].value == 0.5
@@ -52,7 +52,7 @@ def test_a_timestamper_is_known_by_its_lines(heard) -> None:
     found = heard(
         says(LineKind.TIME, 1.0, 7), says(LineKind.PULSE, 1.5, 8), says(LineKind.TIME, 2.0, 8)
     )
-    assert found.what == "timestamper"
+    assert found.device_kind == "timestamper"
     assert found.counts == {LineKind.TIME: 2, LineKind.PULSE: 1}
     assert found.rate_hz == pytest.approx(2.0)
 
@@ -69,17 +69,17 @@ def test_lost_and_damaged_lines_are_counted_but_not_the_first_fragment(heard) ->
         says(LineKind.TIME, 2.0, 0),
     )
     assert (found.refused, found.lost) == (1, 2)
-    assert found.what == "timestamper"
+    assert found.device_kind == "timestamper"
 
 
 def test_other_text_and_silence_are_told(heard) -> None:
     foreign = heard(lambda talker: talker.send(b"hello\nworld\n"))
-    assert foreign.what == "unknown: its lines are none of ours"
+    assert foreign.device_kind == "unknown: its lines are none of ours"
     assert foreign.first_refused == "hello"
     endless = heard(lambda talker: talker.send(b"x" * 300))
     assert "no line feed after 256 bytes" in endless.first_refused
     silent = heard()
-    assert silent.what == "silent"
+    assert silent.device_kind == "silent"
     assert math.isnan(silent.rate_hz)
 
 

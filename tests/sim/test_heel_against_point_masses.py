@@ -8,7 +8,7 @@ import pytest
 
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
-from hardware.description.heel import Heel, HeelGauges, Held
+from hardware.description.heel import Heel, HeelGauges, RollConstraint
 from hardware.description.setpoint import SetPoint
 from sim.acquisition.channels import Acquisition, Digitiser
 from sim.drive.prescribed_drive import DriveSettings
@@ -41,7 +41,7 @@ BODY = Body(
     MODEL.integral(0, 0, 1) / _MASS,
 )
 HEEL = Heel(
-    Held.SET,
+    RollConstraint.SET,
     inertia_kg_m2=MODEL.integral(0, 2, 0) + MODEL.integral(0, 0, 2),
     product_kg_m2=MODEL.integral(1, 0, 1),
     spread_kg_m2=MODEL.integral(0, 2, 0) - MODEL.integral(0, 0, 2),
@@ -108,7 +108,7 @@ def test_a_set_heel_asks_what_the_masses_ask(gauges: HeelGauges) -> None:
 
 
 def test_a_free_model_rolls_as_the_masses_do() -> None:
-    free = replace(HEEL, held=Held.FREE)
+    free = replace(HEEL, held=RollConstraint.FREE)
     made, point = rig(free), replace(POINT, heel_rad=0.05)
     exact = run_of(point, made.oscillator.half_spacing_m)
     run = simulate(made, point, periods=1, settling_periods=0, sample_rate_hz=100.0, seed=1)
@@ -121,7 +121,7 @@ def test_a_free_model_rolls_as_the_masses_do() -> None:
 
 
 def test_a_free_models_period_is_where_its_records_end() -> None:
-    made = rig(replace(HEEL, held=Held.FREE), K_p=-25.0)
+    made = rig(replace(HEEL, held=RollConstraint.FREE), K_p=-25.0)
     point = replace(POINT, heel_rad=0.05, drift_rad=0.0)
     run = simulate(made, point, periods=1, settling_periods=6, sample_rate_hz=100.0, seed=1)
     heel = run["heel_angle"].values[:400]
@@ -136,7 +136,7 @@ def test_a_free_models_period_is_where_its_records_end() -> None:
 
 
 def test_blocks_are_the_whole_run() -> None:
-    chain = rig(replace(HEEL, held=Held.FREE)).chain(POINT)
+    chain = rig(replace(HEEL, held=RollConstraint.FREE)).chain(POINT)
     _, whole = chain.run(chain.start(50.0, 1), 120)
     state = chain.start(50.0, 1)
     parts = []
@@ -164,4 +164,4 @@ def test_what_is_missing_is_said() -> None:
     with pytest.raises(ConfigurationError, match="K_phy means no term"):
         rig(K_phy=1.0).chain(POINT)
     with pytest.raises(ConfigurationError, match="needs inertia_kg_m2 and gm_m"):
-        Heel(Held.FREE)
+        Heel(RollConstraint.FREE)

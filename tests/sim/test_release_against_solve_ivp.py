@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from hardware.description.errors import ConfigurationError
-from hardware.description.heel import Heel, Held
+from hardware.description.heel import Heel, RollConstraint
 from hardware.description.setpoint import SetPoint
 from sim.acquisition.channels import Acquisition
 from sim.acquisition.digitiser import Digitiser
@@ -21,7 +21,7 @@ GRAVITY, INERTIA, GM, K_P, K_PDOT = 9.80665, 1.4, 0.03, -0.8, -0.3
 POINT = SetPoint(0.1, 0.0, release_rad=-0.2)
 
 
-def rig(held: Held) -> SimulatedRig:
+def rig(held: RollConstraint) -> SimulatedRig:
     nominal = horizontal_rig()
     return replace(
         nominal,
@@ -32,8 +32,10 @@ def rig(held: Held) -> SimulatedRig:
     )
 
 
-@pytest.mark.parametrize("held", Held)
-def test_it_rolls_from_there_as_the_equation_says_however_it_is_held_else(held: Held) -> None:
+@pytest.mark.parametrize("held", RollConstraint)
+def test_it_rolls_from_there_as_the_equation_says_however_it_is_held_else(
+    held: RollConstraint,
+) -> None:
     own = rig_at_rest(rig(held))
     run = simulate(own, POINT, periods=1, settling_periods=0, sample_rate_hz=50.0, seed=1)
     time_s = run["time"].values
@@ -50,7 +52,11 @@ def test_a_state_goes_on_and_another_release_begins_anew() -> None:
     from sim.mechanism.geometry import BodyMotion
 
     still = BodyMotion(*(np.zeros(30) for _ in BodyMotion._fields))
-    given = (rig(Held.FREE).heel, MODEL_2M5, rig(Held.FREE).heeling(SetPoint(0.1, 0.0)).terms)
+    given = (
+        rig(RollConstraint.FREE).heel,
+        MODEL_2M5,
+        rig(RollConstraint.FREE).heeling(SetPoint(0.1, 0.0)).terms,
+    )
     rolled, after = Heeling(*given, release_rad=0.1).rolling(still, (), 0.02)
     more, _ = Heeling(*given, release_rad=0.1).rolling(still, after, 0.02)
     assert abs(more[0, 0] - rolled[0, -1]) < 0.02 * abs(rolled[1, -1]) * 1.01 + 1e-9

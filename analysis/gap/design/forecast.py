@@ -11,7 +11,7 @@ from analysis.gap.forward.free_numbers import Free, tolerated
 from analysis.gap.forward.problem import Problem
 from analysis.gap.forward.tolerances import Tolerances
 from analysis.gap.observe.components import STEADY_PARTS, GapRun, Observation, Stack
-from analysis.gap.search.fit import Fit, at
+from analysis.gap.search.fit import Fit, linearised_at
 from analysis.gap.search.joint import FittedRig
 from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.errors import PmmError
@@ -31,7 +31,7 @@ class Forecast:
         Departure from the nominal simulation in sigma, shape ``(observations,)``.
     root
         Times its transpose it is the covariance of what all runs share, ``(observations, k)``.
-    own
+    run_root
         The same of each run's own frequency and phase reference, and of the loudness of its noise.
     form
         The same of the effect's own form, by about as much as it is off.
@@ -39,12 +39,12 @@ class Forecast:
 
     mean: FloatArray
     root: FloatArray
-    own: FloatArray
+    run_root: FloatArray
     form: FloatArray
 
-    def whole(self, rows: BoolArray) -> FloatArray:
+    def covariance_root(self, rows: BoolArray) -> FloatArray:
         """Return a root of the covariance of some observations to be made, without the noise."""
-        roots = [root[rows] for root in (self.root, self.own, self.form)]
+        roots = [root[rows] for root in (self.root, self.run_root, self.form)]
         return np.hstack([root[:, root.any(axis=0)] for root in roots])
 
     def values(self, problem_ahead: Problem) -> FloatArray:
@@ -92,7 +92,7 @@ def planned(
     )
 
 
-def further(
+def with_further_runs(
     problem: Problem, runs: Sequence[GapRun], free: Sequence[Free], tolerances: Tolerances
 ) -> Problem:
     """Return the same problem at further runs."""
@@ -173,7 +173,7 @@ class _Ahead:
     ) -> "_Ahead":
         if fit is not None:
             try:
-                fit_ahead = at(problem_ahead, fit.candidates, fit.units)
+                fit_ahead = linearised_at(problem_ahead, fit.candidates, fit.units)
                 signature = fit_ahead.signature
                 if not roughly:
                     signature = _on_fitted_rig(problem, problem_ahead, fit, fit_ahead)

@@ -35,8 +35,8 @@ class Worth:
 
     @classmethod
     def of(cls, shares: Sequence[float], odds: FloatArray) -> "Worth":
-        """Return the worth of a run; see :func:`gained`."""
-        return cls(gained(shares, odds), gained(shares, odds, np.inf))
+        """Return the worth of a run; see :func:`expected_gain`."""
+        return cls(expected_gain(shares, odds), expected_gain(shares, odds, np.inf))
 
     @property
     def order(self) -> tuple[float, float]:
@@ -44,7 +44,7 @@ class Worth:
         return -round(self.gain, 1), -round(self.uncapped, 1)
 
 
-def gained(shares: Sequence[float], odds: FloatArray, enough: float = ENOUGH) -> float:
+def expected_gain(shares: Sequence[float], odds: FloatArray, enough: float = ENOUGH) -> float:
     """Return the log odds that the right answer gains over all others, over which it may be.
 
     Parameters
@@ -66,7 +66,7 @@ def gained(shares: Sequence[float], odds: FloatArray, enough: float = ENOUGH) ->
     return float(np.average(gain, weights=shares))
 
 
-def apart(means: FloatArray, roots: Sequence[FloatArray]) -> FloatArray:
+def expected_log_odds(means: FloatArray, roots: Sequence[FloatArray]) -> FloatArray:
     """Return the expected log odds between each two answers after a run, by symmetric divergence.
 
     Parameters
@@ -92,7 +92,7 @@ def by_itself(problem: Problem, kind: str, leading: Leading) -> FloatArray:
     """
     stack = problem.simulator.stack
     rows = ~stack.steady
-    effect_sets = [_named(fit, kind) for fit, _ in leading]
+    effect_sets = [_shown_effects(fit, kind) for fit, _ in leading]
     shown = [
         fit.signature[rows] if fit is not None and names else np.zeros(int(rows.sum()))
         for (fit, _), names in zip(leading, effect_sets, strict=True)
@@ -106,7 +106,7 @@ def by_itself(problem: Problem, kind: str, leading: Leading) -> FloatArray:
     return np.minimum(odds, ENOUGH)
 
 
-def _named(fit: Fit | None, kind: str) -> set[str]:
+def _shown_effects(fit: Fit | None, kind: str) -> set[str]:
     """Return the effects of an answer that do not repeat and show in a measurement."""
     parts = () if fit is None else fit.candidates
     return {candidate.name for candidate in parts if kind in candidate.kind.shown_by}

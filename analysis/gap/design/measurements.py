@@ -59,7 +59,7 @@ def measured_besides(
     force_n
         Check weight, or amplitude of the sine.
     """
-    near = min(problem.simulator.stack.turning, key=_far)
+    near = min(problem.simulator.stack.turning, key=_frequency_distance)
     parts = tuple(_parts(kind, {component.channel for component in near.observed.components}))
     loaded = [component.channel for component in parts if component.channel.endswith(strut)]
     sampled = (
@@ -84,7 +84,7 @@ def measured_besides(
     )  # fmt: skip
 
 
-def _far(run: GapRun) -> float:
+def _frequency_distance(run: GapRun) -> float:
     return abs(float(np.log(run.set_point.frequency_hz / _USUAL_HZ)))
 
 

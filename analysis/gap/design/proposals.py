@@ -17,8 +17,8 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.design.forecast import forecast, further, next_place, planned
-from analysis.gap.design.information_gain import Leading, Worth, apart, by_itself
+from analysis.gap.design.forecast import forecast, next_place, planned, with_further_runs
+from analysis.gap.design.information_gain import Leading, Worth, by_itself, expected_log_odds
 from analysis.gap.design.measurements import BESIDES, INJECTED_HZ, measured_besides
 from analysis.gap.forward.free_numbers import Free
 from analysis.gap.forward.problem import Problem
@@ -130,7 +130,7 @@ def proposals(
 ) -> tuple[Proposal, ...]:
     """Return runs in the order of what they are worth."""
     place = next_place(problem)
-    weighed = partial(_weighed, problem, leading, free=free, tolerances=tolerances)
+    weighed = partial(_valued_choices, problem, leading, free=free, tolerances=tolerances)
     first, gentler = _by_size(tuple(_oscillations(problem, choices, place)))
     ranked = sorted(weighed(first), key=_order)
     # A gentler motion tells more than another kind of run only where the larger one tells much.
@@ -144,7 +144,7 @@ def proposals(
     if plays and FurtherMeasurement.PRELOAD in choices.special:
         # the larger ones may throw a weight off
         bare = [*(choice for choice, _ in ranked), *remaining]
-        pressed = _preloaded(problem.simulator, bare, choices)
+        pressed = _preloaded_choices(problem.simulator, bare, choices)
         ranked += weighed(tuple(islice(pressed, _PRELOADED)))
     ranked += weighed(tuple(_measurements(problem, choices, place)))
     answers = tuple(NO_GAP if fit is None else " and ".join(fit.names) for fit, _ in leading)
@@ -182,7 +182,7 @@ def _by_size(choices: Sequence[_Choice]) -> tuple[list[_Choice], list[_Choice]]:
     return first, [choice for choice in choices if choice not in first]
 
 
-def _preloaded(
+def _preloaded_choices(
     simulator: Simulator, turning: Sequence[_Choice], choices: Choices
 ) -> Iterator[_Choice]:
     """Yield oscillations with a weight on the model that keeps both struts pressed one way.
@@ -229,7 +229,7 @@ def _readable(force_n: float) -> float:
     return float(f"{force_n:.2g}")
 
 
-def _weighed(
+def _valued_choices(
     problem: Problem,
     leading: Leading,
     batch: Sequence[_Choice],
@@ -239,13 +239,15 @@ def _weighed(
     """Yield each choice with what it is worth."""
     if not batch:
         return
-    problem_ahead = further(problem, [choice.run for choice in batch], free, tolerances)
+    problem_ahead = with_further_runs(problem, [choice.run for choice in batch], free, tolerances)
     forecasts = [forecast(problem, problem_ahead, fit, roughly=True) for fit, _ in leading]
     shares = [share for _, share in leading]
     for number, choice in enumerate(batch):
         rows = problem_ahead.simulator.stack.run == number
         means = np.column_stack([forecasted.mean[rows] for forecasted in forecasts])
-        odds = apart(means, [forecasted.whole(rows) for forecasted in forecasts])
+        odds = expected_log_odds(
+            means, [forecasted.covariance_root(rows) for forecasted in forecasts]
+        )
         odds = odds + by_itself(problem, choice.kind, leading)
         yield choice, Worth.of(shares, odds)
 
@@ -287,5 +289,5 @@ def _largest_force_n(simulator: Simulator, runs: Sequence[GapRun]) -> float:
 
 
 def _force_n(simulator: Simulator, run: GapRun) -> float:
-    spectra = simulator.state(run, simulator.on).spectra
+    spectra = simulator.state(run, simulator.active_effects).spectra
     return max(abs(complex(spectra[force.name][1])) for force in (FORCE_AFT, FORCE_FORE))

@@ -88,7 +88,7 @@ def _of_load(simulator: Simulator, twice: dict[str, FloatArray]) -> FloatArray:
 
 def _ripple(simulator: Simulator, run: GapRun) -> complex:
     """Return the ripple that a run's load gives a shaft of 1 kg m2: size and phase."""
-    state = simulator.state(run, simulator.on)
+    state = simulator.state(run, simulator.active_effects)
     period = state.period
     angle_rad = np.arange(period.points) * 2.0 * math.pi / period.points
     turn = np.exp(1j * np.outer(angle_rad, np.arange(period.orders + 1)))

@@ -97,7 +97,7 @@ class Candidate:
 
     kind: type[Any]
     axes: tuple[Axis, ...]
-    held: Mapping[str, float]
+    fixed_values: Mapping[str, float]
     stage: str
     repeats: bool = True
     costly: bool = False
@@ -113,10 +113,12 @@ class Candidate:
         """Where a fit begins, shape ``(p,)``, in prior units."""
         return np.array([axis.start for axis in self.axes])
 
-    def freed(self, axis: Axis) -> "Candidate":
+    def with_free(self, axis: Axis) -> "Candidate":
         """Return it with a parameter free that it holds."""
-        held = {key: value for key, value in self.held.items() if key != axis.parameter.name}
-        return replace(self, axes=(*self.axes, axis), held=held)
+        held = {
+            key: value for key, value in self.fixed_values.items() if key != axis.parameter.name
+        }
+        return replace(self, axes=(*self.axes, axis), fixed_values=held)
 
     def effect(self, units: FloatArray) -> Any:
         """Return the effect with its parameters at ``units`` prior deviations."""
@@ -125,7 +127,7 @@ class Candidate:
             for axis, unit in zip(self.axes, units, strict=True)
         }
         channel = {"channel": self.channel} if self.channel else {}
-        return self.kind(**values, **self.held, **channel)
+        return self.kind(**values, **self.fixed_values, **channel)
 
     @property
     def reach(self) -> float:
@@ -176,7 +178,7 @@ def _options(
             for value in parameter.starts or _bands(parameter, frequencies_hz)
         )
     else:
-        begins = _begins(axis, frequencies_hz)
+        begins = _starts(axis, frequencies_hz)
         yield from (replace(axis, start=axis.unit(value)) for value in begins)
         if parameter.least:
             yield from (replace(axis, sign=-1.0, start=-axis.unit(value)) for value in begins)
@@ -204,17 +206,17 @@ def axis_of(parameter: Parameter, siblings: tuple[Parameter, ...]) -> Axis:
     return Axis(parameter, math.log(parameter.typical), _SPREAD * widest, is_log=True)
 
 
-def _begins(axis: Axis, frequencies_hz: Sequence[float]) -> Sequence[float]:
+def _starts(axis: Axis, frequencies_hz: Sequence[float]) -> Sequence[float]:
     """Return the values from which a parameter is fitted."""
     parameter = axis.parameter
-    usual = parameter.starts or _usual(axis)
+    usual = parameter.starts or _usual_starts(axis)
     if not parameter.resonance:
         return usual
     low, high = min(frequencies_hz), max(frequencies_hz)
     return (*usual, 1.15 * high, math.sqrt(high * low))
 
 
-def _usual(axis: Axis) -> tuple[float, ...]:
+def _usual_starts(axis: Axis) -> tuple[float, ...]:
     parameter = axis.parameter
     if is_share(parameter):
         return (parameter.high, parameter.low)
@@ -244,7 +246,7 @@ def is_share(parameter: Parameter) -> bool:
     return parameter.unit == "1" and parameter.low == 0.0 and parameter.high == 1.0
 
 
-def turned(candidate: Candidate) -> Iterator[FloatArray]:
+def turned_starts(candidate: Candidate) -> Iterator[FloatArray]:
     """Yield starts a third of a turn to either side, for an effect with a phase."""
     for at, axis in enumerate(candidate.axes):
         if is_phase(axis.parameter):

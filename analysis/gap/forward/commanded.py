@@ -36,11 +36,11 @@ _TOLERANCES: Final = {
 _UNLIKE: Final = 0.1  # relative: eccentricities by which a factor is told from what is added
 
 
-class _Off(NamedTuple):
+class _Deviation(NamedTuple):
     """By how much a setting of one run is off; an eccentricity relative to the one that was set."""
 
     name: str
-    off: Estimate
+    deviation: Estimate
     eccentricity_m: float
 
 
@@ -50,7 +50,7 @@ class KnownSetting:
 
     Attributes
     ----------
-    off
+    deviation
         By how much it is off from what the simulation states, the mean of the runs: eccentricities
         relative to what was set.
     added_m
@@ -63,7 +63,7 @@ class KnownSetting:
     """
 
     name: str
-    off: Estimate
+    deviation: Estimate
     added_m: Estimate | None
     tolerance: float
     runs: int
@@ -80,7 +80,7 @@ class Commanded:
 
     rig: SimulatedRig
     tolerances: Tolerances
-    told: tuple[KnownSetting, ...]
+    known_settings: tuple[KnownSetting, ...]
 
 
 def commanded(
@@ -102,12 +102,12 @@ def commanded(
     stated
         Keys of tolerances that the user states: what these are of stays as it is stated.
     """
-    offs_by_name: dict[str, list[_Off]] = {}
+    offs_by_name: dict[str, list[_Deviation]] = {}
     for run in runs:
         for off in _of_run(rig, run, on, reference) if run.following else ():
             if _TOLERANCES[off.name] not in stated:
                 offs_by_name.setdefault(off.name, []).append(off)
-    settings = tuple(_told(offs, tolerances) for offs in offs_by_name.values())
+    settings = tuple(_known_setting(offs, tolerances) for offs in offs_by_name.values())
     wide: dict[str, float] = {}
     for setting in settings:
         rig = _MOVED[setting.name](rig, setting)
@@ -117,7 +117,7 @@ def commanded(
 
 def _of_run(
     rig: SimulatedRig, run: GapRun, on: Sequence[Effect], reference: str | None
-) -> Iterator[_Off]:
+) -> Iterator[_Deviation]:
     acting, set_point = switch_on(on, rig, run.set_point, run.place)
     omega, set_m = 2.0 * math.pi * set_point.frequency_hz, set_point.eccentricity_m
     linkages = (acting.linkage_aft, acting.linkage_fore)
@@ -125,35 +125,35 @@ def _of_run(
     for name, linkage, pair in zip(_ECCENTRICITIES, linkages, pairs, strict=True):
         if pair is not None:
             off = pair.gain.value - linkage.eccentricity_m(set_m) / set_m
-            yield _Off(name, pair.gain.following(off, 1.0), set_m)
+            yield _Deviation(name, pair.gain.following(off, 1.0), set_m)
     rate = min(
         (pair.clock_rate for pair in pairs if pair), key=lambda estimate: estimate.uncertainty
     )
     slower = rate.following(-rate.value - acting.drive.speed_error, -1.0)
-    yield _Off(_FREQUENCY, replace(slower, unit="1"), set_m)
-    aft, fore = (None if pair is None else _ahead(pair.lag_s, omega) for pair in pairs)
+    yield _Deviation(_FREQUENCY, replace(slower, unit="1"), set_m)
+    aft, fore = (None if pair is None else _lead_angle(pair.lag_s, omega) for pair in pairs)
     if aft is not None and fore is not None:
         set_rad = linkages[1].phase_error_rad - linkages[0].phase_error_rad
-        yield _Off(_PHASE, _less(difference(fore, aft), set_rad), set_m)
+        yield _Deviation(_PHASE, _angle_difference(difference(fore, aft), set_rad), set_m)
     if aft is not None and reference == COMMANDS[0]:
         cell = acting.photocell or PhotocellStage()
         mark_rad = cell.mark_angle_rad + omega * cell.latency_s
-        yield _Off(_REFERENCE, _less(aft, mark_rad), set_m)
+        yield _Deviation(_REFERENCE, _angle_difference(aft, mark_rad), set_m)
 
 
-def _ahead(lag_s: Estimate, omega: float) -> Estimate:
+def _lead_angle(lag_s: Estimate, omega: float) -> Estimate:
     """Return the angle that a strut is ahead of its command."""
     return replace(lag_s.following(-omega * lag_s.value, -omega), unit="rad")
 
 
-def _less(angle: Estimate, stated_rad: float) -> Estimate:
+def _angle_difference(angle: Estimate, stated_rad: float) -> Estimate:
     """Return an angle less what is stated of it, within half a turn of nothing."""
     return angle.following(math.remainder(angle.value - stated_rad, 2.0 * math.pi), 1.0)
 
 
-def _told(offs: Sequence[_Off], tolerances: Tolerances) -> KnownSetting:
+def _known_setting(offs: Sequence[_Deviation], tolerances: Tolerances) -> KnownSetting:
     """Return what the runs have in common; where they do not agree, Birge's ratio widens it."""
-    name, unit = offs[0].name, offs[0].off.unit
+    name, unit = offs[0].name, offs[0].deviation.unit
     set_m = np.array([off.eccentricity_m for off in offs])
     struts = name in _ECCENTRICITIES
     has_added = struts and float(np.ptp(set_m)) > _UNLIKE * float(set_m.max())
@@ -162,13 +162,13 @@ def _told(offs: Sequence[_Off], tolerances: Tolerances) -> KnownSetting:
     )
     fitted, _ = best_fit(
         matrix,
-        joint([off.off for off in offs]),
+        joint([off.deviation for off in offs]),
         subject=name,
         results=(name, "added")[: matrix.shape[1]],
         data=[f"run {number + 1}" for number in range(len(offs))],
     )
-    off = Estimate(fitted.taken([0]), unit)
-    added_m = Estimate(fitted.taken([1]), "m") if has_added else None
+    off = Estimate(fitted.select([0]), unit)
+    added_m = Estimate(fitted.select([1]), "m") if has_added else None
     uncertainty, unseen = (
         off.uncertainty,
         tolerances.frequency_relative if name == _FREQUENCY else 0.0,
@@ -186,7 +186,7 @@ def _eccentricity(strut: str) -> Callable[[SimulatedRig, KnownSetting], Simulate
         added_m = 0.0 if setting.added_m is None else setting.added_m.value
         off = replace(
             linkage,
-            gain=linkage.gain + setting.off.value,
+            gain=linkage.gain + setting.deviation.value,
             eccentricity_error_m=linkage.eccentricity_error_m + added_m,
         )
         return replace(rig, linkage_aft=off) if strut == "aft" else replace(rig, linkage_fore=off)
@@ -196,18 +196,18 @@ def _eccentricity(strut: str) -> Callable[[SimulatedRig, KnownSetting], Simulate
 
 def _strut_phase(rig: SimulatedRig, setting: KnownSetting) -> SimulatedRig:
     fore = rig.linkage_fore
-    turned = replace(fore, phase_error_rad=fore.phase_error_rad + setting.off.value)
+    turned = replace(fore, phase_error_rad=fore.phase_error_rad + setting.deviation.value)
     return replace(rig, linkage_fore=turned)
 
 
 def _frequency(rig: SimulatedRig, setting: KnownSetting) -> SimulatedRig:
-    speed_error = rig.drive.speed_error + setting.off.value
+    speed_error = rig.drive.speed_error + setting.deviation.value
     return replace(rig, drive=replace(rig.drive, speed_error=speed_error))
 
 
 def _reference(rig: SimulatedRig, setting: KnownSetting) -> SimulatedRig:
     cell = rig.photocell or PhotocellStage()
-    marked = replace(cell, mark_angle_rad=cell.mark_angle_rad + setting.off.value)
+    marked = replace(cell, mark_angle_rad=cell.mark_angle_rad + setting.deviation.value)
     return replace(rig, photocell=marked)
 
 

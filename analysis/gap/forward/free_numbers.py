@@ -112,7 +112,7 @@ def _of_matrix(rig: SimulatedRig, term: str, tolerances: Tolerances) -> Iterator
             diagonal = getattr(tolerances, f"{term}_relative")
             weight = diagonal if row == column else tolerances.coupling_relative
             name = f"{_TERMS[term]}{row + 1}{column + 1}"
-            yield Free(name, weight * scale, _adding(term, row, column))
+            yield Free(name, weight * scale, _term_change(term, row, column))
 
 
 def _remembered(rig: SimulatedRig, term: str) -> FloatArray:
@@ -124,7 +124,7 @@ def _remembered(rig: SimulatedRig, term: str) -> FloatArray:
     return np.asarray(getattr(rig.radiation, term)(middle), np.float64)
 
 
-def _adding(term: str, row: int, column: int) -> Change:
+def _term_change(term: str, row: int, column: int) -> Change:
     def change(rig: SimulatedRig, value: float) -> SimulatedRig:
         old: Matrix = getattr(rig.water, term)
         rows = [list(terms) for terms in old]
@@ -181,7 +181,9 @@ def tolerated(simulator: Simulator, free: Sequence[Free], tolerances: Tolerances
     stack = simulator.stack
     run_columns = [
         *by_run(stack, _frequencies(simulator, base, tolerances.frequency_relative)),
-        *by_run(stack, _turned(stack, base, 1.0) * references_rad(stack, tolerances.reference_rad)),
+        *by_run(
+            stack, _turn_change(stack, base, 1.0) * references_rad(stack, tolerances.reference_rad)
+        ),
         *_uneven(stack, free, changes, tolerances.carriage_relative),
     ]
     levels = {
@@ -225,7 +227,7 @@ def _frequencies(simulator: Simulator, base: FloatArray, relative: float) -> Flo
     return np.asarray((moved - base) / 0.01 / simulator.stack.uncertainty, np.float64)
 
 
-def _turned(stack: Stack, base: FloatArray, angle_rad: float) -> FloatArray:
+def _turn_change(stack: Stack, base: FloatArray, angle_rad: float) -> FloatArray:
     """Return what it changes to count the shaft's angle from a little later."""
     partners = {Part.IN_PHASE: (Part.QUADRATURE, -1.0), Part.QUADRATURE: (Part.IN_PHASE, 1.0)}
     keys = zip(stack.run.tolist(), stack.components, strict=True)

@@ -45,7 +45,7 @@ def pooled(runs: Sequence[GapRun], rig: SimulatedRig, tolerances: Tolerances) ->
     usual = Usual.of(runs)
     encoder_rad = encoder_floor_rad(rig.acquisition.shaft_angle)
     wandering = wander(rig, runs, tolerances.wander)
-    return tuple(wandered(_with(run, usual, encoder_rad), wandering) for run in runs)
+    return tuple(wandered(_with_usual_noise(run, usual, encoder_rad), wandering) for run in runs)
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,14 +54,14 @@ class ChannelNoise:
 
     Attributes
     ----------
-    together
+    overall
         Of all runs.
-    own
+    by_run
         By run, the logarithm of its power over what all runs say, and its variance.
     """
 
-    together: Loudness
-    own: Mapping[str, tuple[float, float]]
+    overall: Loudness
+    by_run: Mapping[str, tuple[float, float]]
 
 
 def channel_noise(runs: Sequence[GapRun]) -> dict[str, ChannelNoise]:
@@ -114,9 +114,9 @@ class Usual:
             # A trend is half a wave over the whole record.
             order = component.order or (0.5 / run.periods if component.part is Part.TREND else 0)
             heard = self.loud[component.channel]
-            density = heard.together.at(order * run.set_point.frequency_hz)
+            density = heard.overall.at(order * run.set_point.frequency_hz)
             twice = component.part in _OF_HARMONICS
-            level, variance = heard.own.get(run.name, (0.0, 0.0))
+            level, variance = heard.by_run.get(run.name, (0.0, 0.0))
             freedom = 1.0 / (1.0 / _LINES_FREEDOM + 0.5 * variance)
             return density * math.exp(level) * share * (2.0 if twice else 1.0), freedom
         key = _kind(component)
@@ -149,7 +149,7 @@ def _densities(run: GapRun) -> list[tuple[tuple[str, Part, int], float]]:
     ]
 
 
-def _with(run: GapRun, usual: Usual, encoder_rad: float) -> GapRun:
+def _with_usual_noise(run: GapRun, usual: Usual, encoder_rad: float) -> GapRun:
     observation = run.observed
     own_freedom = max(run.periods - 2.0, 0.0)
     uncertainty = observation.uncertainty.copy()

@@ -26,7 +26,7 @@ def _logarithms(ratio: FloatArray, power: FloatArray) -> FloatArray:
     return np.asarray(np.log1p(ratio) / np.where(power, power, 1.0), np.float64)
 
 
-def grown(parts: Sequence[Component], change: FloatArray, share: float) -> FloatArray:
+def scaled_change(parts: Sequence[Component], change: FloatArray, share: float) -> FloatArray:
     """Return what an effect of another size changes, by what it changes as it is.
 
     Parameters

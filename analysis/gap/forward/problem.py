@@ -15,7 +15,7 @@ from analysis.gap.observe.components import Part
 from hardware.description.arrays import FloatArray
 
 
-class Compared(Protocol):
+class ComparedProblem(Protocol):
     """Measurements beside their simulation: what hypotheses are fitted to, whatever was tested."""
 
     @property
@@ -101,7 +101,7 @@ class Problem:
         return change / self.simulator.stack.uncertainty
 
     def signature(self, parts: Sequence[Candidate], units: FloatArray) -> FloatArray:
-        """Return what effects change of the observations, as :class:`Compared` says."""
+        """Return what effects change of the observations, as :class:`ComparedProblem` says."""
         values = self.simulator.predict(built(parts, units))
         return self.whitened(values - self.simulator.nominal)
 

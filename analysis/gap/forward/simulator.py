@@ -51,22 +51,22 @@ class Simulator:
 
     Attributes
     ----------
-    on
+    active_effects
         Effects that are known and always on.
     reference_channel
         The channel whose fundamental is phase 0; ``None`` for the photocell.
     frequency_ratio
         At which every run is made, over the frequency that was set.
-    solved
+    stage_cache
         Stages that were solved already; shared by all that are made from this one.
     """
 
     rig: SimulatedRig
     stack: Stack
-    on: tuple[Effect, ...] = ()
+    active_effects: tuple[Effect, ...] = ()
     reference_channel: str | None = None
     frequency_ratio: float = 1.0
-    solved: Solved = field(default_factory=Solved, repr=False)
+    stage_cache: Solved = field(default_factory=Solved, repr=False)
     # Runs that were simulated in time, by name, what does not repeat, and draw; of this rig alone.
     _records: Records = field(default_factory=dict, init=False, repr=False)
     _means: dict[str, FloatArray] = field(default_factory=dict, init=False, repr=False)
@@ -79,7 +79,7 @@ class Simulator:
     @cached_property
     def _repeating(self) -> tuple[Effect, ...]:
         """Of what is always on, without what only luck makes of it: a steady state has none."""
-        return tuple(effect for effect in self.on if not effect.by_chance)
+        return tuple(effect for effect in self.active_effects if not effect.by_chance)
 
     def with_rig(self, rig: SimulatedRig) -> "Simulator":
         """Return the simulator of another rig."""
@@ -110,7 +110,7 @@ class Simulator:
         run = self.stack.runs[number]
         steady = self._steady(run, (*self._repeating, *effects))
         repeats = run.observed.layout.steady
-        return steady if repeats.all() else np.where(repeats, steady, self._usual(number))
+        return steady if repeats.all() else np.where(repeats, steady, self._typical_in_time(number))
 
     def _not_repeating(self, number: int, effects: Sequence[Effect]) -> FloatArray:
         """Return what repeats with the effects that do, and on it what the others change alone."""
@@ -125,7 +125,7 @@ class Simulator:
         if repeats.all():
             return steady
         alone, base = self._record(number, moving), self._record(number)
-        noisy = on_noise(run.observed.components, alone, base, self._usual(number))
+        noisy = on_noise(run.observed.components, alone, base, self._typical_in_time(number))
         return np.where(repeats, steady, noisy)
 
     def steady(self, effects: Sequence[Effect]) -> FloatArray:
@@ -137,10 +137,10 @@ class Simulator:
         run, seed = self.stack.runs[number], _SEED + _APART * draw
         key = (run.name, moving, draw)
         if key not in self._records:
-            self._records[key] = self._in_time(run, (*self.on, *moving), seed)
+            self._records[key] = self._in_time(run, (*self.active_effects, *moving), seed)
         return self._records[key]
 
-    def _usual(self, number: int) -> FloatArray:
+    def _typical_in_time(self, number: int) -> FloatArray:
         """Return what a run shows in time without what does not repeat, as noise has it at mean."""
         name = self.stack.runs[number].name
         if name not in self._means:
@@ -154,7 +154,7 @@ class Simulator:
 
     def _state(self, rig: SimulatedRig, set_point: SetPoint) -> SteadyState:
         period = Period(set_point.frequency_hz, ORDERS, POINTS)
-        return self.solved.steady_state(rig.stages(set_point), period)
+        return self.stage_cache.steady_state(rig.stages(set_point), period)
 
     def _steady(self, run: GapRun, effects: Sequence[Effect]) -> FloatArray:
         rig, set_point = self._set(run, effects)
@@ -172,10 +172,10 @@ class Simulator:
             set_point = replace(
                 set_point, frequency_hz=set_point.frequency_hz * self.frequency_ratio
             )
-        return switch_on(*_preloaded(effects, self.rig, run), set_point, run.place)
+        return switch_on(*_with_preload(effects, self.rig, run), set_point, run.place)
 
     def _in_time(self, run: GapRun, effects: Sequence[Effect], seed: int) -> FloatArray:
-        acting, believed = _preloaded(effects, self.rig, run)
+        acting, believed = _with_preload(effects, self.rig, run)
         rig, set_point = switch_on(acting, believed, run.set_point, run.place)
         if not run.turns:
             observation = record_at_rest(rig, set_point, run, seed + run.place.index)
@@ -208,7 +208,7 @@ def _recorded(rig: SimulatedRig, set_point: SetPoint, run: GapRun, seed: int) ->
     return Recording(run.name, channels, samples, rate_hz, 0.0, edges_s, run.set_point)
 
 
-def _preloaded(
+def _with_preload(
     effects: Sequence[Effect], rig: SimulatedRig, run: GapRun
 ) -> tuple[Sequence[Effect], SimulatedRig]:
     """Return the rig with a run's dead weight on the model, and the effects that it leaves.
@@ -273,11 +273,11 @@ def read_steady(
         What the run was told to do: its frequency is what the measured one is held against.
     """
     ratio = float(np.log(state.period.frequency_hz / set_point.frequency_hz))
-    values = layout.read(state.spectra, turned(state, reference_channel))
+    values = layout.read(state.spectra, reference_turn(state, reference_channel))
     return values + ratio * layout.frequency
 
 
-def turned(state: SteadyState, reference_channel: str | None) -> ComplexArray:
+def reference_turn(state: SteadyState, reference_channel: str | None) -> ComplexArray:
     """Return by what each order is turned for time to count from the phase reference."""
     if reference_channel is None:
         return np.exp(state.period.s * state.reference_s)

@@ -28,8 +28,8 @@ def smooth_changes(
         What a prior deviation of each coefficient changes, in sigma, by name: ``"a11"``.
     """
     ways = {
-        "a": _ways(stack, tolerances.added_mass_per_octave, tolerances.added_mass_per_speed),
-        "b": _ways(stack, tolerances.damping_per_octave, tolerances.damping_per_speed),
+        "a": _directions(stack, tolerances.added_mass_per_octave, tolerances.added_mass_per_speed),
+        "b": _directions(stack, tolerances.damping_per_octave, tolerances.damping_per_speed),
     }
     relatives = {"a": tolerances.added_mass_relative, "b": tolerances.damping_relative}
     for name, level in levels.items():
@@ -39,7 +39,7 @@ def smooth_changes(
             yield level / relative * change
 
 
-def _ways(stack: Stack, per_octave: float, per_speed: float) -> list[FloatArray]:
+def _directions(stack: Stack, per_octave: float, per_speed: float) -> list[FloatArray]:
     """Return the ways in which a coefficient changes over the runs, each ``(observations,)``.
 
     Over frequency a Gaussian process with a length of an octave and a slope that is continuous

@@ -53,7 +53,7 @@ class Answers:
 
 
 @dataclass(frozen=True, eq=False)
-class Considered:
+class ConsideredHypotheses:
     """What was considered.
 
     Attributes
@@ -78,7 +78,7 @@ class Considered:
         return (*self.singles, *self.pairs, *self.triples)
 
     @property
-    def nothing(self) -> float:
+    def prior_of_none(self) -> float:
         """The prior probability of no effect, or of one that these runs do not show."""
         share = self.concealed / max(self.count, 1)
         return ODDS.none + ODDS.single * share * (1.0 + ODDS.further * share)
@@ -88,26 +88,26 @@ class Considered:
         return math.log(prior(len(effects_in(answer)), self.count))
 
 
-def answers(considered: Considered, beside: Background) -> Answers:
+def answers(considered: ConsideredHypotheses, beside: Background) -> Answers:
     """Weigh every hypothesis.
 
     Posterior is prior odds times evidence to a power, summed over the sizes of a deviation of no
     particular form: small ones only where nothing is there, or coefficients or one run are what
     differs, visible ones where something unknown is, any beside a named effect.
     """
-    evidence_pairs = zip(considered.sets, beside.named(considered.sets), strict=True)
+    evidence_pairs = zip(considered.sets, beside.effect_evidence(considered.sets), strict=True)
     named = {answer_of(hypothesis.names): evidences for hypothesis, evidences in evidence_pairs}
     logs = {
         name: weight(evidences) + considered.log_prior(name) for name, evidences in named.items()
     }
     odd = _odd_runs(beside)
     by_effect = _beside_odd_runs(considered, beside, logs, odd)
-    stages = _of_unknown(beside.unknown(), SHAPED * ODDS.unknown)
-    kinds = _of_unknown(beside.alone(), (1.0 - SHAPED) * ODDS.unknown)
+    stages = _of_unknown(beside.unknown_by_stage(), SHAPED * ODDS.unknown)
+    kinds = _of_unknown(beside.unknown_by_kind(), (1.0 - SHAPED) * ODDS.unknown)
     logs |= {name: _sum([logs[name], *by_run.values()]) for name, by_run in by_effect.items()}
     logs |= {
-        NONE: _log_weight(beside.none(), _even(_SMALL), considered.nothing),
-        COEFFICIENTS: _log_weight(beside.coefficients(), _even(_SMALL), ODDS.mistake),
+        NONE: _log_weight(beside.no_effect(), _equal_weights(_SMALL), considered.prior_of_none),
+        COEFFICIENTS: _log_weight(beside.coefficients(), _equal_weights(_SMALL), ODDS.mistake),
         UNKNOWN: _sum([*stages.values(), *kinds.values()]),
         ODD_RUN: _sum(list(odd.values())),
     }
@@ -120,7 +120,7 @@ def answers(considered: Considered, beside: Background) -> Answers:
         {name: math.exp(log - total) for name, log in logs.items()},
         _located(stages, kinds, beside),
         {run: math.exp(_sum(run_logs) - total) for run, run_logs in runs.items()},
-        {name: _above(evidences) for name, evidences in named.items()},
+        {name: _weight_above(evidences) for name, evidences in named.items()},
         {
             name: max(evidences, key=lambda evidence: evidence.log_evidence)
             for name, evidences in named.items()
@@ -130,22 +130,28 @@ def answers(considered: Considered, beside: Background) -> Answers:
 
 def _odd_runs(beside: Background) -> dict[str, float]:
     """Return the log weight of each run being odd."""
-    each = ODDS.mistake / max(len(beside.own), 1)
-    return {run: _log_weight(logs, _seen(logs), each) for run, logs in beside.odd_runs().items()}
+    each = ODDS.mistake / max(len(beside.run_columns), 1)
+    return {
+        run: _log_weight(logs, _finite_weights(logs), each)
+        for run, logs in beside.odd_runs().items()
+    }
 
 
 def _beside_odd_runs(
-    considered: Considered, beside: Background, logs: Mapping[str, float], odd: Mapping[str, float]
+    considered: ConsideredHypotheses,
+    beside: Background,
+    logs: Mapping[str, float],
+    odd: Mapping[str, float],
 ) -> dict[str, dict[str, float]]:
     """Return by single effect and run the log weight of both, of those that lead."""
-    each = math.log(ODDS.mistake / max(len(beside.own), 1))
+    each = math.log(ODDS.mistake / max(len(beside.run_columns), 1))
     leading = sorted(considered.singles, key=lambda hypothesis: -logs[answer_of(hypothesis.names)])[
         :_LEADING
     ]
     oddest = sorted(odd, key=lambda run: -odd[run])[:_ODDEST]
     return {
         name: {
-            run: _log_weight(beside.named_beside(hypothesis, run), _even(~_SMALL), 1.0)
+            run: _log_weight(beside.named_beside(hypothesis, run), _equal_weights(~_SMALL), 1.0)
             + each
             + considered.log_prior(name)
             for run in oddest
@@ -191,14 +197,14 @@ def effects_in(answer: str) -> tuple[str, ...]:
 
 def _any_size() -> FloatArray:
     """Return the prior weights of a deviation's size beside what is named."""
-    return _even(np.ones_like(_SMALL))
+    return _equal_weights(np.ones_like(_SMALL))
 
 
 def _evidences(evidences: Sequence[Evidence]) -> FloatArray:
     return np.array([evidence.log_evidence for evidence in evidences])
 
 
-def _above(evidences: Sequence[Evidence]) -> float:
+def _weight_above(evidences: Sequence[Evidence]) -> float:
     """Return the part of a named answer's weight at deviations larger than is tolerated."""
     logs = ETA * _evidences(evidences)
     return float(np.exp(np.logaddexp.reduce(logs[~_SMALL]) - np.logaddexp.reduce(logs)))
@@ -207,14 +213,16 @@ def _above(evidences: Sequence[Evidence]) -> float:
 def _of_unknown(logs_by_name: Mapping[str, FloatArray], share: float) -> dict[str, float]:
     """Return the log weights of something unknown, each way of it as likely as the others."""
     each = share / max(len(logs_by_name), 1)
-    return {name: _log_weight(logs, _seen(logs), each) for name, logs in logs_by_name.items()}
+    return {
+        name: _log_weight(logs, _finite_weights(logs), each) for name, logs in logs_by_name.items()
+    }
 
 
-def _seen(logs: FloatArray) -> FloatArray:
-    return _even(np.isfinite(logs))
+def _finite_weights(logs: FloatArray) -> FloatArray:
+    return _equal_weights(np.isfinite(logs))
 
 
-def _even(sizes: BoolArray) -> FloatArray:
+def _equal_weights(sizes: BoolArray) -> FloatArray:
     """Return equal prior weights for some sizes, 0 for all others."""
     return np.asarray(sizes / max(int(sizes.sum()), 1), np.float64)
 

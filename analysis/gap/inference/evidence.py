@@ -10,7 +10,7 @@ import numpy as np
 
 from analysis.gap.inference.constants import FORMS, PLAIN, STRANGE, TAUS, TOLERATED, VISIBLE, WIDE
 from analysis.gap.inference.gram import Reduced, Weighted
-from analysis.gap.inference.hypothesis import Evidence, Hypothesis, weighed
+from analysis.gap.inference.hypothesis import Evidence, Hypothesis, laplace_evidence
 from analysis.gap.inference.kernel import Kernel
 from analysis.gap.inference.shapes import Shapes
 from hardware.description.arrays import BoolArray, FloatArray
@@ -44,9 +44,9 @@ class Background:
         Columns of what every good rig and model is off by, ``(observations, tolerances)``.
     sought
         Which of them are the coefficients that a test is made to find, shape ``(tolerances,)``.
-    own
+    run_columns
         By run, its own gains and zeros at a deviation of 1, each ``(observations, any)``.
-    behind
+    rows_by_stage
         By stage, the observations in which something that acts there may show; whole cells of the
         kernel.
     kinds
@@ -58,11 +58,11 @@ class Background:
     sought: BoolArray
     kernel: Kernel
     shapes: Shapes
-    own: Mapping[str, FloatArray]
-    behind: Mapping[str, BoolArray]
+    run_columns: Mapping[str, FloatArray]
+    rows_by_stage: Mapping[str, BoolArray]
     kinds: Mapping[str, Kind]
 
-    def none(self) -> FloatArray:
+    def no_effect(self) -> FloatArray:
         """Return the log evidence of no effect, beside a smooth deviation of each size."""
         return self._smooth(self._scale())
 
@@ -75,28 +75,28 @@ class Background:
         wide = [more * axis for axis in (*axes, np.ones(len(axes)))]
         return _mean(self._smooth(self._scale(sought=scale)) for scale in wide)
 
-    def unknown(self) -> dict[str, FloatArray]:
+    def unknown_by_stage(self) -> dict[str, FloatArray]:
         """Return that of something unknown, by the stage whose effects it looks like."""
         shaped = {
-            stage: np.hstack((self.tolerances, self.shapes.at(stage)))
+            stage: np.hstack((self.tolerances, self.shapes.of_stage(stage)))
             for stage in dict.fromkeys(self.shapes.stages)
         }
         return {
-            stage: self._spread(columns, STRANGE, self.behind[stage])
+            stage: self._spread(columns, STRANGE, self.rows_by_stage[stage])
             for stage, columns in shaped.items()
         }
 
-    def alone(self) -> dict[str, FloatArray]:
+    def unknown_by_kind(self) -> dict[str, FloatArray]:
         """Return that of something unknown, by the kind of observations in which it shows."""
-        return {name: self._seen(self._within(kind.rows)) for name, kind in self.kinds.items()}
+        return {name: self._logs(self._within_rows(kind.rows)) for name, kind in self.kinds.items()}
 
-    def _within(self, rows: BoolArray) -> list[Reduced]:
+    def _within_rows(self, rows: BoolArray) -> list[Reduced]:
         """Return the residual's products under a deviation of each size in some observations."""
         if rows.all():
-            return [weighted.reduced(self._scale(), self._of) for weighted in self._calm]
+            return [weighted.reduced(self._scale(), self._target) for weighted in self._smoothed]
         each = np.zeros((len(rows), int(rows.sum())))
         each[rows] = np.eye(each.shape[1])
-        reduced = self._bare.reduced(self._scale(), np.hstack((self._of, each)))
+        reduced = self._under_none.reduced(self._scale(), np.hstack((self._target, each)))
         sizes, at = np.sqrt(self.kernel.values[rows]), range(1, 1 + each.shape[1])
         return [reduced.widened(1, at, tau * sizes) for tau in TAUS]
 
@@ -108,12 +108,12 @@ class Background:
         columns
             The tolerances, and shapes behind them.
         """
-        turned, shared = self.kernel.turned(columns), self.tolerances.shape[1]
+        turned, shared = self.kernel.rotated(columns), self.tolerances.shape[1]
         shapes, values = columns.shape[1] - shared, share * self.kernel.values * rows
-        return self._seen(
+        return self._logs(
             [
                 Weighted(turned, 1.0 + tau**2 * values, shared).reduced(
-                    np.full(shapes, tau), self._of
+                    np.full(shapes, tau), self._target
                 )
                 for tau in TAUS
             ]
@@ -121,22 +121,22 @@ class Background:
 
     def odd_runs(self) -> dict[str, FloatArray]:
         """Return that of one run with a gain or a zero of its own, by run."""
-        of, at = self._with_own(self._of)
+        of, at = self._with_own(self._target)
         calm = [weighted.reduced(self._scale(), of) for weighted in self._tolerated]
         return {
             run: _mean(
-                self._seen([reduced.widened(1, rows, tau) for tau in TAUS]) for reduced in calm
+                self._logs([reduced.widened(1, rows, tau) for tau in TAUS]) for reduced in calm
             )
             for run, rows in at.items()
         }
 
-    def named(self, sets: Sequence[Hypothesis]) -> list[list[Evidence]]:
+    def effect_evidence(self, sets: Sequence[Hypothesis]) -> list[list[Evidence]]:
         """Return what each set of named effects is worth beside a deviation of each size."""
-        shapes = [self.shapes.beside(hypothesis.names) for hypothesis in sets]
-        turned = [self._turned(hypothesis) for hypothesis in sets]
+        shapes = [self.shapes.weights_beside(hypothesis.names) for hypothesis in sets]
+        turned = [self._rotated(hypothesis) for hypothesis in sets]
         evidences: list[list[Evidence]] = [[] for _ in sets]
-        for tau, plain in zip(TAUS, self._plain, strict=True):
-            beside = [self._beside(tau, shape) for shape in shapes]
+        for tau, plain in zip(TAUS, self._under_plain, strict=True):
+            beside = [self._shape_scale(tau, shape) for shape in shapes]
             for set_evidences, hypothesis, reduced in zip(
                 evidences, sets, plain.each(beside, turned), strict=True
             ):
@@ -146,7 +146,7 @@ class Background:
     def named_beside(self, hypothesis: Hypothesis, run: str) -> FloatArray:
         """Return the log evidence of named effects beside one odd run."""
         large = np.array(TAUS) > TOLERATED
-        of, at = self._with_own(self._turned(hypothesis))
+        of, at = self._with_own(self._rotated(hypothesis))
         logs = np.full((len(self._tolerated), len(TAUS)), -np.inf)
         for row, under in enumerate(self._tolerated):
             calm = under.reduced(self._scale(), of)
@@ -155,54 +155,56 @@ class Background:
                 logs[row, column] = evidence.log_evidence
         return _mean(logs)
 
-    def _turned(self, hypothesis: Hypothesis) -> FloatArray:
+    def _rotated(self, hypothesis: Hypothesis) -> FloatArray:
         """Return target, slopes and forms of a hypothesis in the kernel's coordinates."""
-        return self.kernel.turned(
+        return self.kernel.rotated(
             np.column_stack((hypothesis.target, hypothesis.columns, hypothesis.forms))
         )
 
     def _with_own(self, of: FloatArray) -> tuple[FloatArray, dict[str, list[int]]]:
         """Return columns with those of each run's own behind them, and where those are."""
-        ends = np.cumsum([of.shape[1], *(columns.shape[1] for columns in self._owned)])
+        ends = np.cumsum([of.shape[1], *(columns.shape[1] for columns in self._run_blocks)])
         at = [[*range(first, last)] for first, last in pairwise(ends.tolist())]
-        run_columns = self.kernel.turned(np.hstack(self._owned)) if self.own else of[:, :0]
-        return np.hstack((of, run_columns)), dict(zip(self.own, at, strict=True))
+        run_columns = (
+            self.kernel.rotated(np.hstack(self._run_blocks)) if self.run_columns else of[:, :0]
+        )
+        return np.hstack((of, run_columns)), dict(zip(self.run_columns, at, strict=True))
 
     @cached_property
     def _columns(self) -> FloatArray:
         sought = self.tolerances[:, self.sought]
-        blocks = (self.tolerances, self.shapes.columns, *self._owned, sought)
-        return self.kernel.turned(np.hstack(blocks))
+        blocks = (self.tolerances, self.shapes.columns, *self._run_blocks, sought)
+        return self.kernel.rotated(np.hstack(blocks))
 
     @cached_property
-    def _of(self) -> FloatArray:
-        return self.kernel.turned(self.residual[:, None])
+    def _target(self) -> FloatArray:
+        return self.kernel.rotated(self.residual[:, None])
 
     @cached_property
-    def _calm(self) -> Sequence[Weighted]:
+    def _smoothed(self) -> Sequence[Weighted]:
         """Under a smooth deviation of each size."""
-        return self._under(1.0)
+        return self._weighted(1.0)
 
     @property
     def _tolerated(self) -> Sequence[Weighted]:
         """Under a smooth deviation of each tolerated size."""
         return [
-            weighted for weighted, tau in zip(self._calm, TAUS, strict=True) if tau <= TOLERATED
+            weighted for weighted, tau in zip(self._smoothed, TAUS, strict=True) if tau <= TOLERATED
         ]
 
     @cached_property
-    def _plain(self) -> Sequence[Weighted]:
+    def _under_plain(self) -> Sequence[Weighted]:
         """Under the part of a deviation of each size that has no shape."""
-        return self._under(PLAIN)
+        return self._weighted(PLAIN)
 
-    def _under(self, share: float) -> Sequence[Weighted]:
+    def _weighted(self, share: float) -> Sequence[Weighted]:
         values = share * self.kernel.values
         shared = self.tolerances.shape[1]
         return [Weighted(self._columns, 1.0 + tau**2 * values, shared) for tau in TAUS]
 
     @property
-    def _owned(self) -> Sequence[FloatArray]:
-        return tuple(self.own.values())
+    def _run_blocks(self) -> Sequence[FloatArray]:
+        return tuple(self.run_columns.values())
 
     def _scale(
         self,
@@ -214,12 +216,12 @@ class Background:
         return np.concatenate(
             (
                 np.broadcast_to(shapes, self.shapes.columns.shape[1]),
-                np.full(sum(columns.shape[1] for columns in self._owned), own),
+                np.full(sum(columns.shape[1] for columns in self._run_blocks), own),
                 np.broadcast_to(sought, int(self.sought.sum())),
             )
         )
 
-    def _beside(self, tau: float, shapes: FloatArray) -> FloatArray:
+    def _shape_scale(self, tau: float, shapes: FloatArray) -> FloatArray:
         """Return the scale of a deviation with some shapes, and of each run's own part of it."""
         return self._scale(shapes=tau * shapes, own=tau * math.sqrt(PLAIN))
 
@@ -227,20 +229,20 @@ class Background:
         """Return the log evidence at each tolerated size, minus infinity at larger ones."""
         small = [at for at, tau in enumerate(TAUS) if tau <= TOLERATED]
         logs = np.full(len(TAUS), -np.inf)
-        logs[small] = [_density(self._calm[at].reduced(scale, self._of)) for at in small]
+        logs[small] = [_density(self._smoothed[at].reduced(scale, self._target)) for at in small]
         return logs
 
     @cached_property
-    def _bare(self) -> Weighted:
+    def _under_none(self) -> Weighted:
         """Under no deviation."""
         return Weighted(self._columns, np.ones(len(self.residual)), self.tolerances.shape[1])
 
     @cached_property
     def _least(self) -> float:
         """Log determinant of tolerances and of a deviation that these runs hardly show."""
-        return self._bare.reduced(self._scale(), self._of).log_determinant + 2.0 * VISIBLE
+        return self._under_none.reduced(self._scale(), self._target).log_determinant + 2.0 * VISIBLE
 
-    def _seen(self, products: Sequence[Reduced]) -> FloatArray:
+    def _logs(self, products: Sequence[Reduced]) -> FloatArray:
         """Return log evidences, minus infinity where these runs would hardly show a deviation."""
         return np.array(
             [
@@ -267,7 +269,7 @@ def _in_any_form(
     linear_count, count = 1 + hypothesis.columns.shape[1], hypothesis.forms.shape[1]
     at = [*range(linear_count, linear_count + count), *run_columns]
     evidences = [
-        weighed(
+        laplace_evidence(
             hypothesis,
             products.widened(linear_count, at, np.repeat((share, tau), (count, len(run_columns)))),
         )

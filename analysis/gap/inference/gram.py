@@ -42,10 +42,10 @@ class Reduced:
         scales = np.broadcast_to(scale, len(at))
         across = scales[:, None] * self.gram[at, :count]
         within = scales[:, None] * self.gram[np.ix_(at, at)] * scales
-        return _absorbed(self.gram[:count, :count], across, within, self.log_determinant)
+        return _with_columns(self.gram[:count, :count], across, within, self.log_determinant)
 
 
-def _absorbed(
+def _with_columns(
     gram: FloatArray, across: FloatArray, within: FloatArray, log_determinant: float
 ) -> Reduced:
     """Return products under ``S + M M^T``, of ``X^T S^-1 X``, ``M^T S^-1 X``, ``M^T S^-1 M``.
@@ -53,7 +53,7 @@ def _absorbed(
     The last is written over.
     """
     lower, more = _factor(within)
-    half = _solved(lower, across)
+    half = _solve(lower, across)
     return Reduced(np.asarray(gram - half.T @ half, np.float64), log_determinant + more)
 
 
@@ -64,7 +64,7 @@ def _factor(within: FloatArray) -> tuple[FloatArray, float]:
     return lower, 2.0 * float(np.sum(np.log(np.diagonal(lower))))
 
 
-def _solved(lower: FloatArray, columns: FloatArray) -> FloatArray:
+def _solve(lower: FloatArray, columns: FloatArray) -> FloatArray:
     return np.asarray(solve_triangular(lower, columns, lower=True, check_finite=False), np.float64)
 
 
@@ -93,7 +93,7 @@ class Weighted:
         gram = rooted.T @ rooted  # half the work of a product of two
         count = self.shared
         lower, log_determinant = _factor(gram[:count, :count].copy())
-        half = _solved(lower, gram[:count, count:])
+        half = _solve(lower, gram[:count, count:])
         log_determinant += float(np.sum(np.log(self.diagonal)))
         return lower, log_determinant, half, gram[count:, count:] - half.T @ half
 
@@ -119,7 +119,7 @@ class Weighted:
         columns = np.hstack([np.empty((len(self.diagonal), 0)), *sets])
         over = columns / self.diagonal[:, None]
         common = self.columns.T @ over
-        shared = _solved(lower, common[: self.shared])
+        shared = _solve(lower, common[: self.shared])
         across = common[self.shared :] - half.T @ shared
         ends = np.cumsum([0, *(columns.shape[1] for columns in sets)])
         for scale, first, last in zip(scales, ends[:-1], ends[1:], strict=True):
@@ -132,4 +132,4 @@ class Weighted:
             within = products[np.ix_(rows, rows)]
             within *= weights
             within *= weights[:, None]
-            yield _absorbed(gram, weights[:, None] * across[rows, at], within, log_determinant)
+            yield _with_columns(gram, weights[:, None] * across[rows, at], within, log_determinant)

@@ -49,7 +49,7 @@ class Evidence:
     posterior: Posterior
 
 
-def weighed(hypothesis: Hypothesis, products: Reduced) -> Evidence:
+def laplace_evidence(hypothesis: Hypothesis, products: Reduced) -> Evidence:
     """Return a hypothesis's log evidence by Laplace.
 
     Parameters
@@ -59,13 +59,13 @@ def weighed(hypothesis: Hypothesis, products: Reduced) -> Evidence:
     """
     square, pull, data_precision = products.gram[0, 0], products.gram[1:, 0], products.gram[1:, 1:]
     about = Posterior.of(data_precision, pull)
-    units = within(about, hypothesis.bounds)
+    units = bounded_mode(about, hypothesis.bounds)
     cost = square - 2.0 * units @ pull + units @ data_precision @ units + units @ units
     volume = about.log_volume + any_size(about, hypothesis.sizes, hypothesis.reaches)
     return Evidence(-0.5 * float(cost + products.log_determinant) + volume, units, about)
 
 
-def within(posterior: Posterior, bounds: FloatArray) -> FloatArray:
+def bounded_mode(posterior: Posterior, bounds: FloatArray) -> FloatArray:
     """Return the most probable parameters within their ranges, some of them at an end of these.
 
     Raises

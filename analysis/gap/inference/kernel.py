@@ -64,6 +64,6 @@ class Kernel:
         """Eigenvalues, shape ``(observations,)``, each at a row of the cell that it belongs to."""
         return self._spectrum[0]
 
-    def turned(self, columns: FloatArray) -> FloatArray:
+    def rotated(self, columns: FloatArray) -> FloatArray:
         """Return columns in the eigenvectors' coordinates."""
         return np.asarray(self._spectrum[1].T @ columns, np.float64)

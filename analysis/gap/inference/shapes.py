@@ -79,12 +79,12 @@ class Shapes:
             stages += [effect.stage] * directions.shape[1]
         return cls(np.hstack(columns), tuple(effects), tuple(stages), _alike(looked, tolerances))
 
-    def beside(self, names: Sequence[str]) -> FloatArray:
+    def weights_beside(self, names: Sequence[str]) -> FloatArray:
         """Return the weights of what may stand beside effects: of all that is not like them."""
         out = frozenset[str]().union(*(self.alike.get(name, frozenset((name,))) for name in names))
         return self._weights(lambda at: self.effects[at] not in out, PLAIN)
 
-    def at(self, stage: str) -> FloatArray:
+    def of_stage(self, stage: str) -> FloatArray:
         """Return the shapes of what is unknown in a stage, ``(observations, directions)``."""
         weights = self._weights(lambda at: self.stages[at] == stage, STRANGE)
         return np.asarray((self.columns * weights)[:, weights > 0.0], np.float64)

@@ -77,12 +77,12 @@ def predicted_shrinkage(
         off = root @ rng.standard_normal(root.shape[1])
         size = math.exp(_FORM_KNOWN * float(rng.standard_normal()))
         off = off + size * (form @ rng.standard_normal(form.shape[1]))
-        shares.append(_shrinks(gap + off, off))
+        shares.append(_reduction(gap + off, off))
     low, middle, high = np.quantile(shares, _LEVELS)
     return float(low), float(middle), float(high)
 
 
-def _shrinks(before: FloatArray, after: FloatArray) -> float:
+def _reduction(before: FloatArray, after: FloatArray) -> float:
     """Return the part of a gap that goes away; negative where it grows."""
     old, new = float(np.sqrt(np.mean(before**2))), float(np.sqrt(np.mean(after**2)))
     return 1.0 - new / old if old > 0.0 else 0.0

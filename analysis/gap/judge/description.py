@@ -95,10 +95,10 @@ def describe(problem: Problem, residual: FloatArray) -> Description | None:
     channels = [
         name for name in FORCES if name in {component.channel for component in stack.components}
     ]
-    shown = _shown(stack, remainder, rows)
+    shown = _visible_remainder(stack, remainder, rows)
     sizes = np.array([_size(stack, shown, run) for run in range(len(stack.runs))])
     return Description(
-        _follows(stack, remainder, channels),
+        _dependence(stack, remainder, channels),
         _orders(stack, remainder, rows),
         _power(stack, sizes, frequency=True),
         _power(stack, sizes, frequency=False),
@@ -121,7 +121,7 @@ def _orders(stack: Stack, remainder: FloatArray, rows: BoolArray) -> dict[int, f
     }
 
 
-def _shown(stack: Stack, remainder: FloatArray, rows: BoolArray) -> FloatArray:
+def _visible_remainder(stack: Stack, remainder: FloatArray, rows: BoolArray) -> FloatArray:
     """Return the remainder without first harmonics, if the others show it.
 
     The free coefficients take their part of the first harmonics, and leave another dependence on
@@ -192,7 +192,7 @@ def _same_motion(stack: Stack, run: int, set_point: SetPoint) -> bool:
     return all(math.isclose(getattr(at, key), getattr(set_point, key)) for key in keys)
 
 
-def _follows(stack: Stack, remainder: FloatArray, channels: Sequence[str]) -> dict[str, float]:
+def _dependence(stack: Stack, remainder: FloatArray, channels: Sequence[str]) -> dict[str, float]:
     shares = {}
     for at, name in enumerate(("displacement", "velocity", "acceleration")):
         carried = total = 0.0

@@ -18,7 +18,7 @@ from analysis.gap.locate.walk import Walk, walk
 from analysis.gap.observe.components import GapRun, Part, Stack
 from analysis.gap.observe.regimes import Regime, regimes
 from analysis.gap.search.fit import Fit
-from analysis.gap.search.hypotheses import Weighed, weigh
+from analysis.gap.search.hypotheses import WeighedHypotheses, weigh
 from hardware.description.errors import DataError
 from sim.effects.a5_trigger_jitter import TriggerJitter
 from sim.effects.effect import Effect
@@ -33,7 +33,7 @@ class Settings:
     ----------
     catalogue
         Effects to consider, by name.
-    on
+    active_effects
         Effects that are known already and always on.
     withheld
         Regimes to judge by; found from the runs if empty.
@@ -47,7 +47,7 @@ class Settings:
 
     catalogue: Mapping[str, type[Effect]]
     tolerances: Tolerances = field(default_factory=Tolerances)
-    on: tuple[Effect, ...] = ()
+    active_effects: tuple[Effect, ...] = ()
     withheld: tuple[Regime, ...] = ()
     choices: Choices | None = None
     reference_channel: str | None = None
@@ -74,7 +74,7 @@ class Diagnosis:
 
     problem: Problem
     walk: Walk
-    weighed: Weighed
+    weighed: WeighedHypotheses
     stages: Mapping[str, float]
     best: Fit | None
     rival: Fit | None
@@ -126,7 +126,7 @@ def diagnose(
     progress("walking along the chain")
     walked = walk(problem)
     weighed = weigh(problem, settings.catalogue, executor, progress, free)
-    return _concluded(problem, walked, weighed, settings, free, progress)
+    return _conclude(problem, walked, weighed, settings, free, progress)
 
 
 def problem_of(
@@ -134,13 +134,13 @@ def problem_of(
 ) -> Problem:
     """Return what every hypothesis about a campaign is held against."""
     stack = Stack.of(pooled(runs, rig, settings.tolerances))
-    on = (*settings.on, *_always(rig, stack, settings.tolerances))
+    on = (*settings.active_effects, *_always_on(rig, stack, settings.tolerances))
     simulator = Simulator(rig, stack, on, settings.reference_channel)
     nuisances = tolerated(simulator, free, settings.tolerances)
     return Problem(simulator, nuisances, moved=settings.moved)
 
 
-def _always(rig: SimulatedRig, stack: Stack, tolerances: Tolerances) -> tuple[Effect, ...]:
+def _always_on(rig: SimulatedRig, stack: Stack, tolerances: Tolerances) -> tuple[Effect, ...]:
     """Return what every photocell has: pulses that scatter a little; an encoder's turns do not."""
     pulsed = any(
         component.part in (Part.PULSES, Part.PERIOD_SCATTER) for component in stack.components
@@ -150,15 +150,15 @@ def _always(rig: SimulatedRig, stack: Stack, tolerances: Tolerances) -> tuple[Ef
     return (TriggerJitter(tolerances.pulse_scatter_rad),)
 
 
-def _concluded(
+def _conclude(
     problem: Problem,
     walked: Walk,
-    weighed: Weighed,
+    weighed: WeighedHypotheses,
     settings: Settings,
     free: tuple[Free, ...],
     progress: Callable[[str], None],
 ) -> Diagnosis:
-    fits = [look.fit for look in weighed.looked if look.fit is not None]
+    fits = [look.fit for look in weighed.first_looks if look.fit is not None]
     ranked, calm = weighed.ranked, weighed.answers.best in (NONE, COEFFICIENTS)
     best = None if calm or not ranked else ranked[0]
     classes = {} if best is None else equivalents(problem, best, fits)
@@ -181,7 +181,7 @@ def _concluded(
         after,
         shrinkage(before, after) if named else None,
         shrinkage(before, rival_after) if named and rival is not None else None,
-        _next(problem, weighed, settings, free),
+        _proposals(problem, weighed, settings, free),
     )
 
 
@@ -197,8 +197,8 @@ def _rival(
     return next((fit for fit in ranked if not set(fit.names) & alike), None)
 
 
-def _next(
-    problem: Problem, weighed: Weighed, settings: Settings, free: tuple[Free, ...]
+def _proposals(
+    problem: Problem, weighed: WeighedHypotheses, settings: Settings, free: tuple[Free, ...]
 ) -> tuple[Proposal, ...]:
     if settings.choices is None:
         return ()

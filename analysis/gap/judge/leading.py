@@ -4,13 +4,13 @@ from typing import Final
 
 from analysis.gap.inference.answers import NAMELESS
 from analysis.gap.search.fit import Fit
-from analysis.gap.search.hypotheses import Weighed
+from analysis.gap.search.hypotheses import WeighedHypotheses
 
 _MOST: Final = 4
 _DOUBTED: Final = 0.05  # least share of a rival: odds are overconfident
 
 
-def leading(weighed: Weighed) -> list[tuple[Fit | None, float]]:
+def leading(weighed: WeighedHypotheses) -> list[tuple[Fit | None, float]]:
     """Return the most probable answer, those that share no effect with it, and no gap at last.
 
     Each with its probability; ``None`` stands for no gap, and for what nobody knows.

@@ -40,7 +40,7 @@ def equivalents(
             classes[name] = ()
             continue
         remainders = [
-            (rival.names[0], _left(problem, signature, beside, rival))
+            (rival.names[0], _unexplained_size(problem, signature, beside, rival))
             for rival in rivals
             if rival.names[0] not in fit.names
         ]
@@ -80,14 +80,16 @@ def beside_rest(problem: Problem, fit: Fit, number: int) -> tuple[np.ndarray, np
         If the rest cannot be simulated by itself.
     """
     rest = tuple(effect for at, effect in enumerate(fit.effects) if at != number)
-    columns = fit.columns[:, fit.whose != number]
+    columns = fit.columns[:, fit.effect_index != number]
     if not rest:
         return fit.signature, columns
     change = problem.simulator.predict(rest) - problem.simulator.nominal
     return fit.signature - problem.whitened(change), columns
 
 
-def _left(problem: Problem, signature: np.ndarray, beside: np.ndarray, rival: Fit) -> float:
+def _unexplained_size(
+    problem: Problem, signature: np.ndarray, beside: np.ndarray, rival: Fit
+) -> float:
     """Return what is left of a signature, in sigma, when another effect takes what it can."""
     target = signature - rival.signature + rival.columns @ rival.units
     columns = np.hstack((rival.columns, beside))

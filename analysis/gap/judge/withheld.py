@@ -30,14 +30,14 @@ class Predicted:
     ----------
     rows
         Which observations were withheld and are compared, shape ``(observations,)``.
-    left
+    remainder
         Measured minus predicted in u, shape ``(withheld,)``: u holds the measurement's uncertainty
         and that of what was fitted to the other runs.
     """
 
     regime: Regime
     rows: BoolArray
-    left: FloatArray
+    remainder: FloatArray
 
 
 @dataclass(frozen=True)
@@ -61,10 +61,10 @@ def predict_withheld(
     problem: Problem, fit: Fit | None, withheld: Sequence[Regime]
 ) -> tuple[Predicted, ...]:
     """Predict each regime from all others; without an effect for ``None``."""
-    return tuple(_one(problem, fit, regime) for regime in withheld)
+    return tuple(_predicted(problem, fit, regime) for regime in withheld)
 
 
-def _one(problem: Problem, fit: Fit | None, regime: Regime) -> Predicted:
+def _predicted(problem: Problem, fit: Fit | None, regime: Regime) -> Predicted:
     stack = problem.simulator.stack
     out = np.isin(stack.run, regime.runs)
     residual, columns = linear_model(problem, fit)
@@ -105,7 +105,7 @@ def shrinkage(before: Sequence[Predicted], after: Sequence[Predicted]) -> Shrink
     What repeats is the run: all components of a run are drawn together. A mean square of n numbers
     is known to its own noise only, so that a gap of 0 is 0 within that.
     """
-    pairs = [(plain.left, cured.left) for plain, cured in zip(before, after, strict=True)]
+    pairs = [(plain.remainder, cured.remainder) for plain, cured in zip(before, after, strict=True)]
     first, second = (np.concatenate([pair[at] for pair in pairs]) for at in (0, 1))
     generator = np.random.default_rng(_SEED)
     shares = []

@@ -16,7 +16,7 @@ import numpy as np
 
 from analysis.gap.forward.always_on import is_of_drive
 from analysis.gap.forward.problem import Problem
-from analysis.gap.forward.simulator import ORDERS, POINTS, Simulator, read_steady, turned
+from analysis.gap.forward.simulator import ORDERS, POINTS, Simulator, read_steady, reference_turn
 from analysis.gap.inference.gaussian import Nuisances
 from analysis.gap.observe.at_rest import steady_at_rest
 from analysis.gap.observe.components import GapRun, Part
@@ -56,26 +56,26 @@ class Feed:
 
 
 @dataclass(frozen=True, eq=False)
-class Fed:
+class FedRemainder:
     """What is left behind a measured input.
 
     Attributes
     ----------
     rows
         What is compared: of the runs in which all channels were recorded.
-    left
+    remainder
         With the measured input, in u, shape ``(observations,)``; 0 for what is not compared. The
         input's own noise, carried through the chain, widens u.
-    unfed
+    simulated_remainder
         The same with the simulated input, against the same u.
     """
 
     rows: BoolArray
-    left: FloatArray
-    unfed: FloatArray
+    remainder: FloatArray
+    simulated_remainder: FloatArray
 
 
-def fed(problem: Problem, feed: Feed, rows: BoolArray) -> Fed | None:
+def fed_remainder(problem: Problem, feed: Feed, rows: BoolArray) -> FedRemainder | None:
     """Return what is left with measured channels fed to the chain; ``None`` where none were.
 
     Of the free numbers the frequency is as it was measured; the others are fitted to what is
@@ -105,14 +105,14 @@ def fed(problem: Problem, feed: Feed, rows: BoolArray) -> Fed | None:
     columns[:, : len(names)] *= turns
     part = Nuisances(columns, names)
     with_it = problem.whitened(stack.values - simulated) * shrink
-    return Fed(
+    return FedRemainder(
         compared,
-        _left(part, with_it, compared, timed),
-        _left(part, problem.residual * shrink, compared, timed),
+        _remainder(part, with_it, compared, timed),
+        _remainder(part, problem.residual * shrink, compared, timed),
     )
 
 
-def _left(
+def _remainder(
     nuisances: Nuisances,
     residual: FloatArray,
     rows: BoolArray,
@@ -125,7 +125,7 @@ def _left(
 
 def _run_fed(simulator: Simulator, run: GapRun, feed: Feed) -> tuple[FloatArray, FloatArray] | None:
     """Return a run with the measured channels, and what their noise makes of it."""
-    rig, set_point = switch_on(simulator.on, simulator.rig, run.set_point, run.place)
+    rig, set_point = switch_on(simulator.active_effects, simulator.rig, run.set_point, run.place)
     if not run.turns:  # where its struts stand is measured in any case
         still = steady_at_rest(rig, set_point, run)
         return still, np.zeros_like(still)
@@ -133,13 +133,13 @@ def _run_fed(simulator: Simulator, run: GapRun, feed: Feed) -> tuple[FloatArray,
         return None
     chain = _Chain.of(rig, set_point, run, simulator.reference_channel)
     spectra = {name: _spectrum(run, name, ORDERS) for name in feed.channels}
-    base, turn = chain.read(feed, spectra, chain.unfed)
+    base, turn = chain.read(feed, spectra, chain.simulated_turn)
     noises = {name: _noise(run, name, ORDERS) for name in feed.channels}
     moved = [
         chain.read(feed, {**spectra, name: spectra[name] + noise}, turn)[0] - base
         for name, noise in noises.items()
     ]
-    squares = np.sum([_whole(run, change) ** 2 for change in moved], axis=0)
+    squares = np.sum([_amplitudes(run, change) ** 2 for change in moved], axis=0)
     return base, np.sqrt(squares)
 
 
@@ -164,9 +164,9 @@ class _Chain:
         return cls(rig.chain(point), period, rig, run, reference_channel)
 
     @property
-    def unfed(self) -> ComplexArray:
+    def simulated_turn(self) -> ComplexArray:
         """How the phase reference turns each order, by the simulated input."""
-        return turned(steady_state(self.chain, self.period), self.reference_channel)
+        return reference_turn(steady_state(self.chain, self.period), self.reference_channel)
 
     def read(
         self, feed: Feed, spectra: Mapping[str, ComplexArray], turn: ComplexArray
@@ -184,7 +184,7 @@ class _Chain:
             recorded = {name: spectrum * np.conj(turn) for name, spectrum in spectra.items()}
             physical = {name: self._physical(name, spectrum) for name, spectrum in recorded.items()}
             state = steady_state(self.chain, self.period, feed.signals(self.period, physical))
-            turn = turned(state, self.reference_channel)
+            turn = reference_turn(state, self.reference_channel)
         layout = self.run.observed.layout
         values = read_steady(state, layout, self.run.set_point, self.reference_channel)
         return values, turn
@@ -214,7 +214,7 @@ def _noise(run: GapRun, channel: str, orders: int) -> ComplexArray:
     return noise
 
 
-def _whole(run: GapRun, change: FloatArray) -> FloatArray:
+def _amplitudes(run: GapRun, change: FloatArray) -> FloatArray:
     """Return each harmonic's amplitude in place of both its parts: noise has any phase."""
     squares: dict[tuple[str, int], float] = defaultdict(float)
     keys = [(component.channel, component.order) for component in run.observed.components]

@@ -36,7 +36,7 @@ _CHANNELS: Final[Mapping[DeviationTrace, frozenset[str]]] = {
 }
 
 
-def shown(problem: Problem) -> frozenset[DeviationTrace]:
+def deviating_traces(problem: Problem) -> frozenset[DeviationTrace]:
     """Return what deviates over all runs, the motion judged without what comes after it.
 
     Where the shaft is not recorded, the struts speak for it, and forces where nothing else is.

@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 
 from analysis.gap.forward.problem import Problem
-from analysis.gap.locate.measured_input import MEASURED_MOTION, MEASURED_SHAFT, fed
+from analysis.gap.locate.measured_input import MEASURED_MOTION, MEASURED_SHAFT, fed_remainder
 from analysis.gap.observe.components import Component, Part, Stack
 from analysis.gap.observe.observation import SPEED
 from analysis.gap.observe.regimes import contrasts
@@ -47,7 +47,7 @@ class Gap:
         by how many.
     """
 
-    what: str
+    step: str
     rms: float
     count: int
     worst: str
@@ -56,12 +56,12 @@ class Gap:
     strained: Mapping[str, float] = field(default_factory=dict)
 
     @property
-    def off(self) -> bool:
+    def is_off(self) -> bool:
         """Whether more differs than noise and the tolerances of what is free let expect."""
-        return self.beyond or bool(self.strained)
+        return self.is_beyond_noise or bool(self.strained)
 
     @property
-    def beyond(self) -> bool:
+    def is_beyond_noise(self) -> bool:
         """Whether it is more than noise: beyond four standard deviations of a chi-square."""
         return self.count > 0 and self.rms**2 > 1.0 + 4.0 * (2.0 / self.count) ** 0.5
 
@@ -86,7 +86,7 @@ class Walk:
     @property
     def stages(self) -> tuple[StageName, ...]:
         """Stages that the walk leaves as the gap's place, from upstream down."""
-        beyond = {step.what for step in self.steps if step.off}
+        beyond = {step.step for step in self.steps if step.is_off}
         if CARRIAGE in beyond:
             return (StageName.CARRIAGE,)
         if self.comes_with_the_shaft:
@@ -101,13 +101,13 @@ class Walk:
     @property
     def comes_with_the_shaft(self) -> bool:
         """Whether the shaft is off, and what follows it is as it should be with it as measured."""
-        steps = {step.what: step for step in self.steps}
+        steps = {step.step: step for step in self.steps}
         behind, by_shaft = (MOTION, MOTION_FED) if MOTION in steps else (FORCE, FORCE_BY_SHAFT)
         if not {SHAFT, behind, by_shaft} <= steps.keys():
             return False
         # What a ripple out of its tolerance explains all along the chain is no gap further down.
-        off = steps[SHAFT].strained or (steps[SHAFT].off and steps[behind].off)
-        return bool(off) and steps[by_shaft].tells and not steps[by_shaft].beyond
+        off = steps[SHAFT].strained or (steps[SHAFT].is_off and steps[behind].is_off)
+        return bool(off) and steps[by_shaft].tells and not steps[by_shaft].is_beyond_noise
 
 
 CARRIAGE: Final = "carriage"
@@ -131,7 +131,10 @@ _FED: Final = (
 def walk(problem: Problem) -> Walk:
     """Walk along the chain."""
     stack, stated = problem.simulator.stack, problem.stated
-    remainder, off = left_by_step(problem, problem.residual), strained(problem, problem.stated)
+    remainder, off = (
+        left_by_step(problem, problem.residual),
+        strained_numbers(problem, problem.stated),
+    )
     steps = []
     for step_name in CHAIN:
         rows = _of_step(stack.components, step_name)
@@ -147,13 +150,14 @@ def _with_measured(problem: Problem, plain: Gap, step_name: str, rows: BoolArray
     """Return a step's gap with the last input that was measured fed; none where there is none."""
     stack = problem.simulator.stack
     for step, feed, name in _FED:
-        comparison = fed(problem, feed, rows) if step == step_name else None
+        comparison = fed_remainder(problem, feed, rows) if step == step_name else None
         if comparison is not None:
-            gap = gap_of(stack, comparison.left, name, comparison.rows)
+            gap = gap_of(stack, comparison.remainder, name, comparison.rows)
             is_telling = (
-                gap_of(stack, comparison.unfed, name, comparison.rows).beyond or not plain.beyond
+                gap_of(stack, comparison.simulated_remainder, name, comparison.rows).is_beyond_noise
+                or not plain.is_beyond_noise
             )
-            return [replace(gap, tells=is_telling or gap.beyond)]
+            return [replace(gap, tells=is_telling or gap.is_beyond_noise)]
     return []
 
 
@@ -165,7 +169,7 @@ def left_by_step(problem: Problem, residual: FloatArray) -> FloatArray:
     return remainder
 
 
-def strained(problem: Problem, residual: FloatArray) -> dict[str, dict[str, float]]:
+def strained_numbers(problem: Problem, residual: FloatArray) -> dict[str, dict[str, float]]:
     """Return which free numbers each step pulls beyond three tolerances, and by how many they are.
 
     A number counts where it is pulled so far first.

@@ -47,7 +47,7 @@ def band(name: str, number: int, power: FloatArray) -> Found:
     yield Component(name, Part.BETWEEN, number), float(np.log(middle)), 1.5 / np.sqrt(count)
     highest = expected_highest(power.size)
     # Noise that falls with frequency is loudest at a band's lower edge, and that is no line.
-    strongest = float(np.log((power / _about(power)).max() / highest))
+    strongest = float(np.log((power / _noise_power(power)).max() / highest))
     yield (
         Component(name, Part.LINE, number),
         strongest,
@@ -60,7 +60,7 @@ def expected_highest(lines: float) -> float:
     return float(np.log(_COUNTED * lines) + np.euler_gamma)
 
 
-def _about(power: FloatArray) -> FloatArray:
+def _noise_power(power: FloatArray) -> FloatArray:
     """Return the mean power of the noise about each line, by the median of its neighbours."""
     from scipy.ndimage import median_filter
 

@@ -114,7 +114,7 @@ def observe(
         makers = (
             (_TRENDS, _trends(analysis, moving)),
             (_SCATTERS, _scatter(analysis, moving, timed=timed)),
-            (_BETWEEN, _between(analysis, moving)),
+            (_BETWEEN, _band_powers(analysis, moving)),
             (_BETWEEN, _surges(analysis, moving)),
         )
         for parts_made, made in makers:
@@ -129,7 +129,7 @@ def observe(
         observation = replace(
             observation,
             steps=steps_of(steady),
-            quiet=_quiet(analysis, moving) if even else {},
+            quiet=_quiet_lines(analysis, moving) if even else {},
             plateaus=_plateaus(steady),
             turns_per_period=turns_per_period(steady, frequency_hz),
         )
@@ -246,7 +246,7 @@ def _steady(analysis: Analysis, recording: Recording | None = None) -> Recording
     return record.between(float(sums.opened_s[0]), float(sums.closed_s[-1]))
 
 
-def _between(analysis: Analysis, moving: Moving) -> Found:
+def _band_powers(analysis: Analysis, moving: Moving) -> Found:
     part = _steady(analysis)
     rate_hz, frequency = part.sample_rate_hz, analysis.readings[0].frequency_hz
     count = part.sample_count
@@ -271,7 +271,7 @@ def _plateaus(part: Recording) -> dict[str, Plateau]:
     return {name: plateau(part.values(name)) for name in names}
 
 
-def _quiet(analysis: Analysis, moving: Moving) -> dict[str, Lines]:
+def _quiet_lines(analysis: Analysis, moving: Moving) -> dict[str, Lines]:
     """Return what lies between the harmonics of each channel."""
     part, reading = _steady(analysis), analysis.readings[0]
     names = [name for name in moving if np.isfinite(part.values(name)).all()]

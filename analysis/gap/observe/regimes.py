@@ -27,7 +27,7 @@ class Regime:
 
     Attributes
     ----------
-    what
+    variable
         ``"medium"``, ``"phase"``, ``"speed"``, ``"drift"``, ``"amplitude"``, ``"frequency"``, or
         ``"chosen"``; records at rest are a medium of their own, and no frequency or amplitude.
     runs
@@ -36,13 +36,13 @@ class Regime:
         What else these same runs, and no others, have in common.
     """
 
-    what: str
+    variable: str
     value: str
     runs: tuple[int, ...]
     also: tuple[str, ...] = ()
 
     def __str__(self) -> str:
-        return " = ".join((f"{self.what} {self.value}", *self.also))
+        return " = ".join((f"{self.variable} {self.value}", *self.also))
 
 
 def regimes(runs: Sequence[GapRun]) -> tuple[Regime, ...]:
@@ -53,7 +53,9 @@ def regimes(runs: Sequence[GapRun]) -> tuple[Regime, ...]:
     """
     candidates = _leaving(runs, _ENOUGH)
     return _merged(
-        regime for regime in candidates if (regime.what, regime.value) != ("medium", Medium.WATER)
+        regime
+        for regime in candidates
+        if (regime.variable, regime.value) != ("medium", Medium.WATER)
     )
 
 
@@ -65,7 +67,7 @@ def contrasts(runs: Sequence[GapRun]) -> tuple[Regime, ...]:
 def _leaving(runs: Sequence[GapRun], least: int) -> Iterator[Regime]:
     """Yield kinds of runs beside which at least so many others oscillate."""
     turning = {at for at, run in enumerate(runs) if run.turns}
-    for regime in _all(runs):
+    for regime in _all_regimes(runs):
         if len(turning.difference(regime.runs)) >= least:
             yield regime
 
@@ -80,7 +82,7 @@ def _merged(candidates: Iterable[Regime]) -> tuple[Regime, ...]:
     return tuple(different.values())
 
 
-def _all(runs: Sequence[GapRun]) -> Iterator[Regime]:
+def _all_regimes(runs: Sequence[GapRun]) -> Iterator[Regime]:
     turning = [(at, run.set_point) for at, run in enumerate(runs) if run.turns]
     for medium in sorted({point.medium for _, point in turning}):
         yield Regime("medium", medium, tuple(at for at, point in turning if point.medium is medium))

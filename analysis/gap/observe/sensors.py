@@ -35,7 +35,7 @@ def as_recorded(
     return replace(rig, acquisition=replace(rig.acquisition, **heard), photocell=pulses)
 
 
-def resolved(
+def with_resolution(
     rig: SimulatedRig, runs: Sequence[GapRun]
 ) -> tuple[tuple[GapRun, ...], dict[str, str]]:
     """Return the runs, each channel that does not move as uncertain as its resolution leaves it.
@@ -48,7 +48,7 @@ def resolved(
     for run in runs:
         still = [name for name, step in run.observed.steps.items() if math.isnan(step)]
         steps = {name: _resolution(rig, runs, name) for name in still}
-        resolved_runs.append(replace(run, observed=_standing(run.observed, steps)))
+        resolved_runs.append(replace(run, observed=_at_rest(run.observed, steps)))
         unknown = [name for name, step in steps.items() if not step]
         if unknown:
             said[run.name] = (
@@ -75,7 +75,7 @@ def heard_rms(runs: Sequence[GapRun], channel: str) -> float:
     return math.sqrt(loud.at(ends_hz) * rate_hz)
 
 
-def _standing(observation: Observation, steps: Mapping[str, float]) -> Observation:
+def _at_rest(observation: Observation, steps: Mapping[str, float]) -> Observation:
     rows = [
         at
         for at, component in enumerate(observation.components)

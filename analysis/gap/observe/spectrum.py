@@ -123,7 +123,7 @@ def loudness(records: Iterable[Lines]) -> Loudness | None:
     if not usual > 0.0:
         return None
     corners = np.geomspace(2.0 * lines_hz.min(), lines_hz.max(), _CORNERS)
-    fits = [_fitted(lines_hz, power / usual, float(corner)) for corner in corners]
+    fits = [_fit_terms(lines_hz, power / usual, float(corner)) for corner in corners]
     best = min(fits, key=lambda pair: pair[0])[1]
     return Loudness(usual * best.white, usual * best.coloured, best.corner_hz)
 
@@ -191,7 +191,7 @@ def spread_about(terms: FloatArray, values: FloatArray, weight: FloatArray) -> f
     return math.sqrt(max(0.0, float(remainder @ remainder) - freedom) / max(information, 1e-12))
 
 
-def _fitted(lines_hz: FloatArray, power: FloatArray, corner_hz: float) -> tuple[float, Loudness]:
+def _fit_terms(lines_hz: FloatArray, power: FloatArray, corner_hz: float) -> tuple[float, Loudness]:
     """Return what a corner costs in log likelihood, and the two terms that fit best with it.
 
     Each sweep is a least squares with the variance that the sweep before has found.

@@ -18,7 +18,7 @@ from analysis.gap.inference.shapes import Shapes, SignatureOfEffect
 from analysis.gap.pendulum.causes import DAMPED, LINES, READ, RESTORED
 from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.swings import KINDS
-from analysis.gap.search.first_look import Looked
+from analysis.gap.search.first_look import FirstLook
 from hardware.description.arrays import BoolArray, FloatArray
 
 _OWN: Final = 0.2  # share of a deviation's variance that is each record's own
@@ -32,7 +32,7 @@ _WHENCE: Final[Mapping[str, tuple[str, ...]]] = {
 _DECAY, _PERIOD, _MEAN = (KINDS.index(kind) for kind in ("decay", "period", "mean"))
 
 
-def background(problem: PendulumProblem, looked: Sequence[Looked]) -> Background:
+def background(problem: PendulumProblem, looked: Sequence[FirstLook]) -> Background:
     """Return what stands beside every hypothesis of a pendulum test.
 
     Parameters
@@ -58,7 +58,7 @@ def background(problem: PendulumProblem, looked: Sequence[Looked]) -> Background
         np.zeros(columns.shape[1], dtype=bool),
         Kernel.of(cells, [_likeness(problem, rows) for rows in cells], scale),
         Shapes.of(shown, scale, problem.nuisances),
-        _own(problem, scale),
+        _run_columns(problem, scale),
         dict.fromkeys(stages, everywhere),
         dict(_kinds(problem, stages)),
     )
@@ -122,7 +122,7 @@ def _log_size(problem: PendulumProblem) -> FloatArray:
     return log_sizes
 
 
-def _own(problem: PendulumProblem, scale: FloatArray) -> dict[str, FloatArray]:
+def _run_columns(problem: PendulumProblem, scale: FloatArray) -> dict[str, FloatArray]:
     """Return by run what a gain, a period and a zero of its own change; none of very few.
 
     Each sensor of a run has its own, since a run that went wrong did so for all of them.

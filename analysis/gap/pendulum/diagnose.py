@@ -17,11 +17,11 @@ from analysis.gap.pendulum.laws import (
     open_laws,
 )
 from analysis.gap.pendulum.problem import PendulumProblem
-from analysis.gap.pendulum.remainder import KindOfGap, where
-from analysis.gap.pendulum.search import MOST_CAUSES, WeighedCauses, named, weigh
+from analysis.gap.pendulum.remainder import KindOfGap, gap_by_kind
+from analysis.gap.pendulum.search import MOST_CAUSES, WeighedCauses, cause_names, weigh
 from analysis.gap.pendulum.settle import Settled, settle
 from analysis.gap.pendulum.verdict import CAUSE, TOLD_APART, Verdict, judge
-from analysis.gap.pendulum.withheld import WithheldSwings, foretell
+from analysis.gap.pendulum.withheld import WithheldSwings, predict_withheld
 from analysis.gap.search.fit import Fit
 
 _ASKED: Final = 10.0  # ln weight behind the best law within which the withheld swings are asked too
@@ -50,7 +50,7 @@ class PendulumDiagnosis:
     weighed: WeighedCauses
     verdict: Verdict
     settled: Settled
-    where: tuple[KindOfGap, ...]
+    gap_by_kind: tuple[KindOfGap, ...]
     laws: tuple[DampingLaw, ...]
     alternatives: tuple[Alternative, ...]
     regimes: tuple[WithheldSwings, ...]
@@ -77,7 +77,7 @@ class PendulumDiagnosis:
     @property
     def control(self) -> tuple[str, ...]:
         """The wrong cause that is asked to foretell too; empty where there is none."""
-        wrong = _wrong(self.weighed, self.best)
+        wrong = _wrong_cause(self.weighed, self.best)
         return () if wrong is None else wrong.names
 
 
@@ -109,12 +109,14 @@ def diagnose_trials(
     progress("what else it could be")
     replacements = alternatives(weighed, best)
     progress("withheld swings")
-    regimes = foretell(problem, _asked(weighed, best, laws)) if best.candidates else ()
+    regimes = (
+        predict_withheld(problem, _prediction_sets(weighed, best, laws)) if best.candidates else ()
+    )
     laws = _with_withheld(laws, regimes)
     progress("how large")
     after = settle(problem, best)
     diagnosis = PendulumDiagnosis(
-        weighed, verdict, after, where(problem, after), laws, replacements, regimes
+        weighed, verdict, after, gap_by_kind(problem, after), laws, replacements, regimes
     )
     progress("the next run")
     rivals = leading(diagnosis)
@@ -137,7 +139,7 @@ def leading(diagnosis: PendulumDiagnosis) -> tuple[Fit, Fit] | None:
         return None
     shares = diagnosis.weighed.answers.by_answer
     ahead = shares[diagnosis.best.answer] > TOLD_APART * shares[second.answer]
-    return None if diagnosis.verdict.said == CAUSE and ahead else (diagnosis.best, second)
+    return None if diagnosis.verdict.outcome == CAUSE and ahead else (diagnosis.best, second)
 
 
 def _nested(first: Fit, second: Fit) -> bool:
@@ -151,7 +153,7 @@ def _with_withheld(
     """Return the laws with what each leaves of the withheld swings."""
     tested_laws = []
     for law in laws:
-        names = named(law.hypothesis)
+        names = cause_names(law.hypothesis)
         gaps = [
             forecast.gap
             for regime in regimes
@@ -162,19 +164,21 @@ def _with_withheld(
     return tuple(tested_laws)
 
 
-def _asked(weighed: WeighedCauses, best: Fit, laws: Sequence[DampingLaw]) -> tuple[Fit, ...]:
+def _prediction_sets(
+    weighed: WeighedCauses, best: Fit, laws: Sequence[DampingLaw]
+) -> tuple[Fit, ...]:
     """Return what to foretell with: the best set, laws not far behind, the best wrong cause."""
     sets = {best.answer: best}
     for law in laws:
         if law.log_ratio > -_ASKED:
             sets.setdefault(law.hypothesis.answer, law.hypothesis)
-    control = _wrong(weighed, best)
+    control = _wrong_cause(weighed, best)
     if control is not None:
         sets.setdefault(control.answer, control)
     return tuple(sets.values())
 
 
-def _wrong(weighed: WeighedCauses, best: Fit) -> Fit | None:
+def _wrong_cause(weighed: WeighedCauses, best: Fit) -> Fit | None:
     """Return the best single cause among those that the best set has nothing to do with."""
     wrong = [
         fit

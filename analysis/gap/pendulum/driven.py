@@ -85,10 +85,10 @@ class DrivenTrial(Trial):
         ConfigurationError
             If the body does not settle.
         """
-        out, late_rad = self._shown(effects)
+        out, late_rad = self._simulated(effects)
         out[_PERIOD] += _whole_turns(self._turned - float(np.median(out[_PERIOD])) - _EVEN)
         out[_PERIOD] -= late_rad
-        apart = self._apart(out)
+        apart = self._phase_difference(out)
         if abs(apart) > _ANOTHER_TURN:  # a reversed sign turns either way, a delay by any amount
             out[_PERIOD] += _whole_turns(apart)
         return out
@@ -100,29 +100,29 @@ class DrivenTrial(Trial):
         Effects are followed from here: one that chose its turn anew would jump by a whole one
         where the phase is half a turn off.
         """
-        out, late_rad = self._shown(())
+        out, late_rad = self._simulated(())
         phase = float(np.median(out[_PERIOD]))
         out[_PERIOD] -= late_rad
-        return phase + _whole_turns(self._apart(out))
+        return phase + _whole_turns(self._phase_difference(out))
 
-    def _apart(self, shown: FloatArray) -> float:
+    def _phase_difference(self, shown: FloatArray) -> float:
         """Return the observed phase less a simulated one; 0 where none was observed."""
         phases = self.observed[_PERIOD, np.isfinite(self.observed[_PERIOD])]
         return float(np.median(phases) - np.median(shown[_PERIOD])) if phases.size else 0.0
 
-    def _shown(self, effects: Iterable[PendulumEffect]) -> tuple[FloatArray, FloatArray]:
+    def _simulated(self, effects: Iterable[PendulumEffect]) -> tuple[FloatArray, FloatArray]:
         """Return what the record would show, its phase in any turn, and by how much it is late."""
         bench = self.bench.with_effects(self.placed((*self.effects, *effects)))
         body, windows = cast("DrivenBody", bench.body), self.windows
         read = _read(bench, np.arange(1.0, _ORDERS + 1))
         out = self._window(settled(body, _ORDERS) * read).repeat(windows.count, axis=1)
-        follows = self._follows(bench)
+        follows = self._growth_response(bench)
         out[_DECAY] += np.log(np.abs(follows))
         out[_PERIOD] += np.angle(follows)
         late_s = bench.delay_s + bench.clock_error * (windows.start_s + windows.centres_s)
         return out, body.force.omega_rad_s * late_s / (1.0 + bench.clock_error)
 
-    def _follows(self, bench: PendulumBench) -> ComplexArray:
+    def _growth_response(self, bench: PendulumBench) -> ComplexArray:
         """Return the response to the force as it grows over that to a steady one, by windows."""
         body = cast("DrivenBody", bench.body)
         orders = np.append(1.0, 1.0 - 1j * self.grows_rad_s / body.force.omega_rad_s)
@@ -193,10 +193,10 @@ class KnownForce:
         Its phase is that at the first window's beginning.
     first
         First harmonic of what was recorded: of the force, or of the wave that makes it.
-    seen
+    swings
         Windows of that, as :func:`~analysis.gap.pendulum.swings.swings_of_samples` gives them, its
         even growth taken off.
-    grew
+    growth
         That growth: a polynomial of the logarithm over the time since the first window began.
     changes
         Logarithm of the largest amplitude of a window over the smallest.
@@ -205,8 +205,8 @@ class KnownForce:
     windows: Windows
     harmonics: PeriodicForce
     first: complex
-    seen: FloatArray
-    grew: Polynomial
+    swings: FloatArray
+    growth: Polynomial
     changes: float
 
     @classmethod
@@ -233,9 +233,9 @@ class KnownForce:
             slope = np.polyfit(windows.centres_s, swings[_PERIOD], 1)[0]
             period_s = 2.0 * math.pi / (windows.reference_rad_s + float(slope))
         since, omega = time_s - start_s, windows.reference_rad_s
-        grew, changes = _smooth(windows, swings[_DECAY]), float(np.ptp(_good(swings[_DECAY])))
+        grew, changes = _smooth(windows, swings[_DECAY]), float(np.ptp(_finite(swings[_DECAY])))
         grew -= grew(since).mean()
-        values = _evened(values, grew(since))
+        values = _without_growth(values, grew(since))
         swings = swings_of_samples(time_s, values, windows, steady=True)
         inside = (since < windows.length_s * windows.count) & np.isfinite(values)
         turns = np.exp(1j * omega * since[inside, None] * np.arange(1, ORDERS + 1))
@@ -250,10 +250,10 @@ class KnownForce:
     def grows_rad_s(self) -> ComplexArray:
         """As :class:`DrivenTrial` has it."""
         at_s = self.windows.centres_s
-        turned = _smooth(self.windows, self.seen[_PERIOD]).deriv()(at_s)
-        return np.asarray(self.grew.deriv()(at_s) + 1j * turned, np.complex128)
+        turned = _smooth(self.windows, self.swings[_PERIOD]).deriv()(at_s)
+        return np.asarray(self.growth.deriv()(at_s) + 1j * turned, np.complex128)
 
-    def by(self, transfer: complex) -> "KnownForce":
+    def of_wave(self, transfer: complex) -> "KnownForce":
         """Return the force of a wave by its transfer function; of the first order alone."""
         made = PeriodicForce(self.harmonics.omega_rad_s, (transfer * self.first,))
         return replace(self, harmonics=made)
@@ -264,10 +264,10 @@ class KnownForce:
         A mean is left out, since nothing says where a sensor is zero; so is the third harmonic
         where that of the force is not known.
         """
-        values = _evened(values, self.grew(time_s - self.windows.start_s))
+        values = _without_growth(values, self.growth(time_s - self.windows.start_s))
         swings = swings_of_samples(time_s, values, self.windows, steady=True)
-        swings[_DECAY] -= self.seen[_DECAY] - math.log(abs(self.first))
-        swings[_PERIOD] -= self.seen[_PERIOD] - cmath.phase(self.first)
+        swings[_DECAY] -= self.swings[_DECAY] - math.log(abs(self.first))
+        swings[_PERIOD] -= self.swings[_PERIOD] - cmath.phase(self.first)
         swings[_MEAN] = np.nan
         if len(self.harmonics.harmonics) < 3:
             swings[_MEAN + 1 :] = np.nan
@@ -282,11 +282,11 @@ def _smooth(windows: Windows, values: FloatArray) -> Polynomial:
     return fit.convert()
 
 
-def _evened(values: FloatArray, grew: FloatArray) -> FloatArray:
+def _without_growth(values: FloatArray, grew: FloatArray) -> FloatArray:
     """Return an oscillation with its growth taken off, its mean as it is."""
     mean = np.nanmean(values)
     return np.asarray(mean + (values - mean) * np.exp(-grew), np.float64)
 
 
-def _good(values: FloatArray) -> FloatArray:
+def _finite(values: FloatArray) -> FloatArray:
     return values[np.isfinite(values)]

@@ -13,7 +13,7 @@ from analysis.gap.pendulum.driven import DrivenTrial
 from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.trial import Trial
-from analysis.gap.search.fit import Fit, at
+from analysis.gap.search.fit import Fit, linearised_at
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, PmmError
 from sim.pendulum.effects.base import small_swing, suspension_of
@@ -35,7 +35,7 @@ class FurtherRecord:
         if the first is right, and if the second is.
     """
 
-    what: str
+    record: str
     gains: tuple[float, float]
 
     @property
@@ -83,7 +83,7 @@ def propose(
     records = []
     for label, trial in planned_records:
         try:
-            by_first, by_second = (_foretold(problem, trial, answer) for answer in (first, second))
+            by_first, by_second = (_predict(problem, trial, answer) for answer in (first, second))
         except PmmError:  # an answer's friction holds the body at rest
             continue
         records.append(
@@ -161,38 +161,40 @@ def _planned(planned: Trial, trial: Trial, first: Fit) -> Trial:
 
 
 @dataclass(frozen=True, eq=False)
-class _Expected:
+class _Prediction:
     """What one answer expects of a record, in sigma: normal, with this mean and covariance."""
 
     mean: FloatArray
     covariance: FloatArray
 
 
-def _foretold(problem: PendulumProblem, trial: Trial, answer: Fit) -> _Expected:
+def _predict(problem: PendulumProblem, trial: Trial, answer: Fit) -> _Prediction:
     """Return what an answer expects of a planned record, given the records that there are."""
     problem_ahead = replace(problem, trials=(trial,))
     same_body = len(problem.trials) == 1 and not problem.on_lines
     (shared, free), (carried, begun) = (
-        _parted(part, same_body=same_body) for part in (problem, problem_ahead)
+        _shared_and_separate(part, same_body=same_body) for part in (problem, problem_ahead)
     )
     columns = np.hstack([shared, answer.columns])
     estimate = posterior(answer.linearised(problem.residual), columns, Nuisances(free))
-    planned = at(problem_ahead, answer.candidates, answer.units)
+    planned = linearised_at(problem_ahead, answer.candidates, answer.units)
     slopes = np.hstack([carried, planned.columns])
     moved = estimate.mean - np.concatenate([np.zeros(shared.shape[1]), answer.units])
     covariance = np.eye(len(slopes)) + begun @ begun.T + slopes @ estimate.covariance @ slopes.T
-    return _Expected(planned.signature + slopes @ moved, covariance)
+    return _Prediction(planned.signature + slopes @ moved, covariance)
 
 
-def _parted(problem: PendulumProblem, *, same_body: bool) -> tuple[FloatArray, FloatArray]:
+def _shared_and_separate(
+    problem: PendulumProblem, *, same_body: bool
+) -> tuple[FloatArray, FloatArray]:
     """Return the columns that a further record shares with the others, and those it does not."""
-    record_columns: Sequence[FloatArray] = (problem.releases, problem.unsure)
+    record_columns: Sequence[FloatArray] = (problem.releases, problem.model_error_columns)
     if same_body:  # the same body in the same set-up: only the release is new
-        return np.hstack([problem.shared, problem.set_ups]), np.hstack(record_columns)
-    return problem.shared, np.hstack([*record_columns, problem.set_ups])
+        return np.hstack([problem.shared_columns, problem.set_ups]), np.hstack(record_columns)
+    return problem.shared_columns, np.hstack([*record_columns, problem.set_ups])
 
 
-def _divergence(right: _Expected, rival: _Expected) -> float:
+def _divergence(right: _Prediction, rival: _Prediction) -> float:
     """Return the ln evidence that the right answer is expected to gain on the other one."""
     solved = np.linalg.solve(rival.covariance, right.covariance)
     apart = rival.mean - right.mean

@@ -127,7 +127,7 @@ def _in_place(weighed: WeighedCauses, best: Fit, at: int) -> Iterator[tuple[str,
     base = fit(
         problem, [candidate for number, candidate in enumerate(best.candidates) if number != at]
     )
-    for look in weighed.looked:
+    for look in weighed.first_looks:
         if look.fit is None or look.name in best.names:
             continue
         rough = joined(problem, base, look.fit)

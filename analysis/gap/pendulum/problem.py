@@ -30,18 +30,18 @@ class Tolerance:
     ----------
     effect
         What changes if it is off by that.
-    own
+    is_per_trial
         Whether each trial has its own error; all share one otherwise.
     """
 
     name: str
     effect: PendulumEffect
-    own: bool = False
+    is_per_trial: bool = False
 
 
 @dataclass(frozen=True, eq=False)
 class PendulumProblem:
-    """Records of releases beside their simulation: :class:`analysis.gap.forward.problem.Compared`.
+    """Records of releases beside their simulation, as a ``ComparedProblem``.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class PendulumProblem:
     model_error
         Standard deviation of what the nominal simulation itself is unsure of, one for each kind;
         a smooth curve over each trial.
-    about
+    present_effects
         Effects beside which releases and tolerances act; none where left out.
     """
 
@@ -58,7 +58,7 @@ class PendulumProblem:
     tolerances: tuple[Tolerance, ...] = ()
     kinds: tuple[str, ...] = KINDS
     model_error: tuple[float, ...] = (0.0,) * len(KINDS)
-    about: tuple[PendulumEffect, ...] = ()
+    present_effects: tuple[PendulumEffect, ...] = ()
 
     @property
     def suspensions(self) -> bool:
@@ -89,7 +89,7 @@ class PendulumProblem:
         )
 
     @cached_property
-    def _seen(self) -> tuple[BoolArray, ...]:
+    def _compared(self) -> tuple[BoolArray, ...]:
         counts = np.array([name in self.kinds for name in KINDS])[:, None]
         return tuple(
             counts & np.isfinite(trial.observed) & np.isfinite(trial.uncertainty)
@@ -98,7 +98,9 @@ class PendulumProblem:
 
     def flat(self, parts: Sequence[FloatArray]) -> FloatArray:
         """Return the trials' values that count, one after the other."""
-        return np.concatenate([part[rows] for part, rows in zip(parts, self._seen, strict=True)])
+        return np.concatenate(
+            [part[rows] for part, rows in zip(parts, self._compared, strict=True)]
+        )
 
     @cached_property
     def uncertainty(self) -> FloatArray:
@@ -113,13 +115,13 @@ class PendulumProblem:
     @cached_property
     def trial(self) -> NDArray[np.intp]:
         """Number of each observation's trial."""
-        parts = [np.full(rows.shape, at) for at, rows in enumerate(self._seen)]
-        return np.concatenate([p[rows] for p, rows in zip(parts, self._seen, strict=True)])
+        parts = [np.full(rows.shape, at) for at, rows in enumerate(self._compared)]
+        return np.concatenate([p[rows] for p, rows in zip(parts, self._compared, strict=True)])
 
     @cached_property
     def kind(self) -> NDArray[np.intp]:
         """Number of each observation's kind."""
-        return np.concatenate([np.nonzero(rows)[0] for rows in self._seen])
+        return np.concatenate([np.nonzero(rows)[0] for rows in self._compared])
 
     @cached_property
     def amplitude(self) -> FloatArray:
@@ -164,7 +166,9 @@ class PendulumProblem:
     @cached_property
     def nuisances(self) -> Nuisances:
         """Releases, amplitudes of gates, tolerances: columns in sigma."""
-        return Nuisances(np.hstack([self.releases, self.set_ups, self.shared, self.unsure]))
+        return Nuisances(
+            np.hstack([self.releases, self.set_ups, self.shared_columns, self.model_error_columns])
+        )
 
     @cached_property
     def releases(self) -> FloatArray:
@@ -186,24 +190,26 @@ class PendulumProblem:
     def set_ups(self) -> FloatArray:
         """Columns of what each trial's own set-up leaves open: variants, its own tolerances."""
         columns = [
-            self._varied(at, bench)
+            self._release_change(at, bench)
             for at, trial in enumerate(self.trials)
             for bench in trial.variants
         ]
         for tolerance in self.tolerances:
-            columns += self._tolerated(tolerance) if tolerance.own else []
+            columns += self._tolerated(tolerance) if tolerance.is_per_trial else []
         return self._stacked(columns)
 
     @cached_property
-    def shared(self) -> FloatArray:
+    def shared_columns(self) -> FloatArray:
         """Columns of the tolerances that all trials share."""
         tolerated = [
-            self._tolerated(tolerance) for tolerance in self.tolerances if not tolerance.own
+            self._tolerated(tolerance)
+            for tolerance in self.tolerances
+            if not tolerance.is_per_trial
         ]
         return self._stacked([np.sum(each, axis=0) for each in tolerated])
 
     @cached_property
-    def unsure(self) -> FloatArray:
+    def model_error_columns(self) -> FloatArray:
         """Columns of what the nominal simulation itself may be wrong by."""
         columns: list[FloatArray] = []
         for kind, error in enumerate(self.model_error):
@@ -236,15 +242,19 @@ class PendulumProblem:
     def _tolerated(self, tolerance: Tolerance) -> list[FloatArray]:
         return [self._column(at, tolerance.effect, 1.0) for at in range(len(self.trials))]
 
-    def _varied(self, at: int, bench: PendulumBench) -> FloatArray:
+    def _release_change(self, at: int, bench: PendulumBench) -> FloatArray:
         trial = self.trials[at]
         variant = replace(trial, bench=replace(bench, release=trial.bench.release))
-        return self._change(at, variant.simulate(self.about) - trial.simulate(self.about))
+        return self._change(
+            at, variant.simulate(self.present_effects) - trial.simulate(self.present_effects)
+        )
 
     def _column(self, at: int, effect: PendulumEffect, share: float) -> FloatArray:
         """Return the change by an effect on one trial, per whole of which it is a share."""
         trial = self.trials[at]
-        change = trial.simulate([*self.about, effect]) - trial.simulate(self.about)
+        change = trial.simulate([*self.present_effects, effect]) - trial.simulate(
+            self.present_effects
+        )
         return self._change(at, change / share)
 
     def _change(self, at: int, change: FloatArray) -> FloatArray:

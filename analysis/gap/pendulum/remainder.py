@@ -10,7 +10,7 @@ from analysis.gap.inference.gaussian import Nuisances
 from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.settle import Settled
 from analysis.gap.pendulum.swings import KINDS
-from analysis.gap.search.fit import Fit, nothing
+from analysis.gap.search.fit import Fit, no_effect
 from hardware.description.arrays import FloatArray
 
 _BEYOND: Final = 4.0
@@ -37,28 +37,28 @@ class KindOfGap:
     after: float
 
     @property
-    def beyond(self) -> bool:
+    def is_beyond_noise(self) -> bool:
         """Whether what is left is more than noise, by four standard deviations of its square."""
-        return self._shows(self.after)
+        return self._is_gap(self.after)
 
     @property
     def gap(self) -> bool:
         """The same of the simulation as it is stated."""
-        return self._shows(self.stated)
+        return self._is_gap(self.stated)
 
     @property
     def out_of_tolerance(self) -> bool:
         """The same without a cause, what is known within tolerances fitted."""
-        return self._shows(self.before)
+        return self._is_gap(self.before)
 
-    def _shows(self, rms: float) -> bool:
+    def _is_gap(self, rms: float) -> bool:
         return rms**2 > 1.0 + _BEYOND * math.sqrt(2.0 / self.count)
 
 
-def where(problem: PendulumProblem, after: Settled) -> tuple[KindOfGap, ...]:
+def gap_by_kind(problem: PendulumProblem, after: Settled) -> tuple[KindOfGap, ...]:
     """Return the gap by kind of observable, before and after."""
     leftover = remainder(after.problem, after.best)
-    leftovers = (as_stated(problem), remainder(problem, nothing(problem)), leftover)
+    leftovers = (as_stated(problem), remainder(problem, no_effect(problem)), leftover)
     kinds = []
     for kind in np.unique(problem.kind):
         rows = problem.kind == kind

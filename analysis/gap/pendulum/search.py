@@ -11,7 +11,7 @@ from analysis.gap.forward.candidate import Candidate
 from analysis.gap.inference.answers import (
     UNKNOWN,
     Answers,
-    Considered,
+    ConsideredHypotheses,
     answers,
     effects_in,
     prior,
@@ -23,10 +23,10 @@ from analysis.gap.inference.gaussian import null_evidence
 from analysis.gap.pendulum.causes import starts_of
 from analysis.gap.pendulum.deviation import background
 from analysis.gap.pendulum.problem import PendulumProblem
-from analysis.gap.search.engine import Engine, fitted, paired, widened
-from analysis.gap.search.first_look import HIDDEN, Looked, best_look
-from analysis.gap.search.fit import Fit, at, inside, nothing
-from analysis.gap.search.linear_hypothesis import hypothesis, settled
+from analysis.gap.search.engine import Engine, fit_leading, fit_pairs, widened
+from analysis.gap.search.first_look import HIDDEN, FirstLook, best_look
+from analysis.gap.search.fit import Fit, into_range, linearised_at, no_effect
+from analysis.gap.search.linear_hypothesis import hypothesis, settled_fit
 from analysis.gap.search.refinement import refine
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
@@ -43,16 +43,16 @@ class WeighedCauses:
     ----------
     sets
         The fitted sets of causes by their answers.
-    looked
+    first_looks
         First looks at every cause.
-    beside
+    background
         What stands beside every hypothesis.
     """
 
     problem: PendulumProblem
     sets: Mapping[str, Fit]
-    looked: tuple[Looked, ...]
-    beside: Background
+    first_looks: tuple[FirstLook, ...]
+    background: Background
     answers: Answers
 
     @property
@@ -64,7 +64,7 @@ class WeighedCauses:
     @property
     def strangeness(self) -> float:
         """Log of how much better something unknown does than any set, prior odds left out."""
-        shares, count = self.answers.by_answer, len(self.looked)
+        shares, count = self.answers.by_answer, len(self.first_looks)
         named = (
             shares[cause_set.answer] / prior(len(cause_set.names), count)
             for cause_set in self.sets.values()
@@ -74,8 +74,10 @@ class WeighedCauses:
 
     def weight(self, cause_set: Fit) -> float:
         """Return the log weight of a set beside any deviation, prior odds included."""
-        odds = math.log(prior(len(cause_set.names), len(self.looked)))
-        return weight(self.beside.named([hypothesis(self.problem, cause_set)])[0]) + odds
+        odds = math.log(prior(len(cause_set.names), len(self.first_looks)))
+        return (
+            weight(self.background.effect_evidence([hypothesis(self.problem, cause_set)])[0]) + odds
+        )
 
 
 def weigh(
@@ -96,8 +98,8 @@ def weigh(
     looked = tuple(best_look(problem, candidate.name, starts_of(candidate)) for candidate in causes)
     none = null_evidence(problem.residual, problem.nuisances)
     looks = [look for look in looked if look.fit and look.visible >= HIDDEN]
-    singles = fitted(problem, looks, none, engine)
-    pairs = paired(problem, singles, looks, none, engine) if most > 1 else []
+    singles = fit_leading(problem, looks, none, engine)
+    pairs = fit_pairs(problem, singles, looks, none, engine) if most > 1 else []
     partners = [*(look.fit for look in looks if look.fit is not None), *singles]
     triples = widened(problem, pairs, partners, engine) if most > 2 else []
     progress("weighing")
@@ -106,14 +108,14 @@ def weigh(
         [hypothesis(problem, cause_set) for cause_set in cause_sets]
         for cause_sets in (singles, pairs, triples)
     ]
-    considered = Considered(
+    considered = ConsideredHypotheses(
         hypotheses[0], hypotheses[1], len(causes), len(causes) - len(looks), hypotheses[2]
     )
     answer_set = answers(considered, beside)
     if not all(math.isfinite(share) for share in answer_set.by_answer.values()):
         raise DataError("the simulation cannot follow these records: their evidence is no number")
     sets = {
-        cause_set.answer: settled(cause_set, answer_set.settled[cause_set.answer])
+        cause_set.answer: settled_fit(cause_set, answer_set.settled[cause_set.answer])
         for cause_set in (*singles, *pairs, *triples)
     }
     return WeighedCauses(problem, sets, looked, beside, answer_set)
@@ -131,11 +133,11 @@ def fit(
     """
     parts = tuple(causes)
     if not parts:
-        return nothing(problem)
+        return no_effect(problem)
     units = np.concatenate([part.start for part in parts]) if start is None else start
-    return refine(problem, at(problem, parts, inside(parts, units)))
+    return refine(problem, linearised_at(problem, parts, into_range(parts, units)))
 
 
-def named(cause_set: Fit) -> tuple[str, ...]:
+def cause_names(cause_set: Fit) -> tuple[str, ...]:
     """Return a set's causes in alphabetical order."""
     return effects_in(cause_set.answer) if cause_set.candidates else ()

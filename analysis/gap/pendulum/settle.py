@@ -30,14 +30,14 @@ def settle(problem: PendulumProblem, best: Fit) -> Settled:
     settled = Settled(problem, best)
     for _ in range(_ROUNDS if best.candidates else 0):
         try:
-            about = _about(settled)
+            about = _linearised_problem(settled)
             settled = Settled(about, fit(about, best.candidates, settled.best.units))
         except PmmError:
             break
     return settled
 
 
-def _about(settled: Settled) -> PendulumProblem:
+def _linearised_problem(settled: Settled) -> PendulumProblem:
     problem, best = settled.problem, settled.best
     free = problem.nuisances.fitted(problem.residual - best.signature)
     first = np.cumsum([0, *(trial.release_columns for trial in problem.trials)])
@@ -45,4 +45,4 @@ def _about(settled: Settled) -> PendulumProblem:
         trial if trial.driven else trial.as_released(float(free[at]), float(free[at + 1]))
         for trial, at in zip(problem.trials, first, strict=False)
     )
-    return replace(problem, trials=trials, about=best.effects)
+    return replace(problem, trials=trials, present_effects=best.effects)

@@ -14,10 +14,10 @@ from analysis.gap.forward.candidate import Candidate
 from analysis.gap.forward.problem import built
 from analysis.gap.pendulum.causes import cause
 from analysis.gap.pendulum.problem import PendulumProblem
-from analysis.gap.pendulum.search import fit, named
+from analysis.gap.pendulum.search import cause_names, fit
 from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.trial import Trial
-from analysis.gap.search.fit import Fit, nothing
+from analysis.gap.search.fit import Fit, no_effect
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
 from sim.pendulum.bench import PendulumBench
@@ -66,18 +66,18 @@ def surrogate(trial: Trial, *, restoring: bool = True) -> Surrogate:
     """
     kinds = KINDS[:2] if restoring else KINDS[:1]
     problem = PendulumProblem((trial,), kinds=kinds)
-    best = nothing(problem)
+    best = no_effect(problem)
     for stage in _STAGES:
-        best = _better(problem, best, [cause(kind) for kind in stage])
+        best = _better_fit(problem, best, [cause(kind) for kind in stage])
     for more in _PERIODS if restoring else ():
         candidates = [
             candidate for candidate in best.candidates if candidate.name not in _OF_PERIODS
         ]
-        best = _better(problem, best, [*candidates, *(cause(kind) for kind in more)])
-    bench = _released(problem, trial, best)
+        best = _better_fit(problem, best, [*candidates, *(cause(kind) for kind in more)])
+    bench = _released_bench(problem, trial, best)
     remainder = trial.observed - replace(trial, bench=bench).simulate()
     rms = tuple(_rms(row) for row in remainder)
-    return Surrogate(bench, tuple(_variants(trial, best)), named(best), rms)
+    return Surrogate(bench, tuple(_variants(trial, best)), cause_names(best), rms)
 
 
 def _variants(trial: Trial, best: Fit) -> Iterator[PendulumBench]:
@@ -97,7 +97,7 @@ def _rms(row: FloatArray) -> float:
     return float(np.sqrt(np.mean(good**2))) if good.size else 0.0
 
 
-def _better(problem: PendulumProblem, best: Fit, causes: Sequence[Candidate]) -> Fit:
+def _better_fit(problem: PendulumProblem, best: Fit, causes: Sequence[Candidate]) -> Fit:
     start = np.concatenate([_start(best, candidate) for candidate in causes])
     tried = fit(problem, causes, start)
     return tried if tried.log_evidence > best.log_evidence else best
@@ -113,7 +113,7 @@ def _start(best: Fit, candidate: Candidate) -> FloatArray:
     return 0.1 * candidate.start
 
 
-def _released(problem: PendulumProblem, trial: Trial, best: Fit) -> PendulumBench:
+def _released_bench(problem: PendulumProblem, trial: Trial, best: Fit) -> PendulumBench:
     """Return the bench with the effects, released as the record was."""
     free = problem.nuisances.fitted(problem.residual - best.signature)
     released = trial.as_released(float(free[0]), float(free[1]))

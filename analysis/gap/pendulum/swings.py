@@ -90,11 +90,11 @@ def swings_of_samples(
         over the first's amplitude. NaN where a window has too few samples.
     """
     since = time_s - windows.start_s
-    rough = _fitted(since, values, windows, windows.reference_rad_s, steady)
+    rough = _fit_swings(since, values, windows, windows.reference_rad_s, steady)
     # a second time at the record's own frequency: slopes within a window are then small
     slope = _mean_slope(windows.centres_s, rough[_PERIOD])
     omega_rad_s = windows.reference_rad_s + slope
-    swings = _fitted(since, values, windows, omega_rad_s, steady)
+    swings = _fit_swings(since, values, windows, omega_rad_s, steady)
     swings[_PERIOD] += slope * windows.centres_s
     return swings
 
@@ -106,7 +106,7 @@ def _mean_slope(time_s: FloatArray, phase_rad: FloatArray) -> float:
     return float(np.polyfit(time_s[good], phase_rad[good], 1)[0])
 
 
-def _fitted(
+def _fit_swings(
     since_s: FloatArray, values: FloatArray, windows: Windows, omega_rad_s: float, steady: bool
 ) -> FloatArray:
     swings = np.full((len(KINDS), windows.count), np.nan)
@@ -123,7 +123,7 @@ def _fitted(
                     np.linalg.pinv(_terms(t, omega_rad_s, steady)), np.float64
                 )
             solved = inverses[key] @ values[inside][good]
-            swings[:, at] = _described(solved, omega_rad_s * centre)
+            swings[:, at] = _swing_values(solved, omega_rad_s * centre)
     good = np.isfinite(swings[_PERIOD])
     swings[_PERIOD, good] = np.unwrap(swings[_PERIOD, good])
     return swings
@@ -136,7 +136,7 @@ def _terms(t: FloatArray, omega_rad_s: float, steady: bool) -> FloatArray:
     return np.column_stack([np.ones(t.size), *waves, *slopes])
 
 
-def _described(solved: FloatArray, turned_rad: float) -> FloatArray:
+def _swing_values(solved: FloatArray, turned_rad: float) -> FloatArray:
     first = complex(solved[1], -solved[2])
     size = max(abs(first), 1e-300)
     third = complex(solved[5], -solved[6]) * (first.conjugate() / size) ** 3 / size

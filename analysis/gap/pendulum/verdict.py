@@ -7,8 +7,8 @@ from typing import Final
 
 from analysis.gap.inference.answers import COEFFICIENTS, NONE, ODD_RUN, UNKNOWN, effects_in
 from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING, STIFFNESS
-from analysis.gap.pendulum.search import WeighedCauses, named
-from analysis.gap.search.fit import Fit, nothing
+from analysis.gap.pendulum.search import WeighedCauses, cause_names
+from analysis.gap.search.fit import Fit, no_effect
 
 CAUSE: Final = "cause"
 UNTOLD: Final = "untold"
@@ -22,7 +22,7 @@ class Verdict:
 
     Attributes
     ----------
-    said
+    outcome
         ``"none"``, ``"unknown"``, ``"odd-run"``, ``"cause"``, or ``"untold"`` where nothing is
         probable enough.
     best
@@ -35,7 +35,7 @@ class Verdict:
         Of any damping, of damping beyond linear, of inertia or stiffness, of none and unknown.
     """
 
-    said: str
+    outcome: str
     best: Fit
     probability: float
     by_cause: Mapping[str, float]
@@ -49,12 +49,12 @@ def judge(weighed: WeighedCauses) -> Verdict:
     prior odds alone do, the cause cannot be told.
     """
     shares = weighed.answers.by_answer
-    first = weighed.ranked[0] if weighed.sets else nothing(weighed.problem)
+    first = weighed.ranked[0] if weighed.sets else no_effect(weighed.problem)
     chances = {
         NONE: shares[NONE] + shares[COEFFICIENTS],
         UNKNOWN: shares[UNKNOWN],
         ODD_RUN: shares[ODD_RUN],
-        CAUSE: _with_any(shares, [alike(weighed, name) for name in named(first)]),
+        CAUSE: _with_any(shares, [alike(weighed, name) for name in cause_names(first)]),
     }
     said = max(chances, key=lambda name: chances[name])
     probability = chances[said]
@@ -64,7 +64,7 @@ def judge(weighed: WeighedCauses) -> Verdict:
     causes = sorted({name for answer in shares for name in effects_in(answer)})
     return Verdict(
         said,
-        nothing(weighed.problem) if said == NONE else first,
+        no_effect(weighed.problem) if said == NONE else first,
         probability,
         {name: _with_any(shares, [(name,)]) for name in causes},
         _classes(shares),
@@ -73,7 +73,7 @@ def judge(weighed: WeighedCauses) -> Verdict:
 
 def alike(weighed: WeighedCauses, name: str) -> tuple[str, ...]:
     """Return the causes that pass for one: laws of damping of its kind, and its twins."""
-    twins = weighed.beside.shapes.alike.get(name, frozenset((name,)))
+    twins = weighed.background.shapes.alike.get(name, frozenset((name,)))
     kin = next((kind for kind in (BEYOND_LINEAR, DAMPING) if name in kind), ())
     return tuple(sorted({name, *twins, *kin}))
 
@@ -86,8 +86,8 @@ def open_causes(weighed: WeighedCauses, verdict: Verdict) -> dict[str, dict[str,
     themselves.
     """
     groups, shares = {}, verdict.by_cause
-    for name in verdict.best.names if verdict.said in (CAUSE, UNTOLD) else ():
-        is_cause = verdict.said == CAUSE
+    for name in verdict.best.names if verdict.outcome in (CAUSE, UNTOLD) else ():
+        is_cause = verdict.outcome == CAUSE
         if shares[name] >= _LIKELY or (is_cause and name in DAMPING):
             continue
         rivals = [

@@ -14,9 +14,9 @@ import numpy as np
 
 from analysis.gap.inference.gaussian import Nuisances, posterior
 from analysis.gap.pendulum.problem import PendulumProblem
-from analysis.gap.pendulum.search import fit, named
+from analysis.gap.pendulum.search import cause_names, fit
 from analysis.gap.pendulum.trial import Trial
-from analysis.gap.search.fit import Fit, at, nothing
+from analysis.gap.search.fit import Fit, linearised_at, no_effect
 from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.errors import PmmError
 
@@ -28,7 +28,7 @@ FEWEST_RUNS = 3
 
 
 @dataclass(frozen=True)
-class Foretold:
+class WithheldPrediction:
     """One hypothesis on the withheld swings.
 
     Attributes
@@ -69,8 +69,8 @@ class WithheldSwings:
     name: str
     windows: int
     amplitude: tuple[float, float]
-    before: Foretold
-    foretold: tuple[Foretold, ...]
+    before: WithheldPrediction
+    foretold: tuple[WithheldPrediction, ...]
 
     @property
     def gap(self) -> bool:
@@ -78,7 +78,7 @@ class WithheldSwings:
         return self.before.gap**2 > 1.0 + 4.0 * math.sqrt(2.0 / self.windows)
 
 
-def foretell(problem: PendulumProblem, sets: Sequence[Fit]) -> tuple[WithheldSwings, ...]:
+def predict_withheld(problem: PendulumProblem, sets: Sequence[Fit]) -> tuple[WithheldSwings, ...]:
     """Withhold small swings, then large ones, and foretell them with some sets of causes.
 
     Where the records are of several suspensions, each of them is withheld instead.
@@ -90,22 +90,25 @@ def foretell(problem: PendulumProblem, sets: Sequence[Fit]) -> tuple[WithheldSwi
         return (_left_out("each run", problem, sets),) if enough else ()
     regimes = []
     for name, large in (("small swings", False), ("large swings", True)):
-        hidden = [_hidden(trial, large=large) for trial in problem.trials]
+        hidden = [_withheld_windows(trial, large=large) for trial in problem.trials]
         if (
-            min(_fewest(rows, trial) for rows, trial in zip(hidden, problem.trials, strict=True))
+            min(
+                _least_count(rows, trial)
+                for rows, trial in zip(hidden, problem.trials, strict=True)
+            )
             >= FEWEST
         ):
             regimes.append(_regime(name, problem, hidden, sets))
     return tuple(regimes)
 
 
-def _hidden(trial: Trial, *, large: bool) -> BoolArray:
+def _withheld_windows(trial: Trial, *, large: bool) -> BoolArray:
     size = trial.observed[_DECAY]
     middle = 0.5 * (np.nanmin(size) + np.nanmax(size))
     return np.asarray(size > middle if large else size <= middle)
 
 
-def _fewest(hidden: BoolArray, trial: Trial) -> int:
+def _least_count(hidden: BoolArray, trial: Trial) -> int:
     good = np.isfinite(trial.observed[_DECAY])
     return int(min((good & hidden).sum(), (good & ~hidden).sum()))
 
@@ -116,18 +119,18 @@ def _regime(
     hidden: Sequence[BoolArray],
     sets: Sequence[Fit],
 ) -> WithheldSwings:
-    training = _without(problem, hidden)
+    training = _without_windows(problem, hidden)
     parts = [
         np.broadcast_to(rows, (len(t.observed), rows.size))
         for rows, t in zip(hidden, problem.trials, strict=True)
     ]
     rows = problem.flat([part.astype(float) for part in parts]) > 0.5
-    plain = _left(problem, nothing(training), rows)
-    before = _foretold(problem, rows, (), plain, plain)
+    plain = _remainder(problem, no_effect(training), rows)
+    before = _prediction(problem, rows, (), plain, plain)
     after = []
     for cause_set in sets:
-        remainder = _left(problem, fit(training, cause_set.candidates, cause_set.units), rows)
-        after.append(_foretold(problem, rows, named(cause_set), plain, remainder))
+        remainder = _remainder(problem, fit(training, cause_set.candidates, cause_set.units), rows)
+        after.append(_prediction(problem, rows, cause_names(cause_set), plain, remainder))
     sizes = problem.amplitude[rows]
     count = int(sum(r.sum() for r in hidden))
     return WithheldSwings(
@@ -135,7 +138,7 @@ def _regime(
     )
 
 
-def _without(problem: PendulumProblem, hidden: Sequence[BoolArray]) -> PendulumProblem:
+def _without_windows(problem: PendulumProblem, hidden: Sequence[BoolArray]) -> PendulumProblem:
     """Return the problem without some windows of each trial."""
     trials = [
         replace(trial, observed=np.where(rows, np.nan, trial.observed))
@@ -153,12 +156,12 @@ def _left_out(name: str, problem: PendulumProblem, sets: Sequence[Fit]) -> Withh
             np.full(trial.windows.count, run == out)
             for run, trial in zip(problem.runs, problem.trials, strict=True)
         ]
-        training, rows = _without(problem, hidden), problem.runs[problem.trial] == out
-        remainders[0].append(_left(problem, nothing(training), rows))
+        training, rows = _without_windows(problem, hidden), problem.runs[problem.trial] == out
+        remainders[0].append(_remainder(problem, no_effect(training), rows))
         for set_remainders, cause_set in zip(remainders[1:], sets, strict=True):
             try:
                 set_remainders.append(
-                    _left(problem, fit(training, cause_set.candidates, cause_set.units), rows)
+                    _remainder(problem, fit(training, cause_set.candidates, cause_set.units), rows)
                 )
             except PmmError:  # friction that holds the body there foretells nothing
                 set_remainders.append(remainders[0][-1])
@@ -171,19 +174,19 @@ def _left_out(name: str, problem: PendulumProblem, sets: Sequence[Fit]) -> Withh
         name,
         sum(trial.windows.count for trial in problem.trials),
         (float(sizes.min()), float(sizes.max())),
-        _foretold(problem, all_rows, (), plain, plain),
+        _prediction(problem, all_rows, (), plain, plain),
         tuple(
-            _foretold(problem, all_rows, named(cause_set), plain, remainder)
+            _prediction(problem, all_rows, cause_names(cause_set), plain, remainder)
             for cause_set, remainder in zip(sets, after, strict=True)
         ),
     )
 
 
-def _left(
+def _remainder(
     problem: PendulumProblem, cause_set: Fit, rows: BoolArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the withheld windows' remainder in u, and draws of it, shape ``(draws, rows)``."""
-    full = at(problem, cause_set.candidates, cause_set.units)
+    full = linearised_at(problem, cause_set.candidates, cause_set.units)
     nuisance_columns = problem.nuisances.columns
     among = Nuisances(nuisance_columns[~rows])
     residual = problem.residual - full.signature
@@ -197,23 +200,23 @@ def _left(
     return remainder, remainder - drawn @ (columns[rows] @ root).T
 
 
-def _foretold(
+def _prediction(
     problem: PendulumProblem,
     rows: BoolArray,
     causes: tuple[str, ...],
     plain: tuple[FloatArray, FloatArray],
     remainder: tuple[FloatArray, FloatArray],
-) -> Foretold:
+) -> WithheldPrediction:
     kind = problem.kind[rows]
     decay, period = kind == _DECAY, kind == _PERIOD
     chosen = decay if decay.any() and not problem.driven else np.ones_like(decay)
     absolute = remainder[0] * problem.uncertainty[rows]
     share, low, high = 0.0, 0.0, 0.0
     if causes:
-        share = _shrinks(plain[0][chosen], remainder[0][chosen])
-        shares = [_shrinks(plain[0][chosen], draw[chosen]) for draw in remainder[1]]
+        share = _reduction(plain[0][chosen], remainder[0][chosen])
+        shares = [_reduction(plain[0][chosen], draw[chosen]) for draw in remainder[1]]
         low, high = (float(value) for value in np.quantile(shares, (0.025, 0.975)))
-    return Foretold(
+    return WithheldPrediction(
         causes,
         _rms(remainder[0][chosen]),
         _rms((absolute * problem.amplitude[rows])[decay]),
@@ -228,7 +231,7 @@ def _rms(remainder: FloatArray) -> float:
     return float(np.sqrt(np.mean(remainder**2))) if remainder.size else math.nan
 
 
-def _shrinks(before: FloatArray, after: FloatArray) -> float:
+def _reduction(before: FloatArray, after: FloatArray) -> float:
     """Return the share of a gap that goes away, the noise floor of 1 u taken off both."""
     old, new = (math.sqrt(max(_rms(gap) ** 2 - 1.0, 0.0)) for gap in (before, after))
     return 1.0 - new / old if old > 0.0 else 0.0

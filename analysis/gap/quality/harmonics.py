@@ -49,7 +49,7 @@ def of_first_harmonics(
     usual = float(np.median(list(sizes.values())))
     unit = (DISPLACEMENT_AFT if channel in DISPLACEMENTS else FORCE_AFT).unit
     turns = _middle_turn(list(ratios.values()))
-    common = _common(usual, cmath.phase(turns), mistaken(math.exp(usual), unit, UNIT_NEAR))
+    common = _common_fault(usual, cmath.phase(turns), mistaken(math.exp(usual), unit, UNIT_NEAR))
     if common:
         yield Doubt("", channel, common)
         return
@@ -62,7 +62,7 @@ def of_first_harmonics(
             yield Doubt(name, channel, reason)
 
 
-def _common(size: float, turn_rad: float, meant: str) -> str:
+def _common_fault(size: float, turn_rad: float, meant: str) -> str:
     """Return what is wrong with the usual ratio, and so with all runs; empty if nothing is."""
     if size < _NOTHING:
         return "it does not move in most runs: leave it out of the columns"

@@ -72,7 +72,9 @@ def recentred(
             break
         try:
             next_rig = with_coefficients(rig, free, list(total + step))
-            Simulator(next_rig, simulator.stack, simulator.on, reference_channel).steady(())
+            Simulator(
+                next_rig, simulator.stack, simulator.active_effects, reference_channel
+            ).steady(())
         except PmmError:
             break
         total, simulator = total + step, simulator.with_rig(next_rig)

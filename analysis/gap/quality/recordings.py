@@ -45,7 +45,7 @@ def doubts(
     return tuple(reversed(first.values()))
 
 
-def judged(
+def judge_recordings(
     rig: SimulatedRig,
     runs: Sequence[GapRun],
     tolerances: Tolerances,

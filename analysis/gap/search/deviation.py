@@ -17,7 +17,7 @@ from analysis.gap.inference.kernel import Kernel
 from analysis.gap.inference.shapes import Shapes, SignatureOfEffect
 from analysis.gap.observe.components import SETTLING, TRENDS, Component, Part, Stack
 from analysis.gap.observe.observation import SPEED
-from analysis.gap.search.first_look import Looked
+from analysis.gap.search.first_look import FirstLook
 from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.channels import DISPLACEMENTS, FORCES
 from hardware.description.setpoint import Medium, SetPoint
@@ -49,7 +49,7 @@ _KINDS: Final = {
 }
 
 
-def background(problem: Problem, looked: Sequence[Looked], sought: BoolArray) -> Background:
+def background(problem: Problem, looked: Sequence[FirstLook], sought: BoolArray) -> Background:
     """Return what stands beside every hypothesis of a campaign.
 
     Parameters
@@ -78,8 +78,8 @@ def background(problem: Problem, looked: Sequence[Looked], sought: BoolArray) ->
         wide,
         Kernel.of(cells, each, scale),
         Shapes.of(shown, scale, problem.nuisances),
-        dict(_own(stack, scale)),
-        dict(_behind(stack)),
+        dict(_run_columns(stack, scale)),
+        dict(_rows_by_stage(stack)),
         dict(_kinds(stack)),
     )
 
@@ -147,7 +147,7 @@ def units(stack: Stack, nominal: FloatArray) -> FloatArray:
     return out
 
 
-def _behind(stack: Stack) -> Iterator[tuple[str, BoolArray]]:
+def _rows_by_stage(stack: Stack) -> Iterator[tuple[str, BoolArray]]:
     """Yield by stage where something that acts there may show; everywhere if nothing is said."""
     for stage in StageName:
         channels = _BEHIND.get(stage)
@@ -181,7 +181,7 @@ def _instrument(channel: str, kind: str) -> str:
     return (StageName.DYNAMOMETERS if gauge else StageName.ACQUISITION).value
 
 
-def _own(stack: Stack, scale: FloatArray) -> Iterator[tuple[str, FloatArray]]:
+def _run_columns(stack: Stack, scale: FloatArray) -> Iterator[tuple[str, FloatArray]]:
     """Yield by run what a gain and a zero of its own change of each force, as it was measured."""
     measured = stack.values / stack.uncertainty
     for number, run in enumerate(stack.runs):

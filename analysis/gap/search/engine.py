@@ -10,15 +10,15 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Final, TypeVar
 
-from analysis.gap.forward.candidate import turned
-from analysis.gap.forward.problem import Compared, Problem
-from analysis.gap.search.first_look import Looked, look
-from analysis.gap.search.fit import Fit, at, expected_evidence, joined, most_probable
+from analysis.gap.forward.candidate import turned_starts
+from analysis.gap.forward.problem import ComparedProblem, Problem
+from analysis.gap.search.first_look import FirstLook, look
+from analysis.gap.search.fit import Fit, expected_evidence, joined, linearised_at, most_probable
 from analysis.gap.search.refinement import refine, stepped
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
 
-P = TypeVar("P", bound=Compared)
+P = TypeVar("P", bound=ComparedProblem)
 T = TypeVar("T")
 R = TypeVar("R")
 
@@ -60,12 +60,14 @@ class Engine:
             yield result
 
 
-def looked_at(problem: Problem, kinds: Sequence[type[Effect]], engine: Engine) -> list[Looked]:
+def looked_at(problem: Problem, kinds: Sequence[type[Effect]], engine: Engine) -> list[FirstLook]:
     """Look at each effect."""
     return list(engine.each("looking at effects", look, problem, kinds))
 
 
-def fitted(problem: Compared, looks: Sequence[Looked], none: float, engine: Engine) -> list[Fit]:
+def fit_leading(
+    problem: ComparedProblem, looks: Sequence[FirstLook], none: float, engine: Engine
+) -> list[Fit]:
     """Fit the leading effects in full; the most probable comes first.
 
     Parameters
@@ -84,10 +86,10 @@ def fitted(problem: Compared, looks: Sequence[Looked], none: float, engine: Engi
     return sorted(fits, key=lambda fit: -fit.log_evidence)
 
 
-def paired(
-    problem: Compared,
+def fit_pairs(
+    problem: ComparedProblem,
     singles: Sequence[Fit],
-    looks: Sequence[Looked],
+    looks: Sequence[FirstLook],
     none: float,
     engine: Engine,
 ) -> list[Fit]:
@@ -106,14 +108,14 @@ def paired(
         _join(problem, firsts, partners, chances)
         tried |= {fit.names[0] for fit in firsts}
         members = {
-            name for chance in _promising(chances, least)[:_LED] for name in chance.fit.names
+            name for chance in _worth_refining(chances, least)[:_LED] for name in chance.fit.names
         }
         firsts = [partner for partner in partners if partner.names[0] in members - tried]
     return _fitted_together(problem, chances, least, engine, "fitting pairs")
 
 
 def widened(
-    problem: Compared, firsts: Sequence[Fit], partners: Sequence[Fit], engine: Engine
+    problem: ComparedProblem, firsts: Sequence[Fit], partners: Sequence[Fit], engine: Engine
 ) -> list[Fit]:
     """Give leading sets of effects each partner, by linear steps, and fit what promises most."""
     if not firsts:
@@ -125,13 +127,13 @@ def widened(
 
 
 def _fitted_together(
-    problem: Compared,
+    problem: ComparedProblem,
     chances: Mapping[frozenset[str], "_Chance"],
     least: float,
     engine: Engine,
     task: str,
 ) -> list[Fit]:
-    worth = _affordable(_promising(chances, least))[:PARTNERS]
+    worth = _affordable(_worth_refining(chances, least))[:PARTNERS]
     fits = engine.each(task, _refined_together, problem, worth)
     return sorted(fits, key=lambda fit: -fit.log_evidence)
 
@@ -146,7 +148,9 @@ def alone_again(problem: Problem, singles: Sequence[Fit], pairs: Sequence[Fit]) 
         for number, candidate in enumerate(pair.candidates):
             earlier_fit = best.get(candidate.name)
             try:
-                start = at(problem, (candidate,), pair.units[pair.whose == number])
+                start = linearised_at(
+                    problem, (candidate,), pair.units[pair.effect_index == number]
+                )
                 least = -math.inf if earlier_fit is None else earlier_fit.log_evidence - _WORSE
                 if expected_evidence(problem, start) < least:
                     continue
@@ -167,7 +171,7 @@ class _Chance:
 
 
 def _join(
-    problem: Compared,
+    problem: ComparedProblem,
     firsts: Sequence[Fit],
     partners: Sequence[Fit],
     chances: dict[frozenset[str], _Chance],
@@ -184,9 +188,13 @@ def _join(
                     chances[key] = _Chance(promise, joint_fit)
 
 
-def _promising(chances: Mapping[frozenset[str], _Chance], least: float) -> list[_Chance]:
+def _worth_refining(chances: Mapping[frozenset[str], _Chance], least: float) -> list[_Chance]:
     """Return the sets that are worth their cost, most promising first."""
-    worth = [chance for chance in chances.values() if chance.promise > least + _dearer(chance.fit)]
+    worth = [
+        chance
+        for chance in chances.values()
+        if chance.promise > least + _refinement_cost(chance.fit)
+    ]
     return sorted(worth, key=lambda chance: -chance.promise)
 
 
@@ -201,23 +209,23 @@ def _least(fit: Fit, most: float) -> float:
     return max(_PROMISING, 0.5 * most) if fit.is_costly else _PROMISING
 
 
-def _dearer(pair: Fit) -> float:
+def _refinement_cost(pair: Fit) -> float:
     """Return what a pair has to promise more than others, for what it costs to refine it."""
     return _WORSE + _TWICE if pair.is_costly else 0.0
 
 
-def _refined(problem: Compared, fit: Fit) -> Fit:
+def _refined(problem: ComparedProblem, fit: Fit) -> Fit:
     """Refine a single effect, from a third of a turn to either side too if it has a phase."""
     fits = [refine(problem, fit)]
-    for start in turned(fit.candidates[0]):
+    for start in turned_starts(fit.candidates[0]):
         try:
-            fits.append(refine(problem, at(problem, fit.candidates, start)))
+            fits.append(refine(problem, linearised_at(problem, fit.candidates, start)))
         except PmmError:
             continue
     return max(fits, key=lambda option: option.log_evidence)
 
 
-def _refined_together(problem: Compared, chance: _Chance) -> Fit:
+def _refined_together(problem: ComparedProblem, chance: _Chance) -> Fit:
     """Refine effects together; with what has to be simulated in time by few steps, its slopes kept.
 
     From where a linear step leads and, if that does not keep what was promised, from where the
@@ -231,7 +239,7 @@ def _refined_together(problem: Compared, chance: _Chance) -> Fit:
     best = fit
     for units in (most_probable(fit), fit.units):
         try:
-            refined = refine(problem, at(problem, fit.candidates, units))
+            refined = refine(problem, linearised_at(problem, fit.candidates, units))
         except PmmError:
             continue
         best = (

@@ -13,17 +13,17 @@ from typing import Final
 import numpy as np
 
 from analysis.gap.forward.candidate import STEP, Candidate, candidates
-from analysis.gap.forward.powers import grown
-from analysis.gap.forward.problem import Compared, Problem
+from analysis.gap.forward.powers import scaled_change
+from analysis.gap.forward.problem import ComparedProblem, Problem
 from analysis.gap.inference.gaussian import left_over, misfit, null_evidence
 from analysis.gap.search.fit import (
     Fit,
-    at,
     bounds,
     expected_evidence,
-    inside,
+    into_range,
+    linearised_at,
     most_probable,
-    moved,
+    moved_fit,
     weighed_at,
 )
 from hardware.description.arrays import FloatArray
@@ -42,7 +42,7 @@ _SIZES: Final = tuple(float(share) for share in np.geomspace(0.01, 10.0, 25))  #
 
 
 @dataclass(frozen=True, eq=False)
-class Looked:
+class FirstLook:
     """What a first look at one effect gave: a linearised fit, or why there is none.
 
     Attributes
@@ -61,31 +61,33 @@ class Looked:
     reason: str = ""
 
 
-def look(problem: Problem, kind: type[Effect]) -> Looked:
+def look(problem: Problem, kind: type[Effect]) -> FirstLook:
     """Linearise an effect at its typical values, from each of its starts, and keep the best."""
     frequencies = [run.set_point.frequency_hz for run in problem.simulator.stack.turning]
     starts = list(candidates(kind, sorted(set(frequencies))))
     if kind.repeats:
         return best_look(problem, kind.name, [(candidate, candidate.start) for candidate in starts])
-    return _best(
+    return _best_of(
         problem, kind.name, [partial(_in_time, problem, candidate) for candidate in starts]
     )
 
 
 def best_look(
-    problem: Compared, name: str, starts: Sequence[tuple[Candidate, FloatArray]]
-) -> Looked:
+    problem: ComparedProblem, name: str, starts: Sequence[tuple[Candidate, FloatArray]]
+) -> FirstLook:
     """Linearise an effect at each of some starts, and keep the best."""
 
-    def seen(candidate: Candidate, start: FloatArray) -> Fit:
+    def fit_from(candidate: Candidate, start: FloatArray) -> Fit:
         # elsewhere than where an effect is small it need not be proportional to its size
         roughly = bool(np.array_equal(start, candidate.start))
-        return _near(problem, at(problem, (candidate,), start, roughly=roughly))
+        return _look_nearer(problem, linearised_at(problem, (candidate,), start, roughly=roughly))
 
-    return _best(problem, name, [partial(seen, candidate, start) for candidate, start in starts])
+    return _best_of(
+        problem, name, [partial(fit_from, candidate, start) for candidate, start in starts]
+    )
 
 
-def _best(problem: Compared, name: str, ways: Sequence[Callable[[], Fit]]) -> Looked:
+def _best_of(problem: ComparedProblem, name: str, ways: Sequence[Callable[[], Fit]]) -> FirstLook:
     """Return the look that promises most, of several ways to see an effect."""
     best, most, reason = None, -math.inf, ""
     for way in ways:
@@ -98,10 +100,10 @@ def _best(problem: Compared, name: str, ways: Sequence[Callable[[], Fit]]) -> Lo
         if best is None or expected > most:
             best, most = fit, expected
     if best is None:
-        return Looked(name, None, reason=reason)
+        return FirstLook(name, None, reason=reason)
     steps = (best.signature, best.columns @ most_probable(best))
     visible = max(left_over(step, problem.nuisances) for step in steps)
-    return Looked(name, best, most, visible)
+    return FirstLook(name, best, most, visible)
 
 
 def _in_time(problem: Problem, candidate: Candidate) -> Fit:
@@ -118,23 +120,23 @@ def _in_time(problem: Problem, candidate: Candidate) -> Fit:
             problem, (candidate,), candidate.start, columns, columns @ candidate.start
         )
     if len(candidate.axes) != 1:
-        return at(problem, (candidate,), candidate.start)
+        return linearised_at(problem, (candidate,), candidate.start)
     simulator = problem.simulator
     change = simulator.predict((candidate.effect(candidate.start),)) - simulator.nominal
 
     def signature(units: FloatArray) -> FloatArray:
         share = float(units[0] / candidate.start[0])
-        return problem.whitened(grown(simulator.stack.components, change, share))
+        return problem.whitened(scaled_change(simulator.stack.components, change, share))
 
     fits = []
-    for units in (inside((candidate,), share * candidate.start) for share in _SIZES):
+    for units in (into_range((candidate,), share * candidate.start) for share in _SIZES):
         base_signature = signature(units)
         slope = (signature((1.0 + STEP) * units) - base_signature) / (STEP * units[0])
         fits.append(weighed_at(problem, (candidate,), units, slope[:, None], base_signature))
     return min(fits, key=lambda fit: fit.cost)
 
 
-def _near(problem: Compared, fit: Fit) -> Fit:
+def _look_nearer(problem: ComparedProblem, fit: Fit) -> Fit:
     """Return a first look from where the effect is about as large as what there is to explain.
 
     A backlash that is a thousand times too large is no straight line down to the one that is there.
@@ -155,11 +157,11 @@ def _near(problem: Compared, fit: Fit) -> Fit:
             break
         if straight and expected_evidence(problem, near) > none - _HOPELESS:
             return fit
-        near = moved(problem, near, smaller(problem, near, 1.0 / ratio))
-    return fit if near is fit or ratio > _MUCH**2 else _anew(problem, near)
+        near = moved_fit(problem, near, smaller_units(problem, near, 1.0 / ratio))
+    return fit if near is fit or ratio > _MUCH**2 else _relinearised(problem, near)
 
 
-def _along_any(problem: Compared, fit: Fit, wanted: float) -> Fit:
+def _along_any(problem: ComparedProblem, fit: Fit, wanted: float) -> Fit:
     """Return the most promising first look, of those from where one parameter alone was moved.
 
     None of them is a size: a droop and an inertia both make a drive yield less, and one of the two
@@ -167,7 +169,7 @@ def _along_any(problem: Compared, fit: Fit, wanted: float) -> Fit:
     """
     if left_over(fit.signature, problem.nuisances) < _MUCH * wanted:
         return fit
-    ways = [_along(problem, fit, wanted, axis) for axis in range(len(fit.units))]
+    ways = [_look_along(problem, fit, wanted, axis) for axis in range(len(fit.units))]
     return max(
         (way for way in ways if way is not None),
         key=lambda way: expected_evidence(problem, way),
@@ -175,7 +177,7 @@ def _along_any(problem: Compared, fit: Fit, wanted: float) -> Fit:
     )
 
 
-def _along(problem: Compared, fit: Fit, wanted: float, axis: int) -> Fit | None:
+def _look_along(problem: ComparedProblem, fit: Fit, wanted: float, axis: int) -> Fit | None:
     """Return a look from where one parameter makes the effect as large as wanted, if it can."""
     weighted = problem.nuisances.whiten(fit.signature)
     rises = float(weighted @ fit.columns[:, axis]) / max(float(weighted @ weighted), 1e-12)
@@ -187,21 +189,21 @@ def _along(problem: Compared, fit: Fit, wanted: float, axis: int) -> Fit | None:
     units, ratio, near = fit.units.copy(), math.inf, fit
     units[axis] = min(max(large + math.log(share) / rises, low), high)
     for _ in range(_HALVINGS):
-        near = moved(problem, fit, units.copy())
+        near = moved_fit(problem, fit, units.copy())
         ratio = left_over(near.signature, problem.nuisances) / wanted
         large, small = (units[axis], small) if ratio > 1.0 else (large, units[axis])
         if 1.0 / _ALIKE < ratio < _ALIKE or large == small:
             break
         units[axis] = 0.5 * (large + small)
-    return _anew(problem, near) if ratio < _MUCH**2 else None
+    return _relinearised(problem, near) if ratio < _MUCH**2 else None
 
 
-def _anew(problem: Compared, fit: Fit) -> Fit:
+def _relinearised(problem: ComparedProblem, fit: Fit) -> Fit:
     """Return a moved fit with the slopes that it has where it came to."""
-    return at(problem, fit.candidates, fit.units, signature=fit.signature)
+    return linearised_at(problem, fit.candidates, fit.units, signature=fit.signature)
 
 
-def smaller(problem: Compared, fit: Fit, share: float) -> FloatArray:
+def smaller_units(problem: ComparedProblem, fit: Fit, share: float) -> FloatArray:
     """Return parameters at which a signature is about a share of what it is.
 
     By the power with which it goes with its sizes, all together; or, where a parameter can't be
@@ -214,7 +216,7 @@ def smaller(problem: Compared, fit: Fit, share: float) -> FloatArray:
     power = float(slopes[sizes] @ units[sizes])
     if power > _LEAST_POWER:
         units[sizes] *= share ** (1.0 / power)
-        return inside(fit.candidates, units)
+        return into_range(fit.candidates, units)
     at_most = int(np.argmax(np.where(sizes, 0.0, np.abs(slopes))))
     units[at_most] += math.log(share) / (slopes[at_most] or math.inf)
-    return inside(fit.candidates, units)
+    return into_range(fit.candidates, units)

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.gap.forward.candidate import STEP, Axis, Candidate, least_step
-from analysis.gap.forward.problem import Compared, built
+from analysis.gap.forward.problem import ComparedProblem, built
 from analysis.gap.inference.answers import answer_of
 from analysis.gap.inference.gaussian import Posterior, any_size, misfit, posterior
-from analysis.gap.inference.hypothesis import within
+from analysis.gap.inference.hypothesis import bounded_mode
 from hardware.description.arrays import BoolArray, FloatArray
 
 # Of a posterior deviation, by which slopes are found: over the whole of one they change by up to
@@ -80,7 +80,7 @@ class Fit:
     def sizes(self) -> list[BoolArray]:
         """Which parameters are sizes, for each effect, shape ``(p,)``; those share their scale."""
         sizes = np.array([axis.is_size for axis in self.axes], dtype=bool)
-        return [sizes & (self.whose == number) for number in range(len(self.candidates))]
+        return [sizes & (self.effect_index == number) for number in range(len(self.candidates))]
 
     @property
     def reaches(self) -> list[float]:
@@ -93,7 +93,7 @@ class Fit:
         return tuple(axis for candidate in self.candidates for axis in candidate.axes)
 
     @property
-    def whose(self) -> NDArray[np.intp]:
+    def effect_index(self) -> NDArray[np.intp]:
         """Number of the effect that each parameter belongs to, shape ``(p,)``."""
         counts = [len(candidate.axes) for candidate in self.candidates]
         return np.repeat(np.arange(len(counts)), counts)
@@ -118,7 +118,7 @@ class Fit:
         return residual - self.signature + self.columns @ self.units
 
 
-def inside(parts: Sequence[Candidate], units: FloatArray) -> FloatArray:
+def into_range(parts: Sequence[Candidate], units: FloatArray) -> FloatArray:
     """Return parameters drawn back into their plausible ranges."""
     low, high = bounds(parts)
     return np.asarray(np.clip(units, low, high), np.float64)
@@ -131,11 +131,11 @@ def bounds(parts: Sequence[Candidate]) -> FloatArray:
 
 def most_probable(fit: Fit) -> FloatArray:
     """Return the most probable parameters within the plausible ranges, to first order."""
-    return within(fit.posterior, bounds(fit.candidates))
+    return bounded_mode(fit.posterior, bounds(fit.candidates))
 
 
-def at(
-    problem: Compared,
+def linearised_at(
+    problem: ComparedProblem,
     parts: tuple[Candidate, ...],
     units: FloatArray,
     *,
@@ -167,7 +167,7 @@ def at(
     return weighed_at(problem, parts, units, columns, signature)
 
 
-def relinearised(problem: Compared, fit: Fit) -> Fit:
+def relinearised(problem: ComparedProblem, fit: Fit) -> Fit:
     """Return a fit with slopes found where it is, as fine as its parameters are known.
 
     What is simulated in time has a digitiser's steps, and keeps to the usual ones.
@@ -192,14 +192,14 @@ def is_sized(parts: tuple[Candidate, ...], units: FloatArray) -> bool:
     return sized and parts[0].repeats and abs(float(units[0])) > STEP
 
 
-def nothing(problem: Compared) -> Fit:
+def no_effect(problem: ComparedProblem) -> Fit:
     """Return the hypothesis of no effect."""
     none = np.zeros_like(problem.residual)
     return weighed_at(problem, (), np.empty(0), none[:, None][:, :0], none)
 
 
 def weighed_at(
-    problem: Compared,
+    problem: ComparedProblem,
     parts: tuple[Candidate, ...],
     units: FloatArray,
     columns: FloatArray,
@@ -213,7 +213,7 @@ def weighed_at(
     return Fit(parts, units, columns, signature, cost, estimate, shared, columns[:, :0])
 
 
-def joined(problem: Compared, first: Fit, second: Fit) -> Fit:
+def joined(problem: ComparedProblem, first: Fit, second: Fit) -> Fit:
     """Put two linearised hypotheses together as if their effects did not act on each other."""
     return weighed_at(
         problem,
@@ -230,7 +230,7 @@ def _usual_steps(parts: Sequence[Candidate], units: FloatArray) -> FloatArray:
 
 
 def _slopes(
-    problem: Compared,
+    problem: ComparedProblem,
     parts: tuple[Candidate, ...],
     units: FloatArray,
     base: FloatArray,
@@ -242,7 +242,7 @@ def _slopes(
 
 
 def _slope(
-    problem: Compared,
+    problem: ComparedProblem,
     parts: tuple[Candidate, ...],
     units: FloatArray,
     base: FloatArray,
@@ -252,14 +252,14 @@ def _slope(
     for sign in (1.0, -1.0):
         aside = units.copy()
         aside[axis] += sign * step
-        moved_units = inside(parts, aside)
+        moved_units = into_range(parts, aside)
         if abs(moved_units[axis] - units[axis]) > 0.5 * step:
             change = problem.signature(parts, moved_units) - base
             return np.asarray(change / (moved_units[axis] - units[axis]), np.float64)
     return np.zeros_like(base)
 
 
-def expected_evidence(problem: Compared, fit: Fit) -> float:
+def expected_evidence(problem: ComparedProblem, fit: Fit) -> float:
     """Return the evidence that one step from here promises, kept within the plausible ranges.
 
     For a first look at many effects: it takes no further simulation.
@@ -268,19 +268,19 @@ def expected_evidence(problem: Compared, fit: Fit) -> float:
     return -0.5 * (cost + fit.shared) + fit.log_volume
 
 
-def linear_cost(problem: Compared, fit: Fit, units: FloatArray) -> float:
+def linear_cost(problem: ComparedProblem, fit: Fit, units: FloatArray) -> float:
     """Return what a fit would cost at other parameters, to first order."""
     remainder = fit.linearised(problem.residual) - fit.columns @ units
     return misfit(remainder, problem.nuisances) + float(units @ units)
 
 
-def moved(problem: Compared, fit: Fit, units: FloatArray) -> Fit:
+def moved_fit(problem: ComparedProblem, fit: Fit, units: FloatArray) -> Fit:
     """Return the fit at other parameters, with the slopes that it has."""
     signature = problem.signature(fit.candidates, units)
     return weighed_at(problem, fit.candidates, units, fit.columns, signature)
 
 
-def learned(problem: Compared, fit: Fit, better: Fit) -> Fit:
+def learned(problem: ComparedProblem, fit: Fit, better: Fit) -> Fit:
     """Return a moved fit with slopes that would have told where it came to (Broyden's update).
 
     They change by the least, each parameter counted by how well it is known.

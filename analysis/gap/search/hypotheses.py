@@ -10,15 +10,22 @@ import numpy as np
 
 from analysis.gap.forward.free_numbers import Free
 from analysis.gap.forward.problem import Problem
-from analysis.gap.inference.answers import Answers, Considered, answers
+from analysis.gap.inference.answers import Answers, ConsideredHypotheses, answers
 from analysis.gap.inference.gaussian import null_evidence
-from analysis.gap.locate.traces import shown, worth_a_look
+from analysis.gap.locate.traces import deviating_traces, worth_a_look
 from analysis.gap.search.deviation import background
-from analysis.gap.search.engine import LEADERS, Engine, alone_again, fitted, looked_at, paired
-from analysis.gap.search.first_look import HIDDEN, Looked
+from analysis.gap.search.engine import (
+    LEADERS,
+    Engine,
+    alone_again,
+    fit_leading,
+    fit_pairs,
+    looked_at,
+)
+from analysis.gap.search.first_look import HIDDEN, FirstLook
 from analysis.gap.search.fit import Fit
-from analysis.gap.search.joint import together
-from analysis.gap.search.linear_hypothesis import hypothesis, in_form, settled, with_forms
+from analysis.gap.search.joint import fit_jointly
+from analysis.gap.search.linear_hypothesis import hypothesis, in_form, settled_fit, with_forms
 from sim.effects.effect import Effect
 
 # What these change are the coefficients, and those are free in every hypothesis.
@@ -26,7 +33,7 @@ COEFFICIENTS: Final = ("added-mass-error", "damping-error")
 
 
 @dataclass(frozen=True, eq=False)
-class Weighed:
+class WeighedHypotheses:
     """All hypotheses, and how probable each is.
 
     Attributes
@@ -40,7 +47,7 @@ class Weighed:
     problem: Problem
     singles: tuple[Fit, ...]
     pairs: tuple[Fit, ...]
-    looked: tuple[Looked, ...]
+    first_looks: tuple[FirstLook, ...]
     skipped: tuple[str, ...]
     answers: Answers
 
@@ -53,12 +60,12 @@ class Weighed:
     @property
     def hidden(self) -> Mapping[str, float]:
         """Effects that cannot be seen, with the typical signature's size in sigma, by name."""
-        return _hidden(self.looked)
+        return _hidden(self.first_looks)
 
     @property
     def refused(self) -> Mapping[str, str]:
         """Effects that this rig cannot have, with the reason, by name."""
-        return {look.name: look.reason for look in self.looked if look.fit is None}
+        return {look.name: look.reason for look in self.first_looks if look.fit is None}
 
 
 def weigh(
@@ -67,7 +74,7 @@ def weigh(
     executor: Executor | None = None,
     progress: Callable[[str], None] = lambda _: None,
     free: Sequence[Free] = (),
-) -> Weighed:
+) -> WeighedHypotheses:
     """Fit and weigh every hypothesis.
 
     Parameters
@@ -80,20 +87,20 @@ def weigh(
         The coefficients and settings of the problem, to be moved together with the effects.
     """
     kinds = [kind for name, kind in catalogue.items() if name not in COEFFICIENTS]
-    traces = shown(problem)
+    traces = deviating_traces(problem)
     worth = [kind for kind in kinds if worth_a_look(kind, traces)]
     engine = Engine(executor, progress)
     looked = looked_at(problem, worth, engine)
     none = null_evidence(problem.residual, problem.nuisances)
     looks = [look for look in looked if look.fit and look.visible >= HIDDEN]
-    singles = fitted(problem, looks, none, engine)
-    pairs = _completed(problem, free, paired(problem, singles, looks, none, engine))
+    singles = fit_leading(problem, looks, none, engine)
+    pairs = _complete_forms(problem, free, fit_pairs(problem, singles, looks, none, engine))
     least = min((fit.cost for fit in pairs), default=math.inf)
-    singles = _completed(problem, free, alone_again(problem, singles, pairs), least)
+    singles = _complete_forms(problem, free, alone_again(problem, singles, pairs), least)
     singles += _unfitted(looks, singles)
     progress("weighing")
     sought = np.array([number.is_sought for number in free], dtype=bool)
-    considered = Considered(
+    considered = ConsideredHypotheses(
         [hypothesis(problem, fit) for fit in singles],
         [hypothesis(problem, fit) for fit in pairs],
         len(kinds),
@@ -102,29 +109,31 @@ def weigh(
     answer_set = answers(considered, background(problem, looked, sought))
     singles, pairs = (
         sorted(
-            (settled(fit, answer_set.settled[fit.answer]) for fit in fits),
+            (settled_fit(fit, answer_set.settled[fit.answer]) for fit in fits),
             key=lambda fit: -answer_set.by_answer[fit.answer],
         )
         for fits in (singles, pairs)
     )
     skipped = tuple(kind.name for kind in kinds if kind not in worth)
-    return Weighed(problem, tuple(singles), tuple(pairs), tuple(looked), skipped, answer_set)
+    return WeighedHypotheses(
+        problem, tuple(singles), tuple(pairs), tuple(looked), skipped, answer_set
+    )
 
 
-def _completed(
+def _complete_forms(
     problem: Problem, free: Sequence[Free], fits: Sequence[Fit], least: float = math.inf
 ) -> list[Fit]:
     """Give each fit its other forms; fit the leading ones in them, and with the coefficients."""
     formed = [with_forms(problem, fit) for fit in fits]
     moved: list[Fit] = []
     for fit in formed[:LEADERS]:
-        moved.append(together(problem, free, in_form(problem, fit, least), least))
+        moved.append(fit_jointly(problem, free, in_form(problem, fit, least), least))
         least = min(least, moved[-1].cost)
     all_fits = [*(with_forms(problem, fit) for fit in moved), *formed[LEADERS:]]
     return sorted(all_fits, key=lambda fit: -fit.log_evidence)
 
 
-def _unfitted(looks: Sequence[Looked], fits: Sequence[Fit]) -> list[Fit]:
+def _unfitted(looks: Sequence[FirstLook], fits: Sequence[Fit]) -> list[Fit]:
     """Return the effects that did not promise enough to be fitted, as they were looked at.
 
     They are less probable for that, and not impossible.
@@ -133,5 +142,5 @@ def _unfitted(looks: Sequence[Looked], fits: Sequence[Fit]) -> list[Fit]:
     return [look.fit for look in looks if look.fit is not None and look.name not in names]
 
 
-def _hidden(looked: Sequence[Looked]) -> dict[str, float]:
+def _hidden(looked: Sequence[FirstLook]) -> dict[str, float]:
     return {look.name: look.visible for look in looked if look.fit and look.visible < HIDDEN}

@@ -19,7 +19,7 @@ from analysis.gap.forward.problem import Problem, built
 from analysis.gap.forward.simulator import Simulator
 from analysis.gap.inference.gaussian import Nuisances, left_over
 from analysis.gap.search.fit import Fit, weighed_at
-from analysis.gap.search.refinement import anew, follow, in_reach
+from analysis.gap.search.refinement import follow, in_reach, relinearised_or_same
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect, Parameter
@@ -28,7 +28,7 @@ _LEVEL: Final = 1.0  # sigma of all observations together, below which slopes ar
 _STEPS: Final = 6
 
 
-def together(problem: Problem, free: Sequence[Free], fit: Fit, least: float = math.inf) -> Fit:
+def fit_jointly(problem: Problem, free: Sequence[Free], fit: Fit, least: float = math.inf) -> Fit:
     """Return a fit whose signature holds what effect and coefficients do together.
 
     All of them are fitted at once, each step simulated on the rig as its coefficients then are. A
@@ -43,16 +43,16 @@ def together(problem: Problem, free: Sequence[Free], fit: Fit, least: float = ma
     """
     if _is_dear(fit) or not free or not any(candidate.repeats for candidate in fit.candidates):
         return fit
-    joint_problem, count = _Whole(problem, free), len(free)
+    joint_problem, count = _JointProblem(problem, free), len(free)
     columns = problem.nuisances.columns[:, :count]
     shared = problem.nuisances.fitted(problem.residual - fit.signature)[:count]
     try:
-        joint_fit = joint_problem.begun(fit, shared)
+        joint_fit = joint_problem.initial_fit(fit, shared)
     except PmmError:
         return fit
     beyond = left_over(joint_fit.signature - fit.signature - columns @ shared, problem.nuisances)
     if beyond > _LEVEL and in_reach(joint_fit, beyond, least):
-        joint_fit = follow(joint_problem, anew(joint_problem, joint_fit), _STEPS)
+        joint_fit = follow(joint_problem, relinearised_or_same(joint_problem, joint_fit), _STEPS)
     effect_units, shared = joint_fit.units[:-count], joint_fit.units[-count:]
     signature = joint_fit.signature - columns @ shared
     return weighed_at(
@@ -70,13 +70,13 @@ def with_numbers(problem: Problem, free: Sequence[Free], fit: Fit) -> Fit:
     free
         The nuisances' first columns.
     """
-    joint_problem = _Whole(problem, free)
+    joint_problem = _JointProblem(problem, free)
     shared = problem.nuisances.fitted(problem.residual - fit.signature)[: len(free)]
     try:
-        joint_fit = joint_problem.begun(fit, shared)
+        joint_fit = joint_problem.initial_fit(fit, shared)
     except PmmError:  # beyond what a rig can be; as it is believed to be it has been simulated
-        joint_fit = joint_problem.begun(fit, np.zeros(len(free)))
-    return joint_fit if _is_dear(fit) else anew(joint_problem, joint_fit)
+        joint_fit = joint_problem.initial_fit(fit, np.zeros(len(free)))
+    return joint_fit if _is_dear(fit) else relinearised_or_same(joint_problem, joint_fit)
 
 
 def _is_dear(fit: Fit) -> bool:
@@ -84,7 +84,7 @@ def _is_dear(fit: Fit) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class _Whole:
+class _JointProblem:
     """A problem whose free numbers are fitted as an effect's parameters are."""
 
     problem: Problem
@@ -117,7 +117,7 @@ class _Whole:
         rig = FittedRig.of(self.problem, self.free, shared)
         return rig.change(built(parts[:-1], effect_units))
 
-    def begun(self, fit: Fit, shared: FloatArray) -> Fit:
+    def initial_fit(self, fit: Fit, shared: FloatArray) -> Fit:
         """Return a fit with the free numbers at some units, each with the slopes that it has.
 
         Raises

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from analysis.gap.forward.candidate import Axis
-from analysis.gap.forward.problem import Compared, Problem
+from analysis.gap.forward.problem import ComparedProblem, Problem
 from analysis.gap.inference.gaussian import left_over
 from analysis.gap.inference.hypothesis import Evidence, Hypothesis
 from analysis.gap.search.fit import Fit, bounds, expected_evidence, weighed_at
@@ -67,7 +67,7 @@ def in_form(problem: Problem, fit: Fit, least: float = math.inf) -> Fit:
     best = fit
     while freed := [
         free_fit
-        for column, free_fit in zip(best.forms.T, _freed(problem, best), strict=True)
+        for column, free_fit in zip(best.forms.T, _freed_fits(problem, best), strict=True)
         if free_fit is not None and in_reach(best, left_over(column, problem.nuisances), least)
     ]:
         start = max(freed, key=lambda free_fit: expected_evidence(problem, free_fit))
@@ -80,7 +80,7 @@ def in_form(problem: Problem, fit: Fit, least: float = math.inf) -> Fit:
     return best
 
 
-def _freed(problem: Problem, fit: Fit) -> Iterator[Fit | None]:
+def _freed_fits(problem: Problem, fit: Fit) -> Iterator[Fit | None]:
     """Yield for each form the fit with its parameter free; ``None`` if it is more than one."""
     for column, (number, form) in zip(fit.forms.T, _other_forms(fit), strict=True):
         effect = fit.effects[number]
@@ -96,14 +96,14 @@ def _freed(problem: Problem, fit: Fit) -> Iterator[Fit | None]:
                 declared[names[0]], held, abs(form_value - held), is_log=False, is_form=True
             )
             parts = list(fit.candidates)
-            parts[number] = parts[number].freed(axis)
-            behind = int(np.sum(fit.whose <= number))
+            parts[number] = parts[number].with_free(axis)
+            behind = int(np.sum(fit.effect_index <= number))
             units = np.insert(fit.units, behind, 0.0)
             columns = np.insert(fit.columns, behind, np.sign(form_value - held) * column, axis=1)
             yield weighed_at(problem, tuple(parts), units, columns, fit.signature)
 
 
-def hypothesis(problem: Compared, fit: Fit) -> Hypothesis:
+def hypothesis(problem: ComparedProblem, fit: Fit) -> Hypothesis:
     """Return a fit as one equation weighs it, against the rig as it is stated."""
     return Hypothesis(
         fit.names,
@@ -116,7 +116,7 @@ def hypothesis(problem: Compared, fit: Fit) -> Hypothesis:
     )
 
 
-def settled(fit: Fit, evidence: Evidence) -> Fit:
+def settled_fit(fit: Fit, evidence: Evidence) -> Fit:
     """Return a fit whose parameters are as they are beside what suits it best."""
     signature = fit.signature + fit.columns @ (evidence.units - fit.units)
     return replace(fit, units=evidence.units, signature=signature, posterior=evidence.posterior)

@@ -32,7 +32,7 @@ def polynomial(problem: Problem, fitted: BoolArray | None = None) -> Fit:
     fitted
         Observations by which to judge that, shape ``(observations,)``; all if not given.
     """
-    return _fit(problem, _scaled(problem, problem.simulator.stack, fitted))
+    return _fit(problem, _scaled_terms(problem, problem.simulator.stack, fitted))
 
 
 def polynomial_ahead(problem: Problem, problem_ahead: Problem) -> FloatArray:
@@ -40,21 +40,21 @@ def polynomial_ahead(problem: Problem, problem_ahead: Problem) -> FloatArray:
 
     Shape ``(observations there, terms)``.
     """
-    return _scaled(problem, problem_ahead.simulator.stack)
+    return _scaled_terms(problem, problem_ahead.simulator.stack)
 
 
-def _scaled(problem: Problem, stack: Stack, fitted: BoolArray | None = None) -> FloatArray:
+def _scaled_terms(problem: Problem, stack: Stack, fitted: BoolArray | None = None) -> FloatArray:
     """Return all terms over the runs of a stack, each as wide as its prior in the campaign."""
     rows = np.ones(len(problem.residual), dtype=bool) if fitted is None else fitted
-    raw = _raw(problem.simulator.stack, problem.simulator.stack)
+    raw = _raw_terms(problem.simulator.stack, problem.simulator.stack)
     sizes = np.array([left_over(column, problem.nuisances) for column in raw.T])
     shown = sizes > 1e-6
     unit = raw[:, shown] / sizes[shown]
     size = max(_SIZES, key=lambda width: log_evidence(problem, width * unit, rows))
-    return np.asarray(size * _raw(problem.simulator.stack, stack)[:, shown] / sizes[shown])
+    return np.asarray(size * _raw_terms(problem.simulator.stack, stack)[:, shown] / sizes[shown])
 
 
-def _raw(made: Stack, stack: Stack) -> FloatArray:
+def _raw_terms(made: Stack, stack: Stack) -> FloatArray:
     """Return each term's components over a stack in sigma, scaled by the motions that were made."""
     terms = [term for channel in FORCES for term in _terms(made, stack, channel)]
     return np.asarray(np.column_stack(terms) / stack.uncertainty[:, None])

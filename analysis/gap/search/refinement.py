@@ -3,14 +3,14 @@
 import math
 from typing import Final
 
-from analysis.gap.forward.problem import Compared
+from analysis.gap.forward.problem import ComparedProblem
 from analysis.gap.search.fit import (
     Fit,
-    at,
     learned,
     linear_cost,
+    linearised_at,
     most_probable,
-    moved,
+    moved_fit,
     relinearised,
 )
 from hardware.description.errors import PmmError
@@ -24,7 +24,7 @@ _SETTLED: Final = 1e-3
 _FURTHER: Final = 3.0  # times as far as a first look at a change, it leads at most
 
 
-def refine(problem: Compared, fit: Fit) -> Fit:
+def refine(problem: ComparedProblem, fit: Fit) -> Fit:
     """Improve a fit by damped Gauss-Newton steps through the simulator, to its optimum.
 
     Slopes learn from each step what it really brought about; where that is not about what they
@@ -34,22 +34,22 @@ def refine(problem: Compared, fit: Fit) -> Fit:
     """
     if not fit.repeats:
         return stepped(problem, _simulated(problem, fit), _STEPS_IN_TIME)
-    best, fresh = _followed(problem, fit)
+    best, fresh = _follow_slopes(problem, fit)
     for _ in range(_STEPS):
         if fresh:
             break
-        start = anew(problem, best)
-        best, fresh = _followed(problem, start)
+        start = relinearised_or_same(problem, best)
+        best, fresh = _follow_slopes(problem, start)
         fresh = fresh or best is start
     return best
 
 
-def follow(problem: Compared, fit: Fit, steps: int = _STEPS) -> Fit:
+def follow(problem: ComparedProblem, fit: Fit, steps: int = _STEPS) -> Fit:
     """Improve a fit until the slopes that it has and learns promise nothing more."""
-    return _followed(problem, fit, steps)[0]
+    return _follow_slopes(problem, fit, steps)[0]
 
 
-def _followed(problem: Compared, fit: Fit, steps: int = _STEPS) -> tuple[Fit, bool]:
+def _follow_slopes(problem: ComparedProblem, fit: Fit, steps: int = _STEPS) -> tuple[Fit, bool]:
     """Return the fit where its slopes lead, and whether these were found there."""
     best, fresh = fit, False
     for _ in range(steps):
@@ -58,19 +58,19 @@ def _followed(problem: Compared, fit: Fit, steps: int = _STEPS) -> tuple[Fit, bo
             break
         best, fresh = learned(problem, best, better), False
         if not _FULFILLED < fulfilled < 1.0 / _FULFILLED:
-            best, fresh = anew(problem, best), True
+            best, fresh = relinearised_or_same(problem, best), True
     return best, fresh
 
 
-def _simulated(problem: Compared, fit: Fit) -> Fit:
+def _simulated(problem: ComparedProblem, fit: Fit) -> Fit:
     """Return a fit as it is simulated where it is; as it is where that cannot be."""
     try:
-        return at(problem, fit.candidates, fit.units)
+        return linearised_at(problem, fit.candidates, fit.units)
     except PmmError:
         return fit
 
 
-def anew(problem: Compared, fit: Fit) -> Fit:
+def relinearised_or_same(problem: ComparedProblem, fit: Fit) -> Fit:
     """Return a fit with slopes found where it is; as it is where nothing can be simulated aside."""
     try:
         return relinearised(problem, fit)
@@ -78,7 +78,7 @@ def anew(problem: Compared, fit: Fit) -> Fit:
         return fit
 
 
-def stepped(problem: Compared, fit: Fit, steps: int) -> Fit:
+def stepped(problem: ComparedProblem, fit: Fit, steps: int) -> Fit:
     """Return a fit after some steps with the slopes that it has; itself if none betters it."""
     best = fit
     for _ in range(steps):
@@ -102,7 +102,7 @@ def in_reach(fit: Fit, change: float, least: float) -> bool:
     return math.sqrt(fit.cost) - _FURTHER * change < math.sqrt(least)
 
 
-def _step(problem: Compared, fit: Fit) -> tuple[Fit | None, float]:
+def _step(problem: ComparedProblem, fit: Fit) -> tuple[Fit | None, float]:
     """Return a better fit along the Gauss-Newton step, and how much of its promise it keeps.
 
     None where the step promises nothing, or nothing along it is better.
@@ -113,7 +113,7 @@ def _step(problem: Compared, fit: Fit) -> tuple[Fit | None, float]:
         return None, 0.0
     for share in (1.0, 0.4, 0.1, 0.02):
         try:
-            better = moved(problem, fit, fit.units + share * towards)
+            better = moved_fit(problem, fit, fit.units + share * towards)
         except PmmError:
             continue
         if better.cost < fit.cost:

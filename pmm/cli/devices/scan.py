@@ -25,7 +25,9 @@ def scan(listen_s: float, as_json: bool, **options: Any) -> None:
     with busy("scanning"):
         survey = _survey(Target(**options), listen_s)
     silent = [
-        f"{name}: {port.what}" for name, port in survey.heard_ports.items() if port.what == "silent"
+        f"{name}: {port.device_kind}"
+        for name, port in survey.heard_ports.items()
+        if port.device_kind == "silent"
     ]
     faults = survey.faults + silent
     show(scan_document(survey, faults), as_json=as_json)

@@ -35,12 +35,12 @@ def least_squares(
     start = left.T @ target
     if conditions is not None and least is not None and least.size:
         matrix = conditions @ back
-        start = start + _shortest(matrix, least - matrix @ start)
+        start = start + _shortest_solution(matrix, least - matrix @ start)
     solution: FloatArray = back @ start
     return solution
 
 
-def _shortest(matrix: FloatArray, least: FloatArray) -> FloatArray:
+def _shortest_solution(matrix: FloatArray, least: FloatArray) -> FloatArray:
     """Return the shortest x with matrix x >= least; zero where there is none."""
     from scipy.optimize import nnls
 

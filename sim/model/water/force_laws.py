@@ -38,10 +38,10 @@ class CrossFlow:
 
     def scaled(self, factor: float) -> "CrossFlow":
         """Return loads that are larger by a factor."""
-        return CrossFlow(_times(self.cubic, factor), _times(self.quadratic, factor))
+        return CrossFlow(_scaled_rows(self.cubic, factor), _scaled_rows(self.quadratic, factor))
 
 
-def _times(rows: Rows | None, factor: float) -> Rows | None:
+def _scaled_rows(rows: Rows | None, factor: float) -> Rows | None:
     return None if rows is None else as_rows(np.array(rows) * factor)
 
 

@@ -78,7 +78,7 @@ def _passive(
     for _ in range(_ROUNDS):
         cuts = Cuts(omega, factors, 1.5 * (factors @ identity) * (_damping(poles, omega) @ floor))
         fit, _ = fitted_residues(samples, poles, cuts)
-        watched = _watched(samples, poles, omega)
+        watched = _watched_frequencies(samples, poles, omega)
         rows = _damping(poles, watched)
         lowest, directions = _lowest(rows @ fit.residues.T / (rows @ floor)[:, None])
         bad = _minima(lowest)
@@ -111,7 +111,9 @@ def _factors(directions: FloatArray) -> FloatArray:
     return np.stack([first**2, 2.0 * first * second, second**2], axis=1)
 
 
-def _watched(samples: SampledTable, poles: ComplexArray, cuts: FloatArray) -> FloatArray:
+def _watched_frequencies(
+    samples: SampledTable, poles: ComplexArray, cuts: FloatArray
+) -> FloatArray:
     """Return where the damping is looked at: closely about the cuts, at which it touches zero."""
     spread = np.geomspace(
         min(samples.omega[0], np.abs(poles).min()) / _FAR,

@@ -59,7 +59,7 @@ def find(name: str, more: Mapping[str, type[Any]] | None = None) -> type[Any]:
     """
     effects = by_name() | dict(more or {})
     if name not in effects:
-        raise ConfigurationError(f"no pendulum effect {name!r}{_near(name, list(effects))}")
+        raise ConfigurationError(f"no pendulum effect {name!r}{_suggestion(name, list(effects))}")
     return effects[name]
 
 
@@ -89,7 +89,7 @@ def make_effect(
     numbers = plausible(kind)
     for key, value in parameters.items():
         if key not in names:
-            raise ConfigurationError(f"{name} has no parameter {key!r}{_near(key, names)}")
+            raise ConfigurationError(f"{name} has no parameter {key!r}{_suggestion(key, names)}")
         if key in numbers and not isinstance(value, int | float):
             raise ConfigurationError(f"{name}: {key} = {value!r} is no number")
     effect: PendulumEffect = kind(**parameters)
@@ -128,6 +128,6 @@ def _is_effect(value: Any) -> bool:
     return called and is_dataclass(value) and isinstance(getattr(value, "name", None), str)
 
 
-def _near(name: str, names: list[str]) -> str:
+def _suggestion(name: str, names: list[str]) -> str:
     near = get_close_matches(name, names, n=3, cutoff=0.4)
     return f"; did you mean {', '.join(near)}?" if near else f" (known: {', '.join(names)})"

@@ -181,7 +181,7 @@ class SensorNoise:
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
-        chosen = _chosen(bench, self.channel)
+        chosen = _sensors_of(bench, self.channel)
 
         def noisy(how: Digitiser) -> Digitiser:
             noise = math.hypot(how.noise_rms, self.noise_rms)
@@ -196,13 +196,13 @@ class SensorNoise:
 
 def _check_stamped(bench: PendulumBench, effect: str, channel: str) -> None:
     """Refuse another clock for one of several sensors: a test has one recorder."""
-    if len(_chosen(bench, channel)) < len(bench.sensors):
+    if len(_sensors_of(bench, channel)) < len(bench.sensors):
         raise ConfigurationError(
             f"{effect}: one clock stamps all sensors of this test; leave channel = {channel!r} out"
         )
 
 
-def _chosen(bench: PendulumBench, channel: str) -> tuple[Sensor, ...]:
+def _sensors_of(bench: PendulumBench, channel: str) -> tuple[Sensor, ...]:
     """Return the sensors of that channel, or all."""
     chosen = tuple(sensor for sensor in bench.sensors if channel in ("", sensor.channel.name))
     if not chosen:
@@ -214,5 +214,5 @@ def _chosen(bench: PendulumBench, channel: str) -> tuple[Sensor, ...]:
 def _sensors(
     bench: PendulumBench, channel: str, change: Callable[[Sensor], Sensor]
 ) -> PendulumBench:
-    chosen = _chosen(bench, channel)
+    chosen = _sensors_of(bench, channel)
     return bench.change_sensors(lambda sensor: change(sensor) if sensor in chosen else sensor)

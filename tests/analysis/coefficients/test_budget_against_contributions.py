@@ -78,7 +78,7 @@ def test_what_two_coefficients_share_is_their_correlation() -> None:
     found = campaign_coefficients(
         exact, Request(Form.SEAKEEPING, StatedUncertainties(mass_kg=0.1), zero_frequency=False)
     )
-    assert found.uncertain.taken(found.rows("a33")).correlation() == pytest.approx(np.ones((2, 2)))
+    assert found.uncertain.select(found.rows("a33")).correlation() == pytest.approx(np.ones((2, 2)))
 
 
 def test_low_frequency_says_how_many_digits_are_lost() -> None:

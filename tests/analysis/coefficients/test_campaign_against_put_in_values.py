@@ -17,7 +17,7 @@ from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.campaign_systems import without_dimensions
 from analysis.coefficients.names import Form, place_of
 from analysis.coefficients.normalisation import mmg, prime, seakeeping
-from analysis.coefficients.reference import ReferenceTable, compared, table_of_matrices
+from analysis.coefficients.reference import ReferenceTable, compare, table_of_matrices
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.terms import term_of
 from benchmarks.coefficients_campaigns import (
@@ -266,15 +266,15 @@ def test_beside_a_reference_table() -> None:
     added = np.tile([[75.0, 3.0], [3.0, 22.0]], (3, 1, 1))
     damping = np.tile([[250.0, 12.0], [12.0, 55.0]], (3, 1, 1))
     table = table_of_matrices("panel method", Plane.VERTICAL, frequency, added, damping)
-    rows = compared(found, table).references
+    rows = compare(found, table).references
     assert len(rows) == 24
     assert not any(r.within for r in rows if r.name == "b33")
     assert np.mean([r.within for r in rows if r.name != "b33"]) > 0.75
     high = replace(table, frequency_hz=np.array([1.3, 1.5, 1.9]))
     with pytest.raises(DataError, match=r"panel method .* has nothing of what the campaign"):
-        compared(found, high)
+        compare(found, high)
     with pytest.raises(ConfigurationError, match="is in the system 'prime'"):
-        compared(found, replace(table, normalisation="prime"))
+        compare(found, replace(table, normalisation="prime"))
     with pytest.raises(DataError, match="frequencies have to rise"):
         ReferenceTable("strip", 0.0, "dimensional", np.array([2.0, 1.0]), {})
 

@@ -126,4 +126,4 @@ def test_rows_are_found_in_order_of_frequency() -> None:
     assert found.shares(1)["scatter of sway 1"] == pytest.approx(1.05 / 1.09)
     with pytest.raises(DataError, match=r"N_r stands 0 times .*add a run in yaw"):
         found.row("N_r")
-    assert found.taken([2]).entries[0].runs == ("sway 3",)
+    assert found.select([2]).entries[0].runs == ("sway 3",)

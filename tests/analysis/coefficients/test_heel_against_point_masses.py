@@ -16,7 +16,7 @@ from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainti
 from analysis.coefficients.strut_cycle import StrutCycle
 from hardware.description.body import Body
 from hardware.description.errors import DataError
-from hardware.description.heel import Heel, HeelGauges, Held
+from hardware.description.heel import Heel, HeelGauges, RollConstraint
 from hardware.description.oscillator import HORIZONTAL_1963
 from hardware.description.setpoint import SetPoint
 from tests.exact.heeled import HeeledModel, HeeledRun
@@ -43,7 +43,7 @@ def exact_model(terms: dict[str, float]) -> HeeledModel:
     return HeeledModel(MASSES, PLACES, terms, GM_M, BM_M)
 
 
-def body_and_heel(held: Held, gauges: HeelGauges) -> tuple[Body, Heel]:
+def body_and_heel(held: RollConstraint, gauges: HeelGauges) -> tuple[Body, Heel]:
     model = exact_model({})
     mass = model.integral(0, 0, 0)
     body = Body(mass, model.integral(2, 0, 0) + model.integral(0, 2, 0),
@@ -60,7 +60,7 @@ UNITS = {"displacement": "m", "force": "N", "roll": "N m", "heel": "rad"}
 def cycle(
     name: str,
     *given: Any,
-    held: Held = Held.SET,
+    held: RollConstraint = RollConstraint.SET,
     gauges: HeelGauges = HeelGauges.UPRIGHT,
     **more: Any,
 ) -> BodyCycle:
@@ -141,7 +141,7 @@ def test_terms_of_a_model_that_rolls_come_back() -> None:
     waves = [(0.05, 0.1 + 0.05j), (-0.1, 0.08j), (0.0, -0.12 + 0j), (0.1, 0.03 - 0.1j)]
     motions = ((0.2, 0.0), (0.15, 2.2), (0.22, 2.2), (0.2, 1.0))
     runs = [
-        cycle(f"{k} {amplitude} {phase}", every, amplitude, phase, heel, held=Held.FREE)
+        cycle(f"{k} {amplitude} {phase}", every, amplitude, phase, heel, held=RollConstraint.FREE)
         for k, heel in enumerate(waves)
         for amplitude, phase in motions
     ]

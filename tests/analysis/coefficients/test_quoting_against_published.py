@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis.coefficients.campaign_quoting import Carried, quoted
+from analysis.coefficients.campaign_quoting import QuotedMass, quote
 from analysis.coefficients.campaign_records import HIGHER_ORDER, CoefficientEntry
 from analysis.coefficients.campaign_result import CampaignCoefficients, no_trials
 from analysis.coefficients.campaign_systems import without_dimensions
@@ -74,13 +74,13 @@ def test_the_mariner_as_it_was_published() -> None:
     si["Y_r"] += mass * SPEED_M_S
     si["N_r"] += mass * arm * SPEED_M_S
     assert si["Y_r"] / unit("Y_r") == pytest.approx(299e-5)
-    carried = Carried(mass, arm, system)
+    carried = QuotedMass(mass, arm, system)
     plain = without_dimensions(campaign(si, Plane.HORIZONTAL), system)
-    found = quoted(plain, Quoting(with_mass=True), carried)
+    found = quote(plain, Quoting(with_mass=True), carried)
     for name, value in PUBLISHED.items():
         assert named(found)[name] == pytest.approx(1e-5 * value, rel=1e-12), name
     assert found.normalisation.endswith("Y_r - m U for Y_r, N_r - m x_G U for N_r")
-    taylor = named(quoted(plain, Quoting(Names.ABKOWITZ, with_mass=True), carried))
+    taylor = named(quote(plain, Quoting(Names.ABKOWITZ, with_mass=True), carried))
     assert taylor["Y_vvv"] / 6.0 == pytest.approx(-8078e-5)
     assert taylor["Y_vvr"] / 2.0 == pytest.approx(15356e-5)
     assert taylor["Y_r"] == pytest.approx(-499e-5)
@@ -118,7 +118,7 @@ def test_gertler_and_hagens_equations_give_the_same_load(w: float, q: float) -> 
     force = sum(si[name] * one for name, one in own.items() if name[0] == "Z")
     moment = sum(si[name] * one for name, one in own.items() if name[0] == "M")
     found = without_dimensions(campaign(si, Plane.VERTICAL), system)
-    c = named(quoted(found, Quoting(Names.GERTLER_HAGEN)))
+    c = named(quote(found, Quoting(Names.GERTLER_HAGEN)))
     flow = math.hypot(0.0, w)
     theirs = HALF * length**2 * (
         c["Z_*"] * u**2 + c["Z_w"] * u * w + c["Z_w|w|"] * w * flow
@@ -142,13 +142,13 @@ def test_the_uncertainty_of_the_mass_is_that_of_another_mass(
 ) -> None:
     """Each stated input moved by a thousandth of itself, against the slope that is carried."""
     names = ("Y_r", "N_r") if plane is Plane.HORIZONTAL else ("Z_q", "M_q")
-    base = Carried(1.7e7, arm, system if divided else None)
+    base = QuotedMass(1.7e7, arm, system if divided else None)
     zero = campaign(dict.fromkeys(names, 0.0), plane)
 
-    def at(carried: Carried, speed: float = SPEED_M_S, density: float = DENSITY) -> np.ndarray:
+    def at(carried: QuotedMass, speed: float = SPEED_M_S, density: float = DENSITY) -> np.ndarray:
         own = (lambda u: prime(LENGTH_M, u, density)) if divided else None
         start = replace(zero, entries=tuple(replace(one, speed_m_s=speed) for one in zero.entries))
-        return quoted(start, Quoting(with_mass=True), replace(carried, system=own)).values
+        return quote(start, Quoting(with_mass=True), replace(carried, system=own)).values
 
     small = 1e-3
     moved = {
@@ -159,7 +159,7 @@ def test_the_uncertainty_of_the_mass_is_that_of_another_mass(
     }
     for key, (size, values) in moved.items():
         stated = StatedUncertainties(**{key: size})
-        found = quoted(zero, Quoting(with_mass=True), replace(base, stated=stated))
+        found = quote(zero, Quoting(with_mass=True), replace(base, stated=stated))
         slope = sum(
             (one.dense(2)[:, 0] for one in found.uncertain.contributions if one.label == key),
             np.zeros(2),
@@ -188,8 +188,8 @@ def test_the_trials_spread_as_draws_that_carry_the_mass_themselves(divided: bool
     if divided:
         start = without_dimensions(start, system, stated)
         quoted_draws /= 0.5 * density * LENGTH_M**3 * SPEED_M_S
-    carried = Carried(mass, 0.0, system if divided else None, stated)
-    found = quoted(start, Quoting(with_mass=True), carried)
+    carried = QuotedMass(mass, 0.0, system if divided else None, stated)
+    found = quote(start, Quoting(with_mass=True), carried)
     assert found.trials.standard_uncertainty[0] == pytest.approx(quoted_draws.std(), rel=0.01)
     ends = np.quantile(quoted_draws, (0.025, 0.975))
     both = (found.trials.low[0], found.trials.high[0])
@@ -199,4 +199,4 @@ def test_the_trials_spread_as_draws_that_carry_the_mass_themselves(divided: bool
 def test_the_seakeeping_form_is_refused() -> None:
     found = replace(campaign({"Y_v": 1.0}, Plane.HORIZONTAL), form=Form.SEAKEEPING)
     with pytest.raises(ConfigurationError, match="take --form manoeuvring"):
-        quoted(found, Quoting(Names.ABKOWITZ))
+        quote(found, Quoting(Names.ABKOWITZ))

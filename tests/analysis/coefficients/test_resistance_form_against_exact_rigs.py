@@ -47,7 +47,7 @@ def test_a_constant_one_is_taken_as_constant() -> None:
 def test_its_terms_follow_each_number_of_the_cycles_as_other_fits_do() -> None:
     found, _ = fit_surge(cycles(by_speed=True), NAMES, (0, 1, 2))
     problem, step = found.problem, 1e-5
-    told = problem.followed(found.values)
+    told = problem.sensitivities(found.values)
     generator = np.random.default_rng(9)
     for _ in range(4):
         way = generator.standard_normal(problem.numbers.parts.shape)

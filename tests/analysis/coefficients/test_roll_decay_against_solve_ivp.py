@@ -14,11 +14,11 @@ from analysis.coefficients.roll_decay import RollDecay, with_decays
 from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
-from hardware.description.heel import Heel, Held
+from hardware.description.heel import Heel, RollConstraint
 from hardware.description.oscillator import Plane
 
 GRAVITY = 9.80665
-BODY, HEEL = Body(170.0, 120.0), Heel(Held.SET, inertia_kg_m2=4.6, gm_m=0.02)
+BODY, HEEL = Body(170.0, 120.0), Heel(RollConstraint.SET, inertia_kg_m2=4.6, gm_m=0.02)
 K_P, K_PDOT, K_PHI, U_K_PHI = -0.7, -0.9, -0.65, 0.03
 
 
@@ -83,6 +83,6 @@ def test_uncertainties_move_it_as_other_decays_would() -> None:
 
 def test_what_it_needs_is_said() -> None:
     with pytest.raises(ConfigurationError, match=r"K_p takes mass_kg of \[model\], and inertia"):
-        with_decays(campaign(), [decay(0.0, 0.0)], Heel(Held.SET), BODY)
+        with_decays(campaign(), [decay(0.0, 0.0)], Heel(RollConstraint.SET), BODY)
     with pytest.raises(ConfigurationError, match=r"damping_ratio = 1\.5 between 0 and 1"):
         RollDecay(1.0, 1.5)

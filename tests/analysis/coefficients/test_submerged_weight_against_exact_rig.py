@@ -48,12 +48,12 @@ def test_a_restoring_run_agrees_with_what_its_body_says() -> None:
     slow = cycle_of(pitched(SUBMERGED, 1e-5), "slow", 3)
     one = restoring_of(slow, body_of(SUBMERGED), NONE, NONE)
     assert one.hydrostatic_moment == pytest.approx(one.moment, rel=1e-5)
-    assert slow.taken[1, 1] == pytest.approx(abs(slow.loads[1]), rel=1e-5)
+    assert slow.load_magnitudes[1, 1] == pytest.approx(abs(slow.loads[1]), rel=1e-5)
 
 
 def test_nothing_is_left_of_the_load_in_phase() -> None:
     """Weight and buoyancy taken off, no restoring remains: hydrostatics are given as none."""
     cycles = [cycle_of(pitched(SUBMERGED, hertz), str(hertz), 3) for hertz in (0.1, 0.15, 0.2, 0.3)]
-    pairs = {pair.name: pair.both.values for pair in restoring_pairs(cycles)}
+    pairs = {pair.name: pair.estimates.values for pair in restoring_pairs(cycles)}
     weight = abs(weight_matrix(body_of(SUBMERGED), Plane.VERTICAL, Medium.WATER)[1, 1])
     assert pairs["C55"] == pytest.approx([0.0, 0.0], abs=1e-4 * weight)

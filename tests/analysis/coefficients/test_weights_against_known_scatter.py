@@ -62,7 +62,7 @@ def test_a_run_that_tells_its_terms_alone_has_its_own_scatter(sway: BodyCycle) -
     fit = repeated(sway, np.random.default_rng(29), 1)
     problem, (cycle,) = fit.problem, fit.problem.numbers.cycles
     (source,) = cycle.hull.phasors.real.contributions
-    parts = problem.followed(fit.values)[0] @ problem.numbers.scatter(cycle, source)
+    parts = problem.sensitivities(fit.values)[0] @ problem.numbers.scatter(cycle, source)
     expected = np.sqrt((parts**2).sum(axis=1))
     np.testing.assert_allclose(fit.uncertain.standard_uncertainty, expected, rtol=1e-9)
     np.testing.assert_allclose(problem.shares[0], np.eye(2), atol=1e-12)

@@ -9,7 +9,7 @@ import pytest
 from analysis.coefficients.cycle_fit import FIRST, fit_cycles
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.candidate import CandidateRun
-from analysis.design.expectation import REPEATS, SCATTER, expected, made_up
+from analysis.design.expectation import REPEATS, SCATTER, expected_coefficients, made_up
 from analysis.design.noise import Noise
 from analysis.design.regression import DesignTarget, prospects
 from analysis.design.selection import covariance
@@ -35,7 +35,7 @@ def test_fits_of_noisy_periods_scatter_as_expected() -> None:
     asked = [DesignTarget(name, 1.0) for name in names]
     predicted = {
         one.name: one.standard_uncertainty
-        for one in expected(runs, made_up(runs, LINEAR, noise), asked, LINEAR, EXACT)
+        for one in expected_coefficients(runs, made_up(runs, LINEAR, noise), asked, LINEAR, EXACT)
     }
     truth = exact.Made(LINEAR.values, orders=3)
     struts = [exact.made_struts(one.point, truth, f"run {k}") for k, one in enumerate(runs)]
@@ -60,7 +60,7 @@ def test_the_search_expects_what_the_fit_does() -> None:
     noise = Noise(2.0, 100.0, displacement_m=2e-4, corner_hz=0.1, repeat_relative=0.01)
     stated = StatedUncertainties(mass_kg=0.3, lag_s=1e-3, force_gain_relative=2e-3)
     runs = [replace(one, periods=3 + 2 * k) for k, one in enumerate(RUNS)]
-    fitted = expected(runs, made_up(runs, WHOLE, noise), TARGETS, WHOLE, stated)
+    fitted = expected_coefficients(runs, made_up(runs, WHOLE, noise), TARGETS, WHOLE, stated)
     every = list(range(len(runs)))
     searched = prospects(runs, WHOLE, noise, stated).regressions(TARGETS, every)
     spread = np.sqrt(np.concatenate([np.diag(covariance(one, every)) for one in searched]))
@@ -70,7 +70,7 @@ def test_the_search_expects_what_the_fit_does() -> None:
     assert ratio.min() > 0.999
     assert ratio.max() < 1.06
     known = [replace(one, periods=10**6) for one in RUNS]
-    fitted = expected(known, made_up(known, WHOLE, noise), TARGETS, WHOLE, stated)
+    fitted = expected_coefficients(known, made_up(known, WHOLE, noise), TARGETS, WHOLE, stated)
     searched = prospects(known, WHOLE, noise, stated).regressions(TARGETS, every)
     spread = np.sqrt(np.concatenate([np.diag(covariance(one, every)) for one in searched]))
     assert spread == pytest.approx([one.standard_uncertainty for one in fitted], rel=1e-3)
@@ -81,7 +81,9 @@ def test_the_search_expects_what_the_fit_does() -> None:
 def test_a_run_that_does_not_tell_says_which_would() -> None:
     runs = [CandidateRun(SetPoint(0.2, 0.1, 0.0, 1.2), 5, 1.0)]
     noise = Noise(2.0, 100.0)
-    rows = expected(runs, made_up(runs, LINEAR, noise), [DesignTarget("N_r", 1.0)], LINEAR, EXACT)
+    rows = expected_coefficients(
+        runs, made_up(runs, LINEAR, noise), [DesignTarget("N_r", 1.0)], LINEAR, EXACT
+    )
     assert not rows[0].met
     assert np.isinf(rows[0].standard_uncertainty)
     assert "add a run in yaw" in rows[0].message

@@ -87,9 +87,9 @@ def test_each_is_within_its_uncertainty(told: Commanded) -> None:
         "strut phase": BEHIND_RAD[0] - BEHIND_RAD[1],
         "phase reference": -BEHIND_RAD[0],
     }
-    assert {one.name for one in told.told} == {*made}
-    for one in told.told:
-        assert abs(one.off.value - made[one.name]) < 4.0 * one.off.uncertainty + 1e-7
+    assert {one.name for one in told.known_settings} == {*made}
+    for one in told.known_settings:
+        assert abs(one.deviation.value - made[one.name]) < 4.0 * one.deviation.uncertainty + 1e-7
         assert one.runs == len(POINTS)
 
 
@@ -128,7 +128,7 @@ def test_what_is_stated_or_known_stays(rig: SimulatedRig, seen: tuple[GapRun, ..
     held = commanded(rig, seen, USUAL, stated={"eccentricity_m", "strut_phase_rad"})
     assert held.rig.linkage_aft == rig.linkage_aft
     assert held.tolerances.eccentricity_m == USUAL.eccentricity_m
-    assert [one.name for one in held.told] == ["frequency"]
+    assert [one.name for one in held.known_settings] == ["frequency"]
     on = commanded(rig, seen, USUAL, [EccentricityError(*ADDED_M)])
     for link in (on.rig.linkage_aft, on.rig.linkage_fore):
         assert link.eccentricity_error_m == pytest.approx(0.0, abs=2e-6)
@@ -138,7 +138,7 @@ def test_without_commands_all_stays(rig: SimulatedRig, seen: tuple[GapRun, ...])
     bare = recorded(POINTS[0]).select(DISPLACEMENTS)
     assert following(bare) == ({}, "")
     found = commanded(rig, (), USUAL)
-    assert (found.rig, found.tolerances, found.told) == (rig, USUAL, ())
+    assert (found.rig, found.tolerances, found.known_settings) == (rig, USUAL, ())
 
 
 @pytest.mark.parametrize(

@@ -67,7 +67,7 @@ def test_the_polynomial_control_predicts_a_polynomial_and_no_sign(problem: Probl
         whole = put_in(problem, {name: 3.0}) * stack.uncertainty
         told = _with_values(problem, problem.simulator.nominal + whole)
         before, after = (
-            gap_of(np.concatenate([one.left for one in predict_withheld(told, fit, every)]))
+            gap_of(np.concatenate([one.remainder for one in predict_withheld(told, fit, every)]))
             for fit in (None, polynomial(told))
         )
         gaps[name] = after / before

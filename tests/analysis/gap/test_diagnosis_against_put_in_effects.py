@@ -6,7 +6,7 @@ from dataclasses import asdict, replace
 import numpy as np
 import pytest
 
-from analysis.gap.design.forecast import forecast, further, planned
+from analysis.gap.design.forecast import forecast, planned, with_further_runs
 from analysis.gap.forward.free_numbers import free_numbers
 from analysis.gap.forward.tolerances import Tolerances
 from analysis.gap.inference.answers import NONE, UNKNOWN
@@ -40,7 +40,7 @@ def test_a_campaign_without_an_effect_has_no_gap(rig: SimulatedRig, seed: int) -
     assert found.answers.best == NONE
     assert found.best is None
     assert sum(found.answers.by_answer.values()) == pytest.approx(1.0)
-    assert not any(one.beyond for one in found.walk.steps)
+    assert not any(one.is_beyond_noise for one in found.walk.steps)
 
 
 @pytest.mark.slow
@@ -79,7 +79,7 @@ def friction(rig: SimulatedRig) -> Diagnosis:
 def test_friction_is_named_with_its_stage_and_size(friction: Diagnosis) -> None:
     _holds(friction, "coulomb-friction:friction_n=0.3")
     assert max(friction.stages, key=lambda name: friction.stages[name]) == "structure"
-    beyond = {one.what for one in friction.walk.steps if one.beyond}
+    beyond = {one.step for one in friction.walk.steps if one.is_beyond_noise}
     assert "forces" in beyond
     assert "strut motion" not in beyond
 
@@ -102,7 +102,7 @@ def test_the_gap_goes_away_where_friction_is_added(friction: Diagnosis) -> None:
 def test_a_run_that_was_not_made_is_foretold(friction: Diagnosis, rig: SimulatedRig) -> None:
     tolerances, problem = Tolerances(), friction.problem
     point = SetPoint(0.75, 0.03, 0.0, 1.0)
-    there = further(
+    there = with_further_runs(
         problem, [planned(problem, point, 0)], free_numbers(rig, tolerances), tolerances
     )
     assert friction.best is not None
@@ -113,7 +113,9 @@ def test_a_run_that_was_not_made_is_foretold(friction: Diagnosis, rig: Simulated
     assert steady.all()
     off = (really - there.simulator.nominal) / there.simulator.stack.uncertainty - told.mean
     without = (really - there.simulator.nominal) / there.simulator.stack.uncertainty - plain.mean
-    spread = np.sqrt(1.0 + np.sum(told.whole(np.ones(len(told.mean), dtype=bool)) ** 2, axis=1))
+    spread = np.sqrt(
+        1.0 + np.sum(told.covariance_root(np.ones(len(told.mean), dtype=bool)) ** 2, axis=1)
+    )
     assert np.abs(off / spread).max() < 3.0
     assert np.linalg.norm(off) < 0.2 * np.linalg.norm(without)
 

@@ -16,7 +16,7 @@ from analysis.gap.forward.free_numbers import free_numbers
 from analysis.gap.forward.problem import Problem
 from analysis.gap.forward.tolerances import Tolerances
 from analysis.gap.observe.components import Component, GapRun, Observation, Part, Stack
-from analysis.gap.search.fit import at
+from analysis.gap.search.fit import linearised_at
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium, SetPoint
 from hardware.description.units import STANDARD_GRAVITY_M_S2 as G_M_S2
@@ -167,7 +167,7 @@ def test_a_weight_is_proposed_on_the_strut_whose_gauge_it_tells_of(problem: Prob
     effect = build("gain-error:aft=0.0,fore=0.05")
     part = next(one for one in candidates(type(effect), (0.5, 1.0)))
     units = np.array([axis.unit(getattr(effect, axis.parameter.name)) for axis in part.axes])
-    leading = ((at(problem, (part,), units), 0.5), (None, 0.5))
+    leading = ((linearised_at(problem, (part,), units), 0.5), (None, 0.5))
     choices = Choices(Range(0.5, 1.0), Range(0.01, 0.02), media=())
     free = free_numbers(problem.simulator.rig, Tolerances())
     first, *_ = proposals(problem, leading, choices, free, Tolerances())
@@ -199,7 +199,7 @@ def test_the_next_run_is_made_after_the_last(problem: Problem) -> None:
 def pressed(problem: Problem, choices: Choices) -> list[Proposal]:
     """Return what is proposed with a dead weight, where play or no gap may be."""
     play = next(iter(candidates(find("joint-play"), (0.5, 1.0))))
-    leading = ((at(problem, (play,), play.start), 0.5), (None, 0.5))
+    leading = ((linearised_at(problem, (play,), play.start), 0.5), (None, 0.5))
     free = free_numbers(problem.simulator.rig, Tolerances())
     found = proposals(problem, leading, choices, free, Tolerances())
     return [one for one in found if one.set_point is not None and one.force_n]
@@ -287,7 +287,7 @@ class Twin(JointPlay):
 def test_a_dead_weight_tells_play_from_its_twin_and_no_other_run_does(rig: SimulatedRig) -> None:
     problem = problem_of(rig, record(rig, (build("joint-play:half_play_m=2e-5"),), 51)[:3])
     parts = [next(iter(candidates(kind, (0.5, 1.0)))) for kind in (find("joint-play"), Twin)]
-    fits = [(at(problem, (one,), one.start), 0.5) for one in parts]
+    fits = [(linearised_at(problem, (one,), one.start), 0.5) for one in parts]
     choices = Choices(Range(0.5, 1.0), Range(0.01, 0.02), force_limit_n=500.0)
     ask = partial(
         proposals, problem, fits, free=free_numbers(rig, Tolerances()), tolerances=Tolerances()

@@ -57,11 +57,11 @@ def test_a_force_that_grows_shows_its_growth_per_period(
 
 def test_a_run_that_settles_is_a_gap_beside_the_harmonics(rig: SimulatedRig) -> None:
     calm, settling = (
-        next(one for one in walk(problem_of(rig, [grown(rig, share)])).steps if one.what == BESIDE)
+        next(one for one in walk(problem_of(rig, [grown(rig, share)])).steps if one.step == BESIDE)
         for share in (0.0, 2e-3)
     )
-    assert not calm.beyond
-    assert settling.beyond
+    assert not calm.is_beyond_noise
+    assert settling.is_beyond_noise
     assert "trend" in settling.worst
 
 

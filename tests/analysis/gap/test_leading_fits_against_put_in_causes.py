@@ -7,8 +7,8 @@ from analysis.gap.forward.candidate import Candidate, candidates
 from analysis.gap.forward.free_numbers import free_numbers, with_coefficients
 from analysis.gap.forward.problem import Problem
 from analysis.gap.inference.gaussian import misfit
-from analysis.gap.search.fit import Fit, at
-from analysis.gap.search.joint import together
+from analysis.gap.search.fit import Fit, linearised_at
+from analysis.gap.search.joint import fit_jointly
 from analysis.gap.search.linear_hypothesis import in_form, with_forms
 from analysis.gap.search.refinement import refine
 from hardware.description.arrays import FloatArray
@@ -40,8 +40,8 @@ def test_a_rod_and_friction_are_found_on_a_rig_whose_coupling_is_far_off(
     off = [-6.0 if one.name == "a21" else 0.0 for one in free]
     problem = problem_of(with_coefficients(rig, free, off), runs)
     parts, units = _begun("connecting-rod", "coulomb-friction")
-    alone = refine(problem, at(problem, parts, units))
-    found = together(problem, free, alone)
+    alone = refine(problem, linearised_at(problem, parts, units))
+    found = fit_jointly(problem, free, alone)
     assert _chi_square(problem, alone) > 10.0
     assert _chi_square(problem, found) < 1.3
     rod, friction = found.effects
@@ -58,7 +58,7 @@ def test_friction_is_found_in_the_form_that_it_has(rig: SimulatedRig) -> None:
     formed = {}
     for name in ("coulomb-friction", "stribeck-friction"):
         parts, units = _begun(name)
-        held = with_forms(problem, refine(problem, at(problem, parts, units)))
+        held = with_forms(problem, refine(problem, linearised_at(problem, parts, units)))
         formed[name] = (held, in_form(problem, held))
     held, found = formed["coulomb-friction"]
     assert found.log_evidence > max(held.log_evidence, formed["stribeck-friction"][1].log_evidence)
@@ -75,5 +75,5 @@ def test_friction_is_found_in_the_form_that_it_has(rig: SimulatedRig) -> None:
 def test_a_form_that_hardly_shows_is_left_as_it_is_held(rig: SimulatedRig) -> None:
     problem = problem_of(rig, record(rig, [build("coulomb-friction:friction_n=0.05")], 73))
     parts, units = _begun("coulomb-friction")
-    held = with_forms(problem, refine(problem, at(problem, parts, units)))
+    held = with_forms(problem, refine(problem, linearised_at(problem, parts, units)))
     assert in_form(problem, held) is held

@@ -14,9 +14,9 @@ from analysis.gap.forward.problem import Problem
 from analysis.gap.forward.tolerances import Tolerances
 from analysis.gap.locate.traces import worth_a_look
 from analysis.gap.observe.components import GapRun
-from analysis.gap.search.engine import Engine, fitted
-from analysis.gap.search.first_look import Looked
-from analysis.gap.search.fit import Fit, at
+from analysis.gap.search.engine import Engine, fit_leading
+from analysis.gap.search.first_look import FirstLook
+from analysis.gap.search.fit import Fit, linearised_at
 from analysis.gap.search.hypotheses import COEFFICIENTS
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Range
@@ -51,14 +51,14 @@ def problem(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> Problem:
 
 def begun(problem: Problem, kind: type[Effect], times: float = 1.0) -> Fit:
     one = next(iter(candidates(kind, FREQUENCIES_HZ)))
-    return at(problem, (one,), times * one.start)
+    return linearised_at(problem, (one,), times * one.start)
 
 
 @pytest.mark.parametrize("name", sorted(set(catalogue()) - set(COEFFICIENTS)))
 def test_its_parameters_begin_and_it_is_looked_at_alike(name: str, tmp_path: Path) -> None:
     theirs, own = (
         (
-            [(one.axes, one.held) for one in candidates(kind, FREQUENCIES_HZ)],
+            [(one.axes, one.fixed_values) for one in candidates(kind, FREQUENCIES_HZ)],
             [worth_a_look(kind, seen) for seen in SEEN],
         )
         for kind in both(name, tmp_path)
@@ -84,10 +84,12 @@ def test_what_it_does_by_chance_is_left_out_of_the_harmonics(
 def test_what_is_costly_has_to_promise_more(
     name: str, costs: bool, problem: Problem, tmp_path: Path
 ) -> None:
-    leaders = [Looked(one, begun(problem, find(one)), 9.0) for one in ("coulomb-friction", "cable")]
+    leaders = [
+        FirstLook(one, begun(problem, find(one)), 9.0) for one in ("coulomb-friction", "cable")
+    ]
     for kind in both(name, tmp_path):
-        seen = [*leaders, Looked(kind.name, begun(problem, kind), 1.0)]
-        names = [one.names for one in fitted(problem, seen, 0.0, Engine())]
+        seen = [*leaders, FirstLook(kind.name, begun(problem, kind), 1.0)]
+        names = [one.names for one in fit_leading(problem, seen, 0.0, Engine())]
         assert ((kind.name,) not in names) is costs
 
 

@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis.gap.design.information_gain import ENOUGH, Worth, by_itself, gained
+from analysis.gap.design.information_gain import ENOUGH, Worth, by_itself, expected_gain
 from analysis.gap.design.proposals import Choices, proposals, set_points
 from analysis.gap.forward.candidate import candidates
 from analysis.gap.forward.free_numbers import free_numbers
 from analysis.gap.forward.tolerances import Tolerances
 from analysis.gap.observe.components import GapRun
-from analysis.gap.search.fit import at
+from analysis.gap.search.fit import linearised_at
 from hardware.description.arrays import FloatArray
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium, SetPoint
@@ -36,7 +36,7 @@ def table(count: int, apart: Pairs) -> FloatArray:
 
 
 def test_two_answers_gain_what_lies_between_them() -> None:
-    assert gained([0.9, 0.1], table(2, {(0, 1): 7.0})) == pytest.approx(7.0)
+    assert expected_gain([0.9, 0.1], table(2, {(0, 1): 7.0})) == pytest.approx(7.0)
 
 
 def test_a_rival_that_a_run_does_not_touch_is_left_standing() -> None:
@@ -46,7 +46,7 @@ def test_a_rival_that_a_run_does_not_touch_is_left_standing() -> None:
     second = 15.0
     third = math.log((0.5 + 0.2) / (0.5 + 0.2 * math.exp(-15.0)))
     expected = 0.5 * first + 0.2 * second + 0.3 * third
-    assert gained([0.5, 0.2, 0.3], table(3, apart)) == pytest.approx(expected)
+    assert expected_gain([0.5, 0.2, 0.3], table(3, apart)) == pytest.approx(expected)
 
 
 def test_what_is_worth_more_than_enough_goes_by_how_much_more() -> None:
@@ -80,7 +80,7 @@ def test_what_does_not_repeat_is_worth_what_a_run_shows_of_it(
     """Half the square of its sigma, of which the free noise levels take a part."""
     problem = problem_of(rig, clean[:2])
     (drift, more), (friction, _) = (
-        [at(problem, (part,), times * part.start) for times in (1.0, 10.0)]
+        [linearised_at(problem, (part,), times * part.start) for times in (1.0, 10.0)]
         for part in (next(iter(candidates(find(name), (0.5, 1.0)))) for name in NAMES)
     )
     trends = drift.signature[~problem.simulator.stack.steady]
@@ -93,13 +93,13 @@ def test_what_does_not_repeat_is_worth_what_a_run_shows_of_it(
 
 
 def test_a_run_that_tells_all_apart_is_worth_more_than_one_that_throws_one_far() -> None:
-    even = gained([0.5, 0.25, 0.25], table(3, {(0, 1): 10.0, (0, 2): 10.0, (1, 2): 10.0}))
-    uneven = gained([0.5, 0.25, 0.25], table(3, {(0, 1): 20.0, (0, 2): 1.0, (1, 2): 20.0}))
+    even = expected_gain([0.5, 0.25, 0.25], table(3, {(0, 1): 10.0, (0, 2): 10.0, (1, 2): 10.0}))
+    uneven = expected_gain([0.5, 0.25, 0.25], table(3, {(0, 1): 20.0, (0, 2): 1.0, (1, 2): 20.0}))
     assert even > uneven
 
 
 def test_a_single_answer_gains_nothing() -> None:
-    assert gained([1.0], table(1, {})) == 0.0
+    assert expected_gain([1.0], table(1, {})) == 0.0
 
 
 @given(shares, st.data())
@@ -108,7 +108,7 @@ def test_what_is_gained_lies_between_nothing_and_enough(
 ) -> None:
     pairs = [(i, j) for i in range(len(shares)) for j in range(i + 1, len(shares))]
     apart = {pair: data.draw(st.floats(0.0, 100.0)) for pair in pairs}
-    assert -1e-9 <= gained(shares, table(len(shares), apart)) <= ENOUGH + 1e-9
+    assert -1e-9 <= expected_gain(shares, table(len(shares), apart)) <= ENOUGH + 1e-9
 
 
 def test_what_is_proposed_can_be_set_on_a_dial() -> None:

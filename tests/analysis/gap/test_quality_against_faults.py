@@ -12,7 +12,7 @@ from analysis.gap.forward.tolerances import Tolerances
 from analysis.gap.observe.components import GapRun, Part
 from analysis.gap.observe.plateau import Plateau
 from analysis.gap.quality.finding import Doubt
-from analysis.gap.quality.recordings import doubts, judged
+from analysis.gap.quality.recordings import doubts, judge_recordings
 from sim.effects.catalogue import build
 from sim.effects.measurement import with_force_channels
 from sim.rig import SimulatedRig
@@ -39,7 +39,7 @@ def changed(
 def test_nothing_is_wrong_with_a_clean_campaign(
     rig: SimulatedRig, clean: tuple[GapRun, ...]
 ) -> None:
-    there, found = judged(rig, clean, Tolerances())
+    there, found = judge_recordings(rig, clean, Tolerances())
     assert found == ()
     assert there.rig is rig
 
@@ -220,7 +220,7 @@ def test_a_model_that_is_far_off_is_no_fault_of_the_files(
 ) -> None:
     (a11, a12), (a21, a22) = rig.water.added_mass
     off = replace(rig, water=replace(rig.water, added_mass=((0.4 * a11, a12), (a21, 1.6 * a22))))
-    there, found = judged(off, clean, Tolerances())
+    there, found = judge_recordings(off, clean, Tolerances())
     assert found == ()
     assert there.moved["a11"] == pytest.approx(0.6 * a11, rel=0.15)
     assert there.moved["a22"] == pytest.approx(-0.6 * a22, rel=0.15)

@@ -5,7 +5,7 @@ import pytest
 
 from analysis.gap.forward.free_numbers import free_numbers, tolerated
 from analysis.gap.forward.noise import pooled
-from analysis.gap.forward.powers import grown
+from analysis.gap.forward.powers import scaled_change
 from analysis.gap.forward.problem import Problem
 from analysis.gap.forward.simulator import DRAWS, Simulator
 from analysis.gap.forward.tolerances import Tolerances
@@ -33,12 +33,12 @@ def test_powers_of_another_size_add_up(share: float) -> None:
     power = 7.0  # of the effect over that of the noise
     change = np.array([np.log1p(power), 0.5 * np.log1p(power)])
     wanted = np.log1p(power * share**2) * np.array([1.0, 0.5])
-    assert grown(PARTS, change, share) == pytest.approx(wanted, rel=1e-12)
+    assert scaled_change(PARTS, change, share) == pytest.approx(wanted, rel=1e-12)
 
 
 def test_a_trend_grows_with_the_size() -> None:
     trend = (Component("force_aft", Part.TREND),)
-    assert grown(trend, np.array([-0.3]), 2.0) == pytest.approx([-0.6])
+    assert scaled_change(trend, np.array([-0.3]), 2.0) == pytest.approx([-0.6])
 
 
 @pytest.mark.slow

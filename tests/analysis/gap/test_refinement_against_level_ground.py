@@ -13,7 +13,7 @@ from analysis.gap.forward.candidate import Candidate, candidates
 from analysis.gap.forward.problem import Problem
 from analysis.gap.inference.gaussian import Nuisances, misfit
 from analysis.gap.observe.components import GapRun
-from analysis.gap.search.fit import Fit, at, bounds
+from analysis.gap.search.fit import Fit, bounds, linearised_at
 from analysis.gap.search.refinement import refine
 from hardware.description.arrays import FloatArray
 from sim.effects.catalogue import find
@@ -71,7 +71,7 @@ def _made(problem: Problem, name: str, last_digit: float = 0.0) -> tuple[Made, C
 
 
 def _refined(made: Made, one: Candidate, start: FloatArray) -> Fit:
-    return refine(made, at(made, (one,), start))
+    return refine(made, linearised_at(made, (one,), start))
 
 
 @pytest.mark.sample(1)

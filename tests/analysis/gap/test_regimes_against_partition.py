@@ -46,7 +46,7 @@ def test_a_regime_holds_all_runs_of_its_value_and_leaves_enough(given_: list[Set
     found = regimes(runs)
     assert len({one.runs for one in found}) == len(found)
     for one in found:
-        values = [getattr(run.set_point, fields[one.what]) for run in runs]
+        values = [getattr(run.set_point, fields[one.variable]) for run in runs]
         inside = {values[at] for at in one.runs}
         outside = {value for at, value in enumerate(values) if at not in one.runs}
         assert len(inside) == 1
@@ -99,5 +99,5 @@ def test_no_observation_of_a_withheld_run_is_fitted(
         moved = replace(stack, values=stack.values + np.where(before.rows, stack.uncertainty, 0.0))
         other = replace(problem, simulator=replace(problem.simulator, stack=moved))
         (after,) = predict_withheld(other, None, (regime,))
-        assert np.all(after.left - before.left > 0.0)
-        assert np.all(after.left - before.left < 1.0 + 1e-9)
+        assert np.all(after.remainder - before.remainder > 0.0)
+        assert np.all(after.remainder - before.remainder < 1.0 + 1e-9)

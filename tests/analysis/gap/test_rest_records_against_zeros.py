@@ -143,12 +143,12 @@ def test_uneven_friction_does_not_and_the_odds_say_so(rig: SimulatedRig) -> None
     assert effect.uneven_n == pytest.approx(0.4, rel=0.05)
     assert advantage(with_rest) > advantage(without) + 20.0
     (rest,) = [one for one in with_rest.after if str(one.regime) == "medium rest"]
-    assert np.abs(rest.left).max() < 4.0
+    assert np.abs(rest.remainder).max() < 4.0
 
 
 def advantage(found: Diagnosis) -> float:
     """Return the log odds of uneven friction over a zero offset."""
-    fits = {one.name: one.fit for one in found.weighed.looked}
+    fits = {one.name: one.fit for one in found.weighed.first_looks}
     fits |= {one.names[0]: one for one in found.weighed.singles}
     friction, zero = fits["uneven-friction"], fits["zero-offset"]
     assert friction is not None

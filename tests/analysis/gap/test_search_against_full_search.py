@@ -16,12 +16,12 @@ from analysis.gap.forward.stages import Solved
 from analysis.gap.forward.tolerances import Tolerances
 from analysis.gap.inference.gaussian import left_over
 from analysis.gap.judge.withheld import Predicted, shrinkage
-from analysis.gap.locate.traces import shown, worth_a_look
+from analysis.gap.locate.traces import deviating_traces, worth_a_look
 from analysis.gap.observe.components import GapRun, Part, Stack
 from analysis.gap.observe.regimes import Regime
-from analysis.gap.search.first_look import look, smaller
-from analysis.gap.search.fit import at
-from analysis.gap.search.joint import together
+from analysis.gap.search.first_look import look, smaller_units
+from analysis.gap.search.fit import linearised_at
+from analysis.gap.search.joint import fit_jointly
 from analysis.gap.search.refinement import refine
 from hardware.description.errors import ConfigurationError
 from sim.effects.catalogue import build, find
@@ -54,7 +54,7 @@ def test_stages_solved_once_give_the_whole_chain(said: str, rig: SimulatedRig) -
 def test_nothing_costly_is_looked_at_where_nothing_shows(
     rig: SimulatedRig, clean: tuple[GapRun, ...]
 ) -> None:
-    seen = shown(_scattering(rig, clean))
+    seen = deviating_traces(_scattering(rig, clean))
     assert DeviationTrace.BESIDE not in seen
     assert not worth_a_look(find("hum"), seen)
     assert not worth_a_look(find("load-ripple"), seen)
@@ -64,14 +64,14 @@ def test_nothing_costly_is_looked_at_where_nothing_shows(
 @pytest.mark.slow
 def test_hum_is_looked_at_where_lines_show(rig: SimulatedRig) -> None:
     runs = record(rig, [build("hum:amplitude_n=1,frequency_hz=7.3")], 31)
-    seen = shown(_scattering(rig, runs))
+    seen = deviating_traces(_scattering(rig, runs))
     assert DeviationTrace.BESIDE in seen
     assert worth_a_look(find("hum"), seen)
 
 
 @pytest.mark.slow
 def test_a_drive_is_looked_at_where_the_struts_deviate(rig: SimulatedRig) -> None:
-    seen = shown(_scattering(rig, record(rig, [build("speed-ripple")], 33)))
+    seen = deviating_traces(_scattering(rig, record(rig, [build("speed-ripple")], 33)))
     assert worth_a_look(find("load-ripple"), seen)
 
 
@@ -80,7 +80,7 @@ def test_a_drive_is_looked_at_where_the_struts_deviate(rig: SimulatedRig) -> Non
 def test_backlash_is_looked_at_where_the_shaft_turns_unevenly(
     said: str, shows: bool, rig: SimulatedRig
 ) -> None:
-    seen = shown(_scattering(rig, record(rig, [build(said)], 34)))
+    seen = deviating_traces(_scattering(rig, record(rig, [build(said)], 34)))
     assert worth_a_look(find("gear-backlash"), seen) is shows
     assert worth_a_look(find("load-ripple"), seen)  # the struts tell of either
 
@@ -95,8 +95,8 @@ def test_a_tenth_of_an_effect_is_found_by_the_power_of_its_size(
     """Inertia by its inverse, drag in proportion, play by less than its size."""
     problem = problem_of(rig, clean)
     chosen = (next(iter(candidates(find(name), [0.5, 1.0]))),)
-    whole = at(problem, chosen, chosen[0].start)
-    tenth = at(problem, chosen, smaller(problem, whole, 0.1))
+    whole = linearised_at(problem, chosen, chosen[0].start)
+    tenth = linearised_at(problem, chosen, smaller_units(problem, whole, 0.1))
     sizes = [left_over(one.signature, problem.nuisances) for one in (whole, tenth)]
     assert 0.05 < sizes[1] / sizes[0] < 0.2
 
@@ -119,7 +119,7 @@ def test_a_clearance_is_looked_at_between_teeth_that_the_load_hardly_bends() -> 
     (one,) = candidates(find("gear-backlash"), [0.5, 1.0])
     assert [axis.parameter.name for axis in one.axes] == ["backlash_rad"]
     assert one.axes[0].value(float(one.start[0])) < 1e-3
-    assert one.held["stiffness_n_m_rad"] > 1e6
+    assert one.fixed_values["stiffness_n_m_rad"] > 1e6
 
 
 @pytest.mark.sample(1)
@@ -129,8 +129,8 @@ def test_a_rough_slope_is_near_the_slope(
 ) -> None:
     problem = problem_of(rig, clean)
     chosen = (next(iter(candidates(find(name), [0.5, 1.0]))),)
-    exact = at(problem, chosen, chosen[0].start).columns
-    rough = at(problem, chosen, chosen[0].start, roughly=True).columns
+    exact = linearised_at(problem, chosen, chosen[0].start).columns
+    rough = linearised_at(problem, chosen, chosen[0].start, roughly=True).columns
     assert np.linalg.norm(rough - exact) < 0.05 * np.linalg.norm(exact)
 
 
@@ -144,8 +144,8 @@ def test_an_effect_acts_on_the_rig_as_its_coefficients_are(rig: SimulatedRig) ->
     problem = _scattering(rig, runs, flat)
     fit = look(problem, find("photocell-angle")).fit
     assert fit is not None
-    alone = at(problem, fit.candidates, np.array([_units(fit.candidates[0], 0.03)]))
-    moved = together(problem, free, alone)
+    alone = linearised_at(problem, fit.candidates, np.array([_units(fit.candidates[0], 0.03)]))
+    moved = fit_jointly(problem, free, alone)
     assert moved.log_evidence > alone.log_evidence + 10.0
     assert moved.cost < 1.3 * len(problem.residual)
 
@@ -170,7 +170,7 @@ def test_what_cannot_be_simulated_here_ends_no_diagnosis(
 ) -> None:
     problem = problem_of(rig, clean)
     parts = [next(iter(candidates(find(name), []))) for name in ("coulomb-friction", "cable")]
-    both = at(problem, tuple(parts), np.concatenate([one.start for one in parts]))
+    both = linearised_at(problem, tuple(parts), np.concatenate([one.start for one in parts]))
 
     def fails(simulator: Simulator, effects: Sequence[Effect]) -> np.ndarray:
         raise ConfigurationError("the teeth strike too hard")
@@ -194,7 +194,7 @@ def test_a_gap_of_nothing_is_nothing_within_its_noise() -> None:
     found = shrinkage([one[0] for one in pairs], [one[1] for one in pairs])
     assert found.share == 1.0
     assert found.after == 0.0
-    noisy = [replace(one[1], left=one[1].left / 0.9) for one in pairs]
+    noisy = [replace(one[1], remainder=one[1].remainder / 0.9) for one in pairs]
     found = shrinkage([one[0] for one in pairs], noisy)
     assert found.low < 1.0 - 0.5 * math.sqrt(math.sqrt(2.0 / 800)) / found.before
 

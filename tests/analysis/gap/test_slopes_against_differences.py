@@ -11,7 +11,7 @@ from analysis.gap.forward.problem import built
 from analysis.gap.forward.tolerances import Tolerances
 from analysis.gap.inference.gaussian import misfit
 from analysis.gap.observe.components import STEADY_PARTS, GapRun
-from analysis.gap.search.fit import at
+from analysis.gap.search.fit import linearised_at
 from sim.effects.catalogue import find
 from sim.model.water.radiation import constant
 from sim.rig import SimulatedRig
@@ -23,7 +23,7 @@ from tests.analysis.gap.small import POINTS, USUAL, problem_of, record
 def test_of_an_effect(name: str, rig: SimulatedRig, clean: tuple[GapRun, ...]) -> None:
     problem = problem_of(rig, clean)
     chosen = (next(iter(candidates(find(name), [0.5, 1.0]))),)
-    fit = at(problem, chosen, chosen[0].start)
+    fit = linearised_at(problem, chosen, chosen[0].start)
     step = 1e-3
     for axis in range(len(fit.units)):
         sides = []

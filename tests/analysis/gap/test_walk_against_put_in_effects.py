@@ -7,7 +7,12 @@ import numpy as np
 import pytest
 
 from analysis.gap.inference.gaussian import Nuisances
-from analysis.gap.locate.measured_input import MEASURED_MOTION, MEASURED_SHAFT, Fed, fed
+from analysis.gap.locate.measured_input import (
+    MEASURED_MOTION,
+    MEASURED_SHAFT,
+    FedRemainder,
+    fed_remainder,
+)
 from analysis.gap.locate.walk import (
     FORCE_BY_SHAFT,
     FORCE_FED,
@@ -56,11 +61,11 @@ def walked(rig: SimulatedRig, put_in: str, missing: Sequence[str] = ()) -> Walk:
 
 
 def beyond(found: Walk) -> Mapping[str, bool]:
-    return {one.what: one.beyond for one in found.steps}
+    return {one.step: one.is_beyond_noise for one in found.steps}
 
 
 def strained(found: Walk, what: str) -> Mapping[str, float]:
-    (step,) = (one for one in found.steps if one.what == what)
+    (step,) = (one for one in found.steps if one.step == what)
     return step.strained
 
 
@@ -117,9 +122,12 @@ def test_a_motor_that_feels_its_load_is_walked_too(rig: SimulatedRig) -> None:
         assert not seen[FORCE_FED]
 
 
-def rms_of(found: Fed) -> tuple[float, float]:
+def rms_of(found: FedRemainder) -> tuple[float, float]:
     """Return what is left with the measured input, and with the simulated one."""
-    return tuple(float(np.sqrt(np.mean(one[found.rows] ** 2))) for one in (found.left, found.unfed))
+    return tuple(
+        float(np.sqrt(np.mean(one[found.rows] ** 2)))
+        for one in (found.remainder, found.simulated_remainder)
+    )
 
 
 @pytest.mark.slow
@@ -131,7 +139,7 @@ def test_the_measured_frequency_takes_the_place_of_the_one_that_was_set(rig: Sim
     components = whole.simulator.stack.components
     parts = (Part.IN_PHASE, Part.QUADRATURE)
     forces = np.array([one.channel in FORCES and one.part in parts for one in components])
-    found = fed(fixed, MEASURED_SHAFT, forces)
+    found = fed_remainder(fixed, MEASURED_SHAFT, forces)
     assert found is not None
     left, unfed = rms_of(found)
     assert left < 1.5
@@ -175,7 +183,7 @@ def test_a_run_without_a_channel_is_not_fed_with_nothing(
     (first,) = without(clean[:1], DISPLACEMENTS[1:])
     problem = problem_of(rig, (first, *clean[1:]))
     rows = np.array([one.channel in FORCES for one in problem.simulator.stack.components])
-    found = fed(problem, MEASURED_MOTION, rows)
+    found = fed_remainder(problem, MEASURED_MOTION, rows)
     assert found is not None
     assert not found.rows[problem.simulator.stack.run == 0].any()
     assert not beyond(walk(problem))[FORCE_FED]
@@ -187,7 +195,7 @@ def test_nothing_is_acquitted_where_the_shafts_own_noise_would_hide_it(rig: Simu
     lines = replace(rig.acquisition, shaft_angle=Digitiser(resolution=2.0 * np.pi / 2**10))
     coarse = replace(rig, acquisition=lines)
     runs = record(coarse, [build("connecting-rod:rod_length_m=20.0")], 46)
-    steps = {one.what: one for one in walk(problem_of(coarse, runs)).steps}
-    assert steps[MOTION].beyond
-    assert not steps[MOTION_FED].beyond
+    steps = {one.step: one for one in walk(problem_of(coarse, runs)).steps}
+    assert steps[MOTION].is_beyond_noise
+    assert not steps[MOTION_FED].is_beyond_noise
     assert not steps[MOTION_FED].tells

@@ -57,7 +57,7 @@ def test_usable_part_leaves_out_what_was_before_the_release() -> None:
     part = usable_part(yaw_record(3))
     assert 9.0 < part.series.start_s < 20.0
     assert part.noise_rms == pytest.approx(1e-3, rel=0.15)
-    assert "largest swing" in part.because
+    assert "largest swing" in part.reason
 
 
 def test_quadratic_drag_shows_as_a_power_between_linear_and_quadratic() -> None:

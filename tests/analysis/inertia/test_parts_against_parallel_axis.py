@@ -65,7 +65,7 @@ def test_covariance_against_monte_carlo() -> None:
     a, b = point("a", 3.0, 0.5, 0.1, 0.2, 0.01), point("b", 2.0, -0.8, 0.0, -0.1, 0.01)
     drawn = []
     for _ in range(4000):
-        pair = [BodyPart(p.name, UncertainValues(p.uncertain.drawn(1, rng)[:, 0])) for p in (a, b)]
+        pair = [BodyPart(p.name, UncertainValues(p.uncertain.draw(1, rng)[:, 0])) for p in (a, b)]
         drawn.append(combine("w", pair).parameters)
     whole = combine("w", [a, b])
     seen = np.cov(np.array(drawn).T)

@@ -60,7 +60,7 @@ def test_the_end_is_where_it_dies_out() -> None:
     part = usable_part(record(noisy(T, 2.0, 0.1, 0.05)))
     assert part.series.time_s[-1] == pytest.approx(math.log(1.0 / 0.03) / 0.1, rel=0.1)
     assert part.last_amplitude < 0.05 * part.first_amplitude
-    assert "falls below the limit" in part.because
+    assert "falls below the limit" in part.reason
 
 
 def test_gaps_are_flagged_by_their_length() -> None:

@@ -79,7 +79,7 @@ def test_damping_is_that_before_the_stop() -> None:
     """From 1.9 to 0.3 degrees at one moment: seven per cent and more too much without looking."""
     run = analyse_record(stopped_at(40.0, 40.0))
     assert run.fit.modes[0].damping_ratio == pytest.approx(0.01, rel=0.01)
-    assert "before the change of regime at 4" in run.part.because
+    assert "before the change of regime at 4" in run.part.reason
     assert [flag.code for flag in run.flags] == ["regime_change"]
 
 

@@ -117,7 +117,7 @@ def test_needles_do_not_depend_on_blocks(lengths: list[int], seed: int) -> None:
     for start, stop in pairwise(cuts):
         state, part = mode.advance(state, values[:, start:stop], reference.cycles_at)
         parts.append(part)
-    assert state.taken == 300
+    assert state.sample_count == 300
     assert np.array_equal(joined(parts, "in_phase"), whole.in_phase)
     assert np.array_equal(joined(parts, "quadrature"), whole.quadrature)
     assert np.array_equal(joined(parts, "settled"), whole.settled)

@@ -32,7 +32,7 @@ def machine(periods: int = 1) -> GatedIntegrator:
 def fed(
     mode: GatedIntegrator, state: IntegratorState, seconds: float, pulses: list[float]
 ) -> IntegratorState:
-    values = sine(state.taken, state.taken + round(seconds * RATE_HZ))
+    values = sine(state.sample_count, state.sample_count + round(seconds * RATE_HZ))
     return mode.advance(state, values, np.array(pulses), REFERENCE.cycles_at)
 
 
@@ -81,7 +81,7 @@ def test_the_start_state_is_not_changed() -> None:
     start = IntegratorState(0.0)
     fed(machine(), start, 3.0, [1.0, 2.0])
     assert start.gate is GatingState.ARMED
-    assert start.taken == 0
+    assert start.sample_count == 0
 
 
 def test_pulses_before_the_first_sample_find_nothing_on() -> None:

@@ -9,10 +9,10 @@ from scipy.integrate import dblquad
 from scipy.special import stdtrit
 
 from analysis.resolver.autocorrelation import (
-    _averaged,
     _beat,
     _fading,
     _flicker,
+    _mean_covariance,
     _parts,
     widened,
 )
@@ -122,7 +122,7 @@ def test_covariances_of_averages_against_quadrature(kind: str, apart: float) -> 
         return covariance(apart + d) * (1.0 - abs(d))
 
     expected = sum(dblquad(weighted, low, low + 1.0, 0.0, 1.0)[0] for low in (-1.0, 0.0))
-    found = float(_averaged(doubled, np.array([apart]), 1.0)[0])
+    found = float(_mean_covariance(doubled, np.array([apart]), 1.0)[0])
     assert found == pytest.approx(expected, rel=1e-6)
 
 

@@ -70,7 +70,7 @@ def noisy(output: FloatArray, runs: int) -> FloatArray:
 def test_cubic_within_five_per_cent() -> None:
     u, own = motion(), 2.0 * level(3)[Degree.ODD]
     odd = [one[Degree.ODD] for one in seen(u, noisy(50.0 * u + 2.0 * u**3, 20))]
-    assert all(one.told for one in odd)
+    assert all(one.is_significant for one in odd)
     off = np.array([one.level for one in odd]) - own
     assert np.abs(off).max() < 0.05 * own
     assert off.std() == pytest.approx(np.mean([one.uncertainty for one in odd]), rel=0.4)
@@ -79,7 +79,7 @@ def test_cubic_within_five_per_cent() -> None:
 def test_square_stands_at_even_lines() -> None:
     u = motion()
     (one,) = seen(u, noisy(50.0 * u + 2.0 * u**2, 1))
-    assert one[Degree.EVEN].told
+    assert one[Degree.EVEN].is_significant
     assert one[Degree.EVEN].level == pytest.approx(2.0 * level(2)[Degree.EVEN], rel=0.05)
     assert one[Degree.ODD].chance > 1e-3
 
@@ -87,7 +87,7 @@ def test_square_stands_at_even_lines() -> None:
 @pytest.mark.slow
 def test_noise_is_taken_for_a_distortion_as_seldom_as_it_says() -> None:
     u = motion()
-    told = [one.told for run in seen(u, noisy(50.0 * u, 100)) for one in run.values()]
+    told = [one.is_significant for run in seen(u, noisy(50.0 * u, 100)) for one in run.values()]
     assert 0.01 < np.mean(told) < 0.10  # 5 % of 200, and three standard deviations
 
 

@@ -56,6 +56,6 @@ def test_differences_and_their_intervals_are_gtcs(u: float, nu: float, other: fl
 def test_estimates_of_one_input_move_together_in_the_trials() -> None:
     one = Estimate.of(1.0, 0.2, "m", 5.0)
     twice = one.following(2.0, 2.0)
-    drawn = joint((one, twice)).drawn(1000, np.random.default_rng(5))
+    drawn = joint((one, twice)).draw(1000, np.random.default_rng(5))
     assert drawn[1] == pytest.approx(2.0 * drawn[0])
     assert math.isclose(joint((one, twice)).covariance()[0, 1], 2.0 * 0.2**2)

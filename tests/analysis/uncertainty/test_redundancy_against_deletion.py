@@ -25,7 +25,7 @@ def measured(generator: Generator, common: float = 0.3) -> UncertainValues:
     own = [Estimate.of(v, s) for v, s in zip(truth, sigma, strict=True)]
     both = joint([*own, shared])
     seen = both.mapped(np.hstack([np.eye(7), TIME[:, None] ** 2]))
-    return UncertainValues(seen.drawn(1, generator)[:, 0], seen.contributions)
+    return UncertainValues(seen.draw(1, generator)[:, 0], seen.contributions)
 
 
 def solved(matrix: FloatArray, values: FloatArray, covariance: FloatArray) -> FloatArray:

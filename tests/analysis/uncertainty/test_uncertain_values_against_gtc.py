@@ -66,7 +66,7 @@ def test_linear_maps_carry_the_covariance(parts: list[float], entries: list[floa
     expected = matrix @ values.covariance() @ matrix.T
     np.testing.assert_allclose(mapped.covariance(), expected, atol=1e-9)
     np.testing.assert_allclose(mapped.values, matrix @ values.values, atol=1e-12)
-    twice = values.taken([1, 1])
+    twice = values.select([1, 1])
     assert twice.covariance()[0, 1] == pytest.approx(values.covariance()[1, 1])
 
 

@@ -125,7 +125,7 @@ def test_tolerances_do_the_same_beside_a_reversed_sign(tmp_path: Path) -> None:
     (tmp_path / "turned").mkdir()
     plain = load_problem(written(tmp_path / "as"))
     turned = load_problem(written(tmp_path / "turned", heave_reversed=EVERY))
-    own, other = (one.shared * one.uncertainty[:, None] for one in (plain, turned))
+    own, other = (one.shared_columns * one.uncertainty[:, None] for one in (plain, turned))
     np.testing.assert_allclose(other, own, atol=1e-6)
 
 

@@ -13,7 +13,7 @@ from analysis.gap.pendulum.laws import damping_laws, open_laws
 from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.search import fit, weigh
 from analysis.gap.pendulum.verdict import CAUSE, TOLD_APART, UNTOLD, judge
-from analysis.gap.pendulum.withheld import foretell
+from analysis.gap.pendulum.withheld import predict_withheld
 from analysis.inertia.spread import SURE
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
@@ -86,7 +86,7 @@ def test_roll_decay_misses_damping_beyond_linear(name: str, tmp_path: Path) -> N
         laws = damping_laws(weighed, verdict.best, causes)
         assert {"linear", "any power"} <= {law.name for law in (laws[0], *open_laws(laws))}
         return
-    assert verdict.said == CAUSE
+    assert verdict.outcome == CAUSE
     assert set(verdict.best.names) & set(BEYOND_LINEAR)
     assert verdict.by_class["damping beyond linear"] > 0.99
 
@@ -96,7 +96,7 @@ def test_roll_decay_misses_damping_beyond_linear(name: str, tmp_path: Path) -> N
 def test_quadratic_drag_foretells_the_roll_decay(tmp_path: Path) -> None:
     problem = roll(tmp_path, (SHARED / "roll_decay" / "model_test_21337.csv.gz").as_posix())
     quadratic = fit(problem, [cause(body.QuadraticDrag)])
-    for regime in foretell(problem, [quadratic]):
+    for regime in predict_withheld(problem, [quadratic]):
         assert regime.foretold[0].shrinkage > 0.9
 
 
@@ -141,7 +141,7 @@ def test_what_makes_a_rods_suspensions_differ_cannot_be_told(
     half: int | None, tmp_path: Path
 ) -> None:
     problem = rod(tmp_path, half)
-    assert judge(weigh(problem, causes_for(problem.trials), most=2)).said == UNTOLD
+    assert judge(weigh(problem, causes_for(problem.trials), most=2)).outcome == UNTOLD
 
 
 @pytest.mark.slow
@@ -154,7 +154,7 @@ def test_lines_and_clamps_of_a_rod_are_as_large_as_from_the_gyradii(tmp_path: Pa
     )
     assert excess == pytest.approx(0.0141, abs=2e-3)
     assert share == pytest.approx(0.0151, abs=2e-3)
-    (regime,) = foretell(problem, [both])
+    (regime,) = predict_withheld(problem, [both])
     assert regime.name == "each suspension"
     assert 0.3 < regime.foretold[0].shrinkage < SURE
     other = fit(problem, [cause(setup.LineExcess), cause(setup.SpacingError)])

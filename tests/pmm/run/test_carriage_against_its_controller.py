@@ -76,7 +76,7 @@ def test_what_goes_wrong_in_a_tow_ends_at_rest(tmp_path, words, latched, remedy)
         assert type(one.control.fault).__name__ == latched
         assert remedy in str(one.control.fault)
         one.finish()
-        assert one.world.plant.around.carriage_speed_m_s == 0.0
+        assert one.world.plant.conditions.carriage_speed_m_s == 0.0
         assert not one.rig.carriage.enabled
 
 
@@ -143,7 +143,7 @@ def test_a_drift_table_is_set_and_nobody_is_asked(tmp_path) -> None:
     with towed(tmp_path, runs, tables={"drift": DRIFT}, serial=("drift",)) as one:
         one.finish()
         assert [each.outcome for each in one.control.outcomes] == ["complete", "complete"]
-        assert one.world.plant.around.drift_rad == pytest.approx(0.1, abs=2e-4)
+        assert one.world.plant.conditions.drift_rad == pytest.approx(0.1, abs=2e-4)
         assert one.rig.angles["drift"].reading.value == pytest.approx(0.1, abs=2e-4)
         assert not told(tmp_path / "drift", "operator")
 

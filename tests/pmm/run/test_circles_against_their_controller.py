@@ -42,11 +42,11 @@ def test_the_circle_is_kept_on_the_ramps_and_recorded(tmp_path) -> None:
         plant, radii = one.world.plant, []
         while not one.control.finished:
             one.control.step()
-            around = plant.around
+            around = plant.conditions
             if around.carriage_speed_m_s:
                 radii.append(around.carriage_speed_m_s / around.turn_rate_rad_s)
         assert one.control.outcomes[0].outcome == "complete", one.control.status().alarms
-        assert plant.around.turn_rate_rad_s == 0.0
+        assert plant.conditions.turn_rate_rad_s == 0.0
     # The register counts thousandths of a degree a second.
     assert np.array(radii) == pytest.approx(SPEED_M_S / RATE_RAD_S, rel=2e-4)
     recording = read_recording(tmp_path / "round" / "run.nc")

@@ -9,7 +9,7 @@ import pytest
 
 from analysis.readers import read_recording
 from hardware.description.errors import ConfigurationError
-from hardware.description.heel import Heel, Held
+from hardware.description.heel import Heel, RollConstraint
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.setpoint import SetPoint
 from pmm.campaign.campaign_file import read_campaign
@@ -84,7 +84,7 @@ def test_the_record_has_the_roll_from_its_release(tmp_path: Path) -> None:
         horizontal_rig(),
         water=HullCoefficients(),
         acquisition=Acquisition(heel_angle=Digitiser()),
-        heel=Heel(Held.SET, inertia_kg_m2=INERTIA, gm_m=GM_M),
+        heel=Heel(RollConstraint.SET, inertia_kg_m2=INERTIA, gm_m=GM_M),
     )
     tables = {**TABLES, "forces": [*TABLES["forces"], amplifier(6, "heel_angle")]}
     with bench(tmp_path, [run], tables=tables, simulated=simulated) as one:

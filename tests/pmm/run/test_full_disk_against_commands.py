@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from hardware.description.room import is_full, said
+from hardware.description.room import file_error_text, is_full
 from pmm.recorder.campaign_owner import LOCK
 from pmm.whole_file import write_whole
 from tests.pmm.run.processes import READINGS, SHORT, full_disk, pmm, written_plan
@@ -102,7 +102,10 @@ def test_a_file_is_as_it_was_when_its_successor_cannot_be_written(tmp_path: Path
 
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT, errno.EFBIG])
 def test_an_error_without_a_name_is_a_sentence_too(number: int) -> None:
-    told = said(OSError(number, "Disk quota exceeded"))
+    told = file_error_text(OSError(number, "Disk quota exceeded"))
     assert told.startswith("a file could not be written: no room on the disk (")
-    assert said(OSError(errno.EACCES, "Permission denied", "a.nc")) == "a.nc: Permission denied"
-    assert said(OSError("closed")) == "closed"
+    assert (
+        file_error_text(OSError(errno.EACCES, "Permission denied", "a.nc"))
+        == "a.nc: Permission denied"
+    )
+    assert file_error_text(OSError("closed")) == "closed"

@@ -9,7 +9,7 @@ import pytest
 
 from analysis.readers import read_recording
 from hardware.description.errors import ConfigurationError
-from hardware.description.heel import Heel, Held
+from hardware.description.heel import Heel, RollConstraint
 from hardware.description.kinds import RunKind
 from hardware.description.oscillator import HORIZONTAL_1963
 from hardware.description.setpoint import SetPoint
@@ -50,7 +50,7 @@ def test_a_heeled_tow_records_its_moment(tmp_path: Path) -> None:
         horizontal_rig(),
         water=HullCoefficients(),
         acquisition=Acquisition(roll_moment=Digitiser(), heel_angle=Digitiser()),
-        heel=Heel(Held.SET, gm_m=0.03),
+        heel=Heel(RollConstraint.SET, gm_m=0.03),
         heel_loads={"K_phi": -40.0, "Y_uphi": 25.0},
     )
     with bench(tmp_path, [replace(run, set_point=point)], tables=tables, simulated=made) as one:
@@ -72,7 +72,7 @@ def test_a_plan_makes_zero_runs_at_each_heel(tmp_path: Path) -> None:
     rig = read_rig_file(tmp_path / "rig.toml")
     done = [FinishedRun(one, f"{one.name}.nc") for one in plan.runs]
     campaign = read_campaign(write_campaign(tmp_path, plan, rig, done))
-    assert campaign.heel == Heel(Held.SET, gm_m=0.03)
+    assert campaign.heel == Heel(RollConstraint.SET, gm_m=0.03)
     assert [one.set_point.heel_rad for one in campaign.at_rest] == [
         run.set_point.heel_rad for run in plan.runs
     ]

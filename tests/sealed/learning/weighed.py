@@ -18,7 +18,7 @@ def weighed_of(case: Path) -> dict[str, Any]:
     its ``share``, how probable the diagnosis holds it to be.
     """
     from analysis.gap.judge.diagnosis import problem_of
-    from analysis.gap.search.fit import nothing
+    from analysis.gap.search.fit import no_effect
     from analysis.gap.search.hypotheses import weigh
     from pmm.gap.preparation import prepare
     from sim.effects.catalogue import catalogue
@@ -30,8 +30,8 @@ def weighed_of(case: Path) -> dict[str, Any]:
     found: dict[str, Any] = {
         f"{name}|share": share for name, share in weighed.answers.by_answer.items()
     }
-    left, none = _left(problem, problem.residual), nothing(problem).log_evidence
-    for one in weighed.looked:
+    left, none = _left(problem, problem.residual), no_effect(problem).log_evidence
+    for one in weighed.first_looks:
         if one.fit is not None and np.isfinite(one.expected):
             found[f"{one.name}|evidence"] = float(one.expected) - none
             found[f"{one.name}|size"] = float(one.visible)

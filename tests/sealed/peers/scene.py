@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.design.forecast import forecast, further, planned
+from analysis.gap.design.forecast import forecast, planned, with_further_runs
 from analysis.gap.forward.free_numbers import free_numbers, tolerated
 from analysis.gap.forward.noise import pooled
 from analysis.gap.forward.problem import Problem
@@ -85,7 +85,7 @@ def scene(folder: Path) -> Scene:
     problem = Problem(simulator, nuisances)
     left = problem.residual - nuisances.columns @ nuisances.fitted(problem.residual)
     runs = [planned(problem, one.set_point, at) for at, one in enumerate(case.held_out)]
-    there = further(problem, runs, free, case.tolerances)
+    there = with_further_runs(problem, runs, free, case.tolerances)
     values = forecast(problem, there, None).values(there)
     ahead = there.simulator.stack
     return Scene(

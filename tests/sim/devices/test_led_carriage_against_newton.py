@@ -43,7 +43,7 @@ def test_a_carriage_that_is_led_lags_as_it_is_stated() -> None:
             wanted.append(0.2 + 0.03 * math.sin(4.0 * k / RATE_HZ))
             rig.follower.lead(wanted[-1])
             rig.cycle()
-            told.append(controller.number(rig.configuration.carriage.settings.asked.set_speed))
+            told.append(controller.number(rig.configuration.carriage.settings.signals.set_speed))
             ran.append(world.plant.value("carriage_speed"))
             gained.append(world.plant.value("carriage_acceleration"))
     most, speed, ramp = 0.5 / RATE_HZ, ran[0], told[0]

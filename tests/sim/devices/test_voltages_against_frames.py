@@ -49,7 +49,7 @@ def test_the_frames_carry_them_and_a_module_left_alone_goes_to_rest() -> None:
         assert node.values[0x6444, 2] == ZERO_COUNTS
         for _ in range(500):  # nobody sends SYNC or heartbeat any more
             world.live()
-        assert world.plant.around.carriage_speed_m_s == pytest.approx(0.0, abs=1e-3)
+        assert world.plant.conditions.carriage_speed_m_s == pytest.approx(0.0, abs=1e-3)
 
 
 def test_a_module_that_falls_silent_is_told_and_the_carriage_not_said_to_stand() -> None:

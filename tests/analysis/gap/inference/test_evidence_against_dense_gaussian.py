@@ -14,7 +14,7 @@ from analysis.gap.inference.kernel import Kernel
 from analysis.gap.observe.components import GapRun, Stack
 from analysis.gap.search.deviation import background, likeness, units
 from analysis.gap.search.first_look import look
-from analysis.gap.search.fit import at
+from analysis.gap.search.fit import linearised_at
 from analysis.gap.search.linear_hypothesis import hypothesis
 from hardware.description.arrays import BoolArray, FloatArray
 from sim.effects.catalogue import find
@@ -62,8 +62,8 @@ def test_products_under_the_reduced_covariance_are_those_under_the_dense_one(
     sizes = rng.uniform(0.1, 3.0, more)
     chosen = np.hstack((columns * scale, beside * sizes))
     dense = np.eye(size) + tau**2 * whole + chosen @ chosen.T
-    weighted = Weighted(kernel.turned(columns), 1.0 + tau**2 * kernel.values, shared)
-    reduced = weighted.reduced(scale[shared:], kernel.turned(np.hstack((of, beside))))
+    weighted = Weighted(kernel.rotated(columns), 1.0 + tau**2 * kernel.values, shared)
+    reduced = weighted.reduced(scale[shared:], kernel.rotated(np.hstack((of, beside))))
     found = reduced.widened(2, range(2, 2 + more), sizes)
     np.testing.assert_allclose(found.gram, of.T @ np.linalg.solve(dense, of), rtol=1e-8, atol=1e-9)
     assert found.log_determinant == pytest.approx(np.linalg.slogdet(dense)[1], abs=1e-8)
@@ -100,7 +100,7 @@ def beside(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> Background:
 def test_what_nothing_names_has_its_normal_density(beside: Background) -> None:
     stated, columns = beside.residual, beside.tolerances
     dense, one = _dense(beside.kernel), np.eye(len(stated))
-    none, coefficients = beside.none(), beside.coefficients()
+    none, coefficients = beside.no_effect(), beside.coefficients()
     # Each of the four coefficients wide by itself, or all of them.
     wide = [np.where(np.arange(columns.shape[1]) == k, WIDE, 1.0) for k in range(4)]
     wide.append(np.where(beside.sought, WIDE, 1.0))
@@ -120,10 +120,12 @@ def test_what_is_unknown_has_its_normal_density(beside: Background) -> None:
     stated = beside.residual
     dense, free = _dense(beside.kernel), np.eye(len(stated)) + _square(beside.tolerances)
     for at_, tau in enumerate(TAUS):
-        for stage, logs in beside.unknown().items():
-            plain = STRANGE * tau**2 * dense * _both(beside.behind[stage])
-            _holds(logs[at_], stated, free + plain + _square(tau * beside.shapes.at(stage)), free)
-        for kind, logs in beside.alone().items():
+        for stage, logs in beside.unknown_by_stage().items():
+            plain = STRANGE * tau**2 * dense * _both(beside.rows_by_stage[stage])
+            _holds(
+                logs[at_], stated, free + plain + _square(tau * beside.shapes.of_stage(stage)), free
+            )
+        for kind, logs in beside.unknown_by_kind().items():
             _holds(logs[at_], stated, free + tau**2 * dense * _both(beside.kinds[kind].rows), free)
 
 
@@ -132,7 +134,7 @@ def test_an_odd_run_has_its_normal_density(beside: Background) -> None:
     stated, dense = beside.residual, _dense(beside.kernel)
     free = np.eye(len(stated)) + _square(beside.tolerances)
     small = [tau for tau in TAUS if tau <= TOLERATED]
-    run, columns = next(iter(beside.own.items()))
+    run, columns = next(iter(beside.run_columns.items()))
     for at_, tau in enumerate(TAUS):
         odd = _square(tau * columns)
         each = [_log(stated, free + t**2 * dense + odd) for t in small]
@@ -150,23 +152,25 @@ def test_a_named_effect_of_no_free_size_has_its_normal_density(
     problem = problem_of(rig, clean)
     fit = look(problem, find("connecting-rod")).fit
     assert fit is not None
-    fit = at(problem, fit.candidates, fit.units)
+    fit = linearised_at(problem, fit.candidates, fit.units)
     forms = np.random.default_rng(4).standard_normal((len(fit.signature), 2))
     one = replace(hypothesis(problem, replace(fit, forms=forms)), sizes=[], reaches=[])
     free = replace(one, bounds=np.array([[-1e9], [1e9]]) * np.ones(fit.columns.shape[1]))
-    own = _square(np.hstack(list(beside.own.values())))
-    shapes = beside.shapes.columns * beside.shapes.beside(fit.names)
+    own = _square(np.hstack(list(beside.run_columns.values())))
+    shapes = beside.shapes.columns * beside.shapes.weights_beside(fit.names)
     for at_, tau in enumerate(TAUS):
         whole = np.eye(len(one.target)) + _square(beside.tolerances) + _square(fit.columns)
         whole += PLAIN * tau**2 * (_dense(beside.kernel) + own) + _square(tau * shapes)
         each = [_log(one.target, whole + _square(share * forms)) for share in FORMS]
         wanted = np.logaddexp.reduce(each) - np.log(len(each))
-        assert beside.named([free])[0][at_].log_evidence == pytest.approx(wanted, rel=1e-6)
+        assert beside.effect_evidence([free])[0][at_].log_evidence == pytest.approx(
+            wanted, rel=1e-6
+        )
 
 
 def test_what_stands_beside_an_effect_has_not_its_shape(beside: Background) -> None:
     shapes = beside.shapes
-    kept = shapes.beside(["viscous-guides"])
+    kept = shapes.weights_beside(["viscous-guides"])
     alike = shapes.alike["viscous-guides"]
     assert "viscous-guides" in alike
     assert [bool(one) for one in kept] == [one not in alike for one in shapes.effects]

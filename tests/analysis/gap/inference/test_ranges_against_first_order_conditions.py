@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.gap.inference.gaussian import Posterior
-from analysis.gap.inference.hypothesis import within
+from analysis.gap.inference.hypothesis import bounded_mode
 
 
 @given(seed=st.integers(0, 2**32 - 1), count=st.integers(1, 6), spread=st.sampled_from([0.1, 3.0]))
@@ -17,7 +17,7 @@ def test_what_is_inside_is_level_and_what_is_held_is_held_back(
     precision = np.eye(count) + root @ root.T
     mean = spread * rng.standard_normal(count)
     low, high = -rng.uniform(0.01, 1.0, count), rng.uniform(0.01, 1.0, count)
-    found = within(Posterior(mean, precision), np.array((low, high)))
+    found = bounded_mode(Posterior(mean, precision), np.array((low, high)))
     assert ((low <= found) & (found <= high)).all()
     falls = precision @ (mean - found)  # where the density rises to
     near = 1e-6 * (1.0 + np.abs(precision).max() * np.abs(mean).max())

@@ -29,7 +29,7 @@ def _learned(noise: FloatArray, relative: FloatArray) -> FloatArray:
         SignatureOfEffect("play", STAGE, there[:, 2], there[:, 3:]),
         SignatureOfEffect("saturation", STAGE, noise[:, 0], noise[:, 1:]),
     ]
-    shapes = Shapes.of(looked, np.full(RUNS, 1e4), tolerances).at(STAGE)
+    shapes = Shapes.of(looked, np.full(RUNS, 1e4), tolerances).of_stage(STAGE)
     return np.asarray(shapes @ shapes.T, np.float64)
 
 

@@ -13,7 +13,7 @@ from analysis.gap.pendulum.search import fit, weigh
 from analysis.gap.pendulum.swings import cut_into_windows, scatter, swings_of_samples
 from analysis.gap.pendulum.trial import Trial
 from analysis.gap.pendulum.verdict import CAUSE, judge
-from analysis.gap.pendulum.withheld import foretell
+from analysis.gap.pendulum.withheld import predict_withheld
 from hardware.description.arrays import FloatArray
 from sim.pendulum.benches import decay_bench
 from sim.pendulum.effects import body
@@ -93,7 +93,7 @@ def test_period_that_falls_with_amplitude_is_no_damping() -> None:
 def test_withheld_swings_are_foretold_by_the_true_loss() -> None:
     problem = decay(LOSSES["quadratic_drag"], seed=11)
     sets = [fit(problem, [cause(one)]) for one in (body.QuadraticDrag, body.CubicRateDamping)]
-    for regime in foretell(problem, sets):
+    for regime in predict_withheld(problem, sets):
         right, wrong = regime.foretold
         assert regime.before.gap > 20.0
         assert right.shrinkage > 0.9
@@ -109,7 +109,7 @@ def test_inertia_and_restoring_are_twins() -> None:
     assert sets["inertia"].cost < misfit(problem.residual, problem.nuisances) - 100.0
     assert shares["inertia"] == pytest.approx(shares["restoring"], rel=0.5)
     verdict = judge(found)
-    assert verdict.said == CAUSE
+    assert verdict.outcome == CAUSE
     # at one amplitude, a period that changes with it is a third one
     alike = sum(shares[one] for one in ("inertia", "restoring", "amplitude_period"))
     assert verdict.probability == pytest.approx(alike, abs=0.02)

@@ -57,7 +57,7 @@ def weighed_without(problem: PendulumProblem, names: tuple[str, ...] = ()) -> We
 @pytest.mark.parametrize("name", PUT_IN)
 def test_what_is_put_in_is_named_with_its_size(name: str) -> None:
     weighed = weighed_without(problem_with(name))
-    assert judge(weighed).said == CAUSE
+    assert judge(weighed).outcome == CAUSE
     assert weighed.answers.best == name
     best = weighed.sets[name]
     (axis,) = best.axes
@@ -70,7 +70,7 @@ def test_what_the_catalogue_does_not_have_is_called_nothing_else(name: str) -> N
     weighed = weighed_without(problem_with(name), WITHHELD[name])
     shares = weighed.answers.by_answer
     assert shares["unknown"] > max(share for one, share in shares.items() if one != "unknown")
-    assert judge(weighed).said in ("unknown", "untold")
+    assert judge(weighed).outcome in ("unknown", "untold")
 
 
 @pytest.mark.slow

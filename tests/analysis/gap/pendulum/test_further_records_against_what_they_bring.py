@@ -61,7 +61,7 @@ def ahead(problem: PendulumProblem, *kinds: type) -> float:
 
 def lengths(one: FurtherRecord) -> tuple[float, float]:
     """Return half spacing and lines of a proposed suspension."""
-    half, line = one.what.split(", ")
+    half, line = one.record.split(", ")
     return float(half.split()[2]), float(line.split()[2])
 
 
@@ -112,7 +112,7 @@ def test_a_larger_release_brings_what_is_expected_of_it() -> None:
     there = decayed(0.05, 0.3, seed=3)
     problem = PendulumProblem((there,), known, kinds=counted)
     proposals = propose(problem, *both(problem, *kinds))
-    gains = {one.what: one.gains[0] for one in proposals}
+    gains = {one.record: one.gains[0] for one in proposals}
     expected = gains["release at 2 times the amplitude, a record as long"]
     assert expected > 5.0 * gains["release at 0.5 times the amplitude, a record as long"]
     made = PendulumProblem((there, decayed(0.1, 0.3, seed=5)), known, kinds=counted)
