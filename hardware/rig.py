@@ -223,9 +223,8 @@ class Rig:
     @property
     def notes(self) -> tuple[str, ...]:
         """What devices lack and are used without, a sentence each; known once prepared."""
-        return tuple(
-            note for device in self._devices.opened for note in getattr(device, "notes", ())
-        )
+        opened = self._devices.opened
+        return tuple(note for device in opened for note in getattr(device, "notes", ()))
 
     @property
     def devices(self) -> tuple[Device, ...]:

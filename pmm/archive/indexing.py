@@ -8,9 +8,17 @@ from pathlib import Path
 from typing import Any
 
 from hardware.description.errors import ConfigurationError, DataError, PmmError
-from pmm.archive.contents import Contents, Stamp, changes, read_contents, recorded_utc, stamp
+from pmm.archive.contents import Stamp, changes, read_contents, stamp
+from pmm.archive.filing import (
+    file_contents,
+    file_notes,
+    file_results,
+    file_stamps,
+    row_of,
+    stamps,
+)
 from pmm.archive.notebook import NOTES_FILE, NoteLine, read_notes, write_note
-from pmm.archive.results import LEVEL, AnalysedCampaign, Analyses, GapVerdict, HarmonicValue
+from pmm.archive.results import AnalysedCampaign, Analyses, GapVerdict
 from pmm.parallel import as_done, task_folder
 from pmm.remote import local_path, url_of
 
@@ -136,107 +144,23 @@ def _taken_in(
     connection: sqlite3.Connection, folder: Path, analyses: Analyses, now_utc: str
 ) -> FolderTask:
     folder = local_path(folder).resolve()
-    last_row = _row(connection, folder)
+    last_row = row_of(connection, folder)
     contents = read_contents(folder, {} if last_row is None else stamps(connection, last_row["id"]))
     with connection:
         connection.execute("BEGIN IMMEDIATE")  # others may add the same folder meanwhile
-        state = _filed(connection, contents, now_utc)
-        row = _row(connection, folder)
+        state = file_contents(connection, contents, now_utc)
+        row = row_of(connection, folder)
         assert row is not None  # noqa: S101 - it was written above
         key: int = row["id"]
         connection.execute("UPDATE campaigns SET seen_utc = ? WHERE id = ?", (now_utc, key))
-        _set_files(connection, key, contents)
-        _set_notes(connection, key, contents.notes)
+        file_stamps(connection, key, contents)
+        file_notes(connection, key, contents.notes)
     open_analyses = Analyses(
         None if row["analysed"] else analyses.analyse,
         None if row["diagnosed"] else analyses.diagnose,
     )
     added_folder = AddedFolder(folder, contents.campaign.name, state, len(contents.records), (), ())
     return FolderTask(added_folder, key, contents.stamps, open_analyses)
-
-
-def _filed(connection: sqlite3.Connection, contents: Contents, now_utc: str) -> str:
-    """Give a folder a row for what it holds now; return its state.
-
-    One that holds what a folder held that is gone is that folder, moved.
-
-    Raises
-    ------
-    DataError
-        If it holds what another one holds: a copy is no new measurement.
-    """
-    row = _row(connection, contents.folder)
-    if row is not None and row["sha256"] == contents.sha256:
-        return "as before"
-    if row is not None:
-        connection.execute("DELETE FROM campaigns WHERE id = ?", (row["id"],))
-        _insert(connection, contents, now_utc)
-        return "changed"
-    alike = connection.execute(
-        "SELECT id, folder FROM campaigns WHERE sha256 = ? ORDER BY id", (contents.sha256,)
-    )
-    for key, place in alike:
-        if url_of(place) is not None or Path(place).exists():
-            raise DataError(
-                f"{contents.folder}: a copy of {place}, which the archive has: the same files are "
-                "no new measurement"
-            )
-        connection.execute(
-            "UPDATE campaigns SET folder = ? WHERE id = ?", (str(contents.folder), key)
-        )
-        return "moved"
-    _insert(connection, contents, now_utc)
-    return "new"
-
-
-def _row(connection: sqlite3.Connection, folder: Path) -> sqlite3.Row | None:
-    row: sqlite3.Row | None = connection.execute(
-        "SELECT * FROM campaigns WHERE folder = ?", (str(folder),)
-    ).fetchone()
-    return row
-
-
-def stamps(connection: sqlite3.Connection, campaign: int) -> Mapping[str, Stamp]:
-    """Return the files of a campaign as they were seen."""
-    rows = connection.execute(
-        "SELECT path, bytes, mtime_ns, sha256 FROM files WHERE campaign = ?", (campaign,)
-    )
-    return {path: Stamp(*rest) for path, *rest in rows}
-
-
-def _insert(connection: sqlite3.Connection, contents: Contents, now_utc: str) -> None:
-    campaign = contents.campaign
-    runs = contents.records
-    places = [contents.recording(run) for run in runs]
-    times = [None if place is None else recorded_utc(contents.folder / place) for place in places]
-    first = min((time for time in times if time is not None), default=None)
-    key = connection.execute(
-        "INSERT INTO campaigns (folder, campaign, hull, recorded_utc, seen_utc, sha256) "
-        "VALUES (?, ?, ?, ?, ?, ?)",
-        (str(contents.folder), campaign.name, campaign.model_name, first, now_utc,
-         contents.sha256),
-    ).lastrowid  # fmt: skip
-    rows = []
-    for run, place, time in zip(runs, places, times, strict=True):
-        set_point = run.set_point
-        rows.append(
-            (key, run.name, str(run.kind), run.outcome, run.repeat, set_point.frequency_hz,
-             set_point.eccentricity_m, set_point.strut_phase_rad, set_point.carriage_speed_m_s,
-             str(set_point.medium), set_point.drift_rad, place,
-             None if place is None else contents.stamps[place].sha256, time)
-        )  # fmt: skip
-    connection.executemany(
-        "INSERT INTO runs (campaign, run, kind, outcome, repeat, frequency_hz, eccentricity_m, "
-        "strut_phase_rad, carriage_speed_m_s, medium, drift_rad, recording, sha256, recorded_utc) "
-        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-        rows,
-    )
-
-
-def _set_files(connection: sqlite3.Connection, key: int, contents: Contents) -> None:
-    rows = [(key, path, *astuple(stamp)) for path, stamp in contents.stamps.items()]
-    connection.execute("DELETE FROM files WHERE campaign = ?", (key,))
-    connection.executemany("INSERT INTO files VALUES (?, ?, ?, ?, ?)", rows)
 
 
 def note_run(connection: sqlite3.Connection, run: Mapping[str, Any], note: NoteLine) -> Path:
@@ -263,18 +187,12 @@ def note_run(connection: sqlite3.Connection, run: Mapping[str, Any], note: NoteL
     with connection:
         connection.execute("BEGIN IMMEDIATE")  # an archive that cannot be written gets no note
         write_note(folder, note)
-        _set_notes(connection, key, read_notes(folder))
+        file_notes(connection, key, read_notes(folder))
         connection.execute(
             "INSERT OR REPLACE INTO files VALUES (?, ?, ?, ?, ?)",
             (key, NOTES_FILE, *astuple(stamp(path))),
         )
     return path
-
-
-def _set_notes(connection: sqlite3.Connection, key: int, notes: Iterable[NoteLine]) -> None:
-    rows = [(key, *astuple(note)) for note in notes]
-    connection.execute("DELETE FROM notes WHERE campaign = ?", (key,))
-    connection.executemany("INSERT INTO notes VALUES (?, ?, ?, ?, ?)", rows)
 
 
 def _keep_results(connection: sqlite3.Connection, outcome: ComputedFolder) -> AddedFolder:
@@ -286,7 +204,7 @@ def _keep_results(connection: sqlite3.Connection, outcome: ComputedFolder) -> Ad
         )
     with connection:
         if outcome.analysed is not None:
-            _write(connection, task.key, outcome.analysed)
+            file_results(connection, task.key, outcome.analysed)
             computed.append("analysis")
         if outcome.verdict is not None:
             row = (task.key, *astuple(outcome.verdict))
@@ -297,29 +215,3 @@ def _keep_results(connection: sqlite3.Connection, outcome: ComputedFolder) -> Ad
         raise outcome.error
     refusals = () if outcome.analysed is None else outcome.analysed.refused
     return replace(task.added, computed=tuple(computed), refused=refusals)
-
-
-def _write(connection: sqlite3.Connection, key: int, result: AnalysedCampaign) -> None:
-    ids = dict(connection.execute("SELECT run, id FROM runs WHERE campaign = ?", (key,)))
-    for table in ("harmonics", "coefficients", "refusals"):  # others may have computed them too
-        connection.execute(f"DELETE FROM {table} WHERE campaign = ?", (key,))  # noqa: S608
-    connection.executemany(
-        "INSERT INTO harmonics VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-        _harmonic_rows(key, ids, result.harmonics),
-    )
-    connection.executemany(
-        "INSERT INTO coefficients VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
-        [(key, *astuple(coefficient), LEVEL) for coefficient in result.coefficients],
-    )
-    connection.executemany(
-        "INSERT INTO refusals VALUES (?, ?)", [(key, text) for text in result.refused]
-    )
-    connection.execute("UPDATE campaigns SET analysed = 1 WHERE id = ?", (key,))
-
-
-def _harmonic_rows(
-    key: int, ids: Mapping[str, int], values: Iterable[HarmonicValue]
-) -> Iterable[tuple[object, ...]]:
-    for harmonic in values:
-        name, *rest = astuple(harmonic)
-        yield (key, ids[name], *rest)

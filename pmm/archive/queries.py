@@ -11,7 +11,7 @@ from typing import Any, Final
 from hardware.description.errors import ConfigurationError
 from pmm.archive.contents import changes
 from pmm.archive.expression import NUMBER, TEXT, KnownColumn, read_condition
-from pmm.archive.indexing import stamps
+from pmm.archive.filing import stamps
 from pmm.archive.results import LEVEL
 from pmm.remote import local_path
 from pmm.whole_file import write_whole

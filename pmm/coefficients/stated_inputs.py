@@ -286,9 +286,7 @@ def without_dry(cycle: BodyCycle, dry: Sequence[BodyCycle], campaign: Campaign) 
     """
     refusals = []
     model = campaign.as_recorded(cycle.name).model
-    for dry_run in (
-        dry_run for dry_run in dry if campaign.as_recorded(dry_run.name).model == model
-    ):
+    for dry_run in (run for run in dry if campaign.as_recorded(run.name).model == model):
         try:
             return cycle.without_dry(dry_run)
         except ConfigurationError as error:

@@ -136,9 +136,8 @@ class Station:
         if plan is None:
             return
         self._plans.present = plan
-        repeats = {run.name for run in plan.runs} & {
-            outcome.run for outcome in self.control.outcomes
-        }
+        ended = {outcome.run for outcome in self.control.outcomes}
+        repeats = ended.intersection(run.name for run in plan.runs)
         if self.control.state is State.DONE and self._recording is not None and not repeats:
             self._recording.plan = plan.plan
             self.control.replan((*self.control.runs, *plan.runs))
@@ -179,9 +178,7 @@ class Station:
 
     def _obey(self, order: LoopOrder) -> str:
         if order.quick_stops < self._quick_stop.pressed:
-            raise RunStateError(
-                "there was a quick stop after this; give it again if you still mean it"
-            )
+            raise RunStateError("there was a quick stop after this; give it again if you mean it")
         return {
             OrderKind.COMMAND: lambda: self._command(Command(order.text)),
             OrderKind.ANSWER: lambda: self._answer(order),
@@ -299,6 +296,5 @@ class Station:
         )  # fmt: skip
 
     def _begin(self, run: RunPlan) -> Measurement:
-        if self._recording is None:
-            raise AssertionError("a run without a plan")
+        assert self._recording is not None  # noqa: S101 - a run has a plan
         return self._recording.begin(run)

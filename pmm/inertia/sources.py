@@ -277,11 +277,9 @@ def _from_gates(job: Job[Any], source: PeriodSource, where: str) -> PeriodRuns:
 
 def _demodulated(gate_passages: Passages) -> Estimate:
     """Return the period of whole swings without their modulation."""
-    rows = gate_passages.number[2:] - gate_passages.number[:-2] == 2
-    result = remove_modulation(
-        gate_passages.time_s[1:-1][rows],
-        (gate_passages.time_s[2:] - gate_passages.time_s[:-2])[rows],
-    )
+    number, time_s = gate_passages.number, gate_passages.time_s
+    rows = number[2:] - number[:-2] == 2
+    result = remove_modulation(time_s[1:-1][rows], (time_s[2:] - time_s[:-2])[rows])
     freedom = float(max(int(rows.sum()) - result.fit.covariance.shape[0], 1))
     return Estimate.of(result.period_s, result.uncertainty_s, "s", freedom)
 
@@ -291,9 +289,8 @@ def _single_gate_run(
 ) -> tuple[Estimate, Flag]:
     """Let the scatter between a run's parts stand in for that between runs, undivided."""
     parts = np.array_split(np.arange(gate_passages.number.size), _PARTS)
-    slopes = [
-        2.0 * np.polyfit(gate_passages.number[part], fit.residual_s[part], 1)[0] for part in parts
-    ]
+    number, late_s = gate_passages.number, fit.residual_s
+    slopes = [2.0 * np.polyfit(number[part], late_s[part], 1)[0] for part in parts]
     spread = float(np.std(slopes, ddof=1))
     estimate = period.widened(spread, float(_PARTS - 1))
     message = (
