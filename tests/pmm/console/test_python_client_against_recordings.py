@@ -17,6 +17,8 @@ from pmm.interface.console_requests import ConsoleRefusalError
 from pmm.interface.console_run import FollowedPlan
 from tests.docs.blocks import blocks
 from tests.pmm.console.chromium import console, plan, rig_in
+from tests.pmm.console.test_campaigns_that_choose_in_chromium import HULL
+from tests.pmm.sequential.campaigns import DESIGN
 
 PERIODS = 6
 WITHIN_S = 600.0
@@ -106,6 +108,25 @@ def test_a_plan_waits_for_its_turn_behind_the_one_that_is_under_way(tmp_path: Pa
         assert (Path(made["folder"]).name, made["outcome"]) == ("second", "complete")
         ended = [Path(entry["folder"]).name for entry in client.known["finished"]]
         assert ended == ["first", "second"]
+
+
+@pytest.mark.slow
+def test_a_design_is_approved_of_and_carried_out(tmp_path: Path) -> None:
+    rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
+    design = DESIGN.format(repeat=0.007) + HULL
+    rig.with_name("design.toml").write_text(design, encoding="utf-8")
+    asked: list[str] = []
+
+    def answer(question: str) -> str:
+        asked.append(question)
+        return "y 1" if len(asked) == 1 else "n"
+
+    with console(rig, out, "--speed", "12") as one, pmm.connect(one.address) as client:
+        runs = client.run("design.toml", WITHIN_S, answer)
+        assert len(asked) == 2
+        assert all(question.startswith("Approve of these runs?") for question in asked)
+        recorded = {path.parent.name for path in (out / "heave-pitch").glob("*/run.nc")}
+        assert {run["run"] for run in runs} == recorded != set()
 
 
 def test_a_plan_that_had_no_turn_is_taken_out_and_control_is_given_back(tmp_path: Path) -> None:
