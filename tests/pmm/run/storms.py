@@ -85,7 +85,7 @@ DRIVES: Final = NODES[:3]
 class NoJournal:
     """A recorder that keeps nothing."""
 
-    begun = False
+    has_files = False
 
     def opened(self, *, wait: bool) -> bool:
         return True
