@@ -91,11 +91,10 @@ class Rig:
             if configuration.bus is not None:
                 self.master = Master(configuration.bus, clock, observers)
             operator = self.master.operator if self.master is not None else None
-            prompt = operator(prompt) if operator is not None else prompt
-            self.prompt = prompt
+            self.prompt = prompt = operator(prompt) if operator is not None else prompt
+            port = heard_ports(ports, line_observers, lambda: self.number)
             rate_hz = configuration.sample_rate_hz
-            heard = heard_ports(ports, line_observers, lambda: self.number)
-            services = Services(clock, prompt, rate_hz, self.master, port=heard)
+            services = Services(clock, prompt, rate_hz, self.master, port=port)
             self._devices.open(configuration, services)
         except BaseException:
             self.close()

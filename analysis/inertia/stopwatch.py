@@ -38,14 +38,7 @@ def stopwatch_period(
         Under three swings in a reading, a duration not above zero, and for readings that differ
         by more than half a swing (miscounted).
     """
-    for number, reading in enumerate(readings, 1):
-        if reading.swings < 3 or not reading.duration_s > 0.0:
-            raise DataError(
-                f"stopwatch reading {number}: {reading.swings} swing(s) in "
-                f"{reading.duration_s:g} s; too few swings, at least 3 in a time above 0"
-            )
-    if not readings:
-        raise DataError("no stopwatch reading; at least one is needed")
+    _check_readings(readings)
     periods = np.array([reading.duration_s / reading.swings for reading in readings])
     swings = np.array([float(reading.swings) for reading in readings])
     usual = float(np.median(periods))
@@ -57,20 +50,16 @@ def stopwatch_period(
             f"of the others: {miscount[worst]:.2g} swings over {swings[worst]:.0f}; miscounted?"
         )
     reading_periods = [
-        Estimate.of(float(period), reaction_s / count, "s")
-        for period, count in zip(periods, swings, strict=True)
+        Estimate.of(float(period), reaction_s / swing_count, "s")
+        for period, swing_count in zip(periods, swings, strict=True)
     ]
-    mean = Estimate(
-        joint(reading_periods).mapped(
-            np.full((1, len(reading_periods)), 1.0 / len(reading_periods))
-        ),
-        "s",
-    )
-    if len(reading_periods) < 2:
+    count = len(reading_periods)
+    mean = Estimate(joint(reading_periods).mapped(np.full((1, count), 1.0 / count)), "s")
+    if count < 2:
         return RepeatedValue(mean, (usual,), math.nan, mean.uncertainty)
-    names = [f"reading {k}" for k in range(1, len(reading_periods) + 1)]
+    names = [f"reading {k}" for k in range(1, count + 1)]
     agreement = scattered_fit(
-        np.ones((len(reading_periods), 1)),
+        np.ones((count, 1)),
         periods,
         subject=subject,
         results=("period_s",),
@@ -93,3 +82,14 @@ def stopwatch_period(
         agreement.flags(),
         (agreement,),
     )
+
+
+def _check_readings(readings: tuple[StopwatchReading, ...]) -> None:
+    for number, reading in enumerate(readings, 1):
+        if reading.swings < 3 or not reading.duration_s > 0.0:
+            raise DataError(
+                f"stopwatch reading {number}: {reading.swings} swing(s) in "
+                f"{reading.duration_s:g} s; too few swings, at least 3 in a time above 0"
+            )
+    if not readings:
+        raise DataError("no stopwatch reading; at least one is needed")
