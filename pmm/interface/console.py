@@ -5,6 +5,7 @@ import queue
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, suppress
 from getpass import getuser
 from pathlib import Path
@@ -12,10 +13,8 @@ from typing import Any, Final, Self
 
 from websockets.exceptions import WebSocketException
 from websockets.sync.client import ClientConnection
-from websockets.sync.client import connect as open_stream
-from websockets.typing import Origin
 
-from hardware.description.errors import ConfigurationError, PmmError
+from hardware.description.errors import PmmError
 from pmm.interface.arguments import checked
 from pmm.interface.console_queue import QueueCalls
 from pmm.interface.console_requests import ConsoleRefusalError, ConsoleRequests, Message
@@ -82,7 +81,7 @@ class ConsoleClient(QueueCalls):
         if token:
             self._requests.ask("/login", {"token": token, "name": name or getuser()})
         with ExitStack() as held:
-            stream = self._opened(held)
+            stream = held.enter_context(self._requests.stream(_STREAM_S))
             reader = threading.Thread(target=self._read, args=(stream,), name="console stream")
             held.callback(reader.join)
             held.callback(stream.close)
@@ -191,17 +190,27 @@ class ConsoleClient(QueueCalls):
         ------
         ConsoleRefusalError
             If it is refused or not done in time, if the rig asks and nobody answers, or if it ends
-            in a fault or rests before the plan has begun. A plan that has not begun is taken out
-            of the queue again; one that has begun is left as it is, but for the fault's own stop.
-            The text says which.
+            in a fault or rests before the plan has begun.
+
+        Whatever ends it early, Ctrl-C and an error of ``answers`` too, a plan that has not begun is
+        taken out of the queue again; one that has begun is left as it is, but for the fault's own
+        stop. The text says which, for the errors of others as a note.
         """
         before = self.known
-        plan_followed = FollowedPlan(self.queue(plan), before)
-        try:
-            self._follow(plan_followed, time.monotonic() + timeout_s, answers)
-        except ConsoleRefusalError as error:
-            raise ConsoleRefusalError(f"{error}; {self._without(plan_followed)}") from None
-        return plan_followed.runs(self.known)
+        with ThreadPoolExecutor(1, "console queue") as beside:  # Ctrl-C does not lose its number
+            queued = beside.submit(lambda: FollowedPlan(self.queue(plan), before))
+            try:
+                followed = queued.result()
+                self._follow(followed, time.monotonic() + timeout_s, answers)
+            except BaseException as error:
+                if queued.exception() is not None:
+                    raise
+                said = self._without(queued.result())
+                if isinstance(error, ConsoleRefusalError):
+                    raise ConsoleRefusalError(f"{error}; {said}") from None
+                error.add_note(said)
+                raise
+        return followed.runs(self.known)
 
     def _follow(
         self, plan: FollowedPlan, end_s: float, answers: Callable[[str], str] | None
@@ -231,8 +240,11 @@ class ConsoleClient(QueueCalls):
 
     def _without(self, plan: FollowedPlan) -> str:
         """Take a plan that has not begun out of the queue; return what became of it."""
+        frame_number = self.frame["n"] + _UNDER_WAY
+        with suppress(ConsoleRefusalError):  # what was commanded last shows by then
+            self.wait(lambda state: state["frame"]["n"] >= frame_number, _STREAM_S)
         if plan.begun(self.known):
-            return f"{plan.name} has begun and is left as it is"
+            return plan.left_behind(self.known)
         try:
             self.drop(plan.number)
         except PmmError as error:
@@ -245,26 +257,6 @@ class ConsoleClient(QueueCalls):
     @staticmethod
     def _has_control(state: Mapping[str, Any]) -> bool:
         return bool(state["desk"]["holder"] == "you")
-
-    def _opened(self, held: ExitStack) -> ClientConnection:
-        cookies = self._requests.cookies
-        try:
-            return held.enter_context(
-                open_stream(
-                    self._url.replace("http", "ws", 1) + "/stream",
-                    origin=Origin(self._url),
-                    additional_headers={"cookie": cookies} if cookies else None,
-                    ssl=self._requests.secure,
-                    max_size=None,
-                    open_timeout=_STREAM_S,
-                    proxy=None,
-                )
-            )
-        except (OSError, WebSocketException) as error:
-            raise ConfigurationError(
-                f"{self._url}: no console that lets this program in ({error}); is its address "
-                "right, and is a token needed?"
-            ) from None
 
     def _read(self, stream: ClientConnection) -> None:
         try:

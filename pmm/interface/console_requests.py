@@ -1,4 +1,4 @@
-"""What a program asks of a console over HTTP, as its page does."""
+"""What a program asks of a console over HTTP, and the stream that it opens, as its page does."""
 
 import json
 import ssl
@@ -6,6 +6,10 @@ from pathlib import Path
 from typing import Any, Final, TypeAlias
 from urllib.error import HTTPError, URLError
 from urllib.request import HTTPCookieProcessor, HTTPSHandler, Request, build_opener
+
+from websockets.exceptions import WebSocketException
+from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Origin
 
 from hardware.description.errors import ConfigurationError, PmmError
 
@@ -50,10 +54,24 @@ class ConsoleRequests:
         self._opener = build_opener(handler, HTTPSHandler(context=self.secure))
         self._jar = handler.cookiejar
 
-    @property
-    def cookies(self) -> str:
-        """What was given for the token, as a header has it; empty without."""
-        return "; ".join(f"{cookie.name}={cookie.value}" for cookie in self._jar)
+    def stream(self, patience_s: float) -> ClientConnection:
+        """Open the stream; raises ConfigurationError where no console lets the program in."""
+        cookies = "; ".join(f"{cookie.name}={cookie.value}" for cookie in self._jar)
+        try:
+            return connect(
+                self.url.replace("http", "ws", 1) + "/stream",
+                origin=Origin(self.url),
+                additional_headers={"cookie": cookies} if cookies else None,
+                ssl=self.secure,
+                max_size=None,
+                open_timeout=patience_s,
+                proxy=None,
+            )
+        except (OSError, WebSocketException) as error:
+            raise ConfigurationError(
+                f"{self.url}: no console that lets this program in ({error}); is its address "
+                "right, and is a token needed?"
+            ) from None
 
     def ask(self, path: str, body: Message | None = None) -> dict[str, Any]:
         """Post a body, or get without one, and return the answer; raises as the class says."""

@@ -47,6 +47,15 @@ class FollowedPlan:
         moved = state["frame"]["state"] != "idle" or bool(self.runs(state))
         return bool(state["frame"]["plan"] == self.number and moved)
 
+    def left_behind(self, state: Mapping[str, Any]) -> str:
+        """Return what becomes of it, once it has begun, when nobody follows it any more."""
+        if rests(state) or self.over(state):
+            return f"{self.name} has begun and is left as it is"
+        return (
+            f"{self.name} has begun and goes on; command('stop') of a client that has control "
+            "stops it, as Stop on the console's page does"
+        )
+
     def over(self, state: Mapping[str, Any]) -> bool:
         """Whether it has ended by itself, or is in the queue no more."""
         if not self._at_hand(state):

@@ -1,8 +1,13 @@
 """``pmm.connect`` drives a console in a process of its own; what was recorded says whether."""
 
 import json
+import os
+import signal
+import threading
 import time
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import pytest
 from click.testing import CliRunner
@@ -13,6 +18,7 @@ from analysis.resolver.analysis import analyse
 from analysis.resolver.settings import ResolverSettings
 from hardware.description.errors import ConfigurationError
 from pmm.cli import cli
+from pmm.interface.console import ConsoleClient
 from pmm.interface.console_requests import ConsoleRefusalError
 from pmm.interface.console_run import FollowedPlan
 from tests.docs.blocks import blocks
@@ -143,6 +149,65 @@ def test_a_plan_that_had_no_turn_is_taken_out_and_control_is_given_back(tmp_path
             client.wait(lambda known: known["frame"]["queue"] == [], WITHIN_S)
         with pmm.connect(one.address) as again:
             assert again.known["desk"]["holder"] == "you"
+
+
+def press_ctrl_c(client: ConsoleClient, when: Callable[[Mapping[str, Any]], bool]) -> None:
+    """Wait until what is known fulfils a condition, then do as the terminal does."""
+    client.wait(when, WITHIN_S)
+    os.kill(os.getpid(), signal.SIGINT)
+
+
+def said_at_ctrl_c(
+    client: ConsoleClient, text: str, when: Callable[[Mapping[str, Any]], bool]
+) -> str:
+    """Follow a plan until Ctrl-C, and return what is said of the plan."""
+    pressing = threading.Thread(target=press_ctrl_c, args=(client, when))
+    pressing.start()
+    with pytest.raises(KeyboardInterrupt) as raised:
+        client.run(text, WITHIN_S)
+    pressing.join()
+    (note,) = raised.value.__notes__
+    return note
+
+
+def test_ctrl_c_takes_out_what_waits_and_says_what_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
+    with console(rig, out) as one, pmm.connect(one.address) as client:
+        long = plan("long", periods=500)
+        said = said_at_ctrl_c(client, long, lambda known: known["frame"]["gate"] == "open")
+        assert said.startswith("long has begun and goes on; command('stop') of a client")
+        said = said_at_ctrl_c(client, plan("late"), lambda known: len(known["plans"]) == 2)
+        assert said == "late is taken out of the queue"
+        ask = client.queue
+
+        def slow(text: str | Path) -> dict[str, Any]:
+            """Interrupt the program before it has read the console's answer."""
+            answer = ask(text)
+            os.kill(os.getpid(), signal.SIGINT)
+            return answer
+
+        monkeypatch.setattr(client, "queue", slow)
+        with pytest.raises(KeyboardInterrupt) as raised:
+            client.run(plan("later"), WITHIN_S)
+        assert raised.value.__notes__ == ["later is taken out of the queue"]
+        client.wait(lambda known: known["frame"]["queue"] == [], WITHIN_S)
+        assert client.frame["gate"] == "open"
+
+
+def test_an_error_of_the_answers_leaves_nothing_in_the_queue(tmp_path: Path) -> None:
+    rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
+    rig.with_name("design.toml").write_text(DESIGN.format(repeat=0.007) + HULL, encoding="utf-8")
+
+    def answer(question: str) -> str:
+        raise LookupError(question)
+
+    with console(rig, out) as one, pmm.connect(one.address) as client:
+        with pytest.raises(LookupError) as raised:
+            client.run("design.toml", WITHIN_S, answer)
+        assert raised.value.__notes__ == ["heave-pitch is taken out of the queue"]
+        client.wait(lambda known: known["frame"]["plan"] == 0, WITHIN_S)
 
 
 @pytest.mark.parametrize(
