@@ -15,7 +15,7 @@ from pmm.console.audit import CommandRecord, keep, latest
 from pmm.console.desk import Holder, NotInControlError
 from pmm.console.encoding import encode_answer
 from pmm.console.hub import Hub
-from pmm.console.limits import LARGEST_PLAN, LARGEST_REQUEST
+from pmm.console.limits import LARGEST_PLAN, LARGEST_REQUEST, SILENT_S
 from pmm.console.loop_side import LoopSide, RefusedError
 from pmm.console.messages import OrderKind
 from pmm.console.plans import Plans
@@ -143,6 +143,8 @@ class PageActions:
         act: Callable[[P, Requester], Awaitable[ActionReply]],
     ) -> Response:
         who = who_asks(request)
+        if self._in_control(who):
+            self._hub.follow_control()
         text, present = "", None
         try:
             body = await body_of(request, _LARGEST.get(kind, LARGEST_REQUEST))
@@ -183,6 +185,11 @@ class PageActions:
             await run_sync(keep, folder or self.folder(), record)
         except OSError as error:
             self.alarm(f"commands are not logged: {error}")
+
+    async def log_lapse(self, who: Requester) -> None:
+        """Keep whose control has lapsed."""
+        said = f"nothing was heard of this session for {SILENT_S:g} s; nobody has control"
+        await self.log(who, "control lapses", "", {"said": said}, taken=True)
 
     def alarm(self, text: str) -> None:
         """Show something that the server has found as an alarm."""
@@ -268,11 +275,11 @@ class PageActions:
 
     async def _take(self, posted: TakePosted, who: Requester) -> ActionReply:
         who.visitor.require(VisitorRole.OPERATE)
-        self._hub.desk.take_over(who.session)
-        self._hub.news.set()
+        self._hub.desk.take_over(who)
+        self._hub.follow_control()
         return ActionReply("this browser has control")
 
     async def _give(self, _posted: GivePosted, who: Requester) -> ActionReply:
         self._hub.desk.give_back(who.session)
-        self._hub.news.set()
+        self._hub.follow_control()
         return ActionReply("nobody has control")

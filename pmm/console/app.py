@@ -27,7 +27,7 @@ from pmm.console.actions import PageActions
 from pmm.console.app_settings import ConsoleSettings
 from pmm.console.client import Client
 from pmm.console.coefficient_updates import CoefficientUpdates
-from pmm.console.hub import Hub, pump
+from pmm.console.hub import Hub
 from pmm.console.limits import MOST_STREAMS
 from pmm.console.live.process import Publishing
 from pmm.console.lockout import Lockout
@@ -36,10 +36,11 @@ from pmm.console.messages import Frame, Hello, LoopMessage, Notice, Reply
 from pmm.console.openapi import description
 from pmm.console.pages import Pages
 from pmm.console.plans import Plans
+from pmm.console.pump import pump
 from pmm.console.quick_stop import QuickStop
-from pmm.console.request_body import TooLargeError, body_of, who_asks
+from pmm.console.request_body import Requester, TooLargeError, body_of, who_asks
 from pmm.console.requests import TokenPosted, validation_message
-from pmm.console.security import COOKIE, VISITOR, Guard
+from pmm.console.security import COOKIE, Guard
 from pmm.console.worker_process import SharedAnswer, Workers
 from pmm.console.worker_tasks import look_around
 
@@ -64,7 +65,7 @@ class Console:
         end: Callable[[], None],
     ) -> None:
         self.door = settings.door
-        self.hub = Hub(self._replied, self._written, _utc)
+        self.hub = Hub(self._replied, self._written, self._lapsed, _utc)
         self.loop = LoopSide(connection, quick_stop, self._take, self._lost)
         self._publishing = Publishing(settings.live) if settings.live.any else None
         self._end = end
@@ -75,6 +76,7 @@ class Console:
             self.hub, self.loop, self.workers, plans, settings.log_folder, _utc
         )
         self._restoring: asyncio.Future[None] | None = None
+        self._logging: asyncio.Future[None] | None = None
         figures = self.workers.figures
         self.finished = CoefficientUpdates(self.hub, figures, settings.earlier, settings.reference)
         self.pages = Pages(self.actions.changes.queued.folders, settings.log_folder)
@@ -101,6 +103,9 @@ class Console:
         if notice.folder is not None:
             self.finished.look_at(notice.folder)
 
+    def _lapsed(self, who: Requester) -> None:
+        self._logging = asyncio.ensure_future(self.actions.log_lapse(who))
+
     def _lost(self) -> None:
         self.hub.lost()
         self._end()
@@ -115,7 +120,7 @@ class Console:
         if len(self.hub.clients) >= MOST_STREAMS and not self.hub.is_expected(session):
             await socket.close(_TOO_MANY, _FULL)
             return
-        client = Client(session, socket.send_text, socket.close, socket.scope[VISITOR].role)
+        client = Client(replace(who_asks(socket), session=session), socket.send_text, socket.close)
         self.hub.join(client)
         try:
             if (await socket.receive())["type"] == "websocket.receive":

@@ -8,7 +8,7 @@ from typing import Final
 
 from starlette.websockets import WebSocketDisconnect
 
-from pmm.console.security import VisitorRole
+from pmm.console.request_body import Requester
 
 REPLACED: Final = 4001  # of RFC 6455's private codes; the page knows it
 WAITING: Final = 64  # messages that are no pictures: alarms, states, plans, runs that ended
@@ -26,8 +26,6 @@ class Client:
         Sends a text; it waits for as long as the browser does not take any.
     close
         Ends the stream, with a code and a reason.
-    role
-        What its token lets it do.
 
     Attributes
     ----------
@@ -43,18 +41,21 @@ class Client:
 
     def __init__(
         self,
-        session: str,
+        who: Requester,
         send: Callable[[str], Awaitable[None]],
         close: Callable[[int, str], Awaitable[None]],
-        role: VisitorRole = VisitorRole.OPERATE,
     ) -> None:
-        self.role = role
-        self.session, self._send, self._close = session, send, close
+        self.who, self._send, self._close = who, send, close
         self.behind, self.dropped = True, 0
         self.frame = self.piece = 0
         self.desk = ""
         self._waiting: deque[str] = deque()
         self._sending: asyncio.Future[None] | None = None
+
+    @property
+    def session(self) -> str:
+        """Whose it is."""
+        return self.who.session
 
     @property
     def busy(self) -> bool:

@@ -1,8 +1,12 @@
 """Who has control: one session at a time; all others watch."""
 
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 from hardware.description.errors import PmmError
+
+if TYPE_CHECKING:
+    from pmm.console.request_body import Requester
 
 
 class Holder(StrEnum):
@@ -20,36 +24,36 @@ class NotInControlError(PmmError):
 class Desk:
     """Gives control to one session.
 
-    It stays there when that session's page is closed, until that session gives it back or another
-    one takes it over: what a reload or a lost network interrupts is not given away.
+    It stays there when that session's page is closed, until that session gives it back, another
+    one takes it over, or it lapses: what a reload or a lost network interrupts is not given away.
+
+    Attributes
+    ----------
+    holder
+        Who has control; ``None`` for nobody.
     """
 
     def __init__(self) -> None:
-        self._holder = ""
-
-    @property
-    def holder(self) -> str:
-        """The session that has control; empty for none."""
-        return self._holder
+        self.holder: Requester | None = None
 
     def seen_from(self, session: str) -> Holder:
         """Return who has control, as a session sees it: itself, another, nobody."""
-        if not self._holder:
+        if self.holder is None:
             return Holder.NOBODY
-        return Holder.YOU if session == self._holder else Holder.OTHER
+        return Holder.YOU if session == self.holder.session else Holder.OTHER
 
-    def arrive(self, session: str) -> None:
+    def arrive(self, who: "Requester") -> None:
         """Let a session come; the first one gets control."""
-        self._holder = self._holder or session
+        self.holder = self.holder or who
 
-    def take_over(self, session: str) -> None:
+    def take_over(self, who: "Requester") -> None:
         """Give control to a session, on its explicit wish."""
-        self._holder = session
+        self.holder = who
 
     def give_back(self, session: str) -> None:
         """Take control from a session that has done; raises as :meth:`require` does."""
         self.require(session)
-        self._holder = ""
+        self.holder = None
 
     def require(self, session: str) -> None:
         """Refuse a session that only watches.

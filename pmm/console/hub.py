@@ -1,13 +1,6 @@
-"""What the server knows of the rig, what of it each browser lacks, and the task that sends it.
-
-One task sends to all, in small batches: whoever asks meanwhile is served between. After each batch
-it rests for as long as the batch took, so that pictures never take more than half of the server's
-time. What the control desk needs goes first in every batch. Under load a round takes longer, and
-those who watch get fewer pictures; nothing queues up.
-"""
+"""What the server knows of the rig, and what of it each browser lacks."""
 
 import asyncio
-import logging
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
@@ -24,6 +17,7 @@ from pmm.console.encoding import (
     notice_picture,
     outcome_picture,
 )
+from pmm.console.limits import SILENT_S
 from pmm.console.live.outlet import OutletStatus
 from pmm.console.messages import (
     WRITTEN,
@@ -36,11 +30,10 @@ from pmm.console.messages import (
     Reply,
 )
 from pmm.console.pictures import Pictures
+from pmm.console.request_body import Requester
 from pmm.console.security import VisitorRole
 
 _NOTICES: Final = 200
-_LOG: Final = logging.getLogger(__name__)
-_BATCH: Final = 8  # browsers: half a millisecond
 
 
 class Hub:
@@ -52,6 +45,8 @@ class Hub:
         Takes the replies to orders.
     written
         Told when a campaign's file holds one more run.
+    lapsed
+        Told whose control has lapsed.
     utc
         Date and time in ISO 8601.
 
@@ -69,6 +64,7 @@ class Hub:
         self,
         replied: Callable[[Reply], None],
         written: Callable[[Notice], None],
+        lapsed: Callable[[Requester], None],
         utc: Callable[[], str],
     ) -> None:
         self.desk = Desk()
@@ -76,6 +72,8 @@ class Hub:
         self.last: Frame | None = None
         self.news = asyncio.Event()
         self._replied, self._written, self._utc = replied, written, utc
+        self._lapsed = lapsed
+        self._silence: asyncio.TimerHandle | None = None
         self._hello, self._connected = "null", False
         self._plans = self._figures = "{}"
         self._proposals = "[]"
@@ -150,16 +148,34 @@ class Hub:
         if before is not None:
             before.replace()
         self.clients[client.session] = client
-        if client.role is VisitorRole.OPERATE:
-            self.desk.arrive(client.session)
-        self.news.set()
+        if client.who.visitor.role is VisitorRole.OPERATE:
+            self.desk.arrive(client.who)
+        self.follow_control()
 
     def part(self, client: Client) -> None:
         """Send a browser nothing more, and forget it."""
         client.stop()
         if self.clients.get(client.session) is client:
             del self.clients[client.session]
-            self.news.set()
+            self.follow_control()
+
+    def follow_control(self) -> None:
+        """Note that control may have moved, or that its holder was heard of; tell the browsers.
+
+        Where the holder's page is not open its silence is counted from now on.
+        """
+        self.news.set()
+        if self._silence is not None:
+            self._silence.cancel()
+        self._silence = None
+        if self.desk.holder is not None and self.in_control is None:
+            clock = asyncio.get_running_loop()
+            self._silence = clock.call_later(SILENT_S, self._let_lapse, self.desk.holder)
+
+    def _let_lapse(self, who: Requester) -> None:
+        self.desk.give_back(who.session)
+        self.follow_control()
+        self._lapsed(who)
 
     def is_expected(self, session: str) -> bool:
         """Whether a session has a place however many there are: it has control, or one already."""
@@ -168,7 +184,8 @@ class Hub:
     @property
     def in_control(self) -> Client | None:
         """The browser that has control, if its page is open."""
-        return self.clients.get(self.desk.holder)
+        holder = self.desk.holder
+        return None if holder is None else self.clients.get(holder.session)
 
     def due(self, client: Client) -> list[str]:
         """Return what a browser lacks, and take it for sent."""
@@ -231,8 +248,9 @@ class Hub:
         self._changed()
 
     def _desk(self, client: Client) -> str:
-        holder, count = str(self.desk.seen_from(client.session)), len(self.clients)
-        return encode({"type": "desk", "holder": holder, "browsers": count, "role": client.role})
+        holder, role = str(self.desk.seen_from(client.session)), client.who.visitor.role
+        count = len(self.clients)
+        return encode({"type": "desk", "holder": holder, "browsers": count, "role": role})
 
     def _notice(self, notice: Notice) -> None:
         if notice.kind == WRITTEN:
@@ -246,36 +264,3 @@ class Hub:
             entry = encode(picture)
             self._finished.append(entry)
             self._tell(f'{{"type":"finished","entry":{entry}}}')
-
-
-async def pump(hub: Hub) -> None:
-    """Send every browser its pictures whenever there is news, until it is cancelled."""
-    while True:
-        await hub.news.wait()
-        hub.news.clear()
-        try:
-            await send_round(hub)
-        except Exception:  # a picture that cannot be made must not end all others
-            _LOG.exception("a picture could not be sent")
-
-
-async def send_round(hub: Hub) -> None:
-    """Send to every browser once what it lacks; one that still takes the last is left out."""
-    clock = asyncio.get_running_loop().time
-    clients = list(hub.clients.values())
-    for start in range(0, len(clients), _BATCH):
-        began_s = clock()
-        first = [hub.in_control] if hub.in_control is not None else []
-        for client in first + clients[start : start + _BATCH]:
-            _begin(hub, client)
-        if len(clients) > _BATCH:
-            await asyncio.sleep(0.0)  # they are sent now
-            await asyncio.sleep(clock() - began_s)
-
-
-def _begin(hub: Hub, client: Client) -> None:
-    if client.busy or hub.clients.get(client.session) is not client:
-        return
-    texts = hub.due(client)
-    if texts:
-        client.begin(texts, hub.news.set)

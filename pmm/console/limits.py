@@ -17,6 +17,7 @@ WRONG_TOKENS: Final = 5  # of an address, from which on it has to wait: 1 s, the
 LONGEST_LOCKOUT_S: Final = 900.0  # of an address: a hundred tries a day
 MOST_ADDRESSES: Final = 1024  # that wrong tokens are counted for; the oldest is forgotten
 SLOW_S: Final = 10.0  # that a page's stream may be full without anything of it being taken
+SILENT_S: Final = 60.0  # without page or request of whoever has control; a page is back in seconds
 MOST_CHECKS: Final = 4  # plans that are checked or wait for it; as many again for who has control
 MOST_PROPOSALS: Final = 32  # that wait; 1 MiB each at most
 CHECK_S: Final = 120.0  # of the processor, for reading a plan: 10000 runs take 10 to 20 s

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Final
 
-from starlette.requests import Request
+from starlette.requests import HTTPConnection, Request
 
 from hardware.description.errors import PmmError
 from pmm.console.limits import LARGEST_REQUEST
@@ -21,7 +21,7 @@ class Requester:
     visitor: Visitor
 
 
-def who_asks(request: Request) -> Requester:
+def who_asks(request: HTTPConnection) -> Requester:
     """Return session, address and rights of a request; the address ``?`` if not known."""
     address = request.client.host if request.client is not None else "?"
     return Requester(request.headers.get(SESSION, ""), address, request.scope[VISITOR])

@@ -12,8 +12,11 @@ import pytest
 
 from pmm.console.client import WAITING, Client
 from pmm.console.desk import Desk, Holder, NotInControlError
-from pmm.console.hub import Hub, send_round
+from pmm.console.hub import Hub
 from pmm.console.messages import Bus, ChannelInfo, Frame, Hello, Notice, SignalTrace
+from pmm.console.pump import send_round
+from pmm.console.request_body import Requester
+from pmm.console.security import Visitor
 from pmm.console.traces import POINTS
 from pmm.recorder.lateness import CycleStatistics
 from pmm.run.states import State
@@ -43,18 +46,23 @@ class Browser:
         return [one for one in self.took if one["type"] == "frame"]
 
 
+def who(session: str) -> Requester:
+    return Requester(session, "127.0.0.1", Visitor())
+
+
 @dataclass
 class Room:
-    """A hub and its browsers."""
+    """A hub, its browsers, and whose control has lapsed."""
 
     hub: Hub
+    lapsed: list[Requester]
     number: int = 0
 
     def join(self, session: str, *, slow: bool = False) -> Browser:
         one = Browser(session)
         if not slow:
             one.open.set()
-        self.hub.join(Client(session, one.send, one.close))
+        self.hub.join(Client(who(session), one.send, one.close))
         return one
 
     async def frame(self) -> None:
@@ -94,10 +102,12 @@ def _frame(number: int, trace: SignalTrace) -> Frame:
 
 def _in_room(act: Callable[[Room], Coroutine[Any, Any, None]]) -> None:
     async def run() -> None:
-        hub = Hub(lambda _: None, lambda _: None, lambda: "2026-01-01T00:00:00+00:00")
+        lapsed: list[Requester] = []
+        utc = "2026-01-01T00:00:00+00:00"
+        hub = Hub(lambda _: None, lambda _: None, lapsed.append, lambda: utc)
         channels = (ChannelInfo("force", "N"),)
         hub.take(Hello("rig", __file__, False, channels, 100.0, 100.0, 3, 1.0))  # type: ignore[arg-type]
-        await act(Room(hub))
+        await act(Room(hub, lapsed))
         for one in list(hub.clients.values()):
             hub.part(one)
 
@@ -148,7 +158,7 @@ def test_who_has_control_is_sent_to_before_each_batch_of_those_who_watch() -> No
         await room.frame()
         await room.frame()
         frames = len(first.frames)
-        room.hub.desk.take_over("98")  # the last of the round
+        room.hub.desk.take_over(who("98"))  # the last of the round
         last = room.hub.clients["98"]
         room.number += 1
         room.hub.take(_frame(room.number, SignalTrace(0, 0.0, np.empty((1, 0)))))
@@ -208,14 +218,39 @@ def test_a_session_that_is_opened_twice_ends_in_its_first_window() -> None:
 def test_control_stays_with_the_first_until_it_is_taken() -> None:
     desk = Desk()
     assert desk.seen_from("a") is Holder.NOBODY
-    desk.arrive("a")
-    desk.arrive("b")
+    desk.arrive(who("a"))
+    desk.arrive(who("b"))
     assert (desk.seen_from("a"), desk.seen_from("b")) == (Holder.YOU, Holder.OTHER)
-    desk.take_over("b")
+    desk.take_over(who("b"))
     assert (desk.seen_from("a"), desk.seen_from("b")) == (Holder.OTHER, Holder.YOU)
     with pytest.raises(NotInControlError):
         desk.give_back("a")
     desk.give_back("b")
     assert (desk.seen_from("a"), desk.seen_from("b")) == (Holder.NOBODY, Holder.NOBODY)
-    desk.arrive("a")
+    desk.arrive(who("a"))
     assert desk.seen_from("a") is Holder.YOU
+
+
+def test_control_lapses_where_its_holder_is_silent(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("pmm.console.hub.SILENT_S", 0.0)  # the loop's next round
+
+    async def act(room: Room) -> None:
+        for session in "ab":
+            room.join(session)
+        first, second = (room.hub.clients[session] for session in "ab")
+        room.hub.part(first)
+        room.join("a")  # a reload
+        await room.round()
+        room.hub.part(second)
+        await room.round()
+        assert (room.hub.desk.holder, room.lapsed) == (who("a"), [])
+        room.hub.part(room.hub.clients["a"])
+        room.hub.follow_control()  # a request of the holder's without a page
+        assert room.hub.desk.holder == who("a")
+        await room.round()
+        assert room.lapsed == [who("a")]
+        assert room.hub.desk.seen_from("a") is Holder.NOBODY
+        room.join("b")
+        assert room.hub.desk.holder == who("b")
+
+    _in_room(act)

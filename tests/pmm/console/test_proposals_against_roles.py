@@ -1,6 +1,7 @@
 """Who may do what: each role asks for each thing, and the loop is told only what is allowed."""
 
 import json
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -87,6 +88,33 @@ def test_what_is_proposed_reaches_the_loop_when_it_is_approved(tmp_path: Path) -
     approved = [line for line in done if line["action"] == "approve" and line["taken"]]
     assert [(line["name"], line["role"]) for line in approved] == [("Eve", "operate")] * 2
     assert "proposed by 'Ann'" in approved[0]["said"]
+
+
+def test_control_of_a_session_that_died_is_free_for_the_next_and_logged(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("pmm.console.hub.SILENT_S", 0.0)
+    with served(tmp_path, **PLANS) as one:
+        _enter(one, "token", "Eve")
+        other, own = SESSION[::-1], {"origin": REMOTE}
+        with ExitStack() as held:
+            first = one.browser.websocket_connect(f"{one.stream}?session={other}", headers=own)
+            assert held.enter_context(first).receive_json()["desk"]["holder"] == "you"
+            stream = one.browser.websocket_connect(f"{one.stream}?session={SESSION}", headers=own)
+            watching = held.enter_context(stream)
+            assert watching.receive_json()["desk"]["holder"] == "other"
+            assert one.post("/api/command", {"command": "start"})[0] == 403
+            first.close()
+            told = watching.receive_json()
+            while told["type"] != "audit" or told["entry"]["action"] != "control lapses":
+                told = watching.receive_json()
+            assert (told["entry"]["name"], told["entry"]["session"]) == ("Eve", other[:8])
+            assert one.post("/api/take-control", {"confirm": True})[0] == 200
+            assert one.post("/api/command", {"command": "start"})[0] == 200
+        assert [order.text for order in one.orders] == ["start"]
+    done = [json.loads(line) for line in (tmp_path / COMMANDS).read_text("utf-8").splitlines()]
+    lapse = next(line for line in done if line["action"] == "control lapses")
+    assert lapse["said"].endswith("nobody has control")
 
 
 def test_so_many_may_wait_and_no_more() -> None:
