@@ -47,10 +47,19 @@ _MEGA: Final = 1e6
 
 
 class Counted:
-    """Counts the ticks that come, each number once, in memory that does not grow."""
+    """Counts the ticks that come, each number once, in memory that does not grow.
+
+    Attributes
+    ----------
+    once, again, last
+        Ticks that came, those of them that came once more, and the largest number.
+    unread, while_read
+        Numbers handed on while the broker did not read, and ticks of all others that came.
+    """
 
     def __init__(self) -> None:
-        self.once = self.again = self.last = 0
+        self.once = self.again = self.last = self.while_read = 0
+        self.unread: list[range] = []
         self._seen, self._lately = set[int](), deque[int]()
 
     def __call__(self, _client: Any, _data: Any, got: Any) -> None:
@@ -62,6 +71,7 @@ class Counted:
             self.again += 1
             return
         self.once += 1
+        self.while_read += not any(number in outage for outage in self.unread)
         self.last = max(self.last, number)
         self._seen.add(number)
         self._lately.append(number)
@@ -104,12 +114,13 @@ def _run(quick: bool, report: Report) -> Outcome:
         "lost_in_real_time": float(real["lost"]),
         "dropped_in_real_time": float(real["dropped"]),
         "unaccounted": whole_day.lost,
-        "arrived": whole_day.counted.once / whole_day.reached,
+        "arrived": whole_day.counted.while_read / whole_day.reached,
         "growth_mb": growth_mb,
         "day_s": whole_day.took_s,
     }
     row: Row = {
         "ticks": whole_day.offered, "while it reads": whole_day.reached,
+        "of those received": whole_day.counted.while_read,
         "received": whole_day.counted.once, "twice": whole_day.counted.again,
         "dropped, counted": whole_day.status.dropped, "of them received": whole_day.both,
         "took [s]": round(whole_day.took_s),
@@ -180,6 +191,8 @@ class Feed:
 
     def give(self, ticks: int, *, reads: bool) -> None:
         """Hand so many on."""
+        if not reads:
+            self.counted.unread.append(range(self.number + 1, self.number + ticks + 1))
         for _ in range(ticks):
             self.number += 1
             self.one.take(replace(self._first, number=self.number))

@@ -137,15 +137,16 @@ def notice_picture(notice: Notice, number_of_notice: int, at: str) -> dict[str, 
 
 
 def outcome_picture(
-    outcome: RunOutcome, needles: Needles | None, folder: str, at: str
+    outcome: RunOutcome, needles: Needles | None, plan: int, folder: str, at: str
 ) -> dict[str, Any]:
-    """Return how a run ended as the page shows it, ``at`` being its time."""
+    """Return how a run of a plan ended as the page shows it, ``at`` being its time."""
     return {
         "run": outcome.run,
         "kind": outcome.kind,
         "outcome": outcome.outcome,
         "periods": outcome.periods,
         "reason": outcome.reason,
+        "plan": plan,
         "folder": folder,
         "at": at,
         "flags": [flag.message for flag in outcome.flags],

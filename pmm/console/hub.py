@@ -260,7 +260,9 @@ class Hub:
         if notice.outcome is not None:
             self._needles = notice.needles or self._needles
             folder = str(notice.folder or "")
-            picture = outcome_picture(notice.outcome, notice.needles, folder, self._utc())
+            picture = outcome_picture(
+                notice.outcome, notice.needles, notice.plan, folder, self._utc()
+            )
             entry = encode(picture)
             self._finished.append(entry)
             self._tell(f'{{"type":"finished","entry":{entry}}}')

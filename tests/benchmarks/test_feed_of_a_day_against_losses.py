@@ -101,6 +101,17 @@ def test_what_came_though_it_was_told_as_dropped_hides_nothing_that_was_lost(
     assert (feed.lost, feed.both) == (30, 50)
 
 
+def test_ticks_of_an_outage_that_come_later_do_not_count_as_those_of_reading(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The share of ticks that arrived was 1.0015: those that had waited in the outages counted."""
+    feed, _ = _feed(monkeypatch, lost=range(101, 104))
+    feed.give(1000, reads=True)
+    feed.give(500, reads=False)
+    feed.give(1000, reads=True)
+    assert (feed.counted.once, feed.counted.while_read, feed.reached) == (2497, 1997, 2000)
+
+
 def test_ticks_that_do_not_come_while_it_reads_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
     feed, _ = _feed(monkeypatch, lost=range(1001, 2000))
     with pytest.raises(TimeoutError, match=r"600 ticks on their way at tick 1600"):

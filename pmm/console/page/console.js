@@ -29,7 +29,7 @@ function draw() {
   if (figures || !shown) {
     shown = true;
     facts.show({ ...frame, priority, live });
-    showProgress(frame, queue.plans);
+    showProgress(frame, queue);
     queue.show(frame, holder === "you" || role === "propose");
   }
   until.show(frame, holder === "you");

@@ -21,6 +21,7 @@ export class Queue {
     this.say = say;
     this.finished = finished;
     this.plans = {};
+    this.counted = {}; // what is left of the plans, until one changes or a run ends
     this.open = new Set(); // plans whose runs are listed
     byId("note-author").value = localStorage.getItem(AUTHOR) ?? "";
     byId("note-form").addEventListener("submit", (event) => {
@@ -45,7 +46,7 @@ export class Queue {
 
   plan(number, frame) {
     const plan = this.plans[number], waits = frame.plan !== number;
-    const left = plan.chooses ? [] : this.left(plan, frame);
+    const left = plan.chooses ? [] : this.left(number).filter((one) => waits || one.name !== frame.run || frame.state === "idle");
     const held = left.length > 0 && left.every((one) => plan.held.includes(one.name));
     const count = plan.chooses ? "a design" : runsOf(left.length);
     const words = `${plan.name}, ${count} ${held ? "(held) " : waits ? "(waits) " : ""}`;
@@ -59,9 +60,23 @@ export class Queue {
     return row;
   }
 
-  left(plan, frame) {
-    const ended = new Set(this.finished.entries.filter((one) => one.folder === plan.folder).map((one) => one.run));
-    return plan.runs.filter((one) => !ended.has(one.name) && !(this.plans[frame.plan] === plan && one.name === frame.run && frame.state !== "idle"));
+  // Runs under way or still to be made, those that are held too: as the loop, which leaves out what ended in the plan
+  // itself, and what another one has completed in the folder.
+  left(number) {
+    const plan = this.plans[number], entries = this.finished.entries;
+    if (this.counted.entries !== entries || this.counted.plans !== this.plans) this.counted = { entries, plans: this.plans };
+    if (!this.counted[number]) {
+      const ended = new Set(entries.filter((one) => one.plan === number || (one.folder === plan.folder && one.outcome === "complete")).map((one) => one.run));
+      this.counted[number] = plan.runs.filter((one) => !ended.has(one.name));
+    }
+    return this.counted[number];
+  }
+
+  // At most so long, in seconds, until the plan under way has ended.
+  secondsLeft(frame) {
+    if (!this.plans[frame.plan]) return 0;
+    const { held } = this.plans[frame.plan];
+    return this.left(frame.plan).reduce((sum, one) => sum + (held.includes(one.name) ? 0 : one.duration_s), 0);
   }
 
   runs(number, plan, left) {

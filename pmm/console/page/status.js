@@ -69,13 +69,12 @@ export class Facts {
   }
 }
 
-export function showProgress(frame, plans) {
-  const plan = plans[frame.plan];
+export function showProgress(frame, queue) {
+  const plan = queue.plans[frame.plan], left = queue.secondsLeft(frame);
   text(byId("campaign"), plan ? plan.name : "no plan");
   const all = frame.state === "done" && !frame.next.length;
   const done = all ? frame.run_count : Math.max(frame.run_number - 1, 0) + (frame.wanted ? frame.periods / frame.wanted : 0);
   byId("campaign-bar").value = frame.run_count ? done / frame.run_count : 0;
-  const left = plan ? plan.runs.slice(Math.max(frame.run_number - 1, 0)).filter((one) => !plan.held.includes(one.name)).reduce((sum, one) => sum + one.duration_s, 0) : 0;
   const hours = left >= 3600 ? `${Math.floor(left / 3600)} h ` : "";
   const where = all ? `${frame.run_count === 1 ? "its run is" : `all ${frame.run_count} runs are`} done`
     : `run ${frame.run_number} of ${frame.run_count}, at most ${hours}${Math.ceil((left % 3600) / 60)} min left`;

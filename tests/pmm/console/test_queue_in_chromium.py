@@ -1,5 +1,6 @@
 """The queue on the page: runs edited, moved and held by mouse and keys, as its console has them."""
 
+from math import ceil
 from pathlib import Path
 from typing import Any
 
@@ -82,6 +83,29 @@ def test_runs_are_edited_moved_and_held_on_the_page(tmp_path: Path, chromium: Br
         _press(page, "Take out later")
         page.until(lambda: "later" not in page.text("#queue"), "a plan that is taken out")
         assert not [text for text in page.complaints() if "SEVERE" in text and "409" not in text]
+
+
+@pytest.mark.slow
+def test_the_time_left_is_that_of_the_runs_that_are_still_to_be_made(
+    tmp_path: Path, chromium: Browser
+) -> None:
+    with (
+        console(rig_in(tmp_path / "rig"), tmp_path / "out", "--speed", "8") as one,
+        chromium.window() as page,
+        pmm.connect(one.address) as client,
+    ):
+        client.queue(plan("same"))
+        two = plan("same", periods=100).replace("= 1.0", "= [1.0, 1.1]")
+        made, left = client.queue(two)["runs"]
+        page.open(one.address)
+        page.until(lambda: "same, 2 runs (waits)" in page.text("#queue"), "both runs of the second")
+        client.command("start")
+        page.until(lambda: client.frame["plan"] == 2, "the second plan's turn")
+        page.until(lambda: "run 1 of 1" in page.text("#campaign-line"), "what is left of it")
+        minutes = ceil(left["duration_s"] / 60)
+        assert ceil((made["duration_s"] + left["duration_s"]) / 60) > minutes
+        page.until(lambda: f"at most {minutes} min left" in page.text("#campaign-line"), "the time")
+        client.command("quick stop")
 
 
 @pytest.mark.slow
