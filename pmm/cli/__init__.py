@@ -6,8 +6,7 @@ from typing import Any
 
 import click
 
-from hardware.description.errors import DataError, PmmError
-from hardware.description.room import file_error_text
+from hardware.description.errors import PmmError
 from pmm.cli.group import CommandGroup
 
 _LINES = {
@@ -44,29 +43,15 @@ class Commands(CommandGroup):
         """Run a command; what it refuses becomes one clear line and an exit status."""
         try:
             return super().invoke(ctx)
-        except PmmError as error:
-            _show(error, with_traceback=ctx.params["debug"])
-            ctx.exit(error.exit_status)
         except BrokenPipeError:
             raise
-        except OSError as error:
-            refusal = DataError(file_error_text(error))
-            _show(refusal.with_traceback(error.__traceback__), with_traceback=ctx.params["debug"])
-            ctx.exit(refusal.exit_status)
+        except (PmmError, OSError) as error:
+            from pmm.cli.screen import tell_refusal
+
+            ctx.exit(tell_refusal(error))
         except KeyboardInterrupt:
             click.echo("stopped", err=True)
             ctx.exit(_INTERRUPTED)
-
-
-def _show(error: Exception, *, with_traceback: bool) -> None:
-    """Print an error on the error stream."""
-    from pmm.cli.screen import error_line
-
-    if with_traceback:
-        import traceback
-
-        traceback.print_exception(error)
-    error_line(str(error))
 
 
 def _print_version(ctx: click.Context, parameter: click.Parameter, wanted: bool) -> None:  # noqa: ARG001

@@ -1,12 +1,13 @@
 """``pmm coefficients``: a campaign's recordings in, added mass, damping and derivatives out."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from hardware.description.errors import PmmError
 from pmm.cli.options import JSON, PLOT, SCHEDULER, jobs_option, probability, with_options
 from pmm.coefficients import DEFAULT_TRIALS
 
@@ -98,15 +99,13 @@ def coefficients(as_json: bool, **options: Any) -> None:
     the runs do not determine); 2 the request was wrong (missing inertia, two runs of one name,
     another geometry, an unknown name).
     """  # noqa: D301
-    from pmm.cli.screen import messages, show
+    from pmm.cli.screen import show
     from pmm.report.coefficients_document import coefficients_document
 
     _check_outputs(options)
     outcome, _ = analysed(options)
     show(coefficients_document(outcome), as_json=as_json)
-    for path in _written(outcome, options):
-        messages().print(f"written: {path}")
-    finish(outcome)
+    finish(outcome, _write_outputs(outcome, options))
 
 
 def analysed(
@@ -131,8 +130,14 @@ def analysed(
     return finished(outcome, settings), tuple(files)
 
 
-def finish(outcome: "CampaignOutcome") -> None:
-    """Name the runs that could not be used or are damaged; end with the status they ask for."""
+def finish(outcome: "CampaignOutcome", earlier: Sequence[int] = ()) -> None:
+    """Name the runs that could not be used or are damaged; end with the status they ask for.
+
+    Parameters
+    ----------
+    earlier
+        Exit statuses of what has failed before.
+    """
     from pmm.cli.files import tell_damaged, tell_unchecked
     from pmm.cli.screen import error_line, messages
 
@@ -146,7 +151,7 @@ def finish(outcome: "CampaignOutcome") -> None:
         )
         error_line(message)
     tell_unchecked(run.file for run in outcome.runs)
-    statuses = tell_damaged((run.file, run.flags) for run in outcome.runs)
+    statuses = [*earlier, *tell_damaged((run.file, run.flags) for run in outcome.runs)]
     if statuses := statuses + [failure.exit_status for failure in outcome.failed]:
         click.get_current_context().exit(min(statuses))
 
@@ -200,40 +205,76 @@ def _check_outputs(options: Mapping[str, Any]) -> None:
     check_files(files, inputs, overwrite=options["overwrite"])
 
 
-def _written(outcome: "CampaignOutcome", options: Mapping[str, Any]) -> Iterator[str]:
+def _write_outputs(outcome: "CampaignOutcome", options: Mapping[str, Any]) -> list[int]:
+    """Write what was asked for, each whatever becomes of the others; say what is, or why not.
+
+    Returns
+    -------
+    list of int
+        An exit status for each that could not be made.
+    """
+    from pmm.cli.screen import messages, tell_refusal
+
+    statuses = []
+    for name, write in _WRITERS.items():
+        if options[name] is None:
+            continue
+        try:
+            made = write(outcome, Path(options[name]), bool(options["overwrite"]))
+        except (PmmError, OSError) as error:
+            statuses.append(tell_refusal(error))
+        else:
+            messages().print(f"written: {made}")
+    return statuses
+
+
+def _write_csv(outcome: "CampaignOutcome", path: Path, overwrite: bool) -> str:  # noqa: ARG001
+    from pmm.coefficients.files import csv_text
     from pmm.whole_file import write_whole
 
-    if options["csv_file"] is not None:
-        from pmm.coefficients.files import csv_text
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_whole(path, csv_text(outcome.result))
+    return str(path)
 
-        path = Path(options["csv_file"])
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_whole(path, csv_text(outcome.result))
-        yield str(path)
-    if options["netcdf"] is not None:
-        from pmm.coefficients.files import write_netcdf
-        from pmm.version import provenance
 
-        path = Path(options["netcdf"])
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_netcdf(outcome, path, dict(provenance()))
-        yield str(path)
-    if options["plot"] is not None:
-        from pmm.document.style import write_figures
-        from pmm.report.coefficient_plots import figures
-        from pmm.report.memory_figure import memory_figures
+def _write_netcdf(outcome: "CampaignOutcome", path: Path, overwrite: bool) -> str:  # noqa: ARG001
+    from pmm.coefficients.files import write_netcdf
+    from pmm.version import provenance
 
-        all_figures = (*figures(outcome.result), *memory_figures(outcome))
-        paths = write_figures(all_figures, Path(options["plot"]), "coefficients")
-        yield f"{len(paths)} figures in {options['plot']}"
-    if options["memory"] is not None:
-        from pmm.coefficients.memory_file import write_memory
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_netcdf(outcome, path, dict(provenance()))
+    return str(path)
 
-        write_memory(outcome, Path(options["memory"]))
-        yield f"memory of the water in {options['memory']}"
-    if options["simman"] is not None:
-        from pmm.coefficients.files import write_deliverables
 
-        folder, overwrite = Path(options["simman"]), bool(options["overwrite"])
-        count = write_deliverables(outcome, folder, overwrite=overwrite)
-        yield f"deliverables of {count} runs in {folder}"
+def _write_figures(outcome: "CampaignOutcome", folder: Path, overwrite: bool) -> str:  # noqa: ARG001
+    from pmm.document.style import write_figures
+    from pmm.report.coefficient_plots import figures
+    from pmm.report.memory_figure import memory_figures
+
+    all_figures = (*figures(outcome.result), *memory_figures(outcome))
+    paths = write_figures(all_figures, folder, "coefficients")
+    return f"{len(paths)} figures in {folder}"
+
+
+def _write_memory(outcome: "CampaignOutcome", path: Path, overwrite: bool) -> str:  # noqa: ARG001
+    from pmm.coefficients.memory_file import write_memory
+
+    write_memory(outcome, path)
+    return f"memory of the water in {path}"
+
+
+def _write_simman(outcome: "CampaignOutcome", folder: Path, overwrite: bool) -> str:
+    from pmm.coefficients.files import write_deliverables
+
+    count = write_deliverables(outcome, folder, overwrite=overwrite)
+    return f"deliverables of {count} runs in {folder}"
+
+
+# What writes each option's files, and returns what is said of them.
+_WRITERS: Final[dict[str, Callable[["CampaignOutcome", Path, bool], str]]] = {
+    "csv_file": _write_csv,
+    "netcdf": _write_netcdf,
+    "plot": _write_figures,
+    "memory": _write_memory,
+    "simman": _write_simman,
+}

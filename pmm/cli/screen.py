@@ -12,6 +12,9 @@ from typing import IO, TYPE_CHECKING, TypeVar
 
 import click
 
+from hardware.description.errors import DataError, PmmError
+from hardware.description.room import file_error_text
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -48,6 +51,20 @@ def error_line(message: str) -> None:
     from rich.text import Text
 
     messages().print(Text.assemble(("error: ", "bold red"), message))
+
+
+def tell_refusal(error: PmmError | OSError) -> int:
+    """Print what is refused, or cannot be done with a file; return its exit status.
+
+    With ``--debug`` its traceback goes before it.
+    """
+    refusal = error if isinstance(error, PmmError) else DataError(file_error_text(error))
+    if click.get_current_context().find_root().params.get("debug"):
+        import traceback
+
+        traceback.print_exception(error)
+    error_line(str(refusal))
+    return refusal.exit_status
 
 
 def show_progress(items: Iterable[T], activity: str, count: int | None = None) -> Iterator[T]:

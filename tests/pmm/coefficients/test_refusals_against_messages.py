@@ -249,6 +249,18 @@ def test_a_memory_that_the_frequencies_do_not_tell(heave: Path, tmp_path: Path) 
     assert not list(tmp_path.iterdir())
 
 
+def test_what_can_be_made_is_made_though_the_memory_cannot(heave: Path, tmp_path: Path) -> None:
+    names = {"--csv": "t.csv", "--netcdf": "t.nc", "--plot": "figures", "--simman": "deliverables"}
+    asked = [word for option, name in names.items() for word in (option, str(tmp_path / name))]
+    memory = tmp_path / "hull.toml"
+    made = CliRunner().invoke(cli, ["coefficients", str(heave), "--memory", str(memory), *asked])
+    assert made.exit_code == 1
+    assert "error: --memory: added mass and damping" in made.stderr
+    assert {path.name for path in tmp_path.iterdir()} == set(names.values())
+    assert made.stderr.count("written: ") == len(names)
+    assert list((tmp_path / "deliverables").iterdir())
+
+
 def test_a_memory_of_a_campaign_without_runs(heave: Path, tmp_path: Path) -> None:
     text = (heave / "campaign.toml").read_text()
     (tmp_path / "campaign.toml").write_text(text[: text.index("[[runs]]")])
