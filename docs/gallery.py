@@ -55,7 +55,11 @@ class Entry:
 def entries() -> list[Entry]:
     """Return the list."""
     told = tomllib.loads((HERE / "gallery.toml").read_text(encoding="utf-8"))
-    return [Entry(**one) for one in told["plots"]]
+    return [
+        Entry(command=group["command"], **one)
+        for group in told["commands"]
+        for one in group["plots"]
+    ]
 
 
 def helpers() -> set[str]:
@@ -84,8 +88,13 @@ def page() -> str:
     """Return ``gallery.md``."""
     told = tomllib.loads((HERE / "gallery.toml").read_text(encoding="utf-8"))
     lines = [told["head"]]
+    shown = ""
     for one in entries():
-        lines += [f"## {one.title}\n", f"{one.shows}\n", f"```sh\n{one.command}\n```\n"]
+        again = " By the command above." if one.command == shown else ""
+        lines += [f"## {one.title}\n", f"{one.shows}{again}\n"]
+        if not again:  # a second time it would find its folder full
+            lines.append(f"```sh\n{one.command}\n```\n")
+        shown = one.command
         if one.why_not:
             lines.append(f"No picture here: {one.why_not}\n")
         else:

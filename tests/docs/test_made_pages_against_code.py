@@ -58,6 +58,14 @@ def test_the_gallery_is_the_scripts() -> None:
     assert (DOCS / "gallery.md").read_text(encoding="utf-8") == gallery.page()
 
 
+def test_no_command_of_the_gallery_writes_into_the_folder_of_another() -> None:
+    text = (DOCS / "gallery.md").read_text(encoding="utf-8")
+    lines = [line.split() for line in text.splitlines() if line.startswith("pmm ")]
+    assert len({tuple(words) for words in lines}) == len(lines), "a command stands there twice"
+    folders = [words[words.index("--output") + 1] for words in lines if "--output" in words]
+    assert len(set(folders)) == len(folders) > 5
+
+
 def test_every_plot_of_the_program_is_in_the_gallery() -> None:
     assert {one.draws for one in gallery.entries()} | gallery.helpers() == (
         gallery.drawing_functions()
