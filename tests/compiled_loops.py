@@ -1,7 +1,8 @@
-"""Compiles the loops that take tens of seconds: once, side by side, before workers share the tests.
+"""Compiles what takes tens of seconds: once, side by side, before workers share the tests.
 
-Each worker would else compile every one of them, at the first test that needs it. Short runs ask
-for them, so that they are compiled for what the product hands them.
+Each worker would else compile every loop, at the first test that needs it, and every module of
+tests. Short runs ask for the loops, so that they are compiled for what the product hands them;
+collecting asks for the modules.
 """
 
 import os
@@ -58,14 +59,21 @@ def _are_kept(loops: str) -> bool:
 def compile_loops() -> None:
     """Compile what is not kept from before, each group of loops in a process of its own.
 
+    Where a group is missing, the modules of tests are taken to be as new, and compiled beside it.
+
     Raises
     ------
     subprocess.CalledProcessError
         If that fails; the process has said why.
     """
     missing = [group.__name__ for group, loops in LOOPS.items() if not _are_kept(loops)]
+    if not missing:
+        return
     commands = [[sys.executable, "-m", "tests.compiled_loops", name] for name in missing]
     begun = [subprocess.Popen(command, cwd=HOUSE) for command in commands]
+    # What it fails at, the workers fail at too, and say so.
+    collect = [sys.executable, "-m", "pytest", "--collect-only", "-qq", "-p", "no:cacheprovider"]
+    subprocess.run(collect, cwd=HOUSE, stdout=subprocess.DEVNULL, check=False)
     for process in begun:
         if process.wait():
             raise subprocess.CalledProcessError(process.returncode, process.args)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from hardware.description.arrays import ComplexArray, FloatArray
+from sim.model.hull_steady_state import apply
 from sim.model.law_response import respond
 from sim.model.law_table import LawTable
 from sim.solve.array_loops import copy, inner, largest, solve
@@ -54,23 +55,25 @@ class LawBalance:
         laws
             Of the laws at the struts and along the model, ``(orders + 1, 3)``.
         """
-        harmonics_given = np.stack([laws.real, laws.imag], axis=1)
-        answer = np.empty_like(harmonics_given)
-        _answer(self._arguments(y), harmonics_given, answer)
-        harmonics: ComplexArray = answer[:, 0] + 1j * answer[:, 1]
-        return harmonics
+        at = _parts(laws)
+        answer = np.empty_like(at)
+        arguments: Any = (*self._response(y), at, answer)
+        respond(*arguments)
+        return _complex(answer)
 
-    def force(self, y: ComplexArray) -> ComplexArray | None:
-        """Return the forces once nothing changes, the laws' in them; ``None`` without such.
+    def settled(self, y: ComplexArray, laws: ComplexArray) -> ComplexArray | None:
+        """Return the laws' harmonics that come back unchanged, from ``laws`` on.
 
-        Shape ``(orders + 1, 3)``: at the struts and along the model.
+        ``None`` without such.
         """
-        force = np.empty((len(y), 3), dtype=np.complex128)
-        settled = _balance(self._arguments(y), self.give is not None, force)
-        return force if settled else None
+        response, found = self._response(y), _parts(laws)
+        # Relative to the linear force too, by whose rounding all of what is beyond it is off.
+        size = max(np.abs(laws).max(), np.abs(response[7][:, 6:]).max(), 1e-300)
+        return _complex(found) if _settle(response, TOLERANCE * float(size), found) else None
 
-    def _arguments(self, y: ComplexArray) -> tuple[Any, ...]:
-        return *self._laws, y, *self._whatever_moves
+    def _response(self, y: ComplexArray) -> tuple[Any, ...]:
+        """Return what :func:`sim.model.law_response.respond` takes, but for its last two."""
+        return *self._laws, self._unladen(y), self._per_law, *self._instants
 
     @cached_property
     def _laws(self) -> tuple[Any, ...]:
@@ -82,12 +85,33 @@ class LawBalance:
         return laws, arguments, corners, smooth, *self.parts, moving
 
     @cached_property
-    def _whatever_moves(self) -> tuple[Any, ...]:
+    def _instants(self) -> tuple[Any, ...]:
         period = self.period
         waves = _waves(period.orders, period.points)
-        way = np.zeros_like(self.impedance) if self.give is None else self.give
-        linear = (way, self.impedance, period.s)
-        return *linear, *waves, gauss(period.orders), period.step_s, self.speed_m_s
+        return *waves, gauss(period.orders), period.step_s, self.speed_m_s
+
+    def _unladen(self, y: ComplexArray) -> ComplexArray:
+        """Return h, h', h'' and linear force without the laws, two columns each."""
+        h = y if self.give is None else y + apply(self.give, apply(self.impedance, y))
+        s = self.period.s[:, np.newaxis]
+        return np.hstack([h, h * s, h * s**2, apply(self.impedance, h)])
+
+    @cached_property
+    def _per_law(self) -> ComplexArray:
+        """What a law's harmonic adds to them, shape ``(orders + 1, 8, 2)``."""
+        give = np.zeros_like(self.impedance) if self.give is None else self.give
+        s = self.period.s[:, np.newaxis, np.newaxis]
+        return np.hstack([give, give * s, give * s**2, self.impedance @ give])
+
+
+def _parts(harmonics: ComplexArray) -> FloatArray:
+    parts: FloatArray = np.stack([harmonics.real, harmonics.imag], axis=1)
+    return parts
+
+
+def _complex(parts: FloatArray) -> ComplexArray:
+    harmonics: ComplexArray = parts[:, 0] + 1j * parts[:, 1]
+    return harmonics
 
 
 @lru_cache(maxsize=16)
@@ -97,107 +121,22 @@ def _waves(orders: int, points: int) -> tuple[FloatArray, FloatArray]:
 
 
 @compile_loop
-def _unladen(
-    y: ComplexArray, give: ComplexArray, impedance: ComplexArray, s: ComplexArray
-) -> ComplexArray:
-    """Return h, h', h'' and linear force without the laws, two columns each."""
-    free = np.empty((s.size, 8), dtype=np.complex128)
-    for n in range(s.size):
-        for i in range(2):
-            free[n, 6 + i] = impedance[n, i, 0] * y[n, 0] + impedance[n, i, 1] * y[n, 1]
-        for i in range(2):
-            free[n, i] = y[n, i] + give[n, i, 0] * free[n, 6] + give[n, i, 1] * free[n, 7]
-            free[n, 2 + i] = s[n] * free[n, i]
-            free[n, 4 + i] = s[n] * free[n, 2 + i]
-        for i in range(2):
-            free[n, 6 + i] = impedance[n, i, 0] * free[n, 0] + impedance[n, i, 1] * free[n, 1]
-    return free
-
-
-@compile_loop
-def _per_law(give: ComplexArray, impedance: ComplexArray, s: ComplexArray) -> ComplexArray:
-    """Return what a law's harmonic adds to them, shape ``(orders + 1, 8, 2)``."""
-    by_laws = np.empty((s.size, 8, 2), dtype=np.complex128)
-    for n in range(s.size):
-        for i in range(2):
-            for j in range(2):
-                by_laws[n, i, j] = give[n, i, j]
-                by_laws[n, 2 + i, j] = s[n] * give[n, i, j]
-                by_laws[n, 4 + i, j] = s[n] * by_laws[n, 2 + i, j]
-                by_laws[n, 6 + i, j] = (
-                    impedance[n, i, 0] * give[n, 0, j] + impedance[n, i, 1] * give[n, 1, j]
-                )
-    return by_laws
-
-
-@compile_loop
-def _response(setup: tuple[Any, ...]) -> tuple[Any, ...]:
-    """Return what :func:`sim.model.law_response.respond` takes, but for its last two arguments.
-
-    Parameters
-    ----------
-    setup
-        The laws and whether their corners move, the struts, and the period: see
-        :class:`LawBalance`.
-    """
-    laws, arguments, corners, smooth, smooth_hull, parts, moving, y, give, impedance, s = setup[:11]
-    free, by_laws = _unladen(y, give, impedance, s), _per_law(give, impedance, s)
-    laws_given = (laws, arguments, corners, smooth, smooth_hull, parts, moving)
-    return (*laws_given, free, by_laws, *setup[11:])
-
-
-@compile_loop
-def _answer(setup: tuple[Any, ...], at: FloatArray, answer: FloatArray) -> None:
-    """Fill in the harmonics that the laws ask for where they are ``at``."""
-    all_arguments: Any = (*_response(setup), at, answer)
-    respond(*all_arguments)
-
-
-@compile_loop
-def _balance(setup: tuple[Any, ...], acts_back: bool, force: ComplexArray) -> bool:
-    """Fill in the forces under laws that come back unchanged; tell whether there are any."""
-    response = _response(setup)
-    free, by_laws = response[7], response[8]
-    harmonics = np.zeros((free.shape[0], 2, 3))
-    settled = _settle(response, acts_back, harmonics)
-    for n in range(free.shape[0]):
-        for i in range(3):
-            force[n, i] = complex(harmonics[n, 0, i], harmonics[n, 1, i])
-        first, second = force[n, 0], force[n, 1]
-        for i in range(2):
-            linear = by_laws[n, 6 + i, 0] * first + by_laws[n, 6 + i, 1] * second
-            force[n, i] += free[n, 6 + i] + linear
-    return settled
-
-
-@compile_loop
-def _largest_linear(free: ComplexArray) -> float:
-    """Return the largest harmonic of the linear force, which columns 6 and 7 hold."""
-    size = 0.0
-    for n in range(free.shape[0]):
-        size = max(size, abs(free[n, 6]), abs(free[n, 7]))
-    return size
-
-
-@compile_loop
-def _settle(arguments: tuple[Any, ...], acts_back: bool, laws_found: FloatArray) -> bool:
+def _settle(response: tuple[Any, ...], allowed: float, laws_found: FloatArray) -> bool:
     """Fill in the laws' harmonics that come back unchanged; tell whether there are any.
 
     Parameters
     ----------
-    arguments
+    response
         The arguments of :func:`sim.model.law_response.respond` but for the last two.
+    allowed
+        The change that counts as none.
+    laws_found
+        Where the sweeps begin.
     """
-    answer, flat, free = np.zeros(laws_found.shape), laws_found.reshape(-1), arguments[7]
+    answer, flat = np.zeros(laws_found.shape), laws_found.reshape(-1)
     answered = answer.reshape(-1)
-    all_arguments: Any = (*arguments, laws_found, answer)
-    respond(*all_arguments)
-    copy(answered, flat)
-    if not acts_back:
-        return True
+    all_arguments: Any = (*response, laws_found, answer)
     answers, changes = np.zeros((_DEPTH + 1, flat.size)), np.zeros((_DEPTH + 1, flat.size))
-    # Relative to the linear force too, by whose rounding all of what is beyond it is off.
-    allowed = TOLERANCE * max(largest(flat), _largest_linear(free), 1e-300)
     best, stalled, count = np.inf, 0, 0
     for _ in range(MOST_SWEEPS):
         respond(*all_arguments)

@@ -45,7 +45,7 @@ class HullSteady:
         """Return the forces where the laws ask for ``laws``."""
         h = self._model(y, laws)
         force = laws.copy()
-        force[:, :2] += _apply(self.impedance, h)
+        force[:, :2] += apply(self.impedance, h)
         return force
 
     def laws(self, y: ComplexArray, laws: ComplexArray) -> ComplexArray:
@@ -54,32 +54,32 @@ class HullSteady:
             return self._compiled.answer(y, laws)
         h = self._model(y, laws)
         column = self.period.s[:, np.newaxis]
-        waves = np.hstack([h, h * column, h * column**2, _apply(self.impedance, h)])
+        waves = np.hstack([h, h * column, h * column**2, apply(self.impedance, h)])
         return law_harmonics(self.acting, self.system, waves, self.period, self.speed_m_s)
 
     def balanced(self, y: ComplexArray) -> ComplexArray:
         """Return the forces, the laws in balance with the deflection that they cause."""
-        force = None if self._compiled is None else self._compiled.force(y)
-        if force is not None:
-            return force
         laws = self.laws(y, np.zeros((len(y), 3), dtype=np.complex128))
-        if self.give is not None:
-            laws = relax(lambda at: self.laws(y, at), laws, "hull", self.scale(y, laws))
-        return self.force(y, laws)
+        if self.give is None:
+            return self.force(y, laws)
+        found = None if self._compiled is None else self._compiled.settled(y, laws)
+        if found is None:
+            found = relax(lambda at: self.laws(y, at), laws, "hull", self.scale(y, laws))
+        return self.force(y, found)
 
     def scale(self, y: ComplexArray, laws: ComplexArray) -> float:
         """Return what a change of the laws counts relative to: them, or the linear force.
 
         By the rounding of the linear force all of what is beyond it is off.
         """
-        linear = _apply(self.impedance, y)
+        linear = apply(self.impedance, y)
         return float(max(np.abs(laws).max(), np.abs(linear).max()))
 
     def _model(self, y: ComplexArray, laws: ComplexArray) -> ComplexArray:
         """Return the motion of the model at the struts."""
         if self.give is None:
             return y
-        return y + _apply(self.give, _apply(self.impedance, y) + laws[:, :2])
+        return y + apply(self.give, apply(self.impedance, y) + laws[:, :2])
 
     @cached_property
     def _compiled(self) -> "LawBalance | None":
@@ -105,6 +105,7 @@ def _mounting_gain(
     return gain
 
 
-def _apply(matrices: ComplexArray, vectors: ComplexArray) -> ComplexArray:
+def apply(matrices: ComplexArray, vectors: ComplexArray) -> ComplexArray:
+    """Return each harmonic's matrix times its vector."""
     product: ComplexArray = (matrices @ vectors[:, :, np.newaxis])[:, :, 0]
     return product

@@ -174,9 +174,11 @@ def _ask(
     time_s = phase / (2.0 * math.pi) * period_s
     asked[0, 0] = asked[0, 1] = 0.0
     if item < laws.shape[0] and laws[item, 9] <= 0.0:
-        x, v = value_at(series[0], series[1], 0, way), value_at(series[0], series[1], 1, way)
-        a, load = value_at(series[0], series[1], 2, way), value_at(series[0], series[1], 3, way)
-        asked_force = law_value(laws, item, LawInput(x, v, a, load, time_s, 0.0, speed_m_s))
+        own = np.empty(4)
+        for j in range(4):
+            own[j] = value_at(series[0], series[1], j, way)
+        at = LawInput(own[0], own[1], own[2], own[3], time_s, 0.0, speed_m_s)
+        asked_force = law_value(laws, item, at)
         asked[0, 0], asked[0, 1] = asked_force * laws[item, 5], asked_force * laws[item, 6]
         asked[0, 2] = 0.0
         return

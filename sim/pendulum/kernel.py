@@ -191,8 +191,6 @@ def interval(
 ) -> FloatArray:
     """Return the state after ``step``; ``sign`` is brought up to date in place."""
     n = sign.size
-    if not model[6]:
-        return advance(model, tables, t, step, 0, x, sign)
     deepest = tables[3].shape[1] - 2
     parts = 1 << deepest
     steps, level = 0, 0
