@@ -150,7 +150,8 @@ def _carried_out(
 ) -> "RunReport":
     """Make the runs of a plan and say how they ended."""
     from pmm.cli.files import check_folder
-    from pmm.cli.screen import pasted, say, show
+    from pmm.cli.next_step import next_command
+    from pmm.cli.screen import say, show
     from pmm.report.run_document import complete_runs, run_document
     from pmm.run.session import RunReport, run_job
 
@@ -174,7 +175,7 @@ def _carried_out(
             report = _run_on_terminal(job, stack, quiet=as_json)
     show(run_document(job, report, dry_run=dry_run), as_json=as_json)
     if complete_runs(report) and not as_json:
-        say(pasted("analyse", job.folder))
+        say(next_command(job.folder, Path(plan).parent))
     return report
 
 

@@ -38,12 +38,13 @@ def simulate(
 ) -> None:
     """Simulate the runs of a campaign and write its recordings.
 
-    The folder gets the campaign file and a NetCDF recording per run; "pmm analyse FOLDER" then
-    analyses them. No recording is overwritten unless you say so.
+    The folder gets the campaign file and a NetCDF recording per run; the command that takes them is
+    printed below. No recording is overwritten unless you say so.
     """
     from pmm.campaign.simulated_campaign import planned_simulation
     from pmm.cli.files import check_folder
-    from pmm.cli.screen import pasted, say, show, show_progress
+    from pmm.cli.next_step import next_command
+    from pmm.cli.screen import say, show, show_progress
     from pmm.report.simulation_document import simulation_document
 
     simulation = planned_simulation(
@@ -72,4 +73,4 @@ def simulate(
             )
     show(simulation_document(simulation, outcome), as_json=as_json)
     if not as_json:
-        say(pasted("analyse", simulation.folder), *figures)
+        say(next_command(simulation.folder, simulation.file.parent), *figures)
