@@ -36,12 +36,14 @@ def test_types_found_in_the_sources_are_those_of_the_running_program() -> None:
     assert loaded <= names
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [FollowingError, InterlockError])
 def test_reactions_are_those_of_the_classes(kind: type[FollowingError | InterlockError]) -> None:
     shown = errors.reaction(kind.__name__, errors.error_types())
     assert shown == kind.reaction.name.lower().replace("_", " ")
 
 
+@pytest.mark.slow
 def test_a_message_that_the_code_has_not_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

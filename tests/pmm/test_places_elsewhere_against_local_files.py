@@ -30,7 +30,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "cache"
 
 
-@pytest.fixture(params=["memory", "s3"], scope="module")
+@pytest.fixture(params=["memory", pytest.param("s3", marks=pytest.mark.slow)], scope="module")
 def system(request: pytest.FixtureRequest) -> Iterator[tuple[Any, str]]:
     """A system of files elsewhere, and the URL of an empty folder or bucket there."""
     if request.param == "memory":

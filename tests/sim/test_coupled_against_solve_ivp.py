@@ -156,8 +156,18 @@ def test_load_torque_ripple_makes_a_third_harmonic() -> None:
 LAWS = (Acting(Quadratic(300.0)), Acting(Coulomb(2.0), Point.FORE), Acting(Cubic(90.0)))
 
 
-@pytest.mark.parametrize("motor", [None, ShuntMotor()], ids=["told", "loaded"])
-@pytest.mark.parametrize("springs", [Mounting(), Mounting(2e5, 300.0, 1e6, 4000.0)])
+SPRINGS = Mounting(2e5, 300.0, 1e6, 4000.0)
+
+
+@pytest.mark.parametrize(
+    ("motor", "springs"),
+    [
+        pytest.param(None, Mounting(), id="told"),
+        pytest.param(ShuntMotor(), Mounting(), id="loaded"),
+        pytest.param(None, SPRINGS, id="told on springs"),
+        pytest.param(ShuntMotor(), SPRINGS, id="loaded on springs", marks=pytest.mark.slow),
+    ],
+)
 def test_work_of_the_shaft_is_what_is_dissipated(motor: Any, springs: Mounting) -> None:
     """Work per cycle at the struts = work at the shaft = loss in water, laws and springs.
 

@@ -7,6 +7,8 @@ by what the rod adds at twice the frequency, if each coefficient counts as it do
 import json
 from pathlib import Path
 
+import pytest
+
 from tests.pmm.gap.rigs import EXAMPLE, run
 
 PUT_IN = ("connecting-rod:rod_length_m=1.5", "coulomb-friction:friction_n=0.3")
@@ -32,6 +34,7 @@ def _campaign(folder: Path) -> Path:
     return folder / "rig"
 
 
+@pytest.mark.slow
 def test_every_coefficient_is_the_one_that_was_put_in(tmp_path: Path) -> None:
     names = ",".join(one.split(":")[0] for one in PUT_IN)
     found = run("gap", _campaign(tmp_path), "--effects", names, "--json")

@@ -19,7 +19,7 @@ from pmm.recorder.run_recorder import RunEnd
 from pmm.recorder.samples import JournalSamples, read_samples
 from tests.pmm.recorder.recorded import session
 
-FLIPS = 300
+FLIPS = 100
 BATCHES = 12
 BEGIN = b"\xff\xff\xff\xff"
 

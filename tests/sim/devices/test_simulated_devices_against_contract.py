@@ -27,9 +27,12 @@ from tests.sim.devices.benches import (
 from tests.sim.devices.line_tables import PANEL, VOLTAGES
 from tests.sim.devices.modbus_tables import CARRIAGE, DRIFT
 
+# As fast as the contract's tolerances allow: nothing waits for a slow axis or carriage.
+QUICK_AXIS = {"speed": 0.03, "acceleration": 0.5, "homing_speed": 0.03}
+QUICK_CARRIAGE = {"acceleration_m_s2": 3.0, "settle_s": 0.1}
 PARTS = {
     "shaft": WHOLE["shaft"],
-    "eccentricity": WHOLE["eccentricity"],
+    "eccentricity": {**WHOLE["eccentricity"], **QUICK_AXIS},
     "forces": [amplifier(4, "force_aft", "force_fore")],
     "photocell": WHOLE["photocell"],
 }
@@ -140,21 +143,22 @@ def modbus(part: str, table: dict, framing: str):
 class TestCarriage(CarriageContract):
     @pytest.fixture
     def bench(self) -> Iterator[Bench]:
-        with modbus("carriage", CARRIAGE, "tcp") as (rig, _):
+        with modbus("carriage", {**CARRIAGE, **QUICK_CARRIAGE}, "tcp") as (rig, _):
             yield bench(rig)
 
 
 class TestPanel(CarriageContract):
     @pytest.fixture
     def bench(self) -> Iterator[Bench]:
-        with in_process({"carriage": PANEL}, on_bus=False, serial=("carriage",)) as (rig, _):
+        tables = {"carriage": {**PANEL, **QUICK_CARRIAGE}}
+        with in_process(tables, on_bus=False, serial=("carriage",)) as (rig, _):
             yield bench(rig)
 
 
 class TestVoltages(CarriageContract):
     @pytest.fixture
     def bench(self) -> Iterator[Bench]:
-        with in_process({"carriage": VOLTAGES}) as (rig, _):
+        with in_process({"carriage": {**VOLTAGES, **QUICK_CARRIAGE}}) as (rig, _):
             yield bench(rig)
 
 
