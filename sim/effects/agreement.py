@@ -22,8 +22,16 @@ def phasor(state: SteadyState, name: str, order: int) -> complex:
 
     Time counts from the photocell's pulse; order 0 is the mean.
     """
-    harmonic = complex(state.referred(name)[order])
-    return harmonic if order == 0 else complex(-harmonic.imag, harmonic.real)
+    return _phasors(state, [(name, order)])[name, order]
+
+
+def _phasors(state: SteadyState, keys: Sequence[tuple[str, int]]) -> Signature:
+    referred = {name: state.referred(name) for name in dict.fromkeys(name for name, _ in keys)}
+    found = {}
+    for name, order in keys:
+        harmonic = complex(referred[name][order])
+        found[name, order] = harmonic if order == 0 else complex(-harmonic.imag, harmonic.real)
+    return found
 
 
 def simulated_signature(
@@ -44,9 +52,16 @@ def simulated_signature(
         Of the period, for what neither jumps nor bends.
     """
     nominal = steady_run(rig, set_point, orders=orders, points=points)
-    real = switch_on((effect,), rig, set_point)
-    changed = steady_run(*real, orders=orders, points=points)
-    return {key: phasor(changed, *key) - phasor(nominal, *key) for key in keys}
+    named = list(keys)
+    before = _phasors(nominal, named)
+    after = _phasors(_changed(effect, rig, set_point, orders, points), named)
+    return {key: after[key] - before[key] for key in named}
+
+
+def _changed(
+    effect: Effect, rig: SimulatedRig, set_point: SetPoint, orders: int, points: int
+) -> SteadyState:
+    return steady_run(*switch_on((effect,), rig, set_point), orders=orders, points=points)
 
 
 def mismatch(
@@ -65,19 +80,21 @@ def mismatch(
     """
     worst = float("nan")
     for set_point in set_points if effect.repeats else ():
-        situation = Situation.of(rig, set_point)
+        situation = Situation.of(rig, set_point, orders, points)
         theory = effect.signature(situation)
         if not any(theory.values()):
             continue
         highest = max(order for _, order in theory)
         names = sorted({name for name, _ in theory})
         keys = [(name, order) for name in names for order in range(highest + 1)]
-        simulated = simulated_signature(effect, rig, set_point, keys, orders, points)
+        before = _phasors(situation.nominal, keys)
+        after = _phasors(_changed(effect, rig, set_point, orders, points), keys)
         for quantity in {_quantity(name) for name in names}:
             group = [key for key in keys if _quantity(key[0]) == quantity]
             stated = np.array([theory.get(key, 0.0) for key in group])
-            gap = np.array([simulated[key] for key in group]) - stated
-            least = SMALLEST * np.linalg.norm([phasor(situation.nominal, *key) for key in group])
+            nominal = np.array([before[key] for key in group])
+            gap = np.array([after[key] for key in group]) - nominal - stated
+            least = SMALLEST * np.linalg.norm(nominal)
             worst = float(np.fmax(worst, np.linalg.norm(gap) / max(np.linalg.norm(stated), least)))
     return worst
 

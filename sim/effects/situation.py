@@ -38,9 +38,11 @@ class Situation:
     nominal: SteadyState
 
     @classmethod
-    def of(cls, rig: SimulatedRig, set_point: SetPoint) -> "Situation":
+    def of(
+        cls, rig: SimulatedRig, set_point: SetPoint, orders: int = 12, points: int = 128
+    ) -> "Situation":
         """Solve the nominal rig."""
-        return cls(rig, set_point, steady_run(rig, set_point))
+        return cls(rig, set_point, steady_run(rig, set_point, orders=orders, points=points))
 
     @property
     def omega(self) -> float:
