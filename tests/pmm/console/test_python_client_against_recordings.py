@@ -5,7 +5,7 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +22,7 @@ from pmm.interface.console import ConsoleClient
 from pmm.interface.console_requests import ConsoleRefusalError
 from pmm.interface.console_run import FollowedPlan
 from tests.docs.blocks import blocks
-from tests.pmm.console.chromium import console, plan, rig_in
+from tests.pmm.console.chromium import Console, console, plan, rig_in
 from tests.pmm.console.test_campaigns_that_choose_in_chromium import HULL
 from tests.pmm.sequential.campaigns import DESIGN
 
@@ -30,6 +30,26 @@ PERIODS = 6
 WITHIN_S = 600.0
 TOKEN = "0123456789abcdef-token"  # noqa: S105 - of this test alone
 TWO_RUNS = plan("whole", periods=PERIODS).replace("= 1.0", "= [1.0, 1.1]")
+
+
+@pytest.fixture(scope="module")
+def desk(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Console]:
+    """A console of several tests: each queues plans of its own, and leaves the rig at rest."""
+    folder = tmp_path_factory.mktemp("desk")
+    with console(rig_in(folder / "rig"), folder / "out", "--speed", "8") as one:
+        yield one
+
+
+def stopped(client: ConsoleClient, name: str) -> dict[str, Any]:
+    """Stop the run of a plan; return what is said of it once it is written, behind the state."""
+    client.command("stop")
+    client.wait(lambda known: known["frame"]["state"] == "stopped", WITHIN_S)
+    client.wait(lambda known: _ended(known, name) != [], WITHIN_S)
+    return dict(_ended(client.known, name)[-1])
+
+
+def _ended(known: Mapping[str, Any], name: str) -> list[dict[str, Any]]:
+    return [one for one in known["finished"] if Path(one["folder"]).name == name]
 
 
 @pytest.mark.slow
@@ -84,23 +104,28 @@ def test_the_program_of_the_page_runs(tmp_path: Path, capsys: pytest.CaptureFixt
             assert said.count("[('run-f1-a20', 'complete', 5)]") == made
 
 
-def test_a_run_is_stopped_and_a_plan_taken_out(tmp_path: Path) -> None:
-    rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
-    with console(rig, out, "--speed", "4") as one, pmm.connect(one.address) as client:
-        client.queue(plan("long", periods=500))
+def test_a_run_is_stopped_what_had_no_turn_taken_out_and_control_given_back(desk: Console) -> None:
+    with pmm.connect(desk.address) as client:
+        client.queue(plan("held", periods=500))
         client.queue(plan("other"))
-        client.wait(lambda known: len(known["plans"]) == 2, WITHIN_S)
-        (number,) = (int(key) for key, one in client.known["plans"].items()
-                     if one["name"] == "other")  # fmt: skip
+        client.wait(lambda known: len(_named(known, "held", "other")) == 2, WITHIN_S)
+        (number,) = _named(client.known, "other")
         assert "other" in client.drop(number)
         client.command("start")
+        for name, timeout_s in (("late", 0.5), ("later", 0.0)):
+            with pytest.raises(ConsoleRefusalError, match=rf"not come in .*; {name} is taken"):
+                client.run(plan(name), timeout_s)
         client.wait(lambda known: known["frame"]["gate"] == "open", WITHIN_S)
-        client.command("stop")
-        client.wait(lambda known: known["frame"]["state"] == "stopped", WITHIN_S)
-        client.wait(lambda known: bool(known["finished"]), WITHIN_S)  # written behind the state
-        assert client.known["finished"][-1]["outcome"] == "stopped"
+        assert stopped(client, "held")["outcome"] == "stopped"
+        assert client.frame["queue"] == []
         with pytest.raises(ConsoleRefusalError, match=r"did not come in 0\.2 s"):
             client.wait(lambda known: known["frame"]["state"] == "gate open", 0.2)
+    with pmm.connect(desk.address) as again:
+        assert again.known["desk"]["holder"] == "you"
+
+
+def _named(known: Mapping[str, Any], *names: str) -> list[int]:
+    return [int(number) for number, one in known["plans"].items() if one["name"] in names]
 
 
 @pytest.mark.slow
@@ -135,22 +160,6 @@ def test_a_design_is_approved_of_and_carried_out(tmp_path: Path) -> None:
         assert {run["run"] for run in runs} == recorded != set()
 
 
-def test_a_plan_that_had_no_turn_is_taken_out_and_control_is_given_back(tmp_path: Path) -> None:
-    rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
-    with console(rig, out) as one:
-        with pmm.connect(one.address) as client:
-            client.queue(plan("long", periods=500))
-            client.command("start")
-            for name, timeout_s in (("late", 0.5), ("later", 0.0)):
-                with pytest.raises(ConsoleRefusalError, match=rf"not come in .*; {name} is taken"):
-                    client.run(plan(name), timeout_s)
-            client.command("stop")
-            client.wait(lambda known: known["frame"]["state"] == "stopped", WITHIN_S)
-            client.wait(lambda known: known["frame"]["queue"] == [], WITHIN_S)
-        with pmm.connect(one.address) as again:
-            assert again.known["desk"]["holder"] == "you"
-
-
 def press_ctrl_c(client: ConsoleClient, when: Callable[[Mapping[str, Any]], bool]) -> None:
     """Wait until what is known fulfils a condition, then do as the terminal does."""
     client.wait(when, WITHIN_S)
@@ -171,14 +180,13 @@ def said_at_ctrl_c(
 
 
 def test_ctrl_c_takes_out_what_waits_and_says_what_goes_on(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    desk: Console, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
-    with console(rig, out) as one, pmm.connect(one.address) as client:
+    with pmm.connect(desk.address) as client:
         long = plan("long", periods=500)
         said = said_at_ctrl_c(client, long, lambda known: known["frame"]["gate"] == "open")
         assert said.startswith("long has begun and goes on; command('stop') of a client")
-        said = said_at_ctrl_c(client, plan("late"), lambda known: len(known["plans"]) == 2)
+        said = said_at_ctrl_c(client, plan("late"), lambda known: _named(known, "late") != [])
         assert said == "late is taken out of the queue"
         ask = client.queue
 
@@ -194,8 +202,10 @@ def test_ctrl_c_takes_out_what_waits_and_says_what_goes_on(
         assert raised.value.__notes__ == ["later is taken out of the queue"]
         client.wait(lambda known: known["frame"]["queue"] == [], WITHIN_S)
         assert client.frame["gate"] == "open"
+        stopped(client, "long")
 
 
+@pytest.mark.slow
 def test_an_error_of_the_answers_leaves_nothing_in_the_queue(tmp_path: Path) -> None:
     rig, out = rig_in(tmp_path / "rig"), tmp_path / "out"
     rig.with_name("design.toml").write_text(DESIGN.format(repeat=0.007) + HULL, encoding="utf-8")
