@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import Any, Final
 
 from pmm.console.live.outlet import NotCarriedError, Outlet
-from pmm.console.live.values import Alarm, LiveValue, Tick
+from pmm.console.live.values import Alarm, ValueFacts
 
 MOST_WAITING: Final = 25  # ticks, one second's: a variable shows the latest, and keeps none
 _LISTENS: Final = "EPICS_CAS_INTF_ADDR_LIST"
@@ -42,7 +42,7 @@ class EpicsOutlet(Outlet):
         logging.getLogger("caproto").setLevel(logging.CRITICAL)  # of each foreign packet, else
         self._prefix = prefix
         self._variables: dict[str, Any] = {}
-        self._shown: dict[str, LiveValue] = {}
+        self._shown: dict[str, tuple[float | int | str, Alarm]] = {}
 
     async def _carry(self) -> None:
         if not os.environ.get(_LISTENS):  # nobody beyond this machine is to hear of it
@@ -51,8 +51,11 @@ class EpicsOutlet(Outlet):
         from caproto.asyncio.server import Context
 
         first = await self._next_tick()
-        counts = {"carried": LiveValue(0), "dropped": LiveValue(0)}
-        self._variables = {k: _variable(v) for k, v in {**first.values, **counts}.items()}
+        counts = {"carried": 0, "dropped": 0}
+        self._variables = {
+            name: _variable(value, first.facts.get(name, ValueFacts()))
+            for name, value in {**first.values, **counts}.items()
+        }
         self._shown = {}
         served = {f"{self._prefix}:{name}": variable for name, variable in self._variables.items()}
         addresses = get_server_address_list()
@@ -79,47 +82,43 @@ class EpicsOutlet(Outlet):
         self._note_connected()
         self._count_carried()
         status = self.status()
-        counts = {"carried": LiveValue(status.carried), "dropped": _dropped(status.dropped)}
+        counts = {"carried": status.carried, "dropped": status.dropped}
+        alarms = tick.alarms | ({"dropped": Alarm.MINOR} if status.dropped else {})
         for name, value in {**tick.values, **counts}.items():
-            if self._shown.get(name) != value and name in self._variables:
-                self._shown[name] = value
-                await self._write(name, value, tick)
+            shown = value, alarms.get(name, Alarm.FINE)
+            if self._shown.get(name) != shown and name in self._variables:
+                self._shown[name] = shown
+                await self._write(name, *shown, tick.utc_s)
 
-    async def _write(self, name: str, value: LiveValue, tick: Tick) -> None:
-        variable, alarm = self._variables[name], int(value.severity)
+    async def _write(self, name: str, value: float | int | str, alarm: Alarm, utc_s: float) -> None:
+        variable = self._variables[name]
         if variable.alarm.severity != alarm:  # its own fields would stay
-            await variable.alarm.write(
-                status=_STATUS[value.severity], severity=alarm, publish=False
-            )
-        await variable.write(_plain(value), verify_value=False, timestamp=tick.utc_s)
+            await variable.alarm.write(status=_STATUS[alarm], severity=int(alarm), publish=False)
+        await variable.write(_plain(value), verify_value=False, timestamp=utc_s)
 
 
-def _dropped(count: int) -> LiveValue:
-    return LiveValue(count, severity=Alarm.MINOR if count else Alarm.FINE)
-
-
-def _variable(value: LiveValue) -> Any:
+def _variable(value: float | int | str, facts: ValueFacts) -> Any:
     """Return a process variable; whoever is outside reads it and nothing else."""
     from caproto import AccessRights, ChannelDouble, ChannelInteger, ChannelString
 
     kinds: dict[type, Any] = {float: ChannelDouble, int: ChannelInteger, str: ChannelString}
-    kind = kinds[type(value.value)]
+    kind = kinds[type(value)]
 
     class ReadOnly(kind):  # type: ignore[misc, valid-type]
         def check_access(self, hostname: str, username: str) -> AccessRights:
             return AccessRights.READ
 
     about: dict[str, Any] = {"value": _plain(value)}
-    if not isinstance(value.value, str):
-        about["units"] = value.unit.encode(_TEXT, "replace")[:_UNIT].decode(_TEXT)
-    if isinstance(value.value, float):
+    if not isinstance(value, str):
+        about["units"] = facts.unit.encode(_TEXT, "replace")[:_UNIT].decode(_TEXT)
+    if isinstance(value, float):
         about["precision"] = _DIGITS
-        if math.isfinite(value.full_scale):
-            about |= {"lower_disp_limit": -value.full_scale, "upper_disp_limit": value.full_scale}
+        if math.isfinite(facts.full_scale):
+            about |= {"lower_disp_limit": -facts.full_scale, "upper_disp_limit": facts.full_scale}
     return ReadOnly(**about)
 
 
-def _plain(value: LiveValue) -> float | int | str:
-    if not isinstance(value.value, str):
-        return value.value
-    return value.value.encode(_TEXT, "replace")[:_LONGEST].decode(_TEXT)
+def _plain(value: float | int | str) -> float | int | str:
+    if not isinstance(value, str):
+        return value
+    return value.encode(_TEXT, "replace")[:_LONGEST].decode(_TEXT)

@@ -2,16 +2,17 @@
 
 import asyncio
 import json
+import math
 import ssl
 from contextlib import suppress
 from dataclasses import asdict
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from pmm.console.encoding import number
 from pmm.console.live.live_settings import BrokerSettings
 from pmm.console.live.outlet import NotCarriedError, Outlet
-from pmm.console.live.values import Alarm, Tick
+from pmm.console.live.values import Alarm, Tick, ValueFacts
 
 if TYPE_CHECKING:
     from aiomqtt import Client
@@ -22,8 +23,10 @@ MOST_WAITING: Final = 1500
 _TOGETHER: Final = 50
 _AT_LEAST_ONCE: Final = 1
 _PATIENCE_S: Final = 5.0  # for an answer of the broker
+_LOOKS: Final = 10  # whether it is over, in that time: a timer for each tick costs a tenth of all
 _STATUS_S: Final = 1.0
 _ALARMS: Final = {alarm: alarm.name.lower() for alarm in Alarm}
+_Sent: TypeAlias = tuple[Tick, float]  # and when, by the event loop's clock
 _ENCODER: Final = json.JSONEncoder(allow_nan=False, ensure_ascii=False, separators=(",", ":"))
 
 
@@ -35,7 +38,7 @@ class MqttOutlet(Outlet):
     def __init__(self, broker: BrokerSettings, most: int = MOST_WAITING) -> None:
         super().__init__(most)
         self._broker = broker
-        self._units: dict[str, str] = {}
+        self._told: dict[str, ValueFacts] = {}  # whose units the broker has
         self._secure = _secure(broker) if broker.tls else None
 
     async def _carry(self) -> None:
@@ -59,10 +62,10 @@ class MqttOutlet(Outlet):
         try:
             async with client:
                 self._note_connected()
-                self._units = {}
-                turn, sent = asyncio.Lock(), dict[int, Tick]()
+                self._told = {}
+                turn, sent = asyncio.Lock(), dict[int, _Sent]()
                 senders = (self._publish(client, turn, sent) for _ in range(_TOGETHER))
-                work = [self._say(client), self._watch(client), *senders]
+                work = [self._say(client), self._watch(client), _wait_for_answers(sent), *senders]
                 tasks = [asyncio.ensure_future(sender) for sender in work]
                 try:
                     await asyncio.gather(*tasks)
@@ -70,7 +73,7 @@ class MqttOutlet(Outlet):
                     for task in tasks:
                         task.cancel()
                     await asyncio.gather(*tasks, return_exceptions=True)
-                    self._put_back(list(sent.values()))
+                    self._put_back([tick for tick, _ in sent.values()])
                     with suppress(MqttError):
                         await self._send(client, "status", gone, retain=True)
         except (MqttError, OSError, ValueError) as error:
@@ -81,26 +84,29 @@ class MqttOutlet(Outlet):
                 "itself"
             ) from error
 
-    async def _publish(self, client: "Client", turn: asyncio.Lock, sent: dict[int, Tick]) -> None:
+    async def _publish(self, client: "Client", turn: asyncio.Lock, sent: dict[int, _Sent]) -> None:
         """Send a tick, wait until it is confirmed, send the next; several do, and take turns.
 
         Each confirmation lets a tick go, and so the network has something to carry back at once:
         where many wait for the last of them, a broker's confirmations wait for us as well.
         """
+        clock = asyncio.get_running_loop().time
         while True:
             async with turn:  # ticks go in their order, and units before them
                 tick = await self._next_tick()
-                sent[id(tick)] = tick
+                sent[id(tick)] = tick, clock()
                 await self._tell_units(client, tick)
-            await self._send(client, "live", message(tick))
+            # _wait_for_answers has the patience for all that are on their way.
+            text, topic = message(tick), self._topic("live")
+            await client.publish(topic, text, _AT_LEAST_ONCE, timeout=math.inf)
             del sent[id(tick)]
             self._count_carried()
 
     async def _tell_units(self, client: "Client", tick: Tick) -> None:
-        units = {name: value.unit for name, value in tick.values.items()}
-        if units != self._units:
+        if tick.facts is not self._told:
+            units = {name: facts.unit for name, facts in tick.facts.items()}
             await self._send(client, "units", json.dumps(units, ensure_ascii=False), retain=True)
-            self._units = units
+            self._told = tick.facts
 
     async def _say(self, client: "Client") -> None:
         """Publish the status once a second, where it has changed."""
@@ -124,20 +130,28 @@ class MqttOutlet(Outlet):
         return f"{self._broker.prefix}/{name}"
 
 
+async def _wait_for_answers(sent: dict[int, _Sent]) -> None:
+    """Look now and then whether the tick that was sent first has waited too long.
+
+    Raises
+    ------
+    TimeoutError
+        If it has.
+    """
+    clock = asyncio.get_running_loop().time
+    while True:
+        await asyncio.sleep(_PATIENCE_S / _LOOKS)
+        _, sent_s = next(iter(sent.values()), (None, clock()))
+        if clock() - sent_s > _PATIENCE_S:
+            raise TimeoutError("a tick is not confirmed")
+
+
 def message(tick: Tick) -> str:
     """Return a tick as JSON; what is not known is ``null``."""
-    values, alarms = {}, {}
-    for name, value in tick.values.items():
-        values[name] = _plain(value.value)
-        if value.severity is not Alarm.FINE:
-            alarms[name] = _ALARMS[value.severity]
+    values = {k: number(v) if isinstance(v, float) else v for k, v in tick.values.items()}
+    alarms = {name: _ALARMS[alarm] for name, alarm in tick.alarms.items()}
     utc = datetime.fromtimestamp(tick.utc_s, UTC).isoformat(timespec="milliseconds")
-    content = {"n": tick.number, "utc": utc, "values": values, "alarms": alarms}
-    return _ENCODER.encode(content)
-
-
-def _plain(value: float | int | str) -> Any:
-    return number(value) if isinstance(value, float) else value
+    return _ENCODER.encode({"n": tick.number, "utc": utc, "values": values, "alarms": alarms})
 
 
 def _secure(broker: BrokerSettings) -> ssl.SSLContext:

@@ -3,8 +3,10 @@
 import asyncio
 import hashlib
 import json
+import math
 from base64 import b64encode
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,10 +15,10 @@ import pmm
 from hardware.description.errors import ConfigurationError
 from pmm.console.live import live_settings as settings_module
 from pmm.console.live.live_settings import OutletSettings, live_settings
-from pmm.console.live.mqtt import MqttOutlet
+from pmm.console.live.mqtt import MqttOutlet, message
 from pmm.console.live.outlet import OutletStatus
 from pmm.console.live.process import Publishing
-from pmm.console.live.values import LiveTable
+from pmm.console.live.values import Alarm, LiveTable
 from pmm.run.states import State
 from tests.pmm.console import certificates
 from tests.pmm.console.chromium import console, rig_in
@@ -167,13 +169,30 @@ def test_a_broker_with_tls_and_a_password_is_reached(tmp_path: Path) -> None:
 
 def test_silence_of_the_loop_makes_all_values_invalid(tmp_path: Path) -> None:
     unknown = TABLE.tick(frame(1), 0.0).unknown()
-    assert {one.severity.name for one in unknown.values.values()} == {"INVALID"}
+    assert unknown.alarms == dict.fromkeys(unknown.values, Alarm.INVALID)
 
 
 def test_alarms_are_of_the_state_the_bus_and_the_gauge() -> None:
-    fault = TABLE.tick(frame(1, state=State.FAULT, force_n=-500.5), 0.0).values
-    assert (fault["state"].severity, fault["force_aft"].severity) == (2, 2)
-    assert fault["moment__fore"].severity == 0  # nobody knows what it bears
+    alarms = TABLE.tick(frame(1, state=State.FAULT, force_n=-500.5), 0.0).alarms
+    assert (alarms["state"], alarms["force_aft"]) == (Alarm.MAJOR, Alarm.MAJOR)
+    assert "moment__fore" not in alarms  # nobody knows what it bears
+
+
+def test_a_number_that_is_not_finite_is_unknown_whatever_else_is_wrong_with_it() -> None:
+    tick = TABLE.tick(replace(frame(1, force_n=math.inf), shaft_hz=-math.inf), 0.0)
+    told = json.loads(message(tick))
+    for name in ("force_aft", "shaft"):
+        assert (told["values"][name], told["alarms"][name]) == (None, "invalid")
+
+
+def test_units_are_made_anew_only_where_axes_come_or_go() -> None:
+    table = LiveTable(HELLO)
+    first, second = (table.tick(frame(number), 0.0) for number in (1, 2))
+    assert second.facts is first.facts
+    more = replace(frame(3), axes=(*frame(3).axes, ("drift angle", "rad", 0.1)))
+    third = table.tick(more, 0.0)
+    assert set(third.facts) == set(third.values) == {*first.values, "drift_angle"}
+    assert third.facts["drift_angle"].unit == "rad"
 
 
 @pytest.mark.parametrize(
