@@ -51,6 +51,7 @@ def test_a_rod_and_friction_are_found_on_a_rig_whose_coupling_is_far_off(
     assert friction.friction_n == pytest.approx(0.3, rel=0.03)
 
 
+@pytest.mark.slow
 def test_friction_is_found_in_the_form_that_it_has(rig: SimulatedRig) -> None:
     """It turns over 0.1 mm; as the form that is held it would be taken for Stribeck's."""
     runs = record(rig, [build("coulomb-friction:friction_n=4,presliding_m=1e-4")], 72)

@@ -75,7 +75,7 @@ def test_a_drive_is_looked_at_where_the_struts_deviate(rig: SimulatedRig) -> Non
     assert worth_a_look(find("load-ripple"), seen)
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(("said", "shows"), [("speed-ripple", True), ("connecting-rod", False)])
 def test_backlash_is_looked_at_where_the_shaft_turns_unevenly(
     said: str, shows: bool, rig: SimulatedRig
@@ -122,7 +122,7 @@ def test_a_clearance_is_looked_at_between_teeth_that_the_load_hardly_bends() -> 
     assert one.fixed_values["stiffness_n_m_rad"] > 1e6
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["coulomb-friction", "viscous-guides", "strut-phase-error"])
 def test_a_rough_slope_is_near_the_slope(
     name: str, rig: SimulatedRig, clean: tuple[GapRun, ...]

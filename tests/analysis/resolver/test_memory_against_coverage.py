@@ -57,7 +57,7 @@ def noise(kind: str, periods: int) -> FloatArray:
     return np.asarray(wave + 0.2 * rng.standard_normal(shape))
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("periods", [10, 20])
 @pytest.mark.parametrize(("kind", "part"), [("slow", 0), ("beside", 1), ("dying", 1)])
 def test_intervals_hold_where_the_noise_remembers(kind: str, part: int, periods: int) -> None:

@@ -51,7 +51,7 @@ def test_without_drift_the_bound_is_reached(periods: int, opening: float) -> Non
     assert ratio == pytest.approx(np.ones(2 * HARMONICS + 1), rel=0.05)
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("periods", [2, 3, 5, 10])
 def test_drift_costs_what_the_closed_form_says(periods: int) -> None:
     """Gate opened at theta = 0, s^2 = 1, P samples a period.

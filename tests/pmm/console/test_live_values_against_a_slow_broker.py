@@ -150,7 +150,7 @@ def test_lines_run_for_a_tick_do_not_grow_with_those_that_wait(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(mqtt, "_PATIENCE_S", 60.0)  # a traced line takes longer
-    few, many = _lines_a_tick(150), _lines_a_tick(1500)
+    few, many = _lines_a_tick(100), _lines_a_tick(800)
     assert many <= 1.1 * few
 
 

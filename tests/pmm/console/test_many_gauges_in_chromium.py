@@ -7,11 +7,10 @@ import pytest
 from benchmarks.console_source import CHANNELS, Source
 from tests.pmm.console.chromium import Browser, needed
 
-pytestmark = needed
+pytestmark = [needed, pytest.mark.slow]
 GAUGES = [f"force_{k:02d}" for k in range(CHANNELS)]
 
 
-@pytest.mark.sample(1)
 @pytest.mark.parametrize(("width", "height"), [(1400, 900), (390, 844)])
 def test_all_gauges_fit_and_any_can_be_seen_large(
     tmp_path: Path, chromium: Browser, width: int, height: int

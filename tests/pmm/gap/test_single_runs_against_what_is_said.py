@@ -1,7 +1,7 @@
 """A run that alone is off, or of which a part was lost, is said by name."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +19,17 @@ FREQUENCY_HZ = 0.8
 
 @pytest.fixture(scope="module")
 def clean(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("clean")
-    text = short().replace("periods = 6", f"periods = {PERIODS}")
+    return _simulated(tmp_path_factory.mktemp("clean"), RUNS)
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The campaign without any other run."""
+    return _simulated(tmp_path_factory.mktemp("alone"), (ODD,))
+
+
+def _simulated(folder: Path, names: Sequence[str]) -> Path:
+    text = short(names).replace("periods = 6", f"periods = {PERIODS}")
     (folder / "short.toml").write_text(text)
     done = run("simulate", folder / "short.toml", "--output", folder / "rig")
     assert done.exit_code == 0, done.output
@@ -118,32 +127,32 @@ def cut_short(rig: Path, folder: Path, value: float, *periods: int, **how: Any) 
 
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(("period", "left"), [(1, 8), (4, 5), (6, 6), (9, 9)])
-def test_one_missing_sample(clean: Path, tmp_path: Path, period: int, left: int) -> None:
+def test_one_missing_sample(alone: Path, tmp_path: Path, period: int, left: int) -> None:
     """The longer part before or after the period that has it is used."""
-    said = cut_short(clean, tmp_path, np.nan, period, samples=1, names=["force_aft"])
+    said = cut_short(alone, tmp_path, np.nan, period, samples=1, names=["force_aft"])
     assert said.startswith(f"{left} of its {PERIODS} whole periods used: one sample is missing in ")
     assert "in force_aft, at " in said
 
 
-def test_samples_missing_in_all_channels(clean: Path, tmp_path: Path) -> None:
+def test_samples_missing_in_all_channels(alone: Path, tmp_path: Path) -> None:
     names = ["shaft_angle", "displacement_aft", "displacement_fore", "force_aft", "force_fore"]
-    said = cut_short(clean, tmp_path, np.nan, 4, samples=20, names=names)
+    said = cut_short(alone, tmp_path, np.nan, 4, samples=20, names=names)
     assert said.startswith("5 of its 10 whole periods used: 20 samples are missing in all channels")
 
 
-def test_a_spike(clean: Path, tmp_path: Path) -> None:
-    said = cut_short(clean, tmp_path, 1e4, 4, samples=1, names=["force_fore"])
+def test_a_spike(alone: Path, tmp_path: Path) -> None:
+    said = cut_short(alone, tmp_path, 1e4, 4, samples=1, names=["force_fore"])
     assert said == ""  # it is taken out, and no period is lost
 
 
-def test_no_three_periods_in_a_row(clean: Path, tmp_path: Path) -> None:
+def test_no_three_periods_in_a_row(alone: Path, tmp_path: Path) -> None:
     """Those that are whole are used, though they do not follow each other."""
-    said = cut_short(clean, tmp_path, np.nan, 2, 5, 8, samples=20, names=["force_aft"])
+    said = cut_short(alone, tmp_path, np.nan, 2, 5, 8, samples=20, names=["force_aft"])
     assert said.startswith("7 of its 10 whole periods used: 60 samples are missing in ")
 
 
-def test_a_period_that_settles_is_nothing_to_say(clean: Path, tmp_path: Path) -> None:
-    assert cut_short(clean, tmp_path, 1e4, 0, samples=1, names=["force_aft"]) == ""
+def test_a_period_that_settles_is_nothing_to_say(alone: Path, tmp_path: Path) -> None:
+    assert cut_short(alone, tmp_path, 1e4, 0, samples=1, names=["force_aft"]) == ""
 
 
 @pytest.mark.slow

@@ -41,7 +41,7 @@ COMMANDS = {
 }
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("size_bytes", [0, 200])
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_full_disk_is_a_sentence_with_its_file_and_leaves_no_half_of_one(
