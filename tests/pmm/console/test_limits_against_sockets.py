@@ -10,8 +10,6 @@ from pathlib import Path
 import pytest
 from starlette.testclient import WebSocketTestSession
 from starlette.websockets import WebSocketDisconnect
-from websockets.exceptions import ConnectionClosed
-from websockets.sync.client import ClientConnection, connect
 
 from pmm.console import limits
 from pmm.console.limits import MOST_HALF_SENT, MOST_STREAMS, REQUEST_S, YOUNG_S
@@ -30,34 +28,29 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Address]:
         yield address_of(one.address)
 
 
-def _stream(address: Address, session: str) -> ClientConnection:
-    return connect(
-        f"ws://{address.name}/stream?session={session}",
-        origin=f"http://{address.name}",  # type: ignore[arg-type]
-        max_size=None,
-        compression=None,
-        open_timeout=60.0,
-    )
-
-
-def _farewell(stream: ClientConnection) -> tuple[int, str]:
-    """Read to the end; return the code and the reason of the close."""
-    with suppress(ConnectionClosed):
-        while True:
-            stream.recv(timeout=60.0)
-    return stream.close_code or 0, stream.close_reason or ""
+def _read_to_the_end(stream: WebSocketTestSession) -> None:
+    while True:
+        stream.receive_json()
 
 
 @pytest.mark.parametrize("message", [b"\x00\xff", "start"])
 def test_a_message_on_the_stream_is_refused_with_a_sentence(
-    address: Address, message: bytes | str
+    tmp_path: Path, message: bytes | str
 ) -> None:
-    with _stream(address, SESSION) as stream:
-        stream.send(message)
-        code, reason = _farewell(stream)
-    assert (code, reason) == (1003, "nothing is taken on this stream; commands are posted")
-    with _stream(address, SESSION) as stream:
-        assert '"type":"snapshot"' in str(stream.recv(timeout=60.0))
+    with served(tmp_path) as one:
+
+        def stream() -> WebSocketTestSession:
+            path = f"{one.stream}?session={SESSION}"
+            return one.browser.websocket_connect(path, headers={"origin": OWN})
+
+        with stream() as first:
+            (first.send_text if isinstance(message, str) else first.send_bytes)(message)
+            with pytest.raises(WebSocketDisconnect) as refused:
+                _read_to_the_end(first)
+        assert refused.value.code == 1003
+        assert refused.value.reason == "nothing is taken on this stream; commands are posted"
+        with stream() as second:
+            assert second.receive_json()["type"] == "snapshot"
 
 
 @pytest.mark.slow

@@ -70,7 +70,7 @@ def remote(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Remote]:
     token = folder / "token"
     token.write_text(TOKEN)
     options = ("--host", HOST, "--token-file", str(token))
-    options += ("--certificate", str(certificate), "--key", str(key), "--speed", "6")
+    options += ("--certificate", str(certificate), "--key", str(key))
     with console(rig_in(folder / "rig"), folder / "out", *options) as one:
         yield Remote(one.address, ssl.create_default_context(cafile=str(certificate)))
 
