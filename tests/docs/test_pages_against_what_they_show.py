@@ -129,7 +129,7 @@ def _run_here() -> list[Block]:
     return run
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("block", [one for one in _run_here() if " gap " not in one.text], ids=str)
 def test_commands_run(block: Block, place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(place)

@@ -49,6 +49,7 @@ def integrate(rates: Any, start: list[float], count: int) -> FloatArray:
     return found
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("loop", [SpeedLoop(), SpeedLoop(40.0, 200.0)], ids=["open", "closed"])
 def test_shunt_motor_that_feels_the_model(loop: SpeedLoop) -> None:
     """Armature, gear and crank with a heaving model: (J + M y'^2) th'' = K i - load."""

@@ -74,7 +74,7 @@ def test_whole_periods_cover(kind: str, periods: int) -> None:
     check(kind, coverage(resolve(run, sums[:periods])))
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("periods", [5, 10, 30])
 @pytest.mark.parametrize("kind", NOISES)
 def test_hann_taper_covers(kind: str, periods: int) -> None:

@@ -219,6 +219,7 @@ def test_coefficients_have_the_rudders_derivatives(tows: Path) -> None:
     assert rows["X_dd"]["value"] == pytest.approx(bend / (4.0 * step), rel=0.1)
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("channel", "of", "said"),
     [
