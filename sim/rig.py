@@ -21,6 +21,7 @@ from sim.drive.loaded_drive import LoadedDrive
 from sim.drive.prescribed_drive import ConstantSpeedDrive, DriveSettings
 from sim.gauges.dynamometer import Dynamometer, Dynamometers
 from sim.mechanism.command import StrutCommand
+from sim.mechanism.geometry import AT_REST
 from sim.mechanism.linkage import Mechanism, Setting
 from sim.model.attitude import PositionSensors, Squat
 from sim.model.heel import Heeling
@@ -140,12 +141,18 @@ class SimulatedRig:
                 self.drive,
                 self.drive.motor,
                 reflected_inertia(hull.system.mass, set_point),
+                self.tared_n(hull),
             )
             stages = (carriage, Coupled(loaded, mechanism, hull))
         commands = self._command_stages(mechanism, set_point.frequency_hz)
         behind = (*commands, *self._sensed(hull), self.dynamometers, self.acquisition)
         pulses = () if self.photocell is None else (self.photocell,)
         return (*stages, *behind, *pulses)
+
+    def tared_n(self, hull: Hull) -> tuple[float, float]:
+        """Return what the struts hold at rest, aft and fore, in N: gauges are tared of it."""
+        aft_n, fore_n = hull.system.numbers[AT_REST, :2].tolist()
+        return aft_n, fore_n
 
     def _command_stages(
         self, mechanism: Mechanism, frequency_hz: float

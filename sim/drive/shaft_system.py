@@ -23,6 +23,8 @@ class ShaftSystem:
         Of the model at the shaft, solved as part of it.
     gap
         Stiffness and half clearance of the gear, or zeros.
+    tared_n
+        What each strut holds at rest beside what its gauge reads.
     """
 
     settings: DriveSettings
@@ -32,6 +34,7 @@ class ShaftSystem:
     friction: tuple[float, float]
     cogging: tuple[tuple[float, float, float], ...]
     gap: tuple[float, float]
+    tared_n: tuple[float, float]
 
 
 class MarchedShaft(NamedTuple):
@@ -60,7 +63,7 @@ class MarchedShaft(NamedTuple):
         Filled in: angle, speed, acceleration and both levers, ``(samples, 5)``.
     numbers
         Inertia of the model as far as it is solved as the shaft's; viscous and Coulomb friction of
-        each strut's guides.
+        each strut's guides; what each strut holds at rest.
     cogging
         Order, torque and phase, one a row.
     gap

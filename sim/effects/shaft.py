@@ -11,6 +11,7 @@ import numpy as np
 from hardware.description.motor import ShuntMotor, SpeedLoop
 from sim.effects.effect import Signature
 from sim.effects.situation import Situation
+from sim.mechanism.geometry import AT_REST
 
 if TYPE_CHECKING:
     from hardware.description.arrays import ComplexArray
@@ -115,18 +116,22 @@ class Yielding:
 
 
 def nominal_torque(situation: Situation) -> tuple[float, dict[int, complex]]:
-    """Return the load of the nominal rig at the shaft: its mean, and X by even order.
+    """Return the load of the nominal rig at the shaft: its mean, and X by order.
 
-    The sum of F dy/dth over the struts, of first harmonics, and the friction of their guides,
-    ``F_c |dy/dth|`` and ``b w (dy/dth)^2``; ``|cos u|`` is ``2/pi`` and the sum of
-    ``(4/pi) (-1)^(k+1)/(4 k^2 - 1) cos(2 k u)``.
+    The sum of F dy/dth over the struts, of first harmonics and of what they hold at rest, and the
+    friction of their guides, ``F_c |dy/dth|`` and ``b w (dy/dth)^2``; ``|cos u|`` is ``2/pi`` and
+    the sum of ``(4/pi) (-1)^(k+1)/(4 k^2 - 1) cos(2 k u)``.
     """
     guides = situation.rig.drive.guides
     lever = 1j * situation.displacement()
     force = situation.force() + guides.viscous_n_s_m * situation.omega * lever
     rubbing = guides.coulomb_n * np.abs(lever)
     mean = float((force * lever.conj()).real.sum()) / 2.0 + 2.0 / math.pi * float(rubbing.sum())
-    waves = {2: -complex((force * lever).sum()) / 2.0}
+    tared_n = situation.system.numbers[AT_REST, :2]
+    waves = {
+        1: complex(tared_n @ situation.displacement()),
+        2: -complex((force * lever).sum()) / 2.0,
+    }
     for order in range(2, HIGHEST + 1, 2) if guides.coulomb_n else ():
         size = (4.0 / math.pi) * (-1) ** (order // 2 + 1) / (order**2 - 1)
         wave = size * complex((rubbing * situation.turn**order).sum())

@@ -77,7 +77,8 @@ def _shaft_torque(
     total = 0.0
     for i in range(2):
         lever = work[2, 3 + i]
-        total += (work[1, 6 + i] + room[0, i]) * lever + numbers[1] * lever**2 * speed
+        force = work[1, 6 + i] + room[0, i] + numbers[3 + i]
+        total += force * lever + numbers[1] * lever**2 * speed
         turns = lever * speed
         if turns != 0.0:
             total += math.copysign(numbers[2], turns) * lever

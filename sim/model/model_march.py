@@ -147,6 +147,6 @@ def _undriven() -> tuple[MarchedShaft, FloatArray]:
     """Return a shaft that drives nothing, and its linkages."""
     flat, deep = np.zeros((0, 0)), np.zeros((0, 0, 0))
     shaft = MarchedShaft(
-        False, flat, deep, flat, flat, flat, flat, flat, flat, flat, np.zeros(4), flat, np.zeros(3)
+        False, flat, deep, flat, flat, flat, flat, flat, flat, flat, np.zeros(5), flat, np.zeros(3)
     )  # fmt: skip
     return shaft, np.zeros((2, 5))

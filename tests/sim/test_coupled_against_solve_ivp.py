@@ -12,7 +12,7 @@ from hardware.description.arrangement import Gauges
 from hardware.description.arrays import FloatArray
 from hardware.description.motor import Servo, ShuntMotor, SpeedLoop
 from hardware.description.oscillator import Plane
-from hardware.description.setpoint import SetPoint
+from hardware.description.setpoint import Medium, SetPoint
 from sim.drive.motor import droop
 from sim.drive.prescribed_drive import DriveSettings
 from sim.model.friction import Coulomb
@@ -51,9 +51,16 @@ def integrate(rates: Any, start: list[float], count: int) -> FloatArray:
 
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("loop", [SpeedLoop(), SpeedLoop(40.0, 200.0)], ids=["open", "closed"])
-def test_shunt_motor_that_feels_the_model(loop: SpeedLoop) -> None:
-    """Armature, gear and crank with a heaving model: (J + M y'^2) th'' = K i - load."""
-    motor = ShuntMotor(loop=loop)
+@pytest.mark.parametrize("medium", list(Medium))
+def test_shunt_motor_that_feels_the_model(loop: SpeedLoop, medium: Medium) -> None:
+    """Armature, gear and crank with a heaving model: (J + M y'^2) th'' = K i - load.
+
+    In air the struts hold its weight, of which the gauges are tared, and the shaft lifts it.
+    """
+    motor, in_water = ShuntMotor(loop=loop), medium is Medium.WATER
+    mass = MASS if in_water else RIG.body.mass_kg
+    damping, stiffness = (DAMPING, STIFFNESS) if in_water else (0.0, 0.0)
+    weight_n = 0.0 if in_water else 9.80665 * RIG.body.mass_kg
     rig = replace(RIG, drive=DriveSettings(start_ramp_s=1.5, motor=motor))
     omega, ramp, e = 2.0 * math.pi, 1.5, HEAVE.eccentricity_m
     constant, inertia = motor.constant_v_s * motor.gear_ratio, motor.shaft_inertia_kg_m2
@@ -64,15 +71,16 @@ def test_shunt_motor_that_feels_the_model(loop: SpeedLoop) -> None:
         told_speed = omega * u**3 * (10.0 + u * (6.0 * u - 15.0))
         told = -math.pi + omega * (ramp * u**4 * (2.5 + u * (u - 3.0)) + max(t - ramp, 0.0))
         lever, bend = e * math.cos(angle), -e * math.sin(angle)
-        force = MASS * bend * speed**2 + DAMPING * lever * speed + STIFFNESS * e * math.sin(angle)
+        force = mass * bend * speed**2 + damping * lever * speed + stiffness * e * math.sin(angle)
+        force -= weight_n
         voltage = constant * told_speed
         voltage -= loop.proportional * (speed - told_speed) + loop.integral * (angle - told)
-        turn = (constant * current - force * lever) / (inertia + MASS * lever**2)
+        turn = (constant * current - force * lever) / (inertia + mass * lever**2)
         rise = (voltage - motor.resistance_ohm * current - constant * speed) / motor.inductance_h
         return [speed, turn, rise]
 
     expected = integrate(rates, [-math.pi, 0.0, 0.0], 1000)
-    found = run(rig, HEAVE, 1000)
+    found = run(rig, replace(HEAVE, medium=medium), 1000)
     deviation = np.abs(expected[0] - found["shaft_angle"]).max()
     told = RIG.drive.__class__(start_ramp_s=1.5).commanded(1.0, np.arange(1000) / RATE).angle
     assert np.abs(expected[0] - told).max() > 3e-4  # there is something to see

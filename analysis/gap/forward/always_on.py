@@ -4,7 +4,7 @@ Each is at the size of its tolerance; what is beyond it is named as out of toler
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Final
 
 import numpy as np
@@ -43,17 +43,16 @@ def always_on(simulator: Simulator, base: FloatArray, tolerances: Tolerances) ->
     """
     ripples = {1: tolerances.ripple_1_relative, 2: tolerances.ripple_2_relative}
     load = tolerances.load_ripple_1_kg_m2 if simulator.rig.drive.motor is None else 0.0
-    twice: dict[str, FloatArray] = {}
+    of_one: dict[tuple[int, str], FloatArray] = {}
     for order, relative in ripples.items():
         for phase, angle_rad in _PHASES.items():
-            wanted = relative or (load if order == 2 else 0.0)
-            if wanted > 0.0:
+            if (wanted := relative or load) > 0.0:
                 ripple = SpeedRippleEffect(_STEP * wanted, float(order), angle_rad)
                 column = _change(simulator, base, ripple)
-                twice |= {phase: column / wanted} if order == 2 else {}
+                of_one[order, phase] = column / wanted
                 yield from [(f"ripple {order} {phase}", column)] if relative else ()
     if load > 0.0:
-        yield _LOAD, load * _of_load(simulator, twice)
+        yield _LOAD, load * _of_load(simulator, of_one)
     if tolerances.warming_k_h > 0.0:
         warming = Temperature(rate_k_h=_STEP * tolerances.warming_k_h)
         yield "warming", _change(simulator, base, warming)
@@ -69,37 +68,40 @@ def _change(simulator: Simulator, base: FloatArray, effect: Effect) -> FloatArra
     return np.asarray(change, np.float64)
 
 
-def _of_load(simulator: Simulator, twice: dict[str, FloatArray]) -> FloatArray:
+def _of_load(simulator: Simulator, of_one: Mapping[tuple[int, str], FloatArray]) -> FloatArray:
     """Return what a shaft changes on whose inertia of 1 kg m2 the load acts, to first order.
 
-    The load's torque T, twice a revolution, moves it by ``T/(J (2 w)^2)``: a ripple of the second
-    order in each run.
+    The load's torque T, n times a revolution, moves it by ``T/(J (n w)^2)``: a ripple of that order
+    in each run. Once a revolution it lifts what the struts hold at rest.
 
     Parameters
     ----------
-    twice
-        What a ripple of the second order and of 1 changes, by its phase.
+    of_one
+        What a ripple of 1 changes, by its order and phase.
     """
-    stack = simulator.stack
-    ripples = np.array([_ripple(simulator, run) if run.turns else 0j for run in stack.runs])
-    ripple = ripples[stack.run]
-    return np.asarray(twice["sine"] * ripple.real + twice["cosine"] * ripple.imag, np.float64)
+    stack, total = simulator.stack, np.zeros(len(simulator.stack.components))
+    for order in sorted({order for order, _ in of_one}):
+        ripples = [_ripple(simulator, run, order) if run.turns else 0j for run in stack.runs]
+        ripple = np.array(ripples)[stack.run]
+        total += of_one[order, "sine"] * ripple.real + of_one[order, "cosine"] * ripple.imag
+    return total
 
 
-def _ripple(simulator: Simulator, run: GapRun) -> complex:
+def _ripple(simulator: Simulator, run: GapRun, order: int) -> complex:
     """Return the ripple that a run's load gives a shaft of 1 kg m2: size and phase."""
     state = simulator.state(run, simulator.active_effects)
     period = state.period
     angle_rad = np.arange(period.points) * 2.0 * math.pi / period.points
     turn = np.exp(1j * np.outer(angle_rad, np.arange(period.orders + 1)))
     power = np.zeros(period.points)
-    for force, motion in zip(STRUT_FORCES, signals.STRUT_MOTIONS, strict=True):
+    struts = zip(STRUT_FORCES, signals.STRUT_MOTIONS, simulator.tared_n(run), strict=True)
+    for force, motion, tared_n in struts:
         pair = (state.spectra[force], state.spectra[motion[1].name])
-        power += np.prod([(turn @ spectrum).real for spectrum in pair], axis=0)
+        force_n, velocity = ((turn @ spectrum).real for spectrum in pair)
+        power += (force_n + tared_n) * velocity
     omega = 2.0 * math.pi * period.frequency_hz
-    start = np.exp(-2j * simulator.rig.drive.initial_angle_rad)
-    torque = 2.0 * np.mean(power / omega * np.exp(-2j * angle_rad)) * start
-    return complex(2j * torque / (2.0 * omega) ** 2)
+    torque = 2.0 * np.mean(power / omega * np.exp(-1j * order * angle_rad))
+    return complex(1j * order * torque / (order * omega) ** 2)
 
 
 def _drifts(stack: Stack, drift_n_s: float) -> Named:

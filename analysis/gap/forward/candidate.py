@@ -247,7 +247,8 @@ def is_share(parameter: Parameter) -> bool:
 
 
 def turned_starts(candidate: Candidate) -> Iterator[FloatArray]:
-    """Yield starts a third of a turn to either side, for an effect with a phase."""
+    """Yield the start, and for an effect with a phase those a third of a turn to either side."""
+    yield candidate.start
     for at, axis in enumerate(candidate.axes):
         if is_phase(axis.parameter):
             for turn in (-2.0 * math.pi / 3.0, 2.0 * math.pi / 3.0):

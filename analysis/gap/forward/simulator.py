@@ -9,11 +9,12 @@ noise. What noise does by itself is taken from several draws of it.
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.gap.forward.dead_weight import with_dead_weight
 from analysis.gap.forward.powers import on_noise
 from analysis.gap.forward.stages import Solved
 from analysis.gap.observe.at_rest import record_at_rest, steady_at_rest
@@ -24,11 +25,8 @@ from analysis.resolver.reference_choice import ReferenceChoice
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.channels import FORCES
 from hardware.description.setpoint import SetPoint
-from hardware.description.units import STANDARD_GRAVITY_M_S2
 from sim.effects.effect import Effect
 from sim.effects.switching import switch_on
-from sim.model.law_point import Acting
-from sim.model.laws import Spring
 from sim.periodic import SteadyState
 from sim.rig import SimulatedRig
 from sim.run import edges_of, full_scale, signals_of_run
@@ -152,6 +150,12 @@ class Simulator:
         """Return the steady state of a run that turns, with these effects and no others."""
         return self._state(*self._set(run, effects))
 
+    def tared_n(self, run: GapRun) -> tuple[float, float]:
+        """Return what the struts hold at rest in a run, aft and fore, in N: gauges are tared."""
+        rig, set_point = self._set(run, self._repeating)
+        hull: Any = next(stage for stage in rig.stages(set_point) if stage.name == "hull")
+        return rig.tared_n(hull)
+
     def _state(self, rig: SimulatedRig, set_point: SetPoint) -> SteadyState:
         period = Period(set_point.frequency_hz, ORDERS, POINTS)
         return self.stage_cache.steady_state(rig.stages(set_point), period)
@@ -172,10 +176,10 @@ class Simulator:
             set_point = replace(
                 set_point, frequency_hz=set_point.frequency_hz * self.frequency_ratio
             )
-        return switch_on(*_with_preload(effects, self.rig, run), set_point, run.place)
+        return switch_on(*with_dead_weight(effects, self.rig, run), set_point, run.place)
 
     def _in_time(self, run: GapRun, effects: Sequence[Effect], seed: int) -> FloatArray:
-        acting, believed = _with_preload(effects, self.rig, run)
+        acting, believed = with_dead_weight(effects, self.rig, run)
         rig, set_point = switch_on(acting, believed, run.set_point, run.place)
         if not run.turns:
             observation = record_at_rest(rig, set_point, run, seed + run.place.index)
@@ -206,24 +210,6 @@ def _recorded(rig: SimulatedRig, set_point: SetPoint, run: GapRun, seed: int) ->
     samples = np.array([series[recorded(line.channel).name][skipped:] for line in lines])
     edges_s = edges_of(series, skipped, rate_hz)
     return Recording(run.name, channels, samples, rate_hz, 0.0, edges_s, run.set_point)
-
-
-def _with_preload(
-    effects: Sequence[Effect], rig: SimulatedRig, run: GapRun
-) -> tuple[Sequence[Effect], SimulatedRig]:
-    """Return the rig with a run's dead weight on the model, and the effects that it leaves.
-
-    The weight hangs at the midpoint between the struts, and its mass moves with the model: the
-    moments of the model's own mass and inertia about that point stay as they are.
-    """
-    if not run.preload_n:
-        return effects, rig
-    weight = Acting(Spring(preload_n=run.preload_n))
-    remaining_effects = [effect for effect in effects if not effect.taken_up]
-    body, mass_kg = rig.body, rig.body.mass_kg + run.preload_n / STANDARD_GRAVITY_M_S2
-    share = body.mass_kg / mass_kg
-    heavier = replace(body, mass_kg=mass_kg, cg_x_m=share * body.cg_x_m, cg_z_m=share * body.cg_z_m)
-    return remaining_effects, replace(rig, body=heavier, forces=(*rig.forces, weight))
 
 
 def _drifted(rig: SimulatedRig, measured: Observation, later_s: float) -> FloatArray | float:

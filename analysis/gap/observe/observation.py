@@ -16,6 +16,7 @@ from analysis.gap.observe.bands import band, free_of_harmonics
 from analysis.gap.observe.components import TRENDS, Component, Observation, Part
 from analysis.gap.observe.phase import choose_phase
 from analysis.gap.observe.plateau import Plateau, plateau, steps_of
+from analysis.gap.observe.pulses import scatter_of_pulses
 from analysis.gap.observe.shaft_angle import turns_per_period, unwrapped
 from analysis.gap.observe.spectrum import Lines, quiet_lines, repeating
 from analysis.recording import Recording
@@ -225,11 +226,8 @@ def _scatter(analysis: Analysis, moving: Moving, *, timed: bool) -> Found:
     freedom = max(sums.period_count - 2, 1)
     sure = float(np.sqrt(0.5 / freedom))
     if timed:
-        intervals = sums.closed_s - sums.opened_s
-        spread = float(np.std(intervals, ddof=1) / np.mean(intervals))
-        # Neighbours share a pulse: their spread is known as if by two thirds of their number.
-        uncertainty = sure * np.sqrt(1.5)
-        yield Component("", Part.PERIOD_SCATTER), float(np.log(spread + 1e-7)), float(uncertainty)
+        pulses_s = np.append(sums.opened_s, sums.closed_s[-1])
+        yield Component("", Part.PERIOD_SCATTER), *scatter_of_pulses(pulses_s)
     solved = solve_periods(sums).coefficients
     for row, name in enumerate(sums.channel_names):
         if name in FORCES and name in moving:

@@ -100,7 +100,7 @@ def weigh(
     looks = [look for look in looked if look.fit and look.visible >= HIDDEN]
     singles = fit_leading(problem, looks, none, engine)
     pairs = fit_pairs(problem, singles, looks, none, engine) if most > 1 else []
-    partners = [*(look.fit for look in looks if look.fit is not None), *singles]
+    partners = [*(fit for look in looks for fit in look.fits), *singles]
     triples = widened(problem, pairs, partners, engine) if most > 2 else []
     progress("weighing")
     beside = background(problem, looked)

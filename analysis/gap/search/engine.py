@@ -10,7 +10,6 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Final, TypeVar
 
-from analysis.gap.forward.candidate import turned_starts
 from analysis.gap.forward.problem import ComparedProblem, Problem
 from analysis.gap.search.first_look import FirstLook, look
 from analysis.gap.search.fit import Fit, expected_evidence, joined, linearised_at, most_probable
@@ -82,7 +81,7 @@ def fit_leading(
         if look.fit is not None
         and (number < _LEAST or look.expected > none + _least(look.fit, ranked[0].expected - none))
     ]
-    fits = engine.each("fitting the best", _refined, problem, leaders)
+    fits = engine.each("fitting the best", refine, problem, leaders)
     return sorted(fits, key=lambda fit: -fit.log_evidence)
 
 
@@ -100,7 +99,7 @@ def fit_pairs(
     to do better than one effect. An effect is tried from where it was first seen and from where it
     was fitted: alone, it may have gone astray after what its partner does.
     """
-    partners = [*(look.fit for look in looks if look.fit is not None), *singles]
+    partners = [*(fit for look in looks for fit in look.fits), *singles]
     least = max([none + _TWICE, *(fit.log_evidence - _WORSE for fit in singles)])
     chances: dict[frozenset[str], _Chance] = {}
     firsts, tried = list(singles[:_STARTS]), set[str]()
@@ -212,17 +211,6 @@ def _least(fit: Fit, most: float) -> float:
 def _refinement_cost(pair: Fit) -> float:
     """Return what a pair has to promise more than others, for what it costs to refine it."""
     return _WORSE + _TWICE if pair.is_costly else 0.0
-
-
-def _refined(problem: ComparedProblem, fit: Fit) -> Fit:
-    """Refine a single effect, from a third of a turn to either side too if it has a phase."""
-    fits = [refine(problem, fit)]
-    for start in turned_starts(fit.candidates[0]):
-        try:
-            fits.append(refine(problem, linearised_at(problem, fit.candidates, start)))
-        except PmmError:
-            continue
-    return max(fits, key=lambda option: option.log_evidence)
 
 
 def _refined_together(problem: ComparedProblem, chance: _Chance) -> Fit:

@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.forward.candidate import STEP, Candidate, candidates
+from analysis.gap.forward.candidate import STEP, Candidate, candidates, turned_starts
 from analysis.gap.forward.powers import scaled_change
 from analysis.gap.forward.problem import ComparedProblem, Problem
 from analysis.gap.inference.gaussian import left_over, misfit, null_evidence
@@ -43,10 +43,13 @@ _SIZES: Final = tuple(float(share) for share in np.geomspace(0.01, 10.0, 25))  #
 
 @dataclass(frozen=True, eq=False)
 class FirstLook:
-    """What a first look at one effect gave: a linearised fit, or why there is none.
+    """What a first look at one effect gave: linearised fits, or why there is none.
 
     Attributes
     ----------
+    fits
+        From each of its starts, the one that explains most first: what an effect does beside
+        another one need not be what it would do alone.
     expected
         Log evidence that the first step promises.
     visible
@@ -55,10 +58,15 @@ class FirstLook:
     """
 
     name: str
-    fit: Fit | None
+    fits: tuple[Fit, ...]
     expected: float = -math.inf
     visible: float = 0.0
     reason: str = ""
+
+    @property
+    def fit(self) -> Fit | None:
+        """The one that explains most by itself."""
+        return self.fits[0] if self.fits else None
 
 
 def look(problem: Problem, kind: type[Effect]) -> FirstLook:
@@ -66,7 +74,8 @@ def look(problem: Problem, kind: type[Effect]) -> FirstLook:
     frequencies = [run.set_point.frequency_hz for run in problem.simulator.stack.turning]
     starts = list(candidates(kind, sorted(set(frequencies))))
     if kind.repeats:
-        return best_look(problem, kind.name, [(candidate, candidate.start) for candidate in starts])
+        begins = [(each, units) for each in starts for units in turned_starts(each)]
+        return best_look(problem, kind.name, begins)
     return _best_of(
         problem, kind.name, [partial(_in_time, problem, candidate) for candidate in starts]
     )
@@ -88,22 +97,37 @@ def best_look(
 
 
 def _best_of(problem: ComparedProblem, name: str, ways: Sequence[Callable[[], Fit]]) -> FirstLook:
-    """Return the look that promises most, of several ways to see an effect."""
-    best, most, reason = None, -math.inf, ""
+    """Return the look that explains most, of several ways to see an effect."""
+    fits, reason = list[Fit](), ""
     for way in ways:
         try:
-            fit = way()
+            fits.append(way())
         except PmmError as error:
             reason = str(error)
-            continue
-        expected = expected_evidence(problem, fit)
-        if best is None or expected > most:
-            best, most = fit, expected
-    if best is None:
-        return FirstLook(name, None, reason=reason)
+    if not fits:
+        return FirstLook(name, (), reason=reason)
+    if len(fits) > 1:
+        fits.sort(key=partial(_after_step, problem), reverse=True)
+    best = fits[0]
     steps = (best.signature, best.columns @ most_probable(best))
     visible = max(left_over(step, problem.nuisances) for step in steps)
-    return FirstLook(name, best, most, visible)
+    return FirstLook(name, tuple(fits), expected_evidence(problem, best), visible)
+
+
+def _after_step(problem: ComparedProblem, fit: Fit) -> float:
+    """Return the log evidence that one step from a look leads to.
+
+    Of sizes alone a straight line tells it. Of another parameter that line goes on through zero to
+    the other sign, so that a rod on the wrong side would promise as much as one on the right side:
+    the step is simulated.
+    """
+    if all(axis.is_size for axis in fit.axes):
+        return expected_evidence(problem, fit)
+    try:
+        stepped_fit = moved_fit(problem, fit, most_probable(fit))
+    except PmmError:
+        return fit.log_evidence
+    return max(fit.log_evidence, stepped_fit.log_evidence)
 
 
 def _in_time(problem: Problem, candidate: Candidate) -> Fit:

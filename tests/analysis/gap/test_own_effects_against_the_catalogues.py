@@ -85,10 +85,10 @@ def test_what_is_costly_has_to_promise_more(
     name: str, costs: bool, problem: Problem, tmp_path: Path
 ) -> None:
     leaders = [
-        FirstLook(one, begun(problem, find(one)), 9.0) for one in ("coulomb-friction", "cable")
+        FirstLook(one, (begun(problem, find(one)),), 9.0) for one in ("coulomb-friction", "cable")
     ]
     for kind in both(name, tmp_path):
-        seen = [*leaders, FirstLook(kind.name, begun(problem, kind), 1.0)]
+        seen = [*leaders, FirstLook(kind.name, (begun(problem, kind),), 1.0)]
         names = [one.names for one in fit_leading(problem, seen, 0.0, Engine())]
         assert ((kind.name,) not in names) is costs
 
