@@ -8,7 +8,7 @@ import numpy as np
 from hardware.description.setpoint import SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
 from sim.effects.situation import Situation, at_struts
-from sim.effects.typical import amplitude_m, omega_rad_s
+from sim.effects.typical import omega_rad_s
 from sim.model.force_law import ForceLaw
 from sim.model.friction import Coulomb, RubbingSpring
 from sim.model.law_point import Acting, Point
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from hardware.description.arrays import ComplexArray
 
 STANDS_M: Final = 1e-12
-SLIP_M: Final = 1e-3  # way in which strands begin to slip
+_POINTS: Final = 4096  # of a turn, between whose bends the friction is smooth
 
 
 @dataclass(frozen=True)
@@ -27,9 +27,8 @@ class Cable(Effect):
     """``F_0 + k x + k_2 x^2 + k_3 x^3 + k_h |x| sgn(v)``, x midway between the struts or at each.
 
     Independent of frequency: in phase ``k x + 3 k_3 x^3/4``, in quadrature ``2 k_h x/pi`` from the
-    strands that rub on each other, and ``4 F/pi`` where they slide throughout. What rubs may as
-    well be a viscous sheath, or strands that slip over a millimetre; a cable that hangs slack
-    stiffens with the cube of its way. Those are as large at a typical motion.
+    strands that rub on each other, and up to ``4 F/pi`` from those that slide once they have moved
+    by their slip. What rubs may as well be a viscous sheath, as large at a typical motion.
     """
 
     code = "S7"
@@ -42,7 +41,10 @@ class Cable(Effect):
         1.0, 0.0, 50.0, "N/m", "friction per displacement", one_sign=OneSign.FRICTION
     )
     sliding_n: float = parameter(
-        0.0, 0.0, 20.0, "N", "friction of strands that slide throughout", one_sign=OneSign.FRICTION
+        0.0, 0.0, 20.0, "N", "friction of strands that slide", one_sign=OneSign.FRICTION
+    )
+    slip_m: float = parameter(
+        1e-3, 1e-4, 1e-2, "m", "way in which these begin to slide", one_sign=OneSign.LENGTH
     )
     preload_n: float = parameter(0.0, -20.0, 20.0, "N", "force in the middle position")
     stiffness_n_m2: float = parameter(0.0, -1e3, 1e3, "N/m2", "asymmetry of the stiffness")
@@ -67,24 +69,6 @@ class Cable(Effect):
         one_sign=OneSign.SHARE,
         forms=(1.0,),
     )
-    slip: float = parameter(
-        0.0,
-        0.0,
-        1.0,
-        "1",
-        "share of the rest that slips throughout",
-        one_sign=OneSign.SHARE,
-        forms=(1.0,),
-    )
-    slack: float = parameter(
-        0.0,
-        0.0,
-        1.0,
-        "1",
-        "share of the stiffness that goes with the cube",
-        one_sign=OneSign.SHARE,
-        forms=(0.5,),
-    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the cable between the struts, or on them."""
@@ -94,26 +78,21 @@ class Cable(Effect):
         return replace(rig, forces=(*rig.forces, *added))
 
     def _laws(self, rig: SimulatedRig, share: float) -> tuple[ForceLaw, ...]:
-        taut, slack = (1.0 - self.slack) * self.stiffness_n_m, self.slack * self.stiffness_n_m
-        cubic = slack / (0.75 * amplitude_m(rig) ** 2)
         spring = Spring(
-            share * taut,
+            share * self.stiffness_n_m,
             share * self.stiffness_n_m2,
-            share * (self.stiffness_n_m3 + cubic),
+            share * self.stiffness_n_m3,
             share * self.preload_n,
         )
-        sliding = [Coulomb(share * self.sliding_n)] if self.sliding_n else []
+        sliding = [Coulomb(share * self.sliding_n, 0.0, self.slip_m)] if self.sliding_n else []
         return (spring, *self._rubbing(rig, share * self.rubbing_n_m), *sliding)
 
     def _rubbing(self, rig: SimulatedRig, rubbing_n_m: float) -> list[ForceLaw]:
         """Return what rubs: each part loses as much per cycle, ``2 k_h x^2``."""
         viscous, dry = self.sheath * rubbing_n_m, (1.0 - self.sheath) * rubbing_n_m
-        slips, rubs = self.slip * dry, (1.0 - self.slip) * dry
-        laws: list[ForceLaw] = [RubbingSpring(rubs)] if rubs else []
+        laws: list[ForceLaw] = [RubbingSpring(dry)] if dry else []
         if viscous:
             laws.append(Viscous(viscous * 2.0 / (np.pi * omega_rad_s(rig))))
-        if slips:
-            laws.append(Coulomb(slips * amplitude_m(rig) / 2.0, 0.0, SLIP_M))
         return laws
 
     def signature(self, situation: Situation) -> Signature:
@@ -134,12 +113,25 @@ class Cable(Effect):
         size, rubbing = abs(x), 1j * (2.0 / np.pi) * self.rubbing_n_m * abs(x)
         # Midway between struts in antiphase nothing moves, but for the last digit.
         turn = x / size if size > STANDS_M else 0j
-        sliding = 1j * (4.0 / np.pi) * self.sliding_n
+        sliding = self.sliding_n * slide(size, self.slip_m) if self.sliding_n else np.zeros(6)
         stiffness = self.stiffness_n_m + 0.75 * self.stiffness_n_m3 * size**2
         return {
             0: self.preload_n + self.stiffness_n_m2 * size**2 / 2.0,
-            1: stiffness * x + (rubbing + sliding) * turn,
+            1: stiffness * x + (rubbing + sliding[1]) * turn,
             2: -1j * self.stiffness_n_m2 * x**2 / 2.0,
-            3: -self.stiffness_n_m3 * x**3 / 4.0 - (rubbing + sliding / 3.0) * turn**3,
-            5: (rubbing / 3.0 + sliding / 5.0) * turn**5,
+            3: -self.stiffness_n_m3 * x**3 / 4.0 + (sliding[3] - rubbing) * turn**3,
+            5: (rubbing / 3.0 + sliding[5]) * turn**5,
         }
+
+
+def slide(size_m: float, slip_m: float) -> "ComplexArray":
+    """Return ``S + i C`` by order of bristles of 1 N on ``size_m sin(theta)``, shape ``(6,)``.
+
+    As :func:`sim.model.friction.bristles` has them: ``1 - 2 exp(-v^2/(2 |a| slip))`` behind a turn.
+    """
+    theta = (np.arange(_POINTS) + 0.5) * 2.0 * np.pi / _POINTS
+    sine, cosine = np.sin(theta), np.cos(theta)
+    behind = np.exp(-size_m * cosine**2 / (2.0 * np.abs(sine) * slip_m))
+    force = np.sign(cosine) * (1.0 - 2.0 * behind * (sine * cosine < 0.0))
+    parts: ComplexArray = 2.0 / _POINTS * np.exp(1j * np.outer(np.arange(6), theta)) @ force
+    return 1j * parts.conj()

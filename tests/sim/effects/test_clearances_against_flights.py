@@ -8,15 +8,17 @@ import pytest
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import Medium, SetPoint
 from sim.drive.gear import Gear
+from sim.effects.agreement import simulated_signature
 from sim.effects.d4_gear_backlash import GearBacklash
 from sim.effects.effect import Effect
 from sim.effects.k6_joint_play import JointPlay
 from sim.effects.k6b_free_play import FreePlay
+from sim.effects.situation import Situation
 from sim.effects.switching import switch_on
 from sim.model.water.radiation import Radiation
 from sim.rig import SimulatedRig, vertical_rig
 from sim.run import steady_run
-from tests.sim.effects.against_theory import at_small_angles
+from tests.sim.effects.against_theory import at_small_angles, small_angles
 
 RIG = vertical_rig().ideal()
 HEAVE = SetPoint(1.0, 0.02)
@@ -24,23 +26,35 @@ SET_POINTS = [
     HEAVE,
     SetPoint(0.5, 0.02),
     SetPoint(1.0, 0.03, np.pi),
-    SetPoint(0.7, 0.02, 0.0, 0.0, Medium.AIR),
 ]
+IN_AIR = SetPoint(0.7, 0.02, 0.0, 0.0, Medium.AIR)
 
 
-@pytest.mark.sample(1)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
-    ("effect", "tolerance"),
+    ("effect", "set_points", "tolerance"),
     [
         # Theory has rigid sides. What meets on springs bounces and rings: less of it the stiffer.
-        (FreePlay(), 0.05),
-        (GearBacklash(), 0.13),
-        (FreePlay(1e-5, stiffness_n_m=5e6), 0.015),
-        (GearBacklash(stiffness_n_m_rad=1e5), 0.08),
+        (FreePlay(), [*SET_POINTS, IN_AIR], 0.05),
+        (FreePlay(1e-5, stiffness_n_m=5e6), [*SET_POINTS, IN_AIR], 0.015),
+        (GearBacklash(), SET_POINTS, 0.13),
+        (GearBacklash(stiffness_n_m_rad=1e5), SET_POINTS, 0.08),
     ],
 )
-def test_signature(effect: Effect, tolerance: float) -> None:
-    assert at_small_angles(effect, RIG, SET_POINTS) < tolerance
+def test_signature(effect: Effect, set_points: list[SetPoint], tolerance: float) -> None:
+    assert at_small_angles(effect, RIG, set_points) < tolerance
+
+
+@pytest.mark.parametrize("stiffness_n_m_rad", [1e4, 1e5])
+def test_weight_in_air_turns_the_teeth_over(stiffness_n_m_rad: float) -> None:
+    """Once a turn, with a load so large that what bounces shows in the highest orders only."""
+    rig = small_angles(RIG)
+    effect = GearBacklash(stiffness_n_m_rad=stiffness_n_m_rad)
+    keys = [(f"displacement_{end}", order) for end in ("aft", "fore") for order in range(6)]
+    theory = effect.signature(Situation.of(rig, IN_AIR))
+    simulated = simulated_signature(effect, rig, IN_AIR, keys)
+    apart = [abs(simulated[key] - theory[key]) for key in keys]
+    assert max(apart) < 5e-3 * abs(theory["displacement_aft", 1])
 
 
 def change(effect: Effect, rig: SimulatedRig, set_point: SetPoint, name: str) -> np.ndarray:
@@ -64,9 +78,7 @@ def test_free_play_comes_near_the_describing_function() -> None:
     assert shares[1] == pytest.approx(1.0, abs=0.05)
 
 
-def _situation(set_point: SetPoint):  # type: ignore[no-untyped-def]
-    from sim.effects.situation import Situation
-
+def _situation(set_point: SetPoint) -> Situation:
     return Situation.of(RIG, set_point)
 
 

@@ -33,6 +33,7 @@ CASES = [
     (Cable(), 1e-3),
     (Cable(at_struts=0.6), 1e-3),
     (Cable(sliding_n=0.3), 2e-2),
+    (Cable(sliding_n=3.0, slip_m=4e-3, at_struts=1.0), 1e-4),
     (Cable(preload_n=-3.0, stiffness_n_m2=200.0, stiffness_n_m3=4e3, rubbing_n_m=0.0), 1e-9),
     (MassError(), 1e-8),  # in air the weight's part along a pitching model, and so g theta^2
     (InertiaError(), 1e-9),
