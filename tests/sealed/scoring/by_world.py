@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tests.sealed.scoring.answers import Answer
 from tests.sealed.scoring.board import DIAGNOSIS, Board
 from tests.sealed.scoring.columns import COLUMNS, Entry
-from tests.sealed.scoring.right import by_class, named, stated
+from tests.sealed.scoring.right import by_class, is_stated, named, stated
 from tests.sealed.scoring.score import entries_of, floors_of, score
 
 FloatArray = NDArray[np.float64]
@@ -128,7 +128,8 @@ class Marks:
     values
         What it adds to each column; nothing to those that do not apply to its case.
     stated
-        Probability of the class that it says, and 1 where that is right; ``None`` where it failed.
+        Probability of the class that it says, and 1 where what is there is in it or the key calls
+        what it names right; ``None`` where it failed.
     """
 
     is_clear: bool
@@ -140,7 +141,8 @@ def marks_of(entry: Entry) -> Marks:
     """Return the marks of an answer beside its key."""
     columns = sorted({*_OWN.values(), *PAIRED.values()})
     answer = entry.answer
-    right = float(answer.said in by_class(entry.truth))
+    # What is stated is the probability of a class: it is right if what is there is in it.
+    right = float(answer.said in by_class(entry.truth) or is_stated(answer, entry.truth))
     return Marks(
         not entry.has_gap or entry.truth.snr >= CLEAR_SNR,
         {name: tuple(float(one) for one in _COLUMNS[name].values(entry)) for name in columns},
