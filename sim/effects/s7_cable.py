@@ -44,7 +44,7 @@ class Cable(Effect):
         0.0, 0.0, 20.0, "N", "friction of strands that slide", one_sign=OneSign.FRICTION
     )
     slip_m: float = parameter(
-        1e-3, 1e-4, 1e-2, "m", "way in which these begin to slide", one_sign=OneSign.LENGTH
+        1e-3, 1e-6, 1e-2, "m", "way in which these begin to slide", one_sign=OneSign.LENGTH
     )
     preload_n: float = parameter(0.0, -20.0, 20.0, "N", "force in the middle position")
     stiffness_n_m2: float = parameter(0.0, -1e3, 1e3, "N/m2", "asymmetry of the stiffness")

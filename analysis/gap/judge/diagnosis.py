@@ -158,10 +158,9 @@ def _conclude(
     free: tuple[Free, ...],
     progress: Callable[[str], None],
 ) -> Diagnosis:
-    fits = [look.fit for look in weighed.first_looks if look.fit is not None]
     ranked, calm = weighed.ranked, weighed.answers.best in (NONE, COEFFICIENTS)
     best = None if calm or not ranked else ranked[0]
-    classes = {} if best is None else equivalents(problem, best, fits)
+    classes = {} if best is None else equivalents(problem, best, weighed.singles)
     rival = _rival(best, ranked, classes)
     withheld = settings.withheld or regimes(problem.simulator.stack.runs)
     before = predict_withheld(problem, None, withheld)

@@ -82,8 +82,7 @@ def _marginal(diagnosis: Diagnosis, name: str, fit: Fit) -> Marginal:
     probability = of_any(shares, [name])
     if size < ALIKE:
         return Marginal(name, stage, probability, size, {}, math.nan)
-    looked = [look.fit for look in diagnosis.weighed.first_looks if look.fit is not None]
-    alike = dict(equivalents(diagnosis.problem, fit, looked)[name])
+    alike = dict(equivalents(diagnosis.problem, fit, diagnosis.weighed.singles)[name])
     return Marginal(name, stage, probability, size, alike, of_any(shares, [name, *alike]))
 
 

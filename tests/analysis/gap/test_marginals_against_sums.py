@@ -61,7 +61,7 @@ def test_a_class_is_no_less_than_its_members_and_no_more_than_their_sum(
 
 @pytest.fixture(scope="module")
 def friction(rig: SimulatedRig) -> Diagnosis:
-    runs = record(rig, [build("coulomb-friction:friction_n=0.3")], 91)
+    runs = record(rig, [build("coulomb-friction:friction_n=0.3,presliding_m=1e-4")], 91)
     return diagnose(rig, runs, Settings({name: find(name) for name in KNOWN}))
 
 
