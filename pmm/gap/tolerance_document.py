@@ -7,10 +7,10 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.forward.mains import MAINS_HZ
 from analysis.gap.forward.problem import Problem
 from analysis.gap.judge.diagnosis import problem_of
 from analysis.gap.judge.verdict import coefficient_shift
+from analysis.gap.observe.bands import MAINS_HZ
 from pmm.document.content import Document, Section, Table, Text, number, word
 from pmm.document.notation import written
 from pmm.gap.case import stated_tolerances

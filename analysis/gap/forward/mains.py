@@ -1,4 +1,4 @@
-"""What hum of the mains within its tolerance makes of the strongest line beside the harmonics."""
+"""What hum of the mains within its tolerance makes of the lines that it reaches."""
 
 import math
 from collections.abc import Iterator
@@ -7,14 +7,13 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.observe.bands import expected_highest, free_of_harmonics
+from analysis.gap.observe.bands import MAINS_HZ, expected_highest, folded_hz
 from analysis.gap.observe.components import GapRun, Part, Stack
 from analysis.gap.observe.observation import BANDS
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import FORCES
 
-MAINS_HZ: Final = (50.0, 60.0)
-_NEAR: Final = 1.0 / 3.0  # a line nearer to a harmonic than half a bin goes with its leakage
+_REACHED: Final = 3.0  # lines
 _FAR: Final = 2.0  # tolerances: a line grows with the logarithm of its size, so this is halved
 
 
@@ -35,21 +34,19 @@ def hum_columns(stack: Stack, hum_n: float) -> Iterator[tuple[str, FloatArray]]:
     for channel, mains_hz in product(FORCES, MAINS_HZ):
         column = np.zeros(len(stack.components))
         for at, component in enumerate(stack.components):
-            run = int(stack.run[at])
-            if component.part is Part.LINE and component.channel == channel:
-                count = _lines(stack.runs[run], component.order, mains_hz)
-                middle = loud.get((run, channel, component.order), math.inf)
-                if count:
-                    rise = (1.0 + power / math.exp(middle)) / expected_highest(count)
-                    column[at] = math.log(max(rise, 1.0)) / _FAR
-        yield f"hum {channel.removeprefix('force_')} {mains_hz:g} Hz", column / stack.uncertainty
+            if (component.channel, component.part, component.order) == (
+                channel,
+                Part.MAINS,
+                mains_hz,
+            ):
+                run = int(stack.run[at])
+                middle = loud[run, channel, _band(stack.runs[run], mains_hz)]
+                rise = (1.0 + power / math.exp(middle)) / expected_highest(_REACHED)
+                column[at] = math.log(max(rise, 1.0)) / _FAR
+        yield f"hum {channel.removeprefix('force_')} {mains_hz} Hz", column / stack.uncertainty
 
 
-def _lines(run: GapRun, number: int, mains_hz: float) -> float:
-    """Return how many lines a band has that the mains fold into, beside harmonics; else 0."""
-    low, high = (edge * run.set_point.frequency_hz for edge in BANDS[number])
-    rate_hz, duration_s = run.sample_rate_hz, run.periods / run.set_point.frequency_hz
-    folded = np.array([abs(mains_hz - rate_hz * round(mains_hz / rate_hz))])
-    beside = free_of_harmonics(folded, run.set_point.frequency_hz, _NEAR / duration_s)
-    is_inside = bool(beside[0]) and low < folded[0] < high
-    return (min(high, 0.5 * rate_hz) - low) * duration_s if is_inside else 0.0
+def _band(run: GapRun, mains_hz: float) -> int:
+    """Return the number of the band that the mains fold into."""
+    order = folded_hz(mains_hz, run.sample_rate_hz) / run.set_point.frequency_hz
+    return next(number for number, (low, high) in BANDS.items() if low < order < high)

@@ -27,7 +27,7 @@ _PARTS: Final[Mapping[DeviationTrace, frozenset[Part]]] = {
     DeviationTrace.PULSES: frozenset({Part.PULSES}),
     DeviationTrace.PERIODS: frozenset({Part.PERIOD_SCATTER}),
     DeviationTrace.CYCLES: frozenset({Part.CYCLE_SCATTER}),
-    DeviationTrace.BESIDE: frozenset({Part.BETWEEN, Part.LINE}),
+    DeviationTrace.BESIDE: frozenset({Part.BETWEEN, Part.LINE, Part.MAINS}),
 }
 # What a drive does, these do, and more of it than the forces show.
 _CHANNELS: Final[Mapping[DeviationTrace, frozenset[str]]] = {

@@ -1,6 +1,10 @@
-"""Power between the harmonics, band by band: how loud it is, and whether one line stands out."""
+"""Power between the harmonics, band by band: how loud it is, and whether one line stands out.
 
-from collections.abc import Iterator
+A line where the mains fold to is told apart from any other: a carriage has none there.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import Final
 
 import numpy as np
 
@@ -9,9 +13,11 @@ from hardware.description.arrays import BoolArray, FloatArray
 
 Found = Iterator[tuple[Component, float, float]]
 
-_BESIDE = 1.5  # bins on either side of a harmonic that its own leakage may reach
+MAINS_HZ: Final = (50, 60)
+_BESIDE = 1.5  # bins on either side of a line that its own leakage may reach
 _ABOUT = 51  # lines whose median says how loud it is about one of them
 _FEW_LINES = 12
+_FEWEST_LINES = 2  # where the mains fold to: at least that many of the three that they reach
 _COUNTED = 0.66  # of the lines under a Hann taper that tell something of their own
 
 
@@ -29,8 +35,29 @@ def free_of_harmonics(lines_hz: FloatArray, frequency: float, bin_hz: float) -> 
     return np.asarray(np.abs(lines_hz - nearest) > _BESIDE * bin_hz)
 
 
-def band(name: str, number: int, power: FloatArray) -> Found:
-    """Yield how loud a band of a channel is, and its strongest line; nothing of too few lines.
+def folded_hz(mains_hz: float, rate_hz: float) -> float:
+    """Return at which frequency a line of the mains is seen in samples."""
+    return abs(mains_hz - rate_hz * round(mains_hz / rate_hz))
+
+
+def of_the_mains(lines_hz: FloatArray, rate_hz: float, bin_hz: float) -> dict[int, BoolArray]:
+    """Tell by frequency of the mains which lines it reaches.
+
+    Parameters
+    ----------
+    bin_hz
+        Distance of the lines.
+    """
+    return {
+        mains_hz: np.abs(lines_hz - folded_hz(mains_hz, rate_hz)) < _BESIDE * bin_hz
+        for mains_hz in MAINS_HZ
+    }
+
+
+def band(
+    name: str, number: int, power: FloatArray, mains: Mapping[int, BoolArray] | None = None
+) -> Found:
+    """Yield how loud a band of a channel is, and its strongest lines; nothing of too few lines.
 
     Parameters
     ----------
@@ -38,6 +65,8 @@ def band(name: str, number: int, power: FloatArray) -> Found:
         Of the band.
     power
         Of its lines, shape ``(lines,)``.
+    mains
+        By frequency of the mains, which of them it reaches; those have a component of their own.
     """
     if power.size < _FEW_LINES or not power.any():
         return
@@ -45,14 +74,17 @@ def band(name: str, number: int, power: FloatArray) -> Found:
     count = _COUNTED * power.size
     middle = float(np.median(power)) / np.log(2.0) + 1e-15
     yield Component(name, Part.BETWEEN, number), float(np.log(middle)), 1.5 / np.sqrt(count)
-    highest = expected_highest(power.size)
     # Noise that falls with frequency is loudest at a band's lower edge, and that is no line.
-    strongest = float(np.log((power / _noise_power(power)).max() / highest))
-    yield (
-        Component(name, Part.LINE, number),
-        strongest,
-        float(np.hypot(1.28 / highest, 1.5 / np.sqrt(count))),
-    )
+    ratio, near = power / _noise_power(power), mains or {}
+    others = ~np.any([np.zeros(power.size, dtype=bool), *near.values()], axis=0)
+    for component, lines in (
+        (Component(name, Part.LINE, number), others),
+        *((Component(name, Part.MAINS, mains_hz), lines) for mains_hz, lines in near.items()),
+    ):
+        if (among := int(np.count_nonzero(lines))) >= _FEWEST_LINES:
+            highest = expected_highest(among)
+            uncertainty = float(np.hypot(1.28 / highest, 1.5 / np.sqrt(count)))
+            yield component, float(np.log(ratio[lines].max() / highest)), uncertainty
 
 
 def expected_highest(lines: float) -> float:

@@ -33,6 +33,7 @@ class Part(StrEnum):
     CYCLE_SCATTER = "cycle scatter"  # log of that of a harmonic from cycle to cycle
     BETWEEN = "between the harmonics"  # log of the power in a band
     LINE = "line"  # log of the strongest line over the band's usual power
+    MAINS = "line of the mains"  # the same of the lines that the mains reach
 
 
 STEADY_PARTS = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE, Part.FREQUENCY)
@@ -47,7 +48,7 @@ class Component:
     Attributes
     ----------
     order
-        Harmonic, or number of the band; 0 for what has neither.
+        Harmonic, number of the band, or frequency of the mains in Hz; 0 for what has none.
     """
 
     channel: str

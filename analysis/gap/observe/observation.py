@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.observe.bands import band, free_of_harmonics
+from analysis.gap.observe.bands import band, free_of_harmonics, of_the_mains
 from analysis.gap.observe.components import TRENDS, Component, Observation, Part
 from analysis.gap.observe.phase import choose_phase
 from analysis.gap.observe.plateau import Plateau, plateau, steps_of
@@ -46,7 +46,7 @@ SURGES_HZ: Final = (0.0, 3.0)
 _FEW_PERIODS = 3
 _TRENDS: Final = frozenset(TRENDS)
 _SCATTERS: Final = frozenset({Part.PERIOD_SCATTER, Part.CYCLE_SCATTER})
-_BETWEEN: Final = frozenset({Part.BETWEEN, Part.LINE})
+_BETWEEN: Final = frozenset({Part.BETWEEN, Part.LINE, Part.MAINS})
 
 
 @dataclass(frozen=True, eq=False)
@@ -252,6 +252,7 @@ def _band_powers(analysis: Analysis, moving: Moving) -> Found:
     lines_hz = np.arange(count // 2 + 1) * rate_hz / count
     free = free_of_harmonics(lines_hz, frequency, rate_hz / count)
     repeats = repeating(2.0 * np.pi * analysis.reference.cycles_at(part.time_s()), 2 * ORDERS)
+    mains = of_the_mains(lines_hz, rate_hz, rate_hz / count)
     for name in moving:
         if name in FORCES:
             values = part.values(name)
@@ -260,7 +261,8 @@ def _band_powers(analysis: Analysis, moving: Moving) -> Found:
             for number, (low, high) in BANDS.items():
                 inside = free & (lines_hz > low * frequency) & (lines_hz < high * frequency)
                 inside[0] = False
-                yield from band(name, number, power[inside])
+                near = {mains_hz: reached[inside] for mains_hz, reached in mains.items()}
+                yield from band(name, number, power[inside], near)
 
 
 def _plateaus(part: Recording) -> dict[str, Plateau]:

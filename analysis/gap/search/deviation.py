@@ -46,6 +46,7 @@ _KINDS: Final = {
     Part.PERIOD_SCATTER: "scatter",
     Part.BETWEEN: "lines",
     Part.LINE: "lines",
+    Part.MAINS: "lines",
 }
 
 

@@ -19,6 +19,7 @@ _PARTS = {
     Part.CYCLE_SCATTER: "residual-waves",
     Part.BETWEEN: "hum",
     Part.LINE: "carriage-fluctuation",
+    Part.MAINS: "hum",
     Part.TREND: "zero-drift",
     Part.TREND_IN_PHASE: "residual-waves",
     Part.TREND_QUADRATURE: "residual-waves",
