@@ -43,6 +43,22 @@ def weight_matrix(body: Body, plane: Plane, medium: Medium) -> FloatArray:
     return np.diag([0.0, STANDARD_GRAVITY_M_S2 * lever if plane is Plane.VERTICAL else 0.0])
 
 
+def held_at_rest_n(body: Body, oscillator: Oscillator, medium: Medium) -> FloatArray:
+    """Return the struts' forces on a model at rest, aft and fore, in N: weight less buoyancy.
+
+    What floats holds itself; in the horizontal plane nothing pulls.
+    """
+    floats = medium is Medium.WATER and body.displaced_kg is None
+    if oscillator.plane is Plane.HORIZONTAL or floats:
+        return np.zeros(2)
+    mass_kg, moment = body.mass_kg, body.mass_kg * body.cg_x_m
+    if medium is Medium.WATER and body.displaced_kg is not None:
+        mass_kg -= body.displaced_kg
+        moment -= body.displaced_kg * body.buoyancy_x_m
+    ahead_kg = moment / oscillator.half_spacing_m
+    return -0.5 * STANDARD_GRAVITY_M_S2 * np.array([mass_kg - ahead_kg, mass_kg + ahead_kg])
+
+
 def incidence(plane: Plane) -> FloatArray:
     """Return E of ``v = q' + U E q``: +1 for pitch on w, -1 for yaw on v."""
     return np.array([[0.0, 1.0 if plane is Plane.VERTICAL else -1.0], [0.0, 0.0]])

@@ -150,8 +150,9 @@ class SimulatedRig:
         return (*stages, *behind, *pulses)
 
     def tared_n(self, hull: Hull) -> tuple[float, float]:
-        """Return what the struts hold at rest, aft and fore, in N: gauges are tared of it."""
-        aft_n, fore_n = hull.system.numbers[AT_REST, :2].tolist()
+        """Return what the shaft lifts of what gauges are tared of, aft and fore, in N."""
+        lifted = 1.0 - self.oscillator.counterbalanced
+        aft_n, fore_n = (lifted * hull.system.numbers[AT_REST, :2]).tolist()
         return aft_n, fore_n
 
     def _command_stages(

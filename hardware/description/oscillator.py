@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import Final
 
 from hardware.description.arrangement import Arrangement
+from hardware.description.errors import ConfigurationError
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 
 
@@ -43,6 +44,14 @@ class Oscillator(Arrangement):
         Whether each strut can follow a path of its own; ``None`` where nobody has said.
     force_per_strut_n
         Largest force that one strut may carry, in newtons.
+    counterbalanced
+        Share of what the struts hold at rest that springs or counterweights bear, 0 to 1; the shaft
+        lifts the rest.
+
+    Raises
+    ------
+    ConfigurationError
+        If that share is not between 0 and 1.
     """
 
     plane: Plane
@@ -52,6 +61,14 @@ class Oscillator(Arrangement):
     force_per_strut_n: float
     rod_length_m: float | None = None
     paths: bool | None = None
+    counterbalanced: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.counterbalanced <= 1.0:
+            raise ConfigurationError(
+                f"oscillator: counterbalanced = {self.counterbalanced:g} is a share of the weight "
+                f"and must be between 0 and 1"
+            )
 
     @property
     def arrangement(self) -> Arrangement:

@@ -1,7 +1,7 @@
 """What a run's motion asks of the shaft over a turn, before it is made, and what turns the shaft.
 
-The struts' forces are those of the estimate; a rod's obliqueness is left out, and so is the weight
-that hangs on the struts in air, which springs or counterweights bear.
+The struts' forces are those of the estimate, and what they hold at rest as far as no counterweight
+bears it; a rod's obliqueness is left out.
 """
 
 from dataclasses import dataclass
@@ -9,8 +9,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from hardware.description.arrays import ComplexArray
+from analysis.ideal_rig import held_at_rest_n
+from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.motor import Servo, ShuntMotor
+from hardware.description.setpoint import Medium
 from pmm.configuration import Fault, as_error, validate
 from pmm.plan.force_estimate import force_estimate
 from pmm.plan.motion_peaks import omega_of
@@ -78,6 +80,7 @@ def shaft_load(run: RunPlan, rig: RigFile, motor: ShuntMotor | Servo) -> ShaftLo
     velocity = omega_of(run) * lever
     guides = motor.guides
     force = force + guides.viscous_n_s_m * velocity + guides.coulomb_n * np.sign(velocity)
+    force += _lifted_n(rig, point.medium)[:, np.newaxis]
     torque = (force * lever).sum(axis=0)
     for cogging in motor.cogging:
         torque = (
@@ -87,3 +90,11 @@ def shaft_load(run: RunPlan, rig: RigFile, motor: ShuntMotor | Servo) -> ShaftLo
     inertia = -float((estimate.forces @ np.conj(moved)).real) / (2.0 * omega_of(run) ** 2)
     phasors = 2.0 * np.fft.rfft(torque)[1 : _ORDERS + 1] / _STEPS
     return ShaftLoad(phasors, max(inertia, 0.0))
+
+
+def _lifted_n(rig: RigFile, medium: Medium) -> FloatArray:
+    """Return what the shaft lifts at each strut at rest, in N."""
+    if rig.model is None:
+        return np.zeros(2)
+    held_n = held_at_rest_n(rig.model, rig.oscillator, medium)
+    return np.asarray((1.0 - rig.oscillator.counterbalanced) * held_n, np.float64)

@@ -127,7 +127,8 @@ def nominal_torque(situation: Situation) -> tuple[float, dict[int, complex]]:
     force = situation.force() + guides.viscous_n_s_m * situation.omega * lever
     rubbing = guides.coulomb_n * np.abs(lever)
     mean = float((force * lever.conj()).real.sum()) / 2.0 + 2.0 / math.pi * float(rubbing.sum())
-    tared_n = situation.system.numbers[AT_REST, :2]
+    lifted = 1.0 - situation.rig.oscillator.counterbalanced
+    tared_n = lifted * situation.system.numbers[AT_REST, :2]
     waves = {
         1: complex(tared_n @ situation.displacement()),
         2: -complex((force * lever).sum()) / 2.0,

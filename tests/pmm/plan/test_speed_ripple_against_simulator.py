@@ -17,6 +17,7 @@ from pmm.plan.findings import PlanVerdict
 from pmm.plan.rig_tables import HullEstimate
 from pmm.plan.shaft_load import shaft_load
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
+from sim.run import steady_run
 from tests.pmm.plan.plans import rig_file, run
 
 _TURN = 640  # samples
@@ -53,6 +54,26 @@ def test_ripple_by_order(rig: SimulatedRig, motor: Servo, medium: Medium, phase_
     told = loop.ripple(load.torques_n_m, 2.0 * math.pi * 0.8)[:4]
     turned = 2.0 * np.fft.rfft(speed)[1:5] / _TURN / speed.mean()
     assert np.abs(np.abs(told) - np.abs(turned)).max() < 0.1 * np.abs(turned).max()
+
+
+@pytest.mark.parametrize("counterbalanced", [0.0, 0.7, 1.0])
+def test_counterweights_bear_what_the_shaft_need_not_lift(counterbalanced: float) -> None:
+    """The first order of the torque in air is that of the weight alone: ``m g e``."""
+    rig = vertical_rig()
+    rig = replace(rig, oscillator=replace(rig.oscillator, counterbalanced=counterbalanced))
+    point, motor = SetPoint(0.8, 0.02, 0.0, 0.0, Medium.AIR), Servo(gear_inertia_kg_m2=1e5)
+    load = shaft_load(replace(run(), set_point=point), _file(rig, {}), motor)
+    assert load is not None
+    lifted = (1.0 - counterbalanced) * 9.80665 * rig.body.mass_kg * 0.02
+    assert abs(load.torques_n_m[0]) == pytest.approx(lifted, abs=1e-9)
+    on_servo = replace(rig.ideal(), drive=replace(rig.drive, motor=motor))
+    torque = steady_run(on_servo, point).spectra["load_torque"][1]
+    assert abs(torque) == pytest.approx(lifted, rel=1e-3, abs=1e-3)
+
+
+def test_a_share_of_the_weight_is_one() -> None:
+    with pytest.raises(ConfigurationError, match=r"counterbalanced = 1\.2 .* between 0 and 1"):
+        replace(vertical_rig().oscillator, counterbalanced=1.2)
 
 
 def test_a_plan_is_told_of_it_where_the_motor_is_stated() -> None:
