@@ -7,6 +7,8 @@ command runs.
 import math
 import re
 import shutil
+import signal
+import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import CancelledError, Executor, Future
@@ -196,12 +198,15 @@ async def _submit(cluster: Any, jobs: int) -> None:
 
 
 def _cluster(address: str, name: str) -> Any:
+    interrupted = signal.getsignal(signal.SIGINT)
     try:
         jobqueue: Any = import_module("dask_jobqueue")
     except ImportError:
         raise ConfigurationError(
             f"--scheduler {address} needs the extra 'queue': {installing('queue')}"
         ) from None
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, interrupted)  # which it makes an exit of this program's
     import dask
 
     kind, settings = getattr(jobqueue, _KINDS[name]), dask.config.get(f"jobqueue.{name}")
@@ -215,7 +220,9 @@ def _cluster(address: str, name: str) -> Any:
             f"--scheduler {address}: state {' and '.join(lacking)} below jobqueue: {name}: in "
             "~/.config/dask/jobqueue.yaml (docs/parallel.md)"
         )
-    options = {"dashboard": False, **settings["scheduler-options"]}
+    # Of two schedulers on one machine each has a port.
+    unseen = {"dashboard": False, "dashboard_address": ":0"}
+    options = {**unseen, **settings["scheduler-options"]}
     exports = [f"export {name}={value}" for name, value in WORKER_ENVIRONMENT.items()]
     prologue = [*exports, *(settings.get("job-script-prologue") or [])]
     return kind(

@@ -2,8 +2,11 @@
 
 import os
 import shutil
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -30,7 +33,8 @@ kill -KILL -- -$1
 @pytest.fixture
 def queue(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     dask = pytest.importorskip("dask", reason="optional dependency queue")
-    pytest.importorskip("dask_jobqueue", reason="optional dependency queue")
+    if find_spec("dask_jobqueue") is None:  # once imported it takes over what an interrupt does
+        pytest.skip("optional dependency queue")
     for name, text in {"sbatch": _SBATCH, "scancel": _SCANCEL}.items():
         (tmp_path / name).write_text(text.format(folder=tmp_path), encoding="utf-8")
         (tmp_path / name).chmod(0o755)
@@ -87,6 +91,24 @@ def test_a_job_has_the_workers_environment_and_then_what_the_settings_say(
     exports = [line for line in before.splitlines() if line.startswith("export ")]
     assert exports == [line for line in _PAGE.splitlines() if line.startswith("export ")]
     assert "distributed.cli.dask_worker" in after
+
+
+def test_an_interrupt_stays_what_the_program_made_of_it(queue: Path) -> None:
+    """The queue's library makes an exit of it as soon as it is imported."""
+    stated = {"DASK_JOBQUEUE__SLURM__CORES": "1", "DASK_JOBQUEUE__SLURM__MEMORY": "1GB"}
+    code = (
+        "import signal; from pmm.cluster import _cluster\n"
+        "_cluster('slurm:1', 'slurm').close()\n"
+        "print(signal.getsignal(signal.SIGINT) is signal.default_int_handler)"
+    )
+    said = subprocess.run(
+        [sys.executable, "-c", code],
+        env={**os.environ, **stated},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert said.stdout.strip() == "True"
 
 
 def test_a_queue_that_refuses_is_quoted(queue: Path) -> None:
