@@ -2,11 +2,11 @@
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -33,8 +33,9 @@ kill -KILL -- -$1
 @pytest.fixture
 def queue(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     dask = pytest.importorskip("dask", reason="optional dependency queue")
-    if find_spec("dask_jobqueue") is None:  # once imported it takes over what an interrupt does
-        pytest.skip("optional dependency queue")
+    interrupted = signal.getsignal(signal.SIGINT)  # which its import takes over
+    pytest.importorskip("dask_jobqueue", reason="optional dependency queue")
+    signal.signal(signal.SIGINT, interrupted)
     for name, text in {"sbatch": _SBATCH, "scancel": _SCANCEL}.items():
         (tmp_path / name).write_text(text.format(folder=tmp_path), encoding="utf-8")
         (tmp_path / name).chmod(0o755)
