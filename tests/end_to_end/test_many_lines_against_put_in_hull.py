@@ -38,6 +38,7 @@ def told(made: Path) -> dict:  # type: ignore[type-arg]
     return found
 
 
+@pytest.mark.slow
 def test_eight_coefficients_at_eight_frequencies(told: dict) -> None:  # type: ignore[type-arg]
     linear = [one for one in told["coefficients"]["table"] if one["method"] == "linear"]
     assert len(linear) == len(HULL) * len(ORDERS)

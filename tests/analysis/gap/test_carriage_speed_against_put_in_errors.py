@@ -18,6 +18,7 @@ def diagnosed(rig: SimulatedRig, said: str, seed: int) -> Diagnosis:
     return diagnose(rig, runs, Settings({name: find(name) for name in KNOWN}))
 
 
+@pytest.mark.slow
 def test_a_mean_that_is_off(rig: SimulatedRig) -> None:
     found = diagnosed(rig, "carriage-speed:relative=0.02", 71)
     assert found.answers.by_answer["carriage-speed"] > 0.75

@@ -56,6 +56,7 @@ def test_an_encoder_tells_the_phase_without_scatter(rig: SimulatedRig) -> None:
     assert found.answers.best == NONE
 
 
+@pytest.mark.slow
 def test_a_restoring_that_is_stated_wrong_is_said_beside_what_it_passes_for(
     rig: SimulatedRig,
 ) -> None:

@@ -112,6 +112,7 @@ def test_an_odd_run_beside_an_effect_leaves_the_effect_named(
     assert found.odd_runs[f"r{WET}"] > 0.5
 
 
+@pytest.mark.slow
 def test_one_of_two_runs_of_a_kind_is_named(rig: SimulatedRig) -> None:
     air = SetPoint(0.5, 0.02, 0.0, 0.0, POINTS[AIR].medium)
     runs = record(rig, (), seed=4, points=(*POINTS, air))

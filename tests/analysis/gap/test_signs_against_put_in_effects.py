@@ -31,7 +31,7 @@ def problem(rig: SimulatedRig, clean: tuple[GapRun, ...]) -> Problem:
     return problem_of(rig, clean)
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize("name", KINDS)
 def test_it_is_named_with_either_sign(

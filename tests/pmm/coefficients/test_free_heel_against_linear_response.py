@@ -102,6 +102,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     return dict(json.loads(ran.stdout))
 
 
+@pytest.mark.slow
 def test_each_run_heels_as_its_motion_asks(found: dict[str, Any]) -> None:
     rows = {row["run"]: row for row in found["heel"]}
     assert {row["held"] for row in rows.values()} == {"free"}

@@ -62,6 +62,7 @@ def test_the_cause_is_named_added_and_gone(roll: Path) -> None:
     assert "quadratic_drag is in [[effects]] already" in twice.stderr
 
 
+@pytest.mark.slow
 def test_a_named_cause_is_fitted_and_added(roll: Path) -> None:
     done = run("add-pendulum", roll, "viscous_damping", "quadratic_drag", "--json")
     assert done.exit_code == 0, done.output

@@ -51,6 +51,7 @@ def test_the_simulated_drive_records_what_it_was_told(rig: Path) -> None:
             assert np.abs(values - basis @ found).max() < 1e-9
 
 
+@pytest.mark.slow
 def test_the_diagnosis_begins_with_the_errors(ready: PreparedCampaign) -> None:
     own = ready.recentred.rig
     for link, added_m in zip((own.linkage_aft, own.linkage_fore), ADDED_M, strict=True):

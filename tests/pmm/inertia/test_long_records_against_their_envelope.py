@@ -9,6 +9,7 @@ from pmm.inertia.sources import PeriodRuns
 from pmm.report.inertia_record import record_figure
 
 
+@pytest.mark.slow
 def test_the_fit_reaches_the_envelope() -> None:
     rate_hz, period_s = 20.0, 1.0
     time_s = np.arange(int(900 * rate_hz)) / rate_hz
