@@ -40,13 +40,14 @@ def hum_columns(stack: Stack, hum_n: float) -> Iterator[tuple[str, FloatArray]]:
                 mains_hz,
             ):
                 run = int(stack.run[at])
-                middle = loud[run, channel, _band(stack.runs[run], mains_hz)]
+                number = _band(stack.runs[run], mains_hz)
+                middle = loud.get((run, channel, number), math.inf)
                 rise = (1.0 + power / math.exp(middle)) / expected_highest(_REACHED)
                 column[at] = math.log(max(rise, 1.0)) / _FAR
         yield f"hum {channel.removeprefix('force_')} {mains_hz} Hz", column / stack.uncertainty
 
 
 def _band(run: GapRun, mains_hz: float) -> int:
-    """Return the number of the band that the mains fold into."""
+    """Return the number of the band that the mains fold into; 0 for none."""
     order = folded_hz(mains_hz, run.sample_rate_hz) / run.set_point.frequency_hz
-    return next(number for number, (low, high) in BANDS.items() if low < order < high)
+    return next((number for number, (low, high) in BANDS.items() if low < order < high), 0)

@@ -40,17 +40,21 @@ def folded_hz(mains_hz: float, rate_hz: float) -> float:
     return abs(mains_hz - rate_hz * round(mains_hz / rate_hz))
 
 
-def of_the_mains(lines_hz: FloatArray, rate_hz: float, bin_hz: float) -> dict[int, BoolArray]:
-    """Tell by frequency of the mains which lines it reaches.
+def of_the_mains(
+    lines_hz: FloatArray, rate_hz: float, bin_hz: float, band_hz: tuple[float, float]
+) -> dict[int, BoolArray]:
+    """Tell by frequency of the mains that folds into a band which of its lines it reaches.
 
     Parameters
     ----------
     bin_hz
         Distance of the lines.
     """
+    seen_hz = {mains_hz: folded_hz(mains_hz, rate_hz) for mains_hz in MAINS_HZ}
     return {
-        mains_hz: np.abs(lines_hz - folded_hz(mains_hz, rate_hz)) < _BESIDE * bin_hz
-        for mains_hz in MAINS_HZ
+        mains_hz: np.abs(lines_hz - at_hz) < _BESIDE * bin_hz
+        for mains_hz, at_hz in seen_hz.items()
+        if band_hz[0] < at_hz < band_hz[1]
     }
 
 

@@ -252,7 +252,6 @@ def _band_powers(analysis: Analysis, moving: Moving) -> Found:
     lines_hz = np.arange(count // 2 + 1) * rate_hz / count
     free = free_of_harmonics(lines_hz, frequency, rate_hz / count)
     repeats = repeating(2.0 * np.pi * analysis.reference.cycles_at(part.time_s()), 2 * ORDERS)
-    mains = of_the_mains(lines_hz, rate_hz, rate_hz / count)
     for name in moving:
         if name in FORCES:
             values = part.values(name)
@@ -261,7 +260,8 @@ def _band_powers(analysis: Analysis, moving: Moving) -> Found:
             for number, (low, high) in BANDS.items():
                 inside = free & (lines_hz > low * frequency) & (lines_hz < high * frequency)
                 inside[0] = False
-                near = {mains_hz: reached[inside] for mains_hz, reached in mains.items()}
+                edges_hz = low * frequency, high * frequency
+                near = of_the_mains(lines_hz[inside], rate_hz, rate_hz / count, edges_hz)
                 yield from band(name, number, power[inside], near)
 
 

@@ -1,0 +1,49 @@
+"""Oracle: where samples show a line of the mains, and in which band of which run that lies."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from analysis.gap.observe.bands import MAINS_HZ, band, folded_hz, of_the_mains
+from analysis.gap.observe.components import Part
+from analysis.gap.observe.observation import BANDS
+
+
+@given(st.sampled_from(MAINS_HZ), st.floats(3.0, 2000.0))
+def test_a_line_is_seen_where_its_samples_are_alike(mains_hz: int, rate_hz: float) -> None:
+    number = np.arange(64)
+    seen = np.cos(2.0 * np.pi * folded_hz(mains_hz, rate_hz) / rate_hz * number)
+    assert seen == pytest.approx(np.cos(2.0 * np.pi * mains_hz / rate_hz * number), abs=1e-6)
+
+
+@given(st.floats(0.1, 2.0), st.floats(20.0, 500.0), st.integers(4, 40), st.integers(0, 2**32 - 1))
+def test_each_line_of_the_mains_is_one_number_of_a_channel(
+    frequency_hz: float, rate_hz: float, periods: int, seed: int
+) -> None:
+    """Whatever the rate: in the band that it folds into, and in no other."""
+    count = int(periods / frequency_hz * rate_hz)
+    lines_hz = np.arange(count // 2 + 1) * rate_hz / count
+    power = np.random.default_rng(seed).exponential(size=len(lines_hz))
+    found = []
+    for number, (low, high) in BANDS.items():
+        inside = (lines_hz > low * frequency_hz) & (lines_hz < high * frequency_hz)
+        edges_hz = low * frequency_hz, high * frequency_hz
+        near = of_the_mains(lines_hz[inside], rate_hz, rate_hz / count, edges_hz)
+        found += [part for part, _, _ in band("force_aft", number, power[inside], near)]
+    assert len(set(found)) == len(found)
+    assert {part.order for part in found if part.part is Part.MAINS} <= {*MAINS_HZ}
+
+
+@pytest.mark.parametrize(("line_hz", "part"), [(50.0, Part.MAINS), (43.0, Part.LINE)])
+def test_only_a_line_of_the_mains_counts_as_one(line_hz: float, part: Part) -> None:
+    rng, rate_hz, count = np.random.default_rng(4), 200.0, 2000
+    lines_hz = np.arange(count // 2 + 1) * rate_hz / count
+    power = rng.exponential(size=len(lines_hz)) + 300.0 * (np.abs(lines_hz - line_hz) < 0.05)
+    near = of_the_mains(lines_hz, rate_hz, rate_hz / count, (0.0, np.inf))
+    values = {
+        (component.part, component.order): value
+        for component, value, _ in band("force_aft", 1, power, near)
+    }
+    loudest = max(values, key=lambda key: values[key] if key[0] is not Part.BETWEEN else -np.inf)
+    assert loudest == (part, 50 if part is Part.MAINS else 1)
