@@ -141,7 +141,7 @@ class SimulatedRig:
                 self.drive,
                 self.drive.motor,
                 reflected_inertia(hull.system.mass, set_point),
-                self.tared_n(hull),
+                self.lifted_n(hull),
             )
             stages = (carriage, Coupled(loaded, mechanism, hull))
         commands = self._command_stages(mechanism, set_point.frequency_hz)
@@ -149,10 +149,9 @@ class SimulatedRig:
         pulses = () if self.photocell is None else (self.photocell,)
         return (*stages, *behind, *pulses)
 
-    def tared_n(self, hull: Hull) -> tuple[float, float]:
+    def lifted_n(self, hull: Hull) -> tuple[float, float]:
         """Return what the shaft lifts of what gauges are tared of, aft and fore, in N."""
-        lifted = 1.0 - self.oscillator.counterbalanced
-        aft_n, fore_n = (lifted * hull.system.numbers[AT_REST, :2]).tolist()
+        aft_n, fore_n = (self.oscillator.lifted * hull.system.numbers[AT_REST, :2]).tolist()
         return aft_n, fore_n
 
     def _command_stages(

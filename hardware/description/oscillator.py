@@ -71,6 +71,11 @@ class Oscillator(Arrangement):
             )
 
     @property
+    def lifted(self) -> float:
+        """Share of what the struts hold at rest that the shaft lifts."""
+        return 1.0 - self.counterbalanced
+
+    @property
     def arrangement(self) -> Arrangement:
         """How struts, gauges and a drift angle are arranged, by itself."""
         return Arrangement(self.joint, self.pivot, self.gauges, self.drift_by)

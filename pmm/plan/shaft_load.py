@@ -97,4 +97,4 @@ def _lifted_n(rig: RigFile, medium: Medium) -> FloatArray:
     if rig.model is None:
         return np.zeros(2)
     held_n = held_at_rest_n(rig.model, rig.oscillator, medium)
-    return np.asarray((1.0 - rig.oscillator.counterbalanced) * held_n, np.float64)
+    return np.asarray(rig.oscillator.lifted * held_n, np.float64)

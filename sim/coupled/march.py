@@ -139,7 +139,7 @@ class CoupledMarch:
             np.zeros((count + TORQUE_DEGREE, n)),
             np.zeros((count + TORQUE_DEGREE, inputs)),
             np.empty((count, 5)),
-            np.array([shaft.reflected_inertia_kg_m2, *shaft.friction[::-1], *shaft.tared_n]),
+            np.array([shaft.reflected_inertia_kg_m2, *shaft.friction[::-1], *shaft.lifted_n]),
             np.array(shaft.cogging, dtype=np.float64).reshape(-1, 3),
             np.array([*shaft.gap, 0.0]),
         )

@@ -61,7 +61,7 @@ class LoadedDrive:
         Mean inertia that the model adds at the shaft. It is solved as part of the motor; its torque
         is then no part of the load that is handed in. Any value gives the same motion; the true one
         gives it with the fewest sweeps.
-    tared_n
+    lifted_n
         What each strut holds at rest, aft and fore: gauges are tared of it, the shaft lifts it.
     """
 
@@ -69,7 +69,7 @@ class LoadedDrive:
     settings: DriveSettings
     motor: Motor | None
     reflected_inertia_kg_m2: float = 0.0
-    tared_n: tuple[float, float] = (0.0, 0.0)
+    lifted_n: tuple[float, float] = (0.0, 0.0)
 
     name = "drive"
     reads = (signals.LOAD_TORQUE,)
@@ -165,9 +165,9 @@ class LoadedDrive:
         angle = run[signals.SHAFT_ANGLE.name] + turned
         speed = run[signals.SHAFT_SPEED.name]
         total = np.zeros_like(angle)
-        for strut, tared_n in zip(("aft", "fore"), self.tared_n, strict=True):
+        for strut, lifted_n in zip(("aft", "fore"), self.lifted_n, strict=True):
             lever = run[f"lever_{strut}"]
-            total += (run[f"force_{strut}"] + tared_n) * lever
+            total += (run[f"force_{strut}"] + lifted_n) * lever
             for guides in self.guides:
                 if guides.coulomb_n or guides.viscous_n_s_m:
                     velocity = lever * speed
@@ -215,7 +215,7 @@ class LoadedDrive:
                 for harmonic in self.cogging
             ),
             (0.0, 0.0) if gear is None else (gear.stiffness_n_m_rad, gear.backlash_rad / 2.0),
-            self.tared_n,
+            self.lifted_n,
         )
 
     @cached_property

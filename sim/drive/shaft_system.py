@@ -23,7 +23,7 @@ class ShaftSystem:
         Of the model at the shaft, solved as part of it.
     gap
         Stiffness and half clearance of the gear, or zeros.
-    tared_n
+    lifted_n
         What each strut holds at rest beside what its gauge reads.
     """
 
@@ -34,7 +34,7 @@ class ShaftSystem:
     friction: tuple[float, float]
     cogging: tuple[tuple[float, float, float], ...]
     gap: tuple[float, float]
-    tared_n: tuple[float, float]
+    lifted_n: tuple[float, float]
 
 
 class MarchedShaft(NamedTuple):

@@ -127,10 +127,9 @@ def nominal_torque(situation: Situation) -> tuple[float, dict[int, complex]]:
     force = situation.force() + guides.viscous_n_s_m * situation.omega * lever
     rubbing = guides.coulomb_n * np.abs(lever)
     mean = float((force * lever.conj()).real.sum()) / 2.0 + 2.0 / math.pi * float(rubbing.sum())
-    lifted = 1.0 - situation.rig.oscillator.counterbalanced
-    tared_n = lifted * situation.system.numbers[AT_REST, :2]
+    lifted_n = situation.rig.oscillator.lifted * situation.system.numbers[AT_REST, :2]
     waves = {
-        1: complex(tared_n @ situation.displacement()),
+        1: complex(lifted_n @ situation.displacement()),
         2: -complex((force * lever).sum()) / 2.0,
     }
     for order in range(2, HIGHEST + 1, 2) if guides.coulomb_n else ():

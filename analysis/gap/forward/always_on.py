@@ -4,7 +4,7 @@ Each is at the size of its tolerance; what is beyond it is named as out of toler
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -80,28 +80,33 @@ def _of_load(simulator: Simulator, of_one: Mapping[tuple[int, str], FloatArray])
         What a ripple of 1 changes, by its order and phase.
     """
     stack, total = simulator.stack, np.zeros(len(simulator.stack.components))
-    for order in sorted({order for order, _ in of_one}):
-        ripples = [_ripple(simulator, run, order) if run.turns else 0j for run in stack.runs]
-        ripple = np.array(ripples)[stack.run]
+    orders = sorted({order for order, _ in of_one})
+    ripples = np.array([_ripples(simulator, run, orders) for run in stack.runs])[stack.run]
+    for order, ripple in zip(orders, ripples.T, strict=True):
         total += of_one[order, "sine"] * ripple.real + of_one[order, "cosine"] * ripple.imag
     return total
 
 
-def _ripple(simulator: Simulator, run: GapRun, order: int) -> complex:
-    """Return the ripple that a run's load gives a shaft of 1 kg m2: size and phase."""
+def _ripples(simulator: Simulator, run: GapRun, orders: Sequence[int]) -> list[complex]:
+    """Return by order the ripple that a run's load gives a shaft of 1 kg m2: size and phase."""
+    if not run.turns:
+        return [0j] * len(orders)
     state = simulator.state(run, simulator.active_effects)
     period = state.period
     angle_rad = np.arange(period.points) * 2.0 * math.pi / period.points
     turn = np.exp(1j * np.outer(angle_rad, np.arange(period.orders + 1)))
     power = np.zeros(period.points)
-    struts = zip(STRUT_FORCES, signals.STRUT_MOTIONS, simulator.tared_n(run), strict=True)
-    for force, motion, tared_n in struts:
+    struts = zip(STRUT_FORCES, signals.STRUT_MOTIONS, simulator.lifted_n(run), strict=True)
+    for force, motion, lifted_n in struts:
         pair = (state.spectra[force], state.spectra[motion[1].name])
         force_n, velocity = ((turn @ spectrum).real for spectrum in pair)
-        power += (force_n + tared_n) * velocity
+        power += (force_n + lifted_n) * velocity
     omega = 2.0 * math.pi * period.frequency_hz
-    torque = 2.0 * np.mean(power / omega * np.exp(-1j * order * angle_rad))
-    return complex(1j * order * torque / (order * omega) ** 2)
+    ripples = []
+    for order in orders:
+        torque = 2.0 * np.mean(power / omega * np.exp(-1j * order * angle_rad))
+        ripples.append(complex(1j * torque / (order * omega**2)))
+    return ripples
 
 
 def _drifts(stack: Stack, drift_n_s: float) -> Named:

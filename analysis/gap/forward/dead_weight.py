@@ -19,9 +19,9 @@ class _WeightedRig(SimulatedRig):
 
     tared_body: Body | None = None
 
-    def tared_n(self, hull: Hull) -> tuple[float, float]:
+    def lifted_n(self, hull: Hull) -> tuple[float, float]:
         """Return what the struts hold at rest without the weight; a law has its force."""
-        return super().tared_n(replace(hull, body=self.tared_body or hull.body))
+        return super().lifted_n(replace(hull, body=self.tared_body or hull.body))
 
 
 def with_dead_weight(

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from analysis.gap.observe.bands import MAINS_HZ, expected_highest, folded_hz
-from analysis.gap.observe.components import GapRun, Part, Stack
+from analysis.gap.observe.components import Component, GapRun, Part, Stack
 from analysis.gap.observe.observation import BANDS
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import FORCES
@@ -32,13 +32,9 @@ def hum_columns(stack: Stack, hum_n: float) -> Iterator[tuple[str, FloatArray]]:
     }
     power = (_FAR * hum_n) ** 2 / 3.0
     for channel, mains_hz in product(FORCES, MAINS_HZ):
-        column = np.zeros(len(stack.components))
+        column, line = np.zeros(len(stack.components)), Component(channel, Part.MAINS, mains_hz)
         for at, component in enumerate(stack.components):
-            if (component.channel, component.part, component.order) == (
-                channel,
-                Part.MAINS,
-                mains_hz,
-            ):
+            if component == line:
                 run = int(stack.run[at])
                 number = _band(stack.runs[run], mains_hz)
                 middle = loud.get((run, channel, number), math.inf)

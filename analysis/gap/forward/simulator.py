@@ -150,11 +150,11 @@ class Simulator:
         """Return the steady state of a run that turns, with these effects and no others."""
         return self._state(*self._set(run, effects))
 
-    def tared_n(self, run: GapRun) -> tuple[float, float]:
+    def lifted_n(self, run: GapRun) -> tuple[float, float]:
         """Return what the struts hold at rest in a run, aft and fore, in N: gauges are tared."""
         rig, set_point = self._set(run, self._repeating)
         hull: Any = next(stage for stage in rig.stages(set_point) if stage.name == "hull")
-        return rig.tared_n(hull)
+        return rig.lifted_n(hull)
 
     def _state(self, rig: SimulatedRig, set_point: SetPoint) -> SteadyState:
         period = Period(set_point.frequency_hz, ORDERS, POINTS)
