@@ -99,6 +99,7 @@ def test_an_interrupt_stays_what_the_program_made_of_it(queue: Path) -> None:
     stated = {"DASK_JOBQUEUE__SLURM__CORES": "1", "DASK_JOBQUEUE__SLURM__MEMORY": "1GB"}
     code = (
         "import signal; from pmm.cluster import _cluster\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # ignored in the background
         "_cluster('slurm:1', 'slurm').close()\n"
         "print(signal.getsignal(signal.SIGINT) is signal.default_int_handler)"
     )

@@ -179,6 +179,15 @@ def said_at_ctrl_c(
     return note
 
 
+@pytest.fixture
+def _interruptible() -> Iterator[None]:
+    """Take interrupts, which a program that was started in the background ignores."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("_interruptible")
 def test_ctrl_c_takes_out_what_waits_and_says_what_goes_on(
     desk: Console, monkeypatch: pytest.MonkeyPatch
 ) -> None:
