@@ -12,7 +12,14 @@ from typing import Final, TypeVar
 
 from analysis.gap.forward.problem import ComparedProblem, Problem
 from analysis.gap.search.first_look import FirstLook, look
-from analysis.gap.search.fit import Fit, expected_evidence, joined, linearised_at, most_probable
+from analysis.gap.search.fit import (
+    Fit,
+    expected_evidence,
+    joined,
+    most_probable,
+    moved_fit,
+    weighed_at,
+)
 from analysis.gap.search.refinement import refine, stepped
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
@@ -147,9 +154,7 @@ def alone_again(problem: Problem, singles: Sequence[Fit], pairs: Sequence[Fit]) 
         for number, candidate in enumerate(pair.candidates):
             earlier_fit = best.get(candidate.name)
             try:
-                start = linearised_at(
-                    problem, (candidate,), pair.units[pair.effect_index == number]
-                )
+                start = _member(problem, pair, number)
                 least = -math.inf if earlier_fit is None else earlier_fit.log_evidence - _WORSE
                 if expected_evidence(problem, start) < least:
                     continue
@@ -159,6 +164,14 @@ def alone_again(problem: Problem, singles: Sequence[Fit], pairs: Sequence[Fit]) 
             if earlier_fit is None or refined.log_evidence > earlier_fit.log_evidence:
                 best[candidate.name] = refined
     return sorted(best.values(), key=lambda fit: -fit.log_evidence)
+
+
+def _member(problem: ComparedProblem, fit: Fit, number: int) -> Fit:
+    """Return one effect of several alone, where and with the slopes that they have together."""
+    own = fit.effect_index == number
+    parts, units = (fit.candidates[number],), fit.units[own]
+    signature = problem.signature(parts, units)
+    return weighed_at(problem, parts, units, fit.columns[:, own], signature)
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,7 +240,7 @@ def _refined_together(problem: ComparedProblem, chance: _Chance) -> Fit:
     best = fit
     for units in (most_probable(fit), fit.units):
         try:
-            refined = refine(problem, linearised_at(problem, fit.candidates, units))
+            refined = refine(problem, moved_fit(problem, fit, units))
         except PmmError:
             continue
         best = (

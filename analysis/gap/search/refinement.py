@@ -19,8 +19,8 @@ _STEPS: Final = 24  # at most; a fit that is still on its way then is nowhere ne
 _STEPS_IN_TIME: Final = 5  # for what has to be simulated in time, a hundred times as costly
 _FULFILLED: Final = 0.5  # share of a step's promise within which, and its inverse, slopes are kept
 # Chi-square that a further step promises at which a fit has arrived: the parameters are then within
-# 0.03 of their uncertainty of where they belong.
-_SETTLED: Final = 1e-3
+# 0.14 of their uncertainty of where they belong.
+_SETTLED: Final = 0.02
 _FURTHER: Final = 3.0  # times as far as a first look at a change, it leads at most
 
 

@@ -1,6 +1,7 @@
 """The water's linear reaction with its memory: infinite-frequency added mass and a state space."""
 
 from dataclasses import dataclass, field, fields, replace
+from functools import lru_cache
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -87,7 +88,7 @@ class Radiation:
         object.__setattr__(
             self, "onset_s", _checked("onset_s", onset if onset.size else np.zeros(n), (n,))
         )
-        fastest_growth = float(max(np.linalg.eigvals(self.state_matrix).real, default=-1.0))
+        fastest_growth = _fastest_growth(n, self.state_matrix.tobytes())
         if fastest_growth >= 0.0:
             raise ConfigurationError(
                 f"state_matrix has an eigenvalue with real part {fastest_growth:.3g} 1/s where all "
@@ -176,6 +177,13 @@ def constant(added_mass: ArrayLike) -> Radiation:
     """Return an added mass, shape ``(2, 2)``, that does not depend on the frequency: no memory."""
     empty = np.zeros((0, 2))
     return Radiation(np.asarray(added_mass), np.zeros((0, 0)), empty, empty.T)
+
+
+@lru_cache(maxsize=512)
+def _fastest_growth(states: int, matrix: bytes) -> float:
+    """Return the largest real part of a matrix's eigenvalues; runs of a campaign share theirs."""
+    values = np.frombuffer(matrix, np.float64).reshape(states, states)
+    return float(max(np.linalg.eigvals(values).real, default=-1.0))
 
 
 def _numbers(name: str, values: ArrayLike) -> FloatArray:
