@@ -64,7 +64,7 @@ def marked(world: str, index: int, commit: str, size: int = CASES) -> Line:
         name = made(world, index, commit, size, folder)
         (folder / "answers").mkdir()
         began = time.process_time()
-        answer_case(Asked(folder, name, (DIAGNOSIS,)))
+        answer_case(Asked(folder, name, (DIAGNOSIS,), proposes=False))
         taken_s = time.process_time() - began
         truth = read_truth(folder / "keys" / name / "truth.json")
         answer = read_answer(folder / "answers" / f"{name}.json", known_effects(), truth)

@@ -25,12 +25,19 @@ LIMIT_S: Final = 300.0
 
 @dataclass(frozen=True)
 class Asked:
-    """A case, who is to answer it, and the effects that are taken out of the catalogue."""
+    """A case, who is to answer it, and the effects that are taken out of the catalogue.
+
+    Attributes
+    ----------
+    proposes
+        Whether the diagnosis is to say which run it would make next.
+    """
 
     board: Path
     case: str
     rows: tuple[str, ...]
     left_out: tuple[str, ...] = ()
+    proposes: bool = True
 
     @property
     def folder(self) -> Path:
@@ -178,7 +185,7 @@ def _answer(row: str, asked: Asked) -> Mapping[str, Any]:
     if row in (DIAGNOSIS, LEFT_OUT):
         from pmm.cli.gap.answer import diagnosed
 
-        return diagnosed(asked.folder, asked.left_out)
+        return diagnosed(asked.folder, asked.left_out, proposes=asked.proposes)
     return answered_by(row)(asked.folder)
 
 

@@ -149,8 +149,18 @@ def answer_one(task: CaseTask) -> CaseAnswer:
     return CaseAnswer(task.case.name, json.dumps(content, indent=1, allow_nan=False) + "\n")
 
 
-def diagnosed(folder: Path, left_out: tuple[str, ...] = ()) -> dict[str, Any]:
-    """Return the answer to a case's folder, with some effects taken out of the catalogue."""
+def diagnosed(
+    folder: Path, left_out: tuple[str, ...] = (), *, proposes: bool = True
+) -> dict[str, Any]:
+    """Return the answer to a case's folder, with some effects taken out of the catalogue.
+
+    Parameters
+    ----------
+    proposes
+        Whether the next run is sought too: a fifth of the time.
+    """
+    from dataclasses import replace
+
     from analysis.gap.judge.diagnosis import diagnose
     from pmm.gap.answer import answer as answer_of
     from pmm.gap.preparation import prepare
@@ -158,7 +168,8 @@ def diagnosed(folder: Path, left_out: tuple[str, ...] = ()) -> dict[str, Any]:
 
     kinds = {name: kind for name, kind in catalogue().items() if name not in left_out}
     preparation = prepare(folder, kinds)
-    diagnosis = diagnose(preparation.recentred.rig, preparation.fitted, preparation.settings)
+    settings = preparation.settings if proposes else replace(preparation.settings, choices=None)
+    diagnosis = diagnose(preparation.recentred.rig, preparation.fitted, settings)
     return answer_of(
         folder.name,
         diagnosis,
