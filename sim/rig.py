@@ -55,7 +55,8 @@ class SimulatedRig:
     linkage_aft, linkage_fore
         How each strut's linkage differs from what was set.
     radiation
-        The water's memory, with its added mass at infinite frequency, which adds to ``water``.
+        The water's memory, with its added mass at infinite frequency, which adds to ``water``; in
+        air what of it is on board.
     mounting
         Stiffness of gauges and frame.
     forces, cross_flow
@@ -183,7 +184,7 @@ class SimulatedRig:
             self.oscillator.half_spacing_m,
             self.body,
             self.water if in_water else HullCoefficients(),
-            self.radiation if in_water else None,
+            self.radiation if in_water or self.radiation is None else self.radiation.on_board,
             self.mounting,
             tuple(force for force in self.forces if in_water or not force.in_water),
             self.cross_flow if in_water else None,

@@ -206,7 +206,7 @@ def per_speed(situation: Situation, s: complex, s_memory: complex | None = None)
     radiation = radiation_of(rig)
     at = s if s_memory is None else s_memory
     answer = np.linalg.solve(
-        at * np.eye(radiation.states) - radiation.state_matrix, radiation.input_matrix
+        at * np.eye(radiation.states) - radiation.state_matrix, radiation.passing_matrix
     )
     constant_part = np.array(rig.water.damping) + s * (
         np.array(rig.water.added_mass) + radiation.added_mass_infinite

@@ -4,10 +4,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hardware.description.setpoint import SetPoint
+from hardware.description.setpoint import Medium, SetPoint
 from sim.effects.effect import Effect, OneSign, Signature, StageName, parameter
+from sim.effects.hydrodynamics import radiation_of
 from sim.effects.situation import Situation, at_struts
-from sim.model.water.radiation import constant
+from sim.model.law_point import Acting
+from sim.model.laws import Viscous
 from sim.rig import SimulatedRig
 
 
@@ -15,7 +17,9 @@ from sim.rig import SimulatedRig
 class EntrainedWater(Effect):
     """A mass on a spring: ``-m w^2/(1 - (w/w_s)^2)``, with a change of sign at its frequency w_s.
 
-    It moves with the translation at the midpoint, through the water; the model is drained in air.
+    It is on board, at the midpoint: it feels the model's translation, whatever the angle of attack.
+    A compartment may drain as the model is lifted out of the water, or not, the one as likely as
+    the other: what stays sloshes on in air, and its weight is tared with the model's.
     """
 
     code = "S10"
@@ -32,29 +36,42 @@ class EntrainedWater(Effect):
     damping_ratio: float = parameter(
         0.03, 0.001, 0.5, "1", "of its sloshing, to critical", one_sign=OneSign.DAMPING
     )
+    stays_in_air: float = parameter(
+        0.0,
+        0.0,
+        1.0,
+        "1",
+        "share that does not drain where the model is in air",
+        one_sign=OneSign.SHARE,
+    )
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
-        """Return the rig with the sloshing as two more states of the water's memory.
+        """Return the rig with the sloshing as two more states of its memory, and its damper.
 
         The force per velocity, m s (c s + k)/(m s^2 + c s + k), is c and a proper remainder.
         """
+        mass_kg = self._mass_kg(set_point.medium)
         natural = 2.0 * np.pi * self.slosh_hz
         damping = 2.0 * self.damping_ratio * natural
         slosh = [[0.0, 1.0], [-(natural**2), -damping]]
-        remainder = self.mass_kg * np.array([-damping * natural**2, natural**2 - damping**2])
-        memory = (constant(np.zeros((2, 2))) if rig.radiation is None else rig.radiation).joined(
-            slosh, [[0.0, 0.0], [1.0, 0.0]], np.vstack([remainder, np.zeros(2)])
+        remainder = mass_kg * np.array([-damping * natural**2, natural**2 - damping**2])
+        memory = radiation_of(rig).joined(
+            slosh,
+            [[0.0, 0.0], [1.0, 0.0]],
+            np.vstack([remainder, np.zeros(2)]),
+            aboard=True,
         )
-        first, second = rig.water.damping
-        stiffer = ((first[0] + self.mass_kg * damping, first[1]), second)
-        return replace(rig, radiation=memory, water=replace(rig.water, damping=stiffer))
+        damper = Acting(Viscous(mass_kg * damping))
+        return replace(rig, radiation=memory, forces=(*rig.forces, damper))
 
     def signature(self, situation: Situation) -> Signature:
         """Return the reaction of a mass on spring and damper; exact."""
-        system = situation.system
         s, natural = 1j * situation.omega, 2.0 * np.pi * self.slosh_hz
         spring = natural**2 + 2.0 * self.damping_ratio * natural * s
-        per_velocity = self.mass_kg * s * spring / (s**2 + spring)
-        velocity = (s * system.to_motion + system.incidence)[0] @ situation.displacement()
-        force = per_velocity * velocity * system.to_motion[0]
-        return at_struts(force, 1) if situation.in_water else {}
+        apparent_kg = self._mass_kg(situation.set_point.medium) * spring / (s**2 + spring)
+        along = situation.system.to_motion[0]
+        return at_struts(apparent_kg * s**2 * (along @ situation.displacement()) * along, 1)
+
+    def _mass_kg(self, medium: Medium) -> float:
+        """Return what sloshes in a run."""
+        return self.mass_kg * (1.0 if medium is Medium.WATER else self.stays_in_air)

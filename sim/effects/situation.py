@@ -97,7 +97,8 @@ class Situation:
         radiation = system.radiation
         memory = system.memory_load @ np.linalg.solve(
             s * np.eye(radiation.states) - radiation.state_matrix,
-            radiation.input_matrix @ (s * system.to_motion + system.incidence),
+            radiation.input_matrix @ (s * system.to_motion)
+            + radiation.passing_matrix @ system.incidence,
         )
         return np.asarray(s**2 * system.mass + s * system.damping + system.stiffness + memory)
 

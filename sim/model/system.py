@@ -4,7 +4,7 @@ With y the strut motion, h = y + E p the model at the struts (E p what gauges an
 and v the velocity through the water, v = T h' + U S T h:
 
     F  = M h'' + B h' + C h + W xi + f            force of the struts on the model
-    xi' = A_m xi + B_m (v + g)                    memory of the water
+    xi' = A_m xi + B_m (v + g)                    memory of the water; on board B_m T h'
     M_e p'' + C_e p' + K_e p = - E^T F            mounting
 
 f are the forces that are no part of the linear system: those of laws, and what the exact geometry
@@ -124,7 +124,7 @@ class HullSystem:
             ]
         )
         matrix[r : 2 * r] = -np.linalg.solve(self._inertia, pull)
-        matrix[2 * r :, :r] = into @ self.incidence @ shape
+        matrix[2 * r :, :r] = self.radiation.passing_matrix @ self.incidence @ shape
         matrix[2 * r :, r : 2 * r] = into @ self.to_motion @ shape
         matrix[2 * r :, 2 * r :] = self.radiation.state_matrix
         return matrix
@@ -135,7 +135,7 @@ class HullSystem:
         into = self.radiation.input_matrix
         nothing = np.zeros_like(into)
         return (
-            self._driven(self.stiffness, into @ self.incidence),
+            self._driven(self.stiffness, self.radiation.passing_matrix @ self.incidence),
             self._driven(self.damping, into @ self.to_motion),
             self._driven(self.mass, nothing),
         )
@@ -143,9 +143,9 @@ class HullSystem:
     @cached_property
     def load_input(self) -> FloatArray:
         """What (f, g) add to the states' rate, or (f, g, c); shape ``(states, 4)`` or 6."""
-        into = self.radiation.input_matrix
-        force = self._driven(np.eye(2), np.zeros_like(into))
-        velocity = self._driven(np.zeros((2, 2)), into)
+        passing = self.radiation.passing_matrix
+        force = self._driven(np.eye(2), np.zeros_like(passing))
+        velocity = self._driven(np.zeros((2, 2)), passing)
         if self.joint is None:
             return np.hstack([force, velocity])
         r, given_back = self.elastic_count, np.zeros((self.states, 2))
@@ -205,12 +205,12 @@ class HullSystem:
         rigid = self.mass * column**2 + self.damping * column + self.stiffness
         if not self.radiation.states:
             return rigid, np.zeros_like(rigid)
-        resolvent = column * np.eye(self.radiation.states) - self.radiation.state_matrix
-        into = np.broadcast_to(
-            self.radiation.input_matrix.astype(complex), (s.size, self.radiation.states, 2)
-        )
-        memory = self.memory_load @ np.linalg.solve(resolvent, into)
-        return rigid + memory @ (self.to_motion * column + self.incidence), memory
+        water = self.radiation
+        resolvent = column * np.eye(water.states) - water.state_matrix
+        inputs = np.hstack([water.input_matrix, water.passing_matrix]).astype(complex)
+        into = np.broadcast_to(inputs, (s.size, water.states, 4))
+        moved, passed = np.split(self.memory_load @ np.linalg.solve(resolvent, into), 2, axis=2)
+        return rigid + moved @ (self.to_motion * column) + passed @ self.incidence, passed
 
     def mounting_impedance(self, s: ComplexArray) -> ComplexArray:
         """Return M_e s^2 + C_e s + K_e, shape ``(k, r, r)``."""

@@ -64,6 +64,13 @@ LINEAR = {
     "crank": horizontal_rig(0.4).ideal(),
     "memory": replace(IDEAL, radiation=MEMORY),
     "gauges": replace(IDEAL, mounting=Mounting(2e5, 300.0)),
+    "water on board": replace(
+        IDEAL,
+        radiation=MEMORY.joined(
+            [[0.0, 1.0], [-20.0, -2.0]], np.eye(2), [[9.0, 4.0], [0.0, 5.0]], aboard=True
+        ),
+        mounting=SPRINGS,
+    ),
     "frame": replace(IDEAL, mounting=Mounting(None, 0.0, 5e5, 2000.0)),
     "gauges, frame and memory": replace(IDEAL, radiation=MEMORY, mounting=SPRINGS),
     "linkage": replace(

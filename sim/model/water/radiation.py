@@ -57,6 +57,9 @@ class Radiation:
     onset_s
         Time from the start of a run before which a state has no input, shape ``(n,)``: what comes
         back from afar is not there yet. All that is said by frequency is of long after it.
+    aboard
+        1 for a state of water that the model carries along, 0 for one of water that it passes,
+        shape ``(n,)``: an angle of attack is none to what is on board, which is there in air too.
 
     Raises
     ------
@@ -69,13 +72,13 @@ class Radiation:
     input_matrix: Annotated[FloatArray, _RowsOrArray()]
     output_matrix: Annotated[FloatArray, _RowsOrArray()]
     onset_s: Annotated[FloatArray, _RowsOrArray()] = field(default_factory=lambda: np.zeros(0))
+    aboard: Annotated[FloatArray, _RowsOrArray()] = field(default_factory=lambda: np.zeros(0))
 
     __pydantic_config__: ClassVar = {"extra": "forbid", "arbitrary_types_allowed": True}
 
     def __post_init__(self) -> None:
         for name in ("added_mass_infinite", "state_matrix", "input_matrix", "output_matrix"):
             object.__setattr__(self, name, _numbers(name, getattr(self, name)))
-        onset = _numbers("onset_s", self.onset_s)
         n = len(self.state_matrix) if self.state_matrix.ndim else 0
         shapes = {
             "added_mass_infinite": (2, 2),
@@ -85,9 +88,10 @@ class Radiation:
         }
         for name, shape in shapes.items():
             object.__setattr__(self, name, _checked(name, getattr(self, name), shape))
-        object.__setattr__(
-            self, "onset_s", _checked("onset_s", onset if onset.size else np.zeros(n), (n,))
-        )
+        for name in ("onset_s", "aboard"):
+            given = _numbers(name, getattr(self, name))
+            of_states = _checked(name, given if given.size else np.zeros(n), (n,))
+            object.__setattr__(self, name, of_states)
         fastest_growth = _fastest_growth(n, self.state_matrix.tobytes())
         if fastest_growth >= 0.0:
             raise ConfigurationError(
@@ -111,6 +115,26 @@ class Radiation:
     def states(self) -> int:
         """Number n of states of the memory."""
         return int(self.state_matrix.shape[0])
+
+    @property
+    def passing_matrix(self) -> FloatArray:
+        """What of ``input_matrix`` takes the velocity that comes of the way, shape ``(n, 2)``."""
+        return self.input_matrix * (1.0 - self.aboard)[:, None]
+
+    @property
+    def on_board(self) -> "Radiation | None":
+        """The water that the model carries along by itself; ``None`` if there is none."""
+        at = np.flatnonzero(self.aboard)
+        if not at.size:
+            return None
+        return Radiation(
+            np.zeros((2, 2)),
+            self.state_matrix[np.ix_(at, at)],
+            self.input_matrix[at],
+            self.output_matrix[:, at],
+            self.onset_s[at],
+            self.aboard[at],
+        )
 
     def memory(self, omega_rad_s: ArrayLike) -> ComplexArray:
         """Return K(i w) = B(w) + i w (A(w) - A_inf), shape ``(*omega.shape, 2, 2)``."""
@@ -158,18 +182,21 @@ class Radiation:
         input_matrix: ArrayLike,
         output_matrix: ArrayLike,
         onset_s: float = 0.0,
+        *,
+        aboard: bool = False,
     ) -> "Radiation":
         """Return the memory with further states beside these: the loads of both add up."""
         count, added = self.states, np.asarray(state_matrix)
         matrix = np.zeros((count + len(added), count + len(added)))
         matrix[:count, :count], matrix[count:, count:] = self.state_matrix, added
-        more = np.full(len(added), onset_s)
+        ones = np.ones(len(added))
         return replace(
             self,
             state_matrix=matrix,
             input_matrix=np.concatenate([self.input_matrix, input_matrix]),
             output_matrix=np.concatenate([self.output_matrix, output_matrix], axis=1),
-            onset_s=np.concatenate([self.onset_s, more]),
+            onset_s=np.concatenate([self.onset_s, onset_s * ones]),
+            aboard=np.concatenate([self.aboard, aboard * ones]),
         )
 
 

@@ -40,6 +40,7 @@ CASES = [
     # Where the model only turns no water sloshes: rounding over the least that counts.
     (EntrainedWater(), 1e-7),
     (EntrainedWater(5.0, 0.6, 0.1), 1e-7),
+    (EntrainedWater(5.0, 0.6, 0.1, 0.7), 1e-7),
     (StrutTare(), 1e-3),
 ]
 
