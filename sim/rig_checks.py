@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Collection, Iterator
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -10,7 +11,7 @@ from hardware.description.arrangement import DriftBy, Joint
 from hardware.description.attitude import HeaveAndPitch
 from hardware.description.channels import HEELING, POSITIONS, STEERING, WAVE_PROBE
 from hardware.description.errors import ConfigurationError
-from hardware.description.lines import struts_over_turn
+from hardware.description.lines import Line, struts_over_turn
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
 from sim.acquisition.channels import Acquisition
@@ -48,8 +49,8 @@ def _of_joint(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
         )
     if rig.oscillator.joint is not Joint.SLIDES_ON_RIG:
         return
-    aft, fore = set_point.eccentricity_m * struts_over_turn(set_point.every_line, least=_INSTANTS)
-    sine = float(np.abs(fore - aft).max()) / (2.0 * rig.oscillator.half_spacing_m)
+    apart_m = set_point.eccentricity_m * _furthest_apart(set_point.every_line)
+    sine = apart_m / (2.0 * rig.oscillator.half_spacing_m)
     if rig.oscillator.drift_by is DriftBy.STRUTS_OFFSET:
         sine += abs(math.sin(set_point.drift_rad))
     if sine >= 1.0:
@@ -57,6 +58,13 @@ def _of_joint(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
             f'joint = "slides_on_rig": the displacements would differ by {sine:.3g} of their '
             "spacing (limit 1, where the model stands across); lower eccentricity_m"
         )
+
+
+@lru_cache(maxsize=64)
+def _furthest_apart(lines: tuple[Line, ...]) -> float:
+    """Return the largest difference of both struts over a turn, per eccentricity."""
+    aft, fore = struts_over_turn(lines, least=_INSTANTS)
+    return float(np.abs(fore - aft).max())
 
 
 def _of_circle(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
