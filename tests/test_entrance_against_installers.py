@@ -128,6 +128,7 @@ def test_a_package_that_went_with_the_stranger_is_missed(ours: Environment) -> N
     assert DISTRIBUTION in ours.importing("analysis")
 
 
+@pytest.mark.slow
 def test_a_file_that_nobody_owns_up_to_is_named(unharmed: Environment) -> None:
     file = unharmed.site / "sim" / "__init__.py"
     before = file.read_bytes()
@@ -138,7 +139,7 @@ def test_a_file_that_nobody_owns_up_to_is_named(unharmed: Environment) -> None:
     assert "install anew" in said
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", ["analysis", "sim", "hardware"])
 @pytest.mark.parametrize("kind", ["{}.py", "{}/__init__.py"])
 def test_a_users_own_module_is_named(name: str, kind: str, tmp_path: Path) -> None:

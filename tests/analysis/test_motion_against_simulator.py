@@ -38,7 +38,9 @@ def sampled(phasors: np.ndarray, theta: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("medium", list(Medium))
 @pytest.mark.parametrize("phase", [0.0, math.pi, 1.9])
 @pytest.mark.parametrize(
-    "rig", [vertical_rig(), horizontal_rig(), horizontal_rig(rod_length_m=0.5)], ids=str
+    "rig",
+    [vertical_rig(), horizontal_rig(), horizontal_rig(rod_length_m=0.5)],
+    ids=["vertical", "horizontal", "horizontal with rods"],
 )
 def test_forces_and_displacements_of_both_struts(
     rig: SimulatedRig, phase: float, medium: Medium

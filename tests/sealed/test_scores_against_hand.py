@@ -146,6 +146,7 @@ def test_what_is_no_score_is_named(docs: Path, entries: dict[str, Any], said: st
         all_scores(docs)
 
 
+@pytest.mark.slow
 def test_the_page_is_written_again_from_what_was_kept(docs: Path) -> None:
     assert _run("page", "--docs", str(docs)).exit_code == 0
     assert (docs / "scoreboard.md").read_text() == page(all_scores(docs))

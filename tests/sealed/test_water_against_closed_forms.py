@@ -39,6 +39,7 @@ def test_coefficients_are_the_kernel_s_transform(omega: float) -> None:
     assert damping[0] == pytest.approx(cosine, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_damping_over_frequency_gives_the_kernel_back() -> None:
     """Ogilvie: K(t) = 2/pi times the integral of B cos(w t); so cause comes before effect."""
     rate, turn = 2.2, 4.5

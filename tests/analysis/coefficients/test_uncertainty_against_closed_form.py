@@ -122,7 +122,7 @@ def test_shares_add_up_and_name_the_greatest() -> None:
     assert sum(parts.values()) == pytest.approx(spread_of(result, "a33") ** 2, rel=1e-12)
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("form", list(Form))
 def test_monte_carlo_beside_the_linear_budget(form: Form) -> None:
     generator = np.random.default_rng(2)

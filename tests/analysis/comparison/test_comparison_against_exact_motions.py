@@ -249,7 +249,7 @@ def test_missing_samples_leave_the_longest_stretch() -> None:
     assert found.from_s > 3.6
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("order", [0, 1])
 def test_uneven_stamps_leave_the_intervals_right(order: int) -> None:
     what, missed = truth(order), []

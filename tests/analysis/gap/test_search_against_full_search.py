@@ -85,7 +85,7 @@ def test_backlash_is_looked_at_where_the_shaft_turns_unevenly(
     assert worth_a_look(find("load-ripple"), seen)  # the struts tell of either
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["load-ripple", "coulomb-friction", "quadratic-damping", "joint-play", "speed-ripple"]
 )

@@ -66,7 +66,7 @@ def with_gaps(count: int, gaps: dict[int, list[tuple[int, int]]]) -> np.ndarray:
     return samples
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     "gaps",
     [

@@ -57,7 +57,7 @@ def noise(kind: str, periods: int) -> FloatArray:
     return np.asarray(wave + 0.2 * rng.standard_normal(shape))
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("periods", [10, 20])
 @pytest.mark.parametrize(("kind", "part"), [("slow", 0), ("beside", 1), ("dying", 1)])
 def test_intervals_hold_where_the_noise_remembers(kind: str, part: int, periods: int) -> None:
@@ -65,7 +65,7 @@ def test_intervals_hold_where_the_noise_remembers(kind: str, part: int, periods:
     assert held[:, part].mean() >= 0.95 - THREE_SIGMA
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("periods", [10, 20, 40])
 def test_white_noise_costs_little(periods: int) -> None:
     held, factor = intervals(resolved(noise("white", periods)))

@@ -122,6 +122,7 @@ def test_coherence_against_power() -> None:
     assert expected.min() < 0.9  # the noise matters
 
 
+@pytest.mark.slow
 def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
     """The transient is in it; 2 x 5 x 150 parts, so 95 % have a standard deviation of 0.6 %."""
     generator = np.random.default_rng(6)

@@ -46,6 +46,7 @@ def outcome(remembers: bool = True) -> CampaignOutcome:
     )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_simulation_reads_what_is_written_and_gives_the_harmonics_again(tmp_path: Path) -> None:
     write_memory(outcome(), tmp_path / "hull.toml")
     (tmp_path / "campaign.toml").write_text(HEAD + (tmp_path / "hull.toml").read_text())

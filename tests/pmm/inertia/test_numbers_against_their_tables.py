@@ -42,6 +42,7 @@ def test_shares_add_up_and_json_has_no_nan(hull: Outcome) -> None:
     assert text["targets"][0]["verdict"] == "pass"
 
 
+@pytest.mark.slow
 def test_the_same_document_twice(hull: Outcome) -> None:
     again = bifilar.run(str(EXAMPLES / "hull.toml"))
     assert as_data(document(hull)) == as_data(document(again))

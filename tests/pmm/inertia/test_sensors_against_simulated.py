@@ -71,7 +71,7 @@ def found(outcome: Outcome, name: str) -> tuple[float, float]:
     return one.value, one.uncertainty
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("channel", "header", "factor"),
     [

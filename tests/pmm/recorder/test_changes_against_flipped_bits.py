@@ -86,6 +86,7 @@ def spoil_sample(run: Path) -> tuple[int, int]:
     return int(syncs[0]), int(syncs[-1])
 
 
+@pytest.mark.slow
 def test_a_flipped_bit_anywhere_in_the_samples_is_said_or_harmless(run: Path) -> None:
     path = run / "samples.arrows"
     whole, truth, silent = path.read_bytes(), values(read_samples(path)), 0

@@ -46,7 +46,7 @@ def test_a_file_does_not_depend_on_those_written_before(kind: str) -> None:
     assert render(alone, "svg", "s") == drawn == render(figure, "svg", "s")
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", FIGURES)
 def test_hostile_names_are_drawn_as_they_are(kind: str) -> None:
     analysis = analysed(run(3, names=HOSTILE, name="a <b> & $c$"))

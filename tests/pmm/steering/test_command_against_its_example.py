@@ -167,6 +167,7 @@ def test_what_is_left_out_is_named_and_what_would_tell_the_rest(tows: Path, tmp_
     assert "straight-tow-b0-n8-d-20: left out: it states neither rudder_angle_deg nor" in told
 
 
+@pytest.mark.slow
 def test_the_report_has_them_where_the_folder_has_the_file(
     tows: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -219,7 +220,7 @@ def test_coefficients_have_the_rudders_derivatives(tows: Path) -> None:
     assert rows["X_dd"]["value"] == pytest.approx(bend / (4.0 * step), rel=0.1)
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("channel", "of", "said"),
     [

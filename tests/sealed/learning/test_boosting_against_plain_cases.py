@@ -21,6 +21,7 @@ def _example(rng: np.random.Generator, index: int) -> Example:
     return Example(index, (name,), (stage,) if stage else (), numbers)
 
 
+@pytest.mark.slow
 def test_what_is_plain_is_named_with_its_stage() -> None:
     """An offset of 20 sigma cannot be missed, and nothing is called nothing."""
     rng = np.random.default_rng(5)

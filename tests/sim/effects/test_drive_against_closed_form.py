@@ -48,6 +48,7 @@ def test_signature(effect: Effect, tolerance: float, rig: SimulatedRig) -> None:
     assert at_small_angles(effect, rig.ideal(), SET_POINTS) < tolerance
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("effect", [SpeedDroop(2e-4), LoadRipple(200.0)])
 def test_friction_of_the_guides_loads_the_shaft(effect: Effect) -> None:
     rig = vertical_rig().ideal()

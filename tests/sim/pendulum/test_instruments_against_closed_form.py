@@ -188,6 +188,7 @@ def test_gate_files_hold_every_edge_with_both_states(tmp_path: Path) -> None:
         found.write_gates(path)
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("model", [None, SWING_MODEL_2021])
 def test_static_series_have_the_angles_of_equation_2(model) -> None:  # type: ignore[no-untyped-def]
     weights = (0.0, 0.2, 0.5)
