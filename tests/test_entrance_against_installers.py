@@ -97,6 +97,7 @@ def _installed(folder: Path) -> Environment:
     return environment
 
 
+@pytest.mark.slow
 def test_nothing_is_said_of_what_pip_laid_down(unharmed: Environment) -> None:
     assert [unharmed.importing(name) for name in PACKAGES] == [""] * 4
     assert unharmed.run("pmm").stdout == "our command\n"

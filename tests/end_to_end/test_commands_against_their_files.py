@@ -54,6 +54,7 @@ def _values(found: Any, factor: float = 1.0) -> list[str]:
     )
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("options", [(), ("--gate", "3"), ("--opens-at", "1", "--periods", "1")])
 def test_the_table_has_the_numbers_of_the_json_document(
     folder: Path, options: tuple[str, ...]

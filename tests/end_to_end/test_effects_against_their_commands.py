@@ -81,7 +81,7 @@ def test_one_effect_has_its_signature_beside_the_simulated_one() -> None:
     assert found["force_aft", 1] == pytest.approx(8.0 / np.pi, rel=1e-3)
 
 
-@pytest.mark.sample(50)
+@pytest.mark.sample(24)
 @pytest.mark.parametrize("name", list(catalogue()))
 def test_every_effect_can_be_shown(name: str) -> None:
     shown = run("effects", name, "--speed", 1.0, "--phase", 90)

@@ -80,7 +80,7 @@ def test_the_shown_lines_are_printed(
         assert " ".join(line.split()) in lines
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(("job", "number"), [("swing", 0), ("bifilar", 1)])
 def test_every_file_on_the_page_runs(job: str, number: int, tmp_path: Path) -> None:
     for record in EXAMPLES.glob("*.csv.gz"):

@@ -57,6 +57,7 @@ def spent(rig: ExactRig) -> NDArray[np.float64]:
     return np.asarray(rate(np.asarray(energy + 0j, dtype=np.complex128), rig.omega).real - lost)
 
 
+@pytest.mark.sample(17)
 @pytest.mark.parametrize("arrangement", ARRANGEMENTS, ids=lambda a: "-".join(vars(a).values()))
 @pytest.mark.parametrize("plane", Plane)
 def test_work_of_the_struts_is_energy_and_water(plane: Plane, arrangement: Arrangement) -> None:

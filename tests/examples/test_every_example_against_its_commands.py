@@ -122,7 +122,7 @@ def test_led_struts_give_what_was_put_in_and_tell_how_they_followed(tmp_path: Pa
     assert {"amplitude", "phase setting"} <= shares
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("name", INERTIA)
 def test_an_inertia_file_gives_its_numbers(name: str) -> None:
     path = EXAMPLES / "inertia" / f"{name}.toml"

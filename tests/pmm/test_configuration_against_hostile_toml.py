@@ -53,6 +53,7 @@ EVERYWHERE = (
 )
 
 
+@pytest.mark.sample(19)
 @pytest.mark.parametrize("read", READERS)
 @pytest.mark.parametrize("text", EVERYWHERE, ids=range(len(EVERYWHERE)))
 def test_every_reader_refuses_in_words(

@@ -77,6 +77,7 @@ def test_seeds_for_development_are_never_kept(docs: Path, made: Score, seed: str
     assert len(list((docs / "scores").iterdir())) == 2
 
 
+@pytest.mark.slow
 def test_the_page_has_a_column_for_each_score_and_links_to_all_figures(docs: Path) -> None:
     target = "| sealed board: share of pairs named, each member 10 sigma"
     write_scoreboard(docs)

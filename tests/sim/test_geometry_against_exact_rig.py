@@ -35,7 +35,7 @@ EVERY = pytest.mark.parametrize(
 )
 
 
-@pytest.mark.sample(25)
+@pytest.mark.sample(11)
 @EVERY
 @pytest.mark.parametrize("plane", Plane)
 @pytest.mark.parametrize("medium", Medium)
@@ -53,6 +53,7 @@ def test_steady_state_is_the_exact_cycle(
             assert np.abs(found[name][: ORDERS + 1] - column).max() < 1e-6 * size
 
 
+@pytest.mark.sample(13)
 @EVERY
 @pytest.mark.parametrize("plane", Plane)
 def test_samples_are_the_exact_readings(plane: Plane, arrangement: Arrangement) -> None:
@@ -66,6 +67,7 @@ def test_samples_are_the_exact_readings(plane: Plane, arrangement: Arrangement) 
             assert np.abs(run[name] - row).max() < 1e-12 * np.abs(expected).max()
 
 
+@pytest.mark.sample(7)
 @EVERY
 def test_a_model_below_the_surface_weighs_more_than_its_water(arrangement: Arrangement) -> None:
     point = set_point(arrangement, LARGEST_RAD[Plane.VERTICAL], Medium.WATER)
@@ -92,6 +94,7 @@ def test_another_speed_of_the_carriage_is_that_of_its_exact_rig(plane: Plane) ->
         assert np.abs(run[name] - row).max() < 1e-12 * np.abs(expected).max()
 
 
+@pytest.mark.sample(13)
 @EVERY
 @pytest.mark.parametrize("plane", Plane)
 def test_what_gives_way_moves_the_exact_model(plane: Plane, arrangement: Arrangement) -> None:

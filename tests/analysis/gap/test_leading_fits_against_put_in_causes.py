@@ -31,6 +31,7 @@ def _chi_square(problem: Problem, fit: Fit) -> float:
     return misfit(left, problem.nuisances.among(steady)) / len(left)
 
 
+@pytest.mark.slow
 def test_a_rod_and_friction_are_found_on_a_rig_whose_coupling_is_far_off(
     rig: SimulatedRig,
 ) -> None:

@@ -18,7 +18,7 @@ from sim.rig import SimulatedRig
 from tests.analysis.gap.small import POINTS, USUAL, problem_of, record
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["coulomb-friction", "quadratic-damping", "amplifier-lag"])
 def test_of_an_effect(name: str, rig: SimulatedRig, clean: tuple[GapRun, ...]) -> None:
     problem = problem_of(rig, clean)

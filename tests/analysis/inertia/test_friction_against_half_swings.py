@@ -43,7 +43,7 @@ def analysed(dead_zone: float, ratio: float, seed: int) -> RecordAnalysis:
     )
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("ratio", [0.0005, 0.003])
 @pytest.mark.parametrize("dead_zone", [3e-5, 1e-4, 3e-4, 1e-3])
 def test_friction_does_not_shift_the_period(dead_zone: float, ratio: float) -> None:

@@ -15,7 +15,7 @@ _FAST = Servo(current_loop_hz=1e6)  # an inertia under a torque that comes at on
 _TORQUE = _FAST.constant_n_m_a * _FAST.gear_ratio
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(("gain", "delay_s"), [(0.1, 0.02), (3.0, 0.005), (20.0, 1e-3)])
 def test_margins_of_an_inertia_behind_a_dead_time(gain: float, delay_s: float) -> None:
     """L = w_c exp(-s d) / s: crossover w_c, margins pi/2 - w_c d and pi / (2 w_c d)."""

@@ -187,7 +187,7 @@ def example() -> str:
     return str(found[0])
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("broken", "said"),
     [

@@ -67,6 +67,7 @@ def test_people_read_the_same(rig: Path) -> None:
     assert "stated in" in said
 
 
+@pytest.mark.slow
 def test_every_number_that_has_a_name_belongs_to_a_tolerance(rig: Path) -> None:
     loaded = load_campaign(rig)
     simulator = Simulator(loaded.rig, Stack.of(pooled(loaded.runs, loaded.rig, Tolerances())))

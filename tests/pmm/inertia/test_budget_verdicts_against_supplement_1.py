@@ -48,7 +48,7 @@ def _standard(freedom: float, rng: np.random.Generator) -> FloatArray:
     return np.asarray(stats.t.rvs(freedom, size=TRIALS, random_state=rng))
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("job", "file", "name", "formula", "least"),
     [

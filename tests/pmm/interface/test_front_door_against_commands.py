@@ -45,7 +45,8 @@ def _json(*words: str) -> dict[str, object]:
 @pytest.fixture(scope="module")
 def campaign(tmp_path_factory: pytest.TempPathFactory) -> Records:
     folder = tmp_path_factory.mktemp("front-door") / "campaign"
-    return pmm.simulate(EXAMPLES / "vertical" / "campaign.toml", folder)
+    runs = ["heave-0.50", "pitch-0.50"]
+    return pmm.simulate(EXAMPLES / "vertical" / "campaign.toml", folder, runs=runs)
 
 
 @pytest.fixture(scope="module")

@@ -39,6 +39,7 @@ def _file(rig: SimulatedRig, motor: dict[str, object]):
     )
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("rig", [vertical_rig(), horizontal_rig()])
 @pytest.mark.parametrize("motor", _MOTORS.values(), ids=_MOTORS)
 @pytest.mark.parametrize(("medium", "phase_rad"), [(Medium.WATER, 0.0), (Medium.AIR, 2.2)])

@@ -59,7 +59,7 @@ def test_a_full_disk_is_a_sentence_with_its_file_and_leaves_no_half_of_one(
     assert {one.name for one in to.iterdir()} <= {LOCK}
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("size_bytes", [0, 500, 2000, 6000, 20_000])
 def test_a_run_ends_with_the_hint_to_resume(size_bytes: int, tmp_path: Path) -> None:
     plan, folder = written_plan(tmp_path), tmp_path / "out"

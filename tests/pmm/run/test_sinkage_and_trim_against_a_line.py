@@ -20,6 +20,7 @@ SINKS, TRIMS = 4e-3, -3.5e-3  # m and rad per (m/s)^2: down, bow down
 METRES = {"unit": "m", "scale": 1e-7, "full_scale": 0.1}
 
 
+@pytest.mark.slow
 def test_a_towed_model_that_is_free_records_where_it_stands(tmp_path: Path) -> None:
     gauge = amplifier(6, "position_aft", "position_fore")
     gauge["channels"] = [one | METRES for one in gauge["channels"]]

@@ -77,7 +77,7 @@ def test_a_simulated_rig_runs(tmp_path: Path) -> None:
     assert found["reference_frequency_hz"] == pytest.approx(0.83, rel=1e-3)
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("plane", ["vertical", "horizontal"])
 def test_a_campaign_is_simulated_and_analysed(tmp_path: Path, plane: str) -> None:
     pmm("init", "campaign", "--yes", "--output", tmp_path, "--plane", plane)

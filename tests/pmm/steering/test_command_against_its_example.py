@@ -220,7 +220,7 @@ def test_coefficients_have_the_rudders_derivatives(tows: Path) -> None:
     assert rows["X_dd"]["value"] == pytest.approx(bend / (4.0 * step), rel=0.1)
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("channel", "of", "said"),
     [

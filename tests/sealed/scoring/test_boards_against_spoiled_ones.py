@@ -38,6 +38,7 @@ def _strange(board: Path) -> None:
     (board / "answers" / "case-0099.json").write_text(path.read_text())
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize(
     ("spoil", "said"),
     [

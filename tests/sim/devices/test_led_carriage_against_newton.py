@@ -29,6 +29,7 @@ def after(speed: float, told: float) -> float:
     return speed
 
 
+@pytest.mark.slow
 def test_a_carriage_that_is_led_lags_as_it_is_stated() -> None:
     rig_of = replace(horizontal_rig(), carriage=CarriageSettings(lag_s=LAG_S))
     with in_process({"carriage": CARRIAGE}, rig_of, on_bus=False, serial=("carriage",)) as both:

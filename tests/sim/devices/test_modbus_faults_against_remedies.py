@@ -61,7 +61,7 @@ def faults_of(rig: Rig, cycles: int) -> list[str]:
     return found
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("framing", ["tcp", "rtu"])
 @pytest.mark.parametrize(
     ("words", "kind", "remedy"),
@@ -89,7 +89,7 @@ def test_each_fault_is_told_once_with_its_remedy(framing, words, kind, remedy) -
         assert re.search(remedy, told), told
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("path", "kind", "remedy"),
     [

@@ -71,6 +71,7 @@ def test_what_is_on_the_wire(ending: str) -> None:
         assert {b"RS", b"RP", b"ST", b"DI", b"SP+0.00"} <= set(said)
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("words", "kind", "remedy"),
     [

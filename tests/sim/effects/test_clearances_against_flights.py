@@ -32,7 +32,7 @@ SET_POINTS = [
 IN_AIR = SetPoint(0.7, 0.02, 0.0, 0.0, Medium.AIR)
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("effect", "set_points", "tolerance"),
     [

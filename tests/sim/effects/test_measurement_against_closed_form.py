@@ -68,6 +68,7 @@ def test_signature(effect: Effect, rig: SimulatedRig, tolerance: float) -> None:
     assert at_small_angles(effect, rig, SET_POINTS) < tolerance
 
 
+@pytest.mark.sample(13)
 @pytest.mark.parametrize("limits", [(0.9, 0.9), (0.5, 0.5), (0.8, 5.0), (5.0, 0.6)])
 @pytest.mark.parametrize("set_point", SET_POINTS[::4])
 @pytest.mark.parametrize("rig", [VERTICAL, LOADED])

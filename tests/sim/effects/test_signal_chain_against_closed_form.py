@@ -76,7 +76,7 @@ def relative_gap(theory: Signature, nominal: InTime, found: dict[str, np.ndarray
     return worst
 
 
-@pytest.mark.sample(6)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("every", [3, 5, 20])
 @pytest.mark.parametrize(("rig", "set_point"), IN_TIME)
 def test_missed_pulses_in_the_time_domain(
@@ -92,7 +92,7 @@ def test_missed_pulses_in_the_time_domain(
     assert relative_gap(theory, nominal, found) < 1e-9
 
 
-@pytest.mark.sample(6)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(("cycles", "fraction"), [(1, 0.4), (10, 0.1), (3, 0.75)])
 @pytest.mark.parametrize(("rig", "set_point"), IN_TIME)
 def test_late_gate_in_the_time_domain(

@@ -75,6 +75,7 @@ def test_one_state_gives_the_same_samples_twice() -> None:
         np.testing.assert_array_equal(values, twice[name])
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("make", [busy_suspension, busy_swing])
 def test_without_numba_the_numbers_are_the_same(make, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
     chain = make().chain()

@@ -54,6 +54,7 @@ def test_every_effect_is_described_and_typical_values_are_plausible(effect) -> N
         assert getattr(made, key) == known.typical
 
 
+@pytest.mark.sample(11)
 @pytest.mark.parametrize("effect", CATALOGUE, ids=lambda one: one.name)
 def test_every_effect_changes_the_record_of_a_yaw_and_sway_test(effect) -> None:  # type: ignore[no-untyped-def]
     if effect.name in ("force", "force_sign"):

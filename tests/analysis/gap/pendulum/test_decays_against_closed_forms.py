@@ -59,7 +59,7 @@ SIZES = {
 }
 
 
-@pytest.mark.sample(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", list(LOSSES))
 def test_loss_is_named_with_its_size(name: str) -> None:
     problem = decay(LOSSES[name], seed=3)
