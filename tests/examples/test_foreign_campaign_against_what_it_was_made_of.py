@@ -69,6 +69,7 @@ def test_a_first_try_is_told_unit_and_sign() -> None:
     }
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("channel", "line", "code"),
     [

@@ -199,6 +199,7 @@ def _said(found: dict[str, dict[str, float]]) -> str:
     return max(found["probabilities"], key=lambda name: found["probabilities"][name])
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("law", "size", "said"),
     [(None, 0.0, "none"), ("sign v", 3.0, "coulomb-friction"), ("v|v|", 3.0, "quadratic-damping")],

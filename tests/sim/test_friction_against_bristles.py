@@ -50,6 +50,7 @@ def apart(law: ForceLaw, course: FloatArray) -> float:
     return float(np.linalg.norm(simulated(law) - expected) / np.linalg.norm(expected))
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("distance_m", [2e-5, 1e-4, 4e-4])
 def test_bristles_turn_over_their_distance(distance_m: float) -> None:
     """To first order in d/A: 2e-3 of it and the creep's share at the shortest."""

@@ -14,6 +14,7 @@ from tests.sim.manoeuvring import from_added_mass_and_damping
 RIGS = [vertical_rig().ideal(), horizontal_rig().ideal()]
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("rig", RIGS, ids=lambda rig: rig.oscillator.plane)
 @pytest.mark.parametrize("form", list(Form))
 @pytest.mark.parametrize(("speed_m_s", "ahead_m"), [(0.0, 0.0), (1.5, 0.0), (1.5, -0.3)])

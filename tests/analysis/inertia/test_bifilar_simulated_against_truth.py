@@ -43,6 +43,7 @@ def yaw_of(series: Series) -> Estimate:
     return single_run(local, zero_amplitude_period(local).period).estimate
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("seed", range(5))
 def test_gyradius_within_a_thousandth(seed: int) -> None:
     period = yaw_of(yaw_record(seed))

@@ -146,6 +146,7 @@ def test_a_stretchs_own_phase_says_nothing_of_the_period(
     assert zero_amplitude_period(local).laws[2].period_s == pytest.approx(PERIOD_S, rel=1e-9)
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(("power", "slope"), [(0, 0.0), (1, 0.02), (2, 0.2)])
 def test_extrapolation_covers_whichever_law_holds(power: int, slope: float) -> None:
     rng = np.random.default_rng(6)

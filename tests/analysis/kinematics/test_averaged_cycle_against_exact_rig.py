@@ -41,6 +41,7 @@ def test_harmonics_of_a_rig_say_its_motion_and_loads(
         assert np.abs(ours - theirs).max() < 1e-9 * np.abs(theirs).max()
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("joint", Joint)
 def test_slopes_follow_every_channel(joint: Joint) -> None:
     """What the phasors make of deviates, one for each number, against small steps."""

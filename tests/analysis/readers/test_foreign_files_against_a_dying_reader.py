@@ -73,7 +73,7 @@ def dying(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     end_children()
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(1)
 @pytest.mark.usefixtures("dying")
 @pytest.mark.parametrize(
     ("does", "said"),

@@ -66,7 +66,7 @@ def check(kind: str, share: FloatArray, highest_in_white: float = 0.98) -> None:
         assert share.max() <= highest_in_white, share
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("periods", [5, 10, 30])
 @pytest.mark.parametrize("kind", NOISES)
 def test_whole_periods_cover(kind: str, periods: int) -> None:
@@ -98,7 +98,7 @@ def test_the_residual_taken_as_white_would_not_cover(kind: str) -> None:
     assert covered < 0.85
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("kind", NOISES)
 @pytest.mark.parametrize("at", [0, 4, 9])
 def test_single_period_takes_its_scatter_from_its_neighbours(kind: str, at: int) -> None:

@@ -23,6 +23,7 @@ def shared_hull(body: str, plane: Plane) -> RadiationTable:
 BODIES = ["wigley_L3.0_B0.3_T0.1875", "box_L2.0_B0.4_T0.15"]
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("body", BODIES)
 @pytest.mark.parametrize("plane", list(Plane))
 def test_panel_methods_hulls(body: str, plane: Plane) -> None:
