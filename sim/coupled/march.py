@@ -113,9 +113,7 @@ class CoupledMarch:
         reach = np.hypot(struts[:, :2], self._levers(shaft_motion)).max()
         # At no eccentricity nothing has an arm: the torque's rounding then.
         torque = max(2.0 * course.scale[0] * reach, _LEAST_N_M)
-        stiffness, half = self.shaft.gap
         more = np.full(len(self.shaft.system.B.T), torque)
-        more[1:] += 2.0 * half * stiffness  # what the teeth give back on the far side
         return course._replace(scale=np.concatenate([course.scale, more]))
 
     def _struts(self, shaft_motion: ShaftMotion) -> FloatArray:
