@@ -32,7 +32,7 @@ _WHY: Final = {
     "D3": "first order in M e²/J; below 1e-3 with 200 kg m2 and small angles",
     "D4": "theory has rigid teeth, which do not bounce or ring",
     "K6b": "theory has rigid sides without bounce, and forces of one harmonic; "
-    "1.3e-2 with 1e-5 m, 2e7 N/m and 2e4 N s/m in heave",
+    "1.3e-2 with 1e-5 m and 5e6 N/m in heave",
     "K5": "the leading power of e/l; below 1e-3 at 10 mm",
     "K7": "first order in drift and motion; struts' forces change with the square of the motion",
 }

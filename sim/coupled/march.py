@@ -18,13 +18,7 @@ from sim.model.hull import Hull
 from sim.model.law_table import has_number
 from sim.model.model_march import OUTPUTS, Marching, marching_of
 from sim.signals import Signals
-from sim.solve.linear_system import (
-    Hold,
-    LinearSystem,
-    causal_hold,
-    inputs_at_sample,
-    left_after,
-)
+from sim.solve.linear_system import LinearSystem, causal_hold
 from sim.stage import Block, Stage
 
 if TYPE_CHECKING:
@@ -126,29 +120,28 @@ class CoupledMarch:
 
     def _shaft_loop(self, unladen: Unladen) -> MarchedShaft:
         shaft, count = self.shaft, self.block.count
-        step_s = 1.0 / self.block.sample_rate_hz
-        hold, now = _hold(shaft.system, step_s, shaft.leads_s)
+        hold = _hold(shaft.system, 1.0 / self.block.sample_rate_hz)
         n, inputs = shaft.system.B.shape
         to_outputs = np.zeros((n, 4))
         to_outputs[:, : len(shaft.system.C)] = shaft.system.C.T
-        direct = np.zeros((TORQUE_DEGREE + 1, inputs, 4))
-        direct[:, :, : len(shaft.system.D)] = now[:, :, np.newaxis] * shaft.system.D.T
-        by_torque = direct[-1] + hold.weights[-1].T @ to_outputs
+        by_torque = np.zeros((inputs, 4))
+        by_torque[:, : len(shaft.system.D)] = shaft.system.D.T
+        at_once = by_torque + 0.0
+        by_torque += hold[1][-1].T @ to_outputs
         return MarchedShaft(
             True,
-            np.array(hold.step),
-            np.array(hold.weights),
-            direct[:-1, 1:].copy(),
+            hold[0],
+            hold[1],
             to_outputs,
             by_torque,
-            direct[-1].copy(),
-            unladen.samples,
+            at_once,
+            np.column_stack([*unladen.motion, unladen.opening]),
             np.zeros((count + TORQUE_DEGREE, n)),
             np.zeros((count + TORQUE_DEGREE, inputs)),
             np.empty((count, 5)),
             np.array([shaft.reflected_inertia_kg_m2, *shaft.friction[::-1], *shaft.lifted_n]),
             np.array(shaft.cogging, dtype=np.float64).reshape(-1, 3),
-            np.array([*shaft.gap, 0.0, left_after(step_s, shaft.relaxation_s)]),
+            np.array([*shaft.gap, 0.0]),
         )
 
     def _signals(
@@ -183,9 +176,6 @@ def coupled_march(
 
 
 @lru_cache(maxsize=64)
-def _hold(
-    system: LinearSystem, step_s: float, leads_s: tuple[float, ...]
-) -> tuple[Hold, FloatArray]:
-    leads = np.array(leads_s)
-    hold = causal_hold(system, step_s, TORQUE_DEGREE, leads)
-    return hold, inputs_at_sample(step_s, TORQUE_DEGREE, leads)
+def _hold(system: LinearSystem, step_s: float) -> tuple[FloatArray, FloatArray]:
+    hold = causal_hold(system, step_s, TORQUE_DEGREE)
+    return np.array(hold.step), np.array(hold.weights)

@@ -70,12 +70,12 @@ class Coupled:
     ) -> tuple[tuple[Any, Any, Any], Signals]:
         """Return states and signals over the block.
 
-        Where a gear's teeth move faster than the samples follow, there are steps between them; the
+        Where a gear's teeth ring faster than the samples follow, there are steps between them; the
         carriage's speed stays over these as at the sample that they lead to.
         """
         if self.drive.settings.gear is None or not block.count:
             return self._in_stretches(state, block, inputs)
-        times = substeps(self.drive.teeth, 1.0 / block.sample_rate_hz)
+        times = substeps(self.drive.system.A, 1.0 / block.sample_rate_hz)
         lone = 1 if block.first == 0 else 0  # a run's first sample has no step before it
         first = 0 if lone else times * (block.first - 1) + 1
         count = times * (block.count - lone) + lone
@@ -149,7 +149,7 @@ class Coupled:
         hull: Any = self.hull
         if hasattr(hull, "repeating"):
             stage = stage.with_part("hull", hull.repeating)
-        fine = fine_enough(real, self.drive.teeth)
+        fine = fine_enough(real, self.drive.system.A)
         if hasattr(hull, "system") and hull.system.elastic_count:
             fine = fine_enough(fine, hull.system.state_matrix)
         samples = {name: fine.values(values) for name, values in inputs.items()}

@@ -15,8 +15,8 @@ from sim.solve.linear_system import LinearSystem
 class Gear:
     """A clearance in the last gear: the cranks turn freely in it.
 
-    The teeth are a spring and a damper, both in contact only, and never pull. The motor's own
-    inertia, before the gear, is fed forward.
+    The teeth are a spring and a damper; the damper acts across the clearance too, as oil does. The
+    motor's own inertia, before the gear, is fed forward.
 
     Attributes
     ----------
@@ -53,8 +53,7 @@ class Gear:
 def geared(motor: Motor | None, gear: Gear, added_inertia_kg_m2: float) -> LinearSystem:
     """Return cranks behind a gear, and the motor before it.
 
-    With d the cranks' deviation, d_m the motor's, and c what the teeth give back that touch nothing
-    (:mod:`sim.model.clearance`),
+    With d the cranks' deviation, d_m the motor's, and c what the teeth give back in the clearance,
 
         J d'' = k (d_m - d) + s (d_m' - d') - c - T
 

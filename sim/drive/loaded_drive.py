@@ -43,21 +43,12 @@ class LoadedState(NamedTuple):
 
 
 class Unladen(NamedTuple):
-    """The shaft's motion without its struts, and what is kept.
-
-    The opening of its gear (rad) is of the sample before the first, too: ``(samples + 1,)``.
-    """
+    """The shaft's motion without its struts, the opening of its gear (rad), and what is kept."""
 
     motion: ShaftMotion
     opening: FloatArray
     ahead: tuple[float, ...]
     speeds: Tail
-
-    @property
-    def samples(self) -> FloatArray:
-        """Angle, speed, acceleration and opening, as the march takes them."""
-        motion = np.column_stack(self.motion)
-        return np.column_stack([np.vstack([motion[:1], motion]), self.opening])
 
 
 @dataclass(frozen=True)
@@ -142,8 +133,7 @@ class LoadedDrive:
             states @ driven.C.T + speeds @ driven.D.T + motion.acceleration[:, np.newaxis] @ direct
         )
         tail = tuple(tuple(row) for row in joined[-TORQUE_DEGREE:].tolist())
-        before = driven.C @ first + driven.D @ past[-1]
-        opening = np.vstack([before, moved])[:, 3:].sum(axis=1)  # none without a gear
+        opening = moved[:, 3] if moved.shape[1] > 3 else np.zeros(block.count)
         return Unladen(motion.beyond(moved), opening, tuple(states[-1].tolist()), tail)
 
     def steady(self, period: Period, inputs: Spectra) -> tuple[Period, Spectra]:
@@ -197,22 +187,6 @@ class LoadedDrive:
         return closed_loop(self.motor, self.reflected_inertia_kg_m2)
 
     @cached_property
-    def teeth(self) -> FloatArray:
-        """Rates of the opening of a gear in contact and its rate, per these: shape ``(2, 2)``."""
-        if self.settings.gear is None:
-            return np.zeros((0, 0))
-        turning = self.settings.gear.crank_inertia_kg_m2 + self.reflected_inertia_kg_m2
-        if self.motor is not None:
-            turning = 1.0 / (1.0 / turning + 1.0 / self.motor.shaft_inertia_kg_m2)
-        gear = self.settings.gear
-        return np.array(
-            [
-                [0.0, 1.0],
-                [-gear.stiffness_n_m_rad / turning, -gear.damping_n_m_s_rad / turning],
-            ]
-        )
-
-    @cached_property
     def guides(self) -> tuple[Guides, ...]:
         """Friction of the struts' guides: the drive's, and the motor's own."""
         guides = () if self.motor is None else (self.motor.guides,)
@@ -241,7 +215,6 @@ class LoadedDrive:
                 for harmonic in self.cogging
             ),
             (0.0, 0.0) if gear is None else (gear.stiffness_n_m_rad, gear.backlash_rad / 2.0),
-            0.0 if gear is None else gear.damping_n_m_s_rad / gear.stiffness_n_m_rad,
             self.lifted_n,
         )
 

@@ -23,8 +23,6 @@ class ShaftSystem:
         Of the model at the shaft, solved as part of it.
     gap
         Stiffness and half clearance of the gear, or zeros.
-    relaxation_s
-        In which what the teeth have given way dies out once they touch nothing.
     lifted_n
         What each strut holds at rest beside what its gauge reads.
     """
@@ -36,13 +34,7 @@ class ShaftSystem:
     friction: tuple[float, float]
     cogging: tuple[tuple[float, float, float], ...]
     gap: tuple[float, float]
-    relaxation_s: float
     lifted_n: tuple[float, float]
-
-    @property
-    def leads_s(self) -> tuple[float, ...]:
-        """By which the inputs lead what the march knows of them: the teeth's damper feels rates."""
-        return (0.0, self.relaxation_s)[: self.system.B.shape[1]]
 
 
 class MarchedShaft(NamedTuple):
@@ -56,8 +48,6 @@ class MarchedShaft(NamedTuple):
         What a sample leaves of the n states, shape ``(n, n)``.
     by_inputs
         What the load torque and the gear's return add, oldest sample first, shape ``(4, n, 2)``.
-    past_to_outputs
-        What the gear's return at the three samples before adds to the outputs: ``(3, 1, 4)``.
     to_outputs, by_torque
         From states and from this sample's inputs (by way of the state too) to the outputs, shapes
         ``(n, 4)`` and ``(2, 4)``.
@@ -65,8 +55,7 @@ class MarchedShaft(NamedTuple):
         From this sample's inputs alone, where the state is known already.
     unloaded
         Angle, speed, acceleration without the struts' load, and the opening of a gear's clearance
-        then: at the sample before the first (of which only the opening counts) and at each one,
-        ``(samples + 1, 4)``.
+        then: ``(samples, 4)``.
     states, torques
         At the three samples before the first and, once solved, at each: ``(samples + 3, n)`` and
         ``(samples + 3, 1)``, or 2 with a gear that has a clearance.
@@ -78,13 +67,12 @@ class MarchedShaft(NamedTuple):
     cogging
         Order, torque and phase, one a row.
     gap
-        As of the gauges' joints, N m and rad, and what a sample leaves of the teeth's give.
+        As of the gauges' joints, N m and rad.
     """
 
     driven: bool
     step: FloatArray
     by_inputs: FloatArray
-    past_to_outputs: FloatArray
     to_outputs: FloatArray
     by_torque: FloatArray
     at_once: FloatArray

@@ -24,10 +24,10 @@ class GearBacklash(Effect):
 
     Only where the load torque reverses, ``|Z| e^2/2`` beyond its mean: friction or a brake closes
     the gear, and at a strut phase of 90 degrees the torques of equal struts cancel. The cranks take
-    some time to cross, so that the wave is late and round. Theory, whose teeth are rigid and do not
-    bounce, is nearer than 0.08 of the signature at 1e5 N m/rad and 200 N m s. Stiffer ones before
-    light cranks, or across a wide clearance, strike so hard that not every sample of them can be
-    solved; with a flywheel behind the gear, 1e7 N m/rad and more can be.
+    some time to cross, so that the wave is late and round. Theory, which has rigid teeth, is nearer
+    than 0.08 of the signature at 1e5 N m/rad. Stiffer ones before light cranks, or across a wide
+    clearance, strike so hard that not every sample of them can be solved; with a flywheel behind
+    the gear, 1e7 N m/rad and more can be.
     """
 
     code = "D4"
@@ -38,9 +38,8 @@ class GearBacklash(Effect):
     shows_in = (DeviationTrace.SHAFT,)
 
     # The nominal gear does not give way at all. Beside it the clearance of a good gear shows, and
-    # between teeth that the load hardly bends, before a flywheel, and that hardly bounce: softer
-    # ones would have to explain their own give first, and across a worn one the cranks may strike
-    # too hard to be solved.
+    # between teeth that the load hardly bends, before a flywheel: softer ones would have to explain
+    # their own give first, and across a worn one the cranks may strike too hard to be solved.
     backlash_rad: float = parameter(
         0.003,
         1e-7,
@@ -76,7 +75,7 @@ class GearBacklash(Effect):
         _MOST_DAMPED,
         "N m s",
         "of the teeth",
-        starts=(2e4,),
+        starts=(2e3,),
         held=True,
         one_sign=OneSign.DAMPING,
     )
@@ -114,9 +113,9 @@ class GearBacklash(Effect):
         return uneven_signature(situation, waves)
 
     def _reflected(self, situation: Situation, theta: FloatArray) -> tuple[FloatArray, float]:
-        """Return the cranks' inertia over a turn, and the mean damping while they fly."""
+        """Return inertia at the cranks over a turn, and the mean damping."""
         system, e = situation.system, situation.amplitude_m
         lever = e * (np.exp(1j * theta)[:, None] * situation.turn).real
         inertia = self.inertia_kg_m2 + np.einsum("ki,ij,kj->k", lever, system.mass, lever)
         damping = np.einsum("ki,ij,kj->k", lever, system.damping, lever)
-        return inertia, float(damping.mean())
+        return inertia, self.damping_n_m_s + float(damping.mean())

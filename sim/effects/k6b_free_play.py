@@ -114,8 +114,10 @@ class FreePlay(Effect):
 
     def _crossed(self, situation: Situation) -> ComplexArray:
         """Return phasors ``S + i C`` of what the joints take off the displacement, by order."""
-        system = situation.system
-        clearances = Clearances(2.0 * self.half_play_m, system.damping, system.stiffness)
+        system, damping = situation.system, self._gauges(situation.rig.mounting).gauge_damping_n_s_m
+        clearances = Clearances(
+            2.0 * self.half_play_m, system.damping + damping * np.eye(2), system.stiffness
+        )
         theta = 2.0 * np.pi * np.arange(POINTS) / POINTS
         force = self._on_gauges(situation, 1) @ situation.displacement()
         # F = Im(H exp(i theta)) for H = S + i C.

@@ -6,8 +6,7 @@ by :mod:`sim.model.march`, which says how it is loaded.
 ``work`` holds, a row each: the outputs without this sample, but with its struts where no shaft
 drives them (0), its outputs (1), its motion of
 shaft and levers (2), what the struts (3 to 8) and the loads (9 to 14) add to the outputs, and the
-motion of the shaft without this sample (15). Row 7 of ``room`` holds what the springs of both
-gauges and of the teeth keep of their openings if they carry nothing.
+motion of the shaft without this sample (15).
 """
 
 import math
@@ -16,7 +15,6 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from sim.mechanism.compiled_linkage import strut_motion
-from sim.model.clearance import joint_return
 from sim.model.compiled_laws import law_force
 from sim.solve.compilation import compile_loop
 
@@ -24,6 +22,23 @@ _TOLERANCE = 1e-13
 _ROUNDING = 1e-11  # changes below it that shrink no more are rounding
 _MOST = 60
 _STALLED = 3
+
+
+@compile_loop
+def joint_return(gap: FloatArray, opening: float) -> float:
+    """Return the force that a spring in a row with a clearance has less than the spring alone.
+
+    At no opening the spring carries the preload against one side. The damper beside the spring is
+    left: it acts across the clearance too, as what lubricates it does.
+
+    Parameters
+    ----------
+    gap
+        Stiffness, half clearance, preload.
+    """
+    at = opening + math.copysign(gap[1], gap[2]) + gap[2] / gap[0]
+    pressed = max(at - gap[1], 0.0) + min(at + gap[1], 0.0)
+    return float(gap[0] * (opening - pressed) + gap[2])
 
 
 @compile_loop
@@ -36,7 +51,6 @@ def _model_loads(
     step_s: float,
     base_loads: FloatArray,
     k: int,
-    unknown: FloatArray,
     work: FloatArray,
     room: FloatArray,
 ) -> None:
@@ -51,9 +65,7 @@ def _model_loads(
                 room[0, 2 + i] += extra * by_speed[i, j] * work[1, j]
     if gap[0, 1] > 0.0:
         for i in range(2):
-            own = work[13 + i, 8 + i]
-            opening = work[1, 8 + i] - own * unknown[4 + i] - room[7, i]
-            room[0, 4 + i] += joint_return(gap[i], opening, gap[i, 0] * own)
+            room[0, 4 + i] += joint_return(gap[i], work[1, 8 + i])
 
 
 @compile_loop
@@ -101,9 +113,9 @@ def _turn_shaft(
         work[2, i] = work[15, i]
         for j in range(unknown.size - first):
             work[2, i] += by_torque[j, i] * unknown[first + j]
-    work[15, 5] = work[2, 3] + motion[k + 1, 3]
+    work[15, 5] = work[2, 3] + motion[k, 3]
     for i in range(3):
-        work[2, i] += motion[k + 1, i]
+        work[2, i] += motion[k, i]
     strut_motion(links, work, struts, k + 1)
     add_struts(struts, k, work, 1)
 
@@ -139,14 +151,12 @@ def _respond(
         for i in range(loads):
             total += unknown[i] * work[9 + i, j]
         work[1, j] = total
-    _model_loads(laws, hull, by_speed, gap, instants, step_s, base_loads, k, unknown, work, room)
+    _model_loads(laws, hull, by_speed, gap, instants, step_s, base_loads, k, work, room)
     if driven:
-        rest = numbers[0] * (motion[k + 1, 2] - work[2, 2])
+        rest = numbers[0] * (motion[k, 2] - work[2, 2])
         room[0, loads] = _shaft_torque(numbers, cogging, work, room) + rest
         if shaft_gap[1] > 0.0:
-            own = by_torque[1, 3]
-            opening = work[15, 5] - own * unknown[loads + 1] - room[7, 2]
-            room[0, loads + 1] = joint_return(shaft_gap, opening, shaft_gap[0] * own)
+            room[0, loads + 1] = joint_return(shaft_gap, work[15, 5])
 
 
 @compile_loop
@@ -224,7 +234,7 @@ def settle(
         largest = _change(scale, unknown, room)
         if largest <= _TOLERANCE or (stalled >= _STALLED and largest <= _ROUNDING):
             return True
-        stalled = stalled + 1 if largest > best / 2.0 else 0
+        stalled = stalled + 1 if largest >= best else 0
         best = min(best, largest)
         if sweep:
             _update(slope, room)

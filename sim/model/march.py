@@ -16,7 +16,6 @@ import numpy as np
 from hardware.description.arrays import FloatArray
 from sim.drive.shaft_system import MarchedShaft
 from sim.model.broyden import add_struts, settle
-from sim.model.clearance import begin_outputs, relax_joints, relax_teeth
 from sim.model.law_table import LawTable
 from sim.solve.compilation import compile_loop
 
@@ -35,13 +34,11 @@ class ModelLoop(NamedTuple):
         back in their clearance, two columns each.
     from_states, from_struts, from_loads
         To the outputs: ``(n, 10)``, ``(6, 10)`` and ``(6, 10)``.
-    from_returns
-        To the outputs, of what the gauges gave back at the three samples before: ``(3, 2, 10)``.
     by_speed
         Velocities through the water per speed beyond the mean and per displacement: ``(2, 2)``.
     gap
-        Stiffness, half clearance and preload of the gauges' joints, and what a sample leaves of
-        their springs' give if they carry nothing, a row each; clearances of zero for none.
+        Stiffness, half clearance and preload of the gauges' joints, a row each; clearances of zero
+        for none.
     """
 
     step: FloatArray
@@ -51,7 +48,6 @@ class ModelLoop(NamedTuple):
     from_states: FloatArray
     from_struts: FloatArray
     from_loads: FloatArray
-    from_returns: FloatArray
     by_speed: FloatArray
     gap: FloatArray
 
@@ -93,7 +89,6 @@ def _free_outputs(
     before: FloatArray,
     by_loads: FloatArray,
     from_states: FloatArray,
-    from_returns: FloatArray,
     struts: FloatArray,
     states: FloatArray,
     loads: FloatArray,
@@ -103,7 +98,8 @@ def _free_outputs(
 ) -> None:
     """Fill in the state of sample k and its outputs, but for its own struts and loads."""
     size, columns, past = step.shape[0], work.shape[1], loads.shape[1]
-    begin_outputs(from_returns, loads, k, max(past - 4, 0), work, 0)
+    for j in range(columns):
+        work[0, j] = 0.0
     for i in range(size):
         total = states[k + 3, i] if k < start else 0.0
         if k >= start:
@@ -136,7 +132,6 @@ def _maps(model: ModelLoop, stepped: bool, work: FloatArray) -> None:
 def _free_shaft(
     step: FloatArray,
     by_inputs: FloatArray,
-    past_to_outputs: FloatArray,
     to_outputs: FloatArray,
     states: FloatArray,
     torques: FloatArray,
@@ -146,7 +141,8 @@ def _free_shaft(
 ) -> None:
     """Fill in the shaft's state and outputs at sample k, but for this sample's torques."""
     size = step.shape[0]
-    begin_outputs(past_to_outputs, torques, k, torques.shape[1] - 1, work, 15)
+    for j in range(4):
+        work[15, j] = 0.0
     for i in range(size):
         total = states[k + 3, i] if k < start else 0.0
         if k >= start:
@@ -251,17 +247,13 @@ def march(
             if k >= start:
                 by_torque = shaft.by_torque
         _free_outputs(
-            step, before, by_loads, model.from_states, model.from_returns, struts, states, loads, k,
-            start, work,
-        )  # fmt: skip
-        relax_joints(gap, states, loads, k, start, work, room)
+            step, before, by_loads, model.from_states, struts, states, loads, k, start, work
+        )
         _guess(loads, k, unknown, 0)
         if driven:
             _free_shaft(
-                shaft.step, shaft.by_inputs, shaft.past_to_outputs, shaft.to_outputs, shaft.states,
-                torques, k, start, work,
+                shaft.step, shaft.by_inputs, shaft.to_outputs, shaft.states, torques, k, start, work
             )  # fmt: skip
-            relax_teeth(shaft_gap, shaft.to_outputs, motion, shaft.states, torques, k, room)
             _guess(torques, k, unknown, first)
         else:
             add_struts(struts, k, work, 0)

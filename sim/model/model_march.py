@@ -11,7 +11,7 @@ from sim.model.law_point import Acting
 from sim.model.law_table import LawTable, has_number, table_of
 from sim.model.system import LOAD_DEGREE, HullSystem
 from sim.solve.compilation import available
-from sim.solve.linear_system import Hold, inputs_at_sample, left_after
+from sim.solve.linear_system import Hold
 
 if TYPE_CHECKING:
     from sim.model.march import Course, ModelLoop
@@ -76,15 +76,12 @@ def _model(system: HullSystem, step_s: float) -> "ModelLoop":
     weights[:, :, : by_load.weights.shape[2]] = by_load.weights
     from_loads = np.zeros((LOADS, OUTPUTS))
     from_loads[: len(by_loads), :8] = by_loads
-    gap, joint, relaxations_s = np.zeros((2, 4)), system.joint, system.relaxations_s
+    gap = np.zeros((2, 3))
+    joint = system.joint
     if joint is not None:
         for strut, more in enumerate((1.0 + joint.unlike, 1.0 - joint.unlike)):
             stiffness = system.elastic.stiffness[strut, strut]
-            left = left_after(step_s, relaxations_s[strut])
-            gap[strut] = (stiffness, more * joint.half_play_m, joint.preload_n, left)
-    now = inputs_at_sample(step_s, LOAD_DEGREE, relaxations_s)
-    from_returns = now[:-1, :, np.newaxis] * from_loads[4:]
-    from_loads[4:] *= now[-1, :, np.newaxis]
+            gap[strut] = (stiffness, more * joint.half_play_m, joint.preload_n)
     arrays = (
         by_motion.step,
         by_motion.weights[0],
@@ -93,7 +90,6 @@ def _model(system: HullSystem, step_s: float) -> "ModelLoop":
         np.hstack([by_states, opening]),
         np.hstack([by_struts, struts]),
         from_loads,
-        from_returns,
         system.turn,
         gap,
     )
@@ -151,7 +147,6 @@ def _undriven() -> tuple[MarchedShaft, FloatArray]:
     """Return a shaft that drives nothing, and its linkages."""
     flat, deep = np.zeros((0, 0)), np.zeros((0, 0, 0))
     shaft = MarchedShaft(
-        False, flat, deep, deep, flat, flat, flat, flat, flat, flat, flat, np.zeros(5), flat,
-        np.zeros(4),
+        False, flat, deep, flat, flat, flat, flat, flat, flat, flat, np.zeros(5), flat, np.zeros(3)
     )  # fmt: skip
     return shaft, np.zeros((2, 5))

@@ -10,7 +10,7 @@ and v the velocity through the water, v = T h' + U S T h:
 f are the forces that are no part of the linear system: those of laws, and what the exact geometry
 asks for beyond M, B and C, its slopes at small angles. g is the velocity through the water that a
 carriage adds which is not at its mean speed. Where the gauges' joints have a clearance, c is what
-springs and dampers then have too much, on the right of the last line. The states are (p, p', xi).
+their springs then have too much, on the right of the last line. The states are (p, p', xi).
 """
 
 import math
@@ -141,14 +141,6 @@ class HullSystem:
         )
 
     @cached_property
-    def relaxations_s(self) -> FloatArray:
-        """In which each gauge's give dies out where its joint's clearance leaves it alone."""
-        if self.joint is None:
-            return np.zeros(2)
-        damping, stiffness = np.diag(self.elastic.damping), np.diag(self.elastic.stiffness)
-        return np.asarray(damping[:2] / stiffness[:2])
-
-    @cached_property
     def load_input(self) -> FloatArray:
         """What (f, g) add to the states' rate, or (f, g, c); shape ``(states, 4)`` or 6."""
         passing = self.radiation.passing_matrix
@@ -190,13 +182,13 @@ class HullSystem:
 
     def holds(self, step_s: float) -> tuple[Hold, Hold]:
         """Return the steps under the strut motion and under the loads (f, g)."""
-        width, leads = self.load_input.shape[1], np.append(np.zeros(4), self.relaxations_s)
+        width = self.load_input.shape[1]
         loads = LinearSystem(
             self.state_matrix, self.load_input, np.eye(self.states), np.zeros((self.states, width))
         )
         return (
             hermite_hold(self.state_matrix, self.motion_inputs, step_s),
-            causal_hold(loads, step_s, LOAD_DEGREE, leads[:width]),
+            causal_hold(loads, step_s, LOAD_DEGREE),
         )
 
     def at_rest(self, load: FloatArray) -> FloatArray:

@@ -94,50 +94,12 @@ class Hold:
         return np.linalg.solve(matrix, driven).astype(np.complex128)
 
 
-def causal_hold(
-    system: LinearSystem, step_s: float, degree: int, leads_s: FloatArray | None = None
-) -> Hold:
-    """Return the step under the polynomial q through the newest ``degree + 1`` samples.
-
-    Parameters
-    ----------
-    leads_s
-        The system is driven by ``q + lead q'``, with a lead of each input; ``None`` for none.
-    """
+def causal_hold(system: LinearSystem, step_s: float, degree: int) -> Hold:
+    """Return the step under the polynomial through the newest ``degree + 1`` samples."""
     step, moments = _moments(as_rows(system.A), step_s, degree)
-    coefficients = _coefficients(degree)
-    weights = np.einsum("mj,mab,bp->jap", coefficients, moments, system.B)
-    if leads_s is not None:
-        slopes = _slopes(coefficients, step_s)
-        weights += np.einsum("mj,mab,bp,p->jap", slopes, moments[:-1], system.B, leads_s)
-    return Hold(step, weights)
-
-
-def inputs_at_sample(step_s: float, degree: int, leads_s: FloatArray) -> FloatArray:
-    """Return what each datum of :func:`causal_hold` adds to the inputs at the newest sample.
-
-    The result has the shape ``(degree + 1, p)``.
-    """
-    weights = np.zeros((degree + 1, len(leads_s)))
-    weights[-1] = 1.0
-    return weights + np.outer(_slopes(_coefficients(degree), step_s).sum(axis=0), leads_s)
-
-
-def left_after(step_s: float, relaxation_s: float) -> float:
-    """Return what a step leaves of what dies out, ``exp(-h / tau)``: nothing at no time at all."""
-    return math.exp(-step_s / relaxation_s) if relaxation_s > 0.0 else 0.0
-
-
-def _coefficients(degree: int) -> FloatArray:
-    """Return those of the polynomial through the samples, on 0 to 1: ``(power, datum)``."""
     nodes = np.arange(1 - degree, 2, dtype=np.float64)
-    return np.linalg.inv(np.vander(nodes, increasing=True)).astype(np.float64)
-
-
-def _slopes(coefficients: FloatArray, step_s: float) -> FloatArray:
-    """Return the coefficients of the derivative by time."""
-    powers = np.arange(1.0, len(coefficients))
-    return powers[:, np.newaxis] * coefficients[1:] / step_s
+    coefficients = np.linalg.inv(np.vander(nodes, increasing=True))  # (power, datum)
+    return Hold(step, np.einsum("mj,mab,bp->jap", coefficients, moments, system.B))
 
 
 def hermite_hold(

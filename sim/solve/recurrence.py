@@ -14,8 +14,9 @@ import numpy as np
 from hardware.description.arrays import FloatArray
 from sim.solve.period import Period
 
-_STEP_RAD: Final = 0.15  # of the fastest vibration, at most
-_STEP_DECAY: Final = 1.0  # of the fastest decay, in its time constants
+_STEP_RAD: Final = 0.3  # of the fastest vibration, at most
+_SUBSTEP_RAD: Final = 0.3
+_DAMPED: Final = 0.1  # damping ratio from which what a clearance gives back settles at any step
 _MOST_DOUBLED: Final = 10
 _SETTLED: Final = 1e-7  # what solving sample by sample leaves is below 3e-8
 _MOST_PERIODS: Final = 64
@@ -23,16 +24,14 @@ _AVERAGED: Final = 32  # periods, where they never become the same
 
 
 def fine_enough(period: Period, rates: FloatArray) -> Period:
-    """Return the period with points that follow what happens where a clearance closes.
+    """Return the period with points that follow the fastest vibration of a linear system.
 
-    Parameters
-    ----------
-    rates
-        Of the linear system that has the clearance closed.
+    What only decays needs no points: the steps are exact for it.
     """
+    fastest = float(np.abs(np.linalg.eigvals(rates).imag).max(initial=0.0))
     points = period.points
     for _ in range(_MOST_DOUBLED):
-        if points * period.frequency_hz >= _steps_per_s(rates):
+        if fastest / (points * period.frequency_hz) <= _STEP_RAD:
             break
         points *= 2
     return replace(period, points=points)
@@ -41,16 +40,14 @@ def fine_enough(period: Period, rates: FloatArray) -> Period:
 def substeps(rates: FloatArray, step_s: float) -> int:
     """Return into how many steps to part one for a clearance in a linear system.
 
-    What the clearance gives back goes on between samples by the polynomial of those before. A
-    vibration that the samples do not follow feeds on that; a decay rebounds.
+    What the clearance gives back goes on between samples by the polynomial of those before. With a
+    vibration that the samples do not follow and that hardly decays, that feeds it.
     """
-    return min(max(math.ceil(step_s * _steps_per_s(rates)), 1), 2**_MOST_DOUBLED)
-
-
-def _steps_per_s(rates: FloatArray) -> float:
     eigenvalues = np.linalg.eigvals(rates)
-    ringing, decaying = np.abs(eigenvalues.imag), np.abs(eigenvalues.real)
-    return float(np.maximum(ringing / _STEP_RAD, decaying / _STEP_DECAY).max(initial=0.0))
+    ringing = eigenvalues[
+        (eigenvalues.imag > 0.0) & (-eigenvalues.real < _DAMPED * np.abs(eigenvalues))
+    ]
+    return max(math.ceil(step_s * float(ringing.imag.max(initial=0.0)) / _SUBSTEP_RAD), 1)
 
 
 def last_period(

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hardware.description.arrays import ComplexArray
 from hardware.description.errors import ConfigurationError
 from hardware.description.setpoint import Medium, SetPoint
 from sim.drive.gear import Gear
@@ -19,7 +18,6 @@ from sim.effects.switching import switch_on
 from sim.model.water.radiation import Radiation
 from sim.rig import SimulatedRig, vertical_rig
 from sim.run import steady_run
-from sim.signals import Signals
 from tests.sim.effects.against_theory import at_small_angles, small_angles
 
 RIG = vertical_rig().ideal()
@@ -36,13 +34,11 @@ IN_AIR = SetPoint(0.7, 0.02, 0.0, 0.0, Medium.AIR)
 @pytest.mark.parametrize(
     ("effect", "set_points", "tolerance"),
     [
-        # Theory has rigid sides. What meets on springs gives way, less the stiffer, and bounces,
-        # less the more it is damped.
-        (FreePlay(), [*SET_POINTS, IN_AIR], 0.1),
-        (FreePlay(damping_n_s_m=2e4), [*SET_POINTS, IN_AIR], 0.03),
-        (FreePlay(1e-5, stiffness_n_m=2e7, damping_n_s_m=2e4), [*SET_POINTS, IN_AIR], 0.015),
-        (GearBacklash(), SET_POINTS, 0.07),
-        (GearBacklash(stiffness_n_m_rad=1e5, damping_n_m_s=200.0), SET_POINTS, 0.08),
+        # Theory has rigid sides. What meets on springs bounces and rings: less of it the stiffer.
+        (FreePlay(), [*SET_POINTS, IN_AIR], 0.05),
+        (FreePlay(1e-5, stiffness_n_m=5e6), [*SET_POINTS, IN_AIR], 0.015),
+        (GearBacklash(), SET_POINTS, 0.13),
+        (GearBacklash(stiffness_n_m_rad=1e5), SET_POINTS, 0.08),
     ],
 )
 def test_signature(effect: Effect, set_points: list[SetPoint], tolerance: float) -> None:
@@ -100,7 +96,7 @@ def test_backlash_moves_the_struts_at_first_and_third_order(set_point: SetPoint)
     found = change(GearBacklash(1e-4), RIG, set_point, "displacement_aft")
     teeth = change(GearBacklash(1e-7), RIG, set_point, "displacement_aft")
     third = abs(found[3] - teeth[3]) / (set_point.eccentricity_m * 1e-4 / np.pi)
-    assert 0.55 < third < 1.05
+    assert 0.6 < third < 1.05
 
 
 def test_a_load_that_does_not_reverse_keeps_the_teeth_together() -> None:
@@ -112,28 +108,15 @@ def test_a_load_that_does_not_reverse_keeps_the_teeth_together() -> None:
     assert np.abs(wide - narrow).max() < 1e-6
 
 
-@pytest.mark.parametrize(
-    ("effect", "name"), [(FreePlay(), "force_aft"), (GearBacklash(), "displacement_aft")]
-)
-def test_time_domain_and_periodic_form_agree(effect: Effect, name: str) -> None:
-    """Of what moves behind a gear: samples miss part of what the teeth's strokes make of forces."""
+@pytest.mark.parametrize("effect", [FreePlay(), GearBacklash()])
+def test_time_domain_and_periodic_form_agree(effect: Effect) -> None:
     rig, set_point = switch_on((effect,), RIG, HEAVE)
     chain = rig.chain(set_point)
     _, run = chain.run(chain.start(200.0, 1), 2400)
-    found = first_harmonics(run, name, 1.0, 200.0, 800)
-    steady = steady_run(rig, set_point).spectra[name]
+    turn = np.exp(-1j * np.outer([1, 2, 3], run["shaft_angle"][-800:]))
+    found = 2.0 * (turn * run["force_aft"][-800:]).mean(axis=1)
+    steady = steady_run(rig, set_point).spectra["force_aft"]
     assert np.abs(found - steady[1:4]).max() < 5e-4 * abs(steady[1])
-
-
-def first_harmonics(
-    run: Signals, name: str, frequency_hz: float, rate_hz: float, count: int
-) -> ComplexArray:
-    """Return the first three of the last samples, by the mean angle as in the periodic form."""
-    turned = 2.0 * np.pi * frequency_hz * np.arange(count) / rate_hz
-    turned += np.mean(run["shaft_angle"][-count:] - turned)
-    turn = np.exp(-1j * np.outer([1, 2, 3], turned))
-    found: ComplexArray = 2.0 * (turn * run[name][-count:]).mean(axis=1)
-    return found
 
 
 def test_a_memory_that_fades_slowly_is_settled_beside_a_clearance() -> None:
@@ -144,8 +127,8 @@ def test_a_memory_that_fades_slowly_is_settled_beside_a_clearance() -> None:
     slow_rig = replace(RIG, radiation=slow)
     rig, set_point = switch_on((FreePlay(2e-4),), slow_rig, SetPoint(0.5, 0.02, 0.4))
     chain = rig.chain(set_point)
-    state, _ = chain.run(chain.start(400.0, 1), 400 * 600)
-    _, run = chain.run(state, 3200)
+    state, _ = chain.run(chain.start(200.0, 1), 200 * 600)
+    _, run = chain.run(state, 1600)
     turn = np.exp(-1j * np.outer([0, 1, 2, 3], run["shaft_angle"]))
     found = (turn * run["force_aft"]).mean(axis=1) * [1.0, 2.0, 2.0, 2.0]
     steady = steady_run(rig, set_point).spectra["force_aft"]
@@ -153,14 +136,17 @@ def test_a_memory_that_fades_slowly_is_settled_beside_a_clearance() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("effect", "fine"), [(GearBacklash(0.003, 0.02, 3e4, 30.0), 20)])
+@pytest.mark.parametrize(("effect", "fine"), [(GearBacklash(0.003, 0.02, 3e4, 1.0), 20)])
 def test_teeth_that_ring_faster_than_the_samples_follow(effect: Effect, fine: int) -> None:
     """Steps between the samples: else what rings fed itself, and was off by a tenth."""
     rig, set_point = switch_on((effect,), RIG, SetPoint(0.5, 0.02))
     chain = rig.chain(set_point)
     _, often = chain.run(chain.start(200.0 * fine, 1), 16 * 200 * fine)
-    found = first_harmonics(often, "displacement_aft", 0.5, 200.0 * fine, 8 * 200 * fine)
-    steady = steady_run(rig, set_point).spectra["displacement_aft"][1:4]
+    turned = 2.0 * np.pi * 0.5 * np.arange(8 * 200 * fine) / (200.0 * fine)
+    turned += np.mean(often["shaft_angle"][-turned.size :] - turned)
+    turn = np.exp(-1j * np.outer([1, 2, 3], turned))
+    found = 2.0 * (turn * often["force_aft"][-turned.size :]).mean(axis=1)
+    steady = steady_run(rig, set_point).spectra["force_aft"][1:4]
     assert np.abs(found - steady).max() < 1e-5 * abs(steady[0])
     _, seldom = chain.run(chain.start(200.0, 1), 400)
     # Bounces differ from the first one on, but none is larger.
@@ -180,7 +166,7 @@ def test_blocks_give_the_samples_of_the_whole_run(effect: Effect) -> None:
         parts.append(part["force_aft"])
     joined = np.concatenate(parts)
     scale = np.abs(whole["force_aft"]).max()
-    np.testing.assert_allclose(joined, whole["force_aft"], rtol=0.0, atol=1e-10 * scale)
+    np.testing.assert_allclose(joined, whole["force_aft"], rtol=0.0, atol=1e-11 * scale)
 
 
 def test_teeth_too_stiff_to_be_solved_are_told_from_what_has_no_march() -> None:
