@@ -126,7 +126,6 @@ def test_forces_that_are_louder_in_some_runs_are_no_gap(null: Path, tmp_path: Pa
     assert named(examine(changed(null, tmp_path, louder))) == "none"
 
 
-@pytest.mark.slow
 def test_noise_that_is_not_as_stated_is_said_and_no_gap(tmp_path: Path) -> None:
     def louder(recording: Recording, rng: np.random.Generator, number: int) -> Recording:
         samples = np.array(recording.samples)

@@ -19,7 +19,6 @@ def test_killed_while_it_records(tmp_path: Path, after_s: float) -> None:
     assert found.lost <= 100  # a second, at 100 Hz
 
 
-@pytest.mark.slow
 def test_killed_about_when_it_closes(tmp_path: Path) -> None:
     found = kill_once(tmp_path / "run", 1.13, "1")
     assert found.valid
