@@ -1,13 +1,12 @@
-"""The entrance: the distribution's name, and a check that its four packages are its own.
+"""The distribution's name, and a check that its four packages are its own.
 
 The packages have common names. Another distribution may put a package of such a name over ours, and
 a user's own file beside a script hides it. Each of our packages therefore calls
-:func:`refuse_intruders` when it is imported, and the command ``pmm`` enters here, by a name that is
-nobody else's.
+:func:`refuse_intruders` when it is imported, and the command ``pmm`` enters by
+:mod:`planar_motion_mechanism_command`: both names are nobody else's.
 """
 
 import os
-import sys
 from collections.abc import Collection, Iterator
 from functools import cache
 from importlib.util import find_spec
@@ -19,17 +18,6 @@ PACKAGES: Final = ("pmm", "analysis", "sim", "hardware")
 # Start-up does without pathlib.
 _HOUSE: Final = os.path.dirname(os.path.realpath(__file__))  # noqa: PTH120
 _FIRST_FILES: Final = tuple(f"{name}/__init__.py" for name in PACKAGES)
-
-
-def main() -> None:
-    """Run the command line, or say in one sentence which package is not ours."""
-    try:
-        refuse_intruders()
-    except ImportError as error:
-        sys.exit(f"Error: {error}")
-    from pmm.cli import main as run
-
-    run()
 
 
 @cache
@@ -134,7 +122,3 @@ def _anew(what: str) -> str:
 
 def _path(file: str) -> str:
     return os.path.join(_HOUSE, *file.split("/"))  # noqa: PTH118
-
-
-if __name__ == "__main__":
-    main()

@@ -67,7 +67,9 @@ class _Watching:
 
 
 @contextmanager
-def _control(rate_hz: float, periods: int, folder: Path, view: View) -> Iterator[RunControl]:
+def _control(
+    rate_hz: float, periods: int, folder: Path, view: View[RunControl]
+) -> Iterator[RunControl]:
     BACKENDS.setdefault("pmm-simulated", ("sim.devices.bus", "SimulatedBus"))
     whole = tables(rate_hz)
     whole["bus"] = {**whole["bus"], "channel": _NAME}

@@ -1,28 +1,55 @@
 """Whether a simulated rig has what a run asks of it."""
 
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from functools import lru_cache
-from typing import TYPE_CHECKING, Final
+from typing import Final, Protocol
 
 import numpy as np
 
 from hardware.description.arrangement import DriftBy, Joint
-from hardware.description.attitude import HeaveAndPitch
+from hardware.description.attitude import AttitudeSensors, HeaveAndPitch
 from hardware.description.channels import HEELING, POSITIONS, STEERING, WAVE_PROBE
 from hardware.description.errors import ConfigurationError
 from hardware.description.lines import Line, struts_over_turn
-from hardware.description.oscillator import Plane
+from hardware.description.oscillator import Oscillator, Plane
 from hardware.description.setpoint import SetPoint
 from sim.acquisition.channels import Acquisition
-
-if TYPE_CHECKING:
-    from sim.rig import SimulatedRig
+from sim.drive.prescribed_drive import DriveSettings
+from sim.model.heel import Heeling
+from sim.model.steering import Steering
 
 _INSTANTS: Final = 720  # of a turn
 
 
-def check_run(rig: "SimulatedRig", set_point: SetPoint) -> None:
+class _Rig(Protocol):
+    """What of a :class:`sim.rig.SimulatedRig` is looked at."""
+
+    @property
+    def oscillator(self) -> Oscillator: ...
+    @property
+    def drive(self) -> DriveSettings: ...
+    @property
+    def acquisition(self) -> Acquisition: ...
+    @property
+    def flow_factor(self) -> float: ...
+    @property
+    def waves(self) -> object | None: ...
+    @property
+    def steering(self) -> Steering | None: ...
+    @property
+    def attitude(self) -> AttitudeSensors | None: ...
+    @property
+    def squat(self) -> object | None: ...
+    @property
+    def heel(self) -> object | None: ...
+    @property
+    def heel_loads(self) -> Mapping[str, float]: ...
+
+    def heeling(self, set_point: SetPoint) -> Heeling | None: ...
+
+
+def check_run(rig: _Rig, set_point: SetPoint) -> None:
     """Refuse a run that the rig has not the parts for.
 
     Raises
@@ -41,7 +68,7 @@ def recorded(acquisition: Acquisition, channels: Collection[str]) -> list[str]:
     return [name for name in acquisition.names if name in channels]
 
 
-def _of_joint(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
+def _of_joint(rig: _Rig, set_point: SetPoint) -> Iterator[str]:
     if rig.oscillator.joint is Joint.YAW_TABLE:
         yield (
             'joint = "yaw_table": a turntable is analysed but not simulated; simulate '
@@ -67,7 +94,7 @@ def _furthest_apart(lines: tuple[Line, ...]) -> float:
     return float(np.abs(fore - aft).max())
 
 
-def _of_circle(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
+def _of_circle(rig: _Rig, set_point: SetPoint) -> Iterator[str]:
     if not set_point.turn_rate_rad_s:
         return
     if rig.oscillator.plane is Plane.VERTICAL:
@@ -76,7 +103,7 @@ def _of_circle(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
         yield "a circle is simulated in open water: leave the blockage of the tank out"
 
 
-def _of_waves(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
+def _of_waves(rig: _Rig, set_point: SetPoint) -> Iterator[str]:
     if rig.waves is None:
         if set_point.wave_frequency_hz:
             yield "waves, but [waves] is missing"
@@ -86,7 +113,7 @@ def _of_waves(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
         yield "[waves] needs a drive without motor and gear"
 
 
-def _of_steering(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
+def _of_steering(rig: _Rig, set_point: SetPoint) -> Iterator[str]:
     steering = rig.steering
     if set_point.rudder_angle_rad and (steering is None or steering.rudder is None):
         yield "a rudder angle, but [steering.rudder] is missing"
@@ -99,18 +126,18 @@ def _of_steering(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
         yield f"acquisition.{name}, but nothing in [steering] has it"
 
 
-def _of_shaft_and_plane(rig: "SimulatedRig", table: str) -> Iterator[str]:
+def _of_shaft_and_plane(rig: _Rig, table: str) -> Iterator[str]:
     if rig.oscillator.plane is Plane.VERTICAL:
         yield f"[{table}] is for the horizontal oscillator"
     if _is_driven(rig):
         yield f"[{table}] needs a drive without motor and gear"
 
 
-def _is_driven(rig: "SimulatedRig") -> bool:
+def _is_driven(rig: _Rig) -> bool:
     return rig.drive.motor is not None or rig.drive.gear is not None
 
 
-def _of_lines(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
+def _of_lines(rig: _Rig, set_point: SetPoint) -> Iterator[str]:
     if set_point.steady_ahead:
         yield (
             "steady_ahead: a carriage that is led is simulated behind its driver only; make the "
@@ -123,7 +150,7 @@ def _of_lines(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
         )
 
 
-def _of_attitude(rig: "SimulatedRig", _: SetPoint) -> Iterator[str]:
+def _of_attitude(rig: _Rig, _: SetPoint) -> Iterator[str]:
     positions = recorded(rig.acquisition, POSITIONS)
     if rig.attitude is None and positions:
         names = " and ".join(f"acquisition.{name}" for name in positions)
@@ -133,7 +160,7 @@ def _of_attitude(rig: "SimulatedRig", _: SetPoint) -> Iterator[str]:
         yield '[squat], but no [attitude] with heave_and_pitch = "free"'
 
 
-def _of_heel(rig: "SimulatedRig", set_point: SetPoint) -> Iterator[str]:
+def _of_heel(rig: _Rig, set_point: SetPoint) -> Iterator[str]:
     if rig.heel is None:
         for name in recorded(rig.acquisition, {signal.name for signal in HEELING}):
             yield f"acquisition.{name}, but [heel] is missing"

@@ -89,7 +89,8 @@ def unharmed(tmp_path_factory: pytest.TempPathFactory) -> Environment:
 
 def _installed(folder: Path) -> Environment:
     environment = Environment(folder)
-    names = ["planar_motion_mechanism.py", *(f"{one}/__init__.py" for one in PACKAGES)]
+    entrance = [f"planar_motion_mechanism{one}.py" for one in ("", "_command")]
+    names = [*entrance, *(f"{one}/__init__.py" for one in PACKAGES)]
     files = {name: (HOUSE / name).read_text(encoding="utf-8") for name in names}
     files["pmm/cli.py"] = "def main() -> None:\n    print('our command')\n"
     scripts = "\n".join(f"{name} = {place}" for name, place in PROJECT["scripts"].items())

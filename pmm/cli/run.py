@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
     from pmm.cli.terminal import Terminal
+    from pmm.run.run_control import RunControl
     from pmm.run.session import Ask, RunJob, RunReport
     from pmm.run.view import View
 
@@ -216,7 +217,9 @@ def before_others_with_terminal(stack: ExitStack, *, real_time: bool) -> "Termin
     return stack.enter_context(Terminal())
 
 
-def view_of(terminal: "Terminal", ask: "Ask", *, quiet: bool) -> "AbstractContextManager[View]":
+def view_of(
+    terminal: "Terminal", ask: "Ask", *, quiet: bool
+) -> "AbstractContextManager[View[RunControl]]":
     """Return a live picture on a terminal, plain lines elsewhere."""
     from pmm.cli.run_view import LiveView, PlainView
 

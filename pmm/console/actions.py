@@ -12,7 +12,7 @@ from starlette.responses import Response
 
 from hardware.description.errors import PmmError
 from pmm.console.audit import CommandRecord, keep, latest
-from pmm.console.desk import Holder, NotInControlError
+from pmm.console.desk import Holder
 from pmm.console.encoding import encode_answer
 from pmm.console.hub import Hub
 from pmm.console.limits import LARGEST_PLAN, LARGEST_REQUEST, SILENT_S
@@ -34,7 +34,7 @@ from pmm.console.requests import (
     TakePosted,
     validation_message,
 )
-from pmm.console.security import VisitorRole
+from pmm.console.security import NotInControlError, VisitorRole
 from pmm.console.worker_process import Workers
 from pmm.console.worker_tasks import check_plan_text, keep_note
 from pmm.run.states import Command

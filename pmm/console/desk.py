@@ -1,12 +1,9 @@
 """Who has control: one session at a time; all others watch."""
 
 from enum import StrEnum
-from typing import TYPE_CHECKING
 
-from hardware.description.errors import PmmError
-
-if TYPE_CHECKING:
-    from pmm.console.request_body import Requester
+from pmm.console.request_body import Requester
+from pmm.console.security import NotInControlError
 
 
 class Holder(StrEnum):
@@ -15,10 +12,6 @@ class Holder(StrEnum):
     YOU = "you"
     OTHER = "other"
     NOBODY = "nobody"
-
-
-class NotInControlError(PmmError):
-    """A session that only watches wants to act."""
 
 
 class Desk:
@@ -42,11 +35,11 @@ class Desk:
             return Holder.NOBODY
         return Holder.YOU if session == self.holder.session else Holder.OTHER
 
-    def arrive(self, who: "Requester") -> None:
+    def arrive(self, who: Requester) -> None:
         """Let a session come; the first one gets control."""
         self.holder = self.holder or who
 
-    def take_over(self, who: "Requester") -> None:
+    def take_over(self, who: Requester) -> None:
         """Give control to a session, on its explicit wish."""
         self.holder = who
 

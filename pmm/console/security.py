@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from starlette.requests import ClientDisconnect
 
-from pmm.console.desk import NotInControlError
+from hardware.description.errors import PmmError
 
 Scope = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
@@ -32,6 +32,10 @@ _HEADERS: Final = (
     (b"cross-origin-resource-policy", b"same-origin"),
     (b"cache-control", b"no-store"),
 )
+
+
+class NotInControlError(PmmError):
+    """A session that only watches wants to act."""
 
 
 class VisitorRole(StrEnum):

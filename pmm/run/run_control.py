@@ -22,13 +22,14 @@ from pmm.run.fault_latch import FaultLatch
 from pmm.run.measurement import Measurement
 from pmm.run.phases import PHASES, enter
 from pmm.run.planned_runs import PlannedRuns
+from pmm.run.present_status import status_of
 from pmm.run.states import Command, RunStateError, State
-from pmm.run.status import Alarms, RunOutcome, RunStatus, status_of
+from pmm.run.status import Alarms, RunOutcome, RunStatus
 from pmm.run.stopper import Stopper
-from pmm.run.view import View
 
 if TYPE_CHECKING:
     from pmm.recorder.live_path import CycleSamples
+    from pmm.run.view import View
 
 _FINAL: Final = frozenset({State.STOPPED, State.FAULT, State.DONE})
 
@@ -69,7 +70,7 @@ class RunControl:
         runs: Sequence[RunPlan],
         begin: Begin,
         clock: Callable[[], float],
-        view: View,
+        view: "View[RunControl]",
         executor: Executor | None = None,
     ) -> None:
         self.rig = rig

@@ -136,7 +136,7 @@ def keep_time(stack: ExitStack) -> LoopScheduling:
 
 def carry_out(
     job: RunJob,
-    view: Callable[[Ask], AbstractContextManager[View]],
+    view: Callable[[Ask], AbstractContextManager[View[RunControl]]],
     tell: Callable[[str], object],
     answers: OperatorAnswers,
     course: Course = _NOTHING_FOLLOWS,

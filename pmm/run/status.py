@@ -3,16 +3,12 @@
 import math
 from collections import deque
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from hardware.description.flags import Flag
 from pmm.recorder.lateness import CycleStatistics
 from pmm.run.gate import GateState
 from pmm.run.states import State
-
-if TYPE_CHECKING:
-    from pmm.run.conduct import Conduct
-    from pmm.run.planned_runs import PlannedRuns
 
 _ALARMS: Final = 20  # kept for the screen; the recording keeps all
 
@@ -134,28 +130,3 @@ class RunOutcome:
     flags: tuple[Flag, ...]
     statistics: CycleStatistics | None
     reason: str = ""
-
-
-def status_of(
-    conduct: "Conduct", planned: "PlannedRuns", alarms: Alarms, free_bytes: int | None
-) -> RunStatus:
-    """Return a picture of this moment of a conduct and its planned runs."""
-    run, measurement = conduct.run, conduct.measurement
-    return RunStatus(
-        state=conduct.state,
-        cycle=conduct.rig.number,
-        time_s=conduct.rig.number / conduct.rate_hz,
-        run=run.name if run else "",
-        kind=str(run.kind) if run else "",
-        run_number=planned.number(run) if run else 0,
-        run_count=len(planned.runs),
-        frequency_hz=run.set_point.frequency_hz if run else 0.0,
-        gate=measurement.gate.state if measurement else RunStatus.gate,
-        periods=measurement.gate.periods if measurement else 0,
-        wanted_periods=measurement.gate.wanted if measurement else 0,
-        harmonics=measurement.rows() if measurement else (),
-        question=conduct.questions.present,
-        alarms=alarms.latest,
-        statistics=measurement.journal.statistics() if measurement else None,
-        free_bytes=free_bytes,
-    )

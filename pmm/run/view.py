@@ -1,13 +1,12 @@
 """What shows the runs that are made."""
 
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol, TypeVar
 
-if TYPE_CHECKING:
-    from pmm.run.run_control import RunControl
+Control_contra = TypeVar("Control_contra", contravariant=True)
 
 
-class View(Protocol):
+class View(Protocol[Control_contra]):
     """Shows what is going on."""
 
-    def show(self, control: "RunControl") -> None:
+    def show(self, control: Control_contra) -> None:
         """Look at the control, if it is time to."""

@@ -19,6 +19,7 @@ from pmm.real_time import thread_beside
 from pmm.recorder.campaign_owner import own_campaign
 from pmm.run.campaign_folder import finished_runs, keep_sources
 from pmm.run.operator import OperatorAnswers
+from pmm.run.run_control import RunControl
 from pmm.run.session import Ask, RunFailedError, RunJob, RunReport, carry_out, run_job
 from pmm.run.view import View
 from pmm.sequential.approval import approval_of
@@ -58,7 +59,7 @@ class CampaignRequest:
 class Screen:
     """What shows a campaign: the loop, lines beside it, what is known after a run, a new job."""
 
-    view: Callable[[Ask], AbstractContextManager[View]]
+    view: Callable[[Ask], AbstractContextManager[View[RunControl]]]
     tell: Callable[[str], object]
     show: Callable[[Look], None]
     job: Callable[[RunJob], None]

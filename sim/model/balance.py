@@ -12,13 +12,12 @@ from typing import Any
 import numpy as np
 
 from hardware.description.arrays import ComplexArray, FloatArray
-from sim.model.hull_steady_state import apply
 from sim.model.law_response import respond
 from sim.model.law_table import LawTable
 from sim.solve.array_loops import copy, inner, largest, solve
 from sim.solve.compilation import compile_loop
 from sim.solve.corners import gauss
-from sim.solve.period import Period
+from sim.solve.period import Period, apply
 from sim.solve.relaxation import MOST_SWEEPS, ROUNDING, STALLED, TOLERANCE
 
 _DEPTH = 4

@@ -11,7 +11,7 @@ from sim.model.forces import law_harmonics
 from sim.model.law_point import Acting
 from sim.model.model_march import periodic_laws
 from sim.model.system import HullSystem
-from sim.solve.period import Period
+from sim.solve.period import Period, apply
 from sim.solve.relaxation import relax
 
 if TYPE_CHECKING:
@@ -103,9 +103,3 @@ def _mounting_gain(
     pull = np.broadcast_to(shape.T.astype(complex), (period.s.size, *shape.T.shape))
     gain: ComplexArray = -shape @ np.linalg.solve(total, pull)
     return gain
-
-
-def apply(matrices: ComplexArray, vectors: ComplexArray) -> ComplexArray:
-    """Return each harmonic's matrix times its vector."""
-    product: ComplexArray = (matrices @ vectors[:, :, np.newaxis])[:, :, 0]
-    return product

@@ -82,3 +82,9 @@ class Period:
         harmonics = np.zeros(self.orders + 1, dtype=np.complex128)
         harmonics[0] = value
         return harmonics
+
+
+def apply(matrices: ComplexArray, vectors: ComplexArray) -> ComplexArray:
+    """Return each harmonic's matrix times its vector."""
+    product: ComplexArray = (matrices @ vectors[:, :, np.newaxis])[:, :, 0]
+    return product
