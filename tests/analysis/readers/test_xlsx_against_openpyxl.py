@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analysis.foreign.xlsx import READER
 from analysis.readers import ColumnMap
+from analysis.readers.xlsx import READER
 from analysis.recording import Recording
 from hardware.description.errors import DataError
 
