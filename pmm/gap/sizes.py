@@ -22,6 +22,7 @@ _UNITS: Final = {
     **{channel.name: channel.unit for channel in (SHAFT_ANGLE, CARRIAGE_SPEED)},
 }
 _ONE_UNIT: Final = (SHAFT, MOTION, FORCE)  # steps whose numbers are all in the same unit
+_TIMES_PER_CENT: Final = 1000.0  # nobody speaks of more than that in per cent
 _HARMONIC: Final = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE)
 
 
@@ -63,7 +64,9 @@ class SpoiledCoefficient:
 
     @property
     def percentage(self) -> str:
-        """By how much it is off, in per cent with its sign."""
+        """By how much it is off with its sign, in per cent, or in times itself if it is small."""
+        if abs(self.per_cent) >= _TIMES_PER_CENT:
+            return f"{self.per_cent / 100.0:+.2g} times its value"
         return f"{float(f'{self.per_cent:.2g}'):+g} %"
 
 

@@ -64,7 +64,8 @@ class Radiation:
     Raises
     ------
     ConfigurationError
-        If a shape does not fit, a value is not finite, or the state matrix is not stable.
+        If a shape does not fit, a value is not finite, ``aboard`` is neither 0 nor 1, or the state
+        matrix is not stable.
     """
 
     added_mass_infinite: Annotated[FloatArray, _RowsOrArray()]
@@ -92,6 +93,11 @@ class Radiation:
             given = _numbers(name, getattr(self, name))
             of_states = _checked(name, given if given.size else np.zeros(n), (n,))
             object.__setattr__(self, name, of_states)
+        for value in self.aboard[~np.isin(self.aboard, (0.0, 1.0))]:
+            raise ConfigurationError(
+                f"aboard has {value:g}; of each state it says 0 (the model passes that water) or 1 "
+                "(it carries it along)"
+            )
         fastest_growth = _fastest_growth(n, self.state_matrix.tobytes())
         if fastest_growth >= 0.0:
             raise ConfigurationError(

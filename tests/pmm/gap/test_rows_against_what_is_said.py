@@ -27,7 +27,8 @@ def test_what_is_not_known_is_a_dash() -> None:
 
 
 @pytest.mark.parametrize(
-    ("per_cent", "said"), [(412.3, "+410 %"), (-0.0312, "-0.031 %"), (11.7, "+12 %")]
+    ("per_cent", "said"),
+    [(412.3, "+410 %"), (-0.0312, "-0.031 %"), (11.7, "+12 %"), (-1823.0, "-18 times its value")],
 )
 def test_by_how_much_a_coefficient_is_off_has_no_power_of_ten(per_cent: float, said: str) -> None:
     assert SpoiledCoefficient("M_q", per_cent).percentage == said

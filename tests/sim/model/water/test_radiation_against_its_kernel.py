@@ -200,3 +200,11 @@ def test_refuses_what_is_not_a_fading_memory() -> None:
         Radiation(np.eye(2), -np.eye(1), np.zeros((2, 1)), np.zeros((2, 1)))
     with pytest.raises(ConfigurationError, match="not finite"):
         constant([[np.nan, 0.0], [0.0, 0.0]])
+
+
+@pytest.mark.parametrize("share", [0.3, -1.0, 2.0])
+def test_water_is_carried_along_or_passed(share: float) -> None:
+    with pytest.raises(ConfigurationError, match=rf"aboard has {share:g}; .* 0 .* or 1"):
+        Radiation(
+            np.eye(2), -np.eye(1), np.zeros((1, 2)), np.zeros((2, 1)), aboard=np.array([share])
+        )
