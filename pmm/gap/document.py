@@ -43,8 +43,9 @@ _BIAS: Final = (
 )
 _MAP: Final = "What no answer explains, as a force over the strut's motion: its form, no cause."
 _ODDS: Final = (
-    "Runs of this rig, by how well they are expected to tell apart: {}. Log odds are the natural "
-    "logarithm of the factor by which the right answer gains on the others: 3 is a factor of 20."
+    "Runs of this rig, by how well they are expected to tell apart for their tank time: {}. Log "
+    "odds are the natural logarithm of the factor by which the right answer gains on the others: "
+    "3 is a factor of 20."
 )
 
 

@@ -44,6 +44,10 @@ class Options:
         Runs that nobody looks at until the end, as :func:`pmm.gap.hold_out.held_out_runs` says.
     runs
         What may be proposed, in place of what case or oscillator says; none for that.
+    proposes
+        Whether the next run is sought too: a fifth of the time.
+    batch
+        Runs that are to be made before the next look: those proposed tell most together.
     """
 
     effects: tuple[str, ...] = ()
@@ -51,6 +55,8 @@ class Options:
     sensors: tuple[str, ...] = ()
     hold_out: tuple[str, ...] = ()
     runs: tuple[SetPoint, ...] = ()
+    proposes: bool = True
+    batch: int = 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,9 +166,10 @@ def examine(
     """
     kinds, more = chosen_effects(options.effects, options.without)
     ready = prepare(folder, kinds, more, options.sensors, options.hold_out, progress)
-    if options.runs and ready.settings.choices is not None:
-        choices = replace(ready.settings.choices, runs=options.runs)
-        ready = replace(ready, settings=replace(ready.settings, choices=choices))
+    choices = ready.settings.choices if options.proposes else None
+    if choices is not None:
+        choices = replace(choices, runs=options.runs or choices.runs, batch=options.batch)
+    ready = replace(ready, settings=replace(ready.settings, choices=choices))
     recentred, tolerances = ready.recentred, ready.case.tolerances
     try_own(more, recentred.rig, ready.fitted)
     diagnosis = diagnose(recentred.rig, ready.fitted, ready.settings, executor, progress)

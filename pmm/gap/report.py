@@ -207,5 +207,6 @@ def _next_row(proposal: Proposal) -> dict[str, Any]:
         "run": next_run(proposal),
         "said": str(proposal),
         "gain_log_odds": proposal.gain,
+        "tank_time_min": proposal.cost_s / 60.0,
         "between": list(proposal.between),
     }

@@ -7,8 +7,8 @@ import math
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from hardware.description.setpoint import SetPoint
 from pmm.design.design_file import DesignFile
 from pmm.design.grid import costs_s
 from pmm.gap.causes import CauseDiagnosis, CauseGoal, Standing, Suggestion
@@ -19,6 +19,9 @@ from pmm.sequential.course import CampaignGoal
 from pmm.sequential.growing_plan import check_design, planned, read_growing
 from pmm.sequential.look import Look
 from pmm.sequential.targets import TargetGoal
+
+if TYPE_CHECKING:
+    from pmm.gap.examination import Options
 
 
 class RigPlace:
@@ -83,22 +86,20 @@ def goal_of(file: DesignFile, folder: Path, *, apart: bool = True) -> CampaignGo
         from pmm.gap.own_effects import chosen_effects
 
         chosen_effects(file.gap.effects, ())  # refuses names that nobody knows
+    from pmm.gap.examination import Options
+
     points = tuple(dict.fromkeys(run.set_point for run in file.grid.runs))
-    work = partial(_diagnose_in_process if apart else _diagnose, folder, file.gap.effects, points)
+    options = Options(file.gap.effects, runs=points, batch=file.gap.batch)
+    work = partial(_diagnose_in_process if apart else _diagnose, folder, options)
     return CauseGoal(RigPlace(file, folder), work, file.gap.least_log_odds, file.gap.batch)
 
 
-def _diagnose(
-    folder: Path, effects: tuple[str, ...], points: tuple[SetPoint, ...]
-) -> CauseDiagnosis:
-    from pmm.gap.examination import Options
+def _diagnose(folder: Path, options: "Options") -> CauseDiagnosis:
     from pmm.gap.found_cause import diagnosed
 
-    return diagnosed(folder, Options(effects, runs=points))
+    return diagnosed(folder, options)
 
 
-def _diagnose_in_process(
-    folder: Path, effects: tuple[str, ...], points: tuple[SetPoint, ...]
-) -> CauseDiagnosis:
+def _diagnose_in_process(folder: Path, options: "Options") -> CauseDiagnosis:
     with LocalProcesses(1) as executor:
-        return executor.submit(_diagnose, folder, effects, points).result()
+        return executor.submit(_diagnose, folder, options).result()

@@ -112,6 +112,8 @@ NEXT: Final[tuple[Column[dict[str, Any]], ...]] = (
     Column("run", lambda run: run["said"], "said"),
     Column("expected log odds", lambda run: run["gain_log_odds"], "gain_log_odds", written(".1f"),
            number=True),
+    Column("tank time, min", lambda run: run["tank_time_min"], "tank_time_min", written(".1f"),
+           number=True),
     Column(None, lambda run: run["run"], "run"),
     Column(None, lambda run: run["between"], "between"),
 )  # fmt: skip

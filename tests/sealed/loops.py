@@ -18,9 +18,9 @@ from analysis.gap.design.proposals import Proposal
 from hardware.description.errors import PmmError
 from hardware.description.setpoint import Medium, SetPoint
 from pmm.gap.causes import LEAST, SURE
-from pmm.gap.examination import Examined, examine
+from pmm.gap.examination import Examined, Options, examine
 from pmm.gap.found_cause import suggestions
-from tests.sealed.generator.case import Case, make
+from tests.sealed.generator.case import Case, first_design, make
 from tests.sealed.generator.files import write_open
 from tests.sealed.generator.further import added, parsed
 from tests.sealed.generator.kinds import DETERMINABLE
@@ -90,6 +90,8 @@ def looped(seed: int, index: int, where: str, scratch: Path) -> Loop | str:
     scratch
         An empty folder.
     """
+    if len(first_design(seed, index, where).runs) > LONGEST:
+        return "more runs"
     case = make(seed, index, null=False, where=where)
     if len(case.campaign.runs) > LONGEST:
         return "more runs"
@@ -155,7 +157,7 @@ def _stands(told: _Looping, start: Path, first: Examined, way: str) -> Iterator[
         told.made.append(point)
         last = _run(point, last)
         added(told.case, last, folder, len(told.made))
-        found = examine(folder)
+        found = examine(folder, Options(proposes=way == "ours"))
         yield _stand(told, found)
 
 

@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from analysis.gap.design.beside import Beside
 from analysis.gap.forward.free_numbers import Free, tolerated
 from analysis.gap.forward.problem import Problem
 from analysis.gap.forward.tolerances import Tolerances
@@ -35,17 +36,21 @@ class Forecast:
         The same of each run's own frequency and phase reference, and of the loudness of its noise.
     form
         The same of the effect's own form, by about as much as it is off.
+    deviation
+        Covariance of a deviation of no particular form, ``(observations, observations)``.
     """
 
     mean: FloatArray
     root: FloatArray
     run_root: FloatArray
     form: FloatArray
+    deviation: FloatArray | None = None
 
-    def covariance_root(self, rows: BoolArray) -> FloatArray:
-        """Return a root of the covariance of some observations to be made, without the noise."""
-        roots = [root[rows] for root in (self.root, self.run_root, self.form)]
-        return np.hstack([root[:, root.any(axis=0)] for root in roots])
+    def covariance(self, rows: BoolArray) -> FloatArray:
+        """Return the covariance of some observations to be made, their noise in it."""
+        root = np.hstack([root[rows] for root in (self.root, self.run_root, self.form)])
+        covariance: FloatArray = np.eye(len(root)) + root @ root.T
+        return covariance if self.deviation is None else covariance + self.deviation[rows][:, rows]
 
     def values(self, problem_ahead: Problem) -> FloatArray:
         """Return the predicted components in their own units."""
@@ -61,6 +66,14 @@ def next_place(problem: Problem) -> CampaignRun:
     last = max(stack.turning, key=lambda run: run.place.since_start_s)
     waited_s = last.place.waited_s
     return CampaignRun(len(stack.runs), float(began_s[-1]) + lapse_s, waited_s, last.set_point)
+
+
+def waited_s(problem: Problem) -> float:
+    """Return the median time from the end of a run to the beginning of the next; 0 if untold."""
+    runs = sorted(problem.simulator.stack.turning, key=lambda run: run.place.since_start_s)
+    began_s = [run.place.since_start_s for run in runs]
+    turned_s = [run.periods / run.set_point.frequency_hz for run in runs[:-1]]
+    return max(float(np.median(np.diff(began_s) - turned_s)), 0.0) if turned_s else 0.0
 
 
 def planned(
@@ -108,8 +121,9 @@ def forecast(
     columns_ahead: FloatArray | None = None,
     *,
     roughly: bool = False,
+    beside: Beside | None = None,
 ) -> Forecast:
-    """Return what an answer predicts at further runs; ``None`` is the answer "no gap".
+    """Return what an answer predicts at further runs; ``None`` is an answer that names no effect.
 
     Coefficients and settings are as the campaign fits them; frequency and noise are each run's own,
     and the effect has a form of its own.
@@ -121,32 +135,52 @@ def forecast(
     roughly
         Take the effect's signature on the rig as it is believed to be: as the campaign fits its
         coefficients, it differs by a few per cent, as the effect's form does anyway.
+    beside
+        A deviation of no particular form beside it; none of it if not given.
     """
-    count = len(problem.free)
     if fit is not None and columns_ahead is not None:
         ahead = _Ahead(columns_ahead @ fit.units, columns_ahead)
     else:
         ahead = _Ahead.of(problem, problem_ahead, fit, roughly)
+    prediction = _conditioned(problem, problem_ahead, fit, ahead, beside)
+    if fit is None:
+        return prediction
+    # What the coefficients make up for, they make up for in any form.
+    calm = _Ahead.of(problem, problem_ahead, None, roughly)
+    alone = prediction.mean - _conditioned(problem, problem_ahead, None, calm, beside).mean
+    return replace(prediction, form=_of_form(problem_ahead, alone, LEAST_FORM))
+
+
+def _conditioned(
+    problem: Problem,
+    problem_ahead: Problem,
+    fit: Fit | None,
+    ahead: "_Ahead",
+    beside: Beside | None,
+) -> Forecast:
+    """Return the Gaussian of further observations, given those that were made."""
     effect = np.zeros((len(problem.residual), 0)) if fit is None else fit.columns
     shared = np.hstack((problem.nuisances.columns, effect[:, : ahead.columns.shape[1]]))
+    residual = problem.residual - (0.0 if fit is None else fit.signature)
+    count, wide = len(problem.free), problem_ahead.nuisances.columns
+    nuisance_count = problem.nuisances.columns.shape[1]
+    columns = np.zeros((len(wide), shared.shape[1]))
+    columns[:, :count], columns[:, nuisance_count:] = wide[:, :count], ahead.columns
+    deviation, told = None, np.zeros(len(wide))
+    if beside is not None:
+        scaled = beside.scaled(shared), beside.scaled(columns)
+        white = beside.white(np.column_stack((scaled[0], residual)))
+        shared, residual = white[:, :-1], white[:, -1]
+        columns, told = scaled[1] - beside.reach.T @ shared, beside.reach.T @ residual
+        deviation = beside.further - beside.reach.T @ beside.reach
     # A root of the posterior's covariance by the precision's eigenvectors: no eigenvalue is below
     # the prior's 1, however well the campaign tells some numbers and not others.
     precision, turn = np.linalg.eigh(np.eye(shared.shape[1]) + shared.T @ shared)
     spread = turn / np.sqrt(np.maximum(precision, 1.0))
-    residual = problem.residual - (0.0 if fit is None else fit.signature)
     fitted = spread @ (spread.T @ (shared.T @ residual))
-    nuisance_count = problem.nuisances.columns.shape[1]
-    rows = np.r_[np.arange(count), nuisance_count + np.arange(ahead.columns.shape[1])]
-    wide = problem_ahead.nuisances.columns
-    columns = np.hstack((wide[:, :count], ahead.columns))
-    root = np.transpose(np.linalg.qr(spread[rows].T)[1])
-    mean = ahead.signature + columns @ fitted[rows]
-    prediction = Forecast(mean, columns @ root, wide[:, count:], np.zeros((len(mean), 0)))
-    if fit is None:
-        return prediction
-    # What the coefficients make up for, they make up for in any form.
-    alone = mean - forecast(problem, problem_ahead, None).mean
-    return replace(prediction, form=_of_form(problem_ahead, alone, LEAST_FORM))
+    mean = ahead.signature + told + columns @ fitted
+    nothing = np.zeros((len(mean), 0))
+    return Forecast(mean, columns @ spread, wide[:, count:], nothing, deviation)
 
 
 def _of_form(problem_ahead: Problem, signature: FloatArray, share: float) -> FloatArray:

@@ -7,12 +7,13 @@ from typing import Final
 
 import numpy as np
 
+from analysis.gap.design.beside import Unnamed
 from analysis.gap.forward.problem import Problem
 from analysis.gap.search.fit import Fit
 from hardware.description.arrays import FloatArray
 
-Leading = Sequence[tuple[Fit | None, float]]
-"""The leading answers with their probabilities; ``None`` for no gap."""
+Leading = Sequence[tuple[Fit | Unnamed, float]]
+"""The leading answers with their probabilities."""
 
 ENOUGH: Final = 20.0  # log odds beyond which more is worth no more
 _NEVER: Final = 1e-300  # least share, for its logarithm
@@ -37,6 +38,10 @@ class Worth:
     def of(cls, shares: Sequence[float], odds: FloatArray) -> "Worth":
         """Return the worth of a run; see :func:`expected_gain`."""
         return cls(expected_gain(shares, odds), expected_gain(shares, odds, np.inf))
+
+    def beyond(self, other: "Worth") -> "Worth":
+        """Return what it is worth more than another one."""
+        return Worth(self.gain - other.gain, self.uncapped - other.uncapped)
 
     @property
     def order(self) -> tuple[float, float]:
@@ -66,22 +71,29 @@ def expected_gain(shares: Sequence[float], odds: FloatArray, enough: float = ENO
     return float(np.average(gain, weights=shares))
 
 
-def expected_log_odds(means: FloatArray, roots: Sequence[FloatArray]) -> FloatArray:
-    """Return the expected log odds between each two answers after a run, by symmetric divergence.
+def expected_log_odds(means: FloatArray, covariances: Sequence[FloatArray]) -> FloatArray:
+    """Return the log odds that each answer, where it is right, is expected to gain over each other.
+
+    That is the Kullback-Leibler divergence of what the two predict, shape ``(answers, answers)``; a
+    row is of the right answer.
 
     Parameters
     ----------
     means
         What each answer predicts, shape ``(observations, answers)``.
-    roots
-        The root of its covariance without the noise, shape ``(observations, any)``.
+    covariances
+        Of that, the noise in it, each ``(observations, observations)``.
     """
-    squares = np.zeros((means.shape[1], means.shape[1]))
-    for number, root in enumerate(roots):
-        away = means - means[:, number, None]
-        towards = np.linalg.solve(np.eye(root.shape[1]) + root.T @ root, root.T @ away)
-        squares[number] = np.sum(away * (away - root @ towards), axis=0)
-    return 0.25 * (squares + squares.T)
+    count = means.shape[1]
+    roots = [np.linalg.cholesky(covariance) for covariance in covariances]
+    volumes = [2.0 * float(np.log(np.diagonal(root)).sum()) for root in roots]
+    odds = np.zeros((count, count))
+    for rival, root in enumerate(roots):
+        white = np.linalg.solve(root, np.hstack((means - means[:, rival, None], *roots)))
+        away = np.sum(white[:, :count] ** 2, axis=0)
+        spread = np.sum(white[:, count:].reshape(len(root), count, len(root)) ** 2, axis=(0, 2))
+        odds[:, rival] = 0.5 * (away + spread - len(root) + volumes[rival] - volumes)
+    return odds
 
 
 def by_itself(problem: Problem, kind: str, leading: Leading) -> FloatArray:
@@ -94,7 +106,7 @@ def by_itself(problem: Problem, kind: str, leading: Leading) -> FloatArray:
     rows = ~stack.steady
     effect_sets = [_shown_effects(fit, kind) for fit, _ in leading]
     shown = [
-        fit.signature[rows] if fit is not None and names else np.zeros(int(rows.sum()))
+        fit.signature[rows] if isinstance(fit, Fit) and names else np.zeros(int(rows.sum()))
         for (fit, _), names in zip(leading, effect_sets, strict=True)
     ]
     free = problem.nuisances.among(rows)
@@ -106,7 +118,7 @@ def by_itself(problem: Problem, kind: str, leading: Leading) -> FloatArray:
     return np.minimum(odds, ENOUGH)
 
 
-def _shown_effects(fit: Fit | None, kind: str) -> set[str]:
+def _shown_effects(answer: Fit | Unnamed, kind: str) -> set[str]:
     """Return the effects of an answer that do not repeat and show in a measurement."""
-    parts = () if fit is None else fit.candidates
+    parts = answer.candidates if isinstance(answer, Fit) else ()
     return {candidate.name for candidate in parts if kind in candidate.kind.shown_by}

@@ -3,29 +3,33 @@
 A run tells two answers apart by what they predict differently there, each with its own parameters
 known no better than the campaign knows them, and with the coefficients free as always: whether it
 is an oscillation, one with a dead weight that takes up play, or a measurement of another kind. What
-does not repeat (hum, a drift) shows in those of them that its effect names, by itself. A run is
-worth the log odds that whichever answer is right gains over all others together: a rival that it
-does not touch is left standing, however far it throws the rest.
+does not repeat (hum, a drift) shows in those of them that its effect names, by itself. "No gap",
+something unknown, other coefficients and an odd run are answers too: each expects of further runs
+what its own deviation leaves open. A run is worth the log odds that whichever answer is right gains
+over all others together, for the tank time that it takes: a rival that it does not touch is left
+standing, however far it throws the rest.
 """
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import islice, product
 from typing import Final
 
 import numpy as np
 
-from analysis.gap.design.forecast import forecast, next_place, planned, with_further_runs
-from analysis.gap.design.information_gain import Leading, Worth, by_itself, expected_log_odds
-from analysis.gap.design.measurements import BESIDES, INJECTED_HZ, measured_besides
+from analysis.gap.design.beside import Unnamed
+from analysis.gap.design.forecast import next_place, planned, waited_s
+from analysis.gap.design.information_gain import Leading
+from analysis.gap.design.measurements import BESIDES, INJECTED_HZ, REST_S, measured_besides
+from analysis.gap.design.valuation import Choice, Valuation, Valued
 from analysis.gap.forward.free_numbers import Free
 from analysis.gap.forward.problem import Problem
 from analysis.gap.forward.simulator import Simulator
 from analysis.gap.forward.tolerances import Tolerances
 from analysis.gap.observe.components import GapRun
 from analysis.gap.observe.regimes import describe
+from analysis.gap.search.fit import Fit
 from hardware.description.errors import PmmError
 from hardware.description.oscillator import Range
 from hardware.description.setpoint import Medium, SetPoint
@@ -34,7 +38,6 @@ from sim.effects.campaign import CampaignRun
 from sim.effects.effect import FurtherMeasurement
 from sim.signals import FORCE_AFT, FORCE_FORE
 
-NO_GAP: Final = "no gap"
 OSCILLATION: Final = "oscillation"
 _GENTLER: Final = 3  # one of so many kinds of run is looked at with smaller eccentricities too
 _PRELOADED: Final = 6  # of the oscillations that can be made so, each with a dead weight
@@ -59,6 +62,8 @@ class Choices:
         What can be measured besides; ``PRELOAD`` is a weight on the model while it oscillates.
     runs
         The oscillations themselves, in place of steps between the limits; none for these steps.
+    batch
+        Runs that are made before anyone looks again: they are weighed together.
     """
 
     frequency_hz: Range
@@ -70,6 +75,7 @@ class Choices:
     special: tuple[FurtherMeasurement, ...] = tuple(FurtherMeasurement)
     force_limit_n: float = math.inf
     runs: tuple[SetPoint, ...] = ()
+    batch: int = 1
 
 
 @dataclass(frozen=True)
@@ -84,11 +90,14 @@ class Proposal:
         Of an oscillation the dead weight on the model, 0 for none; the check weight; the amplitude
         of the sine.
     gain
-        Log odds that the right one of the leading answers is expected to gain, at most ``ENOUGH``.
+        Log odds that the right one of the leading answers is expected to gain, at most ``ENOUGH``;
+        of the runs of a batch, those that it adds to the runs before it.
     between
         Those answers, by name, ``"no gap"`` among them.
     strut
         ``"aft"`` or ``"fore"``, whose dynamometer a check weight is put on.
+    cost_s
+        Tank time until the next run can begin.
     """
 
     kind: str
@@ -97,6 +106,7 @@ class Proposal:
     gain: float
     between: tuple[str, ...] = ()
     strut: str = ""
+    cost_s: float = math.nan
 
     def __str__(self) -> str:
         if self.set_point is not None:
@@ -110,17 +120,6 @@ def dead_weight(force_n: float) -> str:
     return f"a dead weight of {force_n:g} N on the model (on a cord where it moves sideways)"
 
 
-@dataclass(frozen=True, eq=False)
-class _Choice:
-    """Something to do next, and the record that it makes."""
-
-    kind: str
-    set_point: SetPoint | None
-    force_n: float
-    run: GapRun
-    strut: str = ""
-
-
 def proposals(
     problem: Problem,
     leading: Leading,
@@ -129,53 +128,65 @@ def proposals(
     tolerances: Tolerances,
 ) -> tuple[Proposal, ...]:
     """Return runs in the order of what they are worth."""
-    place = next_place(problem)
-    weighed = partial(_valued_choices, problem, leading, free=free, tolerances=tolerances)
+    place, valuation = next_place(problem), Valuation(problem, leading, free, tolerances)
     first, gentler = _by_size(tuple(_oscillations(problem, choices, place)))
-    ranked = sorted(weighed(first), key=_order)
+    ranked = sorted(valuation.each(first), key=_order)
     # A gentler motion tells more than another kind of run only where the larger one tells much.
-    best = {_kind_of(choice) for choice, _ in ranked[: -(-len(ranked) // _GENTLER)]}
-    ranked += weighed([choice for choice in gentler if _kind_of(choice) in best])
+    best = {_kind_of(valued.choice) for valued in ranked[: -(-len(ranked) // _GENTLER)]}
+    ranked += valuation.each([choice for choice in gentler if _kind_of(choice) in best])
     ranked.sort(key=_order)
     remaining = [choice for choice in gentler if _kind_of(choice) not in best]
     plays = any(
-        candidate.kind.taken_up for fit, _ in leading if fit for candidate in fit.candidates
+        candidate.kind.taken_up
+        for answer, _ in leading
+        if isinstance(answer, Fit)
+        for candidate in answer.candidates
     )
     if plays and FurtherMeasurement.PRELOAD in choices.special:
         # the larger ones may throw a weight off
-        bare = [*(choice for choice, _ in ranked), *remaining]
+        bare = [*(valued.choice for valued in ranked), *remaining]
         pressed = _preloaded_choices(problem.simulator, bare, choices)
-        ranked += weighed(tuple(islice(pressed, _PRELOADED)))
-    ranked += weighed(tuple(_measurements(problem, choices, place)))
-    answers = tuple(NO_GAP if fit is None else " and ".join(fit.names) for fit, _ in leading)
+        ranked += valuation.each(tuple(islice(pressed, _PRELOADED)))
+    ranked += valuation.each(tuple(_measurements(problem, choices, place)))
+    between = tuple(_name(answer) for answer, _ in leading)
     return tuple(
-        Proposal(choice.kind, choice.set_point, choice.force_n, worth.gain, answers, choice.strut)
-        for choice, worth in sorted(ranked, key=_order)
+        _proposal(valued, between)
+        for valued in valuation.batch(sorted(ranked, key=_order), choices.batch)
     )
 
 
-def _order(weighed: tuple[_Choice, Worth]) -> tuple[float, ...]:
-    """Sort by worth, and where that is the same by how gently the model is moved."""
-    choice, worth = weighed
-    point = choice.set_point
-    return *worth.order, 0.0 if point is None else point.eccentricity_m * point.frequency_hz
+def _proposal(valued: Valued, between: tuple[str, ...]) -> Proposal:
+    choice, gain = valued.choice, valued.worth.gain
+    return Proposal(
+        choice.kind, choice.set_point, choice.force_n, gain, between, choice.strut, choice.cost_s
+    )
 
 
-def _oscillations(problem: Problem, choices: Choices, place: CampaignRun) -> Iterator[_Choice]:
+def _name(answer: Fit | Unnamed) -> str:
+    return " and ".join(answer.names) if isinstance(answer, Fit) else answer.name
+
+
+def _order(valued: Valued) -> tuple[float, ...]:
+    return valued.order
+
+
+def _oscillations(problem: Problem, choices: Choices, place: CampaignRun) -> Iterator[Choice]:
+    between_s = waited_s(problem)
     for number, point in enumerate(set_points(choices)):
         run = planned(problem, point, number, place)
         if _largest_force_n(problem.simulator, [run]) < choices.force_limit_n:
-            yield _Choice(OSCILLATION, point, 0.0, run)
+            cost_s = between_s + run.periods / point.frequency_hz
+            yield Choice(OSCILLATION, point, 0.0, run, cost_s)
 
 
-def _kind_of(choice: _Choice) -> SetPoint | None:
+def _kind_of(choice: Choice) -> SetPoint | None:
     """Return what runs of other eccentricities have in common."""
     return None if choice.set_point is None else replace(choice.set_point, eccentricity_m=0.0)
 
 
-def _by_size(choices: Sequence[_Choice]) -> tuple[list[_Choice], list[_Choice]]:
+def _by_size(choices: Sequence[Choice]) -> tuple[list[Choice], list[Choice]]:
     """Return the run of the largest eccentricity of each kind, and the others."""
-    largest: dict[SetPoint | None, _Choice] = {}
+    largest: dict[SetPoint | None, Choice] = {}
     for choice in sorted(choices, key=lambda choice: choice.run.set_point.eccentricity_m):
         largest[_kind_of(choice)] = choice
     first = list(largest.values())
@@ -183,8 +194,8 @@ def _by_size(choices: Sequence[_Choice]) -> tuple[list[_Choice], list[_Choice]]:
 
 
 def _preloaded_choices(
-    simulator: Simulator, turning: Sequence[_Choice], choices: Choices
-) -> Iterator[_Choice]:
+    simulator: Simulator, turning: Sequence[Choice], choices: Choices
+) -> Iterator[Choice]:
     """Yield oscillations with a weight on the model that keeps both struts pressed one way.
 
     Each strut carries half of it, and half of what its mass takes to be moved along.
@@ -215,41 +226,18 @@ def _pressing_n(largest_n: float, swing: float) -> float:
     return weight_n if weight_n >= least_n else _readable(1.05 * least_n)
 
 
-def _measurements(problem: Problem, choices: Choices, place: CampaignRun) -> Iterator[_Choice]:
+def _measurements(problem: Problem, choices: Choices, place: CampaignRun) -> Iterator[Choice]:
     force_n = _readable(_largest_force_n(problem.simulator, problem.simulator.stack.turning))
     for kind, strut in BESIDES:
         if kind in choices.special:
             size_n = 0.0 if kind is FurtherMeasurement.REST else force_n
             run = measured_besides(problem, kind, place, size_n, strut)
             if run is not None:
-                yield _Choice(kind, None, size_n, run, strut)
+                yield Choice(kind, None, size_n, run, waited_s(problem) + REST_S, strut)
 
 
 def _readable(force_n: float) -> float:
     return float(f"{force_n:.2g}")
-
-
-def _valued_choices(
-    problem: Problem,
-    leading: Leading,
-    batch: Sequence[_Choice],
-    free: Sequence[Free],
-    tolerances: Tolerances,
-) -> Iterator[tuple[_Choice, Worth]]:
-    """Yield each choice with what it is worth."""
-    if not batch:
-        return
-    problem_ahead = with_further_runs(problem, [choice.run for choice in batch], free, tolerances)
-    forecasts = [forecast(problem, problem_ahead, fit, roughly=True) for fit, _ in leading]
-    shares = [share for _, share in leading]
-    for number, choice in enumerate(batch):
-        rows = problem_ahead.simulator.stack.run == number
-        means = np.column_stack([forecasted.mean[rows] for forecasted in forecasts])
-        odds = expected_log_odds(
-            means, [forecasted.covariance_root(rows) for forecasted in forecasts]
-        )
-        odds = odds + by_itself(problem, choice.kind, leading)
-        yield choice, Worth.of(shares, odds)
 
 
 def set_points(choices: Choices) -> Iterator[SetPoint]:

@@ -2,7 +2,14 @@
 
 from typing import Final
 
-from analysis.gap.inference.answers import NAMELESS
+from analysis.gap.design.beside import (
+    NO_GAP,
+    OTHER_COEFFICIENTS,
+    SOMETHING_UNKNOWN,
+    Unnamed,
+    odd,
+)
+from analysis.gap.inference.answers import COEFFICIENTS, NONE, ODD_RUN, UNKNOWN
 from analysis.gap.search.fit import Fit
 from analysis.gap.search.hypotheses import WeighedHypotheses
 
@@ -10,14 +17,20 @@ _MOST: Final = 4
 _DOUBTED: Final = 0.05  # least share of a rival: odds are overconfident
 
 
-def leading(weighed: WeighedHypotheses) -> list[tuple[Fit | None, float]]:
-    """Return the most probable answer, those that share no effect with it, and no gap at last.
+def leading(weighed: WeighedHypotheses) -> list[tuple[Fit | Unnamed, float]]:
+    """Return the best named answer, those that share no effect with it, and all unnamed ones.
 
-    Each with its probability; ``None`` stands for no gap, and for what nobody knows.
+    Each has its probability beside it.
     """
     shares, fits = weighed.answers.by_answer, weighed.ranked
     unrelated = [fit for fit in fits[1:] if not {*fit.names} & {*fits[0].names}]
-    answers: list[tuple[Fit | None, float]] = [
-        (fit, max(shares[fit.answer], _DOUBTED)) for fit in [*fits[:1], *unrelated][:_MOST]
+    named = [(fit, max(shares[fit.answer], _DOUBTED)) for fit in [*fits[:1], *unrelated][:_MOST]]
+    runs = weighed.answers.odd_runs
+    oddest = max(runs, key=lambda run: runs[run], default="")
+    unnamed = [
+        (NO_GAP, max(shares[NONE], _DOUBTED)),
+        (SOMETHING_UNKNOWN, max(shares[UNKNOWN], _DOUBTED)),
+        (OTHER_COEFFICIENTS, shares[COEFFICIENTS]),
+        *([(odd(oddest), shares[ODD_RUN])] if oddest else []),
     ]
-    return [*answers, (None, max(sum(shares[name] for name in NAMELESS), _DOUBTED))]
+    return [*named, *unnamed]

@@ -5,7 +5,7 @@ drift; each run has a part of its own.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -123,6 +123,11 @@ def units(stack: Stack, nominal: FloatArray) -> FloatArray:
     nominal
         What the simulation says, shape ``(observations,)``.
     """
+    return units_of(stack, channel_sizes(stack, nominal))
+
+
+def channel_sizes(stack: Stack, nominal: FloatArray) -> dict[str, float]:
+    """Return the root mean square of each channel's predicted first harmonic over a campaign."""
     squares: dict[str, list[float]] = {}
     for component, value in zip(stack.components, nominal, strict=True):
         first = component.part in (Part.IN_PHASE, Part.QUADRATURE) and component.order == 1
@@ -133,9 +138,13 @@ def units(stack: Stack, nominal: FloatArray) -> FloatArray:
         if first or standing:
             squares.setdefault(component.channel, []).append(float(value) ** 2)
     runs = max(len(stack.turning), 1)
-    sizes = {
+    return {
         name: math.sqrt(sum(channel_squares) / runs) for name, channel_squares in squares.items()
     }
+
+
+def units_of(stack: Stack, sizes: Mapping[str, float]) -> FloatArray:
+    """Return how large a deviation of 1 is at each observation; see :func:`units`."""
     out = np.ones(len(stack.components))
     for at, component in enumerate(stack.components):
         if component.part in _HARMONIC:

@@ -1,5 +1,6 @@
 """``pmm gap pursue``: run after run, until it is known why rig and simulation differ."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -97,7 +98,10 @@ def pursue(
     make = None if simulated is None else simulated_by(Path(simulated), campaign)
     answers, tell, appear = standard_input(), messages().print, _waiting(60.0 * wait)
     goal = CauseGoal(
-        FolderPlace(path), lambda: found_of(_examined(looks, path, jobs), worth), worth, batch
+        FolderPlace(path),
+        lambda: found_of(_examined(looks, path, jobs, batch), worth),
+        worth,
+        batch,
     )
     course = CampaignCourse(
         goal,
@@ -124,12 +128,12 @@ def _missing(missing: "Mapping[str, str]") -> str:
     )
 
 
-def _examined(looks: Looks, path: Path, jobs: int | None) -> "Examined":
+def _examined(looks: Looks, path: Path, jobs: int | None, batch: int) -> "Examined":
     from pmm.cli.screen import doing
     from pmm.gap.examination import examine
 
     with doing("reading") as progress, engine(looks, jobs) as executor:
-        return examine(path, looks.options, executor, progress)
+        return examine(path, replace(looks.options, batch=batch), executor, progress)
 
 
 def _waiting(seconds: float) -> "Callable[[], bool]":

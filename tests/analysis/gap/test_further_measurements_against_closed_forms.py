@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 import pytest
 
+from analysis.gap.design.beside import NO_GAP
 from analysis.gap.design.forecast import next_place, planned
 from analysis.gap.design.measurements import INJECTED_HZ, measured_besides
 from analysis.gap.design.proposals import OSCILLATION, Choices, Proposal, proposals, set_points
@@ -167,7 +168,7 @@ def test_a_weight_is_proposed_on_the_strut_whose_gauge_it_tells_of(problem: Prob
     effect = build("gain-error:aft=0.0,fore=0.05")
     part = next(one for one in candidates(type(effect), (0.5, 1.0)))
     units = np.array([axis.unit(getattr(effect, axis.parameter.name)) for axis in part.axes])
-    leading = ((linearised_at(problem, (part,), units), 0.5), (None, 0.5))
+    leading = ((linearised_at(problem, (part,), units), 0.5), (NO_GAP, 0.5))
     choices = Choices(Range(0.5, 1.0), Range(0.01, 0.02), media=())
     free = free_numbers(problem.simulator.rig, Tolerances())
     first, *_ = proposals(problem, leading, choices, free, Tolerances())
@@ -199,7 +200,7 @@ def test_the_next_run_is_made_after_the_last(problem: Problem) -> None:
 def pressed(problem: Problem, choices: Choices) -> list[Proposal]:
     """Return what is proposed with a dead weight, where play or no gap may be."""
     play = next(iter(candidates(find("joint-play"), (0.5, 1.0))))
-    leading = ((linearised_at(problem, (play,), play.start), 0.5), (None, 0.5))
+    leading = ((linearised_at(problem, (play,), play.start), 0.5), (NO_GAP, 0.5))
     free = free_numbers(problem.simulator.rig, Tolerances())
     found = proposals(problem, leading, choices, free, Tolerances())
     return [one for one in found if one.set_point is not None and one.force_n]
@@ -264,7 +265,7 @@ def test_the_strut_that_is_not_recorded_has_its_limit_too(
     alone = Choices(Range(0.8, 0.8), Range(0.02, 0.02), (0.0,), media=(Medium.AIR,), special=())
     for share, can in ((0.999, False), (1.001, True)):
         limited = replace(alone, force_limit_n=share * most_n)
-        leading = ((None, 0.5), (None, 0.5))
+        leading = ((NO_GAP, 0.5), (NO_GAP, 0.5))
         found = proposals(one, leading, limited, free_numbers(rig, Tolerances()), Tolerances())
         assert bool(found) is can
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from analysis.gap.design.beside import NO_GAP
 from analysis.gap.design.proposals import Choices, proposals
 from analysis.gap.forward.candidate import candidates
 from analysis.gap.forward.free_numbers import free_numbers
@@ -110,7 +111,7 @@ def test_the_same_measurements_show_it(
         Range(0.5, 1.0), Range(0.01, 0.02), media=(), special=tuple(FurtherMeasurement)
     )
     for kind in both(name, tmp_path):
-        leading = ((begun(problem, kind, 3.0), 0.6), (None, 0.4))
+        leading = ((begun(problem, kind, 3.0), 0.6), (NO_GAP, 0.4))
         free = free_numbers(problem.simulator.rig, Tolerances())
         found = proposals(problem, leading, choices, free, Tolerances())
         assert {one.kind for one in found if one.gain > 1.0} == shown

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from analysis.gap.design.beside import NO_GAP
 from analysis.gap.design.information_gain import ENOUGH, Worth, by_itself, expected_gain
 from analysis.gap.design.proposals import Choices, proposals, set_points
 from analysis.gap.forward.candidate import candidates
@@ -62,7 +63,7 @@ def test_of_runs_that_are_worth_the_same_the_gentlest_comes_first(
     rig: SimulatedRig, clean: tuple[GapRun, ...]
 ) -> None:
     problem = problem_of(rig, clean[:2])
-    leading = ((None, 0.5), (None, 0.5))  # nothing tells what is the same apart
+    leading = ((NO_GAP, 0.5), (NO_GAP, 0.5))  # nothing tells what is the same apart
     choices = Choices(Range(0.5, 1.0), Range(0.01, 0.02), special=())
     found = proposals(problem, leading, choices, free_numbers(rig, Tolerances()), Tolerances())
     speeds = [
@@ -84,12 +85,12 @@ def test_what_does_not_repeat_is_worth_what_a_run_shows_of_it(
         for part in (next(iter(candidates(find(name), (0.5, 1.0)))) for name in NAMES)
     )
     trends = drift.signature[~problem.simulator.stack.steady]
-    odds = by_itself(problem, "rest", [(drift, 0.4), (friction, 0.3), (None, 0.3)])
+    odds = by_itself(problem, "rest", [(drift, 0.4), (friction, 0.3), (NO_GAP, 0.3)])
     assert 0.0 < odds[0, 2] <= 0.5 * trends @ trends / 2.0
     assert odds[0, 2] == odds[0, 1] == odds[1, 0]
     assert odds[1, 2] == 0.0  # friction repeats
-    assert by_itself(problem, "rest", [(more, 0.5), (None, 0.5)])[0, 1] == ENOUGH
-    assert not by_itself(problem, "injection", [(more, 0.5), (None, 0.5)]).any()
+    assert by_itself(problem, "rest", [(more, 0.5), (NO_GAP, 0.5)])[0, 1] == ENOUGH
+    assert not by_itself(problem, "injection", [(more, 0.5), (NO_GAP, 0.5)]).any()
 
 
 def test_a_run_that_tells_all_apart_is_worth_more_than_one_that_throws_one_far() -> None:

@@ -157,7 +157,7 @@ def make(seed: int, index: int, *, null: bool, where: str = "A") -> Case:
     has, all of it is drawn again.
     """
     for again in range(TRIES if where == "A" else MORE_TRIES):
-        rng = np.random.default_rng([seed, index, 0, *([again] if again else [])])
+        rng = _random(seed, index, again)
         try:
             case = _drawn(seed, index, null, world(where), rng)
             case.signature, case.withheld  # noqa: B018 (what has to turn, turns)
@@ -166,6 +166,15 @@ def make(seed: int, index: int, *, null: bool, where: str = "A") -> Case:
         if null or case.snr >= least_snr(case.campaign.world):
             return case
     raise NothingFitsError(f"seed {seed}, case {index}: nothing fits in all tries")
+
+
+def first_design(seed: int, index: int, where: str) -> Campaign:
+    """Return the rig and the runs that a case is first tried with: this takes no simulation."""
+    return design(_random(seed, index, 0), world(where))
+
+
+def _random(seed: int, index: int, again: int) -> np.random.Generator:
+    return np.random.default_rng([seed, index, 0, *([again] if again else [])])
 
 
 def _drawn(seed: int, index: int, null: bool, where: World, rng: np.random.Generator) -> Case:
