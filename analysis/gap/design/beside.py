@@ -7,16 +7,21 @@ runs that are alike, what the campaign shows of it is expected of a further run 
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analysis.gap.forward.problem import Problem
 from analysis.gap.inference.constants import TAUS, TOLERATED, WIDE
 from analysis.gap.search.deviation import channel_sizes, likeness, units_of
 from hardware.description.arrays import BoolArray, FloatArray
+
+if TYPE_CHECKING:
+    from analysis.gap.observe.components import Component
 
 
 @dataclass(frozen=True)
@@ -52,28 +57,41 @@ def odd(run: str) -> Unnamed:
 
 
 @dataclass(frozen=True, eq=False)
+class _Cell:
+    """One component in all runs: a deviation of it is alike for runs that are alike.
+
+    Attributes
+    ----------
+    made, after
+        Its rows among the observations made that count, and among further ones.
+    root
+        Lower root of the covariance of those made, their noise in it.
+    reach
+        The covariance between them and further ones, whitened by it.
+    left
+        The covariance of further ones that those made leave.
+    """
+
+    made: NDArray[np.intp]
+    after: NDArray[np.intp]
+    root: FloatArray
+    reach: FloatArray
+    left: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
 class Beside:
     """A deviation beside an answer, in the observations made and in further ones.
 
     Attributes
     ----------
-    counts
-        Which of the observations made tell anything, shape ``(made,)``.
     widths
         By what the first shared columns are wider than their priors.
-    root
-        Lower root of the covariance of the observations that count, their noise in it.
-    reach
-        The covariance between them and further ones, whitened by it, ``(counting, further)``.
-    further
-        Covariance of the deviation in further observations.
     """
 
-    counts: BoolArray
+    cells: Sequence[_Cell]
     widths: FloatArray
-    root: FloatArray
-    reach: FloatArray
-    further: FloatArray
+    further_count: int
 
     def scaled(self, columns: FloatArray) -> FloatArray:
         """Return shared columns in units of this answer's priors."""
@@ -82,8 +100,26 @@ class Beside:
         return columns * widths
 
     def white(self, columns: FloatArray) -> FloatArray:
-        """Return columns over the observations made, whitened, of those that count."""
-        return np.asarray(np.linalg.solve(self.root, columns[self.counts]), np.float64)
+        """Return columns over the observations made, whitened; 0 where these do not count."""
+        white = np.zeros_like(columns)
+        for cell in self.cells:
+            white[cell.made] = np.linalg.solve(cell.root, columns[cell.made])
+        return white
+
+    def carried(self, white: FloatArray) -> FloatArray:
+        """Return what whitened columns let expect of further observations."""
+        carried = np.zeros((self.further_count, *white.shape[1:]))
+        for cell in self.cells:
+            carried[cell.after] = cell.reach.T @ white[cell.made]
+        return carried
+
+    @property
+    def deviation(self) -> FloatArray:
+        """What is left of it in further observations: its covariance."""
+        deviation = np.zeros((self.further_count, self.further_count))
+        for cell in self.cells:
+            deviation[np.ix_(cell.after, cell.after)] = cell.left
+        return deviation
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,13 +145,21 @@ class Deviation:
 
     def _of_size(self, answer: Unnamed, tau: float) -> Beside:
         made = self.problem.simulator.stack
-        names = [run.name != answer.odd_run for run in made.runs]
-        counts, n = np.array(names)[made.run], len(made.run)
-        kernel = tau**2 * self._kernel
-        root = np.linalg.cholesky(np.eye(int(counts.sum())) + kernel[:n, :n][counts][:, counts])
-        reach = np.linalg.solve(root, kernel[:n, n:][counts])
+        counts = np.array([run.name != answer.odd_run for run in made.runs])[made.run]
+        cells = [self._cell(rows[counts[rows]], after, tau) for rows, after in self._rows]
         widths = np.where(self.sought, answer.wide, 1.0)
-        return Beside(counts, widths, root, reach, kernel[n:, n:])
+        return Beside(cells, widths, len(self.ahead.simulator.stack.run))
+
+    def _cell(self, rows: NDArray[np.intp], after: NDArray[np.intp], tau: float) -> _Cell:
+        made = self.problem.simulator.stack
+        run = np.concatenate(
+            (made.run[rows], len(made.runs) + self.ahead.simulator.stack.run[after])
+        )
+        size = tau * np.concatenate((self._scales[0][rows], self._scales[1][after]))
+        covariance, n = self._alike[np.ix_(run, run)] * np.outer(size, size), len(rows)
+        root = np.asarray(np.linalg.cholesky(np.eye(n) + covariance[:n, :n]), np.float64)
+        reach = np.asarray(np.linalg.solve(root, covariance[:n, n:]), np.float64)
+        return _Cell(rows, after, root, reach, covariance[n:, n:] - reach.T @ reach)
 
     def _log_evidence(self, beside: Beside) -> float:
         """Return that of no effect, but for a constant that all sizes share."""
@@ -125,21 +169,28 @@ class Deviation:
         precision = np.eye(slopes.shape[1]) + slopes.T @ slopes
         pull = slopes.T @ target
         misfit = target @ target - pull @ np.linalg.solve(precision, pull)
-        volume = 2.0 * np.log(np.diagonal(beside.root)).sum() + np.linalg.slogdet(precision)[1]
-        return -0.5 * float(misfit + volume)
+        volume = sum(2.0 * np.log(np.diagonal(cell.root)).sum() for cell in beside.cells)
+        return -0.5 * float(misfit + volume + np.linalg.slogdet(precision)[1])
 
     @cached_property
-    def _kernel(self) -> FloatArray:
-        """Covariance in all observations, those made first, in sigma."""
+    def _rows(self) -> list[tuple[NDArray[np.intp], NDArray[np.intp]]]:
+        """Rows of each component, among those made and further ones."""
+        stacks = self.problem.simulator.stack, self.ahead.simulator.stack
+        rows: dict[Component, tuple[list[int], list[int]]] = {}
+        for number, stack in enumerate(stacks):
+            for row, component in enumerate(stack.components):
+                rows.setdefault(component, ([], []))[number].append(row)
+        return [(np.array(made, int), np.array(after, int)) for made, after in rows.values()]
+
+    @cached_property
+    def _scales(self) -> tuple[FloatArray, FloatArray]:
+        """How large a deviation of 1 is at each observation in sigma."""
         made, after = self.problem.simulator.stack, self.ahead.simulator.stack
         sizes = channel_sizes(made, self.problem.simulator.nominal)
-        scale = np.concatenate(
-            [units_of(stack, sizes) / stack.uncertainty for stack in (made, after)]
-        )
-        numbers: dict[object, int] = {}
-        components = (*made.components, *after.components)
-        cell = np.array([numbers.setdefault(component, len(numbers)) for component in components])
-        run = np.concatenate((made.run, len(made.runs) + after.run))
-        alike = likeness([run.set_point for run in (*made.runs, *after.runs)])
-        same = cell[:, None] == cell
-        return np.asarray(same * alike[np.ix_(run, run)] * np.outer(scale, scale), np.float64)
+        return units_of(made, sizes) / made.uncertainty, units_of(after, sizes) / after.uncertainty
+
+    @cached_property
+    def _alike(self) -> FloatArray:
+        """How alike a deviation is between all runs, those made first."""
+        runs = (*self.problem.simulator.stack.runs, *self.ahead.simulator.stack.runs)
+        return likeness([run.set_point for run in runs])

@@ -171,8 +171,8 @@ def _conditioned(
         scaled = beside.scaled(shared), beside.scaled(columns)
         white = beside.white(np.column_stack((scaled[0], residual)))
         shared, residual = white[:, :-1], white[:, -1]
-        columns, told = scaled[1] - beside.reach.T @ shared, beside.reach.T @ residual
-        deviation = beside.further - beside.reach.T @ beside.reach
+        columns, told = scaled[1] - beside.carried(shared), beside.carried(residual)
+        deviation = beside.deviation
     # A root of the posterior's covariance by the precision's eigenvectors: no eigenvalue is below
     # the prior's 1, however well the campaign tells some numbers and not others.
     precision, turn = np.linalg.eigh(np.eye(shared.shape[1]) + shared.T @ shared)
