@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.stats import multivariate_normal
 
 from analysis.gap.design.beside import (
@@ -35,6 +37,9 @@ from sim.rig import SimulatedRig
 from tests.analysis.gap.small import POINTS, problem_of
 
 ANSWERS = (NO_GAP, replace(SOMETHING_UNKNOWN, tau=0.03), OTHER_COEFFICIENTS, odd("r1"))
+
+
+sizes = st.tuples(st.integers(1, 5), st.integers(2, 4), st.integers(0, 2**16))
 
 
 @pytest.fixture(scope="module")
@@ -159,6 +164,20 @@ def test_log_odds_are_those_of_draws() -> None:
         error = ratio.std() / math.sqrt(len(ratio))
         assert found[right, rival] == pytest.approx(ratio.mean(), abs=5.0 * error)
     assert np.diagonal(found) == pytest.approx(np.zeros(2), abs=1e-12)
+
+
+@given(sizes)
+def test_more_observations_never_tell_less(drawn: tuple[int, int, int]) -> None:
+    """A divergence is 0 or more, and that of some observations no larger than that of all."""
+    n, count, seed = drawn
+    rng = np.random.default_rng(seed)
+    means = rng.normal(0.0, 3.0, (n, count))
+    roots = [rng.normal(0.0, rng.uniform(0.0, 2.0), (n, n)) for _ in range(count)]
+    covariances = [np.eye(n) + root @ root.T for root in roots]
+    whole = expected_log_odds(means, covariances)
+    some = expected_log_odds(means[:-1], [one[:-1, :-1] for one in covariances])
+    assert (some >= -1e-9).all()
+    assert (whole >= some - 1e-9 * (1.0 + some)).all()
 
 
 def proposed(
