@@ -103,6 +103,13 @@ def test_datasets_beside_the_schema(
         read_recording(tmp_path / "run.nc")
 
 
+@pytest.mark.parametrize("name", ["run 3", None])
+def test_what_is_wrong_is_said_of_the_run_by_its_name(name: str | None) -> None:
+    dataset = to_dataset(replace(example(), name="its own")).drop_vars(["a", "b"])
+    with pytest.raises(DataError, match=f"^{name or 'its own'}: "):
+        from_dataset(dataset, name)
+
+
 def test_packed_values(tmp_path: Path) -> None:
     packing = {"a": {"dtype": "int16", "scale_factor": 0.001, "_FillValue": -32768}}
     to_dataset(example()).to_netcdf(tmp_path / "run.nc", engine="h5netcdf", encoding=packing)
