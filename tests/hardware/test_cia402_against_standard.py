@@ -95,6 +95,16 @@ def test_a_fault_is_told_once_and_reset_by_a_rising_edge_only() -> None:
     assert tick(walk, 0x0250) == 0x00
 
 
+def test_a_fault_that_is_back_at_once_after_its_reset_is_told_anew() -> None:
+    walk = DriveStateMachine("axis", 10, 100)
+    with pytest.raises(DriveFaultError):
+        tick(walk, 0x0218)
+    walk.reset_fault()
+    assert [tick(walk, word) for word in (0x0218, 0x0218, 0x0250)] == [0x00, 0x80, 0x00]
+    with pytest.raises(DriveFaultError, match="0x0218"):
+        tick(walk, 0x0218)
+
+
 def test_a_fault_that_stays_is_told_after_the_reset_has_had_its_cycles() -> None:
     walk = DriveStateMachine("axis", 5, 100)
     with pytest.raises(DriveFaultError):
