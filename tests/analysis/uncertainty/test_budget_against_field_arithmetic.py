@@ -66,6 +66,17 @@ def test_a_bent_formula_is_caught() -> None:
     assert found.interval[1] == pytest.approx(5.0, rel=0.1)
 
 
+@pytest.mark.parametrize(("off", "holds"), [(0.0003, True), (0.0007, False)])
+def test_half_a_unit_of_the_second_digit_decides(off: float, holds: bool) -> None:
+    """Of u = 0.0123 that is 0.0005 (Supplement 1 to the GUM, 7.9.2); a bend moves both ends."""
+    size, end = 0.0123, 1.96
+    bend = off / (end * size) ** 2
+    found = assess(
+        "bent", lambda x: x + bend * x * x, {"x": Estimate.of(0.0, size)}, seed=6, trials=1_000_000
+    )
+    assert found.linear_good_enough is holds
+
+
 def test_ends_of_heavy_tails_are_as_uncertain_as_their_density_makes_them() -> None:
     """Student's t of one degree is Cauchy's: its density at the end is 1 / (pi (1 + 12.7 ** 2))."""
     inputs = {"x": Estimate.of(0.0, 0.3, "1", 1.0)}
