@@ -24,8 +24,18 @@ def test_limits_lie_three_deviations_about_the_middle() -> None:
 
 
 def test_a_steady_condition_is_rarely_called_changed() -> None:
-    wrong = sum(one.step_at is not None for one in charts(400, 0.0)) / 400
-    assert wrong < 0.15
+    found = list(charts(400, 0.0))
+    assert sum(one.step_at is not None for one in found) / 400 < 0.15
+    assert sum(one.in_control for one in found) / 400 > 0.8
+
+
+def test_one_repeat_that_is_off_puts_a_chart_out_of_control() -> None:
+    for one in charts(20, 0.0):
+        values = one.values.copy()
+        values[4] += 2.0
+        found = chart(one.quantity, one.unit, one.runs, values)
+        assert 4 in found.outside
+        assert not found.in_control
 
 
 @pytest.mark.parametrize("at", [3, 6, 9])
