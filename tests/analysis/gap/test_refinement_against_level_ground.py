@@ -20,7 +20,7 @@ from sim.effects.catalogue import find
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import problem_of
 
-LEVEL = 0.05  # posterior deviations
+LEVEL = 0.14  # posterior deviations: as far off as a fit that has arrived says it may be
 UNMODELLED = 30.0  # sigma, of each observation
 THERE = {
     "load-friction": np.array([0.3, 0.8]),
