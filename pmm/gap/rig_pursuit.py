@@ -5,10 +5,11 @@ Runs are proposed of the design's grid alone, so that its limits and the checks 
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from hardware.description.setpoint import SetPoint
 from pmm.design.design_file import DesignFile
 from pmm.design.grid import costs_s
 from pmm.gap.causes import CauseDiagnosis, CauseGoal, Standing, Suggestion
@@ -19,9 +20,6 @@ from pmm.sequential.course import CampaignGoal
 from pmm.sequential.growing_plan import check_design, planned, read_growing
 from pmm.sequential.look import Look
 from pmm.sequential.targets import TargetGoal
-
-if TYPE_CHECKING:
-    from pmm.gap.examination import Options
 
 
 class RigPlace:
@@ -86,20 +84,29 @@ def goal_of(file: DesignFile, folder: Path, *, apart: bool = True) -> CampaignGo
         from pmm.gap.own_effects import chosen_effects
 
         chosen_effects(file.gap.effects, ())  # refuses names that nobody knows
-    from pmm.gap.examination import Options
-
     points = tuple(dict.fromkeys(run.set_point for run in file.grid.runs))
-    options = Options(file.gap.effects, runs=points, batch=file.gap.batch)
-    work = partial(_diagnose_in_process if apart else _diagnose, folder, options)
+    asked = _Asked(folder, file.gap.effects, points, file.gap.batch)
+    work = partial(_diagnose_in_process if apart else _diagnose, asked)
     return CauseGoal(RigPlace(file, folder), work, file.gap.least_log_odds, file.gap.batch)
 
 
-def _diagnose(folder: Path, options: "Options") -> CauseDiagnosis:
+@dataclass(frozen=True)
+class _Asked:
+    """What a process of its own is asked to diagnose: this one imports no diagnosis."""
+
+    folder: Path
+    effects: tuple[str, ...]
+    runs: tuple[SetPoint, ...]
+    batch: int
+
+
+def _diagnose(asked: _Asked) -> CauseDiagnosis:
+    from pmm.gap.examination import Options
     from pmm.gap.found_cause import diagnosed
 
-    return diagnosed(folder, options)
+    return diagnosed(asked.folder, Options(asked.effects, runs=asked.runs, batch=asked.batch))
 
 
-def _diagnose_in_process(folder: Path, options: "Options") -> CauseDiagnosis:
+def _diagnose_in_process(asked: _Asked) -> CauseDiagnosis:
     with LocalProcesses(1) as executor:
-        return executor.submit(_diagnose, folder, options).result()
+        return executor.submit(_diagnose, asked).result()

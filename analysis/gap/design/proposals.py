@@ -14,6 +14,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice, product
+from operator import attrgetter
 from typing import Final
 
 import numpy as np
@@ -130,11 +131,11 @@ def proposals(
     """Return runs in the order of what they are worth."""
     place, valuation = next_place(problem), Valuation(problem, leading, free, tolerances)
     first, gentler = _by_size(tuple(_oscillations(problem, choices, place)))
-    ranked = sorted(valuation.each(first), key=_order)
+    ranked = sorted(valuation.each(first), key=attrgetter("order"))
     # A gentler motion tells more than another kind of run only where the larger one tells much.
     best = {_kind_of(valued.choice) for valued in ranked[: -(-len(ranked) // _GENTLER)]}
     ranked += valuation.each([choice for choice in gentler if _kind_of(choice) in best])
-    ranked.sort(key=_order)
+    ranked.sort(key=attrgetter("order"))
     remaining = [choice for choice in gentler if _kind_of(choice) not in best]
     plays = any(
         candidate.kind.taken_up
@@ -151,7 +152,7 @@ def proposals(
     between = tuple(_name(answer) for answer, _ in leading)
     return tuple(
         _proposal(valued, between)
-        for valued in valuation.batch(sorted(ranked, key=_order), choices.batch)
+        for valued in valuation.batch(sorted(ranked, key=attrgetter("order")), choices.batch)
     )
 
 
@@ -164,10 +165,6 @@ def _proposal(valued: Valued, between: tuple[str, ...]) -> Proposal:
 
 def _name(answer: Fit | Unnamed) -> str:
     return " and ".join(answer.names) if isinstance(answer, Fit) else answer.name
-
-
-def _order(valued: Valued) -> tuple[float, ...]:
-    return valued.order
 
 
 def _oscillations(problem: Problem, choices: Choices, place: CampaignRun) -> Iterator[Choice]:
@@ -228,12 +225,13 @@ def _pressing_n(largest_n: float, swing: float) -> float:
 
 def _measurements(problem: Problem, choices: Choices, place: CampaignRun) -> Iterator[Choice]:
     force_n = _readable(_largest_force_n(problem.simulator, problem.simulator.stack.turning))
+    cost_s = waited_s(problem) + REST_S
     for kind, strut in BESIDES:
         if kind in choices.special:
             size_n = 0.0 if kind is FurtherMeasurement.REST else force_n
             run = measured_besides(problem, kind, place, size_n, strut)
             if run is not None:
-                yield Choice(kind, None, size_n, run, waited_s(problem) + REST_S, strut)
+                yield Choice(kind, None, size_n, run, cost_s, strut)
 
 
 def _readable(force_n: float) -> float:
