@@ -43,7 +43,8 @@ class Oscillator(Arrangement):
     paths
         Whether each strut can follow a path of its own; ``None`` where nobody has said.
     force_per_strut_n
-        Largest force that one strut may carry, in newtons.
+        Largest force that a motion may ask of one strut, in newtons, as its tared gauge reads it:
+        what the strut holds at rest is not in it.
     counterbalanced
         Share of what the struts hold at rest that springs or counterweights bear, 0 to 1; the shaft
         lifts the rest.

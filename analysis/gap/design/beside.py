@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from analysis.gap.forward.problem import Problem
 from analysis.gap.inference.constants import TAUS, TOLERATED, WIDE
+from analysis.gap.inference.gaussian import Nuisances, null_evidence
 from analysis.gap.search.deviation import channel_sizes, likeness, units_of
 from hardware.description.arrays import BoolArray, FloatArray
 
@@ -165,12 +166,8 @@ class Deviation:
         """Return that of no effect, but for a constant that all sizes share."""
         columns, residual = self.problem.nuisances.columns, self.problem.residual
         white = beside.white(np.column_stack((beside.scaled(columns), residual)))
-        slopes, target = white[:, :-1], white[:, -1]
-        precision = np.eye(slopes.shape[1]) + slopes.T @ slopes
-        pull = slopes.T @ target
-        misfit = target @ target - pull @ np.linalg.solve(precision, pull)
-        volume = sum(2.0 * np.log(np.diagonal(cell.root)).sum() for cell in beside.cells)
-        return -0.5 * float(misfit + volume + np.linalg.slogdet(precision)[1])
+        volume = sum(float(np.log(np.diagonal(cell.root)).sum()) for cell in beside.cells)
+        return null_evidence(white[:, -1], Nuisances(white[:, :-1])) - volume
 
     @cached_property
     def _rows(self) -> list[tuple[NDArray[np.intp], NDArray[np.intp]]]:

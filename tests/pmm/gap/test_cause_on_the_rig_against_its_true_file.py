@@ -2,6 +2,8 @@
 
 import json
 import pickle
+import subprocess
+import sys
 from pathlib import Path
 from shutil import copy
 
@@ -85,6 +87,20 @@ def test_the_diagnosis_goes_to_a_process_of_its_own(tmp_path: Path) -> None:
     there = pickle.loads(pickle.dumps(goal.diagnose))  # noqa: S301 (our own)
     with pytest.raises(ConfigurationError, match="no such folder"):
         there()  # nothing was recorded; that is what it says from there
+
+
+def test_the_loop_itself_loads_no_diagnosis(tmp_path: Path) -> None:
+    code = (
+        "import sys; from pathlib import Path; from pmm.design.design_file import read_design; "
+        "from pmm.gap.rig_pursuit import goal_of; design = Path(sys.argv[1]); "
+        "goal_of(read_design(design), design.parent); print(*sys.modules)"
+    )
+    words = [sys.executable, "-c", code, str(written(tmp_path))]
+    loaded = subprocess.run(words, capture_output=True, text=True, check=True).stdout.split()
+    assert "pmm.gap.causes" in loaded
+    rooms = ("design", "inference", "judge", "locate", "search")
+    barred = ("pmm.gap.examination", *(f"analysis.gap.{room}" for room in rooms))
+    assert [name for name in loaded if name.startswith(barred)] == []
 
 
 @pytest.mark.parametrize(
