@@ -45,17 +45,21 @@ def of_the_mains(
 ) -> dict[int, BoolArray]:
     """Tell by frequency of the mains that folds into a band which of its lines it reaches.
 
+    A line that two of them reach, as both do at 110 samples a second, belongs to the first alone.
+
     Parameters
     ----------
     bin_hz
         Distance of the lines.
     """
-    seen_hz = {mains_hz: folded_hz(mains_hz, rate_hz) for mains_hz in MAINS_HZ}
-    return {
-        mains_hz: np.abs(lines_hz - at_hz) < _BESIDE * bin_hz
-        for mains_hz, at_hz in seen_hz.items()
-        if band_hz[0] < at_hz < band_hz[1]
-    }
+    reached: dict[int, BoolArray] = {}
+    left = np.ones(len(lines_hz), dtype=bool)
+    for mains_hz in MAINS_HZ:
+        at_hz = folded_hz(mains_hz, rate_hz)
+        if band_hz[0] < at_hz < band_hz[1]:
+            reached[mains_hz] = left & (np.abs(lines_hz - at_hz) < _BESIDE * bin_hz)
+            left &= ~reached[mains_hz]
+    return reached
 
 
 def band(

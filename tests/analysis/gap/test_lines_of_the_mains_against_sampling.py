@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from analysis.gap.observe.bands import MAINS_HZ, band, folded_hz, of_the_mains
@@ -47,3 +47,17 @@ def test_only_a_line_of_the_mains_counts_as_one(line_hz: float, part: Part) -> N
     }
     loudest = max(values, key=lambda key: values[key] if key[0] is not Part.BETWEEN else -np.inf)
     assert loudest == (part, 50 if part is Part.MAINS else 1)
+
+
+@given(st.sampled_from([22.0, 55.0, 110.0, 110.3]) | st.floats(20.0, 500.0))
+@example(110.0)
+def test_no_line_is_told_twice(rate_hz: float) -> None:
+    """At 110 samples a second 50 and 60 Hz are the same samples."""
+    count = int(40.0 * rate_hz)
+    lines_hz = np.arange(count // 2 + 1) * rate_hz / count
+    near = of_the_mains(lines_hz, rate_hz, rate_hz / count, (0.0, np.inf))
+    assert np.sum([np.zeros(len(lines_hz), int), *near.values()], axis=0).max() <= 1
+    seen_hz = [folded_hz(mains_hz, rate_hz) for mains_hz in MAINS_HZ]
+    reached_hz = lines_hz[np.any([np.zeros(len(lines_hz), bool), *near.values()], axis=0)]
+    for at_hz in (hz for hz in seen_hz if 0.0 < hz < lines_hz[-1]):
+        assert np.abs(reached_hz - at_hz).min() <= 0.5001 * rate_hz / count
