@@ -29,6 +29,7 @@ from analysis.design.noise import Noise
 from hardware.description.arrays import FloatArray, IntArray
 from hardware.description.setpoint import SetPoint
 
+_REGULAR: Final = 1e-12  # of a scaled normal matrix: rounding leaves 1e-16 where terms are alike
 _AT_ONCE: Final = 500  # cycles: some 100 MB
 
 
@@ -77,6 +78,15 @@ class Regression:
     pulls: FloatArray
     wanted: FloatArray
     where: str = ""
+
+    @property
+    def is_determined(self) -> bool:
+        """Whether all candidates together tell its terms apart."""
+        total = self.normals.sum(axis=0)
+        sizes = np.sqrt(np.diagonal(total))
+        if not sizes.all():
+            return False
+        return bool(np.linalg.eigvalsh(total / np.outer(sizes, sizes))[0] > _REGULAR)
 
 
 @dataclass(frozen=True, eq=False)

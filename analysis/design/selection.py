@@ -110,7 +110,7 @@ def select(
     time_s: float = math.inf,
     made: Sequence[int] = (),
 ) -> Selection:
-    """Return the runs that meet all targets in little time.
+    """Return the runs that meet all targets in little time, but those that no candidates tell.
 
     The weights of a fit depend on which runs it has, so that the search begins anew from what it
     found, with the weights of that.
@@ -124,7 +124,10 @@ def select(
     """
     chosen: list[int] = []
     for _ in range(_ROUNDS):
-        regressions = prospects.regressions(targets, (*made, *chosen))
+        every = prospects.regressions(targets, (*made, *chosen))
+        regressions = [regression for regression in every if regression.is_determined]
+        if not regressions:
+            return Selection((), met=False)
         search = _Search(regressions, prospects.candidates, time_s, made, chosen)
         if chosen and search.met:
             break

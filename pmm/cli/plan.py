@@ -117,6 +117,8 @@ def design(
         from pmm.parallel import open_executor
 
         folders = [campaign_folder(folder) for folder in after]
+        if len({folder.resolve() for folder in folders}) < len(folders):
+            raise click.UsageError("--after names a folder twice: its runs would count twice")
         with doing("reading what was measured"), open_executor(1) as executor:
             design_file = going_on(
                 design_file,

@@ -4,7 +4,8 @@ Its tables are those of a plan (what ``[[runs]]`` holds is made in any case) wit
 matrices of runs to choose from, and the tables of :mod:`pmm.design.design_tables`.
 """
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -26,13 +27,14 @@ from hardware.description.setpoint import Medium
 from pmm.campaign.model_uncertainty import take_uncertainty
 from pmm.coefficients.stated_inputs import largest, of_gauges, of_model
 from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
-from pmm.design.design_tables import DesignTables, GapTable
-from pmm.design.grid import RunGrid, grid_of
+from pmm.design.design_tables import DesignLimits, DesignTables, GapTable
+from pmm.design.grid import RunGrid, between_s, grid_of
 from pmm.design.targets import targets_of
-from pmm.plan.expansion import all_of, expand
+from pmm.plan.duration import duration_rows
+from pmm.plan.expansion import all_of, expand, single_entries
 from pmm.plan.ordering import runs_of
 from pmm.plan.plan import PlanReading, examine_plan
-from pmm.plan.plan_tables import PlanTables
+from pmm.plan.plan_tables import Defaults, PlanEntry, PlanTables
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 
@@ -51,6 +53,8 @@ class DesignFile:
         Of a plan without the runs that are to be chosen, as it is written.
     rig_path
         Where the rig's file lies.
+    channels
+        The rig's force channels.
     fixed
         Runs that are made in any case, zero and control runs among them.
     made_runs
@@ -68,6 +72,7 @@ class DesignFile:
     plan_table: dict[str, Any]
     rig_path: Path
     rig: RigFile
+    channels: tuple[str, ...]
     tables: PlanTables
     fixed: tuple[RunPlan, ...]
     made_runs: tuple[CandidateRun, ...]
@@ -79,6 +84,17 @@ class DesignFile:
     time_s: float
     cycles: tuple[BodyCycle, ...] = ()
     gap: GapTable | None = None
+
+    def tank_time_s(self, chosen: Sequence[Sequence[RunPlan]] = ()) -> float:
+        """Return how long the plan takes with some entries behind what is made in any case.
+
+        Parameters
+        ----------
+        chosen
+            The runs of each entry.
+        """
+        runs = runs_of(self.tables, self.rig.oscillator, self.channels, chosen)
+        return math.fsum(duration_rows(runs, self.rig))
 
 
 def read_design(path: Path) -> DesignFile:
@@ -149,13 +165,13 @@ def _design(
     fixed_plan = replace(plan, runs=entries[:fixed_entries])
     fixed = runs_of(fixed_plan, rig.oscillator, reading.channels)
     candidates = [
-        run
+        pair
         for entry in entries[fixed_entries:]
-        for run in expand(entry, plan.defaults, rig.oscillator, reading.channels, all_of)
+        for pair in _singles(entry, plan.defaults, rig, reading.channels)
     ]
-    faults = list(_grid_faults(candidates))
+    faults = [*_grid_faults([run for _, run in candidates]), *_limit_faults(tables.limits)]
     belief = _belief(tables, rig, faults)
-    grid = grid_of(candidates, rig, tables.limits, plan.zero)
+    grid = grid_of(candidates, rig, tables.limits, between_s(fixed_plan, rig, reading.channels))
     if candidates and not grid.runs:
         reasons = ", ".join(f"{reason} ({count})" for reason, count in grid.left_out.items())
         faults.append(Fault(("grid",), f"has no run that may be made; left out for: {reasons}"))
@@ -176,9 +192,23 @@ def _design(
     )
     return DesignFile(
         plan.name or path.resolve().parent.name, path, plan_table, reading.rig_path, rig,
-        fixed_plan, fixed, made_runs, grid, belief, _noise(tables, rig), _stated(tables, rig),
-        targets, np.inf if hours is None else 3600.0 * hours, gap=tables.gap,
+        tuple(reading.channels), fixed_plan, fixed, made_runs, grid, belief, _noise(tables, rig),
+        _stated(tables, rig), targets, np.inf if hours is None else 3600.0 * hours, gap=tables.gap,
     )  # fmt: skip
+
+
+def _singles(
+    entry: PlanEntry, defaults: Defaults, rig: RigFile, channels: Sequence[str]
+) -> Iterator[tuple[PlanEntry, RunPlan]]:
+    """Return each run of an entry of the grid, with the entry that makes it alone."""
+    runs = expand(entry, defaults, rig.oscillator, channels, all_of)
+    return zip(single_entries(entry, defaults), runs, strict=True)
+
+
+def _limit_faults(limits: DesignLimits) -> Iterator[Fault]:
+    for key, value in vars(limits).items():
+        if value is not None and not value > 0.0 and key != "advised":
+            yield Fault(("limits", key), f"= {value:g} should be above 0")
 
 
 def _gap_faults(gap: GapTable | None) -> Iterator[Fault]:
@@ -201,6 +231,11 @@ def _grid_faults(runs: list[RunPlan]) -> Iterator[Fault]:
             f"holds runs of the kind {', '.join(kinds)}; only oscillations in water are chosen "
             "from, others belong to [[runs]]",
         )
+    if any(run.set_point.own_orders for run in runs):
+        yield Fault(
+            ("grid",), "holds motions of many lines; single sines are chosen from, others belong "
+            "to [[runs]]",
+        )  # fmt: skip
 
 
 def _belief(tables: DesignTables, rig: RigFile, faults: list[Fault]) -> Belief | None:

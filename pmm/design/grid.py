@@ -5,8 +5,9 @@ of, is no candidate, and neither is what the design's own limits exclude.
 """
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import chain
 
 from analysis.design.candidate import CandidateRun
@@ -14,10 +15,11 @@ from pmm.design.design_tables import DesignLimits
 from pmm.plan import check_table as table
 from pmm.plan.condition_checks import condition_findings
 from pmm.plan.duration import run_s, setting_s
+from pmm.plan.expansion import all_of, expand
 from pmm.plan.field_checks import field_findings
 from pmm.plan.findings import PlanFinding, PlanVerdict
 from pmm.plan.limits import limit_findings
-from pmm.plan.plan_tables import ZeroTable
+from pmm.plan.plan_tables import PlanEntry, PlanTables
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 
@@ -28,25 +30,48 @@ class RunGrid:
 
     Attributes
     ----------
-    runs, candidates
-        Of the same places.
+    runs, entries, candidates
+        Of the same places: each run, and the entry of a plan that makes it alone.
     left_out
         How many runs each check left out, the first that did counting, by its quantity.
     """
 
     runs: tuple[RunPlan, ...]
+    entries: tuple[PlanEntry, ...]
     candidates: tuple[CandidateRun, ...]
     left_out: dict[str, int]
 
+    @cached_property
+    def entry_of(self) -> Mapping[RunPlan, PlanEntry]:
+        """The entry of each run."""
+        return dict(zip(self.runs, self.entries, strict=True))
+
+    def among(self, places: Sequence[int]) -> "RunGrid":
+        """Return the grid with some of its runs alone."""
+        return RunGrid(
+            tuple(self.runs[k] for k in places),
+            tuple(self.entries[k] for k in places),
+            tuple(self.candidates[k] for k in places),
+            self.left_out,
+        )
+
 
 def grid_of(
-    runs: Sequence[RunPlan], rig: RigFile, limits: DesignLimits, zero: ZeroTable | None
+    runs: Sequence[tuple[PlanEntry, RunPlan]], rig: RigFile, limits: DesignLimits, between_s: float
 ) -> RunGrid:
-    """Return the candidates among some runs."""
-    candidate_runs: list[RunPlan] = []
+    """Return the candidates among some runs.
+
+    Parameters
+    ----------
+    runs
+        Each with the entry that makes it alone.
+    between_s
+        What each adds to the time of zero and control runs.
+    """
+    left: list[tuple[PlanEntry, RunPlan]] = []
     left_out: Counter[str] = Counter()
     conditions: dict[object, str] = {}
-    for run in runs:
+    for entry, run in runs:
         if run.set_point not in conditions:
             conditions[run.set_point] = next(_excluding(condition_findings(run, rig), limits), "")
         findings = chain(limit_findings(run, rig), field_findings(run, rig))
@@ -54,15 +79,13 @@ def grid_of(
         if reason:
             left_out[reason] += 1
         else:
-            candidate_runs.append(run)
-    return RunGrid(
-        tuple(candidate_runs), tuple(_candidates(candidate_runs, rig, zero)), dict(left_out)
-    )
+            left.append((entry, run))
+    candidate_runs = tuple(run for _, run in left)
+    candidates = tuple(_candidates(candidate_runs, rig, between_s))
+    return RunGrid(candidate_runs, tuple(entry for entry, _ in left), candidates, dict(left_out))
 
 
-def _candidates(
-    runs: Sequence[RunPlan], rig: RigFile, zero: ZeroTable | None
-) -> Iterator[CandidateRun]:
+def _candidates(runs: Sequence[RunPlan], rig: RigFile, between_s: float) -> Iterator[CandidateRun]:
     """Yield each run with what it costs; its axes come from the farthest settings."""
     firsts = {_settings(run): run for run in runs}
     moves_s = {
@@ -70,7 +93,7 @@ def _candidates(
         for settings, run in firsts.items()
     }
     for run in runs:
-        (cost_s,) = costs_s([run], run, rig, zero)
+        cost_s = run_s(run, run, rig) + between_s
         yield CandidateRun(run.set_point, run.periods, cost_s, moves_s[_settings(run)])
 
 
@@ -78,19 +101,15 @@ def _settings(run: RunPlan) -> tuple[float, float]:
     return run.set_point.eccentricity_m, run.set_point.strut_phase_rad
 
 
-def costs_s(
-    runs: Sequence[RunPlan], before: RunPlan | None, rig: RigFile, zero: ZeroTable | None
-) -> tuple[float, ...]:
-    """Return what each of some runs costs of tank time, with its part of the zero runs.
-
-    Parameters
-    ----------
-    before
-        The run that was made last, whose settings the axes still have; ``None`` for both at 0.
-    """
+def between_s(tables: PlanTables, rig: RigFile, channels: Sequence[str]) -> float:
+    """Return what a run adds to the time of zero and control runs, its share of them."""
+    zero, control = tables.zero, tables.control
     share_s = 0.0 if zero is None else zero.duration_s / zero.every
-    order = (before, *runs)
-    return tuple(run_s(run, last, rig) + share_s for run, last in zip(runs, order, strict=False))
+    if control is not None:
+        entry = control.entry()
+        (run,) = expand(entry, tables.defaults, rig.oscillator, channels, all_of)
+        share_s += run_s(run, None, rig) / control.every
+    return share_s
 
 
 def _excluding(findings: Iterable[PlanFinding], limits: DesignLimits) -> Iterator[str]:

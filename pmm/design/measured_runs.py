@@ -66,7 +66,8 @@ def continued_design(file: DesignFile, parts: Sequence[MeasuredRuns]) -> DesignF
     stated = largest([file.stated, *(part.stated for part in parts)])
     table = {key: value for key, value in file.plan_table.items() if key != "runs"}
     going_on = replace(
-        file, plan_table=table, fixed=(), made_runs=candidates, stated=stated,
+        file, plan_table=table, tables=replace(file.tables, runs=()), fixed=(),
+        made_runs=candidates, stated=stated,
         cycles=tuple(with_repeats(cycle, spread) for cycle in cycles),
     )  # fmt: skip
     times = _noise_shown(going_on)

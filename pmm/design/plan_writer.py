@@ -2,13 +2,15 @@
 
 import os
 from collections.abc import Iterator, Mapping
+from dataclasses import fields
+from enum import Enum
 from pathlib import Path
 from typing import Any, Final
 
-from hardware.description.kinds import Motion
 from pmm.design.design_file import DesignFile
 from pmm.design.run_selection import Design
 from pmm.document.notation import clock
+from pmm.plan.plan_tables import PlanEntry
 from pmm.plan.run_plan import RunPlan
 from pmm.toml_text import toml_table, toml_value
 
@@ -25,7 +27,7 @@ def plan_text(file: DesignFile, design: Design, target: Path) -> str:
     """
     entries = [toml_table("runs", run, array=True) for run in file.plan_table.get("runs", [])]
     for number, step in enumerate(design.steps, 1 + len(file.cycles)):
-        table = run_entry(step.run, number, step.repeats)
+        table = run_entry(file.grid.entry_of[step.run], step.run, number, step.repeats)
         entries.append(f"# until {clock(step.time_s)}\n" + toml_table("runs", table, array=True))
     return "\n".join([*plan_head(file, target), *entries])
 
@@ -46,20 +48,32 @@ def plan_head(file: DesignFile, target: Path, *, grows: bool = False) -> Iterato
     yield from (toml_table(name, table[name]) for name in _TABLES if name in table)
 
 
-def run_entry(run: RunPlan, number: int, repeats: int = 1) -> Mapping[str, Any]:
-    """Return a run that was chosen, the ``number``-th, as an entry of a plan."""
-    point = run.set_point
+def run_entry(entry: PlanEntry, run: RunPlan, number: int, repeats: int = 1) -> Mapping[str, Any]:
+    """Return a run that was chosen, the ``number``-th, as an entry of a plan.
+
+    Parameters
+    ----------
+    entry
+        The one that makes this run alone.
+    """
+    table = {"motion": str(run.motion), "name": f"{run.entry}-{number:02d}"}
+    own = {
+        field.name: _plain(getattr(entry, field.name))
+        for field in fields(entry)
+        if getattr(entry, field.name) != field.default and field.name not in table
+    }
     return {
-        "motion": str(run.motion),
-        "name": f"{run.entry}-{number:02d}",
-        "frequencies_hz": point.frequency_hz,
-        "amplitudes_m": point.eccentricity_m,
-        "strut_phases_rad": point.strut_phase_rad if run.motion is Motion.PHASE else None,
-        "speeds_m_s": point.carriage_speed_m_s or None,
-        "drifts_rad": point.drift_rad or None,
+        **table,
+        **own,
         "periods": run.periods,
         "settling_periods": run.settling_periods,
         "pause_s": run.pause_before_s,
         "repeats": repeats,
-        "prompt": run.prompts[0] if run.prompts else None,
     }
+
+
+def _plain(value: Any) -> Any:
+    """Return a value as a file has it: a list of one is written without brackets."""
+    if isinstance(value, tuple):
+        return value[0] if len(value) == 1 else list(value)
+    return str(value) if isinstance(value, Enum) else value

@@ -2,9 +2,8 @@
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import accumulate, islice
 from typing import Final
 
 from analysis.coefficients.body_cycle import BodyCycle
@@ -16,13 +15,13 @@ from analysis.design.expectation import (
     expected_coefficients,
     made_up,
 )
-from analysis.design.regression import prospects
+from analysis.design.regression import DesignTarget, prospects
 from analysis.design.selection import select
 from pmm.design.design_file import DesignFile
-from pmm.design.grid import costs_s
-from pmm.plan.duration import duration_rows
+from pmm.plan.duration import run_s
 from pmm.plan.run_plan import RunPlan
 
+_SOME: Final = 12  # runs of the grid, evenly drawn, that tell what all of it leaves unknown
 _HARDER: Final = (1.0, 1.1, 1.25, 1.5, 2.0)  # times as much is asked for
 
 
@@ -60,12 +59,23 @@ class Design:
         What is expected of each coefficient after all of them.
     why
         Of each target that is not met, why.
+    targets
+        Those that runs are chosen for: a target that no run can meet is none of them.
+    beyond
+        Of each target that no run can meet, why.
     """
 
     steps: tuple[DesignStep, ...]
     expected_now: tuple[ExpectedCoefficient, ...]
     expected_coefficients: tuple[ExpectedCoefficient, ...]
     why: tuple[str, ...]
+    targets: tuple[DesignTarget, ...]
+    beyond: tuple[str, ...] = ()
+
+    def in_reach(self, rows: Sequence[ExpectedCoefficient]) -> Iterator[ExpectedCoefficient]:
+        """Yield those of some coefficients that runs are chosen for."""
+        names = {target.name for target in self.targets}
+        yield from (row for row in rows if row.name in names and math.isfinite(row.wanted))
 
     @property
     def met(self) -> bool:
@@ -74,28 +84,68 @@ class Design:
 
 
 def design(file: DesignFile) -> Design:
-    """Return the runs that a design asks for.
+    """Return the runs that a design asks for; a target that no run can meet asks for none.
 
     Raises
     ------
     DataError
         If a run of the grid cannot be reached, or its loads not be told without an X gauge.
     """
-    now = _expected_now(file)
     choices: list[tuple[int, int]] = []
-    if not (now and file.targets and all(coefficient.met for coefficient in now)):
-        choices = _chosen(file)
-    steps = _steps(file, choices)
-    after = steps[-1].expected_coefficients if steps else now
-    used_s = math.fsum(_costs_s(file, choices))
+    sought, beyond = file, dict[tuple[str, str], str]()
+    while sought.targets or not file.targets:
+        choices = _chosen(sought)
+        rows = [row for row in _after(sought, choices) if not row.met and _is_beyond_runs(row)]
+        if not rows:
+            break
+        beyond |= {(row.name, row.where): _unmet_reason(row, file, 0.0) for row in rows}
+        names = {name for name, _ in beyond}
+        targets = (target for target in sought.targets if target.name not in names)
+        choices, sought = [], replace(sought, targets=tuple(targets))
+    steps, now = _steps(file, choices), _expected_now(file)
+    after = steps[-1].expected_coefficients if steps else now or _of_no_runs(file)
+    used_s = steps[-1].time_s - file.tank_time_s() if steps else 0.0
     reasons = tuple(
-        _unmet_reason(coefficient, file, used_s) for coefficient in after if not coefficient.met
+        beyond.get((row.name, row.where)) or _unmet_reason(row, file, used_s)
+        for row in after
+        if not row.met
     )
-    return Design(steps, now, after, reasons)
+    return Design(steps, now, after, reasons, sought.targets, tuple(beyond.values()))
 
 
 def _chosen(file: DesignFile) -> list[tuple[int, int]]:
-    """Return the places of the runs to make, each with its number of repeats.
+    """Return the places of the runs to make, each with its number of repeats."""
+    now = _expected_now(file)
+    if now and file.targets and all(coefficient.met for coefficient in now):
+        return []
+    choices, before_s = list(Counter(_selected(file)).items()), file.tank_time_s()
+    while choices and file.tank_time_s(_entries(file, choices)) - before_s > file.time_s:
+        candidate, repeats = choices.pop()
+        choices += [(candidate, repeats - 1)] if repeats > 1 else []
+    return choices
+
+
+def _entries(file: DesignFile, choices: Sequence[tuple[int, int]]) -> list[list[RunPlan]]:
+    return [[file.grid.runs[candidate]] * repeats for candidate, repeats in choices]
+
+
+def shortest_s(file: DesignFile) -> float:
+    """Return the longest that the shortest plan with one run of the grid may take."""
+    runs = file.grid.candidates
+    return min((run.cost_s + run.setting_s for run in runs), default=math.inf) + _ends_s(file)
+
+
+def _ends_s(file: DesignFile) -> float:
+    """Return what zero and control runs at a plan's ends take beside the runs' shares of them."""
+    if not file.grid.runs:
+        return 0.0
+    run, cost_s = file.grid.runs[0], file.grid.candidates[0].cost_s
+    alone_s = file.tank_time_s([[run]]) - file.tank_time_s() - run_s(run, None, file.rig)
+    return max(alone_s - (cost_s - run_s(run, run, file.rig)), 0.0)
+
+
+def _selected(file: DesignFile) -> tuple[int, ...]:
+    """Return the places of the runs to make, one that is to be repeated more than once.
 
     The search takes scatter for known, and runs that were made for what is believed of them. Where
     its runs do not do by what is expected of the fit, more is asked for.
@@ -104,18 +154,19 @@ def _chosen(file: DesignFile) -> list[tuple[int, int]]:
     run_prospects = prospects(candidates, file.belief, file.noise, file.stated)
     made_places = tuple(range(len(file.grid.candidates), len(candidates)))
     runs: tuple[int, ...] = ()
+    time_s = file.time_s - _ends_s(file)
     for harder in _HARDER:
         targets = [
             replace(target, standard_uncertainty=target.standard_uncertainty / harder)
             for target in file.targets
         ]
-        selection = select(run_prospects, targets, file.time_s, made_places)
+        selection = select(run_prospects, targets, time_s, made_places)
         if runs and not selection.met:
             break  # asked for more than can be had, it would only cost more
         runs = selection.chosen or runs
         if runs and (not selection.met or _suffice(file, [candidates[k] for k in runs])):
             break
-    return list(Counter(runs).items())
+    return runs
 
 
 def _suffice(file: DesignFile, extra_runs: Sequence[CandidateRun]) -> bool:
@@ -130,43 +181,44 @@ def _expected_now(file: DesignFile) -> tuple[ExpectedCoefficient, ...]:
     return expected_coefficients(file.made_runs, cycles, file.targets, file.belief, file.stated)
 
 
+def _after(file: DesignFile, choices: Sequence[tuple[int, int]]) -> tuple[ExpectedCoefficient, ...]:
+    runs = [file.grid.candidates[candidate] for candidate, times in choices for _ in range(times)]
+    return expected_after(file, runs) if runs else _expected_now(file)
+
+
+def _of_no_runs(file: DesignFile) -> tuple[ExpectedCoefficient, ...]:
+    """Return each coefficient as unknown: for what no run of the grid tells, or as none is made."""
+    some = file.grid.candidates[:: 1 + len(file.grid.candidates) // _SOME]
+    return tuple(
+        replace(
+            row,
+            value=math.nan,
+            standard_uncertainty=math.inf,
+            shares={},
+            message=row.message or "no run is made that tells it",
+        )
+        for row in expected_after(file, some)
+    )
+
+
 def _steps(file: DesignFile, choices: list[tuple[int, int]]) -> tuple[DesignStep, ...]:
     """Return the steps: the runs that were made, or are made in any case, come before them."""
-    order = [*file.made_runs]
-    ends = []
+    order, ends = [*file.made_runs], list[int]()
     for candidate, repeats in choices:
         order += [file.grid.candidates[candidate]] * repeats
         ends.append(len(order))
-    if not choices:
-        return ()
-    cycles = _cycles(file, order)
-    start_s = math.fsum(duration_rows(file.fixed, file.rig)) or _closing_s(file)
+    cycles, entries = _cycles(file, order) if choices else [], _entries(file, choices)
     return tuple(
         DesignStep(
             file.grid.runs[candidate],
             repeats,
-            start_s + time_s,
+            file.tank_time_s(entries[:count]),
             expected_coefficients(
                 order[:end], cycles[:end], file.targets, file.belief, file.stated
             ),
         )
-        for (candidate, repeats), end, time_s in zip(
-            choices, ends, accumulate(_costs_s(file, choices)), strict=True
-        )
+        for count, ((candidate, repeats), end) in enumerate(zip(choices, ends, strict=True), 1)
     )
-
-
-def _closing_s(file: DesignFile) -> float:
-    """Return the tank time of the zero run behind the last run."""
-    zero = file.tables.zero
-    return 0.0 if zero is None else zero.duration_s + file.tables.defaults.pause_s
-
-
-def _costs_s(file: DesignFile, choices: Sequence[tuple[int, int]]) -> list[float]:
-    """Return the tank time of each run that is chosen with its repeats, made in this order."""
-    order = [file.grid.runs[k] for k, repeats in choices for _ in range(repeats)]
-    costs = iter(costs_s(order, file.fixed[-1] if file.fixed else None, file.rig, file.tables.zero))
-    return [math.fsum(islice(costs, repeats)) for _, repeats in choices]
 
 
 def expected_after(
@@ -184,7 +236,7 @@ def _cycles(file: DesignFile, order: Sequence[CandidateRun]) -> list[BodyCycle]:
     return [*file.cycles, *made_up(order[len(file.cycles) :], file.belief, file.noise)]
 
 
-def beyond_runs(coefficient: ExpectedCoefficient) -> bool:
+def _is_beyond_runs(coefficient: ExpectedCoefficient) -> bool:
     """Whether a target cannot be met by any runs: what they do not lower is beyond it alone."""
     return not coefficient.message and _scatter_variance(coefficient) <= 0.0
 

@@ -6,6 +6,7 @@ The diagnosis itself is elsewhere: whoever keeps a loop's time does not even imp
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Final, Protocol
 
 from hardware.description.errors import DataError
@@ -41,7 +42,7 @@ class CauseDiagnosis:
     Attributes
     ----------
     sentences
-        Three sentences, as of ``pmm gap``.
+        Three sentences, as of ``pmm gap``, and one for each run that is left out.
     suggestions
         The most telling first.
     probability
@@ -96,8 +97,11 @@ class Place(Protocol):
     def offered(self, worth: Sequence[Suggestion]) -> Sequence[tuple[Suggestion, RunPlan]]:
         """Return which of some runs can be made there."""
 
-    def costs_s(self, runs: Sequence[RunPlan]) -> tuple[float, ...]:
-        """Return the tank time of each of some runs that are to follow."""
+    def times_left_s(self, runs: Sequence[RunPlan]) -> Sequence[float]:
+        """Return the tank time that is left without some runs that may follow, with the first, ....
+
+        What is made in any case is in all of them.
+        """
 
     def plan(self, look: Look) -> Sequence[str]:
         """Write the plan as it was decided; return the names of the runs to be made now."""
@@ -139,13 +143,13 @@ class CauseGoal:
         standing = self.place.standing()
         look = Look(standing.runs, standing.time_s, (), notes=standing.notes)
         if standing.given_runs:
-            return self._keep_runs(look, (*standing.given_runs, *standing.runs_left))
+            return self._keep_runs(look, standing)
         diagnosis = self.diagnose()
         look = replace(look, causes=diagnosis.causes, notes=(*standing.notes, *diagnosis.sentences))
         if diagnosis.probability > SURE:
             return replace(look, ending=Ending.KNOWN, remark=diagnosis.verdict_text)
         if standing.runs_left:
-            return self._keep_runs(look, standing.runs_left)
+            return self._keep_runs(look, standing)
         if not diagnosis.suggestions and not diagnosis.other_measurements:
             raise DataError(
                 "no runs can be proposed; [oscillator] in the campaign file, or [rig] in a "
@@ -153,8 +157,10 @@ class CauseGoal:
             )
         return self._with_next_runs(look, standing, diagnosis)
 
-    def _keep_runs(self, look: Look, runs: Sequence[RunPlan]) -> Look:
-        return replace(look, kept_runs=tuple(runs), left_s=math.fsum(self.place.costs_s(runs)))
+    def _keep_runs(self, look: Look, standing: Standing) -> Look:
+        left_s = self.place.times_left_s(standing.runs_left)[-1]
+        kept_runs = (*standing.given_runs, *standing.runs_left)
+        return replace(look, kept_runs=kept_runs, left_s=left_s)
 
     def _with_next_runs(self, look: Look, standing: Standing, diagnosis: CauseDiagnosis) -> Look:
         """Return the look with the runs that are proposed, or why there are none."""
@@ -168,19 +174,21 @@ class CauseGoal:
             return replace(look, ending=Ending.EXHAUSTED, remark=_exhausted(self.least, diagnosis))
         chosen: list[tuple[Suggestion, RunPlan]] = []
         for pair in offered:
-            more_s = self.place.costs_s([run for _, run in (*chosen, pair)])
-            if len(chosen) < self.batch and math.fsum(more_s) <= standing.time_left_s:
+            times_s = self.place.times_left_s([run for _, run in (*chosen, pair)])
+            if times_s[-1] - times_s[0] <= standing.time_left_s:
                 chosen.append(pair)
+            if len(chosen) == self.batch:
+                break
         if not chosen:
             return replace(look, ending=Ending.TIME, remark="too little for any run that tells")
         runs = tuple(run for _, run in chosen)
-        costs_s = self.place.costs_s(runs)
+        times_s = self.place.times_left_s(runs)
         return replace(
             look,
             proposed=runs,
-            costs_s=costs_s,
+            costs_s=tuple(after - before for before, after in pairwise(times_s)),
             reasons=tuple(_reason(suggestion) for suggestion, _ in chosen),
-            left_s=math.fsum(costs_s),
+            left_s=times_s[-1],
             remark="what is expected to tell the causes apart",
         )
 

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from itertools import accumulate
 from pathlib import Path
 
 from analysis.gap.design.proposals import OSCILLATION, Proposal
@@ -28,15 +29,16 @@ class FolderPlace:
 
     folder: Path
     _offered: dict[SetPoint, Suggestion] = field(default_factory=dict)
+    _open: tuple[RunPlan, ...] = ()
 
     def standing(self) -> Standing:
         """Return what is there, recordings that have appeared taken in."""
         missing = take_in(read_pursued_folder(self.folder))
         pursuit = read_pursued_folder(self.folder)
-        made = pursuit.campaign.runs
+        made, self._open = pursuit.campaign.runs, pursuit.open
         return Standing(
             tuple(run.name for run in made),
-            math.fsum(run.periods / run.frequency_hz for run in made),
+            math.fsum(_turning_s(run.periods, run.frequency_hz) for run in made),
             pursuit.open,
             (),
             pursuit.set_points,
@@ -48,9 +50,13 @@ class FolderPlace:
         self._offered = {suggestion.set_point: suggestion for suggestion in worth}
         return [(suggestion, _proposed(suggestion.set_point)) for suggestion in worth]
 
-    def costs_s(self, runs: Sequence[RunPlan]) -> tuple[float, ...]:
-        """Return how long the shaft turns in each."""
-        return tuple(run.moving_s for run in runs)
+    def times_left_s(self, runs: Sequence[RunPlan]) -> Sequence[float]:
+        """Return how long the shaft turns in the open runs, in them and the first of some, ...."""
+        open_s, *each_s = (
+            math.fsum(_turning_s(run.periods, run.set_point.frequency_hz) for run in some)
+            for some in (self._open, *([run] for run in runs))
+        )
+        return list(accumulate(each_s, initial=open_s))
 
     def plan(self, look: Look) -> tuple[str, ...]:
         """Write the plan of a round; return the names of the runs that are to be recorded."""
@@ -68,6 +74,11 @@ class FolderPlace:
             write_round(pursuit, list(proposals))
             pursuit = read_pursued_folder(self.folder)
         return tuple(run.name for run in pursuit.open)
+
+
+def _turning_s(periods: int, frequency_hz: float) -> float:
+    """Return how long the shaft turns in a run, settled as a plan without settings has it."""
+    return (periods + Defaults().settling_periods + 1) / frequency_hz
 
 
 def _proposed(point: SetPoint) -> RunPlan:

@@ -35,7 +35,7 @@ def found_of(examined: Examined, least: float = LEAST) -> CauseDiagnosis:
     alike = tuple(dict.fromkeys(how for row in report.ranking for how in row.measure))
     measurements = tuple(dict.fromkeys([*alike, *separating_measurements(effects), *outside[:1]]))
     return CauseDiagnosis(
-        report.said,
+        (*report.said, *(f"{name} is left out: {why}" for name, why in report.left_out.items())),
         concluded.probability,
         _verdict_text(examined, alike),
         tuple(_causes(examined)),

@@ -11,13 +11,18 @@ from pathlib import Path
 
 from hardware.description.setpoint import SetPoint
 from pmm.design.design_file import DesignFile
-from pmm.design.grid import costs_s
 from pmm.gap.causes import CauseDiagnosis, CauseGoal, Standing, Suggestion
 from pmm.parallel import LocalProcesses
 from pmm.plan.duration import duration_rows
 from pmm.plan.run_plan import RunPlan
 from pmm.sequential.course import CampaignGoal
-from pmm.sequential.growing_plan import check_design, planned, read_growing
+from pmm.sequential.growing_plan import (
+    GrowingPlan,
+    check_design,
+    planned,
+    read_growing,
+    times_left_s,
+)
 from pmm.sequential.look import Look
 from pmm.sequential.targets import TargetGoal
 
@@ -27,16 +32,16 @@ class RigPlace:
 
     def __init__(self, file: DesignFile, folder: Path) -> None:
         self._file, self._folder = file, folder
-        self._last: RunPlan | None = None
+        self._plan: GrowingPlan | None = None
 
     def standing(self) -> Standing:
         """Return what the folder holds."""
         plan, file = read_growing(self._folder, self._file), self._file
+        self._plan = plan
         if plan is None:
             fixed_runs = tuple(run for run in file.fixed if run.oscillates)
             return Standing((), 0.0, fixed_runs, (), frozenset(), time_left_s=file.time_s)
         made = plan.complete_runs
-        self._last = made[-1] if made else None
         return Standing(
             tuple(run.name for run in made if run.oscillates),
             math.fsum(duration_rows(made, file.rig)),
@@ -55,9 +60,9 @@ class RigPlace:
             if suggestion.set_point in runs
         ]
 
-    def costs_s(self, runs: Sequence[RunPlan]) -> tuple[float, ...]:
-        """Return the tank time of each of some runs that are to follow."""
-        return costs_s(runs, self._last, self._file.rig, self._file.tables.zero)
+    def times_left_s(self, runs: Sequence[RunPlan]) -> Sequence[float]:
+        """Return the tank time that is left without some runs, with the first, ...."""
+        return times_left_s(self._file, self._plan, runs)
 
     def plan(self, look: Look) -> tuple[str, ...]:
         """Write the plan as it was decided; return the names of the runs to be made now."""

@@ -131,6 +131,8 @@ def how_large_it_is(conclusion: Conclusion, large: HowLarge, effect_sizes: Seque
     if conclusion.unexplained:
         why = ", whatever the reason" if worst else ""
         return f"Rig and simulation differ in {sizes}; {fitted}{why}."
+    if conclusion.verdict == UNKNOWN:
+        return f"They differ in {sizes}, little more than noise; {fitted}."
     return f"They differ in {sizes}, no more than noise; {fitted}."
 
 
@@ -148,6 +150,8 @@ def what_to_do(conclusion: Conclusion, todo: Remedies) -> str:
         return f"Look at what remains, below, and {make}."
     if conclusion.verdict == COEFFICIENTS:
         return "Put the fitted coefficients into the campaign file: to find them is what it is for."
+    if conclusion.verdict == UNKNOWN:
+        return f"{make[0].upper()}{make[1:]}, before any coefficient of this campaign is reported."
     return "Nothing has to be done: the coefficients of this campaign may be reported."
 
 

@@ -109,6 +109,17 @@ def expand(
     ]
 
 
+def single_entries(entry: PlanEntry, defaults: Defaults) -> Iterator[PlanEntry]:
+    """Yield for each run of an oscillation's entry, in the order of :func:`expand`, its own."""
+    keys = [listed.key for listed in _LISTS if getattr(entry, listed.key)]
+    for _ in range(first_of(entry.repeats, defaults.repeats)):
+        for values in all_of([getattr(entry, key) for key in keys]):
+            single: dict[str, Any] = {
+                key: (value,) for key, value in zip(keys, values, strict=True)
+            }
+            yield replace(entry, repeats=1, **single)
+
+
 def run_count(entry: PlanEntry, defaults: Defaults, channels: Sequence[str]) -> int:
     """Return how many runs :func:`expand` would make of an entry."""
     repeats = first_of(entry.repeats, defaults.repeats)

@@ -17,16 +17,28 @@ _ORDERED = (RunKind.OSCILLATION, *(kind for kind in RunKind if kind.towed))
 
 
 def runs_of(
-    tables: PlanTables, oscillator: Oscillator, channels: Sequence[str]
+    tables: PlanTables,
+    oscillator: Oscillator,
+    channels: Sequence[str],
+    further_entries: Sequence[Sequence[RunPlan]] = (),
 ) -> tuple[RunPlan, ...]:
-    """Return all runs of a plan in the order in which they are made."""
+    """Return all runs of a plan in the order in which they are made.
+
+    Parameters
+    ----------
+    channels
+        The rig's force channels, for loads on all of them.
+    further_entries
+        The runs of entries behind those of the tables.
+    """
 
     def expanded(entry: PlanEntry) -> list[RunPlan]:
         turns = tables.order.scheme is Scheme.SNAKE and entry.kind in _ORDERED
         combine = snake if turns else all_of
         return expand(entry, tables.defaults, oscillator, channels, combine)
 
-    runs = in_order([expanded(run) for run in tables.runs], tables.order)
+    entries = [*map(expanded, tables.runs), *further_entries]
+    runs = in_order(entries, tables.order)
     if tables.control is not None:
         control = expanded(tables.control.entry())[0]
         runs = with_control(runs, control, tables.control.every)

@@ -114,7 +114,7 @@ def design_document(file: DesignFile, design: Design, target: Path | None) -> Do
             "Coefficients", _KNOWN, () if is_complete else design.expected_coefficients, titled=True
         ),
         Notes([Note("warning", message) for message in design.why], key="unmet"),
-        Notes([Note("note", message) for message in _left_out(file)]),
+        Notes([Note("note", message) for message in (*_left_out(file), *_unwritten(design))]),
         Figure("uncertainty", _CAPTION, partial(design_figure, file.name, design)),
         Data("plan", target),
         Data("rig", file.rig_path),
@@ -130,6 +130,10 @@ def design_document(file: DesignFile, design: Design, target: Path | None) -> Do
         ),
     )
     return Document("", "design of a plan", (Section("", contents),), SCHEMA)
+
+
+def _unwritten(design: Design) -> tuple[str, ...]:
+    return () if design.steps else ("no run is to be made, so there is no plan to be written",)
 
 
 def _summary(file: DesignFile, design: Design) -> str:

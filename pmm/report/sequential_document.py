@@ -32,6 +32,11 @@ _CAPTION: Final = (
     "Standard uncertainty of each target over what is asked for, as measured after each run, "
     "against tank time; a target is met below 1."
 )
+_TOGETHER: Final = (
+    "A target without frequencies is met by a fit of all runs, of all speeds, to the terms that "
+    "the design believes in. Tables of coefficients fit each speed by itself, and may miss there "
+    "what the speeds tell together."
+)
 _STYLES: Final = ("-", "--", ":", "-.")
 
 _TARGETS: Final[tuple[Column[KnownTarget], ...]] = (
@@ -68,7 +73,7 @@ _CAUSES: Final[tuple[Column[KnownCause], ...]] = (
 _PURSUED: Final[tuple[Column[Decision], ...]] = (
     *_STEPS[:3],
     Column("most probable", lambda row: row.causes[0].name if row.causes else ""),
-    Column("probability", lambda row: _probability(row), written="{:.3f}".format, number=True),
+    Column("probability", lambda row: _probability(row), written=written(".3f"), number=True),
     *_STEPS[-2:],
 )
 
@@ -117,8 +122,9 @@ def story(folder: Path, name: str) -> Iterator[Section]:
     """Yield what was known after each run of a folder's campaign, where it chose its runs."""
     decisions = read_decisions(folder)
     if decisions:
+        notes = [Note("note", _TOGETHER)] if decisions[-1].known else []
         contents = (Text([_summary(name, decisions[-1])]), *_contents(name, decisions))
-        yield Section("Run after run", contents)
+        yield Section("Run after run", (*contents, Notes(notes)))
 
 
 def _contents(name: str, decisions: Sequence[Decision]) -> tuple[Content, ...]:
@@ -194,6 +200,8 @@ def _least_known(targets: Sequence[KnownTarget]) -> str:
 def _next_step(decision: Decision) -> str:
     if decision.ending:
         return decision.ending
+    if not decision.is_decided:
+        return f"{counted(len(decision.added), 'run')} proposed, not answered"
     if decision.added:
         return f"{counted(len(decision.added), 'run')} planned ({decision.remark})"
     return f"as planned, {counted(len(decision.kept), 'run')} more"

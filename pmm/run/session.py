@@ -228,6 +228,7 @@ class _Loop:
         for job in course:
             if job is not None:
                 return job
+            self._require_answers()  # to what the course asks: no simulated operator does
             self._step()
             if not self._goes_on():
                 return None
@@ -243,7 +244,12 @@ class _Loop:
         attended = self.rig.master is not None and self.rig.master.operator is not None
         self.control.step()
         self.interrupts.hand_on(self.control.request)
-        if self.answers.absent and self.answers.question and not attended:
+        if not attended:
+            self._require_answers()
+
+    def _require_answers(self) -> None:
+        """Stop where a question is open that nobody can answer."""
+        if self.answers.absent and self.answers.question:
             with suppress(RunStateError):
                 self.control.request(Command.STOP)
             raise RunFailedError(f"nobody answers: {self.answers.question}; the input has ended")

@@ -19,7 +19,7 @@ _YES: Final = "Approve of these runs? y: yes (y 3 1: these alone, in this order)
 _FIRST: Final = f"{_YES}, n: no, and end"
 _CHANGE: Final = f"{_YES}, k: keep the plan as it was, n: no, and end"
 _BY_OPERATOR: Final = "the operator"
-_NUMBER: Final = re.compile(r"\d{1,6}")
+_APPROVED: Final = re.compile(r"y(?:es)?((?:[\s,]+\d{1,6})*)")
 T = TypeVar("T")
 JobT = TypeVar("JobT")
 
@@ -74,6 +74,8 @@ class CampaignCourse(Generic[JobT]):
         while True:
             look = yield from self._do_aside(self.goal.look)
             self.show(look)
+            # As long as nobody has answered: whoever is interrupted here has seen this look.
+            keep_decision(self.folder, look.decision())
             look, who = yield from self._decided(look)
             decision = look.decision(who)
             keep_decision(self.folder, decision)
@@ -123,10 +125,13 @@ class CampaignCourse(Generic[JobT]):
 
 
 def _decided(look: Look, answer: str) -> Look | None:
-    """Return what an answer makes of a proposal; ``None`` where it names runs wrongly."""
+    """Return what an answer makes of a proposal; ``None`` where it cannot be read."""
     if answer[0] == "n":
         return replace(look, ending=Ending.REJECTED)
     if answer[0] == "k":
         return look.as_before
-    named = _NUMBER.findall(answer)
-    return look.chosen([int(number) for number in named]) if named else look
+    approved = _APPROVED.fullmatch(answer)
+    if approved is None:
+        return None
+    numbers = [int(number) for number in approved[1].replace(",", " ").split()]
+    return look.chosen(numbers) if numbers else look

@@ -105,6 +105,12 @@ class GrowingPlan:
             time_s for run, time_s in rows if run.name in names or run.kind in _BETWEEN
         )
 
+    @property
+    def made_behind(self) -> tuple[RunPlan, ...]:
+        """Runs that are complete, of entries behind those that are made in any case."""
+        names = {entry["name"] for entry in self.entries}
+        return tuple(run for run in self.complete_runs if run.entry in names)
+
     def made_entries(self) -> Iterator[Mapping[str, Any]]:
         """Yield the entries whose runs are complete."""
         names = {run.entry for run in self.complete_runs}
@@ -132,6 +138,24 @@ def read_growing(folder: Path, design: DesignFile) -> GrowingPlan | None:
         )
     chosen_entries = tuple(entries[len(design_entries) :])
     return GrowingPlan(plan, chosen_entries, frozenset(done_runs(folder, plan.runs)))
+
+
+def times_left_s(
+    design: DesignFile, plan: GrowingPlan | None, runs: Sequence[RunPlan]
+) -> list[float]:
+    """Return the tank time that is left without some runs that may follow, with the first, ....
+
+    Parameters
+    ----------
+    plan
+        As it is; ``None`` where there is none yet.
+    """
+    behind = [] if plan is None else [[run] for run in plan.made_behind]
+    made = () if plan is None else plan.complete_runs
+    made_s = math.fsum(duration_rows(made, design.rig))
+    entries = [*behind, *([run] for run in runs)]
+    upto = range(len(behind), len(entries) + 1)
+    return [max(design.tank_time_s(entries[:count]) - made_s, 0.0) for count in upto]
 
 
 def planned(folder: Path, design: DesignFile, look: Look) -> tuple[str, ...]:
@@ -162,7 +186,8 @@ def write_growing(
     if before is not None and before.closed and runs:
         entries.append(_separating_zero(design, len(entries)))
     first = 1 + sum("motion" in entry for entry in entries)
-    entries += [run_entry(run, number) for number, run in enumerate(runs, first)]
+    entry_of = design.grid.entry_of
+    entries += [run_entry(entry_of[run], run, number) for number, run in enumerate(runs, first)]
     tables = [*design.plan_table.get("runs", []), *entries]
     text = [
         *plan_head(design, target, grows=True),

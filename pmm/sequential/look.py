@@ -125,6 +125,11 @@ class Decision:
     notes: tuple[str, ...] = ()
     causes: tuple[KnownCause, ...] = ()
 
+    @property
+    def is_decided(self) -> bool:
+        """Whether nothing that was proposed waits for an answer."""
+        return bool(self.approved or self.ending or not self.added)
+
 
 @dataclass(frozen=True, eq=False)
 class Look:
@@ -135,8 +140,10 @@ class Look:
     kept_runs
         Planned runs that stay; none where ``proposed`` takes their place.
     proposed, costs_s, reasons
-        Runs that are to be planned anew, not named yet, the tank time of each, and why each is
-        proposed; no reasons where all serve the same.
+        Runs that are to be planned anew, not named yet, the tank time that each adds with its zero
+        and control runs, and why each is proposed; no reasons where all serve the same.
+    left_s
+        Tank time of all that is left to make then, runs that are made in any case among it.
     before, before_s
         Planned runs that ``proposed`` would take the place of, and their tank time.
     ending
@@ -184,10 +191,11 @@ class Look:
         }:
             return None
         costs_s = tuple(self.costs_s[k - 1] for k in numbers)
+        left_s = self.left_s - math.fsum(self.costs_s) + math.fsum(costs_s)
         return replace(
             self, proposed=tuple(self.proposed[k - 1] for k in numbers), costs_s=costs_s,
             reasons=tuple(self.reasons[k - 1] for k in numbers if self.reasons),
-            left_s=math.fsum(costs_s),
+            left_s=left_s,
         )  # fmt: skip
 
     def decision(self, approved: str = "") -> Decision:
@@ -247,7 +255,11 @@ def keep_decision(folder: Path, decision: Decision) -> None:
     """
     before = read_decisions(folder)
     older = [entry for entry in before if len(entry.runs) < len(decision.runs)]
-    same = [entry for entry in before if len(entry.runs) == len(decision.runs) and not entry.ending]
+    same = [
+        entry
+        for entry in before
+        if len(entry.runs) == len(decision.runs) and entry.is_decided and not entry.ending
+    ]
     stays = bool(same) and not (decision.added or decision.ending)
     _write(folder, [*older, same[-1] if stays else decision])
 

@@ -7,6 +7,7 @@ designed anew. A plan stays unless the new one is better by more than is worth a
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Final
 
@@ -14,18 +15,23 @@ from analysis.design.candidate import CandidateRun
 from analysis.design.expectation import ExpectedCoefficient
 from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.design.design_file import DesignFile
-from pmm.design.grid import costs_s
 from pmm.design.measured_runs import (
     MeasuredRuns,
     continued_design,
     read_measured_runs,
     repeats_said,
 )
-from pmm.design.run_selection import Design, beyond_runs, design, expected_after
+from pmm.design.run_selection import Design, design, expected_after, shortest_s
 from pmm.document.notation import clock
 from pmm.plan.duration import duration_rows
 from pmm.plan.run_plan import RunPlan
-from pmm.sequential.growing_plan import GrowingPlan, check_design, planned, read_growing
+from pmm.sequential.growing_plan import (
+    GrowingPlan,
+    check_design,
+    planned,
+    read_growing,
+    times_left_s,
+)
 from pmm.sequential.look import Ending, KnownTarget, Look
 from pmm.sequential.reading_cache import Remembering
 
@@ -85,33 +91,30 @@ class TargetGoal:
             If the folder's plan or campaign file is wrong.
         """
         standing = self._standing()
-        file, best_design, hopeless = _designed(self._going_on(standing))
+        file = self._going_on(standing)
+        best_design = design(file)
         notes = (
             *(f"{name} cannot be used: {why}" for name, why in standing.unusable.items()),
-            *(why for why, row in hopeless),
+            *best_design.beyond,
             *standing.repeats(self._file.noise.repeat_relative),
         )
+        hopeless = len(best_design.targets) < len(file.targets)
+        file = replace(file, targets=best_design.targets)
         made = () if standing.plan is None else standing.plan.complete_runs
         look = Look(
             standing.names,
             math.fsum(duration_rows(made, self._file.rig)),
-            tuple(
-                _known_targets(
-                    [*best_design.expected_now, *(row for _, row in hopeless)]
-                    if file.cycles
-                    else []
-                )
-            ),
+            tuple(_known_targets(best_design.expected_now if file.cycles else ())),
             notes=notes,
         )
         has_fixed = (
             bool(self._file.fixed) if standing.plan is None else bool(standing.plan.given_left)
         )
         planned_runs = _offered(standing.runs_left, file)
-        ending = _ending(best_design, file, planned_runs, hopeless=bool(hopeless))
+        ending = _ending(best_design, file, planned_runs, hopeless=hopeless)
         if ending is not None and not has_fixed:
             return replace(look, ending=ending[0], remark=ending[1])
-        return self._with_next_runs(look, best_design, file, planned_runs, made)
+        return self._with_next_runs(look, best_design, file, planned_runs, standing.plan)
 
     def _with_next_runs(
         self,
@@ -119,19 +122,19 @@ class TargetGoal:
         best_design: Design,
         file: DesignFile,
         planned_runs: Sequence[RunPlan],
-        made: Sequence[RunPlan],
+        plan: GrowingPlan | None,
     ) -> Look:
         """Return the look with the runs that follow: those that were planned, or others."""
         new = tuple(step.run for step in best_design.steps for _ in range(step.repeats))
-        each_s, left_s = self._costs_s(new, made), math.fsum(self._costs_s(planned_runs, made))
-        new_s = math.fsum(each_s)
+        times_s = times_left_s(self._file, plan, new)
+        new_s, left_s = times_s[-1], times_left_s(self._file, plan, planned_runs)[-1]
         why = self._why_new(best_design, file, planned_runs, new_s, left_s)
         if not why or not new:
             return replace(look, kept_runs=tuple(planned_runs), left_s=left_s)
         return replace(
             look,
             proposed=new,
-            costs_s=each_s,
+            costs_s=tuple(after - before for before, after in pairwise(times_s)),
             left_s=new_s,
             before=tuple(planned_runs),
             before_s=left_s,
@@ -151,7 +154,8 @@ class TargetGoal:
             return "the plan so far does not do" if file.cycles else "the first plan"
         candidates = [CandidateRun(run.set_point, run.periods, math.inf) for run in planned_runs]
         would = expected_after(file, candidates)
-        if _missing(would) > _missing(best_design.expected_coefficients) + _WORSE:
+        best = list(best_design.in_reach(best_design.expected_coefficients))
+        if _missing(would) > _missing(best) + _WORSE:
             worst = max(would, key=_short)
             return f"the runs that were planned would leave {_uncertainty_text(worst)}"
         if left_s > file.time_s:
@@ -191,18 +195,11 @@ class TargetGoal:
         made = [run for run in plan.chosen_runs if run.name in plan.complete_names]
         barred = {run.set_point for run in made if run.name in standing.unusable}
         places = [k for k, run in enumerate(file.grid.runs) if run.set_point not in barred]
-        grid = replace(
-            file.grid,
-            runs=tuple(file.grid.runs[k] for k in places),
-            candidates=tuple(file.grid.candidates[k] for k in places),
+        return replace(
+            file,
+            grid=file.grid.among(places),
+            time_s=max(file.time_s - plan.chosen_s(file.rig), 0.0),
         )
-        return replace(file, grid=grid, time_s=max(file.time_s - plan.chosen_s(file.rig), 0.0))
-
-    def _costs_s(self, runs: Sequence[RunPlan], made: Sequence[RunPlan]) -> tuple[float, ...]:
-        """Return the tank time of each of some runs that follow those that were made."""
-        file = self._file
-        before = made[-1] if made else None
-        return costs_s(runs, before, file.rig, file.tables.zero)
 
 
 def _offered(planned_runs: Sequence[RunPlan], file: DesignFile) -> Sequence[RunPlan]:
@@ -213,45 +210,18 @@ def _offered(planned_runs: Sequence[RunPlan], file: DesignFile) -> Sequence[RunP
     )
 
 
-def _designed(
-    file: DesignFile,
-) -> tuple[DesignFile, Design, list[tuple[str, ExpectedCoefficient]]]:
-    """Return the file with the targets that runs can meet, its design, and why not the others."""
-    hopeless: list[tuple[str, ExpectedCoefficient]] = []
-    while True:
-        best_design = design(file)
-        short = zip(
-            [row for row in best_design.expected_coefficients if not row.met],
-            best_design.why,
-            strict=True,
-        )
-        bad = [(why, row) for row, why in short if math.isfinite(row.wanted) and beyond_runs(row)]
-        if not bad:
-            return file, best_design, hopeless
-        now = {(row.name, row.where): row for row in best_design.expected_now}
-        hopeless += [(why, now.get((row.name, row.where), row)) for why, row in bad]
-        names = {row.name for _, row in bad}
-        targets = tuple(target for target in file.targets if target.name not in names)
-        if not targets:
-            return file, Design((), (), (), ()), hopeless
-        file = replace(file, targets=targets)
-
-
 def _ending(
     best_design: Design, file: DesignFile, planned_runs: Sequence[RunPlan], *, hopeless: bool
 ) -> tuple[Ending, str] | None:
     """Return why nothing more is to be made, and more of it; ``None`` where something is."""
-    wanted = [row for row in best_design.expected_now if math.isfinite(row.wanted)]
+    wanted = list(best_design.in_reach(best_design.expected_now))
     if file.cycles and wanted and all(row.met for row in wanted):
         return (Ending.EXHAUSTED, "all other targets are met") if hopeless else (Ending.MET, "")
     if best_design.steps or (planned_runs and not hopeless):
         return None
-    short = [_uncertainty_text(row) for row in wanted if file.cycles and not row.met]
-    cheapest_s = min(
-        (candidate.cost_s + candidate.setting_s for candidate in file.grid.candidates),
-        default=math.inf,
-    )
-    if cheapest_s > file.time_s:
+    rows = best_design.in_reach(best_design.expected_now or best_design.expected_coefficients)
+    short = [_uncertainty_text(row) for row in rows if not row.met]
+    if shortest_s(file) > file.time_s:
         left_of = f"{clock(file.time_s)} are left of limits.time_h, too little for any run"
         return Ending.TIME, "; ".join([f"{left_of} of the grid", *short])
     return Ending.EXHAUSTED, "; ".join(["no run of the grid helps", *short])

@@ -49,8 +49,9 @@ class Rig:
     def offered(self, worth: Sequence[Suggestion]) -> Sequence[tuple[Suggestion, RunPlan]]:
         return [(one, run(one.set_point)) for one in worth if one.set_point in SET_POINTS[:4]]
 
-    def costs_s(self, runs: Sequence[RunPlan]) -> tuple[float, ...]:
-        return (10.0,) * len(runs)
+    def times_left_s(self, runs: Sequence[RunPlan]) -> Sequence[float]:
+        given = len(self.there.given_runs)
+        return [10.0 * (given + count) for count in range(len(runs) + 1)]
 
     def plan(self, look: Look) -> Sequence[str]:
         self.planned.append(look)

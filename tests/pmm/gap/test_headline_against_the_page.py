@@ -203,6 +203,23 @@ def reports(draw: st.DrawFn) -> GapReport:
     )  # fmt: skip
 
 
+def test_what_is_unknown_is_neither_noise_nor_nothing_to_be_done() -> None:
+    weighing = Weighing({"unknown": 0.45, "none": 0.3}, "", {}, {}, math.nan, "structure", "")
+    size = Size("forces", 0.1, "N", "harmonic 1 of force_aft", "run-1", 1.0)
+    unknown, none = (
+        sentences(
+            Conclusion(verdict, weighing, (), ()), HowLarge((size,), None), (), Remedies(run="one")
+        )
+        for verdict in ("unknown", "none")
+    )
+    assert unknown[1:] == (
+        "They differ in harmonic 1 of force_aft by up to 0.1 N (1 % of its first harmonic, run "
+        "run-1), little more than noise; no coefficient is off by more than its uncertainty.",
+        "Make the run that tells most, one, before any coefficient of this campaign is reported.",
+    )
+    assert none[2].startswith("Nothing has to be done")
+
+
 @pytest.mark.slow
 @given(report=reports())
 def test_any_diagnosis(report: GapReport, tmp_path_factory: pytest.TempPathFactory) -> None:

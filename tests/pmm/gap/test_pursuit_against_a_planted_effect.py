@@ -106,6 +106,17 @@ def test_nobody_to_ask_is_said_and_nothing_written(rig: Path) -> None:
 
 
 @pytest.mark.slow
+def test_a_recording_that_has_vanished_is_named(tmp_path: Path) -> None:
+    names = (*NAMES, "pitch-0.80-20")
+    (tmp_path / "truth.toml").write_text(short(names) + PLANTED)
+    assert run("simulate", tmp_path / "truth.toml", "--output", tmp_path / "rig").exit_code == 0
+    (tmp_path / "rig" / "heave-0.80-20.nc").unlink()
+    found = json.loads(run("gap", "pursue", tmp_path / "rig", *ONLY, given="n\n").stdout)
+    (said,) = [note for note in found["decisions"][-1]["notes"] if "left out" in note]
+    assert said.startswith("heave-0.80-20 is left out: ")
+
+
+@pytest.mark.slow
 def test_what_is_not_approved_is_not_planned(rig: Path, start: Path) -> None:
     told = ("gap", "pursue", rig, "--simulated", start / "truth.toml", *ONLY)
     found = json.loads(run(*told, given="n\n").stdout)

@@ -14,6 +14,7 @@ from pmm.plan.checks import check_plan
 from pmm.plan.duration import duration_rows
 from pmm.plan.findings import PlanVerdict
 from pmm.plan.plan import read_plan_and_rig
+from pmm.sequential.look import read_decisions
 from tests.pmm.sequential.campaigns import EXAMPLE, made, until, written
 
 
@@ -103,6 +104,16 @@ def test_nothing_is_made_that_the_operator_does_not_approve(tmp_path: Path) -> N
     assert nobody.exit_code == 1
     assert "nobody answers: Approve of these runs?" in str(nobody.exception) + nobody.output
     assert not list((tmp_path / "c").glob("*/header.json"))
+
+
+def test_answers_that_end_stop_the_campaign_at_rest(tmp_path: Path) -> None:
+    done = until(written(tmp_path), tmp_path / "c", given="y 1\n")
+    assert done.exit_code == 1
+    assert "nobody answers" in str(done.exception) + done.output
+    assert "1 run, " in done.output
+    last = read_decisions(tmp_path / "c")[-1]
+    assert [(tmp_path / "c" / name / "run.nc").is_file() for name in last.runs] == [True]
+    assert not last.is_decided
 
 
 @pytest.mark.slow

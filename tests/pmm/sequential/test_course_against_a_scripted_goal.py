@@ -98,10 +98,22 @@ def test_runs_are_left_out_and_put_in_another_order(tmp_path: Path) -> None:
     offer = Look((), 0.0, (), proposed=(ONE, two, three), costs_s=(9.0, 5.0, 7.0), left_s=21.0)
     goal = Scripted(tmp_path, [offer, LAST])
     # A number that is not offered, and one that stands twice, are asked for again.
-    assert _jobs(_course(goal, "y 4\ny 1 1\ny 3, 1\n")) == [("next",)]
+    typed = "y 4\ny 1 1\ny1\ny -1\ny 1 x\nyellow\ny 3, 1\n"
+    assert _jobs(_course(goal, typed)) == [("next",)]
     (decided,) = [one for one in read_decisions(tmp_path) if one.added]
     assert [one.rpartition(", ")[2] for one in decided.added] == ["3 periods", "4 periods"]
     assert decided.left_s == 16.0
+
+
+def test_what_was_proposed_is_kept_before_it_is_answered(tmp_path: Path) -> None:
+    course = _course(Scripted(tmp_path, [KEPT, FIRST]), "")
+    assert next(course.jobs()) == ("next",)
+    course = _course(Scripted(tmp_path, [replace(FIRST, runs=("a", "b"))]), "")
+    assert next(course.jobs()) is None
+    waiting = read_decisions(tmp_path)[-1]
+    assert (waiting.runs, waiting.is_decided) == (("a", "b"), False)
+    assert _jobs(_course(Scripted(tmp_path, [replace(FIRST, runs=("a", "b")), LAST]), "y\n"))
+    assert [one.is_decided for one in read_decisions(tmp_path)] == [True, True]
 
 
 def test_who_does_not_attend_gets_no_envelope(tmp_path: Path) -> None:
