@@ -2,8 +2,9 @@
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Final
 
 from analysis.coefficients.body_cycle import BodyCycle
@@ -15,13 +16,13 @@ from analysis.design.expectation import (
     expected_coefficients,
     made_up,
 )
-from analysis.design.regression import DesignTarget, prospects
+from analysis.design.regression import DesignTarget, Prospects, prospects
 from analysis.design.selection import select
 from pmm.design.design_file import DesignFile
 from pmm.plan.duration import run_s
 from pmm.plan.run_plan import RunPlan
 
-_SOME: Final = 12  # runs of the grid, evenly drawn, that tell what all of it leaves unknown
+_SOME: Final = 4  # runs of a frequency and speed, evenly drawn, that show what all leave unknown
 _HARDER: Final = (1.0, 1.1, 1.25, 1.5, 2.0)  # times as much is asked for
 
 
@@ -93,8 +94,10 @@ def design(file: DesignFile) -> Design:
     """
     choices: list[tuple[int, int]] = []
     sought, beyond = file, dict[tuple[str, str], str]()
+    candidates = (*file.grid.candidates, *file.made_runs)
+    known = cache(lambda: prospects(candidates, file.belief, file.noise, file.stated))
     while sought.targets or not file.targets:
-        choices = _chosen(sought)
+        choices = _chosen(sought, known)
         rows = [row for row in _after(sought, choices) if not row.met and _is_beyond_runs(row)]
         if not rows:
             break
@@ -103,7 +106,7 @@ def design(file: DesignFile) -> Design:
         targets = (target for target in sought.targets if target.name not in names)
         choices, sought = [], replace(sought, targets=tuple(targets))
     steps, now = _steps(file, choices), _expected_now(file)
-    after = steps[-1].expected_coefficients if steps else now or _of_no_runs(file)
+    after = _with_untold(file, steps[-1].expected_coefficients if steps else now)
     used_s = steps[-1].time_s - file.tank_time_s() if steps else 0.0
     reasons = tuple(
         beyond.get((row.name, row.where)) or _unmet_reason(row, file, used_s)
@@ -113,12 +116,12 @@ def design(file: DesignFile) -> Design:
     return Design(steps, now, after, reasons, sought.targets, tuple(beyond.values()))
 
 
-def _chosen(file: DesignFile) -> list[tuple[int, int]]:
+def _chosen(file: DesignFile, known: Callable[[], Prospects]) -> list[tuple[int, int]]:
     """Return the places of the runs to make, each with its number of repeats."""
     now = _expected_now(file)
     if now and file.targets and all(coefficient.met for coefficient in now):
         return []
-    choices, before_s = list(Counter(_selected(file)).items()), file.tank_time_s()
+    choices, before_s = list(Counter(_selected(file, known())).items()), file.tank_time_s()
     while choices and file.tank_time_s(_entries(file, choices)) - before_s > file.time_s:
         candidate, repeats = choices.pop()
         choices += [(candidate, repeats - 1)] if repeats > 1 else []
@@ -144,15 +147,13 @@ def _ends_s(file: DesignFile) -> float:
     return max(alone_s - (cost_s - run_s(run, run, file.rig)), 0.0)
 
 
-def _selected(file: DesignFile) -> tuple[int, ...]:
+def _selected(file: DesignFile, known: Prospects) -> tuple[int, ...]:
     """Return the places of the runs to make, one that is to be repeated more than once.
 
     The search takes scatter for known, and runs that were made for what is believed of them. Where
     its runs do not do by what is expected of the fit, more is asked for.
     """
-    candidates = (*file.grid.candidates, *file.made_runs)
-    run_prospects = prospects(candidates, file.belief, file.noise, file.stated)
-    made_places = tuple(range(len(file.grid.candidates), len(candidates)))
+    made_places = tuple(range(len(file.grid.candidates), len(known.candidates)))
     runs: tuple[int, ...] = ()
     time_s = file.time_s - _ends_s(file)
     for harder in _HARDER:
@@ -160,17 +161,18 @@ def _selected(file: DesignFile) -> tuple[int, ...]:
             replace(target, standard_uncertainty=target.standard_uncertainty / harder)
             for target in file.targets
         ]
-        selection = select(run_prospects, targets, time_s, made_places)
+        selection = select(known, targets, time_s, made_places)
         if runs and not selection.met:
             break  # asked for more than can be had, it would only cost more
         runs = selection.chosen or runs
-        if runs and (not selection.met or _suffice(file, [candidates[k] for k in runs])):
+        if runs and (not selection.met or _suffice(file, [known.candidates[k] for k in runs])):
             break
     return runs
 
 
 def _suffice(file: DesignFile, extra_runs: Sequence[CandidateRun]) -> bool:
-    return all(coefficient.met for coefficient in expected_after(file, extra_runs))
+    """Whether all is met that these runs determine: more of them determine nothing else."""
+    return all(row.met or row.message for row in expected_after(file, extra_runs))
 
 
 def _expected_now(file: DesignFile) -> tuple[ExpectedCoefficient, ...]:
@@ -178,7 +180,8 @@ def _expected_now(file: DesignFile) -> tuple[ExpectedCoefficient, ...]:
     if not file.made_runs:
         return ()
     cycles = file.cycles or made_up(file.made_runs, file.belief, file.noise)
-    return expected_coefficients(file.made_runs, cycles, file.targets, file.belief, file.stated)
+    rows = expected_coefficients(file.made_runs, cycles, file.targets, file.belief, file.stated)
+    return _with_untold(file, rows)
 
 
 def _after(file: DesignFile, choices: Sequence[tuple[int, int]]) -> tuple[ExpectedCoefficient, ...]:
@@ -186,19 +189,31 @@ def _after(file: DesignFile, choices: Sequence[tuple[int, int]]) -> tuple[Expect
     return expected_after(file, runs) if runs else _expected_now(file)
 
 
-def _of_no_runs(file: DesignFile) -> tuple[ExpectedCoefficient, ...]:
-    """Return each coefficient as unknown: for what no run of the grid tells, or as none is made."""
-    some = file.grid.candidates[:: 1 + len(file.grid.candidates) // _SOME]
-    return tuple(
-        replace(
-            row,
-            value=math.nan,
-            standard_uncertainty=math.inf,
-            shares={},
-            message=row.message or "no run is made that tells it",
-        )
-        for row in expected_after(file, some)
-    )
+def _with_untold(
+    file: DesignFile, rows: tuple[ExpectedCoefficient, ...]
+) -> tuple[ExpectedCoefficient, ...]:
+    """Return coefficients with those that are asked for where no run is, as unknown."""
+    if rows and all(target.band_hz is None for target in file.targets):
+        return rows
+    return (*rows, *_untold(file, rows))
+
+
+def _untold(file: DesignFile, told: Sequence[ExpectedCoefficient]) -> Iterator[ExpectedCoefficient]:
+    """Yield as unknown what is asked for and is none of what is told: the grid does not tell it."""
+    conditions: dict[tuple[float, float], list[CandidateRun]] = {}
+    for run in file.grid.candidates:
+        key = (run.point.frequency_hz, run.point.carriage_speed_m_s)
+        conditions.setdefault(key, []).append(run)
+    some = [run for runs in conditions.values() for run in runs[:: 1 + (len(runs) - 1) // _SOME]]
+    for row in _of_runs(replace(file, made_runs=(), cycles=()), some):
+        if (row.name, row.where) not in {(each.name, each.where) for each in told}:
+            yield replace(
+                row,
+                value=math.nan,
+                standard_uncertainty=math.inf,
+                shares={},
+                message=row.message or "no run is made that tells it",
+            )
 
 
 def _steps(file: DesignFile, choices: list[tuple[int, int]]) -> tuple[DesignStep, ...]:
@@ -225,10 +240,12 @@ def expected_after(
     file: DesignFile, extra_runs: Sequence[CandidateRun]
 ) -> tuple[ExpectedCoefficient, ...]:
     """Return what is expected of each coefficient after some runs beside those that were made."""
-    order = [*file.made_runs, *extra_runs]
-    return expected_coefficients(
-        order, _cycles(file, order), file.targets, file.belief, file.stated
-    )
+    return _with_untold(file, _of_runs(file, [*file.made_runs, *extra_runs]))
+
+
+def _of_runs(file: DesignFile, runs: Sequence[CandidateRun]) -> tuple[ExpectedCoefficient, ...]:
+    """Return what is expected of each coefficient after some runs, the first of them made."""
+    return expected_coefficients(runs, _cycles(file, runs), file.targets, file.belief, file.stated)
 
 
 def _cycles(file: DesignFile, order: Sequence[CandidateRun]) -> list[BodyCycle]:

@@ -213,6 +213,36 @@ def test_a_target_out_of_reach_takes_no_time_of_the_others(tmp_path: Path) -> No
     assert [("Y_vdot" in why, "no run lowers" in why) for why in both["unmet"]] == [(True, True)]
 
 
+def test_what_is_told_at_some_frequencies_is_not_made_better_for_the_others(
+    tmp_path: Path,
+) -> None:
+    """At 0.12 Hz the grid has sway alone, which tells no coefficient there."""
+    target = '[targets]\n"Y_v at 0.1 to 0.15 Hz" = 3.0\n'
+    sway = (
+        "[[grid]]\nmotion = 'sway'\nfrequencies_hz = 0.12\namplitudes_mm = 150.0\n"
+        "speeds_m_s = 1.2\n"
+    )
+    alone, more = (
+        json.loads(_design(tmp_path, f"{DESIGN}{grid}{target}", "--json").stdout)
+        for grid in ("", sway)
+    )
+    assert more["steps"][-1]["time_s"] == pytest.approx(alone["steps"][-1]["time_s"])
+    assert not alone["unmet"]
+    assert [why.startswith("Y_v at 0.12 Hz") for why in more["unmet"]] == [True]
+
+
+def test_runs_of_one_frequency_do_not_meet_a_target_of_two(tmp_path: Path) -> None:
+    runs = "".join(
+        f"[[runs]]\nmotion = '{motion}'\nname = 'first-{motion}'\nfrequencies_hz = 0.1\n"
+        "amplitudes_mm = 150.0\nspeeds_m_s = 1.2\n"
+        for motion in ("sway", "yaw")
+    )
+    text = f'{DESIGN}{runs}[targets]\n"Y_v at 0.1 to 0.15 Hz" = 3.0\n'
+    told = json.loads(_design(tmp_path, text, "--json").stdout)
+    assert {step["frequency_hz"] for step in told["steps"]} == {0.15}
+    assert not told["unmet"]
+
+
 def test_own_limits_leave_runs_out(tmp_path: Path) -> None:
     text = DESIGN + "[targets]\nY_v = 5.0\n[limits]\nw_u_g = 0.09\n"
     told = json.loads(_design(tmp_path, text, "--json").stdout)

@@ -117,6 +117,19 @@ def test_answers_that_end_stop_the_campaign_at_rest(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+def test_a_target_of_a_band_is_met_at_each_of_its_frequencies(tmp_path: Path) -> None:
+    design = written(tmp_path)
+    text = design.read_text().replace("frequencies_hz = 1.0", "frequencies_hz = [0.8, 1.0]")
+    head = text.partition("[targets]")[0]
+    design.write_text(f'{head}[targets]\n"Z_w at 0.7 to 1.1 Hz" = "3 %"\n')
+    told = made(design, tmp_path / "c")
+    assert told["ending"] == "all targets are met"
+    known = told["decisions"][-1]["known"]
+    assert sorted(one["name"] for one in known) == ["Z_w at 0.8 Hz, 0 m/s", "Z_w at 1 Hz, 0 m/s"]
+    assert all(one["standard_uncertainty"] <= one["wanted"] for one in known)
+
+
+@pytest.mark.slow
 def test_the_time_is_kept_to_and_said(tmp_path: Path) -> None:
     design = written(tmp_path, repeat=0.02, more="[limits]\ntime_h = 0.011\n")
     told = made(design, tmp_path / "c")
