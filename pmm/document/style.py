@@ -13,6 +13,7 @@ from hardware.description.errors import ConfigurationError
 from pmm.whole_file import write_whole
 
 if TYPE_CHECKING:
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
     from pmm.document.content import Figure as DocumentFigure
@@ -87,6 +88,12 @@ def new_figure(width_in: float, height_in: float, title: str = "") -> "Iterator[
         if title:
             figure.suptitle(title)
         yield figure
+
+
+def label_decades(axis: "Axis") -> None:
+    """Label a logarithmic axis with plain numbers: each decade, and 2 and 5 within it."""
+    axis.set_major_formatter(lambda value, _: f"{value:g}")
+    axis.set_minor_formatter(lambda value, _: f"{value:g}" if f"{value:.0e}"[0] in "25" else "")
 
 
 def render(figure: "Figure", kind: str, salt: str) -> bytes:

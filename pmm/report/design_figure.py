@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from analysis.design.expectation import ExpectedCoefficient
 from pmm.design.run_selection import Design
-from pmm.document.style import PALETTE, TRACE, new_figure
+from pmm.document.style import PALETTE, TRACE, label_decades, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -18,20 +18,18 @@ def design_figure(name: str, design: Design) -> "Figure":
     with new_figure(7.2, 4.2) as figure:
         axes = figure.subplots()
         hours = [step.time_s / 3600.0 for step in design.steps]
+        told = [
+            {(row.name, row.where): row for row in step.expected_coefficients}
+            for step in design.steps
+        ]
         for k, last in enumerate(design.expected_coefficients):
-            ratios = [
-                _ratio(step.expected_coefficients[k])
-                if _is_same(step.expected_coefficients, k, last)
-                else math.nan
-                for step in design.steps
-            ]
+            ratios = [_ratio(rows.get((last.name, last.where))) for rows in told]
             label = f"{last.name} at {last.where}" if last.where else last.name
             colour, style = PALETTE[k % len(PALETTE)], _STYLES[k // len(PALETTE) % len(_STYLES)]
             axes.plot(hours, ratios, style, color=colour, marker="o", markersize=2.5, label=label)
         axes.axhline(1.0, color=TRACE, linewidth=1.4)
         axes.set_yscale("log")
-        axes.yaxis.set_major_formatter(_plain)
-        axes.yaxis.set_minor_formatter(_plain)
+        label_decades(axes.yaxis)
         axes.set_xlabel("tank time [h]")
         targeted = any(
             math.isfinite(coefficient.wanted) for coefficient in design.expected_coefficients
@@ -46,20 +44,9 @@ def design_figure(name: str, design: Design) -> "Figure":
     return figure
 
 
-def _plain(value: float, _: float) -> str:
-    return f"{value:g}"
-
-
-def _is_same(
-    coefficients: tuple[ExpectedCoefficient, ...], k: int, last: ExpectedCoefficient
-) -> bool:
-    return k < len(coefficients) and (coefficients[k].name, coefficients[k].where) == (
-        last.name,
-        last.where,
-    )
-
-
-def _ratio(coefficient: ExpectedCoefficient) -> float:
+def _ratio(coefficient: ExpectedCoefficient | None) -> float:
+    if coefficient is None:
+        return math.nan
     scale = coefficient.wanted if math.isfinite(coefficient.wanted) else abs(coefficient.believed)
     ratio = coefficient.standard_uncertainty / scale if scale else math.nan
     return ratio if math.isfinite(ratio) else math.nan

@@ -21,7 +21,7 @@ from pmm.document.content import (
     word,
 )
 from pmm.document.notation import clock, counted, written
-from pmm.document.style import PALETTE, TRACE, new_figure
+from pmm.document.style import PALETTE, TRACE, label_decades, new_figure
 from pmm.sequential.look import Decision, KnownCause, KnownTarget, Look, in_words, read_decisions
 
 if TYPE_CHECKING:
@@ -156,8 +156,7 @@ def sequential_figure(name: str, decisions: Sequence[Decision]) -> "Drawing":
             axes.plot(hours, ratios, style, color=colour, marker="o", markersize=3.5, label=target)
         axes.axhline(1.0, color=TRACE, linewidth=1.4)
         axes.set_yscale("log")
-        axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
-        axes.yaxis.set_minor_formatter(lambda value, _: f"{value:g}")
+        label_decades(axes.yaxis)
         axes.set_xlabel("tank time [h]")
         axes.set_ylabel("standard uncertainty over what is asked for")
         if names:
