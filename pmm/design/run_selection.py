@@ -165,7 +165,8 @@ def _selected(file: DesignFile, known: Prospects) -> tuple[int, ...]:
         if runs and not selection.met:
             break  # asked for more than can be had, it would only cost more
         runs = selection.chosen or runs
-        if runs and (not selection.met or _suffice(file, [known.candidates[k] for k in runs])):
+        made = runs or made_places
+        if made and (not selection.met or _suffice(file, [known.candidates[k] for k in runs])):
             break
     return runs
 

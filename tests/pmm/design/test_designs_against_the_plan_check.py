@@ -243,6 +243,27 @@ def test_runs_of_one_frequency_do_not_meet_a_target_of_two(tmp_path: Path) -> No
     assert not told["unmet"]
 
 
+def test_what_the_runs_made_in_any_case_meet_is_not_made_better_for_what_none_tells(
+    tmp_path: Path,
+) -> None:
+    runs = "".join(
+        f"[[runs]]\nmotion = '{motion}'\nname = 'first-{motion}'\nfrequencies_hz = [0.1, 0.15]\n"
+        "amplitudes_mm = 150.0\nspeeds_m_s = 1.2\n"
+        for motion in ("sway", "yaw")
+    )
+    sway = (
+        "[[grid]]\nmotion = 'sway'\nfrequencies_hz = 0.12\namplitudes_mm = 150.0\n"
+        "speeds_m_s = 1.2\n"
+    )
+    target = '[targets]\n"Y_v at 0.1 to 0.15 Hz" = {}\n'
+    known = json.loads(_design(tmp_path, f"{DESIGN}{runs}{target.format(30.0)}", "--json").stdout)
+    just = 1.05 * max(one["standard_uncertainty"] for one in known["coefficients"])
+    text = f"{DESIGN}{runs}{sway}{target.format(just)}"
+    told = json.loads(_design(tmp_path, text, "--json").stdout)
+    assert told["steps"] == []
+    assert [why.startswith("Y_v at 0.12 Hz") for why in told["unmet"]] == [True]
+
+
 def test_own_limits_leave_runs_out(tmp_path: Path) -> None:
     text = DESIGN + "[targets]\nY_v = 5.0\n[limits]\nw_u_g = 0.09\n"
     told = json.loads(_design(tmp_path, text, "--json").stdout)
