@@ -126,18 +126,19 @@ class TargetGoal:
     ) -> Look:
         """Return the look with the runs that follow: those that were planned, or others."""
         new = tuple(step.run for step in best_design.steps for _ in range(step.repeats))
-        times_s = times_left_s(self._file, plan, new)
-        new_s, left_s = times_s[-1], times_left_s(self._file, plan, planned_runs)[-1]
-        why = self._why_new(best_design, file, planned_runs, new_s, left_s)
+        times_s, before_s = (times_left_s(self._file, plan, runs) for runs in (new, planned_runs))
+        # The time is that of the chosen runs: what is made in any case has none of it.
+        new_s, planned_s = times_s[-1] - times_s[0], before_s[-1] - before_s[0]
+        why = self._why_new(best_design, file, planned_runs, new_s, planned_s)
         if not why or not new:
-            return replace(look, kept_runs=tuple(planned_runs), left_s=left_s)
+            return replace(look, kept_runs=tuple(planned_runs), left_s=before_s[-1])
         return replace(
             look,
             proposed=new,
             costs_s=tuple(after - before for before, after in pairwise(times_s)),
-            left_s=new_s,
+            left_s=times_s[-1],
             before=tuple(planned_runs),
-            before_s=left_s,
+            before_s=before_s[-1],
             remark=why,
         )
 
