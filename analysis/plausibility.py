@@ -1,29 +1,29 @@
 """Plausibility of a campaign's recordings: units and signs of its channels, without a simulator.
 
 What is known beforehand is little and sure: the set-points, that a model's force is of the order of
-its inertia's, that both struts move one rigid body, and that the struts put work into the water.
+its inertia's, that both struts move one rigid body, and that a model resists being moved.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 import numpy as np
 
+from analysis.gauge_wiring import likely_wiring
 from analysis.mistaken_units import mistaken, mistaken_units
+from analysis.run_harmonics import RunHarmonics
 from hardware.description.body import Body
 from hardware.description.channels import (
     DISPLACEMENT_AFT,
     DISPLACEMENTS,
     FORCE_AFT,
-    FORCE_FORE,
     FORCES,
 )
 from hardware.description.flags import Flag, Severity
+from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
 
-CHECKED: Final = (*DISPLACEMENTS, *FORCES)
 _NEAR: Final = 0.1  # of a unit's factor, in the logarithm
 _STEADY: Final = 0.2  # spread of the logarithm from run to run that a wrong unit leaves
 _PLAUSIBLE: Final = (0.02, 200.0)  # force over that of the model's own inertia
@@ -38,28 +38,13 @@ _SIGN: Final = (
 _UNIT: Final = "say its unit in [columns.channels], as in 'F1:kN'"
 
 
-@dataclass(frozen=True)
-class RunHarmonics:
-    """First harmonics of one run, with its set-point.
-
-    Attributes
-    ----------
-    frequency_hz
-        Mean frequency over the first gate.
-    first
-        First harmonic ``S_1 + i C_1`` of each of :data:`CHECKED` that is there, in SI.
-    """
-
-    run: str
-    set_point: SetPoint
-    frequency_hz: float
-    first: Mapping[str, complex]
-
-
 def plausibility_flags(
-    runs: Sequence[RunHarmonics], body: Body | None = None, half_spacing_m: float | None = None
+    runs: Sequence[RunHarmonics],
+    body: Body | None = None,
+    half_spacing_m: float | None = None,
+    plane: Plane = Plane.HORIZONTAL,
 ) -> tuple[Flag, ...]:
-    """Return ``units_implausible`` and ``sign_opposite`` for channels that stand out in all runs.
+    """Return ``units_implausible``, ``sign_opposite``, ``gauges_exchanged`` of a campaign's runs.
 
     Parameters
     ----------
@@ -68,13 +53,14 @@ def plausibility_flags(
         said.
     body, half_spacing_m
         The model and the struts' distance from its midpoint; without them the forces' unit is
-        judged from one gauge against the other only.
+        judged from one gauge against the other only, and nothing is said of the gauges' signs.
     """
     runs = [run for run in runs if run.set_point.eccentricity_m > 0.0]
     if len(runs) < _FEW:
         return ()
     units = (*_of_displacements(runs), *_of_forces(runs, body, half_spacing_m))
-    return (*units, *_of_phase_unit(runs), *_of_strut_signs(runs), *_of_force_signs(runs))
+    gauges = () if half_spacing_m is None else _of_gauges(runs, body, half_spacing_m, plane)
+    return (*units, *_of_phase_unit(runs), *_of_strut_signs(runs), *gauges)
 
 
 def _of_displacements(runs: Sequence[RunHarmonics]) -> Iterator[Flag]:
@@ -153,36 +139,21 @@ def _of_strut_signs(runs: Sequence[RunHarmonics]) -> Iterator[Flag]:
         yield _opposite(fore, f"it moves against {aft} turned by the set-points' strut phase")
 
 
-def _of_force_signs(runs: Sequence[RunHarmonics]) -> Iterator[Flag]:
-    """Each gauge's force per displacement of its strut, which one rigid body makes alike."""
-    aft, fore = FORCES
-    pairs = [run for run in runs if {aft, fore} <= set(run.first)]
-    angles = [abs(_angle(_stiffness(run, aft), _stiffness(run, fore))) for run in pairs]
-    if _in_most([turn > _OPPOSITE_RAD for turn in angles]):
-        work = {name: _median([_stiffness(run, name).imag for run in pairs]) for name in FORCES}
-        wrong = min(work, key=lambda name: work[name])
-        partner = fore if wrong == aft else aft
-        yield _opposite(wrong, f"it pushes against {partner} in all runs and takes work out")
-        return
-    for name in FORCES:
-        stiffnesses = [_stiffness(run, name) for run in _runs_with(runs, name)]
-        if _in_most(
-            [stiffness.imag < -0.1 * abs(stiffness) for stiffness in stiffnesses]
-        ) and _alone(runs, name):
-            yield _opposite(name, "the water would drive the model")
-
-
-def _alone(runs: Sequence[RunHarmonics], name: str) -> bool:
-    """Whether the work of all gauges together is negative: a single one's may well be."""
-    total = [sum(_stiffness(run, each).imag for each in FORCES if each in run.first)
-             for run in _runs_with(runs, name)]  # fmt: skip
-    return _in_most([each < 0.0 for each in total])
-
-
-def _stiffness(run: RunHarmonics, force: str) -> complex:
-    """Return force over displacement of its strut, as the set-point has it; N/m."""
-    phase = run.set_point.strut_phase_rad if force == FORCE_FORE.name else 0.0
-    return run.first[force] / (run.set_point.eccentricity_m * _unit_phasor(phase))
+def _of_gauges(
+    runs: Sequence[RunHarmonics], body: Body | None, half_spacing_m: float, plane: Plane
+) -> Iterator[Flag]:
+    """Signs and places of the gauges with which the model resists being set in motion."""
+    wiring = likely_wiring(runs, body, half_spacing_m, plane)
+    reason = "as it is, the model would hardly resist being set in motion, or would help it"
+    for name in wiring.turned:
+        yield _opposite(name, reason)
+    if wiring.exchanged:
+        aft, fore = FORCES
+        message = (
+            f"{aft} and {fore} seem exchanged: {reason}; exchange their columns in "
+            "[columns.channels], or the displacements', on a rig the cables"
+        )
+        yield Flag("gauges_exchanged", Severity.WARNING, message)
 
 
 def _unit_phasor(phase_rad: float) -> complex:

@@ -4,7 +4,7 @@ The corrections are those of :mod:`analysis.coefficients.corrections`, at every 
 that the covariance between the orders is kept.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,7 +13,12 @@ from analysis.coefficients.body_axes import at_order, labels, of_struts
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.corrections import Response, ZeroReading, calibration, response_factors
 from analysis.coefficients.phasors import Phasors, interleaved, joined
-from analysis.coefficients.strut_phasors import CHANNELS_INDEPENDENT, MOTION_ASKED, reading_phasors
+from analysis.coefficients.strut_phasors import (
+    CHANNELS_INDEPENDENT,
+    MOTION_ASKED,
+    STRUT_ASKED,
+    reading_phasors,
+)
 from analysis.ideal_rig import strut_displacements
 from analysis.kinematics.body_frame import HEEL
 from analysis.kinematics.body_frame import ROLL_MOMENT as ROLL
@@ -22,6 +27,7 @@ from analysis.kinematics.geometry import Geometry
 from analysis.recording import Recording
 from analysis.resolver.analysis import Analysis
 from analysis.resolver.harmonics import Harmonics, IntervalSource
+from analysis.resolver.reference import ReferenceSource
 from analysis.response.following import recorded_age
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.carriage_path import CarriagePath
@@ -186,12 +192,14 @@ def measured_cycle(
 ) -> StrutCycle:
     """Return all harmonics of one reading; a set-point stands in for displacements not measured.
 
+    Of one strut that was measured alone, the other is taken in step with it.
+
     Of a carriage that follows the struts' path the speed is read likewise.
 
     Raises
     ------
     DataError
-        If a force channel is missing, or there is no set-point.
+        If a force channel is missing, there is no set-point, or nothing tells the motion's phase.
     """
     reading = analysis.readings[reading_index]
     set_point = analysis.recording.set_point if set_point is None else set_point
@@ -199,16 +207,23 @@ def measured_cycle(
         raise DataError(
             f"{reading.run}: no set-point; give frequency, eccentricity, strut phase and speed"
         )
-    has_sensors = all(name in reading.channel_names for name in DISPLACEMENTS)
-    channels = (*(DISPLACEMENTS if has_sensors else ()), *FORCES)
+    moved = tuple(name for name in DISPLACEMENTS if name in reading.channel_names)
+    if not moved and analysis.reference.source is ReferenceSource.SET_POINT:
+        raise DataError(
+            f"{reading.run}: no displacement, no photocell, no encoder: nothing tells where in the "
+            "motion the forces are; name those columns in [columns], or in [reference] a channel "
+            "that goes with the motion (with frequency_hz there, it is at 0 at the first sample)"
+        )
+    channels = (*moved, *FORCES)
     channels += tuple(n for n in (FORCE_X.name, *_ROLLING) if n in reading.channel_names)
     count = reading.order
     phasors = reading_phasors(reading, channels, count)
     tapered = reading.interval_source is IntervalSource.BINS
     flags = (*reading.flags, CHANNELS_INDEPENDENT) if tapered else reading.flags
-    if not has_sensors:
-        phasors = joined(_asked_motion(oscillator, set_point, count), phasors)
-        flags = (*flags, MOTION_ASKED)
+    if len(moved) < len(DISPLACEMENTS):
+        asked = _asked_motion(oscillator, set_point, count)
+        phasors = joined(_in_step(asked, phasors, moved), phasors)
+        flags = (*flags, STRUT_ASKED if moved else MOTION_ASKED)
     return StrutCycle(
         reading.run,
         oscillator,
@@ -243,6 +258,22 @@ def _asked_motion(oscillator: Oscillator, set_point: SetPoint, orders: int) -> P
     values[0] = values[0].imag  # H[0] = i A0
     names = tuple(at_order(name, n) for n in range(orders + 1) for name in DISPLACEMENTS)
     return Phasors.of(names, ("m",) * len(names), values.ravel())
+
+
+def _in_step(asked: Phasors, measured: Phasors, moved: Sequence[str]) -> Phasors:
+    """Return what is asked of the struts that were not measured, in step with the one that was.
+
+    The phase may come from that strut itself, and be 0 at its upward crossing: so the motion asked
+    for is set later until both agree on the fundamental of the strut that was measured.
+    """
+    phase_rad = 0.0
+    for name in (at_order(strut, 1) for strut in moved):
+        found, told = (at.values[at.names.index(name)] for at in (measured, asked))
+        phase_rad = float(np.angle(found * np.conj(told)))
+    names = tuple(name for name in asked.names if name not in measured.names)
+    kept = asked.select(names)
+    orders = [asked.names.index(name) // len(DISPLACEMENTS) for name in names]
+    return Phasors.of(names, kept.units, kept.values * np.exp(1j * phase_rad * np.array(orders)))
 
 
 def static_cycle(

@@ -21,7 +21,12 @@ MOTION_ASKED = Flag(
     "no strut displacements were measured: the set-point's are used, without uncertainty; state "
     "those of amplitude, strut phase and the photocell's latency",
 )
-
+STRUT_ASKED = Flag(
+    "strut_from_set_point",
+    Severity.NOTE,
+    "one strut's displacement alone was measured: the other's is the set-point's, in step with it "
+    "and without uncertainty; state those of amplitude and strut phase",
+)
 
 CHANNELS_INDEPENDENT = Flag(
     "channels_independent",

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator
 
-from analysis.plausibility import CHECKED, RunHarmonics
 from analysis.recording import Recording
 from analysis.resolver.analysis import Analysis
 from analysis.resolver.estimate import resolve
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.sums import period_sums
+from analysis.run_harmonics import CHECKED, RunHarmonics
 from hardware.description.channels import DISPLACEMENT_AFT, FORCE_AFT
 from hardware.description.errors import DataError
 

@@ -29,12 +29,17 @@ class NoReferenceError(DataError):
 
 
 class ReferenceSource(StrEnum):
-    """Which sensor or number the phase comes from."""
+    """Which sensor or number the phase comes from.
+
+    With a stated frequency the phase is 0 at the first sample. With the set-point's it is not known
+    where in the motion the first sample lies: only amplitudes mean something.
+    """
 
     PHOTOCELL = "photocell"
     ENCODER = "encoder"
     FREQUENCY = "frequency"
     SIGNAL = "signal"
+    SET_POINT = "set-point"
 
 
 @dataclass(frozen=True)

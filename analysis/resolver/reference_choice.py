@@ -13,16 +13,18 @@ from analysis.resolver.reference import (
     from_frequency,
 )
 from analysis.resolver.signal_reference import from_signal
-from hardware.description.channels import DISPLACEMENT_AFT, SHAFT_ANGLE
+from hardware.description.channels import DISPLACEMENTS, SHAFT_ANGLE
 from hardware.description.errors import ConfigurationError, DataError
+
+_MARKED = (ReferenceSource.PHOTOCELL, ReferenceSource.ENCODER)  # what has a mark on the shaft
 
 
 @dataclass(frozen=True)
 class ReferenceChoice:
     """Where the phase comes from: at most one of the first two, else the best of the recording.
 
-    The order is photocell, encoder (channel ``shaft_angle``), displacement of the aft strut, the
-    set-point's frequency.
+    The order is photocell, encoder (channel ``shaft_angle``), displacement of the aft strut, of the
+    fore strut, the set-point's frequency.
 
     Attributes
     ----------
@@ -76,15 +78,16 @@ def _build(recording: Recording, choice: ReferenceChoice, holds_s: float | None)
             latency_s=choice.latency_s,
             angle_offset_rad=choice.angle_offset_rad,
         )
-    for name in (SHAFT_ANGLE.name, DISPLACEMENT_AFT.name):
+    for name in (SHAFT_ANGLE.name, *DISPLACEMENTS):
         if name in recording.channel_names:
             return _from_channel(recording, name, choice.angle_offset_rad, holds_s)
     if recording.set_point is not None:
-        return _from_frequency(recording, recording.set_point.frequency_hz)
+        reference = _from_frequency(recording, recording.set_point.frequency_hz)
+        return replace(reference, source=ReferenceSource.SET_POINT)
     raise NoReferenceError(
         f"{recording.name}: no reference found: no photocell edges, no channel "
-        f"{SHAFT_ANGLE.name!r} or {DISPLACEMENT_AFT.name!r}, no set-point; give the frequency or "
-        f"name a reference channel (channels: {', '.join(recording.channel_names)})"
+        f"{', '.join(map(repr, (SHAFT_ANGLE.name, *DISPLACEMENTS)))}, no set-point; give the "
+        f"frequency or name a reference channel (channels: {', '.join(recording.channel_names)})"
     )
 
 
@@ -114,7 +117,7 @@ def _check_calibration(
             f"a latency is the photocell's, but the phase of {recording.name} comes from the "
             f"{source}; leave it out"
         )
-    if choice.angle_offset_rad and source in (ReferenceSource.FREQUENCY, ReferenceSource.SIGNAL):
+    if choice.angle_offset_rad and source not in _MARKED:
         raise ConfigurationError(
             "an angle offset is that of a photocell or an encoder, but the phase of "
             f"{recording.name} comes from the {source}; leave it out"

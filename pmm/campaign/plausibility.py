@@ -2,7 +2,8 @@
 
 from collections.abc import Sequence
 
-from analysis.plausibility import RunHarmonics, plausibility_flags
+from analysis.plausibility import plausibility_flags
+from analysis.run_harmonics import RunHarmonics
 from hardware.description.arrangement import Joint
 from hardware.description.flags import Flag
 from pmm.campaign.campaign import Campaign
@@ -16,5 +17,6 @@ def implausible(campaign: Campaign, runs: Sequence[RunHarmonics]) -> tuple[Flag,
     oscillator = campaign.oscillator
     if oscillator is not None and oscillator.joint is Joint.YAW_TABLE:
         return ()
-    half_spacing_m = oscillator.half_spacing_m if oscillator is not None else None
-    return plausibility_flags(runs, campaign.model, half_spacing_m)
+    if oscillator is None:
+        return plausibility_flags(runs, campaign.model)
+    return plausibility_flags(runs, campaign.model, oscillator.half_spacing_m, oscillator.plane)

@@ -161,7 +161,8 @@ def analyse(files: tuple[str, ...], plot: str | None, as_json: bool, **options: 
 
     Each FILE is a recording (.csv, .txt, .dat, plain or .gz, or .nc) or a campaign: a folder with
     a campaign.toml and a recording per run. The phase comes from the photocell, else the encoder
-    (shaft_angle), else displacement_aft, else the set-point's frequency, unless you say otherwise.
+    (shaft_angle), else displacement_aft or _fore, else the set-point's frequency, unless you say
+    otherwise.
 
     \b
     pmm analyse run.csv --reference stroke --channel Fy

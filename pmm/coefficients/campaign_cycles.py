@@ -10,7 +10,7 @@ from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.line_cycles import by_lines
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.steady_turns import SteadyTurn
-from analysis.coefficients.strut_phasors import MOTION_ASKED
+from analysis.coefficients.strut_phasors import MOTION_ASKED, STRUT_ASKED
 from hardware.description.body import Body
 from hardware.description.flags import Flag, Severity
 from pmm.campaign.campaign import Campaign
@@ -165,7 +165,8 @@ def _recordings(
 
 def _is_motion_asked(cycles: Sequence[BodyCycle]) -> bool:
     """Whether a set-point's motion stands in for one that was not measured."""
-    return any(flag.code == MOTION_ASKED.code for cycle in cycles for flag in cycle.flags)
+    codes = {MOTION_ASKED.code, STRUT_ASKED.code}
+    return any(flag.code in codes for cycle in cycles for flag in cycle.flags)
 
 
 def _read_all(

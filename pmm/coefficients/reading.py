@@ -164,8 +164,6 @@ def _turning(task: Task, recording: Recording) -> ReadRecording:
     if task.set_point.steady_ahead:
         names = (*names, CARRIAGE_SPEED.name)
     channels = tuple(name for name in names if name in recording.channel_names)
-    if not all(name in channels for name in DISPLACEMENTS):
-        channels = tuple(name for name in channels if name not in DISPLACEMENTS)
     settings, waves = replace(task.settings, channels=channels), None
     analysis = analyse(recording, task.choice, settings)
     if task.set_point.wave_frequency_hz:

@@ -7,12 +7,12 @@ from analysis.attitude import Attitude, RestPosition
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.corrections import ZeroReading
 from analysis.coefficients.steady_turns import SteadyTurn
-from analysis.plausibility import RunHarmonics
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.reference_choice import ReferenceChoice
 from analysis.resolver.settings import ResolverSettings
 from analysis.response.following import Following
 from analysis.response.waves import InWaves
+from analysis.run_harmonics import RunHarmonics
 from hardware.description.arrays import FloatArray
 from hardware.description.attitude import AttitudeSensors
 from hardware.description.flags import Flag

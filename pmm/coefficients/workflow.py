@@ -231,5 +231,8 @@ def _no_runs_message(folders: Sequence[Path], parts: Sequence[CampaignCycles]) -
     if failures := _joined(part.failed for part in parts):
         return f"{folder_text}: none of the runs can be used; the first: {failures[0].message}"
     if missing:
-        return f"{folder_text}: none of the runs is recorded yet ({', '.join(missing[:5])})"
+        return (
+            f"{folder_text}: none of the runs is recorded yet ({', '.join(missing[:5])}); a "
+            'recording is NAME.nc in that folder, or what the run names with file = "..."'
+        )
     return f"{folder_text}: no runs in water; add a table [[runs]] for each"

@@ -20,10 +20,10 @@ from pmm.harmonics.rows import RunRows, run_rows
 from pmm.harmonics.sources import Source, read_source
 
 if TYPE_CHECKING:
-    from analysis.plausibility import RunHarmonics
     from analysis.readers import ColumnMap
     from analysis.readers.text_source import Progress
     from analysis.recording import Recording
+    from analysis.run_harmonics import RunHarmonics
 
 _NO_REFERENCE: Final = "--frequency HZ, --reference CHANNEL"
 _COLUMN_LEFT_OUT: Final = (

@@ -72,7 +72,7 @@ class Records:
         ----------
         reference
             Channel that the phase is taken from; by default the photocell, else the encoder, else
-            ``displacement_aft``, else the set-point's frequency.
+            ``displacement_aft``, else ``displacement_fore``, else the set-point's frequency.
         frequency_hz
             A known frequency in its place.
         edges_file

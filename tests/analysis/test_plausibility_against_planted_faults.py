@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis.plausibility import RunHarmonics, plausibility_flags
+from analysis.plausibility import plausibility_flags
+from analysis.run_harmonics import RunHarmonics
 from hardware.description.body import Body
 from hardware.description.setpoint import SetPoint
 

@@ -1,0 +1,81 @@
+"""Text files by Newton's law: the hull comes back, or it is said why it does not."""
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from pmm.cli import cli
+from tests.pmm.coefficients.newtons_files import COLUMNS, PUT_IN, exchanged, written
+
+pytestmark = pytest.mark.sample(1)
+
+
+def asked(folder: Path, *options: str) -> Result:
+    return CliRunner().invoke(cli, ["coefficients", str(folder), *options])
+
+
+def recommended(folder: Path) -> dict[str, dict[str, float]]:
+    done = asked(folder, "--json")
+    assert done.exit_code == 0, done.output
+    return {entry["name"]: entry for entry in json.loads(done.stdout)["recommended"]}
+
+
+def is_put_in(entries: dict[str, dict[str, float]]) -> None:
+    for name, value in PUT_IN.items():
+        off = abs(entries[name]["value"] - value)
+        assert off < 2.0 * entries[name]["half_width"], (name, entries[name]["value"])
+
+
+def without(*names: str) -> dict[str, str]:
+    return {name: column for name, column in COLUMNS.items() if name not in names}
+
+
+@pytest.mark.parametrize("missing", ["", "displacement_aft", "displacement_fore"])
+def test_the_hull_comes_back_of_one_strut_too(tmp_path: Path, missing: str) -> None:
+    folder = written(tmp_path, columns=without(missing))
+    is_put_in(recommended(folder))
+    text = asked(folder).output
+    assert ("[strut_from_set_point]" in text) == bool(missing)
+    assert "opposite" not in text
+    assert "exchanged" not in text
+
+
+def test_forces_alone_are_refused(tmp_path: Path) -> None:
+    folder = written(tmp_path, columns=without("displacement_aft", "displacement_fore"))
+    done = asked(folder)
+    assert done.exit_code == 1
+    assert "nothing tells where in the motion the forces are" in done.output
+
+
+def test_a_channel_that_goes_with_the_motion_is_enough(tmp_path: Path) -> None:
+    columns = without("displacement_aft", "displacement_fore") | {"theta": "Weg hinten [mm]"}
+    is_put_in(
+        recommended(written(tmp_path, columns=columns, more='[reference]\nchannel = "theta"\n'))
+    )
+
+
+@pytest.mark.parametrize(
+    ("columns", "said"),
+    [
+        (exchanged("force_aft", "force_fore"), "force_aft and force_fore seem exchanged"),
+        (COLUMNS | {"force_aft": "-Kraft hinten [N]"}, "force_aft: its sign is opposite"),
+        (COLUMNS | {"force_fore": "-Kraft vorne [N]"}, "force_fore: its sign is opposite"),
+    ],
+)
+def test_gauges_connected_wrongly_are_named_of_one_amplitude(
+    tmp_path: Path, columns: dict[str, str], said: str
+) -> None:
+    text = " ".join(asked(written(tmp_path, amplitudes_m=(0.08,), columns=columns)).output.split())
+    assert said in text
+    assert text.count("opposite to expectation") + text.count("seem exchanged") == 1
+
+
+@pytest.mark.parametrize("turned", ["aft", "fore"])
+def test_a_gauge_turned_round_is_named_of_sway_alone(tmp_path: Path, turned: str) -> None:
+    channel = f"force_{turned}"
+    columns = COLUMNS | {channel: f"-{COLUMNS[channel]}"}
+    output = asked(written(tmp_path, kinds=("sway",), columns=columns)).output
+    assert f"{channel}: its sign is opposite" in output
+    assert output.count("opposite to expectation") == 1
