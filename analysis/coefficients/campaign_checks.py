@@ -55,8 +55,9 @@ def consistency_checks(pairs: Sequence[Pair], level: float) -> tuple[Consistency
     """Compare the first value of each pair with the second.
 
     The intervals are so wide that with the probability ``level`` no check of a good campaign fails:
-    of sixty at 95 % each, three would.
+    of sixty at 95 % each, three would. Values without an interval are not compared.
     """
+    pairs = [pair for pair in pairs if np.isfinite(pair.estimates.standard_uncertainty).all()]
     each = 1.0 - (1.0 - level) / max(len(pairs), 1)
     return tuple(_check(pair, each) for pair in pairs)
 

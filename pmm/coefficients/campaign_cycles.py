@@ -22,6 +22,7 @@ from pmm.coefficients.solving import Progress
 from pmm.coefficients.stated_inputs import (
     body_of,
     chain_of,
+    in_still_air,
     oscillator_of,
     stated_of,
     with_own_body,
@@ -47,6 +48,8 @@ class CampaignCycles:
         Of the runs that can be used.
     stated
         Standard uncertainties that its runs share.
+    in_air
+        Of the dry runs, where they are not what is taken off: with the model that is.
     """
 
     campaign: Campaign
@@ -57,6 +60,7 @@ class CampaignCycles:
     stated: StatedUncertainties
     body: Body | None
     decays: tuple[Decay, ...]
+    in_air: tuple[BodyCycle, ...] = ()
 
     @property
     def turns(self) -> tuple[SteadyTurn, ...]:
@@ -110,9 +114,10 @@ def campaign_cycles(
     )
     body, models = body_of(campaign, settings.inertia, has_dry=bool(work.dry))
     decays, decay_failures = decays_of(campaign, folder, settings.leave_out)
-    recordings = _recordings(work, executor, progress, with_dry=body is None)
+    recordings = _recordings(work, executor, progress)
     wet, dry = _sorted(recordings, {task.name for task in work.dry})
     wet = [with_own_body(cycle, campaign, settings, body) for cycle in wet]
+    in_air = [] if body is None else [in_still_air(run, campaign, settings, body) for run in dry]
     if body is None:  # a dry run is taken off line by line
         wet, dry = (
             [line_cycle for cycle in group for line_cycle in by_lines(cycle)]
@@ -145,18 +150,19 @@ def campaign_cycles(
         ),
         body,
         decays,
+        tuple(in_air),
     )
 
 
 def _recordings(
-    work: Work, executor: Executor, progress: Progress, *, with_dry: bool
+    work: Work, executor: Executor, progress: Progress
 ) -> list[ReadRecording | FailedRecording]:
     """Read the zero runs, and then all that they are taken off."""
     zeros = _read_all(read_zero, work.zeros, "reading zero runs", executor, progress)
     by_name = {
         zero.name: zero.zero for zero in zeros if isinstance(zero, ReadRecording) and zero.zero
     }
-    tasks = (*work.runs, *(work.dry if with_dry else ()))
+    tasks = (*work.runs, *work.dry)
     recordings = _read_all(
         read_cycle, [task.with_zeros(by_name) for task in tasks], "reading runs", executor, progress
     )

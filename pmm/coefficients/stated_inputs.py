@@ -138,6 +138,13 @@ def with_own_body(
     return replace(bare_cycle, flags=(*bare_cycle.flags, flag))
 
 
+def in_still_air(
+    cycle: BodyCycle, campaign: Campaign, settings: CoefficientSettings, body: Body
+) -> BodyCycle:
+    """Return a dry run with the body that is to be taken off; nothing restores it."""
+    return replace(with_own_body(cycle, campaign, settings, body), restoring=np.zeros((2, 2)))
+
+
 def _model_file(
     path: Path, campaign_body: Body | None
 ) -> tuple[Body, tuple[ModelUncertainty, ...]]:

@@ -8,9 +8,12 @@ from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+import numpy as np
+
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_plan import Request
 from analysis.coefficients.campaign_result import CampaignCoefficients
+from analysis.coefficients.dry_checks import dry_checks
 from analysis.coefficients.roll_decay import NAMES as OF_DECAYS
 from analysis.coefficients.roll_decay import with_decays
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
@@ -192,10 +195,12 @@ def coefficients_of(
     )
     if not cycles:
         raise DataError(_no_runs_message(folders, parts))
+    cycles, unweighed = _with_scatter(cycles)
     turns = (*_joined(part.turns for part in parts), *turns)
     stated = largest([part.stated for part in parts])
     doubts = (
         *_joined((*part.work.left_out, *part.doubts) for part in parts),
+        *unweighed,
         *(() if stated.vector.any() else (_NOTHING_STATED,)),
         *alone,
         *_joined(decay.flags for decay in decays),
@@ -203,8 +208,31 @@ def coefficients_of(
     stated = with_turns(stated, turns)
     result = solve_campaign(cycles, request_of(settings, stated), executor, progress)
     result = with_decays(result, settings.roll_decays, first.heel, body)
+    in_air = _joined(part.in_air for part in parts)
+    if in_air and body is not None:
+        extra = dry_checks(in_air, body, stated, settings.level)
+        result = replace(result, checks=(*result.checks, *extra))
     rest = measured_matrices(result)
     return CampaignOutcome(parts, result, cycles, doubts, stated, settings, water, turns, rest)
+
+
+def _with_scatter(
+    cycles: tuple[BodyCycle, ...],
+) -> tuple[tuple[BodyCycle, ...], tuple[Flag, ...]]:
+    """Leave out runs that tell no scatter, where others do: nothing says how much they weigh."""
+    silent = [
+        cycle.name
+        for cycle in cycles
+        if not np.isfinite(cycle.phasors.real.standard_uncertainty).all()
+    ]
+    if len(silent) in (0, len(cycles)):
+        return cycles, ()
+    message = (
+        "left out: a single whole period tells no scatter, so nothing says what it weighs beside "
+        "the other runs; record more periods, or gate more"
+    )
+    flag = Flag("run_left_out", Severity.WARNING, message, None, tuple(dict.fromkeys(silent)))
+    return tuple(cycle for cycle in cycles if cycle.name not in silent), (flag,)
 
 
 def _joined(parts: Iterable[tuple[T, ...]]) -> tuple[T, ...]:

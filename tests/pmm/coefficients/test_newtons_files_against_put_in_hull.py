@@ -79,3 +79,31 @@ def test_a_gauge_turned_round_is_named_of_sway_alone(tmp_path: Path, turned: str
     output = asked(written(tmp_path, kinds=("sway",), columns=columns)).output
     assert f"{channel}: its sign is opposite" in output
     assert output.count("opposite to expectation") == 1
+
+
+def test_a_run_of_one_period_is_left_out_among_whole_ones(tmp_path: Path) -> None:
+    folder = written(tmp_path, lasting_s={"sway-0.25-0.1": 10.4})
+    is_put_in(recommended(folder))
+    text = asked(folder).output
+    assert "sway-0.25-0.1: left out: a single whole period tells no scatter" in text
+    assert "nan" not in text.split()
+    assert "DIFFER" not in text
+
+
+def test_of_runs_that_all_are_too_short_nothing_is_held_against_the_other(tmp_path: Path) -> None:
+    names = [f"{k}-{f}-{a}" for k in ("sway", "yaw") for f in (0.25, 0.4) for a in (0.05, 0.1)]
+    folder = written(tmp_path, lasting_s={name: 2.6 / float(name.split("-")[1]) for name in names})
+    text = asked(folder).output
+    assert "[no_interval]" in text
+    assert "DIFFER" not in text
+    assert "nan" not in text.split()
+
+
+@pytest.mark.parametrize(("mass_kg", "differs"), [(48.0, False), (50.4, True)])
+def test_a_mass_that_dry_runs_contradict_is_said(
+    tmp_path: Path, mass_kg: float, differs: bool
+) -> None:
+    text = asked(written(tmp_path, dry=True, mass_kg=mass_kg)).output
+    line = "m from 8 runs in air is 48.0"
+    assert (line in text) == differs
+    assert (f"from [model] {mass_kg:g} kg: they DIFFER" in text) == differs
