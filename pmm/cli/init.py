@@ -166,7 +166,9 @@ def _write(job: str, options: dict[str, Any]) -> None:
     check_folder(folder, "--output")
     check_free(folder, FILES[job], force=options["force"])
     job_answers = answers(job, options, _default if options["yes"] else _ask)
-    outcome = write(StartTask(job, job_answers, folder, recordings), force=options["force"])
+    silent = (name for name in job_answers if options["yes"] and options.get(name) is None)
+    task = StartTask(job, job_answers, folder, recordings, frozenset(silent))
+    outcome = write(task, force=options["force"])
     for path in outcome.paths:
         messages().print(f"written: {path}")
     for note in outcome.notes:

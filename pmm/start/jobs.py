@@ -1,7 +1,7 @@
 """The files of each job of ``pmm init``, and how they are tried before they are kept."""
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -10,6 +10,7 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import PRESETS
 from pmm.campaign.campaign_file import read_campaign
 from pmm.start.found_campaign import FoundRun
+from pmm.start.questions import CAMPAIGN, NAME
 from pmm.start.recordings import find_campaign
 from pmm.start.writing import check_free, render, write_tried
 
@@ -26,12 +27,19 @@ FILES: Final[Mapping[str, tuple[str, ...]]] = {
 
 @dataclass(frozen=True)
 class StartTask:
-    """What a job is to write: its answers, for which folder, from which recordings."""
+    """What a job is to write: its answers, for which folder, from which recordings.
+
+    Attributes
+    ----------
+    assumed
+        Names of the answers that nobody gave.
+    """
 
     job: str
     answers: Mapping[str, Any]
     folder: Path
     recordings: tuple[Path, ...] = ()
+    assumed: frozenset[str] = frozenset()
 
     def values(self, **more: object) -> dict[str, Any]:
         """Return what the templates are filled in with."""
@@ -88,11 +96,25 @@ def _rig(task: StartTask) -> Draft:
 def _campaign(task: StartTask) -> Draft:
     campaign = find_campaign(task.recordings, task.folder) if task.recordings else None
     widened = _widened(task.answers["plane"], campaign.runs if campaign else ())
-    text = render("campaign.toml", task.values(found=campaign, widened=widened))
-    notes = tuple(campaign.notes()) if campaign else ()
-    return Draft(
-        {"campaign.toml": text}, lambda tried: read_campaign(tried / "campaign.toml"), notes
-    )
+    assumed = task.assumed if campaign else frozenset[str]()  # a simulation may be of any model
+    values = task.values(found=campaign, widened=widened, assumed=assumed)
+    notes = (*campaign.notes(), *_assumed(task)) if campaign else ()
+
+    def trial(tried: Path) -> None:
+        """Read it with what is commented out for want of a number."""
+        path = tried / "trial-campaign.toml"
+        path.write_text(render("campaign.toml", {**values, "trial": True}), encoding="utf-8")
+        read_campaign(path)
+
+    text = render("campaign.toml", {**values, "trial": False})
+    return Draft({"campaign.toml": text}, trial, notes)
+
+
+def _assumed(task: StartTask) -> Iterator[str]:
+    """Say what of the rig and the model nobody stated."""
+    for name in (question.name for question in CAMPAIGN if question is not NAME):
+        if name in task.assumed:
+            yield f"nobody stated {name}, put it in: {task.answers[name]} is a guess"
 
 
 def _widened(plane: str, runs: Sequence[FoundRun]) -> dict[str, tuple[float, float]]:

@@ -38,7 +38,8 @@ def test_the_wave_maker_tells_the_frequency_and_no_balance_is_a_gauge(tmp_path: 
 
 @pytest.mark.slow
 def test_the_commands_take_it_or_say_what_is_missing(tmp_path: Path) -> None:
-    made = pmm("init", "campaign", "--yes", "--output", tmp_path, *records())
+    model = ("--mass-kg", "70", "--inertia-kg-m2", "27.5")
+    made = pmm("init", "campaign", "--yes", "--output", tmp_path, *model, *records())
     assert made.exit_code == 0, made.stderr
     assert "not sure, commented out: force_aft = 'Fy'" in made.stderr
     analysed = pmm("analyse", tmp_path, "--json")

@@ -1,6 +1,8 @@
 """What ``pmm init`` writes passes the commands it is for, and nothing is written over."""
 
+import gzip
 import json
+import tomllib
 from importlib.metadata import entry_points
 from pathlib import Path
 
@@ -23,6 +25,11 @@ EXAMPLES = Path(__file__).parents[3] / "examples"
 
 def pmm(*words: object, typed: str | None = None) -> Result:
     return CliRunner().invoke(cli, [str(one) for one in words], input=typed)
+
+
+def read_text(path: Path) -> list[str]:
+    with gzip.open(path, "rt", encoding="utf-8") as file:
+        return file.read().splitlines()
 
 
 @pytest.mark.sample(5)
@@ -91,7 +98,8 @@ def test_a_campaign_is_simulated_and_analysed(tmp_path: Path, plane: str) -> Non
 @pytest.mark.slow
 def test_recordings_become_a_campaign_with_their_set_points(tmp_path: Path) -> None:
     recordings = sorted((EXAMPLES / "foreign").glob("*.csv.gz"))
-    made = pmm("init", "campaign", "--yes", "--output", tmp_path, *recordings)
+    model = ("--mass-kg", 70, "--inertia-kg-m2", 27.5)
+    made = pmm("init", "campaign", "--yes", "--output", tmp_path, *model, *recordings)
     assert made.exit_code == 0, made.stderr
     document = json.loads(pmm("analyse", tmp_path, "--json").stdout)
     assert document["failed"] == []
@@ -112,6 +120,24 @@ def test_a_recording_with_units_in_its_headers_needs_no_question(tmp_path: Path)
     assert 'force_fore = "F2"' in text
     assert "frequency_hz = 0.83" in text
     assert pmm("analyse", tmp_path).exit_code == 0
+
+
+def test_what_nobody_stated_is_no_number_to_reckon_with(tmp_path: Path) -> None:
+    """Forces alone tell no amplitude, and no recording tells a model."""
+    text = read_text(EXAMPLES / "recordings/heave.csv.gz")
+    kept = [0, *(k for k, name in enumerate(text[0].split(",")) if name.startswith("F"))]
+    lines = [",".join(line.split(",")[k] for k in kept) for line in text]
+    (tmp_path / "forces.csv").write_text("\n".join(lines), encoding="utf-8")
+    made = pmm("init", "campaign", "--yes", "--output", tmp_path, tmp_path / "forces.csv")
+    assert made.exit_code == 0, made.stderr
+    for name in ("plane", "half_spacing_m", "mass_kg", "inertia_kg_m2"):
+        assert f"nobody stated {name}" in made.stderr
+    document = tomllib.loads((tmp_path / "campaign.toml").read_text(encoding="utf-8"))
+    assert "model" not in document
+    assert "eccentricity_mm" not in document["runs"][0]
+    refused = pmm("coefficients", tmp_path)
+    assert refused.exit_code == 2
+    assert "eccentricity_m is missing" in refused.stderr
 
 
 @pytest.mark.parametrize("job", ["swing", "bifilar"])

@@ -47,7 +47,8 @@ def test_the_commands_take_what_was_found_or_name_the_remedy(tmp_path: Path) -> 
     for number, (path, run) in enumerate(zip(paths, case.campaign.runs, strict=True)):
         write_csv(path, case.recorded(run, number), run, case.campaign.rig)
     folder = tmp_path / "made"
-    words = ["init", "campaign", "--yes", "--output", str(folder), *map(str, paths)]
+    model = ["--mass-kg", "70", "--inertia-kg-m2", "27.5"]
+    words = ["init", "campaign", "--yes", "--output", str(folder), *model, *map(str, paths)]
     made = CliRunner().invoke(cli, words)
     assert made.exit_code == 0, made.stderr
     for command in ("analyse", "coefficients"):
