@@ -5,7 +5,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.checks import frequency_flags, gate_flags, reference_flags, saturation_flags
+from analysis.resolver.checks import (
+    frequency_flags,
+    gate_flags,
+    pulse_flags,
+    reference_flags,
+    saturation_flags,
+)
 from analysis.resolver.estimate import resolve
 from analysis.resolver.hann import resolve_hann
 from analysis.resolver.harmonics import Harmonics
@@ -107,6 +113,7 @@ def analyse(
         + reference.flags
         + set_point_flags(recording, reference, gates[0], readings[0])
         + frequency_flags(chosen.channel_names, values, reference)
+        + pulse_flags(recording, reference, readings[0])
         + flags
         + reference_flags(recording, stated_reference, steady, settings)
         + saturation_flags(chosen, float(steady.opened_s[0]), float(steady.closed_s[-1])),

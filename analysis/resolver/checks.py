@@ -179,6 +179,29 @@ def frequency_flags(
     return (Flag("frequency_differs", Severity.WARNING, message, names[row]),)
 
 
+def pulse_flags(
+    recording: Recording, reference: PhaseReference, reading: Harmonics
+) -> tuple[Flag, ...]:
+    """Return ``half_frequency`` where all channels move twice in what the pulses call a period.
+
+    A motion of many lines may do so by itself, and so may a single channel, such as a surge force.
+    """
+    is_single = recording.set_point is None or not recording.set_point.lines
+    if reference.source is not ReferenceSource.PHOTOCELL or not is_single or reading.order < 2:
+        return ()
+    first, second = reading.amplitude[:, 0], reading.amplitude[:, 1]
+    limit = reading.half_width()[:, 3:5].max(axis=1)  # noise has either now and then
+    if len(first) < 2 or not np.all(second > np.maximum(first, limit)):
+        return ()
+    frequency_hz = reading.frequency_hz
+    message = (
+        f"the second harmonic is above the first in all channels: the pulses come once in two "
+        f"periods, and the motion has {2.0 * frequency_hz:.5g} Hz, not {frequency_hz:.5g} Hz. "
+        "Is every second pulse lost? Else take the phase from a channel"
+    )
+    return (Flag("half_frequency", Severity.WARNING, message),)
+
+
 def _strongest_row(phasors: ComplexArray) -> int:
     """Row of the channel whose amplitude is largest against its change from period to period."""
     size = np.abs(phasors)

@@ -1,8 +1,11 @@
 """Each flag appears where its cause was put, and nowhere else."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from analysis.resolver.analysis import analyse
 from analysis.resolver.checks import gate_flags
 from analysis.resolver.estimate import resolve
 from analysis.resolver.photocell import from_photocell
@@ -114,3 +117,19 @@ def test_void_periods_are_counted() -> None:
     assert [flag.code for flag in found] == ["void_periods"]
     assert found[0].severity is Severity.VOID
     assert found[0].message.startswith("2 of 10 periods")
+
+
+@pytest.mark.parametrize(("every", "said"), [(1, False), (2, True)])
+def test_pulses_of_every_second_turn_are_said(every: int, said: bool) -> None:
+    values = np.concatenate((MOTION + noise(0.01), 3.0 * MOTION + 0.5 + noise(0.01, 1)))
+    pulses = np.arange(0.0, 59.0)[::every]
+    run = replace(recording(values, RATE_HZ), photocell_edges_s=pulses)
+    assert ("half_frequency" in {flag.code for flag in analyse(run).flags}) == said
+
+
+def test_a_channel_that_moves_twice_a_turn_is_no_lost_pulse() -> None:
+    """A surge force of a model that sways is alike to either side."""
+    twice = np.sin(4.0 * np.pi * TIME)
+    values = np.stack((MOTION, twice, twice)) + noise(0.01, 2, 3)
+    run = replace(recording(values, RATE_HZ), photocell_edges_s=np.arange(0.0, 59.0))
+    assert "half_frequency" not in {flag.code for flag in analyse(run).flags}
