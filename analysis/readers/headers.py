@@ -67,10 +67,11 @@ def parse_header(number: int, text: str) -> Header:
 
 
 def unit_hint(name: str) -> str:
-    """Return ``"; did you mean 'kN'?"`` for ``kNN`` or ``KN``, nothing where no unit is near."""
+    """Return ``"; did you mean 'kN'?"`` for ``kNN`` or ``KN``, ``'kgf'`` for ``kg``, or nothing."""
     shorter = [name[:k] + name[k + 1 :] for k in range(len(name))]
     cased = [name.lower(), name.upper(), name[:1].lower() + name[1:].upper(), name.capitalize()]
-    match = next((word for word in (*cased, *shorter) if len(word) > 0 and is_unit(word)), None)
+    words = (*cased, f"{name}f", *shorter)  # the force of kg and lb before what is shorter
+    match = next((word for word in words if len(word) > 0 and is_unit(word)), None)
     return f"; did you mean {match!r}?" if match else ""
 
 

@@ -96,9 +96,14 @@ def _no_time_kept(frequency_hz: float, duration_s: float) -> str:
 
 
 def _no_reference(recording: Recording, name: str, available: str) -> NoReferenceError:
+    told = ""
+    if recording.set_point is not None:
+        set_hz = recording.set_point.frequency_hz
+        periods = set_hz * (recording.end_s - recording.start_s)
+        told = f" (the record has {periods:.3g} periods of the set-point's {set_hz:.4g} Hz)"
     return NoReferenceError(
-        f"{recording.name}: no reference found in channel {name!r}: {available}; name another "
-        "channel, or give the frequency"
+        f"{recording.name}: no reference found in channel {name!r}: {available}{told}; name "
+        "another channel, or give the frequency"
     )
 
 

@@ -92,7 +92,10 @@ def read_results(folder: Path) -> tuple[RunResult, ...]:
     """
     results = list(_results(folder))
     if not results:
-        raise DataError(f"{folder}: no run of this campaign is complete; `pmm run` makes them")
+        raise DataError(
+            f"{folder}: no complete run that `pmm run` made; recordings of another system are for "
+            "`pmm analyse` and `pmm coefficients`"
+        )
     return tuple(sorted(results, key=lambda result: result.header.order))
 
 

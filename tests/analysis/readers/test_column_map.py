@@ -191,7 +191,9 @@ def test_a_mark_before_a_map_does_not_matter(tmp_path: Path) -> None:
     assert read_column_map(path).time == TimeColumn("T", "ms")
 
 
-@pytest.mark.parametrize(("wrong", "right"), [("kNN", "kN"), ("KN", "kN"), ("MM", "mm")])
+@pytest.mark.parametrize(
+    ("wrong", "right"), [("kNN", "kN"), ("KN", "kN"), ("MM", "mm"), ("kg", "kgf")]
+)
 def test_a_misspelt_unit_is_corrected(wrong: str, right: str) -> None:
     with pytest.raises(ConfigurationError, match=f"'{wrong}'; did you mean '{right}'"):
         parse_options([f"force_aft=F1:{wrong}"])

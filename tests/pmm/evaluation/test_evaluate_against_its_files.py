@@ -146,7 +146,7 @@ def test_wrong_usage_is_status_2(tmp_path: Path) -> None:
     assert pmm("evaluate", tmp_path / "nowhere").exit_code == 2
     empty = pmm("evaluate", tmp_path)
     assert empty.exit_code == 1
-    assert "no run of this campaign is complete" in empty.stderr
+    assert "no complete run that `pmm run` made" in empty.stderr
 
 
 @pytest.mark.slow
