@@ -217,7 +217,7 @@ def swing_period(model: RigidPart | None, generator: Generator) -> Estimate:
             seed=own["seed"],
             sample_rate_hz=8.0,
         )
-        runs.append(analyse_record(series_of(record, "inclinometer_angle")))
+        runs.append(analyse_record(series_of(record, "inclinometer_angle"), pendulum=True))
     return from_runs(runs).estimate
 
 

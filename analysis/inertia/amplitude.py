@@ -5,7 +5,9 @@ oscillation's phase is
 
     phi(t) = phi_0 + (2 pi/T_0) (t - slope int_0^t A^p dt')
 
-linear in phi_0, 2 pi/T_0 and their products with the slope. It is fitted to the phases and
+linear in phi_0, 2 pi/T_0 and their products with the slope. The angle of a plain pendulum swings by
+its geometry in ``T_0 (1 + A^2/16 + 11 A^4/3072)``, which is taken out first: what is left is what
+is not known. It is fitted to the phases and
 frequencies of successive parts of a record (:mod:`analysis.inertia.local_periods`) at once: phases
 that count through know a period by the record's whole length, periods by that of a part. Constant,
 linear and quadratic laws (p = 0, 1, 2) are averaged with Akaike's weights, so that the choice of
@@ -24,22 +26,31 @@ from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
 POWERS = (0, 1, 2)
+_SWING = ((2, 1.0 / 16.0), (4, 11.0 / 3072.0))  # of a pendulum's period, by powers of its angle
 _EXACT_RAD, _EXACT = 1e-10, 1e-11  # of a phase, and relative of a frequency: below are roundings
 
 
 @dataclass(frozen=True)
 class AmplitudeLaw:
-    """One law: ``T = T_0/(1 - slope A^power)``; power 0 is no dependence."""
+    """One law: ``T = T_0/(1 - slope A^power)``; power 0 is no dependence.
+
+    Attributes
+    ----------
+    pendulum
+        Whether the amplitudes are a plain pendulum's angles, whose geometry comes to it.
+    """
 
     power: int
     period_s: float
     uncertainty_s: float
     slope: float
     weight: float
+    pendulum: bool = False
 
     def at(self, amplitude: FloatArray) -> FloatArray:
         """Return the period, s, at some amplitudes."""
-        return np.asarray(self.period_s / (1.0 - self.slope * amplitude**self.power))
+        longer = 1.0 + sum(c * amplitude**p for p, c in _SWING) if self.pendulum else 1.0
+        return np.asarray(self.period_s * longer / (1.0 - self.slope * amplitude**self.power))
 
 
 @dataclass(frozen=True)
@@ -85,8 +96,13 @@ class PowerDecay:
         return float(np.sqrt(self.covariance[2, 2]))
 
 
-def zero_amplitude_period(local: LocalPeriods) -> ZeroAmplitude:
+def zero_amplitude_period(local: LocalPeriods, *, pendulum: bool = False) -> ZeroAmplitude:
     """Extrapolate the period to zero amplitude.
+
+    Parameters
+    ----------
+    pendulum
+        Whether the amplitudes are a plain pendulum's angles, rad.
 
     Raises
     ------
@@ -96,14 +112,20 @@ def zero_amplitude_period(local: LocalPeriods) -> ZeroAmplitude:
     size = local.period_s.size
     if size < FEWEST_PARTS:
         raise DataError(f"{size} parts; at least {FEWEST_PARTS} are needed to extrapolate")
-    fits = [_law(local, power) for power in POWERS]
+    small = _without_swing(local) if pendulum else local
+    fits = [_law(small, power) for power in POWERS]
     # the common misfit of the best law scales all uncertainties (Birge)
     scale = max(min(chi2 / freedom for _, chi2, freedom in fits), 1.0)
     scores = [chi2 / scale + _penalty(2 * size, freedom) for _, chi2, freedom in fits]
     weights = np.exp(-0.5 * (np.array(scores) - min(scores)))
     weights /= weights.sum()
     laws = tuple(
-        replace(law, uncertainty_s=law.uncertainty_s * math.sqrt(scale), weight=weight)
+        replace(
+            law,
+            uncertainty_s=law.uncertainty_s * math.sqrt(scale),
+            weight=weight,
+            pendulum=pendulum,
+        )
         for (law, _, _), weight in zip(fits, weights.tolist(), strict=True)
     )
     mean = sum(law.weight * law.period_s for law in laws)
@@ -112,6 +134,16 @@ def zero_amplitude_period(local: LocalPeriods) -> ZeroAmplitude:
     change = likeliest.at(local.amplitude.max(keepdims=True))[0] / likeliest.period_s - 1.0
     freedom = float(min(freedom for _, _, freedom in fits))
     return ZeroAmplitude(Estimate.of(mean, math.sqrt(variance), "s", freedom), laws, float(change))
+
+
+def _without_swing(local: LocalPeriods) -> LocalPeriods:
+    """Return the phases and periods that a pendulum would have if its restoring were linear."""
+    omega = float(local.omega_rad_s.mean())
+    ahead = sum(c * amplitude_integral(local, power) for power, c in _SWING)
+    longer = 1.0 + sum(c * local.amplitude**power for power, c in _SWING)
+    return replace(
+        local, phase_rad=local.phase_rad + omega * ahead, period_s=local.period_s / longer
+    )
 
 
 def _penalty(size: int, freedom: int) -> float:

@@ -147,8 +147,8 @@ def analyse_record(series: Series, *, modes: int = 1, pendulum: bool = False) ->
     modes
         How many oscillations are in the record (2 for yaw with sway, or both pitch modes).
     pendulum
-        Whether the channel is the angle of a plain pendulum in radians, whose period must lengthen
-        with amplitude as ``1 + A^2/16``; degrees given as radians are told so.
+        Whether the channel is the angle of a plain pendulum in radians, whose period lengthens with
+        amplitude as ``1 + A^2/16``: that is taken out, and degrees given as radians are told.
 
     Raises
     ------
@@ -156,6 +156,7 @@ def analyse_record(series: Series, *, modes: int = 1, pendulum: bool = False) ->
         If nothing swings, swings are too few, the record is aliased, angles are degrees, or the
         fit does not settle.
     """
+    swings = pendulum and series.unit == "rad"
     part = usable_part(series)
     flags = list(part.series.flags)
     if modes == 1:
@@ -178,8 +179,9 @@ def analyse_record(series: Series, *, modes: int = 1, pendulum: bool = False) ->
             flags.append(Flag("decay_not_converged", Severity.WARNING, message, series.channel))
         rates = own_decay(local)
         lag_free = without_lag(local, rates)
-        analyses.append(ModeAnalysis(lag_free, zero_amplitude_period(lag_free), decay, rates))
-    if pendulum and series.unit == "rad":
+        still = zero_amplitude_period(lag_free, pendulum=swings and mode == 0)
+        analyses.append(ModeAnalysis(lag_free, still, decay, rates))
+    if swings:
         local = analyses[0].local
         flags += check_amplitude_effect(
             series.where, local.amplitude, local.period_s, local.uncertainty_s
