@@ -14,6 +14,7 @@ from numpy.random import Generator
 
 from analysis.inertia.bifilar import sway_period, yaw_gyradius, yaw_period
 from analysis.inertia.double_pendulum import PendulumResult, pitch_from_periods
+from analysis.inertia.lengthening import pendulum_lengthening
 from analysis.inertia.record import RecordAnalysis, analyse_record, from_runs
 from analysis.inertia.series import Series, series_from_recording
 from analysis.inertia.swing import model_gyradius
@@ -217,7 +218,9 @@ def swing_period(model: RigidPart | None, generator: Generator) -> Estimate:
             seed=own["seed"],
             sample_rate_hz=8.0,
         )
-        runs.append(analyse_record(series_of(record, "inclinometer_angle"), pendulum=True))
+        runs.append(
+            analyse_record(series_of(record, "inclinometer_angle"), lengthens=pendulum_lengthening)
+        )
     return from_runs(runs).estimate
 
 

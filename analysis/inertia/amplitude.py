@@ -5,9 +5,9 @@ oscillation's phase is
 
     phi(t) = phi_0 + (2 pi/T_0) (t - slope int_0^t A^p dt')
 
-linear in phi_0, 2 pi/T_0 and their products with the slope. The angle of a plain pendulum swings by
-its geometry in ``T_0 (1 + A^2/16 + 11 A^4/3072)``, which is taken out first: what is left is what
-is not known. It is fitted to the phases and
+linear in phi_0, 2 pi/T_0 and their products with the slope. What geometry alone does to the period
+of an angle (:mod:`analysis.inertia.lengthening`) is taken out first: what is left is what is not
+known. It is fitted to the phases and
 frequencies of successive parts of a record (:mod:`analysis.inertia.local_periods`) at once: phases
 that count through know a period by the record's whole length, periods by that of a part. Constant,
 linear and quadratic laws (p = 0, 1, 2) are averaged with Akaike's weights, so that the choice of
@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from analysis.inertia.lengthening import Powers, longer
 from analysis.inertia.local_periods import FEWEST_PARTS, LocalPeriods
 from analysis.inertia.projection import inverse_gram
 from analysis.uncertainty.estimate import Estimate
@@ -26,7 +27,6 @@ from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
 POWERS = (0, 1, 2)
-_SWING = ((2, 1.0 / 16.0), (4, 11.0 / 3072.0))  # of a pendulum's period, by powers of its angle
 _EXACT_RAD, _EXACT = 1e-10, 1e-11  # of a phase, and relative of a frequency: below are roundings
 
 
@@ -36,8 +36,8 @@ class AmplitudeLaw:
 
     Attributes
     ----------
-    pendulum
-        Whether the amplitudes are a plain pendulum's angles, whose geometry comes to it.
+    known
+        How the period lengthens besides, by geometry.
     """
 
     power: int
@@ -45,12 +45,12 @@ class AmplitudeLaw:
     uncertainty_s: float
     slope: float
     weight: float
-    pendulum: bool = False
+    known: Powers = ()
 
     def at(self, amplitude: FloatArray) -> FloatArray:
         """Return the period, s, at some amplitudes."""
-        longer = 1.0 + sum(c * amplitude**p for p, c in _SWING) if self.pendulum else 1.0
-        return np.asarray(self.period_s * longer / (1.0 - self.slope * amplitude**self.power))
+        unknown = 1.0 - self.slope * amplitude**self.power
+        return np.asarray(self.period_s * longer(self.known, amplitude) / unknown)
 
 
 @dataclass(frozen=True)
@@ -96,13 +96,13 @@ class PowerDecay:
         return float(np.sqrt(self.covariance[2, 2]))
 
 
-def zero_amplitude_period(local: LocalPeriods, *, pendulum: bool = False) -> ZeroAmplitude:
+def zero_amplitude_period(local: LocalPeriods, known: Powers = ()) -> ZeroAmplitude:
     """Extrapolate the period to zero amplitude.
 
     Parameters
     ----------
-    pendulum
-        Whether the amplitudes are a plain pendulum's angles, rad.
+    known
+        How the period lengthens with the amplitude by geometry; it is taken out first.
 
     Raises
     ------
@@ -112,7 +112,7 @@ def zero_amplitude_period(local: LocalPeriods, *, pendulum: bool = False) -> Zer
     size = local.period_s.size
     if size < FEWEST_PARTS:
         raise DataError(f"{size} parts; at least {FEWEST_PARTS} are needed to extrapolate")
-    small = _without_swing(local) if pendulum else local
+    small = _without(local, known)
     fits = [_law(small, power) for power in POWERS]
     # the common misfit of the best law scales all uncertainties (Birge)
     scale = max(min(chi2 / freedom for _, chi2, freedom in fits), 1.0)
@@ -124,7 +124,7 @@ def zero_amplitude_period(local: LocalPeriods, *, pendulum: bool = False) -> Zer
             law,
             uncertainty_s=law.uncertainty_s * math.sqrt(scale),
             weight=weight,
-            pendulum=pendulum,
+            known=known,
         )
         for (law, _, _), weight in zip(fits, weights.tolist(), strict=True)
     )
@@ -136,13 +136,14 @@ def zero_amplitude_period(local: LocalPeriods, *, pendulum: bool = False) -> Zer
     return ZeroAmplitude(Estimate.of(mean, math.sqrt(variance), "s", freedom), laws, float(change))
 
 
-def _without_swing(local: LocalPeriods) -> LocalPeriods:
-    """Return the phases and periods that a pendulum would have if its restoring were linear."""
+def _without(local: LocalPeriods, known: Powers) -> LocalPeriods:
+    """Return the phases and periods that would be there without what geometry does."""
     omega = float(local.omega_rad_s.mean())
-    ahead = sum(c * amplitude_integral(local, power) for power, c in _SWING)
-    longer = 1.0 + sum(c * local.amplitude**power for power, c in _SWING)
+    late = sum((c * amplitude_integral(local, power) for power, c in known), 0.0 * local.time_s)
     return replace(
-        local, phase_rad=local.phase_rad + omega * ahead, period_s=local.period_s / longer
+        local,
+        phase_rad=local.phase_rad + omega * late,
+        period_s=local.period_s / longer(known, local.amplitude),
     )
 
 

@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
+from analysis.inertia.lengthening import Powers, longer
+from analysis.inertia.local_periods import LocalPeriods
 from analysis.inertia.series import SWINGING_UNITS, Series, UsablePart
-from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 from hardware.description.units import STANDARD_GRAVITY_M_S2
@@ -64,23 +65,21 @@ def check_angle(where: str, unit: str, amplitude: float) -> None:
         )
 
 
-def check_amplitude_effect(
-    where: str, amplitude_rad: FloatArray, period_s: FloatArray, uncertainty_s: FloatArray
-) -> tuple[Flag, ...]:
-    """Flag angles whose period does not lengthen with amplitude as a pendulum's must.
+def check_amplitude_effect(where: str, local: LocalPeriods, known: Powers) -> tuple[Flag, ...]:
+    """Flag angles whose period does not lengthen with amplitude as geometry makes it.
 
-    A pendulum of amplitude A has the period ``T_0 (1 + A^2/16)``. Where the record's angles promise
-    a change ten times what can be seen, and under a third of it is there, the angles are too
-    large: degrees given as radians, or a wrong scale.
+    Where the record's angles promise a change ten times what can be seen, and under a third of it
+    is there, the angles are too large: degrees given as radians, or a wrong scale.
 
     Parameters
     ----------
-    amplitude_rad, period_s, uncertainty_s
-        Of successive parts of the record, shape ``(parts,)``.
+    local
+        Successive parts of the record, amplitudes in rad.
     """
-    square = amplitude_rad**2 / 16.0
-    weight = 1.0 / uncertainty_s**2
-    centred = square - np.average(square, weights=weight)
+    amplitude_rad, period_s = local.amplitude, local.period_s
+    promised = longer(known, amplitude_rad)
+    weight = 1.0 / local.uncertainty_s**2
+    centred = promised - np.average(promised, weights=weight)
     spread = float(weight @ centred**2)
     if not spread > 0.0:
         return ()
@@ -91,7 +90,7 @@ def check_amplitude_effect(
         return ()
     message = (
         f"{where}: amplitudes of {amplitude_rad.max():.2g} to {amplitude_rad.min():.2g} rad should "
-        f"lengthen the period by {100 * float(np.ptp(square)):.2g} %, and {100 * slope:.0f} % of "
+        f"lengthen the period by {100 * float(np.ptp(promised)):.2g} %, and {100 * slope:.0f} % of "
         "that is seen; the angle's unit or scale seems wrong (degrees given as radians?)"
     )
     return (Flag("angle_scale", Severity.WARNING, message),)

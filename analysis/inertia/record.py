@@ -29,6 +29,7 @@ from analysis.inertia.amplitude import (
 )
 from analysis.inertia.checks import check_amplitude_effect, check_record
 from analysis.inertia.damped_fit import DampedFit, fit_damped
+from analysis.inertia.lengthening import Lengthening
 from analysis.inertia.local_periods import LocalPeriods, local_periods
 from analysis.inertia.regime import of_one_regime
 from analysis.inertia.repeats import KnownScatter, RepeatedValue, combine_runs, single_run
@@ -139,16 +140,18 @@ class RecordAnalysis:
         return self.modes[mode].at_no_amplitude.period
 
 
-def analyse_record(series: Series, *, modes: int = 1, pendulum: bool = False) -> RecordAnalysis:
+def analyse_record(
+    series: Series, *, modes: int = 1, lengthens: Lengthening | None = None
+) -> RecordAnalysis:
     """Find the usable part of a record, check it, fit it and follow it to no amplitude.
 
     Parameters
     ----------
     modes
         How many oscillations are in the record (2 for yaw with sway, or both pitch modes).
-    pendulum
-        Whether the channel is the angle of a plain pendulum in radians, whose period lengthens with
-        amplitude as ``1 + A^2/16``: that is taken out, and degrees given as radians are told.
+    lengthens
+        How the period of a single oscillation lengthens with its angle by geometry. Of a channel in
+        radians that is taken out, and degrees given as radians are told by it.
 
     Raises
     ------
@@ -156,7 +159,6 @@ def analyse_record(series: Series, *, modes: int = 1, pendulum: bool = False) ->
         If nothing swings, swings are too few, the record is aliased, angles are degrees, or the
         fit does not settle.
     """
-    swings = pendulum and series.unit == "rad"
     part = usable_part(series)
     flags = list(part.series.flags)
     if modes == 1:
@@ -169,6 +171,8 @@ def analyse_record(series: Series, *, modes: int = 1, pendulum: bool = False) ->
     void = [flag for flag in fit.flags if flag.severity is Severity.VOID]
     if void:
         raise DataError(void[0].message)
+    is_known = lengthens is not None and series.unit == "rad" and modes == 1
+    known = lengthens(fit.modes[0].period_s) if is_known and lengthens is not None else ()
     analyses = []
     for mode in range(modes):
         local = local_periods(time_s, values, fit, mode=mode, where=series.where)
@@ -179,13 +183,10 @@ def analyse_record(series: Series, *, modes: int = 1, pendulum: bool = False) ->
             flags.append(Flag("decay_not_converged", Severity.WARNING, message, series.channel))
         rates = own_decay(local)
         lag_free = without_lag(local, rates)
-        still = zero_amplitude_period(lag_free, pendulum=swings and mode == 0)
+        still = zero_amplitude_period(lag_free, known)
         analyses.append(ModeAnalysis(lag_free, still, decay, rates))
-    if swings:
-        local = analyses[0].local
-        flags += check_amplitude_effect(
-            series.where, local.amplitude, local.period_s, local.uncertainty_s
-        )
+    if known:
+        flags += check_amplitude_effect(series.where, analyses[0].local, known)
     return RecordAnalysis(part, fit, tuple(analyses), tuple(flags))
 
 

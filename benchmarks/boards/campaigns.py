@@ -86,8 +86,9 @@ def begun(folder: Path, seed: int, effects: Sequence[str]) -> Path:
 
 
 def initiated(recordings: Sequence[Path], folder: Path) -> Path:
-    """Begin a campaign from recordings as they are."""
-    typed("init", "campaign", "--yes", "--output", folder / "begun", *recordings)
+    """Begin a campaign from recordings as they are, of a model that is stated."""
+    model = ("--mass-kg", "70", "--inertia-kg-m2", "27.5")
+    typed("init", "campaign", "--yes", "--output", folder / "begun", *model, *recordings)
     return folder / "begun"
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, Final, Generic, TypeVar
 
 from analysis.inertia.hanging import HangingCentre
+from analysis.inertia.lengthening import Lengthening
 from analysis.inertia.result import MassProperties
 from analysis.uncertainty.budget import Budget
 from analysis.uncertainty.estimate import Estimate
@@ -89,7 +90,9 @@ class Experiment(Generic[TableT]):
             raise ConfigurationError(f"{self.job.path}: photo {path}: there is no such file")
         return path
 
-    def period(self, source: Any, where: str, *, pendulum: bool = False) -> PeriodRuns:
+    def period(
+        self, source: Any, where: str, *, lengthens: Lengthening | None = None
+    ) -> PeriodRuns:
         """Read a period of the file, with its flags.
 
         Raises
@@ -97,7 +100,7 @@ class Experiment(Generic[TableT]):
         ConfigurationError, DataError
             If it is not there, or its records do not carry it.
         """
-        runs = read_period(self.job, source, where, pendulum=pendulum)
+        runs = read_period(self.job, source, where, lengthens=lengthens)
         self.periods.append(runs)
         self.flags += runs.flags
         return runs

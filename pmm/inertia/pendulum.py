@@ -8,6 +8,7 @@ import numpy as np
 
 from analysis.inertia.compound_pendulum import compound_pendulum, lamboley
 from analysis.inertia.elementary_functions import Value, sqrt
+from analysis.inertia.lengthening import Lengthening, pendulum_lengthening
 from analysis.inertia.record import damping_of
 from analysis.uncertainty.estimate import Estimate
 from analysis.uncertainty.monte_carlo import Assessment, assess
@@ -106,7 +107,7 @@ def _swing(test: Experiment[PendulumJob]) -> _Swung:
     if table.depth_m is not None or table.second is not None:
         return _on_axis(test)
     if table.period is not None:
-        _period(test, pendulum=False)
+        _period(test, None)
         test.findings += decay_findings(test.periods[0])
         test.notes.append(
             "no depth_m, second or torsion is given: period and decay are all that follows"
@@ -123,7 +124,9 @@ def _on_axis(test: Experiment[PendulumJob]) -> _Swung:
         depth = stated_value(table, "depth_m")
         gyradius = compound_pendulum(first, depth, gravity, seed=seed)
     else:
-        second = test.period(table.second.period, "second.period", pendulum=True).period
+        second = test.period(
+            table.second.period, "second.period", lengthens=pendulum_lengthening
+        ).period
         apart = stated_value(table.second, "apart_m")
         below, gyradius = lamboley(first, second, apart, gravity, seed=seed)
         depth = below.budget.result
@@ -152,7 +155,7 @@ def _on_rod(test: Experiment[PendulumJob], torsion: TorsionTable) -> _Swung:
     if torsion.axes:
         plane = in_plane(test, torsion, rod)
         return _Swung(axes=None if mass is None else plane.ellipse(mass))
-    about = about_rod(rod, _period(test, pendulum=False), seed + 1)
+    about = about_rod(rod, _period(test, None), seed + 1)
     test.findings.append(_about(table, about))
     if mass is None:
         return _Swung()
@@ -162,9 +165,11 @@ def _on_rod(test: Experiment[PendulumJob], torsion: TorsionTable) -> _Swung:
     return _Swung(gyradius)
 
 
-def _period(test: Experiment[PendulumJob], *, pendulum: bool = True) -> Estimate:
+def _period(
+    test: Experiment[PendulumJob], lengthens: Lengthening | None = pendulum_lengthening
+) -> Estimate:
     source = test.table.period or PeriodSource()
-    return test.period(source, "period", pendulum=pendulum).period
+    return test.period(source, "period", lengthens=lengthens).period
 
 
 def _about(table: PendulumJob, about: Assessment) -> Finding:

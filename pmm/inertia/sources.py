@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from analysis.inertia.gates import Passages, passages, read_gate_events
+from analysis.inertia.lengthening import Lengthening
 from analysis.inertia.modulation import remove_modulation
 from analysis.inertia.passage_fit import PassageFit, fit_passages
 from analysis.inertia.record import RecordAnalysis, analyse_record, from_runs
@@ -149,7 +150,12 @@ class PeriodRuns:
 
 
 def read_period(
-    job: Job[Any], source: PeriodSource, where: str, *, modes: int = 1, pendulum: bool = False
+    job: Job[Any],
+    source: PeriodSource,
+    where: str,
+    *,
+    modes: int = 1,
+    lengthens: Lengthening | None = None,
 ) -> PeriodRuns:
     """Return the period of a source, with the scatter between its runs.
 
@@ -157,7 +163,7 @@ def read_period(
     ----------
     modes
         How many oscillations a record holds; light gates and stopwatches tell one.
-    pendulum
+    lengthens
         See :func:`analysis.inertia.record.analyse_record`.
 
     Raises
@@ -168,7 +174,7 @@ def read_period(
         If the data do not carry a period.
     """
     if source.records:
-        return _from_records(job, source, where, modes, pendulum)
+        return _from_records(job, source, where, modes, lengthens)
     if modes > 1:
         raise ConfigurationError(
             f"{job.path}: {where}: two oscillations need records of a displacement or an angle; "
@@ -189,7 +195,11 @@ def read_period(
 
 
 def _from_records(
-    job: Job[Any], source: PeriodSource, where: str, modes: int, pendulum: bool
+    job: Job[Any],
+    source: PeriodSource,
+    where: str,
+    modes: int,
+    lengthens: Lengthening | None,
 ) -> PeriodRuns:
     runs, all_series, flags = [], [], []
     for name in source.records:
@@ -200,7 +210,7 @@ def _from_records(
         if source.inclinometer_radius_m is not None:
             series, more = true_angles(job, series, source.inclinometer_radius_m, where)
             series_flags = (*series_flags, *more)
-        run = analyse_record(series, modes=modes, pendulum=pendulum)
+        run = analyse_record(series, modes=modes, lengthens=lengthens)
         runs.append(run)
         all_series.append(series)
         flags += [*series_flags, *run.flags]

@@ -15,6 +15,7 @@ from analysis.inertia.bifilar import (
 )
 from analysis.inertia.checks import check_sway_axis, check_yaw_axis
 from analysis.inertia.double_pendulum import pitch_from_periods
+from analysis.inertia.lengthening import bifilar_lengthening
 from analysis.inertia.series import usable_part
 from analysis.readers import read_recording
 from analysis.readers.damage import check_whole
@@ -132,7 +133,8 @@ def _yaw(
     """Yaw by its period and by the ratio; return the periods of yaw and, if known, of sway."""
     seed, where = job.table.monte_carlo_seed, f'suspensions["{table.name}"]'
     gravity, spacing = gravity_of(job.table), stated_value(table, "half_spacing_m", table.name)
-    runs = read_period(job, source, f"{where}.yaw", modes=source.oscillations)
+    lengthens = bifilar_lengthening(table.half_spacing_m, table.line_m, gravity.value)
+    runs = read_period(job, source, f"{where}.yaw", modes=source.oscillations, lengthens=lengthens)
     periods.append(runs)
     yaw, ratio = runs.period, None
     if source.oscillations == 2:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from analysis.inertia.lengthening import pendulum_lengthening
 from analysis.inertia.swing import SwingInertia, SwingState, model_on_swing, swing_inertia
 from analysis.inertia.swing_static import StaticResult, distance, fit_static
 from analysis.inertia.two_pivots import PivotTest, check_two_pivots
@@ -144,7 +145,7 @@ _PLANES = {"pitch": Plane.VERTICAL, "yaw": Plane.HORIZONTAL}
 
 def _measure(test: Experiment[SwingTable], key: str) -> _MeasuredState:
     table: StateTable = getattr(test.table, key)
-    period = test.period(table.period, f"{key}.period", pendulum=True).period
+    period = test.period(table.period, f"{key}.period", lengthens=pendulum_lengthening).period
     mass, gravity = stated_value(table, "mass_kg"), gravity_of(test.table)
     moment = first_moment(table, mass)
     if moment.static is not None:

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from analysis.inertia.lengthening import pendulum_lengthening
 from analysis.inertia.record import analyse_record, from_runs
 from analysis.inertia.repeats import combine_runs
 from analysis.inertia.series import Series
@@ -28,7 +29,7 @@ def swing(seed: int, period: float) -> Series:
 def test_three_releases() -> None:
     true = 7.2923
     runs = [
-        analyse_record(swing(k, true * (1.0 + s)), pendulum=True)
+        analyse_record(swing(k, true * (1.0 + s)), lengthens=pendulum_lengthening)
         for k, s in ((1, 1e-3), (2, 0.0), (3, -1e-3))
     ]
     assert runs[0].period().value == pytest.approx(true * 1.001, abs=2e-4)
@@ -44,7 +45,9 @@ def test_three_releases() -> None:
 
 def test_wrongly_scaled_angles_are_told() -> None:
     y = damped(T, 3.0, 0.01, 0.5) + 1e-4 * np.random.default_rng(0).standard_normal(T.size)
-    found = analyse_record(Series("run", "angle", "rad", 20.0, 0.0, y), pendulum=True)
+    found = analyse_record(
+        Series("run", "angle", "rad", 20.0, 0.0, y), lengthens=pendulum_lengthening
+    )
     assert "angle_scale" in {flag.code for flag in found.flags}
 
 

@@ -15,6 +15,8 @@ from analysis.inertia.checks import (
     strongest_axis,
 )
 from analysis.inertia.gates import GateEvents, gate_events, passages, read_gate_events
+from analysis.inertia.lengthening import pendulum_lengthening
+from analysis.inertia.local_periods import LocalPeriods
 from analysis.inertia.passage_fit import fit_passages
 from analysis.inertia.record import analyse_record
 from analysis.inertia.repeats import KnownScatter, combine_runs
@@ -99,13 +101,20 @@ def test_degrees_given_as_radians() -> None:
 
 def test_small_degrees_betray_themselves_by_their_period() -> None:
     amplitude = np.linspace(0.5, 0.1, 8)
-    error = np.full(8, 1e-4)
+
+    def codes(amplitude: np.ndarray, period_s: np.ndarray) -> list[str]:
+        known = 2.0 * math.pi / period_s**2 * 1e-4  # of the frequency, for 0.1 ms of the period
+        covariance = np.zeros((8, 2, 2))
+        covariance[:, 1, 1] = known**2
+        nothing = np.zeros(8)
+        local = LocalPeriods(nothing, amplitude, nothing, period_s, covariance, nothing.astype(int))
+        flags = check_amplitude_effect("swing", local, pendulum_lengthening(3.0))
+        return [flag.code for flag in flags]
+
     steady = np.full(8, 3.0)
-    flags = check_amplitude_effect("swing", amplitude, steady, error)
-    assert [flag.code for flag in flags] == ["angle_scale"]
-    true = 3.0 * (1.0 + amplitude**2 / 16.0)
-    assert check_amplitude_effect("swing", amplitude, true, error) == ()
-    assert check_amplitude_effect("swing", 0.05 * amplitude, steady, error) == ()
+    assert codes(amplitude, steady) == ["angle_scale"]
+    assert codes(amplitude, 3.0 * (1.0 + amplitude**2 / 16.0)) == []
+    assert codes(0.05 * amplitude, steady) == []
 
 
 def test_wrong_axis() -> None:
