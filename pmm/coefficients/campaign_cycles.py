@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Final
 
@@ -72,14 +73,15 @@ class CampaignCycles:
         """Its runs in waves."""
         return tuple(wave_runs(self.campaign, self.runs))
 
-    @property
-    def doubts(self) -> tuple[Flag, ...]:
-        """Units and signs that look wrong in all runs, and a roll gauge that is not there."""
+    @cached_property
+    def implausible(self) -> tuple[Flag, ...]:
+        """Units, signs and places of channels that look wrong in all runs."""
         harmonics = [run.run_harmonics for run in self.runs if run.run_harmonics is not None]
-        return (*implausible(self.campaign, harmonics), *self._without_roll_gauge)
+        return implausible(self.campaign, harmonics)
 
     @property
-    def _without_roll_gauge(self) -> tuple[Flag, ...]:
+    def without_roll_gauge(self) -> tuple[Flag, ...]:
+        """A roll gauge that is not there, though the model heels."""
         names = tuple(dict.fromkeys(cycle.name for cycle in self.cycles if not cycle.has_roll))
         if self.campaign.heel is None or not names:
             return ()

@@ -130,7 +130,13 @@ class CampaignOutcome:
     def noticed(self) -> tuple[Flag, ...]:
         """All that was flagged of the runs that were used, each flag with its runs."""
         of_runs = [flag for flags in self.flags.values() for flag in flags]
-        return tuple(dict.fromkeys((*self.left_out, *self.result.flags, *of_runs)))
+        flags = (*self.implausible, *self.left_out, *self.result.flags, *of_runs)
+        return tuple(dict.fromkeys(flags))
+
+    @property
+    def implausible(self) -> tuple[Flag, ...]:
+        """What makes all numbers doubtful: channels that look wrong in all runs."""
+        return _joined(part.implausible for part in self.parts)
 
     @property
     def all_flags(self) -> tuple[Flag, ...]:
@@ -199,7 +205,7 @@ def coefficients_of(
     turns = (*_joined(part.turns for part in parts), *turns)
     stated = largest([part.stated for part in parts])
     doubts = (
-        *_joined((*part.work.left_out, *part.doubts) for part in parts),
+        *_joined((*part.work.left_out, *part.without_roll_gauge) for part in parts),
         *unweighed,
         *(() if stated.vector.any() else (_NOTHING_STATED,)),
         *alone,

@@ -1,12 +1,13 @@
 """What a campaign's coefficients say: each table once, for the terminal, the page and programs."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Any, Final
 
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_budget import budget
 from analysis.coefficients.campaign_result import CampaignCoefficients
+from analysis.coefficients.dry_checks import DRY
 from analysis.coefficients.exchange import to_dict
 from analysis.coefficients.recommendation import recommended, table
 from analysis.coefficients.stated_uncertainties import STATED
@@ -55,13 +56,17 @@ SCHEMA: Final = "pmm-coefficients-1"
 def coefficients_document(outcome: CampaignOutcome) -> Document:
     """Return what ``pmm coefficients`` shows; ``docs/coefficients-command.md`` has the keys."""
     coefficients = outcome.result
-    run_count, notes = counted(len(outcome.cycles), "run"), Notes(flag_notes(outcome.noticed))
+    run_count = counted(len(outcome.cycles), "run")
+    besides = [flag for flag in outcome.noticed if flag not in outcome.implausible]
     return Document(
         ", ".join(outcome.names),
         "coefficients",
         (
             Section("", (Text((f"{run_count}, {coefficients.plane}, {coefficients.form} form",)),)),
-            Section("", (*conclusion(coefficients), *_conditions(outcome), notes)),
+            *_doubts(outcome),
+            Section(
+                "", (*conclusion(coefficients), *_conditions(outcome), Notes(flag_notes(besides)))
+            ),
             Section("", (*memory_contents(outcome), memory_data(outcome))),
             Section("", (*comparison_tables(coefficients), *alternatives_tables(coefficients))),
             Section("", tuple(Data(key, value) for key, value in _data(outcome).items())),
@@ -84,6 +89,7 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
         ", ".join(outcome.names),
         "coefficients",
         (
+            *_doubts(outcome),
             Section("", (pairs("Summary", _summary(outcome)), *_conditions(outcome))),
             Section(
                 "Coefficients",
@@ -116,6 +122,19 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
     )
 
 
+def _doubts(outcome: CampaignOutcome) -> Iterator[Section]:
+    """Yield what has to be settled before any number is used, where there is anything."""
+    contradicted = [
+        Note("warning", check.message)
+        for check in outcome.result.checks
+        if check.kind == DRY and not check.agrees
+    ]
+    notes = [*flag_notes(outcome.implausible), *contradicted]
+    if notes:
+        head = Text(("Settle this first: it touches all that is below.",))
+        yield Section("", (head, Notes(notes)))
+
+
 def _conditions(outcome: CampaignOutcome) -> tuple[Content, ...]:
     speeds = (entry.speed_m_s for entry in outcome.result.entries)
     conditions = conditions_table(speeds, outcome.settings.ship, outcome.water)
@@ -139,7 +158,11 @@ def conclusion(coefficients: CampaignCoefficients) -> tuple[Content, ...]:
     if coefficients.checks:
         agree = sum(check.agrees for check in coefficients.checks)
         lines.append(f"checks  {agree} of {len(coefficients.checks)} between runs agree")
-    warnings = [check.message for check in coefficients.checks if not check.agrees]
+    warnings = [
+        check.message
+        for check in coefficients.checks
+        if not check.agrees and check.kind != DRY  # it stands at the head
+    ]
     warnings += [outlier.message for outlier in coefficients.outliers]
     return (
         recommended_table(coefficients),
@@ -162,7 +185,7 @@ def _data(outcome: CampaignOutcome) -> dict[str, Any]:
         "runs": [{key: getattr(run, key) for key in keys} for run in outcome.runs],
         "failed": outcome.failed,
         "not_recorded": outcome.not_recorded,
-        "left_out": outcome.left_out,
+        "left_out": (*outcome.implausible, *outcome.left_out),
     }
 
 
