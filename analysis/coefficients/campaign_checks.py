@@ -21,6 +21,7 @@ from analysis.coefficients.zero_frequency import extrapolate
 from analysis.ideal_rig import mass_matrix, weight_matrix
 from analysis.uncertainty.values import UncertainValues, stacked
 from hardware.description.oscillator import Plane
+from hardware.description.words import joined
 
 TWO_TESTS = "two tests"
 STATIC = "static drift"
@@ -142,9 +143,7 @@ def _check(pair: Pair, level: float) -> ConsistencyCheck:
 
 
 def _entry_text(entry: CoefficientEntry) -> str:
-    unnamed = len(entry.runs) - _NAMED
-    names = ", ".join(entry.runs[:_NAMED]) + (f" and {unnamed} more" if unnamed > 0 else "")
-    return f"{entry.method} at {entry.frequency_hz:.4g} Hz ({names})"
+    return f"{entry.method} at {entry.frequency_hz:.4g} Hz ({joined(entry.runs, _NAMED)})"
 
 
 def restoring_pairs(cycles: Sequence[BodyCycle]) -> list[Pair]:

@@ -21,6 +21,7 @@ from analysis.coefficients.terms import (
 from analysis.kinematics.body_frame import HEEL
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.setpoint import Medium
+from hardware.description.words import joined
 
 _STILL = 1e-3  # of a term's typical size: pure yaw has less of v v r than this up to 20 degrees
 _APART = 1e-2  # least over greatest singular value of the terms' scaled columns
@@ -80,7 +81,7 @@ def check_determined(problem: CycleProblem) -> None:
         if row == SURGE and not all(cycle.has_surge for cycle in problem.numbers.cycles):
             lacking = [cycle.name for cycle in problem.numbers.cycles if not cycle.has_surge]
             raise DataError(
-                f"X terms need the channel force_x, which {', '.join(lacking)} did not record"
+                f"X terms need the channel force_x, which {joined(lacking)} did not record"
             )
         if row == ROLL and not all(cycle.has_roll for cycle in problem.numbers.cycles):
             lacking = [cycle.name for cycle in problem.numbers.cycles if not cycle.has_roll]
@@ -92,7 +93,7 @@ def check_determined(problem: CycleProblem) -> None:
 def missing_roll_gauge(runs: Sequence[str]) -> str:
     """Return what is wrong with runs that do not tell K."""
     return (
-        f"a missing roll gauge: K terms need the channel roll_moment, which {', '.join(runs)} did "
+        f"a missing roll gauge: K terms need the channel roll_moment, which {joined(runs)} did "
         "not record; record it, and state [heel] in the campaign file"
     )
 
@@ -100,7 +101,7 @@ def missing_roll_gauge(runs: Sequence[str]) -> str:
 def _check_apart(problem: CycleProblem, matrix: np.ndarray, terms: list[Term]) -> None:
     plane, runs = (
         problem.numbers.cycles[0].plane,
-        ", ".join(cycle.name for cycle in problem.numbers.cycles),
+        joined([cycle.name for cycle in problem.numbers.cycles]),
     )
     size = np.sqrt((matrix**2).sum(axis=0))
     still = [

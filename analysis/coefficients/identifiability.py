@@ -9,6 +9,7 @@ from analysis.coefficients.body_cycle import BodyCycle, at_order
 from analysis.coefficients.names import Form, MatrixElement
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.oscillator import Plane
+from hardware.description.words import joined
 
 ALONE = 1e-2  # of the other motion: less may be left out
 _APART = 2e-2  # ratio of singular values above which two motions can be told apart
@@ -82,7 +83,7 @@ def missing_run(
     )
     phase = math.degrees(_phase_for(place.column, runs[0], form))
     return (
-        f"{name} cannot be determined from {', '.join(run.name for run in runs)}: "
+        f"{name} cannot be determined from {joined([run.name for run in runs])}: "
         f"{words[place.column]} there is {100.0 * size / other_size:.2g} % of "
         f"{words[1 - place.column]} at the struts and not told apart from it; add a run in "
         f"{words[place.column]} at {runs[0].frequency_hz:g} Hz and {runs[0].speed_m_s:g} m/s, for "
@@ -96,7 +97,7 @@ def mixture_run(runs: Sequence[BodyCycle], form: Form, moved: ComplexArray) -> s
     share = np.abs(moved).max(axis=0)
     phases = " or ".join(f"{math.degrees(_phase_for(c, runs[0], form)):.4g} deg" for c in (0, 1))
     return (
-        f"no coefficient can be determined from {', '.join(run.name for run in runs)} alone: "
+        f"no coefficient can be determined from {joined([run.name for run in runs])} alone: "
         f"{words[0]} and {words[1]} go together ({share[1] / share[0]:.2g} at the struts); add a "
         f"run at {runs[0].frequency_hz:g} Hz and {runs[0].speed_m_s:g} m/s with another strut "
         f"phase, for example {phases}"

@@ -5,7 +5,7 @@ struts exert besides, and the geometry what the gauges read of it; a zero run is
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -14,13 +14,14 @@ import numpy as np
 from analysis.coefficients.body_axes import labels
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.hull_cycle import loads_asked, stated_at_instants
+from analysis.coefficients.identifiability import identifiable_motions
 from analysis.coefficients.linear_fit import term_at
 from analysis.coefficients.names import Form, place_of
 from analysis.coefficients.phasors import Phasors, from_interleaved, interleaved
 from analysis.coefficients.strut_cycle import StrutCycle
 from analysis.coefficients.tare import Tare
 from analysis.coefficients.term_waves import waves_of
-from analysis.coefficients.terms import Term, term_of
+from analysis.coefficients.terms import Term, letter_of, term_of
 from analysis.ideal_rig import strut_displacements
 from analysis.kinematics.cycle import driven, harmonics
 from analysis.kinematics.geometry import Geometry, Waves
@@ -80,6 +81,31 @@ class Belief:
     def vector(self) -> FloatArray:
         """The values, shape ``(terms,)``."""
         return np.array(list(self.values.values()), dtype=np.float64)
+
+
+def told_terms(belief: Belief, points: Iterable[SetPoint]) -> tuple[bool, ...]:
+    """Tell of each term whether runs move in all that it goes with.
+
+    Runs in sway alone tell what goes with v; it counts as theirs what their analysis takes for it
+    (:func:`analysis.coefficients.identifiability.identifiable_motions`).
+    """
+    rates = [_velocities(belief, point) for point in dict.fromkeys(points)]
+    columns = identifiable_motions(np.concatenate(rates)) or (0, 1)
+    still = {"vr"[column] for column in (0, 1) if column not in columns}
+    return tuple(not still & set(map(letter_of, term.factors)) for term in belief.terms)
+
+
+def _velocities(belief: Belief, point: SetPoint) -> ComplexArray:
+    """Return velocity across and, at the struts, of turning: steady, then at each line."""
+    orders = np.array([line.order for line in point.every_line])
+    struts = strut_displacements(belief.oscillator, point, int(orders.max()))[orders]
+    rate = 2j * np.pi * point.frequency_hz * orders
+    half_m = belief.oscillator.half_spacing_m
+    turned = 0.5 * (struts[:, 1] - struts[:, 0]) / half_m
+    ahead = point.carriage_speed_m_s if belief.form is Form.MANOEUVRING else 0.0
+    across = 0.5 * rate * struts.sum(axis=1) - ahead * turned
+    steady = [-ahead * math.sin(point.drift_rad), half_m * point.turn_rate_rad_s]
+    return np.array([steady, *np.stack([across, half_m * rate * turned], axis=1)])
 
 
 def believed_cycles(

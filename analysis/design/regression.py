@@ -23,7 +23,7 @@ from analysis.coefficients.cycle_fit import FIRST, HIGHER, residual_variance, tr
 from analysis.coefficients.cycle_model import CycleProblem
 from analysis.coefficients.cycle_numbers import CycleNumbers
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
-from analysis.design.belief import ORDERS, Belief, believed_cycles
+from analysis.design.belief import ORDERS, Belief, believed_cycles, told_terms
 from analysis.design.candidate import CandidateRun
 from analysis.design.noise import Noise
 from hardware.description.arrays import FloatArray, IntArray
@@ -218,10 +218,9 @@ def fits_of(
         target.name: target.standard_uncertainty for target in targets if target.band_hz is None
     }
     if broad_targets or not targets:
-        places = np.arange(len(candidates))
-        yield from _by_load(
-            places, broad_targets, belief, max(term.degree for term in belief.terms)
-        )
+        told = told_terms(belief, (candidate.point for candidate in candidates))
+        degree = max(term.degree for term in belief.terms)
+        yield from _by_load(np.arange(len(candidates)), broad_targets, belief, told, degree)
     kinds: dict[tuple[float, float], list[int]] = {}
     for k, candidate in enumerate(candidates):
         if candidate.point.drift_rad == 0.0:
@@ -235,21 +234,30 @@ def fits_of(
         }
         if band_targets:
             where = f"{frequency:g} Hz, {speed:g} m/s"
-            yield from _by_load(np.array(members), band_targets, belief, 1, where)
+            told = told_terms(belief, (candidates[k].point for k in members))
+            yield from _by_load(np.array(members), band_targets, belief, told, 1, where)
 
 
 def _by_load(
-    members: IntArray, wanted: Mapping[str, float], belief: Belief, degree: int, where: str = ""
+    members: IntArray,
+    wanted: Mapping[str, float],
+    belief: Belief,
+    told: Sequence[bool],
+    degree: int,
+    where: str = "",
 ) -> Iterator[DesignFit]:
     """Yield the fit of each load that is asked for, with terms of up to some degree."""
     names = list(belief.values)
     for row in sorted({term.row for term in belief.terms}):
-        places = tuple(
+        places = [
             k for k, term in enumerate(belief.terms) if term.row == row and term.degree <= degree
-        )
-        if places and (not wanted or any(names[k] in wanted for k in places)):
-            orders = HIGHER if degree > 1 else FIRST
-            yield DesignFit(row, places, orders, members, wanted, where)
+        ]
+        orders = HIGHER if degree > 1 else FIRST
+        together = tuple(k for k in places if told[k])
+        beyond = [(k,) for k in places if not told[k] and names[k] in wanted]
+        for fitted in (together, *beyond):  # what no run moves is asked for by itself, in vain
+            if fitted and (not wanted or any(names[k] in wanted for k in fitted)):
+                yield DesignFit(row, fitted, orders, members, wanted, where)
 
 
 def _load_residuals(

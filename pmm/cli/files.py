@@ -152,7 +152,7 @@ def tell_damaged(file_flags: "Iterable[tuple[str, Iterable[Flag]]]") -> list[int
 def tell_unchecked(paths: Iterable[Path | str]) -> None:
     """Say, in one line, which recordings carry no checksums: those of other systems do not."""
     from analysis.readers.damage import carries_checksums
-    from pmm.document.notation import joined
+    from hardware.description.words import joined
 
     names = [Path(path).name for path in dict.fromkeys(paths) if not carries_checksums(Path(path))]
     if names:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from hardware.description.flags import Flag, Severity
+from hardware.description.words import joined
 from pmm.document.content import Note
-from pmm.document.notation import joined
 
 _NUMBER = re.compile(r"[-+−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 NONE: Mapping[str, str] = MappingProxyType({})

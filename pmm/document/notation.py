@@ -1,13 +1,12 @@
 """How numbers and names are written for people: digits, intervals, shares, rows of names."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Final
 
 NOT_KNOWN: Final = "–"
 _NEGLIGIBLE: Final = 1e-8  # of a value: its digits would run on without saying more
 _SIGNIFICANT: Final = 4  # digits where no interval says how many
-_NAMED: Final = 12  # names in one line; JSON holds all
 _PLACES: Final = 6  # before and behind the point; others are written with a power of ten
 _ANGLE_PLACES: Final = 9  # of degrees: no encoder tells a millionth
 _OPEN_DEG: Final = 90.0  # half-width of a phase that is not known
@@ -72,12 +71,6 @@ def is_open(phase_half_width_deg: float, amplitude: float) -> bool:
 def counted(number: int, noun: str) -> str:
     """Return ``1 run``, ``2 runs``."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
-
-
-def joined(names: Sequence[str], most: int = _NAMED) -> str:
-    """Return names in a row, of more than ``most`` the first and how many there are besides."""
-    more = len(names) - most
-    return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
 
 
 def clock(seconds: float) -> str:

@@ -8,8 +8,9 @@ from string import ascii_uppercase
 from analysis.coefficients.campaign_budget import CoefficientBudget, budget
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.recommendation import recommended
+from hardware.description.words import joined
 from pmm.document.content import Column, Table
-from pmm.document.notation import NOT_KNOWN, joined, percent, rounded, written
+from pmm.document.notation import NOT_KNOWN, percent, rounded, written
 
 _FEW_DIGITS = 0.1
 _MANY = 1000  # degrees of freedom beyond which Student's t is the normal distribution

@@ -11,6 +11,7 @@ from analysis.coefficients.dry_checks import DRY
 from analysis.coefficients.exchange import to_dict
 from analysis.coefficients.recommendation import recommended, table
 from analysis.coefficients.stated_uncertainties import STATED
+from hardware.description.words import joined
 from pmm.coefficients.tasks import ReadRecording
 from pmm.coefficients.workflow import CampaignOutcome
 from pmm.document.content import (
@@ -28,7 +29,7 @@ from pmm.document.content import (
     word,
 )
 from pmm.document.flag_lines import flag_lines, flag_notes
-from pmm.document.notation import NOT_KNOWN, counted, joined, written
+from pmm.document.notation import NOT_KNOWN, counted, written
 from pmm.report.attitude import attitude_table, heel_table
 from pmm.report.attitude_figure import attitude_figures
 from pmm.report.circle_figure import circle_figures

@@ -189,7 +189,7 @@ def test_each_run_of_a_grid_is_the_one_that_is_written(tmp_path: Path) -> None:
 @pytest.mark.parametrize("time_h", ["", "time_h = 1.0"])
 def test_what_no_run_of_the_grid_tells_takes_no_time(tmp_path: Path, time_h: str) -> None:
     first, _, second = DESIGN.partition('[[grid]]\nmotion = "yaw"')
-    text = f"{first}[noise]{second.partition('[noise]')[2]}[targets]\nY_v = 1.0\n[limits]\n{time_h}"
+    text = f"{first}[noise]{second.partition('[noise]')[2]}[targets]\nN_r = 1.0\n[limits]\n{time_h}"
     result = _design(tmp_path, text, "--output", str(tmp_path / "none.toml"))
     assert result.exit_code == 1
     said = " ".join(result.stdout.split())
@@ -216,8 +216,8 @@ def test_a_target_out_of_reach_takes_no_time_of_the_others(tmp_path: Path) -> No
 def test_what_is_told_at_some_frequencies_is_not_made_better_for_the_others(
     tmp_path: Path,
 ) -> None:
-    """At 0.12 Hz the grid has sway alone, which tells no coefficient there."""
-    target = '[targets]\n"Y_v at 0.1 to 0.15 Hz" = 3.0\n'
+    """At 0.12 Hz the grid has sway alone, which tells nothing of turning there."""
+    target = '[targets]\n"N_r at 0.1 to 0.15 Hz" = 3.0\n'
     sway = (
         "[[grid]]\nmotion = 'sway'\nfrequencies_hz = 0.12\namplitudes_mm = 150.0\n"
         "speeds_m_s = 1.2\n"
@@ -228,7 +228,7 @@ def test_what_is_told_at_some_frequencies_is_not_made_better_for_the_others(
     )
     assert more["steps"][-1]["time_s"] == pytest.approx(alone["steps"][-1]["time_s"])
     assert not alone["unmet"]
-    assert [why.startswith("Y_v at 0.12 Hz") for why in more["unmet"]] == [True]
+    assert [why.startswith("N_r at 0.12 Hz") for why in more["unmet"]] == [True]
 
 
 def test_runs_of_one_frequency_do_not_meet_a_target_of_two(tmp_path: Path) -> None:
@@ -255,13 +255,13 @@ def test_what_the_runs_made_in_any_case_meet_is_not_made_better_for_what_none_te
         "[[grid]]\nmotion = 'sway'\nfrequencies_hz = 0.12\namplitudes_mm = 150.0\n"
         "speeds_m_s = 1.2\n"
     )
-    target = '[targets]\n"Y_v at 0.1 to 0.15 Hz" = {}\n'
+    target = '[targets]\n"N_r at 0.1 to 0.15 Hz" = {}\n'
     known = json.loads(_design(tmp_path, f"{DESIGN}{runs}{target.format(30.0)}", "--json").stdout)
     just = 1.05 * max(one["standard_uncertainty"] for one in known["coefficients"])
     text = f"{DESIGN}{runs}{sway}{target.format(just)}"
     told = json.loads(_design(tmp_path, text, "--json").stdout)
     assert told["steps"] == []
-    assert [why.startswith("Y_v at 0.12 Hz") for why in told["unmet"]] == [True]
+    assert [why.startswith("N_r at 0.12 Hz") for why in told["unmet"]] == [True]
 
 
 def test_own_limits_leave_runs_out(tmp_path: Path) -> None:
@@ -316,3 +316,17 @@ def test_many_short_runs_of_two_settings_take_the_time_of_their_plan(tmp_path: P
     assert len(plan.runs) > 30
     whole_s = sum(duration_rows(plan.runs, rig))
     assert told["steps"][-1]["time_s"] == pytest.approx(whole_s)
+
+
+def test_a_grid_of_one_motion_is_designed_for_what_it_tells(tmp_path: Path) -> None:
+    """Runs in sway alone tell what goes with v, as the analysis of them does, and nothing of r."""
+    sway, _, _ = DESIGN.partition('[[grid]]\nmotion = "yaw"')
+    targets = '[noise]\nforce_n = 1.0\n[targets]\nY_v = "2 %"\nN_v = "5 %"\nN_r = "2 %"\n'
+    told = json.loads(_design(tmp_path, sway + targets, "--json").stdout)
+    met = {row["name"]: row["met"] for row in told["coefficients"]}
+    assert met["Y_v"]
+    assert met["N_v"]
+    (why,) = told["unmet"]
+    assert "N_r cannot be determined" in why
+    assert "add a run in yaw" in why
+    assert told["steps"]
