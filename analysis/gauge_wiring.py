@@ -66,9 +66,9 @@ def likely_wiring(
 ) -> Wiring:
     """Return the least that has to be changed for the model to have an inertia.
 
-    Where restoring acts and all runs have one frequency, inertia cannot be told from it; then it is
-    the damping that the model has to have. The answer is that nothing is wrong where the runs do
-    not tell, or where no change would help.
+    Where restoring acts and all runs have one frequency, inertia cannot be told from it; then, of a
+    carriage that stands, it is the damping that the model has to have. The answer is that nothing
+    is wrong where the runs do not tell, or where no change would help.
 
     Parameters
     ----------
@@ -86,7 +86,8 @@ def likely_wiring(
     span = _span(asked[:, :2])
     motions = [asked[:, k : k + 2] @ span for k in range(0, asked.shape[1], 2)]
     own = np.zeros((2, 2)) if body is None else _OWN * _inertia(body, half_spacing_m)
-    if plane is Plane.VERTICAL and not _tell(motions):
+    stands = not any(run.set_point.carriage_speed_m_s for run in pushed)
+    if plane is Plane.VERTICAL and stands and not _tell(motions):
         motions, own = motions[1:], np.zeros((2, 2))  # the first is then the damping
     if not _tell(motions):
         return Wiring()
@@ -100,8 +101,9 @@ def likely_wiring(
 
 def _tell(motions: Sequence[FloatArray]) -> bool:
     """Whether runs tell apart what goes with each of these."""
-    sizes = np.linalg.svd(np.hstack(motions), compute_uv=False)
-    return bool(sizes[-1] > _TOLD * sizes[0])
+    matrix = np.hstack(motions)
+    sizes = np.linalg.svd(matrix, compute_uv=False)
+    return matrix.shape[0] >= matrix.shape[1] and bool(sizes[-1] > _TOLD * sizes[0])
 
 
 def _rows(

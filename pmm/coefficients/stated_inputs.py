@@ -11,6 +11,7 @@ from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_plan import OWN_MODEL
 from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainties
 from analysis.coefficients.steady_turns import SteadyTurn, of_turns
+from analysis.ideal_rig import weight_matrix
 from analysis.response.following import Following
 from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
@@ -129,6 +130,9 @@ def with_own_body(
     """
     recorded = campaign.as_recorded(cycle.name)
     restoring = restoring_of(recorded, settings)
+    if body is None and recorded.model is not None:  # a dry run has the weight, not the buoyancy
+        borne = replace(recorded.model, mass_kg=0.0)
+        restoring = restoring + weight_matrix(borne, cycle.plane, cycle.medium)
     cycle_body = recorded.model if settings.inertia in (None, MODEL) else body
     if body is None or cycle_body is None or cycle_body == body:
         return cycle.without(body, restoring)

@@ -90,12 +90,16 @@ def without_restoring(hull: Hull) -> Hull:
 
 
 def runs(
-    hull: Hull, wiring: Wiring, speed_m_s: float, phases: tuple[str, ...]
+    hull: Hull,
+    wiring: Wiring,
+    speed_m_s: float,
+    phases: tuple[str, ...],
+    frequencies_hz: tuple[float, ...] = FREQUENCIES_HZ,
 ) -> list[RunHarmonics]:
     gauges = np.linalg.inv(wiring.matrix)
     return [
         hull.run(frequency_hz, phase_rad, speed_m_s, gauges)
-        for frequency_hz in FREQUENCIES_HZ
+        for frequency_hz in frequencies_hz
         for name in phases
         for phase_rad in [
             0.0
@@ -123,6 +127,21 @@ def test_what_is_wrong_is_named_where_restoring_acts(
 ) -> None:
     made = runs(hull, wiring, speed_m_s, ("across", "turning"))
     assert likely_wiring(made, hull.body, hull.half_m, Plane.VERTICAL) == wiring
+
+
+@pytest.mark.parametrize("wiring", WIRINGS)
+@given(hull=hulls())
+def test_runs_of_one_frequency_tell_it_by_their_damping(hull: Hull, wiring: Wiring) -> None:
+    """Inertia and restoring are one there, and which is larger is not known."""
+    even = replace(hull, damping=0.5 * (hull.damping + hull.damping.T))
+    made = runs(even, wiring, 0.0, ("across", "turning"), FREQUENCIES_HZ[:1])
+    assert likely_wiring(made, hull.body, hull.half_m, Plane.VERTICAL) == wiring
+
+
+@given(hull=hulls(), speed_m_s=st.floats(0.0, 2.0))
+def test_nothing_is_said_of_right_gauges_at_one_frequency(hull: Hull, speed_m_s: float) -> None:
+    made = runs(hull, Wiring(), speed_m_s, ("across", "turning"), FREQUENCIES_HZ[:1])
+    assert likely_wiring(made, hull.body, hull.half_m, Plane.VERTICAL) == Wiring()
 
 
 @given(hull=hulls(), speed_m_s=st.floats(0.0, 2.0), only=st.sampled_from(["across", "turning"]))
