@@ -5,6 +5,7 @@ import numpy as np
 from hardware.description.arrays import FloatArray
 
 _RELEASED = 0.9  # of the largest amplitude
+_AS_FAR = 6.0  # times the noise: samples that differ by less may be equal
 _SEEN = 0.5  # of a period's samples; a quarter of them may lie where the motion passes zero
 
 
@@ -52,13 +53,17 @@ def envelope_of(values: FloatArray, size: int) -> FloatArray:
     return np.asarray(envelope)
 
 
-def release(values: FloatArray, envelope: FloatArray, size: int, top: float) -> int:
-    """Return the sample after the largest swing: where the body hangs free."""
+def release(values: FloatArray, envelope: FloatArray, size: int, top: float, noise: float) -> int:
+    """Return the sample after the largest swing: where the body hangs free.
+
+    A body that is held before stands as far out as it ever comes: of all samples that the noise
+    does not tell from the largest, the last is the one at which it was let go.
+    """
     high = np.flatnonzero(np.nan_to_num(envelope) >= _RELEASED * top)
-    edge = size // 2 + 1
-    if high[0] <= edge:
-        return 0
-    swing = values[max(high[0] - size, 0) : high[0] + size]
-    centre = float(np.nanmean(values))
-    peak = max(high[0] - size, 0) + int(np.nanargmax(np.abs(swing - centre)))
+    if high[0] <= size // 2 + 1:  # it swings from the record's beginning on, if nobody holds it
+        moves = np.abs(values[:size] - values[0]) > _AS_FAR * noise
+        return max(int(np.argmax(moves)) - 1, 0)
+    begin = max(int(high[0]) - size, 0)
+    out = np.nan_to_num(np.abs(values[begin : high[0] + size] - float(np.nanmean(values))))
+    peak = begin + int(np.flatnonzero(out >= out.max() - _AS_FAR * noise)[-1])
     return int(min(peak + size // 2, values.size - 1))

@@ -234,7 +234,7 @@ def usable_part(series: Series) -> UsablePart:
             f"{series.where}: the largest amplitude is {top:.3g} {series.unit} over a noise of "
             f"{noise:.3g}; nothing swings: choose another channel, or release from further out"
         )
-    first = release(rough, envelope, size, top)
+    first = release(rough, envelope, size, top, noise)
     after = np.flatnonzero(np.nan_to_num(envelope[first:], nan=np.inf) < floor)
     last = first + int(after[0]) if after.size else rough.size - 1
     start_s, stop_s = (series.start_s + k / series.sample_rate_hz for k in (first, last))

@@ -14,6 +14,7 @@ from analysis.coefficients.steady_turns import SteadyTurn
 from analysis.coefficients.strut_phasors import MOTION_ASKED, STRUT_ASKED
 from hardware.description.body import Body
 from hardware.description.flags import Flag, Severity
+from hardware.description.oscillator import Plane
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.plausibility import implausible
 from pmm.coefficients.decays import Decay, decays_of
@@ -36,6 +37,11 @@ from pmm.coefficients.work import Work, work_of
 NO_ROLL_GAUGE: Final = (
     "a missing roll gauge: the channel roll_moment is not recorded, so that no term of K is told; "
     "record it where the model heels"
+)
+NO_RESTORING: Final = (
+    "a model without displaced_kg floats, and what floats has a hydrostatic restoring: none is "
+    "stated, so that it stands in the added mass (less by C over the square of the frequency); "
+    "state restoring in [hull], or displaced_kg of a model below the surface in [model]"
 )
 
 
@@ -77,7 +83,19 @@ class CampaignCycles:
     def implausible(self) -> tuple[Flag, ...]:
         """Units, signs and places of channels that look wrong in all runs."""
         harmonics = [run.run_harmonics for run in self.runs if run.run_harmonics is not None]
-        return implausible(self.campaign, harmonics)
+        return (*implausible(self.campaign, harmonics), *self._without_restoring)
+
+    @property
+    def _without_restoring(self) -> tuple[Flag, ...]:
+        """A model that floats, and heaves or pitches without a restoring."""
+        model = self.campaign.model
+        lacks = any(
+            cycle.plane is Plane.VERTICAL and cycle.frequency_hz and not cycle.restoring.any()
+            for cycle in self.cycles
+        )
+        if model is None or model.displaced_kg is not None or not lacks:
+            return ()
+        return (Flag("restoring_missing", Severity.WARNING, NO_RESTORING),)
 
     @property
     def without_roll_gauge(self) -> tuple[Flag, ...]:
