@@ -8,6 +8,7 @@ from analysis.recording import Recording
 from analysis.resolver.checks import (
     frequency_flags,
     gate_flags,
+    held_flags,
     pulse_flags,
     reference_flags,
     saturation_flags,
@@ -116,7 +117,8 @@ def analyse(
         + pulse_flags(recording, reference, readings[0])
         + flags
         + reference_flags(recording, stated_reference, steady, settings)
-        + saturation_flags(chosen, float(steady.opened_s[0]), float(steady.closed_s[-1])),
+        + saturation_flags(chosen, float(steady.opened_s[0]), float(steady.closed_s[-1]))
+        + held_flags(chosen, float(steady.opened_s[0]), float(steady.closed_s[-1])),
     )
 
 

@@ -21,6 +21,9 @@ _ROUNDED = 1.0 - 1e-9  # of the full scale
 _FEWEST = 4  # periods: fewer tell no turning from noise
 _NOTABLE_CYCLES = 0.05  # from the first period to the last
 _STEADY = 0.95  # mean resultant length of the turns: 1 where all are the same
+_FEWEST_STEPS = 20  # of a channel that is held: fewer may be even by chance
+_HELD = 1.5  # samples that a value stands for
+_EVENLY = 0.9  # of the steps
 _STRAIGHT = 0.2  # largest distance from an even turning, of the whole turn
 
 
@@ -145,6 +148,31 @@ def saturation_flags(recording: Recording, opened_s: float, closed_s: float) -> 
         for row, limit, count in zip(rows, limits, counts.tolist(), strict=True)
         if count
     )
+
+
+def held_flags(recording: Recording, opened_s: float, closed_s: float) -> tuple[Flag, ...]:
+    """Return a flag for each channel that keeps each value for an even number of samples.
+
+    A sensor that is slower than the recording stands still in between: its signal is late by half
+    of that. Steps of a coarse converter last unevenly, long where the signal turns round.
+    """
+    used = recording.between(opened_s, closed_s)
+    flags = []
+    for name in used.channel_names:
+        changes = np.flatnonzero(np.diff(used.values(name)) != 0.0)
+        lasting = np.diff(changes)
+        usual = float(lasting.mean()) if lasting.size >= _FEWEST_STEPS else 1.0
+        if usual < _HELD or np.mean(np.abs(lasting - usual) < 1.0) < _EVENLY:
+            continue
+        late_ms = 500.0 * (usual - 1.0) / recording.sample_rate_hz
+        message = (
+            f"each value stands for {usual:.3g} samples: its sensor is read at "
+            f"{recording.sample_rate_hz / usual:.3g} Hz, not at {recording.sample_rate_hz:.4g} Hz, "
+            f"and the signal is late by {late_ms:.3g} ms; record it at its own rate, or take that "
+            "off its phases"
+        )
+        flags.append(Flag("held", Severity.WARNING, message, name))
+    return tuple(flags)
 
 
 def frequency_flags(

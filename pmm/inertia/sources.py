@@ -1,5 +1,6 @@
 """Where a period comes from: records, light gates, a stopwatch, or a number."""
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -7,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from analysis.inertia.gates import Passages, passages, read_gate_events
-from analysis.inertia.lengthening import Lengthening
+from analysis.inertia.lengthening import Lengthening, longer
 from analysis.inertia.modulation import remove_modulation
 from analysis.inertia.passage_fit import PassageFit, fit_passages
 from analysis.inertia.record import RecordAnalysis, analyse_record, from_runs
@@ -25,6 +26,7 @@ from pmm.inertia.reading import Job, one_of
 from pmm.inertia.stated_values import stated_value
 
 _PARTS = 6  # of a single light gates' run
+_WIDE_DEG = 10.0  # at which it is said what an amplitude does
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,9 @@ class PeriodSource:
         then that at mid-record, not at no amplitude.
     stopwatch, reaction_s
         Counted swings, and the standard deviation of a person's start and stop together.
+    amplitude_deg, u_amplitude_deg
+        Mean amplitude of the swings that were counted: what geometry does to their period is taken
+        out.
     period_s, u_period_s, period_degrees_of_freedom
         Known otherwise.
     known_scatter_s, known_scatter_degrees_of_freedom
@@ -61,6 +66,8 @@ class PeriodSource:
     remove_modulation: bool = False
     stopwatch: tuple[StopwatchReading, ...] = ()
     reaction_s: float = 0.1
+    amplitude_deg: float | None = None
+    u_amplitude_deg: float = 0.0
     period_s: float | None = None
     u_period_s: float = 0.0
     period_degrees_of_freedom: float | None = None
@@ -72,6 +79,8 @@ class PeriodSource:
         """Exactly one way; a period known otherwise has an uncertainty."""
         if "inclinometer_radius_m" in table and "records" not in table:
             yield "inclinometer_radius_m", "is for records; there are none"
+        if "amplitude_deg" in table and "stopwatch" not in table:
+            yield "amplitude_deg", "is for a stopwatch; whatever else tells it by itself"
         yield from one_of(table, "records", "gates", "stopwatch", "period_s")
         if "period_s" in table and not table.get("u_period_s"):
             yield (
@@ -185,13 +194,37 @@ def read_period(
     if source.stopwatch:
         timed = stopwatch_period(source.stopwatch, reaction_s=source.reaction_s, subject=where)
         how = f"stopwatch, {len(timed.runs)} readings"
+        period, flags = _of_small_swings(timed.estimate, source, where, lengthens)
+        factor = period.value / timed.estimate.value
+        runs = tuple(factor * run for run in timed.runs)
         return PeriodRuns(
-            where, how, (timed.estimate,), (timed.runs,), flags=timed.flags,
+            where, how, (period,), (runs,), flags=(*timed.flags, *flags),
             redundancy=timed.redundancy,
         )  # fmt: skip
     value = source.period_s if source.period_s is not None else 0.0
     freedom = source.period_degrees_of_freedom or float("inf")
     return PeriodRuns(where, "given", (Estimate.of(value, source.u_period_s, "s", freedom),))
+
+
+def _of_small_swings(
+    timed: Estimate, source: PeriodSource, where: str, lengthens: Lengthening | None
+) -> tuple[Estimate, tuple[Flag, ...]]:
+    """Return a stopwatch's period without what geometry does at the amplitude that is stated."""
+    if lengthens is None:
+        return timed, ()
+    powers = lengthens(timed.value)
+    if source.amplitude_deg is None:
+        per_cent = 100.0 * (float(longer(powers, np.array([math.radians(_WIDE_DEG)]))[0]) - 1.0)
+        message = (
+            f"{where}: the counted swings are taken for small ones; of {_WIDE_DEG:g} deg their "
+            f"period is {per_cent:.2g} % long: state amplitude_deg, their mean amplitude"
+        )
+        return timed, (Flag("amplitude_unknown", Severity.NOTE, message),)
+    stated = math.radians(source.amplitude_deg)
+    off = math.radians(source.u_amplitude_deg)
+    ratio, beyond = (float(longer(powers, np.array([size]))[0]) for size in (stated, stated + off))
+    small = timed.following(timed.value / ratio, 1.0 / ratio)
+    return small.widened(small.value * (beyond / ratio - 1.0)) if off else small, ()
 
 
 def _from_records(

@@ -133,3 +133,27 @@ def test_a_channel_that_moves_twice_a_turn_is_no_lost_pulse() -> None:
     values = np.stack((MOTION, twice, twice)) + noise(0.01, 2, 3)
     run = replace(recording(values, RATE_HZ), photocell_edges_s=np.arange(0.0, 59.0))
     assert "half_frequency" not in {flag.code for flag in analyse(run).flags}
+
+
+@pytest.mark.parametrize("times", [1, 2, 3, 5])
+def test_a_channel_that_is_read_more_slowly_is_said_with_its_lag(times: int) -> None:
+    values = np.stack((MOTION, np.repeat(MOTION[::times], times)[: MOTION.size])) + 0.0
+    run = replace(recording(values, RATE_HZ), photocell_edges_s=np.arange(0.0, 59.0))
+    said = [flag for flag in analyse(run).flags if flag.code == "held"]
+    assert [flag.channel for flag in said] == (["force_1"] if times > 1 else [])
+    assert all(f"late by {500.0 * (times - 1) / RATE_HZ:.3g} ms" in flag.message for flag in said)
+
+
+def test_a_rate_that_is_no_whole_part_is_seen_too() -> None:
+    held = np.floor(np.arange(MOTION.size) / 3.3) * 3.3 / RATE_HZ
+    values = np.stack((MOTION, np.sin(2.0 * np.pi * held)))
+    run = replace(recording(values, RATE_HZ), photocell_edges_s=np.arange(0.0, 59.0))
+    assert [flag.channel for flag in analyse(run).flags if flag.code == "held"] == ["force_1"]
+
+
+@pytest.mark.parametrize("step", [0.02, 0.1, 0.5])
+@pytest.mark.parametrize("size", [0.0, 0.02])
+def test_coarse_steps_are_no_slow_sensor(step: float, size: float) -> None:
+    values = step * np.round((np.stack((MOTION, 0.3 * MOTION)) + noise(size, 5, 2)) / step)
+    run = replace(recording(values, RATE_HZ), photocell_edges_s=np.arange(0.0, 59.0))
+    assert "held" not in {flag.code for flag in analyse(run).flags}
