@@ -114,6 +114,8 @@ def budget(coefficients: CampaignCoefficients, row: int) -> CoefficientBudget:
 
 
 def _lines(coefficients: CampaignCoefficients, row: int, spread: float) -> tuple[BudgetLine, ...]:
+    if not spread > 0.0:  # exact, or of runs that tell no scatter: there are no shares of it
+        return ()
     uncertain = coefficients.uncertain
     parts = uncertain.variances()[:, row]
     freedom = np.array(

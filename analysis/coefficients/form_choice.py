@@ -140,8 +140,11 @@ def choose_form(
 
 
 def rival_forms(choice: FormChoice) -> tuple[tuple[str, float], ...]:
-    """Return the forms that do about as well as the one taken, each with its Akaike weight."""
-    if choice.verdict != NOT_SEPARABLE:
+    """Return the forms that do about as well as the one taken, each with its Akaike weight.
+
+    Runs that show no curvature do not tell that there is none.
+    """
+    if choice.verdict not in (NOT_SEPARABLE, LINEAR_FORM):
         return ()
     rivals = zip(choice.forms, choice.aicc, choice.weights, strict=True)
     return tuple(
