@@ -36,6 +36,7 @@ from pmm.campaign.calibrated_recording import applied_calibration
 from pmm.campaign.recording_source import RAW, open_recording
 from pmm.coefficients.attitude import attitude_of, rest_of
 from pmm.coefficients.followed_runs import as_driven, carriage_of, following_of, speed_age_u_s
+from pmm.coefficients.mean_place import place_flags
 from pmm.coefficients.settings import AmplifierTable
 from pmm.coefficients.tasks import FailedRecording, ReadRecording, Task, Zero
 from pmm.coefficients.zeros import utc_s, zeroed
@@ -179,6 +180,7 @@ def _turning(task: Task, recording: Recording) -> ReadRecording:
     reading = analysis.readings[0]
     gate = recording.between(reading.opened_s, reading.closed_s)
     flags = (*new_flags, *flags, *_speed_flags(task, gate), *attitude_flags, *following_flags)
+    flags = (*flags, *place_flags(struts))
     result = _read_recording(task, recording, _model(task, struts), None, reading.periods, flags)
     lines = reading if task.set_point.lines else None
     return replace(
