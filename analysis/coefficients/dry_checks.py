@@ -19,9 +19,7 @@ from hardware.description.errors import DataError
 
 DRY: Final = "dry runs"
 _NAMES: Final = ("m", "m x_G", "I")
-_AIR: Final = (
-    1.2e-3  # density over water's: what air moves along is of that order, and not taken off
-)
+_AIR: Final = 1.2e-3  # density over water's: what air moves along is about so much of the model
 _REMEDY: Final = (
     "correct [model], or take it out so that the dry runs are taken off line by line; if it is the "
     "gauges that are off, pmm gap tells"

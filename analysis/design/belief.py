@@ -90,7 +90,8 @@ def told_terms(belief: Belief, points: Iterable[SetPoint]) -> tuple[bool, ...]:
     (:func:`analysis.coefficients.identifiability.identifiable_motions`).
     """
     rates = [_velocities(belief, point) for point in dict.fromkeys(points)]
-    columns = identifiable_motions(np.concatenate(rates)) or (0, 1)
+    moved = np.concatenate([np.zeros((1, 2), dtype=np.complex128), *rates])
+    columns = (identifiable_motions(moved) if moved.any() else ()) or (0, 1)
     still = {"vr"[column] for column in (0, 1) if column not in columns}
     return tuple(not still & set(map(letter_of, term.factors)) for term in belief.terms)
 
