@@ -9,6 +9,7 @@ from analysis.resolver.reference import PhaseReference, ReferenceSource
 from analysis.resolver.settings import ResolverSettings
 from analysis.resolver.sums import PeriodSums, period_sums
 from hardware.description.arrays import ComplexArray
+from hardware.description.channels import CARRIAGE_SPEED
 from hardware.description.flags import Flag, Severity
 
 _SPEED_CHANGE = 0.005  # from the shortest to the longest period, relative
@@ -154,11 +155,14 @@ def held_flags(recording: Recording, opened_s: float, closed_s: float) -> tuple[
     """Return a flag for each channel that keeps each value for an even number of samples.
 
     A sensor that is slower than the recording stands still in between: its signal is late by half
-    of that. Steps of a coarse converter last unevenly, long where the signal turns round.
+    of that. Steps of a coarse converter last unevenly, long where the signal turns round. A
+    carriage's speed is polled, and its age is known (:mod:`analysis.response.following`).
     """
     used = recording.between(opened_s, closed_s)
     flags = []
     for name in used.channel_names:
+        if name == CARRIAGE_SPEED.name:
+            continue
         changes = np.flatnonzero(np.diff(used.values(name)) != 0.0)
         lasting = np.diff(changes)
         usual = float(lasting.mean()) if lasting.size >= _FEWEST_STEPS else 1.0
