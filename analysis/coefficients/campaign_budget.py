@@ -58,7 +58,7 @@ class BudgetLine:
     contribution
         Standard uncertainty of the coefficient by this kind alone, in its unit.
     share
-        Part of the variance; all lines together are 1.
+        Part of the variance; all lines together are 1. NaN where runs tell no scatter.
     degrees_of_freedom
         Effective, of the inputs of this kind.
     """
@@ -114,8 +114,6 @@ def budget(coefficients: CampaignCoefficients, row: int) -> CoefficientBudget:
 
 
 def _lines(coefficients: CampaignCoefficients, row: int, spread: float) -> tuple[BudgetLine, ...]:
-    if not spread > 0.0:  # exact, or of runs that tell no scatter: there are no shares of it
-        return ()
     uncertain = coefficients.uncertain
     parts = uncertain.variances()[:, row]
     freedom = np.array(

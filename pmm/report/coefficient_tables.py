@@ -136,7 +136,7 @@ def _freedom(value: float) -> str:
 def _largest(budget: CoefficientBudget) -> str:
     return (
         f"{budget.lines[0].source} {100.0 * budget.lines[0].share:.0f} %"
-        if budget.lines
+        if budget.lines and math.isfinite(budget.lines[0].share)
         else NOT_KNOWN
     )
 
