@@ -70,7 +70,7 @@ def coefficients_document(outcome: CampaignOutcome) -> Document:
         "coefficients",
         (
             Section("", (Text((f"{run_count}, {coefficients.plane}, {coefficients.form} form",)),)),
-            *_doubts(outcome),
+            Section("", tuple(_doubts(outcome))),
             Section(
                 "", (*conclusion(coefficients), *_conditions(outcome), Notes(flag_notes(besides)))
             ),
@@ -96,8 +96,10 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
         ", ".join(outcome.names),
         "coefficients",
         (
-            *_doubts(outcome),
-            Section("", (pairs("Summary", _summary(outcome)), *_conditions(outcome))),
+            Section(
+                "",
+                (*_doubts(outcome), pairs("Summary", _summary(outcome)), *_conditions(outcome)),
+            ),
             Section(
                 "Coefficients",
                 (recommended_table(coefficients), *alternatives_tables(coefficients)),
@@ -129,7 +131,7 @@ def report_document(outcome: CampaignOutcome, stories: Sequence[Section] = ()) -
     )
 
 
-def _doubts(outcome: CampaignOutcome) -> Iterator[Section]:
+def _doubts(outcome: CampaignOutcome) -> Iterator[Content]:
     """Yield what has to be settled before any number is used, where there is anything."""
     contradicted = [
         Note("warning", check.message)
@@ -138,10 +140,10 @@ def _doubts(outcome: CampaignOutcome) -> Iterator[Section]:
     ]
     notes = [*flag_notes(outcome.implausible), *contradicted]
     if notes:
-        head = Text(("Settle this first: it touches all that is below.",))
-        yield Section("", (head, Notes(notes)))
+        yield Text(("Settle this first: it touches all that is below.",))
+        yield Notes(notes)
     if outcome.remembers and outcome.result.rows(method=ZERO_FREQUENCY, speed_m_s=0.0):
-        yield Section("", (Notes([Note("warning", _MEMORY)]),))
+        yield Notes([Note("warning", _MEMORY)])
 
 
 def _conditions(outcome: CampaignOutcome) -> tuple[Content, ...]:
