@@ -11,9 +11,10 @@ import numpy as np
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import Belief
 from analysis.design.candidate import CandidateRun
+from analysis.design.design_fits import DesignTarget
 from analysis.design.expectation import expected_coefficients, made_up
 from analysis.design.noise import Noise
-from analysis.design.regression import DesignTarget, prospects
+from analysis.design.regression import prospects
 from analysis.design.selection import select
 from benchmarks.coefficients_campaigns import BODY, CUBIC, HORIZONTAL, without_incidence
 from benchmarks.outcome import Benchmark, Outcome, Report, Row

@@ -19,8 +19,9 @@ from analysis.coefficients.cycle_fit import trusted
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import Belief
 from analysis.design.candidate import CandidateRun
+from analysis.design.design_fits import DesignTarget
 from analysis.design.noise import Noise
-from analysis.design.regression import DesignTarget, Prospects, prospects
+from analysis.design.regression import Prospects, prospects
 from analysis.uncertainty.freedom import effective_freedom, student_factor
 from benchmarks.coefficients_campaigns import BODY, without_incidence
 from hardware.description.arrays import BoolArray, FloatArray

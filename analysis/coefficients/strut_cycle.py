@@ -4,7 +4,7 @@ The corrections are those of :mod:`analysis.coefficients.corrections`, at every 
 that the covariance between the orders is kept.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,9 +17,9 @@ from analysis.coefficients.strut_phasors import (
     CHANNELS_INDEPENDENT,
     MOTION_ASKED,
     STRUT_ASKED,
+    asked_motion,
     reading_phasors,
 )
-from analysis.ideal_rig import strut_displacements
 from analysis.kinematics.body_frame import HEEL
 from analysis.kinematics.body_frame import ROLL_MOMENT as ROLL
 from analysis.kinematics.cycle import waves
@@ -221,8 +221,7 @@ def measured_cycle(
     tapered = reading.interval_source is IntervalSource.BINS
     flags = (*reading.flags, CHANNELS_INDEPENDENT) if tapered else reading.flags
     if len(moved) < len(DISPLACEMENTS):
-        asked = _asked_motion(oscillator, set_point, count)
-        phasors = joined(_in_step(asked, phasors, moved), phasors)
+        phasors = joined(asked_motion(oscillator, set_point, phasors, count), phasors)
         flags = (*flags, STRUT_ASKED if moved else MOTION_ASKED)
     return StrutCycle(
         reading.run,
@@ -251,29 +250,6 @@ def _carriage(
     order = np.arange(len(measured))
     turned: ComplexArray = measured * np.exp(2j * np.pi * reading.frequency_hz * age_s * order)
     return turned
-
-
-def _asked_motion(oscillator: Oscillator, set_point: SetPoint, orders: int) -> Phasors:
-    values = strut_displacements(oscillator, set_point, max(orders, 1))[: orders + 1]
-    values[0] = values[0].imag  # H[0] = i A0
-    names = tuple(at_order(name, n) for n in range(orders + 1) for name in DISPLACEMENTS)
-    return Phasors.of(names, ("m",) * len(names), values.ravel())
-
-
-def _in_step(asked: Phasors, measured: Phasors, moved: Sequence[str]) -> Phasors:
-    """Return what is asked of the struts that were not measured, in step with the one that was.
-
-    The phase may come from that strut itself, and be 0 at its upward crossing: so the motion asked
-    for is set later until both agree on the fundamental of the strut that was measured.
-    """
-    phase_rad = 0.0
-    for name in (at_order(strut, 1) for strut in moved):
-        found, told = (at.values[at.names.index(name)] for at in (measured, asked))
-        phase_rad = float(np.angle(found * np.conj(told)))
-    names = tuple(name for name in asked.names if name not in measured.names)
-    kept = asked.select(names)
-    orders = [asked.names.index(name) // len(DISPLACEMENTS) for name in names]
-    return Phasors.of(names, kept.units, kept.values * np.exp(1j * phase_rad * np.array(orders)))
 
 
 def static_cycle(

@@ -7,13 +7,17 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from analysis.coefficients.body_axes import labels
+from analysis.coefficients.body_axes import at_order, labels
 from analysis.coefficients.phasors import Phasors
+from analysis.ideal_rig import strut_displacements
 from analysis.resolver.harmonics import Harmonics
 from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.arrays import FloatArray
+from hardware.description.channels import DISPLACEMENTS
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
+from hardware.description.oscillator import Oscillator
+from hardware.description.setpoint import SetPoint
 
 MOTION_ASKED = Flag(
     "motion_from_set_point",
@@ -68,3 +72,25 @@ def _ordered(coefficients: FloatArray, orders: int) -> FloatArray:
     for n in range(1, orders + 1):
         ordered[n] = coefficients[:, 2 * n - 1 : 2 * n + 1]
     return ordered
+
+
+def asked_motion(
+    oscillator: Oscillator, set_point: SetPoint, measured: Phasors, orders: int
+) -> Phasors:
+    """Return what is asked of the struts that were not measured, in step with one that was.
+
+    The phase may come from that strut itself, and be 0 at its upward crossing: so the motion asked
+    for is set later until both agree on the fundamental of the strut that was measured.
+    """
+    asked = strut_displacements(oscillator, set_point, max(orders, 1))[: orders + 1]
+    asked[0] = asked[0].imag  # H[0] = i A0
+    turned = 0.0
+    for k, name in enumerate(at_order(strut, 1) for strut in DISPLACEMENTS):
+        if name in measured.names:
+            turned = float(
+                np.angle(measured.values[measured.names.index(name)] * asked[1, k].conj())
+            )
+    asked *= np.exp(1j * turned * np.arange(orders + 1))[:, None]
+    names = [at_order(strut, n) for n in range(orders + 1) for strut in DISPLACEMENTS]
+    whole = Phasors.of(tuple(names), ("m",) * len(names), asked.ravel())
+    return whole.select([name for name in names if name not in measured.names])

@@ -17,8 +17,8 @@ from analysis.coefficients.cycle_fit import CycleFit, fit_terms
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import Belief, believed_cycles
 from analysis.design.candidate import CandidateRun
+from analysis.design.design_fits import DesignFit, DesignTarget, fits_of
 from analysis.design.noise import Noise
-from analysis.design.regression import DesignFit, DesignTarget, fits_of
 from hardware.description.errors import DataError
 
 SCATTER: Final = "scatter of the runs"

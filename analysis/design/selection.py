@@ -16,7 +16,8 @@ from typing import Final
 import numpy as np
 
 from analysis.design.candidate import CandidateRun
-from analysis.design.regression import DesignTarget, Prospects, Regression
+from analysis.design.design_fits import DesignTarget
+from analysis.design.regression import Prospects, Regression
 from hardware.description.arrays import BoolArray, FloatArray, IntArray
 
 MOST_RUNS: Final = 200

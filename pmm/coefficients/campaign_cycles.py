@@ -21,15 +21,8 @@ from pmm.coefficients.decays import Decay, decays_of
 from pmm.coefficients.reading import read_cycle, read_zero
 from pmm.coefficients.settings import CoefficientSettings
 from pmm.coefficients.solving import Progress
-from pmm.coefficients.stated_inputs import (
-    body_of,
-    chain_of,
-    in_still_air,
-    oscillator_of,
-    stated_of,
-    with_own_body,
-    without_dry,
-)
+from pmm.coefficients.stated_inputs import chain_of, oscillator_of, stated_of
+from pmm.coefficients.taken_off import body_of, in_still_air, with_own_body, without_dry
 from pmm.coefficients.tasks import FailedRecording, ReadRecording, Task
 from pmm.coefficients.wave_runs import WaveRun, wave_runs
 from pmm.coefficients.work import Work, work_of

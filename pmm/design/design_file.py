@@ -19,8 +19,8 @@ from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainti
 from analysis.coefficients.terms import SURGE
 from analysis.design.belief import Belief
 from analysis.design.candidate import CandidateRun
+from analysis.design.design_fits import DesignTarget
 from analysis.design.noise import Noise
-from analysis.design.regression import DesignTarget
 from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import RunKind
 from hardware.description.setpoint import Medium

@@ -9,6 +9,7 @@ from typing import Final
 
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.design.candidate import CandidateRun
+from analysis.design.design_fits import DesignTarget
 from analysis.design.expectation import (
     REPEATS,
     SCATTER,
@@ -16,7 +17,7 @@ from analysis.design.expectation import (
     expected_coefficients,
     made_up,
 )
-from analysis.design.regression import DesignTarget, Prospects, prospects
+from analysis.design.regression import Prospects, prospects
 from analysis.design.selection import select
 from pmm.design.design_file import DesignFile
 from pmm.plan.duration import run_s

@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from analysis.design.belief import Belief
-from analysis.design.regression import DesignTarget
+from analysis.design.design_fits import DesignTarget
 from hardware.description.setpoint import SetPoint
 from pmm.configuration import Fault
 

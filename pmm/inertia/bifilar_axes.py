@@ -21,7 +21,7 @@ from analysis.uncertainty.monte_carlo import assess
 from analysis.uncertainty.redundancy import Redundancy
 from hardware.description.errors import ConfigurationError
 from pmm.inertia.outcome import Finding, PlaneAxes, assessed
-from pmm.inertia.sources import AngledPeriod
+from pmm.inertia.period_source import AngledPeriod
 
 _WORDS = {
     "psi_rad": "principal x axis, from body x",

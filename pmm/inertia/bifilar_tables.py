@@ -9,8 +9,8 @@ from pmm.inertia.bifilar_axes import TiltedTable
 from pmm.inertia.hanging import hanging_rules
 from pmm.inertia.job_table import JobTable
 from pmm.inertia.lines import line_rules
+from pmm.inertia.period_source import PeriodSource
 from pmm.inertia.reading import one_of, require_together
-from pmm.inertia.sources import PeriodSource
 
 
 @dataclass(frozen=True)

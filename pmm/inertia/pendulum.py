@@ -18,9 +18,10 @@ from pmm.inertia.experiment import Experiment
 from pmm.inertia.hanging import hanging_rules
 from pmm.inertia.job_table import JobTable
 from pmm.inertia.outcome import Finding, Outcome, PlaneAxes, assessed, without_repeats
+from pmm.inertia.period_source import PeriodSource
 from pmm.inertia.reading import one_of
 from pmm.inertia.sketch import about_axis
-from pmm.inertia.sources import PeriodRuns, PeriodSource
+from pmm.inertia.sources import PeriodRuns
 from pmm.inertia.stated_values import given_or_none, gravity_of, stated_value
 from pmm.inertia.torsion import TorsionTable, about_rod, in_plane, stiffness
 

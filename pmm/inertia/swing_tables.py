@@ -11,9 +11,9 @@ from analysis.inertia.swing_static import LeverSeries
 from pmm.inertia.air import air_rules
 from pmm.inertia.hanging import hanging_rules
 from pmm.inertia.job_table import JobTable
+from pmm.inertia.period_source import PeriodSource
 from pmm.inertia.properties import ModelTable
 from pmm.inertia.reading import one_of, require_together
-from pmm.inertia.sources import PeriodSource
 
 
 @dataclass(frozen=True)

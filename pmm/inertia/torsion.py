@@ -14,8 +14,8 @@ from analysis.uncertainty.monte_carlo import Assessment, assess
 from hardware.description.errors import DataError
 from pmm.inertia.experiment import Experiment
 from pmm.inertia.outcome import Finding, PlaneAxes, assessed
+from pmm.inertia.period_source import AngledPeriod, PeriodSource
 from pmm.inertia.reading import one_of
-from pmm.inertia.sources import AngledPeriod, PeriodSource
 from pmm.inertia.stated_values import stated_value
 
 

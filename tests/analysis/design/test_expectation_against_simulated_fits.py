@@ -9,9 +9,10 @@ import pytest
 from analysis.coefficients.cycle_fit import FIRST, fit_cycles
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.candidate import CandidateRun
+from analysis.design.design_fits import DesignTarget
 from analysis.design.expectation import REPEATS, SCATTER, expected_coefficients, made_up
 from analysis.design.noise import Noise
-from analysis.design.regression import DesignTarget, prospects
+from analysis.design.regression import prospects
 from analysis.design.selection import covariance
 from benchmarks import coefficients_campaigns as exact
 from hardware.description.setpoint import SetPoint

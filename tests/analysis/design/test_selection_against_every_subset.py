@@ -9,7 +9,8 @@ import pytest
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import Belief
 from analysis.design.candidate import CandidateRun
-from analysis.design.regression import DesignTarget, Prospects, prospects
+from analysis.design.design_fits import DesignTarget
+from analysis.design.regression import Prospects, prospects
 from analysis.design.selection import covariance, select
 from benchmarks.coefficients_campaigns import BODY, HORIZONTAL
 from hardware.description.oscillator import HORIZONTAL_1963

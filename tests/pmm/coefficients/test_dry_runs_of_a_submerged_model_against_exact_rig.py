@@ -13,7 +13,7 @@ from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium
 from pmm.campaign.campaign import Campaign
 from pmm.coefficients.settings import CoefficientSettings
-from pmm.coefficients.stated_inputs import with_own_body, without_dry
+from pmm.coefficients.taken_off import with_own_body, without_dry
 from tests.analysis.coefficients.exact_campaigns import cycle_of
 from tests.analysis.kinematics.exact import body_of
 from tests.exact.hull import polynomial

@@ -11,7 +11,7 @@ from pmm.document.data import as_data
 from pmm.document.style import write_figures
 from pmm.inertia import bifilar, swing
 from pmm.inertia.outcome import Outcome
-from pmm.inertia.sources import PeriodSource
+from pmm.inertia.period_source import PeriodSource
 from pmm.report.inertia_document import document
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "inertia"
