@@ -25,10 +25,10 @@ from analysis.coefficients.campaign_result import CampaignCoefficients, TrialCol
 from analysis.coefficients.campaign_solve import GroupCoefficients, solve_group
 from analysis.coefficients.cycle_checks import missing_roll_gauge
 from analysis.coefficients.line_cycles import by_lines
-from analysis.coefficients.names import place_of
+from analysis.coefficients.names import damping_of, is_inertial, is_seakeeping, place_of
 from analysis.coefficients.repeats import Repeatability, outliers, repeatability, with_repeats
 from analysis.coefficients.terms import term_of
-from analysis.coefficients.zero_frequency import extrapolate
+from analysis.coefficients.zero_frequency import at_zero_frequency
 from analysis.uncertainty.values import UncertainValues, stacked
 from hardware.description.errors import ConfigurationError, DataError
 
@@ -202,17 +202,17 @@ def with_zero_frequency(coefficients: CampaignCoefficients) -> CampaignCoefficie
     the load was found linear, for it holds what the amplitude adds.
     """
     entries, values = list(coefficients.entries), [coefficients.uncertain]
-    for name, speed in dict.fromkeys(
-        (entry.name, entry.speed_m_s) for entry in coefficients.entries
-    ):
-        rows = coefficients.at_each_frequency(name, speed)
-        if len(rows) < 2:
+    for names, speed in _responses(coefficients):
+        rows_of = {name: coefficients.at_each_frequency(name, speed) for name in names}
+        if max(map(len, rows_of.values())) < 2:
             continue
-        row_values = coefficients.uncertain.select(rows)
-        label = f"{name} at {speed:g} m/s"
-        frequencies = [coefficients.entries[k].frequency_hz for k in rows]
-        values.append(extrapolate(label, frequencies, row_values).uncertain)
-        entries.append(_at_zero(coefficients, rows))
+        rows = [row for name in names for row in rows_of[name]]
+        frequencies = [coefficients.entries[row].frequency_hz for row in rows]
+        label = f"{' and '.join(names)} at {speed:g} m/s"
+        kinds = [is_inertial(coefficients.entries[row].name) for row in rows]
+        picked = coefficients.uncertain.select(rows)
+        values.append(at_zero_frequency(label, frequencies, kinds, picked))
+        entries += [_at_zero(coefficients, rows_of[name]) for name in names if rows_of[name]]
     added_count = len(entries) - len(coefficients.entries)
     empty = np.full(added_count, np.nan)
     trials = coefficients.trials
@@ -227,6 +227,24 @@ def with_zero_frequency(coefficients: CampaignCoefficients) -> CampaignCoefficie
             np.concatenate((trials.high, empty)),
         ),
     )
+
+
+def _responses(
+    coefficients: CampaignCoefficients,
+) -> Iterator[tuple[list[str], float]]:
+    """Yield the names that are one response, added mass first, and their carriage speed.
+
+    At speed added mass and damping of the seakeeping form hold what the incidence does, which has
+    no limit in slow motion.
+    """
+    responses: dict[tuple[str, float], list[str]] = {}
+    for name, speed in dict.fromkeys(
+        (entry.name, entry.speed_m_s) for entry in coefficients.entries
+    ):
+        responses.setdefault((damping_of(name), speed), []).append(name)
+    for (damping, speed), names in responses.items():
+        if not (speed and is_seakeeping(damping)):
+            yield sorted(names, key=is_inertial, reverse=True), speed
 
 
 def _at_zero(coefficients: CampaignCoefficients, rows: Sequence[int]) -> CoefficientEntry:

@@ -17,7 +17,7 @@ from analysis.coefficients.campaign_records import (
     ConsistencyCheck,
 )
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.zero_frequency import extrapolate
+from analysis.coefficients.zero_frequency import at_zero_frequency
 from analysis.ideal_rig import mass_matrix, weight_matrix
 from analysis.uncertainty.values import UncertainValues, stacked
 from hardware.description.oscillator import Plane
@@ -149,10 +149,9 @@ def _entry_text(entry: CoefficientEntry) -> str:
 def restoring_pairs(cycles: Sequence[BodyCycle]) -> list[Pair]:
     """Return the measured restoring beside the hydrostatic one, from pure motions at rest.
 
-    The load in phase with the motion is ``C + G - omega^2 (M + A)``; the model's part is taken off,
-    and what is left is extrapolated to zero frequency. At forward speed incidence adds damping to
-    it, so only runs at rest serve; two frequencies or more are needed. Three at which the water's
-    memory is strong tell nothing of zero frequency: such a pair is left out.
+    The load over the motion is ``C + G - omega^2 (M + A) + i omega B``; the model's part is taken
+    off, and of what is left the restoring is told from a memory of the water. At forward speed
+    incidence adds damping to it, so only runs at rest serve; two frequencies or more are needed.
     """
     if cycles[0].plane is not Plane.VERTICAL:
         return []
@@ -161,8 +160,7 @@ def restoring_pairs(cycles: Sequence[BodyCycle]) -> list[Pair]:
         pure = [cycle for cycle in cycles if _serves(cycle, column)]
         if len({round(cycle.frequency_hz, 4) for cycle in pure}) < 2:
             continue
-        pairs_of_rows = (_restoring(pure, row, column) for row in (0, 1))
-        pairs += [pair for pair in pairs_of_rows if pair is not None]
+        pairs += [_restoring(pure, row, column) for row in (0, 1)]
     return pairs
 
 
@@ -173,20 +171,22 @@ def _serves(cycle: BodyCycle, column: int) -> bool:
     return bool(size[1 - column] <= _PURE * size[column])
 
 
-def _restoring(cycles: Sequence[BodyCycle], row: int, column: int) -> Pair | None:
+def _restoring(cycles: Sequence[BodyCycle], row: int, column: int) -> Pair:
     name = f"C{'35'[row]}{'35'[column]}"
+    hertz = np.array([cycle.frequency_hz for cycle in cycles])
+    omega = 2.0 * math.pi * hertz
     stiffness = stacked([_stiffness(cycle, row, column) for cycle in cycles])
-    intercept = extrapolate(name, [cycle.frequency_hz for cycle in cycles], stiffness)
-    if not intercept.checked:
-        return None
+    loads = stiffness.scaled(np.stack((-(omega**-2), 1.0 / omega), axis=1).ravel())
+    kinds = np.tile((True, False), len(cycles))
+    slow = at_zero_frequency(name, np.repeat(hertz, 2), kinds, loads, restoring=True)
     hydrostatic = UncertainValues(np.array([float(cycles[0].restoring[row, column])]))
-    values = stacked([intercept.uncertain, hydrostatic])
+    values = stacked([slow.select([2]), hydrostatic])
     texts = (f"the load in phase of {len(cycles)} runs", "hydrostatics")
     return Pair(RESTORING, name, ("N/m", "N", "N m")[row + column], texts, values)
 
 
 def _stiffness(cycle: BodyCycle, row: int, column: int) -> UncertainValues:
-    """Load in phase with the motion, over it, less the model's inertia and weight.
+    """Load in phase with the motion and ahead of it, over it, less the model's inertia and weight.
 
     What the other motion asks for by hydrostatics is taken off: pitch by struts that slide heaves
     the midpoint a little.
@@ -201,7 +201,8 @@ def _stiffness(cycle: BodyCycle, row: int, column: int) -> UncertainValues:
     square = (2.0 * math.pi * cycle.frequency_hz) ** 2
     weight = weight_matrix(body, cycle.plane, cycle.medium)
     taken = weight - square * mass_matrix(body, cycle.plane)
-    value = np.array([ratio.real - taken[row, column]])
+    value = np.array([ratio.real - taken[row, column], ratio.imag])
     slope = np.array([-ratio / motion, -cross_stiffness / motion, 1.0 / motion])
-    real = np.array([part for z in slope for part in (z.real, -z.imag)])
-    return UncertainValues(value, chosen.real.mapped(real[None]).contributions)
+    parts = np.stack((slope, 1j * slope), axis=1).ravel()  # of real and imaginary parts
+    rows = np.stack((parts.real, parts.imag))
+    return UncertainValues(value, chosen.real.mapped(rows).contributions)

@@ -93,3 +93,18 @@ def place_of(name: str, plane: Plane, form: Form) -> MatrixElement:
             f"(known: {', '.join(places)})"
         )
     return places[name]
+
+
+def is_seakeeping(name: str) -> bool:
+    """Whether a coefficient is of the seakeeping form: ``a33``, ``b35``."""
+    return name[0] in "ab"
+
+
+def is_inertial(name: str) -> bool:
+    """Whether a coefficient goes with an acceleration: ``a33``, ``Z_wdot``."""
+    return name[0] == "a" or name.endswith("dot")
+
+
+def damping_of(name: str) -> str:
+    """Return the damping that is one response with an added mass: ``b33`` of ``a33``."""
+    return "b" + name[1:] if name[0] == "a" else name.removesuffix("dot")

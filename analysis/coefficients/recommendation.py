@@ -25,7 +25,7 @@ from analysis.coefficients.campaign_records import (
 )
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.form_choice import LINEAR_FORM
-from analysis.coefficients.names import PLACES, Form, name_of
+from analysis.coefficients.names import PLACES, Form, is_seakeeping, name_of
 from analysis.coefficients.terms import LOAD_WORDS, load_of, term_of
 
 _FIRST = (
@@ -98,17 +98,13 @@ def table(coefficients: CampaignCoefficients) -> Iterator[Mapping[str, Any]]:
 
 def _own_frequency(entry: CoefficientEntry) -> float:
     """Frequency that a coefficient belongs to; 0 for a derivative, which is of slow motion."""
-    return round(entry.frequency_hz, 4) if _of_seakeeping(entry.name) else 0.0
-
-
-def _of_seakeeping(name: str) -> bool:
-    return name[0] in "ab"
+    return round(entry.frequency_hz, 4) if is_seakeeping(entry.name) else 0.0
 
 
 def _serves(coefficients: CampaignCoefficients, entry: CoefficientEntry, *, curved: bool) -> bool:
     if entry.method not in _FIRST:
         return False
-    if _of_seakeeping(entry.name):
+    if is_seakeeping(entry.name):
         return entry.method == LINEAR
     if load_of(entry.name) == LOAD_WORDS[2]:
         return True

@@ -127,14 +127,6 @@ class CampaignOutcome:
         return tuple(fit_measured(matrices) for matrices in self.at_rest)
 
     @property
-    def remembers(self) -> bool:
-        """Whether water that takes energy only, with a memory, describes the values at rest."""
-        return any(
-            memory.chosen.states and not (memory.misfits or memory.contradicted)
-            for memory in self.memories
-        )
-
-    @property
     def noticed(self) -> tuple[Flag, ...]:
         """All that was flagged of the runs that were used, each flag with its runs."""
         of_runs = [flag for flags in self.flags.values() for flag in flags]

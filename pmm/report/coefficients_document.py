@@ -6,7 +6,6 @@ from typing import Any, Final
 
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_budget import budget
-from analysis.coefficients.campaign_records import ZERO_FREQUENCY
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.dry_checks import DRY
 from analysis.coefficients.exchange import to_dict
@@ -53,11 +52,6 @@ from pmm.report.memory_figure import memory_figures
 from pmm.report.waves import wave_figures, wave_table
 
 SCHEMA: Final = "pmm-coefficients-1"
-_MEMORY: Final = (
-    "the water has a memory, which the polynomials of 'zero frequency' do not know: take A in slow "
-    "motion and B_0 of the memory's table in their place, and hold no restoring that they lead to "
-    "against hydrostatics"
-)
 
 
 def coefficients_document(outcome: CampaignOutcome) -> Document:
@@ -142,8 +136,6 @@ def _doubts(outcome: CampaignOutcome) -> Iterator[Content]:
     if notes:
         yield Text(("Settle this first: it touches all that is below.",))
         yield Notes(notes)
-    if outcome.remembers and outcome.result.rows(method=ZERO_FREQUENCY, speed_m_s=0.0):
-        yield Notes([Note("warning", _MEMORY)])
 
 
 def _conditions(outcome: CampaignOutcome) -> tuple[Content, ...]:

@@ -21,7 +21,6 @@ from pmm.cli import cli
 from pmm.coefficients.memory_file import write_memory
 from pmm.coefficients.settings import CoefficientSettings
 from pmm.coefficients.workflow import CampaignOutcome
-from pmm.document.content import Notes
 from pmm.document.data import as_data
 from pmm.report.coefficients_document import coefficients_document
 from pmm.report.memory_figure import memory_figures
@@ -105,19 +104,6 @@ def test_no_memory_is_said_and_the_hull_written_without_one(tmp_path: Path) -> N
     assert campaign.radiation is None
     assert campaign.hull.added_mass[0][0] == pytest.approx(60.0, rel=1e-3)
     assert campaign.hull.damping[0][0] == pytest.approx(20.0, rel=1e-2)
-
-
-@pytest.mark.parametrize("remembers", [True, False])
-def test_a_memory_is_said_before_the_values_that_do_not_know_it(remembers: bool) -> None:
-    document = coefficients_document(outcome(remembers))
-    notes = [
-        note.text
-        for section in document.sections[:2]
-        for content in section.contents
-        if isinstance(content, Notes)
-        for note in content.items
-    ]
-    assert any(text.startswith("the water has a memory") for text in notes) == remembers
 
 
 def test_too_few_frequencies_and_another_point_are_refused(tmp_path: Path) -> None:
