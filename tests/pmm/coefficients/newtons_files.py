@@ -55,6 +55,7 @@ medium = "{medium}"
 """
 
 State = tuple[np.ndarray, ...]
+Waves = Callable[[np.ndarray], np.ndarray]
 
 
 def written(
@@ -67,8 +68,10 @@ def written(
     lasting_s: Mapping[str, float] | None = None,
     mass_kg: float = MASS_KG,
     more: str = "",
+    frequencies_hz: tuple[float, ...] = (0.25, 0.4),
+    waves: Waves | None = None,
 ) -> Path:
-    """Write a campaign of two frequencies, and return its folder.
+    """Write a campaign, of two frequencies by default, and return its folder.
 
     Parameters
     ----------
@@ -82,6 +85,8 @@ def written(
         What the campaign file says.
     more
         To stand in the campaign file.
+    waves
+        Load of the waves that sway makes, per velocity, at some frequencies in Hz; kg/s.
     """
     text = HEAD.format(
         mass_kg=mass_kg,
@@ -93,7 +98,7 @@ def written(
     runs = [
         (f"{kind}-{frequency_hz}-{size_m}", kind, frequency_hz, size_m, medium)
         for medium in (("water", "air") if dry else ("water",))
-        for frequency_hz in (0.25, 0.4)
+        for frequency_hz in frequencies_hz
         for size_m in amplitudes_m
         for kind in kinds
     ]
@@ -103,7 +108,8 @@ def written(
         turned = 2.0 * math.atan2(2.0 * math.pi * frequency_hz * HALF_M, speed)
         phase_rad = turned if kind == "yaw" else 0.0
         lasts_s = (lasting_s or {}).get(name, 56.0)
-        record = read(frequency_hz, size_m, phase_rad, speed, lasts_s, seed, wet=medium == "water")
+        wet = medium == "water"
+        record = read(frequency_hz, size_m, phase_rad, speed, lasts_s, seed, wet=wet, waves=waves)
         header = ";".join(["Zeit [s]", *COLUMNS.values()])
         np.savetxt(folder / f"{name}.csv", record, "%.6f", ";", header=header, comments="")
         text += RUN.format(
@@ -116,7 +122,7 @@ def written(
 
 def read(
     frequency_hz: float, size_m: float, phase_rad: float, speed_m_s: float, lasts_s: float,
-    seed: int, *, wet: bool,
+    seed: int, *, wet: bool, waves: Waves | None = None,
 ) -> np.ndarray:  # fmt: skip
     """Return time, displacements in mm and forces in N, as columns."""
     time_s = np.arange(round(lasts_s * RATE_HZ)) / RATE_HZ
@@ -148,6 +154,8 @@ def read(
         of = PUT_IN
         force = force - of["Y_vdot"] * v_dot - of["Y_rdot"] * r_dot - of["Y_r"] * r
         force = force - of["Y_v"] * v - of["Y_vvv"] * v**3
+        if waves is not None:
+            force = force + _waves(waves, frequency_hz, lambda t: velocity(t)[1], time_s)
         moment = moment - of["N_vdot"] * v_dot - of["N_rdot"] * r_dot
         moment = moment - of["N_v"] * v - of["N_r"] * r
     _, _, heading, aft, fore = place(time_s)
@@ -169,6 +177,17 @@ def read(
 def _slope(of: Callable[[np.ndarray], State], at_s: np.ndarray) -> State:
     before, after = of(at_s - STEP_S), of(at_s + STEP_S)
     return tuple((b - a) / (2.0 * STEP_S) for a, b in zip(before, after, strict=True))
+
+
+def _waves(
+    waves: Waves, frequency_hz: float, v: Callable[[np.ndarray], np.ndarray], time_s: np.ndarray
+) -> np.ndarray:
+    """Return the load of the waves, order by order: the motion has gone on for ever."""
+    orders = np.arange(1, 8)
+    turns = np.arange(256) / 256
+    parts = np.fft.rfft(v(turns / frequency_hz))[orders] / 128
+    angles = 2j * math.pi * frequency_hz * np.outer(time_s, orders)
+    return np.asarray((np.exp(angles) @ (waves(orders * frequency_hz) * parts)).real)
 
 
 def exchanged(*names: str) -> dict[str, str]:
