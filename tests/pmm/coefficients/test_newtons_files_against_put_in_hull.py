@@ -129,7 +129,7 @@ def spheroids_waves(frequency_hz: np.ndarray) -> np.ndarray:
 
 
 def test_slow_motion_is_told_of_a_model_that_makes_waves(tmp_path: Path) -> None:
-    """At speed, where no state space is fitted; waves add two thirds to the damping of the fastest run."""
+    """At speed no state space is fitted; waves add 60 % to the damping of the fastest run."""
     hertz = (0.2, 0.3, 0.4, 0.55)
     found = recommended(written(tmp_path, frequencies_hz=hertz, waves=spheroids_waves))
     for name in ("Y_v", "Y_vdot"):
