@@ -6,11 +6,13 @@ from typing import Any, Final
 
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_budget import budget
+from analysis.coefficients.campaign_records import LINEAR, ZERO_FREQUENCY
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.dry_checks import DRY
 from analysis.coefficients.exchange import to_dict
 from analysis.coefficients.recommendation import recommended, table
 from analysis.coefficients.stated_uncertainties import STATED
+from analysis.coefficients.terms import load_of
 from hardware.description.words import joined
 from pmm.coefficients.tasks import ReadRecording
 from pmm.coefficients.workflow import CampaignOutcome
@@ -52,6 +54,10 @@ from pmm.report.memory_figure import memory_figures
 from pmm.report.waves import wave_figures, wave_table
 
 SCHEMA: Final = "pmm-coefficients-1"
+_ONE_AMPLITUDE: Final = (
+    "one amplitude alone does not tell whether it is linear, and the values are those of that "
+    "amplitude; add runs at another"
+)
 
 
 def coefficients_document(outcome: CampaignOutcome) -> Document:
@@ -155,8 +161,13 @@ def conclusion(coefficients: CampaignCoefficients) -> tuple[Content, ...]:
     forms: dict[tuple[str, str], list[str]] = {}
     for choice in coefficients.choices:
         forms.setdefault((choice.load, choice.message), []).extend(choice.runs)
+    for entry in (coefficients.entries[k] for k in recommended(coefficients)):
+        unjudged = entry.method in (LINEAR, ZERO_FREQUENCY)
+        if unjudged and not coefficients.choices_of(entry.name, entry.runs):
+            forms.setdefault((load_of(entry.name), _ONE_AMPLITUDE), []).extend(entry.runs)
     lines = [
-        f"form    {load} of {joined(runs)}: {message}" for (load, message), runs in forms.items()
+        f"form    {load} of {joined(list(dict.fromkeys(runs)))}: {message}"
+        for (load, message), runs in forms.items()
     ]
     if coefficients.checks:
         agree = sum(check.agrees for check in coefficients.checks)
