@@ -1,5 +1,7 @@
 """Resolution of a recording: its phase reference, its steady stretch, harmonics of its gates."""
 
+import cmath
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -28,7 +30,7 @@ from analysis.resolver.settings import (
     with_own_gate,
 )
 from analysis.resolver.signal_reference import JUMP_CYCLES
-from analysis.resolver.steady_stretch import Stretch, find_steady, limits
+from analysis.resolver.steady_stretch import Limit, Stretch, find_steady, limits
 from analysis.resolver.sums import PeriodSums, period_sums, whole_periods
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import SHAFT_ANGLE
@@ -219,22 +221,36 @@ def _limit_flags(
     recording: Recording, values: PeriodValues, stretch: Stretch, settings: ResolverSettings
 ) -> tuple[Flag, ...]:
     """Say where one channel alone ends the steady stretch, and how far it strays there."""
-    faults_of: dict[int, list[str]] = {}
+    limits_of: dict[int, list[Limit]] = {}
     for limit in limits(values, stretch, settings.steady_tolerance):
-        side = "before" if limit.period < stretch.start else "after"
-        missing = not np.isfinite(limit.spread)
-        fault = "has missing samples" if missing else f"strays by {100.0 * limit.spread:.3g} %"
-        faults_of.setdefault(limit.channel, []).append(f"{fault} in the period {side} it")
+        limits_of.setdefault(limit.channel, []).append(limit)
     return tuple(
         Flag(
             "stretch_limited",
-            Severity.NOTE,
+            Severity.WARNING if any(limit.lasts for limit in met) else Severity.NOTE,
             f"this channel ends the steady stretch of {stretch.period_count} of {len(values.ramp)} "
-            f"periods: it {' and '.join(faults)} (limit "
+            f"periods: it {' and '.join(_fault(limit, stretch) for limit in met)} (limit "
             f"{100.0 * settings.steady_tolerance:g} % of its usual amplitude)",
             recording.channel_names[channel],
         )
-        for channel, faults in faults_of.items()
+        for channel, met in limits_of.items()
+    )
+
+
+def _fault(limit: Limit, stretch: Stretch) -> str:
+    """Say how a channel strays, and what it is beyond: lost samples turn it, a gain scales it."""
+    side = "before" if limit.period < stretch.start else "after"
+    missing = not np.isfinite(limit.spread)
+    fault = "has missing samples" if missing else f"strays by {100.0 * limit.spread:.3g} %"
+    text = f"{fault} in the period {side} it"
+    if not limit.lasts:
+        return text
+    turn_deg = math.degrees(cmath.phase(limit.beyond))
+    lost = ", as after lost or doubled samples" if limit.turned else ""
+    return (
+        f"{text} and, {'earlier' if side == 'before' else 'later'} than that, keeps to "
+        f"{abs(limit.beyond):.3g} times its amplitude, turned by {turn_deg:.3g} degrees against "
+        f"the other channels{lost}; nothing tells which side is right"
     )
 
 

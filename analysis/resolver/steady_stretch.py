@@ -1,5 +1,7 @@
 """Where a run is steady: the longest stretch of periods whose first harmonics stay constant."""
 
+import cmath
+import math
 from collections import deque
 from dataclasses import dataclass
 
@@ -10,6 +12,7 @@ from hardware.description.arrays import BoolArray, ComplexArray, FloatArray
 
 _PRESENT = 0.2  # of the usual amplitude: below it nothing moves yet, or no longer
 _ROUNDING = 1e-12  # of the mean: what a constant channel leaves in its harmonics
+_LASTING = 3  # periods that show another first harmonic
 _NOISE = 4.0  # standard deviations of a period's own noise that are no change
 
 
@@ -38,11 +41,24 @@ class Limit:
 
     ``channel`` is its row; ``spread`` is how far it would stray in the stretch with that period,
     to either side and relative to its usual amplitude; NaN where it has missing samples.
+    ``beyond`` is the channel's first harmonic past that period over that in the stretch, where
+    three periods or more keep another one there; else 1.
     """
 
     period: int
     channel: int
     spread: float
+    beyond: complex = 1.0
+
+    @property
+    def lasts(self) -> bool:
+        """Whether the channel keeps to another first harmonic beyond."""
+        return self.beyond != 1.0
+
+    @property
+    def turned(self) -> bool:
+        """Whether that differs in phase more than in amplitude."""
+        return abs(cmath.phase(self.beyond)) > abs(math.log(abs(self.beyond)))
 
 
 @dataclass(frozen=True)
@@ -102,8 +118,21 @@ def limits(values: PeriodValues, stretch: Stretch, tolerance: float) -> list[Lim
         if out.sum() == 1:
             channel = int(np.argmax(out))
             spread = float(half_range[channel] / max(judged.size[channel], 1e-300))
-            limits_met.append(Limit(period, channel, spread))
+            beyond = _beyond(judged, stretch, period, channel)
+            limits_met.append(Limit(period, channel, spread, beyond))
     return limits_met
+
+
+def _beyond(judged: _FirstHarmonics, stretch: Stretch, period: int, channel: int) -> complex:
+    """Return a channel's first harmonic past a limit over that in the stretch; 1 where it is."""
+    first_harmonic = judged.phasors[:, channel]
+    past = first_harmonic[:period] if period < stretch.start else first_harmonic[period + 1 :]
+    inside = first_harmonic[stretch.start : stretch.stop].mean()
+    if len(past) < _LASTING or not np.isfinite(past).all() or inside == 0.0:
+        return 1.0
+    change, allowed = past.mean() - inside, judged.allowed[channel]
+    lasts = np.abs(past - past.mean()).max() <= 2.0 * allowed < np.abs(change)
+    return complex(1.0 + change / inside) if lasts else 1.0
 
 
 def _judge(values: PeriodValues, tolerance: float) -> _FirstHarmonics:

@@ -140,3 +140,34 @@ def test_where_all_channels_end_the_stretch_none_is_named() -> None:
     run = recording(np.stack((late, 2.0 * late)), RATE_HZ)
     values = solve_periods(period_sums(run, from_frequency(1.0, 0.0, run.end_s)))
     assert limits(values, find_steady(values, 0.05), 0.05) == []
+
+
+@given(st.integers(8, 32), st.integers(-12, 12), st.floats(0.5, 2.0), st.integers(0, 49))
+def test_what_a_channel_is_beyond_is_what_it_was_made(
+    period: int, lost: int, gain: float, within: int
+) -> None:
+    """Samples that are lost turn it, by the hand's angle; an amplifier's gain scales it."""
+    at = period * int(RATE_HZ) + within
+    other = np.sin(2.0 * np.pi * (TIME + lost / RATE_HZ) + 0.4)
+    changed = np.where(np.arange(TIME.size) < at, MOTION, gain * other)
+    run = recording(np.stack((MOTION, changed)), RATE_HZ)
+    values = solve_periods(period_sums(run, from_frequency(1.0, 0.0, run.end_s)))
+    found = find_steady(values, 0.05)
+    factor = gain * np.exp(2j * np.pi * lost / RATE_HZ)
+    for limit in limits(values, found, 0.05):
+        assert limit.channel == 1
+        expected = factor if found.start == 0 else 1.0 / factor
+        assert limit.beyond == 1.0 or abs(limit.beyond - expected) < 0.02 * abs(expected)
+        if abs(factor - 1.0) > 0.3:  # twice what may pass for steady, with room
+            assert limit.lasts
+            assert limit.turned == (abs(np.angle(expected)) > abs(np.log(gain)))
+
+
+def test_a_single_period_that_strays_does_not_last() -> None:
+    hit = MOTION + noise(0.001)
+    hit[int(12.2 * RATE_HZ) : int(12.4 * RATE_HZ)] += 5.0
+    run = recording(np.stack((MOTION, hit)), RATE_HZ)
+    values = solve_periods(period_sums(run, from_frequency(1.0, 0.0, run.end_s)))
+    (limit,) = limits(values, find_steady(values, 0.02), 0.02)
+    assert limit.period == 12
+    assert not limit.lasts
