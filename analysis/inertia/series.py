@@ -52,12 +52,14 @@ def check_sampling(where: str, lines: Spectrum, sample_rate_hz: float, period_s:
     Raises
     ------
     DataError
-        Under five samples a period, or with a tenth of the strongest line at half the rate.
+        Under five samples a period, or with a line at half the rate, a tenth of the strongest or
+        more; noise that stands there is none.
     """
     samples = period_s * sample_rate_hz
-    top = lines.frequency_hz > 0.45 * sample_rate_hz
-    share = float(lines.amplitude[top].max() / lines.amplitude[1:].max())
-    if samples < FEWEST_SAMPLES_A_PERIOD or share > ALIASED_SHARE:
+    highest = float(lines.amplitude[lines.frequency_hz > 0.45 * sample_rate_hz].max())
+    share = highest / float(lines.amplitude[1:].max())
+    is_line = highest > LINE_OVER_MEDIAN * float(np.median(lines.amplitude))
+    if samples < FEWEST_SAMPLES_A_PERIOD or (is_line and share > ALIASED_SHARE):
         raise DataError(
             f"{where}: {samples:.2g} samples a period of {period_s:.3g} s (at least "
             f"{FEWEST_SAMPLES_A_PERIOD:g}), and {100 * share:.0f} % of the strongest line stands "

@@ -20,7 +20,7 @@ from analysis.inertia.local_periods import LocalPeriods
 from analysis.inertia.passage_fit import fit_passages
 from analysis.inertia.record import analyse_record
 from analysis.inertia.repeats import KnownScatter, combine_runs
-from analysis.inertia.series import Series, series_from_recording, usable_part
+from analysis.inertia.series import Series, rough_period, series_from_recording, usable_part
 from analysis.inertia.stopwatch import StopwatchReading, stopwatch_period
 from analysis.recording import Recording
 from analysis.uncertainty.estimate import Estimate
@@ -86,6 +86,15 @@ def test_too_few_swings() -> None:
 def test_swings_too_few_to_follow_the_amplitude_are_counted_out() -> None:
     with pytest.raises(DataError, match=r"swing, angle: too few swings: 4\.\d+ of 3 s .* least 6"):
         analyse_record(record(noisy(T[:260], 3.0, 0.0, 0.05)))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_noise_beside_a_fast_decay_is_no_aliasing(seed: int) -> None:
+    """The broad line of five swings stands little above noise of a fiftieth."""
+    time_s = np.arange(0.0, 60.0, 0.02)
+    swing = np.exp(-0.25 * time_s) * np.sin(2.0 * math.pi * time_s)
+    noise = 0.02 * np.random.default_rng(seed).standard_normal(time_s.size)
+    assert rough_period("a decay", swing + noise, 50.0) == pytest.approx(1.0, rel=0.05)
 
 
 def test_aliasing() -> None:

@@ -149,3 +149,14 @@ def test_own_scatter_against_the_students_t_of_fits_made_anew() -> None:
         assert agreement.without[k] == pytest.approx(line, rel=1e-9)
     assert agreement.stands_out == ("datum 5",)
     assert "do not scatter alike" in agreement.flags()[0].message
+
+
+def test_what_a_datum_changes_is_written_in_digits_that_show_it() -> None:
+    values = UncertainValues(np.array([1.73149, 1.73150, 1.73151, 1.73189]))
+    for k in range(4):
+        values = values.plus(f"own {k}", 1e-6 * np.eye(4)[k])
+    _, agreement = best_fit(
+        np.ones((4, 1)), values, subject="length", results=("length_m",), data=NAMES[:4]
+    )
+    (flag,) = agreement.flags()
+    assert "without it length_m 1.731500 in place of 1.731597" in flag.message
