@@ -29,6 +29,8 @@ from hardware.description.flags import Flag, Severity
 
 _ROUGH_ITERATIONS = 10  # enough to tell the starts apart
 _MATTERS = 0.01  # residual over the first amplitude
+_SURE = 4.0  # standard uncertainties of a decay rate that are no growth
+_ROUNDING_1_S = 1e-9
 
 
 @dataclass(frozen=True)
@@ -206,18 +208,21 @@ def _finish(
         for k, (w, rate) in enumerate(zip(omega, decay, strict=True))
     )
     base = linear[2 * omega.size :]
+    spread = covariance(problem, omega, decay, matrix, linear, residual, diagnostics)
+    growth = np.array([-mode.decay_1_s for mode in modes])
+    of_noise = _SURE * np.sqrt(np.diag(spread)[1 : 4 * omega.size : 4]) + _ROUNDING_1_S
     return DampedFit(
         modes=modes,
         offset=float(base[0]) if base.size else 0.0,
         trend=float(base[1]) if base.size > 1 else 0.0,
-        covariance=covariance(problem, omega, decay, matrix, linear, residual, diagnostics),
+        covariance=spread,
         diagnostics=diagnostics,
         converged=solution.converged,
         iterations=solution.iterations,
         start_s=start_s,
         time_s=problem.time_s - problem.time_s[0] + start_s,
         residual=residual,
-        flags=_flags(solution, diagnostics, modes, where),
+        flags=_flags(solution, diagnostics, modes, where, grows=bool((growth > of_noise).any())),
     )
 
 
@@ -228,7 +233,12 @@ def _mode(omega: float, decay: float, pair: FloatArray, first_s: float) -> Dampe
 
 
 def _flags(
-    solution: Solution, diagnostics: ResidualDiagnostics, modes: tuple[DampedMode, ...], where: str
+    solution: Solution,
+    diagnostics: ResidualDiagnostics,
+    modes: tuple[DampedMode, ...],
+    where: str,
+    *,
+    grows: bool,
 ) -> tuple[Flag, ...]:
     flags = []
     if not solution.converged:
@@ -247,7 +257,7 @@ def _flags(
         )
         severity = Severity.WARNING if residual_share > _MATTERS else Severity.NOTE
         flags.append(Flag("structured_residual", severity, message))
-    if min(mode.decay_1_s for mode in modes) < -1e-9:
+    if grows:
         message = f"{where}: an oscillation grows; the record is not a free decay from here on"
         flags.append(Flag("growing", Severity.WARNING, message))
     return tuple(flags)

@@ -167,3 +167,14 @@ def test_too_few_samples_and_too_few_swings_are_refused() -> None:
         fit_damped(t, np.cos(2.0 * np.pi * t / 4.0))
     with pytest.raises(DataError, match="constant"):
         fit_damped(t, np.ones(t.size))
+
+
+@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize(("decay_1_s", "grows"), [(0.0, False), (-0.002, True)])
+def test_an_oscillation_grows_where_noise_does_not_explain_it(
+    seed: int, decay_1_s: float, grows: bool
+) -> None:
+    t = np.arange(0.0, 40.0, 0.1)
+    noise = 0.002 * np.random.default_rng(seed).standard_normal(t.size)
+    fit = fit_damped(t, damped(t, 2.846, decay_1_s, 0.07) + noise)
+    assert ("growing" in {flag.code for flag in fit.flags}) == grows
