@@ -45,7 +45,7 @@ class RollDecay:
     Raises
     ------
     ConfigurationError
-        If a period is not above 0 or a damping ratio not between 0 and 1.
+        If a period is not above 0 or a damping ratio not between -1 and 1.
     """
 
     period_s: float
@@ -59,10 +59,10 @@ class RollDecay:
     damping_degrees_of_freedom: float = math.inf
 
     def __post_init__(self) -> None:
-        if not (self.period_s > 0.0 and 0.0 < self.damping_ratio < 1.0):
+        if not (self.period_s > 0.0 and abs(self.damping_ratio) < 1.0):
             raise ConfigurationError(
                 f"roll_decays: period_s = {self.period_s:g} must be above 0 and damping_ratio = "
-                f"{self.damping_ratio:g} between 0 and 1"
+                f"{self.damping_ratio:g} between -1 and 1"
             )
 
 

@@ -139,7 +139,10 @@ def zero_amplitude_period(local: LocalPeriods, known: Powers = ()) -> ZeroAmplit
 def _without(local: LocalPeriods, known: Powers) -> LocalPeriods:
     """Return the phases and periods that would be there without what geometry does."""
     omega = float(local.omega_rad_s.mean())
-    late = sum((c * amplitude_integral(local, power) for power, c in known), 0.0 * local.time_s)
+    late = sum(
+        (c * amplitude_integral(local.time_s, local.amplitude, power) for power, c in known),
+        0.0 * local.time_s,
+    )
     return replace(
         local,
         phase_rad=local.phase_rad + omega * late,
@@ -181,7 +184,11 @@ def _rows(local: LocalPeriods, power: int) -> FloatArray:
     unit_column = np.ones(local.time_s.size)
     columns = [np.stack([local.time_s - local.time_s[0], unit_column])]
     if power:
-        columns.append(np.stack([amplitude_integral(local, power), local.amplitude**power]))
+        columns.append(
+            np.stack(
+                [amplitude_integral(local.time_s, local.amplitude, power), local.amplitude**power]
+            )
+        )
     columns += [
         np.stack([local.stretch == number, 0.0 * unit_column])
         for number in range(int(local.stretch[-1]) + 1)
@@ -189,18 +196,18 @@ def _rows(local: LocalPeriods, power: int) -> FloatArray:
     return np.asarray(np.stack(columns).transpose(2, 1, 0))
 
 
-def amplitude_integral(local: LocalPeriods, power: int) -> FloatArray:
-    """Integrate ``A^power`` from the first middle to each, by Gauss and Legendre.
+def amplitude_integral(time_s: FloatArray, amplitude: FloatArray, power: int) -> FloatArray:
+    """Integrate ``A^power`` from the first time to each, by Gauss and Legendre.
 
-    Between the middles the logarithm of the amplitude is Fritsch and Carlson's monotone cubic:
+    Between the times the logarithm of the amplitude is Fritsch and Carlson's monotone cubic:
     a decay by friction or drag bends across a gap.
     """
     from scipy.interpolate import PchipInterpolator
 
-    log = PchipInterpolator(local.time_s, np.log(np.maximum(local.amplitude, 1e-300)))
+    log = PchipInterpolator(time_s, np.log(np.maximum(amplitude, 1e-300)))
     nodes, weights = np.polynomial.legendre.leggauss(5)
-    half = 0.5 * np.diff(local.time_s)
-    inside = (local.time_s[:-1] + half)[:, np.newaxis] + half[:, np.newaxis] * nodes
+    half = 0.5 * np.diff(time_s)
+    inside = (time_s[:-1] + half)[:, np.newaxis] + half[:, np.newaxis] * nodes
     return np.concatenate([[0.0], np.cumsum(half * (np.exp(power * log(inside)) @ weights))])
 
 

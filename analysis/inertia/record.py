@@ -71,7 +71,7 @@ def own_decay(local: LocalPeriods) -> OwnDecay:
     time, amplitude = local.time_s, local.amplitude
     size, duration = float(amplitude.max()), float(time[-1] - time[0])
     columns = [np.ones(time.size)]
-    columns += [-amplitude_integral(local, p) / size**p / duration for p in (1, 2)]
+    columns += [-amplitude_integral(time, amplitude, p) / size**p / duration for p in (1, 2)]
     columns += [-(time - time[0]) / duration]
     (smooth, smooth_residual), (solved, friction_residual) = (
         nnls(np.column_stack(columns[:count]), amplitude / size) for count in (3, 4)
@@ -219,7 +219,7 @@ def from_runs(
 
 
 def damping_of(records: Sequence[RecordAnalysis]) -> Estimate:
-    """Return the damping ratio, the mean over records; one alone has the scatter along it."""
+    """Return the damping ratio of whole records, their mean; one alone has the scatter along it."""
     ratios = np.array([record.fit.modes[0].damping_ratio for record in records])
     if ratios.size > 1:
         spread = float(ratios.std(ddof=1)) / np.sqrt(ratios.size)

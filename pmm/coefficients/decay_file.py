@@ -1,6 +1,7 @@
 """``[[roll_decays]]`` that name what ``pmm inertia pendulum --json`` told of their records."""
 
 import json
+import math
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -10,8 +11,8 @@ from pmm.configuration import Fault
 
 _KEY: Final = "result"
 _TAKEN: Final = {  # name of a finding: keys of its value, standard uncertainty and freedom
-    "damped_period_s": ("period_s", "u_period_s", "period_degrees_of_freedom"),
-    "damping_ratio": ("damping_ratio", "u_damping_ratio", "damping_degrees_of_freedom"),
+    "period_s": ("period_s", "u_period_s", "period_degrees_of_freedom"),
+    "small_damping_ratio": ("damping_ratio", "u_damping_ratio", "damping_degrees_of_freedom"),
 }
 _REMEDY: Final = "`pmm inertia pendulum FILE --json` of roll records writes one"
 
@@ -43,6 +44,8 @@ def _fill(decay: dict[str, Any], path: Path) -> str:
         )
         pairs = zip(keys, numbers, strict=True)
         decay.update({key: number for key, number in pairs if number is not None})
+    with suppress(TypeError, ValueError, ZeroDivisionError):  # a decay's period is the damped one
+        decay["period_s"] /= math.sqrt(1.0 - decay["damping_ratio"] ** 2)
     if typed:
         return f"and {', '.join(typed)} are both given; leave one of them out"
     if missing:

@@ -1,12 +1,12 @@
 """Free decays of a campaign: what ``pmm run`` or another system recorded, read into roll decays."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from analysis.coefficients.roll_decay import RollDecay
-from analysis.inertia.record import RecordAnalysis, analyse_record, damping_of, from_runs
+from analysis.inertia.damping import small_damping_of
+from analysis.inertia.record import RecordAnalysis, analyse_record, from_runs
 from analysis.inertia.series import series_from_recording
 from analysis.uncertainty.estimate import Estimate
 from hardware.description.channels import HEEL_ANGLE
@@ -32,8 +32,7 @@ class Decay:
     records
         One for each run, in their order.
     period, ratio
-        Damped period, s, and the share of critical damping, of small rolls: the period at no
-        amplitude, and the decay of the whole records over it.
+        Damped period, s, and the share of critical damping, of small rolls.
     """
 
     runs: tuple[AtRest, ...]
@@ -77,15 +76,7 @@ def decays_of(
 def _joined(pairs: Sequence[tuple[AtRest, RecordAnalysis]]) -> Decay:
     """Join the records of one speed, at the amplitudes at which GM is what rights the model."""
     runs, records = zip(*pairs, strict=True)
-    small_period, along = from_runs(records).estimate, damping_of(records)
-    period_ratio = (
-        small_period.value * len(records) / sum(record.fit.modes[0].period_s for record in records)
-    )
-    ratio = along.following(along.value * period_ratio, period_ratio)
-    # The rate of decay is taken for the same at all amplitudes; as far as the period is not, it may
-    # not be either: anything between, evenly.
-    ratio = ratio.widened(ratio.value * abs(period_ratio - 1.0) / math.sqrt(3.0))
-    return Decay(runs, records, small_period, ratio)
+    return Decay(runs, records, from_runs(records).estimate, small_damping_of(records))
 
 
 def with_recorded(

@@ -7,6 +7,7 @@ from typing import Any, Literal
 import numpy as np
 
 from analysis.inertia.compound_pendulum import compound_pendulum, lamboley
+from analysis.inertia.damping import small_damping_of
 from analysis.inertia.elementary_functions import Value, sqrt
 from analysis.inertia.lengthening import Lengthening, pendulum_lengthening
 from analysis.inertia.record import damping_of
@@ -187,7 +188,7 @@ def _gyradius(inertia_kg_m2: Value, mass_kg: Value) -> Value:
 
 
 def decay_findings(runs: PeriodRuns) -> list[Finding]:
-    """Return the period at no amplitude, and with records the damped one and the damping ratio.
+    """Return the period at no amplitude, and with records the damped one and damping ratios.
 
     The damped period is that of the whole record at its amplitudes; releases differ in it as they
     do in the other.
@@ -200,5 +201,12 @@ def decay_findings(runs: PeriodRuns) -> list[Finding]:
         findings.append(
             Finding("damped_period_s", "damped period of the whole record", damped_period)
         )
-        findings.append(Finding("damping_ratio", "damping ratio", damping_of(runs.records)))
+        findings += [
+            Finding("damping_ratio", "damping ratio of the whole record", damping_of(runs.records)),
+            Finding(
+                "small_damping_ratio",
+                "damping ratio of small swings, friction and drag apart",
+                small_damping_of(runs.records),
+            ),
+        ]
     return findings

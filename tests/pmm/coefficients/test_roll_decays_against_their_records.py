@@ -68,7 +68,7 @@ def decay_of(folder: Path, text: str) -> RollDecay:
 def test_a_named_result_gives_what_the_equation_was_made_of(folder: Path) -> None:
     decay = decay_of(folder, DECAY)
     assert decay.period_degrees_of_freedom < 100.0
-    assert decay.damping_degrees_of_freedom == 2.0
+    assert 2.0 <= decay.damping_degrees_of_freedom < 100.0
     assert decay.u_gm_m == 2e-4
     found = with_decays(campaign(), [decay], HEEL, BODY)
     spread = found.uncertain.standard_uncertainty
@@ -81,7 +81,7 @@ def test_a_named_result_gives_what_the_equation_was_made_of(folder: Path) -> Non
 def test_what_is_wrong_with_it_is_said_once(folder: Path) -> None:
     (folder / "other.json").write_text('{"results": {}}', encoding="utf-8")
     for text, said in (
-        (DECAY.replace("roll.json", "none.json"), "tells no damped_period_s and no damping_ratio"),
+        (DECAY.replace("roll.json", "none.json"), "tells no period_s and no small_damping_ratio"),
         (DECAY.replace("roll.json", "other.json"), "`pmm inertia pendulum FILE --json` of roll"),
         (DECAY + "period_s = 1.6\n", "and period_s are both given; leave one of them out"),
     ):
