@@ -22,6 +22,7 @@ from analysis.uncertainty.estimate import fresh_label
 from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.arrays import FloatArray
 from hardware.description.flags import Flag, Severity
+from hardware.description.words import told_apart
 
 CHANCE = 0.01
 """Probability at which data that agree are said not to, by chi-squared or by the one furthest."""
@@ -138,7 +139,7 @@ class Redundancy:
         first = self.data.index(self.stands_out[0])
         alternatives = "".join(f" or {name}" for name in self.stands_out[1:])
         answer = ", ".join(
-            f"{name} {_told_apart(value, joint_value)}"
+            f"{name} {told_apart(value, joint_value)}"
             for name, value, joint_value in zip(
                 self.results, self.without[first], self.values, strict=True
             )
@@ -155,16 +156,6 @@ class Redundancy:
         if not self.widening > 1.0:
             return ""
         return f"; the uncertainty is {self.widening:.3g} times as large, by {self.cause}"
-
-
-def _told_apart(value: float, other: float) -> str:
-    """Return a value and the one that it replaces, in digits that show what they differ by."""
-    change, size = abs(value - other), max(abs(value), abs(other))
-    if not change > _ROUNDING * size:
-        return f"{value:.5g}, as before"
-    digits = max(5, 2 + math.floor(math.log10(size)) - math.floor(math.log10(change)))
-    value_text, other_text = (f"{each:#.{digits}g}".rstrip(".") for each in (value, other))
-    return f"{value_text} in place of {other_text}"
 
 
 def best_fit(
