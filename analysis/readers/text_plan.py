@@ -131,14 +131,21 @@ def _time(
         return None, named
     if named is None:
         names = ", ".join(header.text or header.generic for header in headers)
-        first = headers[0]
-        example = first.name if first.unit else f"{first.name}:s"
+        example = next((header.name for header in headers if _may_be_time(header)), "COLUMN")
         raise DataError(
             f"{where}: no column is named as time (columns: {names}); name it in the column map "
-            f"(time={example}; with its unit, s or ms, where the header has none), or give the "
-            "sample rate; where these are no headers, say skip_rows (lines before them)"
+            f"with its unit, s or ms (time={example}:s), or, where the file has none, give the sample rate; "
+            "where these are no headers, say skip_rows (lines before them)"
         )
     return named, named
+
+
+def _may_be_time(header: Header) -> bool:
+    """Whether a column has a unit of time, or none."""
+    try:
+        return header.unit is None or unit(header.unit).si == "s"
+    except ConfigurationError:
+        return False
 
 
 def without_idle(plan: ColumnPlan, table: Mapping[Header, FloatArray], where: str) -> ColumnPlan:
