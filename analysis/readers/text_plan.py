@@ -134,8 +134,8 @@ def _time(
         example = next((header.name for header in headers if _may_be_time(header)), "COLUMN")
         raise DataError(
             f"{where}: no column is named as time (columns: {names}); name it in the column map "
-            f"with its unit, s or ms (time={example}:s), or, where the file has none, give the sample rate; "
-            "where these are no headers, say skip_rows (lines before them)"
+            f"with its unit, s or ms (time={example}:s), or, where the file has none, give the "
+            "sample rate; where these are no headers, say skip_rows (lines before them)"
         )
     return named, named
 
