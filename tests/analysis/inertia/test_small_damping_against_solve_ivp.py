@@ -36,6 +36,7 @@ LAWS = {
     "strong drag": {"drag": 1.0},
     "cube": {"cube": 0.5},
     "friction": {"friction": 3e-3},
+    "drag and friction": {"drag": 0.3, "friction": 3e-3},
 }
 
 
