@@ -20,7 +20,7 @@ from analysis.coefficients.form_choice import (
 from analysis.coefficients.identifiability import velocity_sizes
 from analysis.coefficients.line_cycles import names_of_lines
 from analysis.coefficients.resistance_form import fit_surge
-from analysis.coefficients.terms import ROLL, VELOCITY_LETTERS, letter_of_load
+from analysis.coefficients.terms import LOAD_WORDS, ROLL, VELOCITY_LETTERS, letter_of_load
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 
@@ -169,7 +169,7 @@ def try_form(
     orders: tuple[int, ...],
     request: Request,
 ) -> None:
-    """Fit the form that was chosen; where others do about as well, what they differ by is added."""
+    """Fit the form that was chosen, and add what it misfits and others that do as well give."""
     before = len(fits)
     _try(fits, missing, method, cycles, forms[choice.fitted], orders, request)
     for form, weight in rival_forms(choice) if len(fits) > before else ():
@@ -183,6 +183,16 @@ def try_form(
         ]
         label = f"form of the {choice.load}: {form}"
         fits[-1] = (method, taken.with_input(label, math.sqrt(weight) * np.array(changes)[:, None]))
+    if len(fits) > before:
+        fits[-1] = (method, _with_misfit(fits[-1][1], method))
+
+
+def _with_misfit(fit: CycleFit, method: str) -> CycleFit:
+    """Return a fit whose interval holds what its form leaves of the load beyond scatter."""
+    row, cycles = fit.terms[0].row, fit.problem.numbers.cycles
+    runs = cycles[0].name if method == SINGLE_RUN else f"at {cycles[0].speed_m_s:g} m/s"
+    where = "" if cycles[0].frequency_hz == 0.0 else f", {cycles[0].frequency_hz:.4g} Hz"
+    return fit.with_misfit(f"misfit of the {LOAD_WORDS[row]}, {method} {runs}{where}", row)
 
 
 def _try(
@@ -234,6 +244,7 @@ def _surge(
     names = ["X_0"] if means else []
     names += [f"X_{letter}{letter}" for letter, motion in ((v, "v"), (r, "r")) if motion in motions]
     names += [f"X_{v}{r}"] if cross else []
+    names += ["X_udot"] if "r" in motions and cycles[0].speed_m_s > 0.0 else []
     even = (0, 2) if means else (2,)
     orders = (0, 1, 2) if cross and means else even
     if any(map(set_heel_of, cycles)):
@@ -256,6 +267,6 @@ def try_surge(
     except DataError as error:
         fits.missing += [Missing(name, f"{SURGE_FORCES}: {error}") for name in names]
         return
-    fits.fits.append((SURGE_FORCES, fit))
+    fits.fits.append((SURGE_FORCES, _with_misfit(fit, SURGE_FORCES)))
     fits.richest.append(fit)
     fits.choices += [] if choice is None else [choice]

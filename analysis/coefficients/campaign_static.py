@@ -14,6 +14,7 @@ from analysis.coefficients.campaign_plan import Request, set_heel_of
 from analysis.coefficients.campaign_records import Missing
 from analysis.coefficients.cycle_fit import STATIC
 from analysis.coefficients.form_choice import LINEAR_FORM, choose_form, forms_of
+from analysis.coefficients.resistance_form import surge_of_drift
 from analysis.coefficients.terms import VELOCITY_LETTERS
 from hardware.description.errors import DataError
 
@@ -24,11 +25,11 @@ def static_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
     """Return the loads over drift (or trim) angles, straight tows among them.
 
     Runs on a circle beside them tell the terms of the rate of turn. Force and moment take the form
-    that the data support, and what they misfit it by widens their intervals; X is the resistance
-    and, where the model was turned, quadratic. A rudder that was laid and a heel that was set add
-    terms, as mirrored runs mirror the loads: odd ones, in X even.
+    that the data support; X is the resistance and, where the model was turned, quadratic. A rudder
+    that was laid and a heel that was set add terms, as mirrored runs mirror the loads: odd ones, in
+    X even.
     """
-    plane, speed = cycles[0].plane, cycles[0].speed_m_s
+    plane = cycles[0].plane
     odd, even = _set_angles(cycles)
     turning = any(cycle.turn_rate_rad_s for cycle in cycles)
     motions = "vr" if turning else "v"
@@ -47,14 +48,14 @@ def static_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
         group.choices.append(choice)
         group.richest.append(richest)
         try_form(fits, missing, STATIC_DRIFT, cycles, forms, choice, STATIC, request)
-        label = f"misfit of the {choice.load}, {STATIC_DRIFT} at {speed:g} m/s"
-        fits[-1] = (STATIC_DRIFT, fits[-1][1].with_misfit(label, row))
     if all(cycle.has_surge for cycle in cycles):
         v, r = tuple(VELOCITY_LETTERS[plane])
         turned = any(round(cycle.drift_rad, 6) for cycle in cycles)
         names = ["X_0", *([f"X_{v}{v}"] if turned else []), *(f"X_{factors}" for factors in even)]
         names += [*([f"X_{r}{r}"] if turning else []), *([f"X_{v}{r}"] if cross else [])]
-        try_surge(group, cycles, names, STATIC, request)
+        chosen, choice_of_drift = surge_of_drift(cycles, names, f"X_{v * 4}")
+        group.choices += [] if choice_of_drift is None else [choice_of_drift]
+        try_surge(group, cycles, chosen, STATIC, request)
     return group
 
 

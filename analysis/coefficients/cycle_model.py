@@ -205,7 +205,7 @@ class CycleProblem:
 
     @cached_property
     def _slopes(self) -> FloatArray:
-        """How the terms follow the moves, ``(cycles, terms, 6 or 9, instants)``."""
+        """How the terms follow the moves, ``(cycles, terms, 7 or 10, instants)``."""
         return slopes_of(self.terms, self.numbers.moved)
 
     def _load_slope(self, row: int) -> FloatArray:

@@ -104,6 +104,7 @@ class CycleNumbers:
         first = int(across == _TRANSLATION)
         sources = {
             "u": (_AHEAD, 0),
+            "udot": (_AHEAD, 1),
             "v": (across, first),
             "r": (_ROTATION, 1),
             "vdot": (across, first + 1),
@@ -115,7 +116,7 @@ class CycleNumbers:
         return sources
 
     def moves(self, parts: FloatArray) -> FloatArray:
-        """Return :data:`MOVES` over the cycles, shape ``(..., cycles, 6 or 9, instants)``."""
+        """Return :data:`MOVES` over the cycles, shape ``(..., cycles, 7 or 10, instants)``."""
         shaped = self.shaped(parts)
         pace = self._omega * (1.0 + parts[..., _PACE])
         moves = {}
@@ -136,7 +137,7 @@ class CycleNumbers:
     def follow(self, over: FloatArray) -> FloatArray:
         """Return what changes per move and instant are per number: the moves' own slope after.
 
-        The rudder is none of a cycle's numbers. Shape ``(cycles, k, 6 or 9, instants)`` to
+        The rudder is none of a cycle's numbers. Shape ``(cycles, k, 7 or 10, instants)`` to
         ``(cycles, k, numbers)``.
         """
         count = self.highest + 1

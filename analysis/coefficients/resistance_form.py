@@ -17,15 +17,53 @@ from typing import Final
 
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_records import FormChoice
-from analysis.coefficients.cycle_fit import CycleFit, fit_cycles, fit_terms
+from analysis.coefficients.cycle_fit import STATIC, CycleFit, fit_cycles, fit_terms
 from analysis.coefficients.form_choice import DECIDES, ratio_text
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.terms import LOAD_WORDS, SURGE
 from hardware.description.errors import DataError
 
+QUARTIC, QUADRATIC_DRIFT = "quartic", "quadratic"
 BY_SPEED = "resistance by u^2"
 CONSTANT = "constant resistance"
 PROPELLED: Final = "propeller_turns"  # flag of a run whose X_0 holds a propeller's thrust
+
+
+def surge_of_drift(
+    cycles: Sequence[BodyCycle], names: Sequence[str], quartic: str
+) -> tuple[tuple[str, ...], FormChoice | None]:
+    """Return the terms of X over drift angles, with the fourth power where the data ask for it.
+
+    It is taken where it is :data:`DECIDES` times as well supported as none; the choice says so.
+
+    Parameters
+    ----------
+    quartic
+        Name of the further term.
+    """
+    richer = (*names, quartic)
+    try:
+        plain, rich = (fit_cycles(cycles, terms, STATIC) for terms in (names, richer))
+    except DataError:
+        return tuple(names), None
+    squares = (float(rich.chi_square[SURGE]), float(plain.chi_square[SURGE]))
+    spare = float(rich.data[SURGE]) - len(richer)
+    if spare < 1:
+        return tuple(names), None
+    dispersion = max(1.0, squares[0] / spare)
+    counts = (len(richer), len(names))
+    criteria = tuple(
+        square / dispersion + 2.0 * count for square, count in zip(squares, counts, strict=True)
+    )
+    ratio = math.exp(min((criteria[1] - criteria[0]) / 2.0, 700.0))
+    if ratio < DECIDES:
+        return tuple(names), None
+    reason = f"{QUARTIC} is {ratio_text(ratio)} as well supported as {QUADRATIC_DRIFT} in drift"
+    weight = 1.0 / (1.0 + 1.0 / ratio)
+    runs = tuple(cycle.name for cycle in cycles)
+    forms, weights = (QUARTIC, QUADRATIC_DRIFT), (weight, 1.0 - weight)
+    choice = (forms, counts, squares, criteria, weights, dispersion, QUARTIC, QUARTIC, ratio)
+    return richer, FormChoice(LOAD_WORDS[SURGE], runs, *choice, reason)
 
 
 def fit_surge(

@@ -1,7 +1,7 @@
 """Terms over a cycle: products of factors, and how they follow each motion.
 
 The factors are the velocities through the water along (u), across (v) and turning (r), and the
-rates of the latter two, at each instant of the averaged cycle, the rudder's angle (d), and of a
+rates of these, at each instant of the averaged cycle, the rudder's angle (d), and of a
 model that heels its angle (phi), the rate of it (p) and that rate's own.
 """
 
@@ -12,8 +12,8 @@ import numpy as np
 from analysis.coefficients.terms import Term
 from hardware.description.arrays import FloatArray
 
-MOVES = ("u", "v", "r", "vdot", "rdot", "d", "phi", "p", "pdot")
-UPRIGHT = 6  # moves of a model that does not heel
+MOVES = ("u", "v", "r", "udot", "vdot", "rdot", "d", "phi", "p", "pdot")
+UPRIGHT = 7  # moves of a model that does not heel
 
 
 def waves_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
@@ -24,7 +24,7 @@ def waves_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
     Parameters
     ----------
     moves
-        :data:`MOVES`, shape ``(..., 9, instants)``; without those of heel 6.
+        :data:`MOVES`, shape ``(..., 10, instants)``; without those of heel 7.
     """
     waves = np.empty((*moves.shape[:-2], len(terms), moves.shape[-1]))
     for k, term in enumerate(terms):
@@ -34,7 +34,7 @@ def waves_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
 
 
 def slopes_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
-    """Return how each term follows each motion, shape ``(..., terms, 6 or 9, instants)``."""
+    """Return how each term follows each motion, shape ``(..., terms, 7 or 10, instants)``."""
     slopes = np.zeros((*moves.shape[:-2], len(terms), *moves.shape[-2:]))
     for k, term in enumerate(terms):
         factors = [_factor(factor, moves) for factor in term.product]

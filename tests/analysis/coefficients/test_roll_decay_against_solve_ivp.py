@@ -84,5 +84,5 @@ def test_uncertainties_move_it_as_other_decays_would() -> None:
 def test_what_it_needs_is_said() -> None:
     with pytest.raises(ConfigurationError, match=r"K_p takes mass_kg of \[model\], and inertia"):
         with_decays(campaign(), [decay(0.0, 0.0)], Heel(RollConstraint.SET), BODY)
-    with pytest.raises(ConfigurationError, match=r"damping_ratio = 1\.5 between 0 and 1"):
+    with pytest.raises(ConfigurationError, match=r"damping_ratio = 1\.5 between -1 and 1"):
         RollDecay(1.0, 1.5)

@@ -59,28 +59,29 @@ def test_x_is_a_load_in_both_planes() -> None:
 
 
 def test_waves_are_products() -> None:
-    moves = np.array([[2.0, 4.0], [1.0, -2.0], [3.0, 0.5], [5.0, 7.0], [11.0, 13.0],
+    moves = np.array([[2.0, 4.0], [1.0, -2.0], [3.0, 0.5], [17.0, 19.0], [5.0, 7.0], [11.0, 13.0],
                       [0.5, 0.5]])  # fmt: skip
-    names = ("Y_vvr", "Y_v|r|", "Y_rdot", "Y_0", "Y_uv", "Y_vd")
+    names = ("Y_vvr", "Y_v|r|", "Y_rdot", "Y_0", "Y_uv", "Y_vd", "X_udot")
     terms = [term_of(name, Plane.HORIZONTAL) for name in names]
-    expected = [[3.0, 2.0], [3.0, -1.0], [11.0, 13.0], [1.0, 1.0], [2.0, -8.0], [0.5, -1.0]]
+    expected = [[3.0, 2.0], [3.0, -1.0], [11.0, 13.0], [1.0, 1.0], [2.0, -8.0], [0.5, -1.0],
+                [17.0, 19.0]]  # fmt: skip
     np.testing.assert_allclose(waves_of(terms, moves), expected)
 
 
-words = st.sampled_from(["u", "v", "r", "vdot", "rdot", "|v|", "|r|", "|u|", "d"])
+words = st.sampled_from(["u", "v", "r", "udot", "vdot", "rdot", "|v|", "|r|", "|u|", "d"])
 away_from_zero = st.one_of(st.floats(0.1, 3.0), st.floats(-3.0, -0.1))  # corners have no slope
 
 
 @given(
     st.lists(st.lists(words, max_size=4), min_size=1, max_size=3),
-    st.lists(away_from_zero, min_size=12, max_size=12),
+    st.lists(away_from_zero, min_size=14, max_size=14),
 )
 def test_slopes_are_what_small_steps_show(factors: list[list[str]], at: list[float]) -> None:
     terms = [Term(0, tuple(one)) for one in factors]
-    moves, step = np.array(at).reshape(6, 2), 1e-4
-    shown = np.empty((len(terms), 6, 2))
-    for k in range(6):
-        change = step * np.eye(6)[:, k, None]
+    moves, step = np.array(at).reshape(7, 2), 1e-4
+    shown = np.empty((len(terms), 7, 2))
+    for k in range(7):
+        change = step * np.eye(7)[:, k, None]
         shown[:, k] = (waves_of(terms, moves + change) - waves_of(terms, moves - change)) / 2 / step
     found = slopes_of(terms, moves)
     np.testing.assert_allclose(found, shown, rtol=1e-6, atol=1e-5)

@@ -15,6 +15,7 @@ PUT_IN = {
     "Y_vdot": -35.0, "Y_v": -62.0, "Y_rdot": -1.1, "Y_r": 8.0,
     "N_vdot": -1.4, "N_v": -31.0, "N_rdot": -4.2, "N_r": -14.0, "Y_vvv": -210.0,
 }  # fmt: skip
+SURGE = {"X_0": -9.0, "X_vv": -20.0, "X_vr": 40.0, "X_rr": 3.0, "X_udot": -2.5}
 FIRST_RAD, RATE_HZ, STEP_S = 0.7, 100.0, 1e-4
 NOISE_N, NOISE_M, OFFSETS_N = 0.05, 2e-5, (0.4, -0.2)
 COLUMNS = {
@@ -23,6 +24,7 @@ COLUMNS = {
     "force_aft": "Kraft hinten [N]",
     "force_fore": "Kraft vorne [N]",
 }
+WITH_SURGE = COLUMNS | {"force_x": "Kraft laengs [N]"}
 HEAD = """
 name = "newton"
 tared = true
@@ -106,11 +108,11 @@ def written(
         name = stem if medium == "water" else f"dry-{stem}"
         speed = SPEED_M_S if medium == "water" else 0.0
         turned = 2.0 * math.atan2(2.0 * math.pi * frequency_hz * HALF_M, speed)
-        phase_rad = turned if kind == "yaw" else 0.0
+        phase_rad = {"sway": 0.0, "yaw": turned, "mixed": 0.5 * turned}[kind]
         lasts_s = (lasting_s or {}).get(name, 56.0)
         wet = medium == "water"
         record = read(frequency_hz, size_m, phase_rad, speed, lasts_s, seed, wet=wet, waves=waves)
-        header = ";".join(["Zeit [s]", *COLUMNS.values()])
+        header = ";".join(["Zeit [s]", *WITH_SURGE.values()])
         np.savetxt(folder / f"{name}.csv", record, "%.6f", ";", header=header, comments="")
         text += RUN.format(
             name=name, frequency_hz=frequency_hz, eccentricity_mm=1e3 * size_m,
@@ -124,7 +126,7 @@ def read(
     frequency_hz: float, size_m: float, phase_rad: float, speed_m_s: float, lasts_s: float,
     seed: int, *, wet: bool, waves: Waves | None = None,
 ) -> np.ndarray:  # fmt: skip
-    """Return time, displacements in mm and forces in N, as columns."""
+    """Return time, displacements in mm and forces in N, as columns; the last is that ahead."""
     time_s = np.arange(round(lasts_s * RATE_HZ)) / RATE_HZ
 
     def place(at_s: np.ndarray) -> State:
@@ -146,10 +148,11 @@ def read(
         return along, across * np.cos(heading) - ahead * np.sin(heading), rate
 
     along, v, r = velocity(time_s)
-    _, v_dot, r_dot = _slope(velocity, time_s)
+    u_dot, v_dot, r_dot = _slope(velocity, time_s)
     turned = v_dot + along * r
     force = MASS_KG * (turned + CG_X_M * r_dot)
     moment = INERTIA_KG_M2 * r_dot + MASS_KG * CG_X_M * turned
+    ahead = MASS_KG * (u_dot - v * r - CG_X_M * r**2)
     if wet:
         of = PUT_IN
         force = force - of["Y_vdot"] * v_dot - of["Y_rdot"] * r_dot - of["Y_r"] * r
@@ -158,10 +161,12 @@ def read(
             force = force + _waves(waves, frequency_hz, lambda t: velocity(t)[1], time_s)
         moment = moment - of["N_vdot"] * v_dot - of["N_rdot"] * r_dot
         moment = moment - of["N_v"] * v - of["N_r"] * r
+        ahead = ahead - SURGE["X_0"] * (along / speed_m_s) ** 2 - SURGE["X_vv"] * v**2
+        ahead = ahead - SURGE["X_vr"] * v * r - SURGE["X_rr"] * r**2 - SURGE["X_udot"] * u_dot
     _, _, heading, aft, fore = place(time_s)
     lever_fore = 2.0 * HALF_M / np.cos(heading) - HALF_M  # the fore strut slides along the model
     at_fore = (moment + force * HALF_M) / (lever_fore + HALF_M)
-    noise = np.random.default_rng(seed).normal(size=(4, len(time_s)))
+    noise = np.random.default_rng(seed).normal(size=(5, len(time_s)))
     return np.stack(
         [
             time_s,
@@ -169,6 +174,7 @@ def read(
             1e3 * (fore + NOISE_M * noise[1]),
             force - at_fore + NOISE_N * noise[2] + OFFSETS_N[0],
             at_fore + NOISE_N * noise[3] + OFFSETS_N[1],
+            ahead + NOISE_N * noise[4],
         ],
         axis=1,
     )

@@ -10,7 +10,18 @@ import pytest
 from click.testing import CliRunner, Result
 
 from pmm.cli import cli
-from tests.pmm.coefficients.newtons_files import COLUMNS, PUT_IN, exchanged, written
+from tests.pmm.coefficients.newtons_files import (
+    COLUMNS,
+    HALF_M,
+    HEAD,
+    MASS_KG,
+    PUT_IN,
+    SPEED_M_S,
+    SURGE,
+    WITH_SURGE,
+    exchanged,
+    written,
+)
 
 TABLES = Path(__file__).parents[2] / "data" / "panel"
 pytestmark = pytest.mark.sample(1)
@@ -135,3 +146,60 @@ def test_slow_motion_is_told_of_a_model_that_makes_waves(tmp_path: Path) -> None
     for name in ("Y_v", "Y_vdot"):
         assert abs(found[name]["value"] - PUT_IN[name]) < found[name]["half_width"], found[name]
         assert found[name]["half_width"] < 0.4 * abs(PUT_IN[name]), found[name]
+
+
+def test_the_surge_added_mass_does_not_pass_for_what_turns(tmp_path: Path) -> None:
+    """A model that yaws on a steady carriage is hastened along itself, about as v r."""
+    folder = written(tmp_path, columns=WITH_SURGE, kinds=("sway", "yaw", "mixed"))
+    found = recommended(folder)
+    for name, value in SURGE.items():
+        off = abs(found[name]["value"] - value)
+        assert off < 2.0 * found[name]["half_width"], (name, found[name])
+        assert found[name]["half_width"] < 0.1 * abs(value), found[name]
+
+
+AT_REST = """
+[[at_rest]]
+name = "{0}"
+file = "{0}.csv"
+kind = "{1}"
+duration_s = 8.0
+{2}
+"""
+
+
+def drift_tests(folder: Path, quartic: float) -> Path:
+    """Write tows at drift angles, of a resistance at the carriage's speed and more."""
+    text = HEAD.format(
+        mass_kg=MASS_KG, more="", columns="\n".join(f'{a} = "{b}"' for a, b in WITH_SURGE.items())
+    )
+    angles = [math.radians(deg) for deg in (-20, -15, -10, -5, 0, 5, 10, 15, 20)]
+    for seed, angle in enumerate([None, *angles]):
+        name = "zero" if angle is None else f"drift-{math.degrees(angle):.0f}"
+        loads = (0.0, 0.0, 0.0)
+        if angle is not None:
+            u, v = SPEED_M_S * math.cos(angle), -SPEED_M_S * math.sin(angle)
+            side, turn = -62.0 * v - 210.0 * v**3, -31.0 * v
+            ahead = -9.0 * (u / SPEED_M_S) ** 2 - 20.0 * v**2 + quartic * v**4
+            loads = ((-side + turn / HALF_M) / 2.0, (-side - turn / HALF_M) / 2.0, -ahead)
+        noise = np.random.default_rng(seed).normal(size=(800, 6)) * (0, 0, 0, 0.05, 0.05, 0.05)
+        record = np.column_stack(
+            (np.arange(800) / 100.0, np.zeros((800, 2)), np.tile(loads, (800, 1)))
+        )
+        header = ";".join(["Zeit [s]", *WITH_SURGE.values()])
+        np.savetxt(folder / f"{name}.csv", record + noise, "%.6f", ";", header=header, comments="")
+        towed = f'carriage_speed_m_s = {SPEED_M_S}\ndrift_rad = {angle}\nzero_before = "zero"'
+        kind = "zero" if angle is None else "static-drift" if angle else "straight-tow"
+        text += AT_REST.format(name, kind, "" if angle is None else towed)
+    (folder / "campaign.toml").write_text(text)
+    return folder
+
+
+@pytest.mark.parametrize("quartic", [0.0, 150.0])
+def test_a_surge_force_that_is_no_parabola_over_drift(tmp_path: Path, quartic: float) -> None:
+    found = recommended(drift_tests(tmp_path, quartic))
+    put_in = {"X_0": -9.0, "X_vv": -20.0} | ({"X_vvvv": quartic} if quartic else {})
+    assert ("X_vvvv" in found) == bool(quartic)
+    for name, value in put_in.items():
+        off = abs(found[name]["value"] - value)
+        assert off < 2.0 * found[name]["half_width"], (name, found[name])
