@@ -10,9 +10,15 @@ from hardware.description.arrays import FloatArray
 _SMALL = 1e-6  # of the approach speed, or of U/L
 
 
+_SIDES = (1.0, -1.0)  # of a turn to starboard, and to port
+
+
 @dataclass(frozen=True)
 class CourseStability:
     """Stability of straight course, shape ``(n,)`` each.
+
+    A rudder straightens the flow from one side otherwise than from the other, so that slopes differ
+    between turns to starboard and to port: what is given is that of the less stable side.
 
     Attributes
     ----------
@@ -32,11 +38,12 @@ class CourseStability:
 
 def straight_course(ship: Ship) -> CourseStability:
     """Return the stability on straight course at the approach speed."""
-    return CourseStability(
-        _criterion(ship, _slopes(ship, bare=True)),
-        _criterion(ship, _slopes(ship, bare=False)),
-        _root(ship),
+    bare, behind = (
+        [_criterion(ship, _slopes(ship, side, bare=alone)) for side in _SIDES]
+        for alone in (True, False)
     )
+    roots = [_root(ship, side) for side in _SIDES]
+    return CourseStability(np.minimum(*bare), np.minimum(*behind), np.maximum(*roots))
 
 
 def _state(ship: Ship) -> FloatArray:
@@ -45,21 +52,31 @@ def _state(ship: Ship) -> FloatArray:
     return state
 
 
-def _slopes(ship: Ship, *, bare: bool) -> FloatArray:
+def _begun(ship: Ship, row: int, side: float) -> tuple[FloatArray, float]:
+    """Return the state a little into a turn, by drift or by rate, and by how much, over U or U/L.
+
+    The ship drifts to the outside of its turn.
+    """
+    step = -side * _SMALL if row == V else side * _SMALL
+    state = _state(ship)
+    state[row] = step * ship.approach_m_s / (1.0 if row == V else ship.hull.length_m)
+    return state, step
+
+
+def _slopes(ship: Ship, side: float, *, bare: bool) -> FloatArray:
     """Return d(Y, N)/d(v', r') over the hull's own unit, shape ``(2, 2, n)``."""
     length, still = ship.hull.length_m, np.zeros(ship.count)
     unit = 0.5 * ship.hull.density_kg_m3 * ship.hull.area_m2 * ship.approach_m_s**2
+
+    def loads(state: FloatArray) -> FloatArray:
+        both = ship.hull(*state[:3]) if bare else ship.loads(state, still)
+        return np.asarray(both[1:] / unit / np.array([[1.0], [length]]))
+
     slopes = np.zeros((2, 2, ship.count))
-    for column, (row, scale) in enumerate(
-        ((V, ship.approach_m_s), (R, ship.approach_m_s / length))
-    ):
-        ends = []
-        for sign in (1.0, -1.0):
-            state = _state(ship)
-            state[row] = sign * _SMALL * scale
-            loads = ship.hull(*state[:3]) if bare else ship.loads(state, still)
-            ends.append(loads[1:] / unit / np.array([[1.0], [length]]))
-        slopes[:, column] = (ends[0] - ends[1]) / (2.0 * _SMALL)
+    straight = loads(_state(ship))
+    for column, row in enumerate((V, R)):
+        state, step = _begun(ship, row, side)
+        slopes[:, column] = (loads(state) - straight) / step
     return slopes
 
 
@@ -71,16 +88,14 @@ def _criterion(ship: Ship, slopes: FloatArray) -> FloatArray:
     return np.asarray(y_v * (n_r - arm) - n_v * (y_r - mass))
 
 
-def _root(ship: Ship) -> FloatArray:
+def _root(ship: Ship, side: float) -> FloatArray:
     """Of the linear system of sway and yaw, by differences of the whole ship's rates."""
     unit, still = ship.hull.length_m / ship.approach_m_s, np.zeros(ship.count)
-    scales = {V: ship.approach_m_s, R: 1.0 / unit}
+    scales = np.array([[ship.approach_m_s], [1.0 / unit]])
+    straight = ship.rates(_state(ship), still)[[V, R]]
     matrix = np.zeros((ship.count, 2, 2))
     for column, row in enumerate((V, R)):
-        ends = []
-        for sign in (1.0, -1.0):
-            state = _state(ship)
-            state[row] = sign * _SMALL * scales[row]
-            ends.append(ship.rates(state, still)[[V, R]] / np.array([[scales[V]], [scales[R]]]))
-        matrix[:, :, column] = ((ends[0] - ends[1]) / (2.0 * _SMALL)).T * unit
+        state, step = _begun(ship, row, side)
+        change = (ship.rates(state, still)[[V, R]] - straight) / scales
+        matrix[:, :, column] = (change / step).T * unit
     return np.asarray(np.linalg.eigvals(matrix).real.max(axis=1))

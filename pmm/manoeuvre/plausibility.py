@@ -1,13 +1,14 @@
 """Numbers of a ship's file that cannot be those of a ship: units, factors, signs."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 import numpy as np
 
 from analysis.bounds import Bound
 from analysis.manoeuvring.depth import SubmergedBody
+from analysis.manoeuvring.manoeuvres import TurningCircle
 from analysis.manoeuvring.ship import Ship, U
 from analysis.water import froude_number
 from pmm.manoeuvre.ship_file import ShipFile, SubmergedFile
@@ -63,6 +64,8 @@ SHIP: Final = {
         Bound("-Y_d/(rho/2 L d U²)", 0.005, 0.3, "rudders of L d/80 to L d/30: 0.03 to 0.12",
               _HELM),
         Bound("rudder's lever N_d/(-Y_d L)", 0.3, 0.7, "at the stern", _HELM),
+        Bound("rudder's lever_relative", -1.6, -0.3, "-0.7 to -1.1 of ships, aft of midships",
+              "l_R' counts ahead from midships; some papers print it without its sign"),
         Bound("H_R/d", 0.2, 1.05, "rudders below the surface",
               "are rudder.height_m and draught_m in m, of one size?"),
     )
@@ -71,6 +74,16 @@ SHIP: Final = {
 those of Inoue, Hirano and Kijima 1981, of deep water, and several times as large in shallow water.
 A limit of half or twice its size lets as large a factor pass, or doubts tugs, barges and ships in
 shallow water; a wrong system is off by L/d, degrees by 57, units by a thousand."""
+
+_TURNED: Final = "are all terms there, and within the angles and rates at which they were measured?"
+TURN: Final = {
+    bound.name: bound
+    for bound in (
+        Bound("steady diameter/L", 1.0, 30.0, "ships 2 to 5, with pods less", _TURNED),
+        Bound("steady drift in °", 0.0, 35.0, "ships 5 to 25", _TURNED),
+    )
+}  # fmt: skip
+"""What is believed of a steady turn at 35 degrees of rudder."""
 
 BODY: Final = {
     bound.name: bound
@@ -129,7 +142,38 @@ def doubts_of_ship(file: ShipFile, ship: Ship) -> tuple[str, ...]:
     }
     if file.rudder is not None:
         values["H_R/d"] = file.rudder.height_m / particulars.draught_m
-    return tuple(_doubts(SHIP, values))
+        values["rudder's lever_relative"] = file.rudder.lever_relative
+    return (*_doubts(SHIP, values), *_one_sided_terms(tuple(hull.values)))
+
+
+def doubts_of_turns(turns: Mapping[str, TurningCircle]) -> tuple[str, ...]:
+    """Return a sentence on each steady turn that no ship makes; of none where it does not turn."""
+    return tuple(
+        f"turning circle to {side}: {doubt}"
+        for side, turn in turns.items()
+        if math.isfinite(turn.steady_diameter[0])
+        for doubt in _doubts(
+            TURN,
+            {
+                "steady diameter/L": float(turn.steady_diameter[0]),
+                "steady drift in °": math.degrees(abs(float(turn.steady_drift_rad[0]))),
+            },
+        )
+    )
+
+
+def _one_sided_terms(names: Sequence[str]) -> Iterator[str]:
+    """Yield a sentence on a load that is curved in the drift and in nothing that turns."""
+    for load in ("Y", "N"):
+        factors = [name[2:] for name in names if name[:2] == f"{load}_" and "dot" not in name]
+        curved = [of for of in factors if len(of.replace("|", "")) > 1 and set(of) <= set("vr|")]
+        if curved and not any("r" in of for of in curved):
+            yield (
+                f"{load} has {', '.join(f'{load}_{of}' for of in curved)} and no term that is "
+                f"curved in r ({load}_vvr, {load}_vrr, {load}_rrr, or with |r|): they are taken as "
+                "0, and a turn comes out too tight; run yaw at larger amplitudes and with drift, "
+                "or state them in [hull.values]"
+            )
 
 
 def doubts_of_body(file: SubmergedFile, body: SubmergedBody) -> tuple[str, ...]:

@@ -24,7 +24,7 @@ from analysis.manoeuvring.stability import CourseStability, straight_course
 from hardware.description.arrays import FloatArray
 from hardware.description.oscillator import Plane
 from pmm.manoeuvre.derivatives import derivatives_of
-from pmm.manoeuvre.plausibility import doubts_of_ship
+from pmm.manoeuvre.plausibility import doubts_of_ship, doubts_of_turns
 from pmm.manoeuvre.quantity import FullScale, ManoeuvreQuantity, quantity_of
 from pmm.manoeuvre.ship_file import ShipFile
 
@@ -56,8 +56,8 @@ class Prediction:
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """A sentence on each number of the file that is not believed."""
-        return doubts_of_ship(self.file, self.ship)
+        """A sentence on each number of the file, and of its turns, that is not believed."""
+        return (*doubts_of_ship(self.file, self.ship), *doubts_of_turns(self.turns))
 
     @cached_property
     def quantities(self) -> tuple[ManoeuvreQuantity, ...]:

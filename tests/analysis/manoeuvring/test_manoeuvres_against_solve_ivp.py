@@ -142,14 +142,17 @@ def test_stability_is_that_of_the_derivatives_and_of_the_papers_equations() -> N
     found = straight_course(kvlcc2.ship())
     assert found.criterion[0] == pytest.approx(expected, rel=1e-5)
     still = np.array([kvlcc2.U0, 0.0, 0.0, 0.0, 0.0, 0.0])
-    matrix = np.zeros((2, 2))
-    for k, row in enumerate((1, 2)):
-        way = np.zeros(6)
-        way[row] = 1e-6
-        change = kvlcc2.rates(still + way, 0.0) - kvlcc2.rates(still - way, 0.0)
-        matrix[:, k] = change[1:3] / 2e-6
-    root = np.linalg.eigvals(matrix).real.max() * kvlcc2.L / kvlcc2.U0
-    assert found.root[0] == pytest.approx(root, rel=1e-4)
+    roots = []
+    for side in (1.0, -1.0):  # the rudder straightens the flow of each otherwise
+        matrix = np.zeros((2, 2))
+        for k, (row, step) in enumerate(((1, -side * 1e-6), (2, side * 1e-6))):
+            way = np.zeros(6)
+            way[row] = step
+            change = kvlcc2.rates(still + way, 0.0) - kvlcc2.rates(still, 0.0)
+            matrix[:, k] = change[1:3] / step
+        roots.append(np.linalg.eigvals(matrix).real.max() * kvlcc2.L / kvlcc2.U0)
+    assert roots[0] < 0.0 < roots[1]  # stable to starboard alone
+    assert found.root[0] == pytest.approx(max(roots), rel=1e-4)
     assert (found.root[0] > 0.0) == (found.with_rudder[0] < 0.0)
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from analysis.manoeuvring.steering import Propeller
 from analysis.water import Water
-from pmm.manoeuvre.plausibility import BODY, SHIP, doubts_of_body, doubts_of_ship
-from pmm.manoeuvre.prediction import ship_of
+from pmm.manoeuvre.plausibility import BODY, SHIP, TURN, doubts_of_body, doubts_of_ship
+from pmm.manoeuvre.prediction import predict, ship_of
 from pmm.manoeuvre.ship_file import ShipBody, ShipFile, StatedHull, SubmergedFile, read_ship
 from pmm.manoeuvre.submerged import body_of
 from tests.analysis.manoeuvring.published import kvlcc2
@@ -148,6 +148,22 @@ def test_what_can_hardly_be_a_submarine_is_doubted(
 
 def test_the_page_has_the_tables_of_bounds() -> None:
     page = (ROOT / "docs" / "manoeuvre.md").read_text(encoding="utf-8")
-    for bound in (*SHIP.values(), *BODY.values()):
+    for bound in (*SHIP.values(), *TURN.values(), *BODY.values()):
         row = f"| {bound.name} | {bound.low:g} to {bound.high:g} | {bound.source} |"
         assert row in page, bound.name
+
+
+def test_a_hull_that_is_curved_in_drift_alone_turns_as_no_ship_does(tmp_path: Path) -> None:
+    """KVLCC2 without what its oscillations tell beside its drift tests."""
+
+    def told(text: str) -> tuple[str, ...]:
+        (tmp_path / "ship.toml").write_text(text, encoding="utf-8")
+        file = read_ship(tmp_path / "ship.toml")
+        return predict(file, 0, 0, 0.95, lambda _: None).doubts
+
+    assert told(TEXT) == ()
+    alone = re.sub(r"(?m)^[YN]_(vvr|vrr|rrr) = .*$", "", TEXT)
+    doubts_told = told(alone)
+    for said in ("Y has Y_vvv and no term", "N has N_vvv and no", "starboard: steady drift in"):
+        assert any(said in one for one in doubts_told), doubts_told
+    assert any("lever_relative" in one for one in told(TEXT.replace("e = -0.710", "e = 0.710")))
