@@ -17,6 +17,7 @@ from analysis.resolver.analysis import Analysis
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.channels import FORCE_X, FORCES, ROLL_MOMENT, WAVE_PROBE
 from hardware.description.errors import DataError
+from hardware.description.flags import Flag, Severity
 from hardware.description.setpoint import SetPoint
 from hardware.description.waves import encounter_hz
 
@@ -26,6 +27,7 @@ _APART: Final = 1.5  # times one over the stretch: closer lines are one
 _SOUGHT: Final = 0.2  # of the expected frequency to either side
 _HEARD: Final = 8.0  # times the usual line beside: a peak of the probe that is a wave
 _STRONG: Final = 0.1  # of the probe's strongest line: a wave is that, or nearly
+_UNLIKE: Final = 2.0  # times what was asked for: wave makers are a tenth off, units ten times
 _WHOLE: Final = 0.8  # of the samples
 _BESIDE: Final = 12  # lines of the spectrum to either side, whose mean is the noise of a line
 _HARMONICS: Final = 5
@@ -75,6 +77,18 @@ class InWaves:
     def wave(self) -> complex:
         """The probe's amplitude and phase at the encounter frequency."""
         return complex(self.lines[0].values[0])
+
+    @property
+    def flags(self) -> tuple[Flag, ...]:
+        """What is wrong where the probe shows another wave than was asked for."""
+        asked, read = self.point.wave_amplitude_m, abs(self.wave)
+        if not asked or 1.0 / _UNLIKE <= read / asked <= _UNLIKE:
+            return ()
+        message = (
+            f"the probe shows waves of {1e3 * read:.3g} mm where {1e3 * asked:.3g} mm were asked "
+            "for, and loads are taken per wave amplitude: is the probe's unit right?"
+        )
+        return (Flag("wave_differs", Severity.WARNING, message, WAVE_PROBE.name),)
 
 
 def in_waves(

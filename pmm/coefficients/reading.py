@@ -176,7 +176,7 @@ def _turning(task: Task, recording: Recording) -> ReadRecording:
     attitude, attitude_flags = attitude_of(task, recording)
     following, following_flags = following_of(task, recording)
     if waves is not None:  # what they add to the mean is no load of calm water
-        struts = replace(struts, mean_known=False)
+        struts, flags = replace(struts, mean_known=False), (*flags, *waves.flags)
     reading = analysis.readings[0]
     gate = recording.between(reading.opened_s, reading.closed_s)
     flags = (*new_flags, *flags, *_speed_flags(task, gate), *attitude_flags, *following_flags)

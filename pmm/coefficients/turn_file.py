@@ -15,6 +15,7 @@ from hardware.description.oscillator import Oscillator, Plane
 from hardware.driver import read_settings
 
 _DEGREES: Final = "drift_deg"
+_FASTEST_M_S: Final = 20.0  # of carriages; arms are slower, and degrees for radians are 57 times
 _NUMBERS: Final = tuple(field.name for field in fields(SteadyTurn) if field.name != "run")
 
 
@@ -69,7 +70,14 @@ def _turn(row: dict[str, str | None], place: str) -> SteadyTurn:
             table[name] = _number(name, str(text), place)
     if _DEGREES in table and "drift_rad" not in table:
         table["drift_rad"] = math.radians(float(str(table.pop(_DEGREES))))
-    return read_settings(SteadyTurn, table, place)
+    turn = read_settings(SteadyTurn, table, place)
+    speed_m_s = abs(turn.turn_rate_rad_s) * turn.radius_m
+    if speed_m_s > _FASTEST_M_S:
+        raise ConfigurationError(
+            f"{place}: turn_rate_rad_s times radius_m is {speed_m_s:.3g} m/s, and no tank tows "
+            f"faster than {_FASTEST_M_S:g} m/s; is the rate in degrees per second?"
+        )
+    return turn
 
 
 def _number(name: str, text: str, place: str) -> float:

@@ -14,6 +14,7 @@ from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_plan import Request
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.dry_checks import dry_checks
+from analysis.coefficients.righting_checks import righting_checks
 from analysis.coefficients.roll_decay import NAMES as OF_DECAYS
 from analysis.coefficients.roll_decay import with_decays
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
@@ -218,6 +219,10 @@ def coefficients_of(
     if in_air and body is not None:
         extra = dry_checks(in_air, body, stated, settings.level)
         result = replace(result, checks=(*result.checks, *extra))
+    zeros = [run.zero for part in parts for run in part.runs if run.zero is not None]
+    at_heels = [(zero.name, zero.heel_rad, zero.reading.offsets) for zero in zeros]
+    righting = righting_checks(at_heels, first.heel, body, settings.level)
+    result = replace(result, checks=(*result.checks, *righting))
     rest = measured_matrices(result)
     return CampaignOutcome(parts, result, cycles, doubts, stated, settings, water, turns, rest)
 

@@ -11,6 +11,7 @@ from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.dry_checks import DRY
 from analysis.coefficients.exchange import to_dict
 from analysis.coefficients.recommendation import recommended, table
+from analysis.coefficients.righting_checks import RIGHTING
 from analysis.coefficients.stated_uncertainties import STATED
 from analysis.coefficients.terms import load_of
 from hardware.description.words import joined
@@ -54,6 +55,7 @@ from pmm.report.memory_figure import memory_figures
 from pmm.report.waves import wave_figures, wave_table
 
 SCHEMA: Final = "pmm-coefficients-1"
+_FIRST: Final = (DRY, RIGHTING)  # checks of what is stated, which touch all numbers
 _ONE_AMPLITUDE: Final = (
     "one amplitude alone does not tell whether it is linear, and the values are those of that "
     "amplitude; add runs at another"
@@ -136,7 +138,7 @@ def _doubts(outcome: CampaignOutcome) -> Iterator[Content]:
     contradicted = [
         Note("warning", check.message)
         for check in outcome.result.checks
-        if check.kind == DRY and not check.agrees
+        if check.kind in _FIRST and not check.agrees
     ]
     notes = [*flag_notes(outcome.implausible), *contradicted]
     if notes:
@@ -175,7 +177,7 @@ def conclusion(coefficients: CampaignCoefficients) -> tuple[Content, ...]:
     warnings = [
         check.message
         for check in coefficients.checks
-        if not check.agrees and check.kind != DRY  # it stands at the head
+        if not check.agrees and check.kind not in _FIRST  # those stand at the head
     ]
     warnings += [outlier.message for outlier in coefficients.outliers]
     return (

@@ -45,6 +45,7 @@ def test_a_row_is_a_run_with_its_velocities(tmp_path) -> None:
         ((HEAD, ROW.replace("-0.0625", "0")), "turn_rate_rad_s = 0 is no circle"),
         ((HEAD.replace("radius_m", "radus_m"), ROW), "did you mean radius_m"),
         ((HEAD.replace(",u_force_n", ""), ROW.replace(",0.02", "")), "u_force_n: Field required"),
+        ((HEAD, ROW.replace("-0.0625", "-3.58")), "43 m/s, and no tank tows faster than 20 m/s"),
         ((HEAD, ROW + ",7"), "row 2: more values than the head line has columns"),
     ],
 )

@@ -183,3 +183,17 @@ def test_waves_on_a_harmonic_of_the_shaft_are_refused(folder: Path) -> None:
     path.write_text(path.read_text().replace("0.55", "0.63"), encoding="utf-8")
     (failed,) = coefficients(folder, status=1)["failed"]
     assert "cannot be told from harmonic 4 of the shaft" in failed["message"]
+
+
+def test_a_probe_in_another_unit_is_told(folder: Path) -> None:
+    def flagged() -> bool:
+        flags = [flag for run in coefficients(folder)["runs"] for flag in run["flags"]]
+        return "wave_differs" in {flag["code"] for flag in flags}
+
+    assert not flagged()
+    path = folder / "waves.csv"
+    head, *rows = path.read_text(encoding="utf-8").splitlines()
+    values = np.array([[float(cell) for cell in row.split(",")] for row in rows])
+    values[:, head.split(",").index("w")] *= 0.1  # centimetres for millimetres
+    np.savetxt(path, values, "%.7g", ",", header=head, comments="")
+    assert flagged()
