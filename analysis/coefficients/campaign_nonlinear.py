@@ -13,16 +13,17 @@ from analysis.coefficients.cycle_fit import FIRST, HIGHER, QUASI_STEADY, CycleFi
 from analysis.coefficients.form_choice import (
     DESCRIBES,
     LINEAR_FORM,
-    choose_form,
     forms_of,
     rival_forms,
 )
 from analysis.coefficients.identifiability import velocity_sizes
 from analysis.coefficients.line_cycles import names_of_lines
-from analysis.coefficients.resistance_form import fit_surge
+from analysis.coefficients.resistance_form import fit_surge, with_further_term
+from analysis.coefficients.speed_form import choose_speed_form
 from analysis.coefficients.terms import LOAD_WORDS, ROLL, VELOCITY_LETTERS, letter_of_load
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
+from hardware.description.oscillator import Plane
 
 FIRST_HARMONICS = "first harmonics, several runs"
 QUASI = "quasi-steady"
@@ -63,7 +64,9 @@ def nonlinear_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
     for row in load_rows(cycles):
         angles = _moving_heel(cycles, motions, orders, cross=cross)
         try:
-            choice, richest = choose_form(cycles, row, motions, orders, cross=cross, angles=angles)
+            choice, richest, speed = choose_speed_form(
+                cycles, row, motions, orders, cross=cross, angles=angles
+            )
         except DataError as error:
             missing.append(Missing(f"{letter_of_load(plane, row)} terms", str(error)))
             continue
@@ -76,10 +79,10 @@ def nonlinear_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
         for method, of, chosen in _methods(cycles, orders):
             angles = _moving_heel(cycles, motions, chosen, cross=cross)
             forms = forms_of(plane, row, motions, cross=cross, angles=angles)
-            try_form(of_all, missing, method, of, forms, choice, chosen, request)
+            try_form(of_all, missing, method, of, forms, choice, chosen, request, speed)
         fits += of_all
         for _, joint_fit in of_all[: int(not joint)]:
-            fits += _single_runs(joint_fit, row, choice, orders, request)
+            fits += _single_runs(joint_fit, row, choice, orders, request, speed)
     if all(cycle.has_surge for cycle in cycles):
         _surge(group, cycles, motions, cross, request)
     return group
@@ -116,6 +119,7 @@ def _single_runs(
     choice: FormChoice,
     orders: tuple[int, ...],
     request: Request,
+    of_speed_m_s: float | None,
 ) -> list[tuple[str, CycleFit]]:
     """Return each run's own fit; what its other motion does, by the fit of all, is left open."""
     fits: list[tuple[str, CycleFit]] = []
@@ -123,7 +127,7 @@ def _single_runs(
         motions, cross = _motions([cycle])
         forms = forms_of(cycle.plane, row, motions, cross=cross)
         run_fits: list[tuple[str, CycleFit]] = []
-        try_form(run_fits, [], SINGLE_RUN, [cycle], forms, choice, orders, request)
+        try_form(run_fits, [], SINGLE_RUN, [cycle], forms, choice, orders, request, of_speed_m_s)
         fits += [
             (method, fit.with_input(_LEFT_OUT, _left_out(fit, joint_fit)))
             for method, fit in run_fits
@@ -168,13 +172,14 @@ def try_form(
     choice: FormChoice,
     orders: tuple[int, ...],
     request: Request,
+    of_speed_m_s: float | None = None,
 ) -> None:
     """Fit the form that was chosen, and add what it misfits and others that do as well give."""
     before = len(fits)
-    _try(fits, missing, method, cycles, forms[choice.fitted], orders, request)
+    _try(fits, missing, method, cycles, forms[choice.fitted], orders, request, of_speed_m_s)
     for form, weight in rival_forms(choice) if len(fits) > before else ():
         try:
-            rival = fit_cycles(cycles, forms[form], orders)
+            rival = fit_cycles(cycles, forms[form], orders, of_speed_m_s=of_speed_m_s)
         except DataError:
             continue  # these runs alone do not tell its terms
         taken = fits[-1][1]
@@ -203,10 +208,12 @@ def _try(
     names: Sequence[str],
     orders: tuple[int, ...],
     request: Request,
+    of_speed_m_s: float | None,
 ) -> None:
     """Fit, or record which coefficients cannot be determined."""
     try:
-        fits.append((method, fit_cycles(cycles, names, orders, stated=request.stated)))
+        fit = fit_cycles(cycles, names, orders, stated=request.stated, of_speed_m_s=of_speed_m_s)
+        fits.append((method, fit))
     except DataError as error:
         missing += [Missing(name, f"{method}: {error}") for name in names]
 
@@ -244,14 +251,15 @@ def _surge(
     names = ["X_0"] if means else []
     names += [f"X_{letter}{letter}" for letter, motion in ((v, "v"), (r, "r")) if motion in motions]
     names += [f"X_{v}{r}"] if cross else []
-    names += ["X_udot"] if "r" in motions and cycles[0].speed_m_s > 0.0 else []
     even = (0, 2) if means else (2,)
     orders = (0, 1, 2) if cross and means else even
     if any(map(set_heel_of, cycles)):
         letters = [letter for letter, motion in ((v, "v"), (r, "r")) if motion in motions]
         names += [f"X_{letter}phi" for letter in letters] + (["X_phiphi"] if means else [])
         orders = tuple(sorted({1, *orders}))
-    try_surge(fits, cycles, names, orders, request)
+    # In the vertical plane it would pass for another joint or pivot at small angles.
+    yaws = "r" in motions and cycles[0].plane is Plane.HORIZONTAL
+    try_surge(fits, cycles, names, orders, request, "X_udot" if yaws else None)
 
 
 def try_surge(
@@ -260,8 +268,18 @@ def try_surge(
     names: Sequence[str],
     orders: tuple[int, ...],
     request: Request,
+    further: str | None = None,
 ) -> None:
-    """Fit X, or record which of its terms cannot be determined."""
+    """Fit X, or record which of its terms cannot be determined.
+
+    Parameters
+    ----------
+    further
+        A term that is taken where the data ask for it.
+    """
+    if further is not None:
+        names, richer = with_further_term(cycles, names, further, orders)
+        fits.choices += [] if richer is None else [richer]
     try:
         fit, choice = fit_surge(cycles, names, orders, stated=request.stated)
     except DataError as error:

@@ -14,7 +14,6 @@ from analysis.coefficients.campaign_plan import Request, set_heel_of
 from analysis.coefficients.campaign_records import Missing
 from analysis.coefficients.cycle_fit import STATIC
 from analysis.coefficients.form_choice import LINEAR_FORM, choose_form, forms_of
-from analysis.coefficients.resistance_form import surge_of_drift
 from analysis.coefficients.terms import VELOCITY_LETTERS
 from hardware.description.errors import DataError
 
@@ -53,9 +52,7 @@ def static_fits(cycles: Sequence[BodyCycle], request: Request) -> GroupFits:
         turned = any(round(cycle.drift_rad, 6) for cycle in cycles)
         names = ["X_0", *([f"X_{v}{v}"] if turned else []), *(f"X_{factors}" for factors in even)]
         names += [*([f"X_{r}{r}"] if turning else []), *([f"X_{v}{r}"] if cross else [])]
-        chosen, choice_of_drift = surge_of_drift(cycles, names, f"X_{v * 4}")
-        group.choices += [] if choice_of_drift is None else [choice_of_drift]
-        try_surge(group, cycles, chosen, STATIC, request)
+        try_surge(group, cycles, names, STATIC, request, f"X_{v * 4}")
     return group
 
 

@@ -130,17 +130,17 @@ def fit_cycles(
     orders: tuple[int, ...] = HIGHER,
     *,
     stated: StatedUncertainties = StatedUncertainties(),  # noqa: B008 - frozen
+    of_speed_m_s: float | None = None,
 ) -> CycleFit:
     """Return the coefficients of some terms.
 
     Parameters
     ----------
     cycles
-        Of one oscillator, with what is known to be taken off; any frequencies, amplitudes, drift
-        angles. Static runs tell through order 0 alone, runs of many lines through all harmonics up
-        to the highest line.
-    names
-        Of the terms, as :mod:`analysis.coefficients.terms` writes them.
+        Of one oscillator, with what is known to be taken off. Static runs tell through order 0
+        alone, runs of many lines through all harmonics up to the highest line.
+    names, of_speed_m_s
+        Of the terms, as :mod:`analysis.coefficients.terms` writes them; the speed they are of.
     orders
         The harmonics to be fitted.
 
@@ -152,7 +152,8 @@ def fit_cycles(
         If the terms cannot be told apart; the message says which, and what run would do it.
     """
     check_cycles(cycles, orders)
-    terms = tuple(term_of(name, cycles[0].plane) for name in names)
+    found = (term_of(name, cycles[0].plane) for name in names)
+    terms = tuple(replace(term, of_speed_m_s=of_speed_m_s) for term in found)
     term_names = tuple(name_of_term(term, cycles[0].plane) for term in terms)
     return fit_terms(cycles, terms, term_names, orders, stated=stated)
 

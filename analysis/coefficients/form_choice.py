@@ -88,6 +88,7 @@ def choose_form(
     cross: bool = True,
     steady: bool = False,
     angles: Sequence[str] = (),
+    of_speed_m_s: float | None = None,
 ) -> tuple[FormChoice, CycleFit]:
     """Return which form of one load the cycles support, and the fit of the richest.
 
@@ -97,6 +98,8 @@ def choose_form(
         0 force, 1 moment, 3 roll moment.
     motions, cross, steady, angles
         As in :func:`forms_of`.
+    of_speed_m_s
+        The speed that the terms are of; ``None`` where they do not change with it.
 
     Raises
     ------
@@ -105,10 +108,10 @@ def choose_form(
     """
     plane = cycles[0].plane
     forms = forms_of(plane, row, motions, cross=cross, steady=steady, angles=angles)
-    fits = {LINEAR_FORM: fit_cycles(cycles, forms[LINEAR_FORM], orders)}
+    fits = {LINEAR_FORM: fit_cycles(cycles, forms[LINEAR_FORM], orders, of_speed_m_s=of_speed_m_s)}
     for form in [form for form in forms if form != LINEAR_FORM]:
         try:
-            fits[form] = fit_cycles(cycles, forms[form], orders)
+            fits[form] = fit_cycles(cycles, forms[form], orders, of_speed_m_s=of_speed_m_s)
         except DataError:
             continue  # terms that these runs cannot tell apart are no candidate
     criteria, dispersion, richest = _criteria(fits, row)

@@ -1,13 +1,16 @@
 """The recommended value of each coefficient: which row of a campaign's table to use.
 
 A manoeuvring derivative is that of slow motion: the value at zero frequency, where several
-frequencies tell it, else the fit of all amplitudes, else a static test, else the linear value. A
+frequencies tell it, or that of static tests that tell the load's form, whichever is surer; else the
+fit of all amplitudes, else a static test, else the linear value. A
 coefficient of the seakeeping form belongs to its frequency, so that there is one at each. A
 non-linear term is recommended only where the evidence for its form decides.
 """
 
 from collections.abc import Iterator, Mapping
 from typing import Any
+
+import numpy as np
 
 from analysis.coefficients.campaign_nonlinear import (
     FIRST_HARMONICS,
@@ -52,9 +55,12 @@ def recommended(coefficients: CampaignCoefficients) -> tuple[int, ...]:
 
     def order(k: int) -> tuple[int, float, float]:
         """By method and frequency; then the smallest amplitude of a curve, else the surest."""
-        entry = coefficients.entries[k]
+        entry, sure = coefficients.entries[k], float(np.nan_to_num(spread[k], nan=np.inf))
+        judged = any(len(c.forms) > 1 for c in coefficients.choices_of(entry.name, entry.runs))
+        if entry.method == ZERO_FREQUENCY or (entry.method == STATIC_DRIFT and judged):
+            return 0, 0.0, sure  # both are of slow motion
         size = entry.translation_amplitude_m + entry.rotation_amplitude_rad
-        last = size if curved[entry.name, entry.speed_m_s] else float(spread[k])
+        last = size if curved[entry.name, entry.speed_m_s] else sure
         return _FIRST.index(entry.method), entry.frequency_hz, last
 
     best: dict[tuple[str, float, float], int] = {}

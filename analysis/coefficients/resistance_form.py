@@ -17,33 +17,27 @@ from typing import Final
 
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_records import FormChoice
-from analysis.coefficients.cycle_fit import STATIC, CycleFit, fit_cycles, fit_terms
+from analysis.coefficients.cycle_fit import CycleFit, fit_cycles, fit_terms
 from analysis.coefficients.form_choice import DECIDES, ratio_text
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.terms import LOAD_WORDS, SURGE
 from hardware.description.errors import DataError
 
-QUARTIC, QUADRATIC_DRIFT = "quartic", "quadratic"
 BY_SPEED = "resistance by u^2"
 CONSTANT = "constant resistance"
 PROPELLED: Final = "propeller_turns"  # flag of a run whose X_0 holds a propeller's thrust
 
 
-def surge_of_drift(
-    cycles: Sequence[BodyCycle], names: Sequence[str], quartic: str
+def with_further_term(
+    cycles: Sequence[BodyCycle], names: Sequence[str], further: str, orders: tuple[int, ...]
 ) -> tuple[tuple[str, ...], FormChoice | None]:
-    """Return the terms of X over drift angles, with the fourth power where the data ask for it.
+    """Return the terms of X, with a further one where the data ask for it.
 
     It is taken where it is :data:`DECIDES` times as well supported as none; the choice says so.
-
-    Parameters
-    ----------
-    quartic
-        Name of the further term.
     """
-    richer = (*names, quartic)
+    richer = (*names, further)
     try:
-        plain, rich = (fit_cycles(cycles, terms, STATIC) for terms in (names, richer))
+        (plain, _), (rich, _) = (fit_surge(cycles, terms, orders) for terms in (names, richer))
     except DataError:
         return tuple(names), None
     squares = (float(rich.chi_square[SURGE]), float(plain.chi_square[SURGE]))
@@ -58,12 +52,23 @@ def surge_of_drift(
     ratio = math.exp(min((criteria[1] - criteria[0]) / 2.0, 700.0))
     if ratio < DECIDES:
         return tuple(names), None
-    reason = f"{QUARTIC} is {ratio_text(ratio)} as well supported as {QUADRATIC_DRIFT} in drift"
+    taken = f"with {further}"
     weight = 1.0 / (1.0 + 1.0 / ratio)
-    runs = tuple(cycle.name for cycle in cycles)
-    forms, weights = (QUARTIC, QUADRATIC_DRIFT), (weight, 1.0 - weight)
-    choice = (forms, counts, squares, criteria, weights, dispersion, QUARTIC, QUARTIC, ratio)
-    return richer, FormChoice(LOAD_WORDS[SURGE], runs, *choice, reason)
+    choice = FormChoice(
+        LOAD_WORDS[SURGE],
+        tuple(cycle.name for cycle in cycles),
+        (taken, f"without {further}"),
+        counts,
+        squares,
+        criteria,
+        (weight, 1.0 - weight),
+        dispersion,
+        taken,
+        taken,
+        ratio,
+        f"with {further} it is {ratio_text(ratio)} as well described as without",
+    )
+    return richer, choice
 
 
 def fit_surge(

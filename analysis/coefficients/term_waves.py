@@ -29,7 +29,7 @@ def waves_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
     waves = np.empty((*moves.shape[:-2], len(terms), moves.shape[-1]))
     for k, term in enumerate(terms):
         wave = _product([_factor(factor, moves) for factor in term.product], moves)
-        waves[..., k, :] = wave / term.divisor
+        waves[..., k, :] = wave * _squared_speed(moves) ** (term.speed_power / 2) / term.divisor
     return waves
 
 
@@ -43,7 +43,19 @@ def slopes_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
             place = MOVES.index(name.strip("|"))
             sign = np.sign(moves[..., place, :]) if "|" in name else 1.0
             slopes[..., k, place, :] += sign * rest / term.divisor
+        if term.speed_power:
+            speed = _squared_speed(moves)
+            slopes[..., k, :, :] *= speed[..., None, :] ** (term.speed_power / 2)
+            wave = waves_of([term], moves)[..., 0, :]
+            for place in (MOVES.index("u"), MOVES.index("v")):
+                slopes[..., k, place, :] += term.speed_power * wave * moves[..., place, :] / speed
     return slopes
+
+
+def _squared_speed(moves: FloatArray) -> FloatArray:
+    """Return V^2 through the water."""
+    ahead, across = (moves[..., MOVES.index(name), :] for name in ("u", "v"))
+    return np.asarray(ahead**2 + across**2)
 
 
 def _factor(name: str, moves: FloatArray) -> FloatArray:

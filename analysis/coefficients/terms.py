@@ -41,7 +41,8 @@ class Term:
         rotation, ``"u"`` ahead and ``"d"`` of the rudder, in either plane, ``"phi"``, ``"p"`` and
         ``"pdot"`` of heel; none for the constant.
     of_speed_m_s
-        Of a term that goes with the square of u besides, and is that of this speed.
+        Of a term that is that of this speed U: a resistance goes with ``(u/U)^2`` besides, another
+        one with ``(V/U)^(2 - n)`` for n velocities and V through the water.
     """
 
     row: int
@@ -51,12 +52,19 @@ class Term:
     @property
     def product(self) -> tuple[str, ...]:
         """The factors that stand in the term's wave, divided by :attr:`divisor`."""
-        return self.factors if self.of_speed_m_s is None else (*self.factors, "u", "u")
+        return ("u", "u") if self.of_speed_m_s and not self.factors else self.factors
 
     @property
     def divisor(self) -> float:
-        """The square of the speed that the term is of; 1 where it is of none."""
-        return 1.0 if self.of_speed_m_s is None else self.of_speed_m_s**2
+        """What the product of the factors is divided by: U as often as V multiplies it."""
+        power = self.speed_power if self.factors else 2
+        return 1.0 if self.of_speed_m_s is None else self.of_speed_m_s**power
+
+    @property
+    def speed_power(self) -> int:
+        """The power of V that stands in the term's wave; none in a resistance, nor in a rate."""
+        plain = self.of_speed_m_s is None or not self.factors or self.rates
+        return 0 if plain else 2 - self.degree
 
     @property
     def lengths(self) -> int:

@@ -197,13 +197,13 @@ def _required_loads(
 def _of_water(moving: MotionWaves, geometry: Geometry, belief: Belief) -> Waves:
     """The water's loads on the hull, ``(points, 3, instants)``."""
     u, v, r = np.moveaxis(moving.velocity, -2, 0)
-    _, v_rate, r_rate = np.moveaxis(moving.rate, -2, 0)
+    u_rate, v_rate, r_rate = np.moveaxis(moving.rate, -2, 0)
     if belief.form is Form.SEAKEEPING:
         # What the incidence adds to the velocity across, which this form leaves in a and b.
         carried = geometry.side * geometry.speed_m_s
         v = v + carried * moving.rotation_rad
         v, v_rate = v - v.mean(axis=-1, keepdims=True), v_rate + carried * r
-    waves = waves_of(belief.terms, np.stack((u, v, r, v_rate, r_rate), axis=-2))
+    waves = waves_of(belief.terms, np.stack((u, v, r, u_rate, v_rate, r_rate), axis=-2))
     by_load = np.zeros((_LOADS, len(belief.terms)))
     by_load[[term.row for term in belief.terms], np.arange(len(belief.terms))] = belief.vector
     return np.asarray(-belief.form.sign * by_load @ waves)

@@ -72,6 +72,7 @@ def written(
     more: str = "",
     frequencies_hz: tuple[float, ...] = (0.25, 0.4),
     waves: Waves | None = None,
+    cross: Mapping[str, float] | None = None,
 ) -> Path:
     """Write a campaign, of two frequencies by default, and return its folder.
 
@@ -89,6 +90,8 @@ def written(
         To stand in the campaign file.
     waves
         Load of the waves that sway makes, per velocity, at some frequencies in Hz; kg/s.
+    cross
+        Further terms of Y; all loads then go with the square of the model's own speed.
     """
     text = HEAD.format(
         mass_kg=mass_kg,
@@ -111,7 +114,9 @@ def written(
         phase_rad = {"sway": 0.0, "yaw": turned, "mixed": 0.5 * turned}[kind]
         lasts_s = (lasting_s or {}).get(name, 56.0)
         wet = medium == "water"
-        record = read(frequency_hz, size_m, phase_rad, speed, lasts_s, seed, wet=wet, waves=waves)
+        record = read(
+            frequency_hz, size_m, phase_rad, speed, lasts_s, seed, wet=wet, waves=waves, cross=cross
+        )
         header = ";".join(["Zeit [s]", *WITH_SURGE.values()])
         np.savetxt(folder / f"{name}.csv", record, "%.6f", ";", header=header, comments="")
         text += RUN.format(
@@ -124,7 +129,7 @@ def written(
 
 def read(
     frequency_hz: float, size_m: float, phase_rad: float, speed_m_s: float, lasts_s: float,
-    seed: int, *, wet: bool, waves: Waves | None = None,
+    seed: int, *, wet: bool, waves: Waves | None = None, cross: Mapping[str, float] | None = None,
 ) -> np.ndarray:  # fmt: skip
     """Return time, displacements in mm and forces in N, as columns; the last is that ahead."""
     time_s = np.arange(round(lasts_s * RATE_HZ)) / RATE_HZ
@@ -155,12 +160,15 @@ def read(
     ahead = MASS_KG * (u_dot - v * r - CG_X_M * r**2)
     if wet:
         of = PUT_IN
-        force = force - of["Y_vdot"] * v_dot - of["Y_rdot"] * r_dot - of["Y_r"] * r
-        force = force - of["Y_v"] * v - of["Y_vvv"] * v**3
+        way = np.hypot(along, v) / speed_m_s if cross is not None else np.ones_like(v)
+        force = force - of["Y_vdot"] * v_dot - of["Y_rdot"] * r_dot - of["Y_r"] * r * way
+        force = force - of["Y_v"] * v * way - of["Y_vvv"] * v**3 / way
+        for name, value in (cross or {}).items():
+            force = force - value * v ** name.count("v") * r ** name.count("r") / way
         if waves is not None:
             force = force + _waves(waves, frequency_hz, lambda t: velocity(t)[1], time_s)
         moment = moment - of["N_vdot"] * v_dot - of["N_rdot"] * r_dot
-        moment = moment - of["N_v"] * v - of["N_r"] * r
+        moment = moment - (of["N_v"] * v + of["N_r"] * r) * way
         ahead = ahead - SURGE["X_0"] * (along / speed_m_s) ** 2 - SURGE["X_vv"] * v**2
         ahead = ahead - SURGE["X_vr"] * v * r - SURGE["X_rr"] * r**2 - SURGE["X_udot"] * u_dot
     _, _, heading, aft, fore = place(time_s)

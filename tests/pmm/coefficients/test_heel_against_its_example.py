@@ -65,8 +65,8 @@ def test_the_surge_terms_come_out_of_a_resistance_that_swings(found: dict[str, A
     for name, value in put_in.items():
         assert rows[name]["value"] == pytest.approx(value, abs=1.5 * rows[name]["half_width"]), name
         assert rows[name]["misfit"] < 1.5  # X_rr was 3.7 off, and this 7.9, by a constant one
-    (choice,) = [one for one in found["coefficients"]["choices"] if one["load"] == "surge force"]
-    assert "a resistance that goes with u^2 as the model turns" in choice["message"]
+    said = [c["message"] for c in found["coefficients"]["choices"] if c["load"] == "surge force"]
+    assert any("a resistance that goes with u^2 as the model turns" in one for one in said)
 
 
 def row_of(row: dict[str, Any]) -> HeelRow:

@@ -203,3 +203,17 @@ def test_a_surge_force_that_is_no_parabola_over_drift(tmp_path: Path, quartic: f
     for name, value in put_in.items():
         off = abs(found[name]["value"] - value)
         assert off < 2.0 * found[name]["half_width"], (name, found[name])
+
+
+def test_a_hull_whose_loads_go_with_its_own_speed_comes_back(tmp_path: Path) -> None:
+    """As manoeuvring models have it; the heading swings by 20 degrees."""
+    cross = {"Y_vrr": -60.0, "Y_vvr": 90.0}
+    kinds, sizes = ("sway", "yaw", "mixed"), (0.08, 0.16, 0.24)
+    folder = written(tmp_path, kinds=kinds, amplitudes_m=sizes, cross=cross)
+    found = recommended(folder)
+    for name, value in (PUT_IN | cross).items():
+        off = abs(found[name]["value"] - value)
+        assert off < 2.0 * found[name]["half_width"], (name, found[name])
+    for name in ("Y_vrr", "Y_vvr"):
+        assert found[name]["half_width"] < 0.7 * abs(cross[name]), found[name]
+    assert "the square of the model's own speed" in " ".join(asked(folder).output.split())

@@ -1,0 +1,59 @@
+"""Whether loads go with the square of the model's own speed as it turns: what the data support.
+
+A model that yaws on a steady carriage goes on its own way at V, faster than the carriage's U as
+the struts swing it. At one Froude number a hull's load is V^2 times what v/V and r/V make of it, so
+that with coefficients at the speed U, as manoeuvring models take them, it is
+
+    Y = Y_v v V/U + Y_v|v| v|v| + Y_vrr v r^2 U/V + ...
+
+At small angles, and on tows and circles, that is the same as coefficients that do not change.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from statistics import fmean
+
+from analysis.coefficients.body_cycle import BodyCycle
+from analysis.coefficients.campaign_records import FormChoice
+from analysis.coefficients.cycle_fit import CycleFit
+from analysis.coefficients.form_choice import DECIDES, choose_form, ratio_text
+from hardware.description.errors import DataError
+
+
+def choose_speed_form(
+    cycles: Sequence[BodyCycle],
+    row: int,
+    motions: str,
+    orders: tuple[int, ...],
+    *,
+    cross: bool,
+    angles: Sequence[str],
+) -> tuple[FormChoice, CycleFit, float | None]:
+    """Return the form of one load, the fit of the richest, and the speed that its terms are of.
+
+    They are of a speed where that is :data:`DECIDES` times as well supported as coefficients that
+    do not change; else of none. Parameters and what is raised are those of :func:`choose_form`.
+    """
+    plain = choose_form(cycles, row, motions, orders, cross=cross, angles=angles)
+    speed = fmean(cycle.speed_m_s for cycle in cycles)
+    if "r" not in motions or not speed > 0.0:
+        return (*plain, None)
+    try:
+        choice, richest = choose_form(
+            cycles, row, motions, orders, cross=cross, angles=angles, of_speed_m_s=speed
+        )
+    except DataError:
+        return (*plain, None)
+    spare = float(richest.data[row]) - len(richest.names)
+    left = float(richest.chi_square[row])
+    dispersion = max(1.0, left / spare) if spare > 0 else 1.0
+    difference = (float(plain[1].chi_square[row]) - left) / dispersion
+    ratio = math.exp(max(-700.0, min(difference / 2.0, 700.0)))
+    if ratio < DECIDES:
+        return (*plain, None)
+    message = (
+        f"{choice.message}; that loads go with the square of the model's own speed as it turns is "
+        f"{ratio_text(ratio)} as well supported as coefficients that do not change"
+    )
+    return replace(choice, message=message), richest, speed
