@@ -75,9 +75,12 @@ away_from_zero = st.one_of(st.floats(0.1, 3.0), st.floats(-3.0, -0.1))  # corner
 @given(
     st.lists(st.lists(words, max_size=4), min_size=1, max_size=3),
     st.lists(away_from_zero, min_size=14, max_size=14),
+    st.sampled_from([None, 1.3]),
 )
-def test_slopes_are_what_small_steps_show(factors: list[list[str]], at: list[float]) -> None:
-    terms = [Term(0, tuple(one)) for one in factors]
+def test_slopes_are_what_small_steps_show(
+    factors: list[list[str]], at: list[float], of_speed_m_s: float | None
+) -> None:
+    terms = [Term(0, tuple(one), of_speed_m_s) for one in factors]
     moves, step = np.array(at).reshape(7, 2), 1e-4
     shown = np.empty((len(terms), 7, 2))
     for k in range(7):
