@@ -63,6 +63,18 @@ OF_RUNS: Final = {
 }  # fmt: skip
 """The same of what the runs state, at the median rate; rpm and degrees are off by 60 and 57."""
 
+OF_FIT: Final = {
+    bound.name: bound
+    for bound in (
+        Bound("misfit of the loads", 0.0, 20.0, "1 where the equations describe the runs", _LOADS),
+        Bound("misfit of the inflow", 0.0, 20.0, "1 where the equations describe the runs",
+              "are drift (bow to starboard), turn rate and rudder angle in their units, with these "
+              "signs?"),
+    )
+}  # fmt: skip
+"""What the fits leave over, times scatter: a sign of drift or thrust leaves hundreds, real runs
+some; limits half or twice as far would tell the same ones."""
+
 _SIGNS: Final = {
     "force_x is not positive ahead": {"1-t_P", "1-t_R"},
     "propeller_thrust is not positive ahead": {"1-t_P"},
@@ -99,6 +111,9 @@ def doubts(
         parameters.names, parameters.values.tolist(), half.tolist(), strict=True
     ):
         if (doubt := BOUNDS[name].doubt(value, width)) is not None:
+            yield doubt
+    for bound, left in zip(OF_FIT.values(), parameters.misfit, strict=True):
+        if math.isfinite(left) and (doubt := bound.doubt(left)) is not None:
             yield doubt
 
 

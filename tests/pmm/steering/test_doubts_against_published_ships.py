@@ -67,6 +67,14 @@ def test_a_turned_sign_is_named_alone(
     assert said.endswith("turn that sign")
 
 
+def test_a_drift_with_the_other_sign_is_asked_after_where_runs_turn() -> None:
+    seen = runs(np.random.default_rng(1963))
+    turned = np.diag([1.0, -1.0, 1.0]) @ seen.motion
+    said = told(replace(seen, motion=turned), KNOWN)
+    (inflow,) = [one for one in said if one.startswith("misfit of the inflow")]
+    assert "are drift (bow to starboard), turn rate and rudder angle" in inflow
+
+
 def test_without_oblique_tows_either_sign_that_does_it_is_named() -> None:
     seen = runs(None, tuple(STRAIGHT))
     values = seen.values.copy()
