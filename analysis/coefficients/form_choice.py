@@ -142,6 +142,49 @@ def choose_form(
     return choice, richest
 
 
+def chosen_of_two(
+    cycles: Sequence[BodyCycle],
+    row: int,
+    forms: tuple[str, str],
+    fits: tuple[CycleFit, CycleFit],
+    reason: str,
+) -> FormChoice | None:
+    """Return the choice of the first of two forms; ``None`` where the data do not ask for it.
+
+    It is taken where it is :data:`DECIDES` times as well supported as the second.
+
+    Parameters
+    ----------
+    reason
+        The message, with ``{}`` for how many times.
+    """
+    counts = (len(fits[0].names), len(fits[1].names))
+    squares = (float(fits[0].chi_square[row]), float(fits[1].chi_square[row]))
+    spare = float(fits[0].data[row]) - counts[0]
+    dispersion = max(1.0, squares[0] / spare) if spare > 0 else 1.0
+    criteria = tuple(
+        square / dispersion + 2.0 * count for square, count in zip(squares, counts, strict=True)
+    )
+    ratio = math.exp(max(-700.0, min((criteria[1] - criteria[0]) / 2.0, 700.0)))
+    if ratio < DECIDES or (spare < 1 and counts[0] > counts[1]):
+        return None
+    weight = 1.0 / (1.0 + 1.0 / ratio)
+    return FormChoice(
+        LOAD_WORDS[row],
+        tuple(cycle.name for cycle in cycles),
+        forms,
+        counts,
+        squares,
+        criteria,
+        (weight, 1.0 - weight),
+        dispersion,
+        forms[0],
+        forms[0],
+        ratio,
+        reason.format(ratio_text(ratio)),
+    )
+
+
 def rival_forms(choice: FormChoice) -> tuple[tuple[str, float], ...]:
     """Return the forms that do about as well as the one taken, each with its Akaike weight.
 

@@ -9,7 +9,6 @@ resistance swings at twice the frequency, as r^2 does with the other sign: taken
 it swings by is fitted to X_rr and X_vr, which it does not follow.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from statistics import fmean
@@ -18,9 +17,9 @@ from typing import Final
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_records import FormChoice
 from analysis.coefficients.cycle_fit import CycleFit, fit_cycles, fit_terms
-from analysis.coefficients.form_choice import DECIDES, ratio_text
+from analysis.coefficients.form_choice import chosen_of_two
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
-from analysis.coefficients.terms import LOAD_WORDS, SURGE
+from analysis.coefficients.terms import SURGE
 from hardware.description.errors import DataError
 
 BY_SPEED = "resistance by u^2"
@@ -40,35 +39,10 @@ def with_further_term(
         (plain, _), (rich, _) = (fit_surge(cycles, terms, orders) for terms in (names, richer))
     except DataError:
         return tuple(names), None
-    squares = (float(rich.chi_square[SURGE]), float(plain.chi_square[SURGE]))
-    spare = float(rich.data[SURGE]) - len(richer)
-    if spare < 1:
-        return tuple(names), None
-    dispersion = max(1.0, squares[0] / spare)
-    counts = (len(richer), len(names))
-    criteria = tuple(
-        square / dispersion + 2.0 * count for square, count in zip(squares, counts, strict=True)
-    )
-    ratio = math.exp(min((criteria[1] - criteria[0]) / 2.0, 700.0))
-    if ratio < DECIDES:
-        return tuple(names), None
-    taken = f"with {further}"
-    weight = 1.0 / (1.0 + 1.0 / ratio)
-    choice = FormChoice(
-        LOAD_WORDS[SURGE],
-        tuple(cycle.name for cycle in cycles),
-        (taken, f"without {further}"),
-        counts,
-        squares,
-        criteria,
-        (weight, 1.0 - weight),
-        dispersion,
-        taken,
-        taken,
-        ratio,
-        f"with {further} it is {ratio_text(ratio)} as well described as without",
-    )
-    return richer, choice
+    forms = (f"with {further}", f"without {further}")
+    reason = f"with {further} it is {{}} as well described as without"
+    choice = chosen_of_two(cycles, SURGE, forms, (rich, plain), reason)
+    return (tuple(names) if choice is None else richer), choice
 
 
 def fit_surge(
@@ -102,30 +76,9 @@ def fit_surge(
         squared = fit_terms(cycles, terms, constant.names, orders, stated=stated)
     except DataError:
         return constant, None
-    squares = (float(squared.chi_square[SURGE]), float(constant.chi_square[SURGE]))
-    spare = float(squared.data[SURGE]) - len(names)
-    dispersion = max(1.0, squares[0] / spare) if spare > 0 else 1.0
-    difference = (squares[1] - squares[0]) / dispersion
-    ratio = math.exp(min(difference / 2.0, 700.0))
-    if ratio < DECIDES:
-        return constant, None
-    count, weight = len(names), 1.0 / (1.0 + 1.0 / ratio)
-    criteria = (squares[0] / dispersion + 2.0 * count, squares[1] / dispersion + 2.0 * count)
     reason = (
-        f"a resistance that goes with u^2 as the model turns is {ratio_text(ratio)} as well "
-        "supported as a constant one: X_0 is that at the carriage's speed"
+        "a resistance that goes with u^2 as the model turns is {} as well supported as a constant "
+        "one: X_0 is that at the carriage's speed"
     )
-    return squared, FormChoice(
-        LOAD_WORDS[SURGE],
-        tuple(cycle.name for cycle in cycles),
-        (BY_SPEED, CONSTANT),
-        (count, count),
-        squares,
-        criteria,
-        (weight, 1.0 - weight),
-        dispersion,
-        BY_SPEED,
-        BY_SPEED,
-        ratio,
-        reason,
-    )
+    choice = chosen_of_two(cycles, SURGE, (BY_SPEED, CONSTANT), (squared, constant), reason)
+    return (constant if choice is None else squared), choice

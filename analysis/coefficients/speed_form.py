@@ -9,7 +9,6 @@ that with coefficients at the speed U, as manoeuvring models take them, it is
 At small angles, and on tows and circles, that is the same as coefficients that do not change.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from statistics import fmean
@@ -17,7 +16,7 @@ from statistics import fmean
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_records import FormChoice
 from analysis.coefficients.cycle_fit import CycleFit
-from analysis.coefficients.form_choice import DECIDES, choose_form, ratio_text
+from analysis.coefficients.form_choice import choose_form, chosen_of_two
 from hardware.description.errors import DataError
 
 
@@ -32,8 +31,9 @@ def choose_speed_form(
 ) -> tuple[FormChoice, CycleFit, float | None]:
     """Return the form of one load, the fit of the richest, and the speed that its terms are of.
 
-    They are of a speed where that is :data:`DECIDES` times as well supported as coefficients that
-    do not change; else of none. Parameters and what is raised are those of :func:`choose_form`.
+    They are of a speed where that is as many times better supported as
+    :func:`~analysis.coefficients.form_choice.chosen_of_two` asks; else of none. Parameters and what
+    is raised are those of :func:`choose_form`.
     """
     plain = choose_form(cycles, row, motions, orders, cross=cross, angles=angles)
     speed = fmean(cycle.speed_m_s for cycle in cycles)
@@ -45,15 +45,12 @@ def choose_speed_form(
         )
     except DataError:
         return (*plain, None)
-    spare = float(richest.data[row]) - len(richest.names)
-    left = float(richest.chi_square[row])
-    dispersion = max(1.0, left / spare) if spare > 0 else 1.0
-    difference = (float(plain[1].chi_square[row]) - left) / dispersion
-    ratio = math.exp(max(-700.0, min(difference / 2.0, 700.0)))
-    if ratio < DECIDES:
-        return (*plain, None)
-    message = (
+    forms = ("loads of the speed squared", "coefficients that do not change")
+    reason = (
         f"{choice.message}; that loads go with the square of the model's own speed as it turns is "
-        f"{ratio_text(ratio)} as well supported as coefficients that do not change"
+        "{} as well supported as coefficients that do not change"
     )
-    return replace(choice, message=message), richest, speed
+    of_speed = chosen_of_two(cycles, row, forms, (richest, plain[1]), reason)
+    if of_speed is None:
+        return (*plain, None)
+    return replace(choice, message=of_speed.message), richest, speed
