@@ -1,5 +1,6 @@
 """Bounds within which a number of ships and models lies, and the sentence where one does not."""
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 
@@ -31,3 +32,15 @@ class Bound:
             return None
         ends = f"{self.low:g} to {self.high:g}"
         return f"{self.name} = {value:.3g} is outside {ends} ({self.source}): {self.remedy}"
+
+
+def named(*bounds: Bound) -> dict[str, Bound]:
+    """Return bounds by their names."""
+    return {bound.name: bound for bound in bounds}
+
+
+def doubts_of(bounds: Mapping[str, Bound], values: Mapping[str, float]) -> Iterator[str]:
+    """Yield the sentence on each value that is not believed, by the bound of its name."""
+    for name, value in values.items():
+        if (doubt := bounds[name].doubt(value)) is not None:
+            yield doubt

@@ -44,8 +44,8 @@ def righting_checks(
     weight = body.mass_kg * STANDARD_GRAVITY_M_S2
     moments = stacked([means.select([ROLL_MOMENT.name]).real.select([0]) for *_, means in runs])
     angles = np.array(heels)
-    curved = UncertainValues(-righting_moment(0.0, weight * heel.bm_m, angles))
-    linear = stacked([moments, curved]).mapped(np.hstack((np.eye(len(runs)), np.eye(len(runs)))))
+    curved = righting_moment(0.0, weight * heel.bm_m, angles)
+    linear = UncertainValues(moments.values - curved, moments.contributions)
     matrix = np.column_stack((np.ones(len(runs)), weight * np.sin(angles)))
     found, _ = best_fit(
         matrix, linear, subject="GM", results=("zero", "gm_m"), data=[name for name, *_ in runs]

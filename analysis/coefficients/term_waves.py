@@ -29,7 +29,9 @@ def waves_of(terms: Sequence[Term], moves: FloatArray) -> FloatArray:
     waves = np.empty((*moves.shape[:-2], len(terms), moves.shape[-1]))
     for k, term in enumerate(terms):
         wave = _product([_factor(factor, moves) for factor in term.product], moves)
-        waves[..., k, :] = wave * _squared_speed(moves) ** (term.speed_power / 2) / term.divisor
+        if term.speed_power:
+            wave = wave * _squared_speed(moves) ** (term.speed_power / 2)
+        waves[..., k, :] = wave / term.divisor
     return waves
 
 

@@ -97,23 +97,6 @@ def own_variance(values: UncertainValues) -> FloatArray:
     return np.asarray(np.maximum(np.nan_to_num(variance), (1e-9 * size) ** 2))
 
 
-def _columns(omega: FloatArray, inertial: BoolArray, *, restoring: bool) -> "_Columns":
-    """Return what values of A, and of B/w where they are not inertial, hold."""
-    lowest, highest = float(omega.min()), float(omega.max())
-    octaves = np.log2(highest / lowest) + _BELOW + _ABOVE
-    centres = lowest * 2.0 ** (np.linspace(-_BELOW, octaves - _BELOW, round(octaves * _PER_OCTAVE)))
-    size = np.minimum(1.0, centres / lowest) ** _FALL / np.sqrt(_PER_OCTAVE)
-    ratio = 1j * omega[:, None] / centres
-    response = size / (1.0 + 2.0 * _DAMPING * ratio + ratio**2)
-    memory = np.where(inertial[:, None], response.real, -response.imag)
-    kinds = [inertial.astype(np.float64), ~inertial / omega, inertial / -(omega**2)]
-    steady = np.stack(kinds[: 3 if restoring else 2], axis=1)
-    told = steady.any(axis=0)
-    slow = np.zeros((steady.shape[1], len(centres)))
-    slow[0] = size
-    return _Columns(steady[:, told], memory, slow[told])
-
-
 @dataclass(frozen=True, eq=False)
 class _Columns:
     """What n values hold of the m steady parts and of k remembered ones.
@@ -147,6 +130,23 @@ class _Columns:
         doubt = missed @ missed.T + (tau * _OWN) ** 2 * rows @ rows.T
         volume = float(np.log(np.diag(root)).sum()) + 0.5 * float(np.linalg.slogdet(precision)[1])
         return -0.5 * float(left @ left) - volume, rows, doubt
+
+
+def _columns(omega: FloatArray, inertial: BoolArray, *, restoring: bool) -> _Columns:
+    """Return what values of A, and of B/w where they are not inertial, hold."""
+    lowest, highest = float(omega.min()), float(omega.max())
+    octaves = np.log2(highest / lowest) + _BELOW + _ABOVE
+    centres = lowest * 2.0 ** (np.linspace(-_BELOW, octaves - _BELOW, round(octaves * _PER_OCTAVE)))
+    size = np.minimum(1.0, centres / lowest) ** _FALL / np.sqrt(_PER_OCTAVE)
+    ratio = 1j * omega[:, None] / centres
+    response = size / (1.0 + 2.0 * _DAMPING * ratio + ratio**2)
+    memory = np.where(inertial[:, None], response.real, -response.imag)
+    kinds = [inertial.astype(np.float64), ~inertial / omega, inertial / -(omega**2)]
+    steady = np.stack(kinds[: 3 if restoring else 2], axis=1)
+    told = steady.any(axis=0)
+    slow = np.zeros((steady.shape[1], len(centres)))
+    slow[0] = size
+    return _Columns(steady[:, told], memory, slow[told])
 
 
 def _slow_motion(

@@ -22,6 +22,7 @@ import numpy as np
 from analysis.inertia.lengthening import Powers, longer
 from analysis.inertia.local_periods import FEWEST_PARTS, LocalPeriods
 from analysis.inertia.projection import inverse_gram
+from analysis.uncertainty.averaging import averaged
 from analysis.uncertainty.estimate import Estimate
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
@@ -116,9 +117,9 @@ def zero_amplitude_period(local: LocalPeriods, known: Powers = ()) -> ZeroAmplit
     fits = [_law(small, power) for power in POWERS]
     # the common misfit of the best law scales all uncertainties (Birge)
     scale = max(min(chi2 / freedom for _, chi2, freedom in fits), 1.0)
-    scores = [chi2 / scale + _penalty(2 * size, freedom) for _, chi2, freedom in fits]
-    weights = np.exp(-0.5 * (np.array(scores) - min(scores)))
-    weights /= weights.sum()
+    scores = np.array([chi2 / scale + _penalty(2 * size, freedom) for _, chi2, freedom in fits])
+    periods, own = np.array([[law.period_s, law.uncertainty_s] for law, *_ in fits]).T
+    mean, variance, weights = averaged(periods, scale * own**2, scores)
     laws = tuple(
         replace(
             law,
@@ -128,8 +129,6 @@ def zero_amplitude_period(local: LocalPeriods, known: Powers = ()) -> ZeroAmplit
         )
         for (law, _, _), weight in zip(fits, weights.tolist(), strict=True)
     )
-    mean = sum(law.weight * law.period_s for law in laws)
-    variance = sum(law.weight * (law.uncertainty_s**2 + (law.period_s - mean) ** 2) for law in laws)
     likeliest = max(laws, key=lambda law: law.weight)
     change = likeliest.at(local.amplitude.max(keepdims=True))[0] / likeliest.period_s - 1.0
     freedom = float(min(freedom for _, _, freedom in fits))

@@ -19,6 +19,7 @@ import numpy as np
 from analysis.inertia.amplitude import amplitude_integral
 from analysis.inertia.local_periods import FEWEST_PARTS, local_periods
 from analysis.inertia.record import RecordAnalysis
+from analysis.uncertainty.averaging import averaged
 from analysis.uncertainty.estimate import Estimate
 from hardware.description.arrays import FloatArray
 
@@ -60,10 +61,7 @@ def small_rate(releases: Sequence[Amplitudes]) -> Estimate:
     """
     fits = [fit for powers in _LAWS if (fit := _fit(releases, powers)) is not None]
     rates, variances, scores, freedoms = (np.array(each) for each in zip(*fits, strict=True))
-    weights = np.exp(-0.5 * (scores - scores.min()))
-    weights /= weights.sum()
-    mean = float(weights @ rates)
-    variance = float(weights @ (variances + (rates - mean) ** 2))
+    mean, variance, weights = averaged(rates, variances, scores)
     return Estimate.of(mean, math.sqrt(variance), "1/s", float(weights @ freedoms))
 
 

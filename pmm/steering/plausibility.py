@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from analysis.bounds import Bound
+from analysis.bounds import Bound, doubts_of, named
 from analysis.steering.identification import SteeringParameters
 from analysis.steering.observations import Particulars, SteeringRuns
 
@@ -32,48 +32,39 @@ _RATE: Final = (
 )
 _ANGLE: Final = "is rudder_angle_deg in degrees, and the channel rudder_angle in its unit?"
 _INTERVAL: Final = 2.0  # standard uncertainties: what a few runs hardly tell is not doubted
-BOUNDS: Final = {
-    bound.name: bound
-    for bound in (
-        Bound("1-t_P", 0.55, 1.05, "published: 0.78 and 0.79", _LOADS),
-        Bound("w_P0", -0.1, 0.65, "published: 0.40 and 0.36", _PROPELLER),
-        Bound("t_R", -0.1, 0.8, "published: 0.39 and 0.26", _LOADS),
-        Bound("a_H", -0.1, 0.8, "published: 0.31 and 0.36", _LATERAL),
-        Bound("x_H'", -0.6, 0.0, "within the afterbody; published: -0.46 and -0.44", _PLACES),
-        Bound("epsilon", 0.5, 1.6, "published: 1.09 and 0.96", _RUDDER),
-        Bound("kappa", 0.1, 1.2, "published: 0.50 and 0.63", _PROPELLER),
-        Bound("gamma_R+", 0.1, 1.1, "published: 0.64 and 0.49", _LATERAL),
-        Bound("gamma_R-", 0.1, 1.1, "published: 0.40 and 0.34", _LATERAL),
-        Bound("l_R'", -1.6, -0.3, "published: -0.71 and -0.76", _PLACES),
-        Bound("delta_0", -0.1, 0.1, "radians; rudders are set to a degree or two",
-              "was the rudder amidships in the zero runs, and is its angle in degrees or radians?"),
-    )
-}  # fmt: skip
+BOUNDS: Final = named(
+    Bound("1-t_P", 0.55, 1.05, "published: 0.78 and 0.79", _LOADS),
+    Bound("w_P0", -0.1, 0.65, "published: 0.40 and 0.36", _PROPELLER),
+    Bound("t_R", -0.1, 0.8, "published: 0.39 and 0.26", _LOADS),
+    Bound("a_H", -0.1, 0.8, "published: 0.31 and 0.36", _LATERAL),
+    Bound("x_H'", -0.6, 0.0, "within the afterbody; published: -0.46 and -0.44", _PLACES),
+    Bound("epsilon", 0.5, 1.6, "published: 1.09 and 0.96", _RUDDER),
+    Bound("kappa", 0.1, 1.2, "published: 0.50 and 0.63", _PROPELLER),
+    Bound("gamma_R+", 0.1, 1.1, "published: 0.64 and 0.49", _LATERAL),
+    Bound("gamma_R-", 0.1, 1.1, "published: 0.40 and 0.34", _LATERAL),
+    Bound("l_R'", -1.6, -0.3, "published: -0.71 and -0.76", _PLACES),
+    Bound("delta_0", -0.1, 0.1, "radians; rudders are set to a degree or two",
+          "was the rudder amidships in the zero runs, and is its angle in degrees or radians?"),
+)  # fmt: skip
 """What is believed of each parameter, around those published of KVLCC2 (Yasukawa and Yoshimura
 2015) and KCS (Yoshimura, Ueno and Tsukada 2008). Limits half as far would doubt other ships'; twice
 as far they let a rudder pass that is measured in the wrong unit of length."""
 
 
-OF_RUNS: Final = {
-    bound.name: bound
-    for bound in (
-        Bound("U/(n D_P)", 0.05, 3.0, "advance without wake, bollard pull to windmilling", _RATE),
-        Bound("largest rudder angle in °", 2.0, 60.0, "what rudders are laid to", _ANGLE),
-    )
-}  # fmt: skip
+OF_RUNS: Final = named(
+    Bound("U/(n D_P)", 0.05, 3.0, "advance without wake, bollard pull to windmilling", _RATE),
+    Bound("largest rudder angle in °", 2.0, 60.0, "what rudders are laid to", _ANGLE),
+)  # fmt: skip
 """The same of what the runs state, at the median rate; rpm and degrees are off by 60 and 57."""
 
-OF_FIT: Final = {
-    bound.name: bound
-    for bound in (
-        Bound("misfit of the loads", 0.0, 20.0, "1 where the equations describe the runs", _LOADS),
-        Bound("misfit of the inflow", 0.0, 20.0, "1 where the equations describe the runs",
-              "are drift (bow to starboard), turn rate and rudder angle in their units, with these "
-              "signs?"),
-    )
-}  # fmt: skip
-"""What the fits leave over, times scatter: a sign of drift or thrust leaves hundreds, real runs
-some; limits half or twice as far would tell the same ones."""
+OF_FIT: Final = named(
+    Bound("misfit of the loads", 0.0, 20.0, "1 where the equations describe the runs", _LOADS),
+    Bound("misfit of the inflow", 0.0, 20.0, "1 where the equations describe the runs",
+          "are drift (bow to starboard), turn rate and rudder angle in their units, with these "
+          "signs?"),
+)  # fmt: skip
+"""What the fits leave over, times scatter. A drift with the other sign left 293 and a thrust 5264
+in made-up campaigns, which 10 and 40 would tell too; how much real runs leave is not known."""
 
 _SIGNS: Final = {
     "force_x is not positive ahead": {"1-t_P", "1-t_R"},
@@ -100,9 +91,7 @@ def doubts(
     """
     pace = np.median(runs.speed_m_s / runs.rate_hz) / particulars.diameter_m
     largest = math.degrees(np.abs(runs.rudder_rad).max())
-    for bound, stated in zip(OF_RUNS.values(), (float(pace), largest), strict=True):
-        if (doubt := bound.doubt(stated)) is not None:
-            yield doubt
+    yield from doubts_of(OF_RUNS, dict(zip(OF_RUNS, (float(pace), largest), strict=True)))
     if (sign := _turned_sign(parameters)) is not None:
         yield sign
         return
@@ -112,9 +101,8 @@ def doubts(
     ):
         if (doubt := BOUNDS[name].doubt(value, width)) is not None:
             yield doubt
-    for bound, left in zip(OF_FIT.values(), parameters.misfit, strict=True):
-        if math.isfinite(left) and (doubt := bound.doubt(left)) is not None:
-            yield doubt
+    left = dict(zip(OF_FIT, parameters.misfit, strict=True))
+    yield from doubts_of(OF_FIT, {name: one for name, one in left.items() if math.isfinite(one)})
 
 
 def _turned_sign(parameters: SteeringParameters) -> str | None:
