@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 
 from analysis.gap.observe.components import Component, Part
-from hardware.description.arrays import FloatArray
+from hardware.description.arrays import BoolArray, FloatArray
 
 # What each of these is the logarithm of, to this power, adds up like powers do.
 _POWERS: Final = {
@@ -16,6 +16,11 @@ _POWERS: Final = {
     Part.CYCLE_SCATTER: 2.0,
     Part.PERIOD_SCATTER: 2.0,
 }
+
+
+def are_powers(parts: Sequence[Component]) -> BoolArray:
+    """Tell which components are logarithms of powers, shape ``(components,)``."""
+    return _powers(parts) > 0.0
 
 
 def _powers(parts: Sequence[Component]) -> FloatArray:

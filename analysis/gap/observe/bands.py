@@ -3,6 +3,7 @@
 A line where the mains fold to is told apart from any other: a carriage has none there.
 """
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Final
 
@@ -14,6 +15,7 @@ from hardware.description.arrays import BoolArray, FloatArray
 Found = Iterator[tuple[Component, float, float]]
 
 MAINS_HZ: Final = (50, 60)
+TAKEN_OUT: Final = 12  # harmonics whose leakage is taken out of what lies between them
 _BESIDE = 1.5  # bins on either side of a line that its own leakage may reach
 _ABOUT = 51  # lines whose median says how loud it is about one of them
 _FEW_LINES = 12
@@ -60,6 +62,68 @@ def of_the_mains(
             reached[mains_hz] = left & (np.abs(lines_hz - at_hz) < _BESIDE * bin_hz)
             left &= ~reached[mains_hz]
     return reached
+
+
+def between_harmonics(
+    name: str,
+    values: FloatArray,
+    rate_hz: float,
+    frequency: float,
+    bands: Mapping[int, tuple[float, float]],
+) -> Found:
+    """Yield how loud each band is between the harmonics, and its strongest lines.
+
+    Parameters
+    ----------
+    values
+        Samples, the first ``TAKEN_OUT`` harmonics taken out.
+    frequency
+        Of the oscillation, in Hz.
+    bands
+        In multiples of it, by number.
+    """
+    count = len(values)
+    taper, bin_hz = np.hanning(count), rate_hz / count
+    lines_hz: FloatArray = np.arange(count // 2 + 1) * bin_hz
+    power = np.abs(np.fft.rfft(values * taper)) ** 2 / np.sum(taper**2) / len(lines_hz)
+    free = free_of_harmonics(lines_hz, frequency, bin_hz)
+    beyond = lines_hz > (TAKEN_OUT + 0.5) * frequency
+    for number, (low, high) in bands.items():
+        edges_hz = low * frequency, high * frequency
+        within = (lines_hz > edges_hz[0]) & (lines_hz < edges_hz[1])
+        within[0] = False
+        mains = of_the_mains(lines_hz, rate_hz, bin_hz, edges_hz)
+        shared = within & beyond & ~free & np.any([np.zeros_like(free), *mains.values()], axis=0)
+        told = _beside_harmonics(lines_hz / frequency, power, within & free, shared)
+        inside = within & (free | shared)
+        near = {mains_hz: lines[inside] for mains_hz, lines in mains.items()}
+        yield from band(name, number, told[inside], near)
+
+
+def _beside_harmonics(
+    orders: FloatArray, power: FloatArray, free: BoolArray, shared: BoolArray
+) -> FloatArray:
+    """Return the power of lines that share their place with a high harmonic, less its part in it.
+
+    Mostly there is nothing of a fiftieth harmonic, and a line there is that of the mains; how much
+    there is tell the two harmonics on either side, over the noise.
+
+    Parameters
+    ----------
+    orders
+        Frequency of the lines over that of the oscillation, shape ``(lines,)``.
+    free
+        Which of them no harmonic reaches.
+    shared
+        Those in question.
+    """
+    told, harmonic, step = power.copy(), np.round(orders), orders[1] - orders[0]
+    noise = float(np.median(power[free])) / np.log(2.0) + 1e-15 if free.any() else math.inf
+    for order in np.unique(harmonic[shared]):
+        near = np.isin(harmonic, order + np.array([-2, -1, 1, 2]))
+        near &= np.abs(orders - harmonic) < _BESIDE * step
+        told[shared & (harmonic == order)] /= max(float(np.mean(power[near])) / noise, 1.0)
+    return told
 
 
 def band(

@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.observe.bands import band, free_of_harmonics, of_the_mains
+from analysis.gap.observe.bands import TAKEN_OUT, band, between_harmonics
 from analysis.gap.observe.components import TRENDS, Component, Observation, Part
 from analysis.gap.observe.phase import choose_phase
 from analysis.gap.observe.plateau import Plateau, plateau, steps_of
@@ -245,24 +245,13 @@ def _steady(analysis: Analysis, recording: Recording | None = None) -> Recording
 
 
 def _band_powers(analysis: Analysis, moving: Moving) -> Found:
-    part = _steady(analysis)
-    rate_hz, frequency = part.sample_rate_hz, analysis.readings[0].frequency_hz
-    count = part.sample_count
-    taper = np.hanning(count)
-    lines_hz = np.arange(count // 2 + 1) * rate_hz / count
-    free = free_of_harmonics(lines_hz, frequency, rate_hz / count)
-    repeats = repeating(2.0 * np.pi * analysis.reference.cycles_at(part.time_s()), 2 * ORDERS)
+    part, frequency = _steady(analysis), analysis.readings[0].frequency_hz
+    repeats = repeating(2.0 * np.pi * analysis.reference.cycles_at(part.time_s()), TAKEN_OUT)
     for name in moving:
         if name in FORCES:
             values = part.values(name)
             values = values - repeats @ (repeats.T @ values)
-            power = np.abs(np.fft.rfft(values * taper)) ** 2 / np.sum(taper**2) / len(lines_hz)
-            for number, (low, high) in BANDS.items():
-                inside = free & (lines_hz > low * frequency) & (lines_hz < high * frequency)
-                inside[0] = False
-                edges_hz = low * frequency, high * frequency
-                near = of_the_mains(lines_hz[inside], rate_hz, rate_hz / count, edges_hz)
-                yield from band(name, number, power[inside], near)
+            yield from between_harmonics(name, values, part.sample_rate_hz, frequency, BANDS)
 
 
 def _plateaus(part: Recording) -> dict[str, Plateau]:

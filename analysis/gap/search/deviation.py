@@ -48,6 +48,11 @@ _KINDS: Final = {
     Part.LINE: "lines",
     Part.MAINS: "lines",
 }
+_UNEVEN: Final = ("means", "trends", "scatter", "lines")
+# What shakes both gauges alike, and not with the shaft.
+_SHARED: Final = tuple(
+    stage.value for stage in (StageName.MODEL, StageName.CARRIAGE, StageName.STRUCTURE)
+)
 
 
 def background(problem: Problem, looked: Sequence[FirstLook], sought: BoolArray) -> Background:
@@ -173,13 +178,21 @@ def _rows_by_stage(stack: Stack) -> Iterator[tuple[str, BoolArray]]:
 
 
 def _kinds(stack: Stack) -> Iterator[tuple[str, Kind]]:
-    """Yield where something unknown may show alone: in one channel, by kind, or in all alike."""
+    """Yield where something unknown may show alone.
+
+    In one channel, by kind; in all channels, by kind, or whatever does not repeat; or everywhere.
+    """
     channels = np.array([component.channel for component in stack.components])
     kinds = np.array([_KINDS.get(component.part, "timing") for component in stack.components])
     for channel in dict.fromkeys(channels.tolist()):
         for kind in dict.fromkeys(kinds[channels == channel].tolist()):
             rows = (channels == channel) & (kinds == kind)
             yield f"{channel} {kind}".strip(), Kind(rows, (_instrument(channel, kind),))
+    forces = np.isin(channels, FORCES)
+    for kind in _UNEVEN:
+        if len(set(channels[forces & (kinds == kind)].tolist())) > 1:
+            yield f"forces {kind}", Kind(forces & (kinds == kind), _SHARED)
+    yield "forces unevenly", Kind(forces & np.isin(kinds, _UNEVEN), _SHARED)
     stages = tuple(stage.value for stage in StageName)
     yield "all", Kind(np.ones(len(channels), dtype=bool), stages)
 

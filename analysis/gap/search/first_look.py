@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from analysis.gap.forward.candidate import STEP, Candidate, candidates, turned_starts
-from analysis.gap.forward.powers import scaled_change
+from analysis.gap.forward.powers import are_powers, scaled_change
 from analysis.gap.forward.problem import ComparedProblem, Problem
 from analysis.gap.inference.gaussian import left_over, misfit, null_evidence
 from analysis.gap.search.fit import (
@@ -26,6 +26,7 @@ from analysis.gap.search.fit import (
     moved_fit,
     weighed_at,
 )
+from analysis.gap.search.refinement import follow
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect
@@ -136,13 +137,16 @@ def _in_time(problem: Problem, candidate: Candidate) -> Fit:
     What has a sign is linear; tiny steps of it would drown in the digitiser's. Powers go with the
     square of a size, and their logarithms are compared: from one record follows what any size
     changes, where a straight line would soon go astray, and the one that leaves least is taken.
+    What has a sign is taken to where it leads without any powers, and they follow there.
     """
     if candidate.axes and all(axis.is_size and axis.parameter.low < 0.0 for axis in candidate.axes):
         alone = [problem.signature((candidate,), units) for units in np.diag(candidate.start)]
         columns = np.column_stack(alone) / candidate.start
-        return weighed_at(
-            problem, (candidate,), candidate.start, columns, columns @ candidate.start
-        )
+        columns[are_powers(problem.simulator.stack.components)] = 0.0
+        parts, start = (candidate,), candidate.start
+        small = weighed_at(problem, parts, start, columns, columns @ start)
+        led = moved_fit(problem, small, most_probable(small))
+        return max(small, led, key=lambda fit: fit.log_evidence)
     if len(candidate.axes) != 1:
         return linearised_at(problem, (candidate,), candidate.start)
     simulator = problem.simulator
@@ -171,7 +175,8 @@ def _look_nearer(problem: ComparedProblem, fit: Fit) -> Fit:
     chi_square = misfit(problem.residual, problem.nuisances)
     wanted = math.sqrt(max(chi_square - len(problem.residual), _SEEN))
     if not any(axis.is_size for axis in fit.axes):
-        return _along_any(problem, fit, wanted)
+        # No straight line leads from there to no effect: some steps tell where it goes.
+        return follow(problem, _along_any(problem, fit, wanted), _APPROACHES)
     # Seen from far too large, a phase is known far too well.
     straight = all(axis.is_size for axis in fit.axes)
     near = fit
