@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from analysis.gap.forward.problem import Problem
 from analysis.gap.inference.constants import TAUS, TOLERATED, WIDE
@@ -114,13 +115,14 @@ class Beside:
             carried[cell.after] = cell.reach.T @ white[cell.made]
         return carried
 
-    @property
-    def deviation(self) -> FloatArray:
+    @cached_property
+    def deviation(self) -> csr_array:
         """What is left of it in further observations: its covariance."""
-        deviation = np.zeros((self.further_count, self.further_count))
-        for cell in self.cells:
-            deviation[np.ix_(cell.after, cell.after)] = cell.left
-        return deviation
+        rows = [np.repeat(cell.after, len(cell.after)) for cell in self.cells]
+        columns = [np.tile(cell.after, len(cell.after)) for cell in self.cells]
+        values = np.concatenate([cell.left.ravel() for cell in self.cells])
+        places = np.concatenate(rows), np.concatenate(columns)
+        return csr_array((values, places), shape=(self.further_count, self.further_count))
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from analysis.gap.design.beside import Beside
 from analysis.gap.forward.free_numbers import Free, tolerated
@@ -37,20 +38,23 @@ class Forecast:
     form
         The same of the effect's own form, by about as much as it is off.
     deviation
-        Covariance of a deviation of no particular form, ``(observations, observations)``.
+        Covariance of a deviation of no particular form, ``(observations, observations)``: one block
+        for each component.
     """
 
     mean: FloatArray
     root: FloatArray
     run_root: FloatArray
     form: FloatArray
-    deviation: FloatArray | None = None
+    deviation: csr_array | None = None
 
     def covariance(self, rows: BoolArray) -> FloatArray:
         """Return the covariance of some observations to be made, their noise in it."""
         root = np.hstack([root[rows] for root in (self.root, self.run_root, self.form)])
         covariance: FloatArray = np.eye(len(root)) + root @ root.T
-        return covariance if self.deviation is None else covariance + self.deviation[rows][:, rows]
+        if self.deviation is not None:
+            covariance += self.deviation[rows][:, rows].toarray()
+        return covariance
 
     def values(self, problem_ahead: Problem) -> FloatArray:
         """Return the predicted components in their own units."""

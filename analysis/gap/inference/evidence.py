@@ -1,7 +1,7 @@
 """The evidence of each hypothesis of one problem, beside a deviation of each size."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -94,10 +94,8 @@ class Background:
         """Return the residual's products under a deviation of each size in some observations."""
         if rows.all():
             return [weighted.reduced(self._scale(), self._target) for weighted in self._smoothed]
-        each = np.zeros((len(rows), int(rows.sum())))
-        each[rows] = np.eye(each.shape[1])
-        reduced = self._under_none.reduced(self._scale(), np.hstack((self._target, each)))
-        sizes, at = np.sqrt(self.kernel.values[rows]), range(1, 1 + each.shape[1])
+        sizes = np.sqrt(self.kernel.values[rows])
+        reduced, at = self._under_none.at_rows(self._target, rows), range(1, 1 + len(sizes))
         return [reduced.widened(1, at, tau * sizes) for tau in TAUS]
 
     def _spread(self, columns: FloatArray, share: float, rows: BoolArray) -> FloatArray:
@@ -135,7 +133,7 @@ class Background:
         shapes = [self.shapes.weights_beside(hypothesis.names) for hypothesis in sets]
         turned = [self._rotated(hypothesis) for hypothesis in sets]
         evidences: list[list[Evidence]] = [[] for _ in sets]
-        for tau, plain in zip(TAUS, self._under_plain, strict=True):
+        for tau, plain in zip(TAUS, self._weighted(PLAIN), strict=True):
             beside = [self._shape_scale(tau, shape) for shape in shapes]
             for set_evidences, hypothesis, reduced in zip(
                 evidences, sets, plain.each(beside, turned), strict=True
@@ -183,7 +181,7 @@ class Background:
     @cached_property
     def _smoothed(self) -> Sequence[Weighted]:
         """Under a smooth deviation of each size."""
-        return self._weighted(1.0)
+        return tuple(self._weighted(1.0))
 
     @property
     def _tolerated(self) -> Sequence[Weighted]:
@@ -192,15 +190,12 @@ class Background:
             weighted for weighted, tau in zip(self._smoothed, TAUS, strict=True) if tau <= TOLERATED
         ]
 
-    @cached_property
-    def _under_plain(self) -> Sequence[Weighted]:
-        """Under the part of a deviation of each size that has no shape."""
-        return self._weighted(PLAIN)
-
-    def _weighted(self, share: float) -> Sequence[Weighted]:
+    def _weighted(self, share: float) -> Iterator[Weighted]:
+        """Yield what all have under a share of a deviation of each size; each is large."""
         values = share * self.kernel.values
         shared = self.tolerances.shape[1]
-        return [Weighted(self._columns, 1.0 + tau**2 * values, shared) for tau in TAUS]
+        for tau in TAUS:
+            yield Weighted(self._columns, 1.0 + tau**2 * values, shared)
 
     @property
     def _run_blocks(self) -> Sequence[FloatArray]:

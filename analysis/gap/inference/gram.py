@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
 
-from hardware.description.arrays import FloatArray
+from hardware.description.arrays import BoolArray, FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,6 +109,27 @@ class Weighted:
             The columns X, shape ``(observations, any)``.
         """
         return next(self.each([scale], [of]))
+
+    def at_rows(self, of: FloatArray, rows: BoolArray) -> Reduced:
+        """Return products of columns X, and behind them of a 1 in each of some rows, without C.
+
+        Parameters
+        ----------
+        of
+            The columns X, shape ``(observations, any)``.
+        """
+        lower, log_determinant, _, _ = self._under_shared
+        over = of / self.diagonal[:, None]
+        own = self.columns[:, : self.shared]
+        of_rows = own[rows].T / self.diagonal[rows]
+        shared = _solve(lower, np.hstack((own.T @ over, of_rows)))
+        gram = -shared.T @ shared
+        count = of.shape[1]
+        gram[:count, :count] += of.T @ over
+        gram[:count, count:] += over[rows].T
+        gram[count:, :count] += over[rows]
+        gram[count:, count:] += np.diag(1.0 / self.diagonal[rows])
+        return Reduced(gram, log_determinant)
 
     def each(self, scales: Sequence[FloatArray], sets: Sequence[FloatArray]) -> Iterator[Reduced]:
         """Yield the same of several sets of columns X, each with what the others count beside it.

@@ -84,7 +84,7 @@ def between_harmonics(
     """
     count = len(values)
     taper, bin_hz = np.hanning(count), rate_hz / count
-    lines_hz: FloatArray = np.arange(count // 2 + 1) * bin_hz
+    lines_hz = np.asarray(np.arange(count // 2 + 1) * bin_hz, np.float64)
     power = np.abs(np.fft.rfft(values * taper)) ** 2 / np.sum(taper**2) / len(lines_hz)
     free = free_of_harmonics(lines_hz, frequency, bin_hz)
     beyond = lines_hz > (TAKEN_OUT + 0.5) * frequency
@@ -106,7 +106,7 @@ def _beside_harmonics(
     """Return the power of lines that share their place with a high harmonic, less its part in it.
 
     Mostly there is nothing of a fiftieth harmonic, and a line there is that of the mains; how much
-    there is tell the two harmonics on either side, over the noise.
+    there is tell the two harmonics on either side, those next to it or the others, over the noise.
 
     Parameters
     ----------
@@ -120,9 +120,11 @@ def _beside_harmonics(
     told, harmonic, step = power.copy(), np.round(orders), orders[1] - orders[0]
     noise = float(np.median(power[free])) / np.log(2.0) + 1e-15 if free.any() else math.inf
     for order in np.unique(harmonic[shared]):
-        near = np.isin(harmonic, order + np.array([-2, -1, 1, 2]))
-        near &= np.abs(orders - harmonic) < _BESIDE * step
-        told[shared & (harmonic == order)] /= max(float(np.mean(power[near])) / noise, 1.0)
+        loudest = noise
+        for away in (1, 2):  # there may be odd ones alone
+            near = np.abs(np.abs(orders - order) - away) < _BESIDE * step
+            loudest = max(loudest, float(np.mean(power[near])))
+        told[shared & (harmonic == order)] /= loudest / noise
     return told
 
 

@@ -5,7 +5,14 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from analysis.gap.observe.bands import MAINS_HZ, band, folded_hz, of_the_mains
+from analysis.gap.observe.bands import (
+    MAINS_HZ,
+    TAKEN_OUT,
+    band,
+    between_harmonics,
+    folded_hz,
+    of_the_mains,
+)
 from analysis.gap.observe.components import Part
 from analysis.gap.observe.observation import BANDS
 
@@ -61,3 +68,25 @@ def test_no_line_is_told_twice(rate_hz: float) -> None:
     reached_hz = lines_hz[np.any([np.zeros(len(lines_hz), bool), *near.values()], axis=0)]
     for at_hz in (hz for hz in seen_hz if 0.0 < hz < lines_hz[-1]):
         assert np.abs(reached_hz - at_hz).min() <= 0.5001 * rate_hz / count
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("high_for", [0.47, 0.5])  # of a period: with half of it, odd orders alone
+@pytest.mark.parametrize(
+    ("hum", "square"), [(0.0, 0.0), (0.0, 1.0), (0.0, 12.0), (0.5, 0.0), (0.5, 1.0)]
+)
+def test_hum_is_told_from_the_harmonic_that_it_falls_on(
+    hum: float, square: float, high_for: float, seed: int
+) -> None:
+    """At 1 Hz, 50 Hz is the 50th harmonic, at 1.02 Hz beside the 49th; a square wave has some."""
+    rate_hz, count, frequency_hz = 200.0, 2000, 1.0 if seed % 2 else 1.02
+    time_s, rng = np.arange(count) / rate_hz, np.random.default_rng(seed)
+    turns = frequency_hz * time_s
+    wave = square * np.where((turns + 0.1) % 1.0 < high_for, 1.0, -1.0)
+    angle = 2.0 * np.pi * np.outer(turns, np.arange(1, TAKEN_OUT + 1))
+    known = np.hstack((np.ones((count, 1)), np.cos(angle), np.sin(angle)))
+    wave = wave - known @ np.linalg.lstsq(known, wave, rcond=None)[0]
+    values = rng.standard_normal(count) + wave + hum * np.sin(2.0 * np.pi * 50.0 * time_s + 0.4)
+    entries = between_harmonics("force_aft", values, rate_hz, frequency_hz, BANDS)
+    told = {(part.part, part.order): value / uncertainty for part, value, uncertainty in entries}
+    assert (told[Part.MAINS, 50] > 2.3) == (hum > 0.0)

@@ -102,7 +102,8 @@ def test_it_ends_there_from_wherever_it_began(calm: Problem, name: str) -> None:
     for spread in (1.0, 10.0, 100.0):
         away = found.units + spread * deviation * rng.uniform(-1.0, 1.0, len(deviation))
         again = _refined(made, one, np.clip(away, *bounds((one,))))
-        assert (np.abs(again.units - found.units) < LEVEL * deviation).all()
+        # each of the two may be that far from the most probable
+        assert (np.abs(again.units - found.units) < 2.0 * LEVEL * deviation).all()
 
 
 @pytest.mark.sample(1)
