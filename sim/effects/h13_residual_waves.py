@@ -33,7 +33,8 @@ class ResidualWaves(Effect):
 
     In a campaign, frequency and waiting time are those of the run's place in it, and the first run
     finds calm water. Repeats with another waiting time scatter; where both runs have the same
-    frequency, it is in the harmonic itself.
+    frequency, it is in the harmonic itself. A tank that any run sets swaying at a frequency of its
+    own (a seiche, waves between its ends) answers every run with that one.
     """
 
     code = "H13"
@@ -68,6 +69,16 @@ class ResidualWaves(Effect):
     frequency_hz: float = parameter(
         0.63, 0.01, 3.0, "Hz", "of the waves", held=True, one_sign=OneSign.RATE
     )
+    tank_hz: float = parameter(
+        0.0,
+        0.0,
+        3.0,
+        "Hz",
+        "of waves that the tank has at its own, whichever run left them; 0 for none",
+        held=True,
+        starts=(0.0, 0.4, 0.7, 1.1),
+        one_sign=OneSign.RATE,
+    )
     phase_rad: float = parameter(0.0, -math.pi, math.pi, "rad", "phase at the first sample")
 
     @property
@@ -81,7 +92,8 @@ class ResidualWaves(Effect):
             return replace(self, force_n=0.0)
         # After two hours nothing is left.
         waited = min(run.waited_s, LONGEST_WAIT_S)
-        return replace(self, waited_s=waited, frequency_hz=run.before.frequency_hz)
+        frequency_hz = self.tank_hz or run.before.frequency_hz
+        return replace(self, waited_s=waited, frequency_hz=frequency_hz)
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this force on the model's heave or sway."""

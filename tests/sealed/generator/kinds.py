@@ -105,11 +105,14 @@ class Drawing:
     rng: np.random.Generator
 
     def _one(self, pool: list[Effect], wanted: float, tries: int = 5) -> Sized:
-        """Return an effect of the pool with half of what is wanted, or the last quiet one."""
+        """Return an effect of the pool with half of what is wanted, or the last quiet one.
+
+        One that does not show at all in these runs, a saturation that they do not reach, is none.
+        """
         kept = None
         for i in self.rng.permutation(len(pool))[:tries]:
             found = sized(self.situation, self.projection, pool[i], wanted, self.rng)
-            if self.background.of_parts(found) > QUIET_PARTS:
+            if self.background.of_parts(found) > QUIET_PARTS or found.snr < INVISIBLE:
                 continue
             kept = found
             if 0.5 * wanted < found.snr < 2.0 * wanted:

@@ -170,7 +170,7 @@ def test_residual_waves_in_the_time_domain(motion: tuple[float, float, float]) -
 
 
 def test_residual_waves_over_a_campaign() -> None:
-    """The first run is calm, each later one has the frequency before it, less if one waits."""
+    """The first run is calm, each later one has the frequency before it or the tank's, less later."""
     set_points = [SetPoint(0.5, 0.02), SetPoint(0.8, 0.02), SetPoint(0.8, 0.03)]
     effect = ResidualWaves(3.0, 100.0)
     situation = Situation.of(VERTICAL, set_points[-1])
@@ -182,6 +182,11 @@ def test_residual_waves_over_a_campaign() -> None:
         assert {frequency for _, frequency in second.lines(situation)} == {0.5}
         assert {frequency for _, frequency in third.lines(situation)} == {0.8}
         sizes.append(third.left_n)
+        swaying = [replace(effect, tank_hz=0.37).at_run(run) for run in runs]
+        assert not any(swaying[0].lines(situation).values())
+        for one in swaying[1:]:
+            assert {frequency for _, frequency in one.lines(situation)} == {0.37}
+        assert swaying[2].left_n == third.left_n
     assert sizes[1] / sizes[0] == pytest.approx(np.exp(-2.4), rel=1e-12)
 
 
