@@ -44,12 +44,12 @@ _KINDS: Final = {
     **dict.fromkeys(SETTLING, "trends"),
     Part.CYCLE_SCATTER: "scatter",
     Part.PERIOD_SCATTER: "scatter",
-    Part.BETWEEN: "lines",
+    Part.BETWEEN: "noise",  # a line leaves the median between the harmonics as it is
     Part.LINE: "lines",
-    Part.MAINS: "lines",
+    Part.MAINS: "mains",
 }
-_UNEVEN: Final = ("means", "trends", "scatter", "lines")
-# What shakes both gauges alike, and not with the shaft.
+_BANDED: Final = (Part.BETWEEN, Part.LINE)
+# What shakes both gauges alike, and not with the shaft, may show in one kind of both.
 _SHARED: Final = tuple(
     stage.value for stage in (StageName.MODEL, StageName.CARRIAGE, StageName.STRUCTURE)
 )
@@ -180,21 +180,26 @@ def _rows_by_stage(stack: Stack) -> Iterator[tuple[str, BoolArray]]:
 def _kinds(stack: Stack) -> Iterator[tuple[str, Kind]]:
     """Yield where something unknown may show alone.
 
-    In one channel, by kind; in all channels, by kind, or whatever does not repeat; or everywhere.
+    In one channel, or in both forces alike, by kind; or everywhere.
     """
     channels = np.array([component.channel for component in stack.components])
-    kinds = np.array([_KINDS.get(component.part, "timing") for component in stack.components])
+    kinds = np.array([_kind(component) for component in stack.components])
     for channel in dict.fromkeys(channels.tolist()):
         for kind in dict.fromkeys(kinds[channels == channel].tolist()):
             rows = (channels == channel) & (kinds == kind)
             yield f"{channel} {kind}".strip(), Kind(rows, (_instrument(channel, kind),))
     forces = np.isin(channels, FORCES)
-    for kind in _UNEVEN:
-        if len(set(channels[forces & (kinds == kind)].tolist())) > 1:
-            yield f"forces {kind}", Kind(forces & (kinds == kind), _SHARED)
-    yield "forces unevenly", Kind(forces & np.isin(kinds, _UNEVEN), _SHARED)
+    for kind in dict.fromkeys(kinds[forces].tolist()):
+        rows = forces & (kinds == kind)
+        if kind != "harmonics" and len(set(channels[rows].tolist())) > 1:
+            yield f"forces {kind}", Kind(rows, _SHARED)
     stages = tuple(stage.value for stage in StageName)
     yield "all", Kind(np.ones(len(channels), dtype=bool), stages)
+
+
+def _kind(component: Component) -> str:
+    kind = _KINDS.get(component.part, "timing")
+    return f"{kind} {component.order}" if component.part in _BANDED else kind
 
 
 def _instrument(channel: str, kind: str) -> str:
