@@ -1,6 +1,7 @@
 """Recordings as NetCDF4 files: written whole, read a stretch at a time."""
 
 import errno
+import json
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -119,6 +120,24 @@ def read_netcdf(path: Path) -> Recording:
         flags = damage.all_flags(recording, 0 if edges is None else int(edges.shape[0]))
         recording = replace(recording, flags=(*recording.flags, *flags))
     return without_spikes(with_missing_said(recording))
+
+
+def read_span(path: Path) -> tuple[str, float]:
+    """Return when a recording was begun, UTC as text, and its length in s; no sample is read.
+
+    The text is empty where the recording does not say.
+
+    Raises
+    ------
+    DataError
+        If it is no such file.
+    """
+    import h5netcdf
+
+    with reading(path), h5netcdf.File(path, "r", phony_dims="sort") as file:
+        time = file.variables[schema.TIME]
+        told = json.loads(file.attrs.get(schema.ATTR_PROVENANCE, "{}"))
+        return str(told.get("started_utc", "")), float(time[-1]) - float(time[0])
 
 
 READER: Final = Reader(lambda path, *_: read_netcdf(path), own_channels=True)

@@ -1,6 +1,6 @@
 """In which order a campaign was made, and what time that takes: runs and records at rest."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from hardware.description.errors import ConfigurationError
 from pmm.campaign.campaign import Campaign
@@ -8,6 +8,8 @@ from pmm.campaign.runs import AtRest, Run
 from sim.effects.campaign import CampaignRun
 
 Record = Run | AtRest
+Clock = Mapping[str, tuple[float, float]]
+"""Beginning and end of each record by its name, on one clock, in seconds."""
 
 
 def made_in_order(campaign: Campaign) -> tuple[Record, ...]:
@@ -37,33 +39,45 @@ def _place_by_name(order: Sequence[Record], name: str) -> int | None:
     return min(before) if before else max(after, default=None)
 
 
-def place_in(campaign: Campaign, record: Record) -> CampaignRun:
+def place_in(campaign: Campaign, record: Record, clock: Clock | None = None) -> CampaignRun:
     """Return where a run or a record at rest stands in its campaign.
+
+    Parameters
+    ----------
+    clock
+        When all of them were made, if that is known (:func:`pmm.campaign.clock.clock_of`); else
+        their order and the campaign's ``waiting_s`` tell.
 
     Raises
     ------
     ConfigurationError
         If nothing says when a record at rest was made.
     """
-    order = made_in_order(campaign)
-    if record not in order:
+    if not clock:
+        clock = _stated_clock(campaign)
+    if record.name not in clock:
         raise ConfigurationError(
             f"nothing says when {record.name!r} was made; number all runs and records at rest, or "
             "name it as zero_before or zero_after of a run"
         )
-    earlier = order[: order.index(record)]
-    waiting_s = campaign.simulation.waiting_s
-    since_s = sum(_duration_s(campaign, entry) for entry in earlier) + len(earlier) * waiting_s
-    runs = [place for place, entry in enumerate(earlier) if isinstance(entry, Run)]
-    if not runs:
-        return CampaignRun(0, since_s, 0.0, None)
-    last = earlier[runs[-1]]
-    between = earlier[runs[-1] + 1 :]
-    waited_s = (
-        sum(_duration_s(campaign, entry) for entry in between) + (len(between) + 1) * waiting_s
-    )
-    before = last.set_point if isinstance(last, Run) else None
-    return CampaignRun(len(runs), since_s, waited_s, before)
+    first_s, began_s = min(clock.values())[0], clock[record.name][0]
+    earlier = [run for run in campaign.runs if clock[run.name][0] < began_s]
+    if not earlier:
+        return CampaignRun(0, began_s - first_s, 0.0, None)
+    last = max(earlier, key=lambda run: clock[run.name][0])
+    waited_s = began_s - clock[last.name][1]
+    return CampaignRun(len(earlier), began_s - first_s, waited_s, last.set_point)
+
+
+def _stated_clock(campaign: Campaign) -> Clock:
+    """Return when records begin and end that are made in their order, equally far apart."""
+    clock: dict[str, tuple[float, float]] = {}
+    began_s = 0.0
+    for record in made_in_order(campaign):
+        ended_s = began_s + _duration_s(campaign, record)
+        clock[record.name] = began_s, ended_s
+        began_s = ended_s + campaign.simulation.waiting_s
+    return clock
 
 
 def _duration_s(campaign: Campaign, record: Record) -> float:

@@ -12,13 +12,13 @@ from hardware.description.flags import Flag
 from hardware.description.kinds import RunKind
 from hardware.description.setpoint import Medium
 from pmm.campaign.campaign import Campaign
-from pmm.campaign.order import place_in
+from pmm.campaign.order import Clock, place_in
 from pmm.campaign.recording_source import RecordingSource, open_recording
 from pmm.campaign.runs import AtRest, Run
 
 
 def records_at_rest(
-    campaign: Campaign, folder: Path, sensors: Sequence[str] = ()
+    campaign: Campaign, folder: Path, sensors: Sequence[str] = (), clock: Clock | None = None
 ) -> tuple[tuple[GapRun, ...], dict[str, str], dict[str, tuple[Flag, ...]]]:
     """Read and observe the zero runs of a campaign.
 
@@ -31,6 +31,8 @@ def records_at_rest(
     ----------
     sensors
         Channels to use; all if empty.
+    clock
+        When all were made, if that is known.
     """
     runs: list[GapRun] = []
     left_out: dict[str, str] = {}
@@ -42,7 +44,7 @@ def records_at_rest(
             check_recorded_alike(record)
             recording = open_recording(RecordingSource.of(campaign, record, folder))
             damaged |= damage_of(record.name, recording)
-            runs.append(_observed(campaign, record, recording, sensors))
+            runs.append(_observed(campaign, record, recording, sensors, clock))
         except (PmmError, OSError) as error:
             left_out[record.name] = str(error).removeprefix(f"{record.name}: ")
     return tuple(runs), left_out, damaged
@@ -67,7 +69,11 @@ def damage_of(name: str, recording: Recording) -> dict[str, tuple[Flag, ...]]:
 
 
 def _observed(
-    campaign: Campaign, record: AtRest, recording: Recording, sensors: Sequence[str]
+    campaign: Campaign,
+    record: AtRest,
+    recording: Recording,
+    sensors: Sequence[str],
+    clock: Clock | None,
 ) -> GapRun:
     names = [name for name in recording.channel_names if not sensors or name in sensors]
     recording = recording.select(names)
@@ -76,7 +82,7 @@ def _observed(
             f"no channel {' and '.join(DISPLACEMENTS)} tells where its struts stand, and the "
             "water pushes them back"
         )
-    return run_at_rest(recording, place_in(campaign, record), record.set_point)
+    return run_at_rest(recording, place_in(campaign, record, clock), record.set_point)
 
 
 def _place_matters_not(campaign: Campaign, record: AtRest, recording: Recording) -> bool:

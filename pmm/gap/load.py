@@ -17,8 +17,9 @@ from hardware.description.flags import Flag
 from hardware.description.oscillator import Range
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.campaign_file import read_campaign
+from pmm.campaign.clock import clock_of
 from pmm.campaign.file_names import CAMPAIGN_FILE
-from pmm.campaign.order import place_in
+from pmm.campaign.order import Clock, place_in
 from pmm.campaign.recording_source import RecordingSource, open_recording
 from pmm.campaign.runs import Run
 from pmm.configuration import read_toml
@@ -111,8 +112,9 @@ def load_campaign(
             channel = observed_run.reference_channel or "the photocell"
             left_out[run.name] = f"its phase comes from {channel}, not as in most runs"
     used_readings = [reading for reading in readings if reading[0].name not in left_out]
-    runs = tuple(_gap_runs(campaign, used_readings))
-    at_rest, unused, harmed = records_at_rest(campaign, path.parent, sensors)
+    clock = clock_of(campaign, path.parent)
+    runs = tuple(_gap_runs(campaign, used_readings, clock))
+    at_rest, unused, harmed = records_at_rest(campaign, path.parent, sensors, clock)
     cut = {
         run.name: said
         for run, observed_run, _ in used_readings
@@ -207,12 +209,12 @@ def _sensors_alone(recording: Recording, sensors: Sequence[str]) -> Recording:
     return replace(recording.select(names), photocell_edges_s=edges)
 
 
-def _gap_runs(campaign: Campaign, readings: Sequence[_Read]) -> Iterator[GapRun]:
+def _gap_runs(campaign: Campaign, readings: Sequence[_Read], clock: Clock) -> Iterator[GapRun]:
     for run, observed, followed in readings:
         yield GapRun(
             run.name,
             run.set_point,
-            place_in(campaign, run),
+            place_in(campaign, run, clock),
             observed.observation,
             observed.analysis.stretch.period_count,
             observed.analysis.recording.sample_rate_hz,

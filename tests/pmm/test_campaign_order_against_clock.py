@@ -1,12 +1,20 @@
 """Where a run stands in its campaign, by adding up what was done before it."""
 
+from collections.abc import Sequence
 from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
 
+import numpy as np
 import pytest
 
+from analysis.readers.netcdf import write_recording
+from analysis.recording import Recording
+from hardware.description.channels import FORCE_AFT
 from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import RunKind
 from pmm.campaign.campaign import Campaign, Simulation
+from pmm.campaign.clock import clock_of
 from pmm.campaign.order import made_in_order, place_in
 from pmm.campaign.runs import AtRest, Run
 
@@ -72,3 +80,34 @@ def test_a_record_of_which_nothing_tells_the_time_has_no_place() -> None:
     assert made_in_order(made) == RUNS
     with pytest.raises(ConfigurationError, match="nothing says when 'zero-2' was made; number all"):
         place_in(made, ZEROS[1])
+
+
+def _recorded(folder: Path, began_min: Sequence[float | None]) -> Campaign:
+    """Write a record of 50 s at each of these minutes of one night; return their campaign."""
+    night = datetime(2026, 3, 28, 23, 0, tzinfo=UTC)
+    for one, minute in zip(RUNS, began_min, strict=True):
+        utc = {} if minute is None else {"started_utc": str(night + timedelta(minutes=minute))}
+        made = Recording(one.name, (FORCE_AFT,), np.ones((1, 501)), 10.0, provenance=utc)
+        write_recording(made, folder / f"{one.name}.nc")
+    return campaign(RUNS)
+
+
+def test_what_recordings_say_of_their_times_counts(tmp_path: Path) -> None:
+    """Made in another order than the file's, the last one the next morning."""
+    made = _recorded(tmp_path, (20.0, 0.0, 600.0))
+    clock = clock_of(made, tmp_path)
+    a, b, c = (place_in(made, one, clock) for one in made.runs)
+    assert [one.index for one in (b, a, c)] == [0, 1, 2]
+    assert [one.since_start_s for one in (b, a, c)] == [0.0, 1200.0, 36000.0]
+    assert [one.waited_s for one in (b, a, c)] == [0.0, 1150.0, 34750.0]
+    assert [one.before for one in (b, a, c)] == [None, RUNS[1].set_point, RUNS[0].set_point]
+
+
+@pytest.mark.parametrize("began_min", [(0.0, 20.0, None), (0.0, 20.0, 20.5)])
+def test_times_that_are_not_all_there_or_do_not_fit_do_not_count(
+    began_min: tuple[float | None, ...], tmp_path: Path
+) -> None:
+    """A rig that is simulated faster than time has records that overlap."""
+    made = _recorded(tmp_path, began_min)
+    assert not clock_of(made, tmp_path)
+    assert place_in(made, made.runs[1], clock_of(made, tmp_path)).waited_s == WAITING_S

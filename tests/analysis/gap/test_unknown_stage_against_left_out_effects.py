@@ -33,3 +33,14 @@ def test_what_is_forgotten_is_sought_where_it_acts(
     shares = found.answers.unknown_stages
     assert sum(shares.values()) == pytest.approx(1.0)
     assert max(shares, key=lambda name: shares[name]) == effect.stage.value
+
+
+@pytest.mark.slow
+def test_what_shakes_both_gauges_is_not_sought_in_one_channel(rig: SimulatedRig) -> None:
+    """Vortices, in both forces of every run at speed."""
+    shed = build("vortex-shedding:lift_n_s2_m2=0.1")
+    catalogue = {name: find(name) for name in KNOWN}
+    answers = diagnose(rig, record(rig, [shed], 31), Settings(catalogue)).answers
+    assert answers.by_answer["unknown"] > 0.9
+    assert answers.unknown_stages["acquisition"] < 0.1
+    assert answers.unknown_stages[shed.stage.value] > 0.3

@@ -170,7 +170,7 @@ def test_residual_waves_in_the_time_domain(motion: tuple[float, float, float]) -
 
 
 def test_residual_waves_over_a_campaign() -> None:
-    """The first run is calm, each later one has the frequency before it or the tank's, less later."""
+    """The first run is calm, each later one has the frequency before it, or the tank's own."""
     set_points = [SetPoint(0.5, 0.02), SetPoint(0.8, 0.02), SetPoint(0.8, 0.03)]
     effect = ResidualWaves(3.0, 100.0)
     situation = Situation.of(VERTICAL, set_points[-1])
