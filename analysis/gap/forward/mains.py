@@ -7,13 +7,13 @@ from typing import Final
 
 import numpy as np
 
-from analysis.gap.observe.bands import MAINS_HZ, expected_highest, folded_hz
+from analysis.gap.observe.bands import MAINS_HZ, OF_MAINS, expected_highest, folded_hz
 from analysis.gap.observe.components import Component, GapRun, Part, Stack
 from analysis.gap.observe.observation import BANDS
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import FORCES
 
-_REACHED: Final = 3.0  # lines
+_REACHED: Final = 3.0 * len(OF_MAINS)  # lines
 _FAR: Final = 2.0  # tolerances: a line grows with the logarithm of its size, so this is halved
 
 

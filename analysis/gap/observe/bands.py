@@ -3,7 +3,6 @@
 A line where the mains fold to is told apart from any other: a carriage has none there.
 """
 
-import math
 from collections.abc import Iterator, Mapping
 from typing import Final
 
@@ -15,11 +14,13 @@ from hardware.description.arrays import BoolArray, FloatArray
 Found = Iterator[tuple[Component, float, float]]
 
 MAINS_HZ: Final = (50, 60)
+OF_MAINS: Final = (1, 2, 3)  # the double of what is rectified, the triple of what is saturated
 TAKEN_OUT: Final = 12  # harmonics whose leakage is taken out of what lies between them
 _BESIDE = 1.5  # bins on either side of a line that its own leakage may reach
+_LEAKS = 2  # bins further that a line of the mains, which is strong, may reach
 _ABOUT = 51  # lines whose median says how loud it is about one of them
 _FEW_LINES = 12
-_FEWEST_LINES = 2  # where the mains fold to: at least that many of the three that they reach
+_FEWEST_LINES = 2  # where the mains fold to: at least that many of those that they reach
 _COUNTED = 0.66  # of the lines under a Hann taper that tell something of their own
 
 
@@ -42,10 +43,8 @@ def folded_hz(mains_hz: float, rate_hz: float) -> float:
     return abs(mains_hz - rate_hz * round(mains_hz / rate_hz))
 
 
-def of_the_mains(
-    lines_hz: FloatArray, rate_hz: float, bin_hz: float, band_hz: tuple[float, float]
-) -> dict[int, BoolArray]:
-    """Tell by frequency of the mains that folds into a band which of its lines it reaches.
+def of_the_mains(lines_hz: FloatArray, rate_hz: float, bin_hz: float) -> dict[int, BoolArray]:
+    """Tell by frequency of the mains which lines it reaches, its double and triple among them.
 
     A line that two of them reach, as both do at 110 samples a second, belongs to the first alone.
 
@@ -56,11 +55,13 @@ def of_the_mains(
     """
     reached: dict[int, BoolArray] = {}
     left = np.ones(len(lines_hz), dtype=bool)
+    # At half the rate a line has one part and not two, and how loud it is depends on its phase.
+    inner = lines_hz < 0.5 * rate_hz - _BESIDE * bin_hz
     for mains_hz in MAINS_HZ:
-        at_hz = folded_hz(mains_hz, rate_hz)
-        if band_hz[0] < at_hz < band_hz[1]:
-            reached[mains_hz] = left & (np.abs(lines_hz - at_hz) < _BESIDE * bin_hz)
-            left &= ~reached[mains_hz]
+        seen_hz = np.array([folded_hz(order * mains_hz, rate_hz) for order in OF_MAINS])
+        near = np.abs(lines_hz[:, None] - seen_hz) < _BESIDE * bin_hz
+        reached[mains_hz] = left & near.any(axis=1) & inner
+        left &= ~reached[mains_hz]
     return reached
 
 
@@ -71,7 +72,7 @@ def between_harmonics(
     frequency: float,
     bands: Mapping[int, tuple[float, float]],
 ) -> Found:
-    """Yield how loud each band is between the harmonics, and its strongest lines.
+    """Yield how loud each band is between the harmonics, its strongest line, and the mains'.
 
     Parameters
     ----------
@@ -87,51 +88,50 @@ def between_harmonics(
     lines_hz = np.asarray(np.arange(count // 2 + 1) * bin_hz, np.float64)
     power = np.abs(np.fft.rfft(values * taper)) ** 2 / np.sum(taper**2) / len(lines_hz)
     free = free_of_harmonics(lines_hz, frequency, bin_hz)
-    beyond = lines_hz > (TAKEN_OUT + 0.5) * frequency
+    mains = of_the_mains(lines_hz, rate_hz, bin_hz)
+    reached = np.any([*mains.values()], axis=0)
+    quiet = free & (np.convolve(reached, np.ones(2 * _LEAKS + 1), "same") == 0.0)
     for number, (low, high) in bands.items():
-        edges_hz = low * frequency, high * frequency
-        within = (lines_hz > edges_hz[0]) & (lines_hz < edges_hz[1])
-        within[0] = False
-        mains = of_the_mains(lines_hz, rate_hz, bin_hz, edges_hz)
-        shared = within & beyond & ~free & np.any([np.zeros_like(free), *mains.values()], axis=0)
-        told = _beside_harmonics(lines_hz / frequency, power, within & free, shared)
-        inside = within & (free | shared)
-        near = {mains_hz: lines[inside] for mains_hz, lines in mains.items()}
-        yield from band(name, number, told[inside], near)
+        inside = quiet & (lines_hz > low * frequency) & (lines_hz < high * frequency)
+        yield from band(name, number, power[inside])
+    if np.count_nonzero(quiet) < _FEW_LINES or not power[quiet].any():
+        return
+    noise = np.interp(lines_hz, lines_hz[quiet], _noise_power(power[quiet]))
+    shared = ~free & (lines_hz > (TAKEN_OUT + 0.5) * frequency)
+    ratio = power / noise / _harmonics_beside(lines_hz / frequency, power / noise, shared)
+    known = _COUNTED * min(_ABOUT, int(np.count_nonzero(quiet)))
+    for mains_hz, lines in mains.items():
+        yield from _strongest(
+            Component(name, Part.MAINS, mains_hz), ratio[lines & (free | shared)], known
+        )
 
 
-def _beside_harmonics(
-    orders: FloatArray, power: FloatArray, free: BoolArray, shared: BoolArray
-) -> FloatArray:
-    """Return the power of lines that share their place with a high harmonic, less its part in it.
+def _harmonics_beside(orders: FloatArray, ratio: FloatArray, shared: BoolArray) -> FloatArray:
+    """Return how loud the harmonics are beside those high ones that lines may stand on.
 
     Mostly there is nothing of a fiftieth harmonic, and a line there is that of the mains; how much
-    there is tell the two harmonics on either side, those next to it or the others, over the noise.
+    there is tell the two harmonics on either side, those next to it or the others, whichever are
+    louder. At least 1.
 
     Parameters
     ----------
     orders
         Frequency of the lines over that of the oscillation, shape ``(lines,)``.
-    free
-        Which of them no harmonic reaches.
+    ratio
+        Their power over that of the noise.
     shared
-        Those in question.
+        Those that a high harmonic reaches.
     """
-    told, harmonic, step = power.copy(), np.round(orders), orders[1] - orders[0]
-    noise = float(np.median(power[free])) / np.log(2.0) + 1e-15 if free.any() else math.inf
+    beside, harmonic, step = np.ones_like(ratio), np.round(orders), orders[1] - orders[0]
     for order in np.unique(harmonic[shared]):
-        loudest = noise
-        for away in (1, 2):  # there may be odd ones alone
-            near = np.abs(np.abs(orders - order) - away) < _BESIDE * step
-            loudest = max(loudest, float(np.mean(power[near])))
-        told[shared & (harmonic == order)] /= loudest / noise
-    return told
+        near = [np.abs(np.abs(orders - order) - away) < _BESIDE * step for away in (1, 2)]
+        loudest = max(float(np.mean(ratio[lines])) for lines in near)
+        beside[shared & (harmonic == order)] = max(loudest, 1.0)
+    return beside
 
 
-def band(
-    name: str, number: int, power: FloatArray, mains: Mapping[int, BoolArray] | None = None
-) -> Found:
-    """Yield how loud a band of a channel is, and its strongest lines; nothing of too few lines.
+def band(name: str, number: int, power: FloatArray) -> Found:
+    """Yield how loud a band of a channel is, and its strongest line; nothing of too few lines.
 
     Parameters
     ----------
@@ -139,8 +139,6 @@ def band(
         Of the band.
     power
         Of its lines, shape ``(lines,)``.
-    mains
-        By frequency of the mains, which of them it reaches; those have a component of their own.
     """
     if power.size < _FEW_LINES or not power.any():
         return
@@ -149,16 +147,23 @@ def band(
     middle = float(np.median(power)) / np.log(2.0) + 1e-15
     yield Component(name, Part.BETWEEN, number), float(np.log(middle)), 1.5 / np.sqrt(count)
     # Noise that falls with frequency is loudest at a band's lower edge, and that is no line.
-    ratio, near = power / _noise_power(power), mains or {}
-    others = ~np.any([np.zeros(power.size, dtype=bool), *near.values()], axis=0)
-    for component, lines in (
-        (Component(name, Part.LINE, number), others),
-        *((Component(name, Part.MAINS, mains_hz), lines) for mains_hz, lines in near.items()),
-    ):
-        if (among := int(np.count_nonzero(lines))) >= _FEWEST_LINES:
-            highest = expected_highest(among)
-            uncertainty = float(np.hypot(1.28 / highest, 1.5 / np.sqrt(count)))
-            yield component, float(np.log(ratio[lines].max() / highest)), uncertainty
+    yield from _strongest(Component(name, Part.LINE, number), power / _noise_power(power), count)
+
+
+def _strongest(component: Component, ratio: FloatArray, known_by: float) -> Found:
+    """Yield the strongest of some lines, over what the strongest of as many of noise would be.
+
+    Parameters
+    ----------
+    ratio
+        Their power over that of the noise.
+    known_by
+        By how many lines of their own that is known.
+    """
+    if ratio.size >= _FEWEST_LINES:
+        highest = expected_highest(ratio.size)
+        uncertainty = float(np.hypot(1.28 / highest, 1.5 / np.sqrt(known_by)))
+        yield component, float(np.log(ratio.max() / highest)), uncertainty
 
 
 def expected_highest(lines: float) -> float:
