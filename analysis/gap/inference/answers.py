@@ -17,7 +17,6 @@ UNKNOWN: Final = "unknown"
 COEFFICIENTS: Final = "coefficients"
 ODD_RUN: Final = "odd-run"
 NAMELESS: Final = (NONE, UNKNOWN, COEFFICIENTS, ODD_RUN)
-_TINY: Final = 1e-300
 _SMALL: Final = np.array(TAUS) <= TOLERATED
 _LEADING, _ODDEST = 4, 2  # effects, and runs, that are tried beside each other
 
@@ -172,7 +171,7 @@ def _located(
             parts.setdefault(stage, []).append(log - math.log(len(stages)))
     logs = {stage: _sum(stage_logs) for stage, stage_logs in parts.items()}
     total = _sum(list(logs.values()))
-    return {stage: math.exp(log - total) for stage, log in logs.items()}
+    return {stage: math.exp(log - total) for stage, log in logs.items() if total > -math.inf}
 
 
 def prior(size: int, count: int) -> float:
@@ -231,10 +230,10 @@ def _log_weight(logs: FloatArray, sizes: FloatArray, share: float) -> float:
     """Return the log weight of an answer, over all sizes of the deviation."""
     positive = sizes > 0.0
     if not positive.any():
-        return math.log(_TINY)
+        return -math.inf
     each = ETA * logs[positive] + np.log(sizes[positive])
-    return float(np.logaddexp.reduce(each)) + math.log(max(share, _TINY))
+    return float(np.logaddexp.reduce(each)) + (math.log(share) if share > 0.0 else -math.inf)
 
 
 def _sum(logs: Sequence[float]) -> float:
-    return float(np.logaddexp.reduce(logs)) if len(logs) else math.log(_TINY)
+    return float(np.logaddexp.reduce(logs)) if len(logs) else -math.inf
