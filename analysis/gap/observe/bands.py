@@ -97,7 +97,7 @@ def between_harmonics(
     if np.count_nonzero(quiet) < _FEW_LINES or not power[quiet].any():
         return
     noise = np.interp(lines_hz, lines_hz[quiet], _noise_power(power[quiet]))
-    shared = ~free & (lines_hz > (TAKEN_OUT + 0.5) * frequency)
+    shared = reached & ~free & (lines_hz > (TAKEN_OUT + 0.5) * frequency)
     ratio = power / noise / _harmonics_beside(lines_hz / frequency, power / noise, shared)
     known = _COUNTED * min(_ABOUT, int(np.count_nonzero(quiet)))
     for mains_hz, lines in mains.items():
@@ -107,7 +107,7 @@ def between_harmonics(
 
 
 def _harmonics_beside(orders: FloatArray, ratio: FloatArray, shared: BoolArray) -> FloatArray:
-    """Return how loud the harmonics are beside those high ones that lines may stand on.
+    """Return how loud the harmonics are beside those high ones that some lines stand on.
 
     Mostly there is nothing of a fiftieth harmonic, and a line there is that of the mains; how much
     there is tell the two harmonics on either side, those next to it or the others, whichever are
@@ -120,7 +120,7 @@ def _harmonics_beside(orders: FloatArray, ratio: FloatArray, shared: BoolArray) 
     ratio
         Their power over that of the noise.
     shared
-        Those that a high harmonic reaches.
+        Those in question, which a high harmonic reaches.
     """
     beside, harmonic, step = np.ones_like(ratio), np.round(orders), orders[1] - orders[0]
     for order in np.unique(harmonic[shared]):
