@@ -16,6 +16,7 @@ from sim.gauges.dynamometer import Dynamometer
 from sim.rig import SimulatedRig
 
 HIGHEST = 5
+_SLIGHT = 1e-4  # of the force at which a loop is as wide as it gets: no gauge is loaded so little
 
 
 @dataclass(frozen=True)
@@ -76,17 +77,22 @@ class GaugeHysteresis(Effect):
 
         def lagging(gauge: Dynamometer, strut: int) -> Dynamometer:
             share = share_at(strut, self.unlike)
-            if self.width_power == 2.0 and not (self.swelling or self.saturates):
+            if self.width_power == 2.0 and not (self.swelling or self._saturates):
                 more = share * self.beta_1_n
                 return replace(gauge, hysteresis_1_n=gauge.hysteresis_1_n + more)
             return replace(gauge, loops=(*gauge.loops, self._loop(share, force_n(rig))))
 
         return with_gauges(rig, lagging)
 
+    @property
+    def _saturates(self) -> bool:
+        """Whether the loop is as wide as it gets at a force that any gauge knows."""
+        return self.saturates > _SLIGHT
+
     def _loop(self, share: float, force: float) -> Loop:
         """Return the loop that loses as much as Rayleigh's at a force."""
         half_width = share * self.beta_1_n / 2.0 * force**2
-        if self.saturates:
+        if self._saturates:
             # Over 4/3 of the widths times the range of Rayleigh's.
             lost = 2.0 * (1.0 - math.tanh(self.saturates) / self.saturates)
             return SaturatingLoop(half_width * (4.0 / 3.0) / lost, force / self.saturates, force)

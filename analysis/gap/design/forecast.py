@@ -20,6 +20,7 @@ from hardware.description.errors import PmmError
 from hardware.description.setpoint import SetPoint
 from sim.effects.campaign import CampaignRun
 
+_FAR: Final = 1e6  # sigma: what is uncertain by more is no better told for it, and rounding eats it
 LEAST_FORM: Final = 0.05  # of itself, by which any effect's signature is off on a real rig
 
 
@@ -51,6 +52,7 @@ class Forecast:
     def covariance(self, rows: BoolArray) -> FloatArray:
         """Return the covariance of some observations to be made, their noise in it."""
         root = np.hstack([root[rows] for root in (self.root, self.run_root, self.form)])
+        root = np.clip(root, -_FAR, _FAR)
         covariance: FloatArray = np.eye(len(root)) + root @ root.T
         if self.deviation is not None:
             covariance += self.deviation[rows][:, rows].toarray()

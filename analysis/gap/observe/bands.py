@@ -55,12 +55,10 @@ def of_the_mains(lines_hz: FloatArray, rate_hz: float, bin_hz: float) -> dict[in
     """
     reached: dict[int, BoolArray] = {}
     left = np.ones(len(lines_hz), dtype=bool)
-    # At half the rate a line has one part and not two, and how loud it is depends on its phase.
-    inner = lines_hz < 0.5 * rate_hz - _BESIDE * bin_hz
     for mains_hz in MAINS_HZ:
         seen_hz = np.array([folded_hz(order * mains_hz, rate_hz) for order in OF_MAINS])
         near = np.abs(lines_hz[:, None] - seen_hz) < _BESIDE * bin_hz
-        reached[mains_hz] = left & near.any(axis=1) & inner
+        reached[mains_hz] = left & near.any(axis=1)
         left &= ~reached[mains_hz]
     return reached
 
@@ -98,12 +96,18 @@ def between_harmonics(
         return
     noise = np.interp(lines_hz, lines_hz[quiet], _noise_power(power[quiet]))
     shared = reached & ~free & (lines_hz > (TAKEN_OUT + 0.5) * frequency)
-    ratio = power / noise / _harmonics_beside(lines_hz / frequency, power / noise, shared)
+    ratio = power / noise
+    ratio = _less_harmonics(ratio, _harmonics_beside(lines_hz / frequency, ratio, shared))
     known = _COUNTED * min(_ABOUT, int(np.count_nonzero(quiet)))
     for mains_hz, lines in mains.items():
         yield from _strongest(
             Component(name, Part.MAINS, mains_hz), ratio[lines & (free | shared)], known
         )
+
+
+def _less_harmonics(ratio: FloatArray, beside: FloatArray) -> FloatArray:
+    """Return power over noise without what harmonics may have in it: no less than noise has."""
+    return np.where(ratio > 1.0, np.maximum(ratio / beside, 1.0), ratio)
 
 
 def _harmonics_beside(orders: FloatArray, ratio: FloatArray, shared: BoolArray) -> FloatArray:

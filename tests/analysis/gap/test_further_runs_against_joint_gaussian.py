@@ -18,7 +18,13 @@ from analysis.gap.design.beside import (
     Unnamed,
     odd,
 )
-from analysis.gap.design.forecast import forecast, planned, waited_s, with_further_runs
+from analysis.gap.design.forecast import (
+    Forecast,
+    forecast,
+    planned,
+    waited_s,
+    with_further_runs,
+)
 from analysis.gap.design.information_gain import Worth, expected_log_odds
 from analysis.gap.design.proposals import Choices, Proposal, proposals
 from analysis.gap.design.valuation import Choice, Valuation, Valued
@@ -240,3 +246,15 @@ def test_a_run_takes_its_periods_and_the_campaigns_usual_wait(problem: Problem) 
     periods = [run.periods for run in problem.simulator.stack.runs]
     waits = [400.0 - periods[0] / 0.5, 400.0 - periods[1] / 1.0]
     assert waited_s(problem) == pytest.approx(np.median(waits))
+
+
+@pytest.mark.parametrize("far", [1e3, 1e8, 1e16])
+def test_what_goes_astray_far_away_can_still_be_weighed(far: float) -> None:
+    """An effect that made a fit of another frequency was foretold 1e15 sigma off elsewhere."""
+    rng, nothing = np.random.default_rng(5), np.zeros((60, 0))
+    astray = Forecast(np.zeros(60), far * rng.standard_normal((60, 4)), nothing, nothing)
+    calm = Forecast(np.zeros(60), rng.standard_normal((60, 4)), nothing, nothing)
+    rows = np.ones(60, dtype=bool)
+    odds = expected_log_odds(np.zeros((60, 2)), [one.covariance(rows) for one in (astray, calm)])
+    assert np.isfinite(odds).all()
+    assert (odds[[0, 1], [1, 0]] > 10.0).all()

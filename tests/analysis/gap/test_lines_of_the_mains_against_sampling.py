@@ -96,4 +96,18 @@ def test_hum_is_told_from_the_harmonic_that_it_falls_on(
     values = rng.standard_normal(count) + wave + hum * np.sin(2.0 * np.pi * 50.0 * time_s + 0.4)
     entries = between_harmonics("force_aft", values, rate_hz, frequency_hz, BANDS)
     told = {(part.part, part.order): value / uncertainty for part, value, uncertainty in entries}
-    assert (told[Part.MAINS, 50] > 2.3) == (hum > 0.0)
+    assert (told[Part.MAINS, 50] > 3.0) == (hum > 0.0)
+    assert min(told[Part.MAINS, mains_hz] for mains_hz in MAINS_HZ) > -2.5  # as quiet as noise
+
+
+@pytest.mark.parametrize("phase_rad", [0.3, 1.0, 1.5])
+def test_hum_at_half_the_rate_is_hum(phase_rad: float) -> None:
+    """50 Hz at 100 samples a second; at a phase of 0 no sample shows it."""
+    time_s, rng = np.arange(1500) / 100.0, np.random.default_rng(3)
+    values = rng.standard_normal(1500) + np.sin(2.0 * np.pi * 50.0 * time_s + phase_rad)
+    told = {
+        (part.part, part.order): value / uncertainty
+        for part, value, uncertainty in between_harmonics("force_aft", values, 100.0, 0.83, BANDS)
+    }
+    assert told[Part.MAINS, 50] > 3.0
+    assert told[Part.LINE, 2] < 3.0

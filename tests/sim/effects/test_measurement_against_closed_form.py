@@ -202,3 +202,9 @@ def test_a_law_that_does_not_say_what_it_grows_with_is_not_scaled() -> None:
 
     with pytest.raises(ConfigurationError, match="Own cannot be scaled: name in its"):
         Own().scaled(2.0)
+
+
+@pytest.mark.parametrize("saturates", [1e-300, 1e-9, 1e-5])
+def test_a_loop_that_hardly_any_force_widens_further_is_rayleighs(saturates: float) -> None:
+    slight = GaugeHysteresis(1e-5, saturates=saturates).change(VERTICAL, SetPoint(0.5, 0.02))
+    assert slight == GaugeHysteresis(1e-5).change(VERTICAL, SetPoint(0.5, 0.02))
