@@ -137,7 +137,8 @@ def read_span(path: Path) -> tuple[str, float]:
     with reading(path), h5netcdf.File(path, "r", phony_dims="sort") as file:
         time = file.variables[schema.TIME]
         told = json.loads(file.attrs.get(schema.ATTR_PROVENANCE, "{}"))
-        return str(told.get("started_utc", "")), float(time[-1]) - float(time[0])
+        started = told.get("started_utc", "") if isinstance(told, dict) else ""
+        return str(started), float(time[-1]) - float(time[0])
 
 
 READER: Final = Reader(lambda path, *_: read_netcdf(path), own_channels=True)

@@ -27,7 +27,7 @@ def clock_of(campaign: Campaign, folder: Path) -> Clock:
         try:
             started_utc, length_s = read_span(local_path(path))
             began_s = datetime.fromisoformat(started_utc).timestamp()
-        except (PmmError, OSError, ValueError, LookupError):  # or is no recording
+        except (PmmError, OSError, ValueError, TypeError, LookupError):  # or is no recording
             return {}
         times[name] = began_s, began_s + length_s
     fits = all(after[0] >= before[1] for before, after in pairwise(sorted(times.values())))

@@ -5,8 +5,11 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
+import h5netcdf
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from analysis.readers.netcdf import write_recording
 from analysis.recording import Recording
@@ -17,6 +20,8 @@ from pmm.campaign.campaign import Campaign, Simulation
 from pmm.campaign.clock import clock_of
 from pmm.campaign.order import made_in_order, place_in
 from pmm.campaign.runs import AtRest, Run
+from sim.effects.campaign import CampaignRun
+from sim.effects.catalogue import catalogue
 
 RUNS = (Run("a", 0.5, 0.02, periods=6), Run("b", 1.0, 0.02, periods=6), Run("c", 2.0, 0.01))
 # Settling, the periods, and one more: (3 + 6 + 1) / 0.5 Hz, and so on.
@@ -111,3 +116,17 @@ def test_times_that_are_not_all_there_or_do_not_fit_do_not_count(
     made = _recorded(tmp_path, began_min)
     assert not clock_of(made, tmp_path)
     assert place_in(made, made.runs[1], clock_of(made, tmp_path)).waited_s == WAITING_S
+
+
+@pytest.mark.parametrize("told", ["[1, 2]", "7", "null", '{"started_utc": 7}', "no JSON"])
+def test_what_is_no_time_does_not_count(told: str, tmp_path: Path) -> None:
+    made = _recorded(tmp_path, (0.0, 20.0, 600.0))
+    with h5netcdf.File(tmp_path / "b.nc", "a") as file:
+        file.attrs["provenance"] = told
+    assert not clock_of(made, tmp_path)
+
+
+@given(st.floats(0.0, 1e12), st.sampled_from(sorted(catalogue())))
+def test_no_campaign_is_too_long_for_an_effect(since_s: float, name: str) -> None:
+    place = CampaignRun(3, since_s, since_s, RUNS[0].set_point)
+    catalogue()[name]().at_run(place)
