@@ -236,6 +236,15 @@ class Effect(ABC):
         """Return the parameters, in order."""
         return _declared(cls)
 
+    @classmethod
+    def nearest(cls, name: str, value: float) -> float:
+        """Return what is nearest to a value within a parameter's plausible range.
+
+        A campaign may last longer than an effect goes on.
+        """
+        declared = next(one for one in cls.parameters() if one.name == name)
+        return min(max(value, declared.low), declared.high)
+
     @abstractmethod
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with this effect, for a run at a set-point; the rig given stays as it was.

@@ -91,7 +91,7 @@ class ResidualWaves(Effect):
         if run.before is None:
             return replace(self, force_n=0.0)
         # After two hours nothing is left.
-        waited = min(run.waited_s, LONGEST_WAIT_S)
+        waited = self.nearest("waited_s", run.waited_s)
         frequency_hz = self.tank_hz or run.before.frequency_hz
         return replace(self, waited_s=waited, frequency_hz=frequency_hz)
 

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from sim.gauges.dynamometer import Dynamometer
 from sim.rig import SimulatedRig
 
 HIGHEST = 5
-_SLIGHT = 1e-4  # of the force at which a loop is as wide as it gets: no gauge is loaded so little
+_SLIGHT: Final = 1e-4  # a typical force over that of the widest loop: less is no bend at all
 
 
 @dataclass(frozen=True)

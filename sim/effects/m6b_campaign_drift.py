@@ -17,8 +17,6 @@ from sim.rig import SimulatedRig
 _LEAST_S: Final = 1e-3
 _AS_FAR_S: Final = 1800.0
 
-_LONGEST_S: Final = 1e7
-
 
 @dataclass(frozen=True)
 class CampaignDrift(Effect):
@@ -44,7 +42,7 @@ class CampaignDrift(Effect):
     since_zero_s: float = parameter(
         1800.0,
         _LEAST_S,
-        _LONGEST_S,
+        1e7,
         "s",
         "from taking the zero to the beginning of the run",
         held=True,
@@ -63,7 +61,7 @@ class CampaignDrift(Effect):
 
     def at_run(self, run: CampaignRun) -> Self:
         """Return the effect at the run's time; the zero was taken when the campaign began."""
-        return replace(self, since_zero_s=min(max(run.since_start_s, _LEAST_S), _LONGEST_S))
+        return replace(self, since_zero_s=self.nearest("since_zero_s", run.since_start_s))
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig with the zeros as they are when the run begins, and as they go on."""

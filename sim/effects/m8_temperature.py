@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Final, Self
+from typing import Self
 
 import numpy as np
 
@@ -18,8 +18,6 @@ from sim.rig import SimulatedRig
 
 SECONDS_AN_HOUR = 3600.0
 _AS_FAR_H = 4.0
-
-_LONGEST_H: Final = 240.0  # after which water is as warm as it gets, however long a campaign
 
 
 @dataclass(frozen=True)
@@ -44,7 +42,7 @@ class Temperature(Effect):
     hours: float = parameter(
         4.0,
         0.0,
-        _LONGEST_H,
+        240.0,
         "h",
         "time since it was as in the calibration",
         held=True,
@@ -81,7 +79,7 @@ class Temperature(Effect):
 
     def at_run(self, run: CampaignRun) -> Self:
         """Return the effect at the run's time."""
-        return replace(self, hours=min(run.since_start_s / SECONDS_AN_HOUR, _LONGEST_H))
+        return replace(self, hours=self.nearest("hours", run.since_start_s / SECONDS_AN_HOUR))
 
     def change(self, rig: SimulatedRig, set_point: SetPoint) -> SimulatedRig:
         """Return the rig as it is when warm."""

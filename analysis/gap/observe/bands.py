@@ -96,8 +96,7 @@ def between_harmonics(
         return
     noise = np.interp(lines_hz, lines_hz[quiet], _noise_power(power[quiet]))
     shared = reached & ~free & (lines_hz > (TAKEN_OUT + 0.5) * frequency)
-    ratio = power / noise
-    ratio = _less_harmonics(ratio, _harmonics_beside(lines_hz / frequency, ratio, shared))
+    ratio = _without_harmonics(lines_hz / frequency, power / noise, shared)
     known = _COUNTED * min(_ABOUT, int(np.count_nonzero(quiet)))
     for mains_hz, lines in mains.items():
         yield from _strongest(
@@ -105,17 +104,12 @@ def between_harmonics(
         )
 
 
-def _less_harmonics(ratio: FloatArray, beside: FloatArray) -> FloatArray:
-    """Return power over noise without what harmonics may have in it: no less than noise has."""
-    return np.where(ratio > 1.0, np.maximum(ratio / beside, 1.0), ratio)
-
-
-def _harmonics_beside(orders: FloatArray, ratio: FloatArray, shared: BoolArray) -> FloatArray:
-    """Return how loud the harmonics are beside those high ones that some lines stand on.
+def _without_harmonics(orders: FloatArray, ratio: FloatArray, shared: BoolArray) -> FloatArray:
+    """Return how loud lines are without what high harmonics have in them; no less than noise.
 
     Mostly there is nothing of a fiftieth harmonic, and a line there is that of the mains; how much
     there is tell the two harmonics on either side, those next to it or the others, whichever are
-    louder. At least 1.
+    louder.
 
     Parameters
     ----------
@@ -126,12 +120,13 @@ def _harmonics_beside(orders: FloatArray, ratio: FloatArray, shared: BoolArray) 
     shared
         Those in question, which a high harmonic reaches.
     """
-    beside, harmonic, step = np.ones_like(ratio), np.round(orders), orders[1] - orders[0]
+    told, harmonic, step = ratio.copy(), np.round(orders), orders[1] - orders[0]
     for order in np.unique(harmonic[shared]):
         near = [np.abs(np.abs(orders - order) - away) < _BESIDE * step for away in (1, 2)]
         loudest = max(float(np.mean(ratio[lines])) for lines in near)
-        beside[shared & (harmonic == order)] = max(loudest, 1.0)
-    return beside
+        lines = shared & (harmonic == order) & (ratio > 1.0)
+        told[lines] = np.maximum(ratio[lines] / max(loudest, 1.0), 1.0)
+    return told
 
 
 def band(name: str, number: int, power: FloatArray) -> Found:
