@@ -144,7 +144,7 @@ def _size(stack: Stack, step: str, run: int, which: Component, value: float) -> 
         return Size(step, 100.0 * value, "%", "the frequency", gap_run.name, math.nan)
     if which.part is Part.PULSES:
         return Size(step, 100.0 * value, "%", "the photocell's pulses", gap_run.name, math.nan)
-    if which.part is not Part.MEAN and which.part not in TRENDS:
+    if which.part not in (Part.MEAN, Part.MAINS, *TRENDS):
         shown = f"{which.part} of {which.channel}" if which.channel else str(which.part)
         return Size(step, 100.0 * math.expm1(value), "%", shown, gap_run.name, math.nan)
     unit = display(_UNITS.get(which.channel, ""))
@@ -169,6 +169,8 @@ def _first_amplitude(run: GapRun, channel: str) -> float:
 def _of_order(which: Component) -> str:
     if which.order == 0:
         return "the mean"
+    if which.part is Part.MAINS:
+        return f"the line of the mains of {which.order} Hz"
     return (
         f"harmonic {which.order}" if which.part is Part.MEAN else f"harmonic {which.order}'s trend"
     )

@@ -5,14 +5,15 @@ Each is at the size of its tolerance; what is beyond it is named as out of toler
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 from typing import Final
 
 import numpy as np
 
-from analysis.gap.forward.mains import hum_columns
 from analysis.gap.forward.simulator import Simulator
 from analysis.gap.forward.tolerances import Tolerances
-from analysis.gap.observe.components import GapRun, Part, Stack
+from analysis.gap.observe.bands import MAINS_HZ
+from analysis.gap.observe.components import Component, GapRun, Part, Stack
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import FORCES
 from sim import signals
@@ -120,3 +121,14 @@ def _drifts(stack: Stack, drift_n_s: float) -> Named:
             if component.channel == channel and component.part in times_s:
                 column[at] = drift_n_s * times_s[component.part][stack.run[at]]
         yield f"drift {channel.removeprefix('force_')}", column / stack.uncertainty
+
+
+def hum_columns(stack: Stack, hum_n: float) -> Named:
+    """Yield what hum of a size changes, a column for each force and frequency of the mains."""
+    for channel, mains_hz in product(FORCES, MAINS_HZ):
+        line = Component(channel, Part.MAINS, mains_hz)
+        rows = np.array([component == line for component in stack.components])
+        yield (
+            f"hum {channel.removeprefix('force_')} {mains_hz} Hz",
+            hum_n * rows / stack.uncertainty,
+        )

@@ -13,7 +13,6 @@ from hardware.description.arrays import FloatArray
 _LOUDNESS: Final = {
     Part.BETWEEN: 2.0,
     Part.LINE: 0.3,
-    Part.MAINS: 0.3,
     Part.CYCLE_SCATTER: 1.0,
     Part.PERIOD_SCATTER: 0.05,
 }

@@ -12,7 +12,6 @@ from hardware.description.arrays import BoolArray, FloatArray
 _POWERS: Final = {
     Part.BETWEEN: 1.0,
     Part.LINE: 1.0,
-    Part.MAINS: 1.0,
     Part.CYCLE_SCATTER: 2.0,
     Part.PERIOD_SCATTER: 2.0,
 }

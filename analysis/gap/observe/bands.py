@@ -1,6 +1,7 @@
 """Power between the harmonics, band by band: how loud it is, and whether one line stands out.
 
-A line where the mains fold to is told apart from any other: a carriage has none there.
+A line where the mains fold to is told apart from any other, by its amplitude: a carriage has none
+there, and hum adds to hum.
 """
 
 from collections.abc import Iterator, Mapping
@@ -21,6 +22,9 @@ _LEAKS = 2  # bins further that a line of the mains, which is strong, may reach
 _ABOUT = 51  # lines whose median says how loud it is about one of them
 _FEW_LINES = 12
 _FEWEST_LINES = 2  # where the mains fold to: at least that many of those that they reach
+_SQUARED = 1.94  # bins of noise that a Hann taper's square lets through
+_STRONGEST = 1.7  # power of the strongest three lines in a row of nine, over that of noise at mean
+_UNSTEADY = 0.2  # of the amplitude of hum, by which it changes with what else is switched on
 _COUNTED = 0.66  # of the lines under a Hann taper that tell something of their own
 
 
@@ -96,16 +100,15 @@ def between_harmonics(
         return
     noise = np.interp(lines_hz, lines_hz[quiet], _noise_power(power[quiet]))
     shared = reached & ~free & (lines_hz > (TAKEN_OUT + 0.5) * frequency)
-    ratio = _without_harmonics(lines_hz / frequency, power / noise, shared)
-    known = _COUNTED * min(_ABOUT, int(np.count_nonzero(quiet)))
+    noise = noise * _high_harmonics(lines_hz / frequency, power / noise, shared)
     for mains_hz, lines in mains.items():
-        yield from _strongest(
-            Component(name, Part.MAINS, mains_hz), ratio[lines & (free | shared)], known
-        )
+        own = lines & (free | shared)
+        if np.count_nonzero(own) >= _FEWEST_LINES:
+            yield Component(name, Part.MAINS, mains_hz), *_amplitude(power, noise, own)
 
 
-def _without_harmonics(orders: FloatArray, ratio: FloatArray, shared: BoolArray) -> FloatArray:
-    """Return how loud lines are without what high harmonics have in them; no less than noise.
+def _high_harmonics(orders: FloatArray, ratio: FloatArray, shared: BoolArray) -> FloatArray:
+    """Return how much louder lines are by high harmonics; 1 where none reaches.
 
     Mostly there is nothing of a fiftieth harmonic, and a line there is that of the mains; how much
     there is tell the two harmonics on either side, those next to it or the others, whichever are
@@ -120,13 +123,36 @@ def _without_harmonics(orders: FloatArray, ratio: FloatArray, shared: BoolArray)
     shared
         Those in question, which a high harmonic reaches.
     """
-    told, harmonic, step = ratio.copy(), np.round(orders), orders[1] - orders[0]
+    louder, harmonic, step = np.ones(len(orders)), np.round(orders), orders[1] - orders[0]
     for order in np.unique(harmonic[shared]):
         near = [np.abs(np.abs(orders - order) - away) < _BESIDE * step for away in (1, 2)]
         loudest = max(float(np.mean(ratio[lines])) for lines in near)
-        lines = shared & (harmonic == order) & (ratio > 1.0)
-        told[lines] = np.maximum(ratio[lines] / max(loudest, 1.0), 1.0)
-    return told
+        louder[shared & (harmonic == order)] = max(loudest, 1.0)
+    return louder
+
+
+def _amplitude(power: FloatArray, noise: FloatArray, own: BoolArray) -> tuple[float, float]:
+    """Return the amplitude of the strongest of some lines without noise, and its uncertainty.
+
+    A line is what it and its neighbours hold together: under a Hann taper half of its square,
+    wherever between them it lies. Far above the noise, which turns about its phasor, its amplitude
+    scatters by the noise's root mean square (Rice 1945, section 3.10), over the bandwidth of the
+    taper's square.
+
+    Parameters
+    ----------
+    power, noise
+        Of all lines, shape ``(lines,)``.
+    own
+        Which of them are looked at.
+    """
+    held, usual = (
+        np.convolve(np.where(own, each, 0.0), np.ones(3), "same") for each in (power, noise)
+    )
+    above = held - _STRONGEST * usual
+    at = int(np.argmax(np.where(own, above, -np.inf)))
+    amplitude = (2.0 * max(float(above[at]), 0.0)) ** 0.5
+    return amplitude, float(np.hypot((_SQUARED * noise[at]) ** 0.5, _UNSTEADY * amplitude))
 
 
 def band(name: str, number: int, power: FloatArray) -> Found:
@@ -146,23 +172,9 @@ def band(name: str, number: int, power: FloatArray) -> Found:
     middle = float(np.median(power)) / np.log(2.0) + 1e-15
     yield Component(name, Part.BETWEEN, number), float(np.log(middle)), 1.5 / np.sqrt(count)
     # Noise that falls with frequency is loudest at a band's lower edge, and that is no line.
-    yield from _strongest(Component(name, Part.LINE, number), power / _noise_power(power), count)
-
-
-def _strongest(component: Component, ratio: FloatArray, known_by: float) -> Found:
-    """Yield the strongest of some lines, over what the strongest of as many of noise would be.
-
-    Parameters
-    ----------
-    ratio
-        Their power over that of the noise.
-    known_by
-        By how many lines of their own that is known.
-    """
-    if ratio.size >= _FEWEST_LINES:
-        highest = expected_highest(ratio.size)
-        uncertainty = float(np.hypot(1.28 / highest, 1.5 / np.sqrt(known_by)))
-        yield component, float(np.log(ratio.max() / highest)), uncertainty
+    ratio, highest = power / _noise_power(power), expected_highest(power.size)
+    uncertainty = float(np.hypot(1.28 / highest, 1.5 / np.sqrt(count)))
+    yield Component(name, Part.LINE, number), float(np.log(ratio.max() / highest)), uncertainty
 
 
 def expected_highest(lines: float) -> float:

@@ -33,7 +33,7 @@ class Part(StrEnum):
     CYCLE_SCATTER = "cycle scatter"  # log of that of a harmonic from cycle to cycle
     BETWEEN = "between the harmonics"  # log of the power in a band
     LINE = "line"  # log of the strongest line over the band's usual power
-    MAINS = "line of the mains"  # the same of the lines that the mains reach
+    MAINS = "line of the mains"  # amplitude of the strongest line that the mains reach
 
 
 STEADY_PARTS = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE, Part.FREQUENCY)
@@ -136,8 +136,8 @@ class Observation:
     Attributes
     ----------
     values, uncertainty
-        Of each component, and one standard deviation, shape ``(components,)``. Harmonics and trends
-        are in the channel's SI unit, the rest are logarithms.
+        Of each component, and one standard deviation, shape ``(components,)``. Harmonics, trends
+        and lines of the mains are in the channel's SI unit, the rest are logarithms.
     quiet
         Lines between the harmonics, by channel; empty where nobody looked.
     steps

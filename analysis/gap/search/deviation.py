@@ -25,7 +25,7 @@ from sim.effects.effect import StageName
 
 _OWN: Final = 0.2  # share of a cell's variance that is every run's own
 _DRIFT_RAD: Final = 0.1  # of drift, after which runs are hardly alike
-_HARMONIC: Final = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE, *TRENDS)
+_SIZED: Final = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE, *TRENDS, Part.MAINS)
 # What a deviation of 1 is of what has no harmonics: an e-fold of noise, every pulse; of the
 # frequency, which is known to 1e-4, a hundredth.
 _UNITS: Final = {Part.FREQUENCY: 0.01}
@@ -121,7 +121,7 @@ def units(stack: Stack, nominal: FloatArray) -> FloatArray:
     """Return how large a deviation of 1 is at each observation, in the observation's unit.
 
     Of a channel its predicted first harmonic, root mean square over the campaign, over the order;
-    of a mean the same; of a change per period that over the periods.
+    of a mean and a line of the mains the same; of a change per period that over the periods.
 
     Parameters
     ----------
@@ -152,9 +152,10 @@ def units_of(stack: Stack, sizes: Mapping[str, float]) -> FloatArray:
     """Return how large a deviation of 1 is at each observation; see :func:`units`."""
     out = np.ones(len(stack.components))
     for at, component in enumerate(stack.components):
-        if component.part in _HARMONIC:
+        if component.part in _SIZED:
             size = max(sizes.get(component.channel, 0.0), _FLOORS.get(component.channel, _FLOOR))
-            out[at] = size / max(component.order, 1)
+            harmonic = component.part is not Part.MAINS
+            out[at] = size / max(component.order * harmonic, 1)
             if component.part in TRENDS:
                 out[at] /= max(stack.runs[stack.run[at]].periods, 1)
         else:
