@@ -9,7 +9,7 @@ from tests.sealed.closed_forms import AMPLITUDE, HEAVE, RIG, change, still
 from tests.sealed.generator.case import make
 from tests.sealed.generator.design import design
 from tests.sealed.generator.features import density, harmonics, reference, resampled
-from tests.sealed.generator.imperfect import LARGEST, tolerated
+from tests.sealed.generator.imperfect import LARGEST, Tolerance, tolerated
 from tests.sealed.generator.mechanism import happen, set_run
 from tests.sealed.generator.rig import Noise
 from tests.sealed.generator.sensing import record, sense
@@ -30,6 +30,25 @@ def test_each_is_within_two_deviations_and_seen() -> None:
             assert one.snr <= 5.0 * 1.001
             seen += one.snr >= 1.0
     assert seen >= len(cases)
+
+
+def test_hum_of_two_tolerances_is_no_gap_at_any_phase() -> None:
+    """A Gaussian of that width explains it: what is left is below the tolerances that it is."""
+    case = next(
+        one
+        for one in (make(3, index, null=True, where="C") for index in range(1, 9))
+        if "force_aft" in one.campaign.rig.sensors
+    )
+    own = next(
+        one
+        for one in case.campaign.tolerances
+        if isinstance(one, Tolerance) and one.effect.name == "mains"
+    )
+    for turn in (0.0, 0.7, 2.0):
+        drawn = {place: value + turn for place, value in own.drawn.items()}
+        hum = case.situation.signature(own.effect, LARGEST * own.sigma, drawn)
+        assert np.linalg.norm(hum) > 4.0 * LARGEST
+        assert case.projection.snr(hum) < 1.1 * LARGEST
 
 
 def test_campaigns_vary_as_the_table_has_it() -> None:

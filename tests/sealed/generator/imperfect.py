@@ -12,6 +12,7 @@ from tests.sealed.generator.signatures import Projection, Situation
 from tests.sealed.generator.sizing import Sized
 from tests.sealed.generator.worlds import World
 
+_EIGHTHS = tuple(math.pi / 4.0 * number for number in range(4))
 LARGEST = 2.0  # standard deviations of a tolerance
 
 
@@ -65,8 +66,16 @@ class Tolerance:
     drawn: dict[P, float] = field(default_factory=dict)
 
     def shown(self, situation: Situation) -> FloatArray:
-        """Return what one standard deviation changes, in sigma of the features."""
-        return situation.signature(self.effect, self.sigma, self.drawn)
+        """Return what one standard deviation changes, in sigma of the features.
+
+        Nobody knows its phase: of what has one there are four columns an eighth of a turn apart,
+        which make any phase of its line and of the triple of that, ``(features, 1 or 4)``.
+        """
+        phases = [place for place in self.drawn if place.name.endswith("PHASE")]
+        turns = _EIGHTHS if phases else (0.0,)
+        drawn = [{**self.drawn, **{at: self.drawn[at] + turn for at in phases}} for turn in turns]
+        columns = [situation.signature(self.effect, self.sigma, each) for each in drawn]
+        return np.column_stack(columns)
 
 
 def tolerated(world: World, rng: np.random.Generator) -> tuple[Tolerance, ...]:

@@ -38,7 +38,7 @@ class Told:
     effects
         Of the catalogue, in the order of the products.
     given
-        How many priors all runs share.
+        How many columns of priors all runs share.
     products
         Of what a prior's standard deviation changes, of what each effect does, and of what is truly
         there, ``(given + effects + 1, given + effects + 1)``.
@@ -55,14 +55,14 @@ class Told:
         p = situation.parameters
         for effect in case.content.effects:
             p = effect.put(p)
-        known = case.campaign.known
+        known = np.column_stack([situation.of_prior(prior) for prior in case.campaign.known])
         shown = [
-            *(situation.of_prior(prior) for prior in known),
+            known,
             *(_signature(situation, effect, size) for effect, size in sizes),
             _gap(situation, p),
         ]
         left = Projection.out_of(situation.of_pulses()).left(np.column_stack(shown))
-        return cls(tuple(effect for effect, _ in sizes), len(known), left.T @ left)
+        return cls(tuple(effect for effect, _ in sizes), known.shape[1], left.T @ left)
 
     def __add__(self, other: "Told") -> "Told":
         """Return what both tell."""
