@@ -77,7 +77,7 @@ class HowLarge:
     Attributes
     ----------
     sizes
-        Of each step of the chain that has it.
+        Of each step of the chain that has it, and in which anything changes.
     coefficient
         Which it puts off most; ``None`` where none is off by more than its uncertainty.
     """
@@ -101,9 +101,9 @@ def how_large(
     present = {step_of(component) for component in stack.components}
     steps = [step.what for step in walk if step.gap and step.what in present]
     steps = steps or [FORCE if FORCE in present else walk[-1].what]
-    return HowLarge(
-        tuple(_largest(stack, change, step) for step in steps), spoiled_coefficient(rows)
-    )
+    largest = [_largest(stack, change, step) for step in steps]
+    told = [size for size in largest if size.value] or largest  # a cause need not show in each
+    return HowLarge(tuple(told), spoiled_coefficient(rows))
 
 
 def spoiled_coefficient(rows: Sequence[CoefficientRow]) -> SpoiledCoefficient | None:
