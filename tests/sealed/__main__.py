@@ -220,7 +220,14 @@ def sources_command(output: Path) -> None:
     """Count by source what is said right of world E: campaigns answered, pendulums asked here."""
     from tests.sealed.recorded import counted
 
-    for one in counted(output):
+    try:
+        sources = counted(output)
+    except FileNotFoundError as error:
+        raise click.UsageError(
+            f"{error.filename} is not there: make world E by 'recorded --output {output}', and "
+            f"answer it by 'answer {output}'"
+        ) from error
+    for one in sources:
         said = "".join(f"; {name}: {what}" for name, what in sorted(one.wrong.items()))
         click.echo(f"{one.source}: {one.right} of {one.count} right{said}")
 

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
+from tests.sealed.__main__ import main
 from tests.sealed.oracle import TABLE, answered_as, stating, told
 from tests.sealed.recorded import EXPECTED, counted, recorded
 from tests.sealed.variations import Variation
@@ -73,3 +75,15 @@ def test_sources_count_what_is_right(tmp_path: Path) -> None:
         (tmp_path / "answers" / f"{name}.json").write_text(answer)
     (one,) = counted(tmp_path)
     assert (one.source, one.right, one.count, one.wrong) == ("a", 1, 2, {"a.cut": "hum"})
+
+
+@pytest.mark.parametrize("there", [False, True])
+def test_sources_that_nobody_answered_are_refused(tmp_path: Path, there: bool) -> None:
+    (tmp_path / "answers").mkdir()
+    if there:
+        rows = {"a.whole": {"source": "a", "right": ["none"]}}
+        (tmp_path / EXPECTED).write_text(json.dumps(rows))
+    told = CliRunner().invoke(main, ["sources", str(tmp_path)])
+    assert told.exit_code == 2
+    assert ("a.whole" if there else EXPECTED) in told.output
+    assert "'answer " in told.output
