@@ -23,7 +23,9 @@ _ABOUT = 51  # lines whose median says how loud it is about one of them
 _FEW_LINES = 12
 _FEWEST_LINES = 2  # where the mains fold to: at least that many of those that they reach
 _SQUARED = 1.94  # bins of noise that a Hann taper's square lets through
-_STRONGEST = 1.7  # power of the strongest three lines in a row of nine, over that of noise at mean
+# Power of three lines in a row over that of noise at mean, which noise reaches in one of two
+# hundred nines: less is no line, however loud the noise of a simulation is beside that of the rig.
+_STRONGEST = 6.0
 _UNSTEADY = 0.2  # of the amplitude of hum, by which it changes with what else is switched on
 _COUNTED = 0.66  # of the lines under a Hann taper that tell something of their own
 

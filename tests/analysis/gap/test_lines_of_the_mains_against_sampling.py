@@ -96,7 +96,7 @@ def test_hum_is_told_from_the_harmonic_that_it_falls_on(
     values = rng.standard_normal(count) + wave + hum * np.sin(2.0 * np.pi * 50.0 * time_s + 0.4)
     entries = between_harmonics("force_aft", values, rate_hz, frequency_hz, BANDS)
     told = {(part.part, part.order): value / uncertainty for part, value, uncertainty in entries}
-    assert (told[Part.MAINS, 50] > 3.8) == (hum > 0.0)
+    assert (told[Part.MAINS, 50] > 3.2) == (hum > 0.0)
 
 
 @pytest.mark.parametrize("phase_rad", [0.3, 1.0, 1.5])
@@ -136,3 +136,14 @@ def test_a_line_is_as_large_as_it_is(
     by_noise = noise * (2.0 / len(values)) ** 0.5 * 1.5**0.5
     assert uncertainty >= 0.7 * by_noise
     assert abs(value - hum) < 6.0 * by_noise + 0.02 * hum
+
+
+def test_noise_alone_is_no_line_however_loud() -> None:
+    """A simulation that is louder than the rig would else have hum that the rig has not."""
+    rng, found = np.random.default_rng(6), []
+    for _ in range(100):
+        values = rng.uniform(0.01, 10.0) * rng.standard_normal(2000)
+        entries = between_harmonics("force_aft", values, 210.0, 0.83, BANDS)
+        found += [value for part, value, _ in entries if part.part is Part.MAINS]
+    assert len(found) == 200
+    assert np.count_nonzero(found) <= 6  # one is expected; that many in 0.2 of a thousand
