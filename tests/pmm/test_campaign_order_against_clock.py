@@ -129,4 +129,4 @@ def test_what_is_no_time_does_not_count(told: str, tmp_path: Path) -> None:
 @given(st.floats(0.0, 1e12), st.sampled_from(sorted(catalogue())))
 def test_no_campaign_is_too_long_for_an_effect(since_s: float, name: str) -> None:
     place = CampaignRun(3, since_s, since_s, RUNS[0].set_point)
-    catalogue()[name]().at_run(place)
+    assert catalogue()[name]().at_run(place).name == name

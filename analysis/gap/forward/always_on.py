@@ -126,9 +126,6 @@ def _drifts(stack: Stack, drift_n_s: float) -> Named:
 def hum_columns(stack: Stack, hum_n: float) -> Named:
     """Yield what hum of a size changes, a column for each force and frequency of the mains."""
     for channel, mains_hz in product(FORCES, MAINS_HZ):
-        line = Component(channel, Part.MAINS, mains_hz)
+        line, side = Component(channel, Part.MAINS, mains_hz), channel.removeprefix("force_")
         rows = np.array([component == line for component in stack.components])
-        yield (
-            f"hum {channel.removeprefix('force_')} {mains_hz} Hz",
-            hum_n * rows / stack.uncertainty,
-        )
+        yield f"hum {side} {mains_hz} Hz", hum_n * rows / stack.uncertainty

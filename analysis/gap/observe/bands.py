@@ -25,7 +25,7 @@ _FEWEST_LINES = 2  # where the mains fold to: at least that many of those that t
 _SQUARED = 1.94  # bins of noise that a Hann taper's square lets through
 # Power of three lines in a row over that of noise at mean, which noise reaches in one of two
 # hundred nines: less is no line, however loud the noise of a simulation is beside that of the rig.
-_STRONGEST = 6.0
+_BY_NOISE = 6.0
 _UNSTEADY = 0.2  # of the amplitude of hum, by which it changes with what else is switched on
 _COUNTED = 0.66  # of the lines under a Hann taper that tell something of their own
 
@@ -134,12 +134,12 @@ def _high_harmonics(orders: FloatArray, ratio: FloatArray, shared: BoolArray) ->
 
 
 def _amplitude(power: FloatArray, noise: FloatArray, own: BoolArray) -> tuple[float, float]:
-    """Return the amplitude of the strongest of some lines without noise, and its uncertainty.
+    """Return the amplitude of the strongest of some lines, and its uncertainty.
 
-    A line is what it and its neighbours hold together: under a Hann taper half of its square,
-    wherever between them it lies. Far above the noise, which turns about its phasor, its amplitude
-    scatters by the noise's root mean square (Rice 1945, section 3.10), over the bandwidth of the
-    taper's square.
+    It is without what noise may make of it, and 0 where that is all. A line is what it and its
+    neighbours hold together: under a Hann taper half of its square, wherever between them it lies.
+    Far above the noise, which turns about its phasor, its amplitude scatters by the noise's root
+    mean square (Rice 1945, section 3.10), over the bandwidth of the taper's square.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def _amplitude(power: FloatArray, noise: FloatArray, own: BoolArray) -> tuple[fl
     held, usual = (
         np.convolve(np.where(own, each, 0.0), np.ones(3), "same") for each in (power, noise)
     )
-    above = held - _STRONGEST * usual
+    above = held - _BY_NOISE * usual
     at = int(np.argmax(np.where(own, above, -np.inf)))
     amplitude = (2.0 * max(float(above[at]), 0.0)) ** 0.5
     return amplitude, float(np.hypot((_SQUARED * noise[at]) ** 0.5, _UNSTEADY * amplitude))
@@ -174,14 +174,10 @@ def band(name: str, number: int, power: FloatArray) -> Found:
     middle = float(np.median(power)) / np.log(2.0) + 1e-15
     yield Component(name, Part.BETWEEN, number), float(np.log(middle)), 1.5 / np.sqrt(count)
     # Noise that falls with frequency is loudest at a band's lower edge, and that is no line.
-    ratio, highest = power / _noise_power(power), expected_highest(power.size)
+    ratio = power / _noise_power(power)
+    highest = float(np.log(count) + np.euler_gamma)  # of as many lines of noise, over their mean
     uncertainty = float(np.hypot(1.28 / highest, 1.5 / np.sqrt(count)))
     yield Component(name, Part.LINE, number), float(np.log(ratio.max() / highest)), uncertainty
-
-
-def expected_highest(lines: float) -> float:
-    """Return the expected power of the strongest of some lines of noise, over their mean."""
-    return float(np.log(_COUNTED * lines) + np.euler_gamma)
 
 
 def _noise_power(power: FloatArray) -> FloatArray:

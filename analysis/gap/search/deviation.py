@@ -154,8 +154,7 @@ def units_of(stack: Stack, sizes: Mapping[str, float]) -> FloatArray:
     for at, component in enumerate(stack.components):
         if component.part in _SIZED:
             size = max(sizes.get(component.channel, 0.0), _FLOORS.get(component.channel, _FLOOR))
-            harmonic = component.part is not Part.MAINS
-            out[at] = size / max(component.order * harmonic, 1)
+            out[at] = size if component.part is Part.MAINS else size / max(component.order, 1)
             if component.part in TRENDS:
                 out[at] /= max(stack.runs[stack.run[at]].periods, 1)
         else:
