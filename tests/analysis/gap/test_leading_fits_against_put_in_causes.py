@@ -7,11 +7,13 @@ from analysis.gap.forward.candidate import Candidate, candidates
 from analysis.gap.forward.free_numbers import free_numbers, with_coefficients
 from analysis.gap.forward.problem import Problem
 from analysis.gap.inference.gaussian import misfit
+from analysis.gap.observe.components import Part
 from analysis.gap.search.fit import Fit, linearised_at
 from analysis.gap.search.joint import fit_jointly
 from analysis.gap.search.linear_hypothesis import in_form, with_forms
 from analysis.gap.search.refinement import refine
 from hardware.description.arrays import FloatArray
+from sim.effects.a8_hum import Hum
 from sim.effects.catalogue import build, find
 from sim.effects.k1_connecting_rod import ConnectingRod
 from sim.effects.s3_coulomb_friction import CoulombFriction
@@ -79,3 +81,16 @@ def test_a_form_that_hardly_shows_is_left_as_it_is_held(rig: SimulatedRig) -> No
     parts, units = _begun("coulomb-friction")
     held = with_forms(problem, refine(problem, linearised_at(problem, parts, units)))
     assert in_form(problem, held) is held
+
+
+def test_what_a_digitiser_rounds_tells_nothing_of_hum(rig: SimulatedRig) -> None:
+    """Its lines are known to a fifth; what rounding changes by chance tells less than they do."""
+    problem = problem_of(rig, record(rig, [build("hum:amplitude_n=0.3,frequency_hz=50")], 74))
+    parts, units = _begun("hum")
+    found = refine(problem, linearised_at(problem, parts, units))
+    told = found.columns[:, 0] * problem.nuisances.whiten(found.columns)[:, 0]
+    lines = [one.part is Part.MAINS for one in problem.simulator.stack.components]
+    assert np.sum(told[np.logical_not(lines)]) < np.sum(told[lines])
+    (hum,) = found.effects
+    assert isinstance(hum, Hum)
+    assert hum.amplitude_n == pytest.approx(0.3, rel=0.1)
