@@ -11,7 +11,8 @@ import numpy as np
 from analysis.gap.forward.problem import Problem
 from analysis.gap.inference.gaussian import null_evidence, scales
 from analysis.gap.search.engine import Engine, fit_leading, looked_at
-from analysis.gap.search.fit import Fit, bounds
+from analysis.gap.search.fit import Fit
+from analysis.gap.search.slopes import bounds
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError

@@ -25,9 +25,10 @@ from analysis.gap.pendulum.deviation import background
 from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.search.engine import Engine, fit_leading, fit_pairs, widened
 from analysis.gap.search.first_look import HIDDEN, FirstLook, best_look
-from analysis.gap.search.fit import Fit, into_range, linearised_at, no_effect
+from analysis.gap.search.fit import Fit, linearised_at, no_effect
 from analysis.gap.search.linear_hypothesis import hypothesis, settled_fit
 from analysis.gap.search.refinement import refine
+from analysis.gap.search.slopes import into_range
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 

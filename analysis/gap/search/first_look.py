@@ -18,15 +18,14 @@ from analysis.gap.forward.problem import ComparedProblem, Problem
 from analysis.gap.inference.gaussian import left_over, misfit, null_evidence
 from analysis.gap.search.fit import (
     Fit,
-    bounds,
     expected_evidence,
-    into_range,
     linearised_at,
     most_probable,
     moved_fit,
     weighed_at,
 )
 from analysis.gap.search.refinement import follow
+from analysis.gap.search.slopes import bounds, into_range
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
 from sim.effects.effect import Effect

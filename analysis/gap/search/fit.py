@@ -1,27 +1,19 @@
 """Fit hypotheses through the simulator: effects where they physically act, coefficients free."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.gap.forward.candidate import STEP, Axis, Candidate, least_step
+from analysis.gap.forward.candidate import STEP, Axis, Candidate
 from analysis.gap.forward.problem import ComparedProblem, built
 from analysis.gap.inference.answers import answer_of
 from analysis.gap.inference.gaussian import Posterior, any_size, misfit, posterior
 from analysis.gap.inference.hypothesis import bounded_mode
+from analysis.gap.search.slopes import FINE, bounds, slopes, usual_steps
 from hardware.description.arrays import BoolArray, FloatArray
-
-# Of a posterior deviation, by which slopes are found: over the whole of one they change by up to
-# 0.8 of themselves, over this by 0.01, and rounding is a millionth of it.
-FINE: Final = 0.01
-_USUAL: Final = 0.1  # of a parameter, by which slopes are found before its uncertainty is known
-# Of the size of what is simulated in time: hum of 0.3 N reads 0.29 to 0.31 N, known to 0.04 N. By
-# half as much to 0.03 N, by twice as much the same; by a tenth 0.27 to 0.31 N, as if known to 0.02.
-_COARSE: Final = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,17 +114,6 @@ class Fit:
         return residual - self.signature + self.columns @ self.units
 
 
-def into_range(parts: Sequence[Candidate], units: FloatArray) -> FloatArray:
-    """Return parameters drawn back into their plausible ranges."""
-    low, high = bounds(parts)
-    return np.asarray(np.clip(units, low, high), np.float64)
-
-
-def bounds(parts: Sequence[Candidate]) -> FloatArray:
-    """Return the plausible ranges of all parameters in prior units, shape ``(2, p)``."""
-    return np.concatenate([np.empty((2, 0)), *(part.bounds for part in parts)], axis=1)
-
-
 def most_probable(fit: Fit) -> FloatArray:
     """Return the most probable parameters within the plausible ranges, to first order."""
     return bounded_mode(fit.posterior, bounds(fit.candidates))
@@ -162,12 +143,12 @@ def linearised_at(
     """
     if signature is None:
         signature = problem.signature(parts, units)
-    slopes = (
+    found = (
         [signature / units[0]]
         if roughly and is_sized(parts, units)
-        else _slopes(problem, parts, units, signature, _usual_steps(parts, units))
+        else slopes(problem, parts, units, signature, usual_steps(parts, units))
     )
-    columns = np.column_stack([signature[:, None][:, :0], *slopes])
+    columns = np.column_stack([signature[:, None][:, :0], *found])
     return weighed_at(problem, parts, units, columns, signature)
 
 
@@ -181,11 +162,11 @@ def relinearised(problem: ComparedProblem, fit: Fit) -> Fit:
     PmmError
         If nothing can be simulated aside of it.
     """
-    steps = _usual_steps(fit.candidates, fit.units)
+    steps = usual_steps(fit.candidates, fit.units)
     if fit.repeats:
         steps = np.minimum(steps, FINE / np.sqrt(np.diagonal(fit.posterior.precision)))
-    slopes = _slopes(problem, fit.candidates, fit.units, fit.signature, steps)
-    columns = np.column_stack([fit.columns[:, :0], *slopes])
+    found = slopes(problem, fit.candidates, fit.units, fit.signature, steps)
+    columns = np.column_stack([fit.columns[:, :0], *found])
     return weighed_at(problem, fit.candidates, fit.units, columns, fit.signature)
 
 
@@ -226,48 +207,6 @@ def joined(problem: ComparedProblem, first: Fit, second: Fit) -> Fit:
         np.hstack((first.columns, second.columns)),
         first.signature + second.signature,
     )
-
-
-def _usual_steps(parts: Sequence[Candidate], units: FloatArray) -> FloatArray:
-    """Return the steps by which slopes are found, in prior deviations, shape ``(p,)``.
-
-    Of what is simulated in time a digitiser rounds each simulation in another way, as another noise
-    would: the slope of a size is that over half of it there.
-    """
-    least = np.array([least_step(parts, axis) for axis in range(len(units))])
-    rounded = [axis.is_size and not part.repeats for part in parts for axis in part.axes]
-    shares = np.where(rounded, _COARSE, _USUAL)
-    return np.asarray(np.maximum(least, shares * np.abs(units)), np.float64)
-
-
-def _slopes(
-    problem: ComparedProblem,
-    parts: tuple[Candidate, ...],
-    units: FloatArray,
-    base: FloatArray,
-    steps: FloatArray,
-) -> list[FloatArray]:
-    return [
-        _slope(problem, parts, units, base, axis, float(step)) for axis, step in enumerate(steps)
-    ]
-
-
-def _slope(
-    problem: ComparedProblem,
-    parts: tuple[Candidate, ...],
-    units: FloatArray,
-    base: FloatArray,
-    axis: int,
-    step: float,
-) -> FloatArray:
-    for sign in (1.0, -1.0):
-        aside = units.copy()
-        aside[axis] += sign * step
-        moved_units = into_range(parts, aside)
-        if abs(moved_units[axis] - units[axis]) > 0.5 * step:
-            change = problem.signature(parts, moved_units) - base
-            return np.asarray(change / (moved_units[axis] - units[axis]), np.float64)
-    return np.zeros_like(base)
 
 
 def expected_evidence(problem: ComparedProblem, fit: Fit) -> float:

@@ -11,8 +11,9 @@ from analysis.gap.forward.candidate import Axis
 from analysis.gap.forward.problem import ComparedProblem, Problem
 from analysis.gap.inference.gaussian import left_over
 from analysis.gap.inference.hypothesis import Evidence, Hypothesis
-from analysis.gap.search.fit import Fit, bounds, expected_evidence, weighed_at
+from analysis.gap.search.fit import Fit, expected_evidence, weighed_at
 from analysis.gap.search.refinement import follow, in_reach, refine
+from analysis.gap.search.slopes import bounds
 from sim.effects.effect import Effect
 
 _BETTER: Final = 3.0  # log evidence that fitting the form has to promise: it is seldom needed

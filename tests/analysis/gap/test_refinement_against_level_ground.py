@@ -13,8 +13,9 @@ from analysis.gap.forward.candidate import Candidate, candidates
 from analysis.gap.forward.problem import Problem
 from analysis.gap.inference.gaussian import Nuisances, misfit
 from analysis.gap.observe.components import GapRun
-from analysis.gap.search.fit import Fit, bounds, linearised_at
+from analysis.gap.search.fit import Fit, linearised_at
 from analysis.gap.search.refinement import refine
+from analysis.gap.search.slopes import bounds
 from hardware.description.arrays import FloatArray
 from sim.effects.catalogue import find
 from sim.rig import SimulatedRig
