@@ -3,7 +3,6 @@
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from importlib.metadata import EntryPoint
 from itertools import count
 from typing import Any
 
@@ -14,6 +13,7 @@ from hardware.lines import SerialLine as LineOfText
 from hardware.pacing import FreeRunning
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
+from sim.devices.bench_file import DRIVERS
 from tests.hardware.doubles import Drive, Network, bench, virtual
 from tests.hardware.protocol_double import Line
 
@@ -21,28 +21,6 @@ COUNTS_PER_TURN = 10_000
 COUNTS_PER_METRE = 1_000_000
 NEWTON_PER_COUNT = 0.01
 _CHANNELS = count()
-
-# What an installed package would have; here the project may run from its folder.
-DRIVERS = tuple(
-    EntryPoint(name, value, "pmm.drivers")
-    for name, value in {
-        "cia402-shaft": "hardware.shaft:DRIVER",
-        "cia402-axis": "hardware.axis:DRIVER",
-        "manual-axis": "hardware.manual_axis:DRIVER",
-        "manual-shaft": "hardware.manual_shaft:DRIVER",
-        "cia404-amplifier": "hardware.amplifier:DRIVER",
-        "touch-probe": "hardware.photocell_probe:DRIVER",
-        "timestamper": "hardware.photocell_serial:DRIVER",
-        "serial-inclinometer": "hardware.inclinometer:DRIVER",
-        "modbus-carriage": "hardware.modbus_carriage:DRIVER",
-        "line-carriage": "hardware.line_carriage:DRIVER",
-        "analogue-carriage": "hardware.analogue_carriage:DRIVER",
-        "modbus-axis": "hardware.modbus_axis:DRIVER",
-        "path-struts": "hardware.path_shaft:DRIVER",
-        "path-pulse": "hardware.path_pulse:DRIVER",
-        "path-setting": "hardware.path_setting:DRIVER",
-    }.items()
-)
 
 SHAFT = {
     "driver": "cia402-shaft",

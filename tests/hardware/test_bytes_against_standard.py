@@ -10,18 +10,9 @@ from hardware.lines import LineKind, SerialLine, decode, encode
 from hardware.pacing import FreeRunning
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
+from sim.devices.bench_file import DRIVERS
 from tests.hardware.doubles import Amplifier, Drive
-from tests.hardware.rigs import (
-    DRIVERS,
-    ECCENTRICITY,
-    FORCES,
-    SHAFT,
-    bench,
-    bus_table,
-    nobody,
-    on_bus,
-    still,
-)
+from tests.hardware.rigs import ECCENTRICITY, FORCES, SHAFT, bench, bus_table, nobody, on_bus, still
 
 
 @contextmanager

@@ -8,8 +8,9 @@ from hardware.dictionary import entry
 from hardware.driver import find_driver
 from hardware.errors import BusOpenError
 from hardware.rig_configuration import read_rig
+from sim.devices.bench_file import DRIVERS
 from tests.hardware.doubles import Drive
-from tests.hardware.rigs import DRIVERS, ECCENTRICITY, FORCES, PHASE, SHAFT, bus_table, on_bus
+from tests.hardware.rigs import ECCENTRICITY, FORCES, PHASE, SHAFT, bus_table, on_bus
 
 BUS = bus_table("nowhere", "pumped")
 

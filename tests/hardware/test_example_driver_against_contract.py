@@ -120,7 +120,7 @@ def test_it_is_found_by_name_in_a_process_of_its_own(installed: Path) -> None:
 
 def test_the_entry_points_of_the_project_are_all_drivers() -> None:
     project = tomllib.loads((HOUSE / "pyproject.toml").read_text())["project"]
-    from tests.hardware.rigs import DRIVERS
+    from sim.devices.bench_file import DRIVERS
 
     declared = project["entry-points"][GROUP]
     assert declared == {one.name: one.value for one in DRIVERS}

@@ -9,8 +9,9 @@ from hardware.errors import OtherMasterError, Reaction
 from hardware.pacing import FreeRunning
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
+from sim.devices.bench_file import DRIVERS
 from tests.hardware.doubles import Drive, Network
-from tests.hardware.rigs import DRIVERS, SHAFT, bench, bus_table, nobody, on_bus, still
+from tests.hardware.rigs import SHAFT, bench, bus_table, nobody, on_bus, still
 
 COMMANDS = {
     "NMT pre-operational to all nodes": (0x000, "8000"),

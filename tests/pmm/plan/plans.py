@@ -13,7 +13,8 @@ from hardware.rig_configuration import RigConfiguration, read_rig
 from pmm.plan.rig_file import RigFile
 from pmm.plan.rig_tables import Gauge, HullEstimate, Limits, TankTable
 from pmm.plan.run_plan import RunPlan
-from tests.hardware.rigs import DRIVERS, ECCENTRICITY, PHASE, SHAFT
+from sim.devices.bench_file import DRIVERS
+from tests.hardware.rigs import ECCENTRICITY, PHASE, SHAFT
 
 HOUSE = Path(__file__).parents[3]
 EXAMPLES = HOUSE / "examples"
