@@ -21,7 +21,8 @@ class Cell:
     Attributes
     ----------
     what
-        ``"harmonic"``, or what beside the harmonics: ``"trend"``, ``"cycle scatter"``, ``"line"``.
+        ``"harmonic"``, or what beside the harmonics: ``"trend"``, ``"cycle scatter"``, ``"line"``,
+        ``"line of the mains of 50 Hz"``.
     order
         Of the harmonic; 0 is the mean, and what has none.
     """
@@ -60,4 +61,6 @@ def _kind(component: Component) -> tuple[str, int]:
     """Return what a component is one number of, and its harmonic."""
     if component.part in (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE):
         return HARMONIC, component.order
+    if component.part is Part.MAINS:
+        return f"{component.part} of {component.order} Hz", 0
     return (str(Part.TREND) if component.part in TRENDS else str(component.part)), 0

@@ -15,8 +15,8 @@ from tests.sealed.targets import ceilings
 
 INTRO: Final = (
     "Written by `python -m tests.sealed whole` or `page`; do not edit. A board is some hundred "
-    "made-up campaigns whose answer nobody knew who wrote the diagnosis "
-    "([sealed.md](sealed.md)); it is scored once."
+    "made-up campaigns; whoever wrote the diagnosis did not know their answers "
+    "([sealed.md](sealed.md)). It is scored once, and judges the diagnosis of its commit."
 )
 READING: Final = (
     'Each figure stands with its 95 % interval and number of cases; behind "of" is what a linear '
@@ -78,7 +78,7 @@ def _told(kept: Kept) -> str:
         )
     if alarms is not None:
         told.append(
-            f"Where there is none, one is named in {100.0 * alarms.value:.1f} % of {alarms.count}."
+            f"Of {alarms.count} cases without a gap {100.0 * alarms.value:.1f} % raise an alarm."
         )
     return " ".join(told)
 

@@ -47,10 +47,10 @@ stands beside the other."""
 class Odds:
     """Prior probabilities; the catalogue's share is spread evenly over its effects.
 
-    Whoever asks has a reason to: one campaign in eight has no gap. Of the gaps one in five is such
-    that no catalogue knows it, and where one effect is, in one of seven cases a further one is too;
-    in one campaign of sixteen coefficients are off by more than anybody thought, and in as many a
-    single run went wrong.
+    Odds, which need not sum to 1. Whoever asks has a reason to: one campaign in nine has no gap. Of
+    the gaps one in six is such that no catalogue knows it, and where one effect is, in one of seven
+    cases a further one is too; in one campaign of nineteen coefficients are off by more than
+    anybody thought, and in as many a single run went wrong.
     """
 
     none: float = 0.12

@@ -116,7 +116,8 @@ LOOKS: Final = with_options(
         multiple=True,
         metavar="RUN|KEY=VALUE",
         help="Withhold this run, or those with this frequency (Hz), amplitude (mm), phase (deg), "
-        "speed (m/s) or medium (water, air, or rest for zero runs), and predict them; repeatable.  "
+        "speed (m/s), drift (deg) or medium (water, air, or rest for zero runs), and predict them; "
+        "repeatable.  "
         "[default: each regime in its turn]",
     ),
 )
