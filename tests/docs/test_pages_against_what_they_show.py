@@ -161,6 +161,14 @@ def test_links_lead_somewhere(page: Path) -> None:
         assert not anchor or anchor in _anchors(path), target
 
 
+@pytest.mark.parametrize("page", pages(), ids=lambda page: page.stem)
+def test_equations_can_be_drawn(page: Path) -> None:
+    drawn = pytest.importorskip("docutils.utils.math.latex2mathml", reason="needs the extra docs")
+    text = re.sub(r"```.*?```|`[^`\n]*`", "", page.read_text(encoding="utf-8"), flags=re.S)
+    for alone, inline in re.findall(r"\$\$(.+?)\$\$|\$([^$\n]+)\$", text, flags=re.S):
+        assert "<math" in drawn.tex2mathml((alone or inline).strip(), as_block=bool(alone))
+
+
 def test_the_built_site_asks_nobody_for_anything() -> None:
     site = HOUSE / "site"
     if not (site / "index.html").exists():
