@@ -20,7 +20,6 @@ from analysis.gap.observe.observation import SPEED
 from analysis.gap.observe.regimes import contrasts
 from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.channels import DISPLACEMENTS, FORCES, SHAFT_ANGLE
-from sim.effects.effect import StageName
 
 FAR: Final = 3.0  # tolerances, beyond which a number is said to be off
 _HARMONIC: Final = (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE)
@@ -56,11 +55,6 @@ class Gap:
     strained: Mapping[str, float] = field(default_factory=dict)
 
     @property
-    def is_off(self) -> bool:
-        """Whether more differs than noise and the tolerances of what is free let expect."""
-        return self.is_beyond_noise or bool(self.strained)
-
-    @property
     def is_beyond_noise(self) -> bool:
         """Whether it is more than noise: beyond four standard deviations of a chi-square."""
         return self.count > 0 and self.rms**2 > 1.0 + 4.0 * (2.0 / self.count) ** 0.5
@@ -82,32 +76,6 @@ class Walk:
 
     steps: tuple[Gap, ...]
     contrasts: tuple[Gap, ...]
-
-    @property
-    def stages(self) -> tuple[StageName, ...]:
-        """Stages that the walk leaves as the gap's place, from upstream down."""
-        beyond = {step.step for step in self.steps if step.is_off}
-        if CARRIAGE in beyond:
-            return (StageName.CARRIAGE,)
-        if self.comes_with_the_shaft:
-            return (StageName.DRIVE,)
-        if MOTION in beyond:
-            return (StageName.DRIVE, StageName.MECHANISM, StageName.PHOTOCELL)
-        if beyond & {FORCE, FORCE_FED, FORCE_BY_SHAFT}:
-            return (StageName.STRUCTURE, StageName.MODEL, StageName.DYNAMOMETERS,
-                    StageName.ACQUISITION)  # fmt: skip
-        return ()
-
-    @property
-    def comes_with_the_shaft(self) -> bool:
-        """Whether the shaft is off, and what follows it is as it should be with it as measured."""
-        steps = {step.step: step for step in self.steps}
-        behind, by_shaft = (MOTION, MOTION_FED) if MOTION in steps else (FORCE, FORCE_BY_SHAFT)
-        if not {SHAFT, behind, by_shaft} <= steps.keys():
-            return False
-        # What a ripple out of its tolerance explains all along the chain is no gap further down.
-        off = steps[SHAFT].strained or (steps[SHAFT].is_off and steps[behind].is_off)
-        return bool(off) and steps[by_shaft].tells and not steps[by_shaft].is_beyond_noise
 
 
 CARRIAGE: Final = "carriage"

@@ -29,8 +29,7 @@ def test_a_mean_that_is_off(rig: SimulatedRig) -> None:
 
 @pytest.mark.slow
 def test_a_speed_that_is_uneven(rig: SimulatedRig) -> None:
-    """The walk along the chain begins with the carriage, and ends there where it deviates."""
+    """The walk along the chain begins with the carriage, and shows that it deviates."""
     found = diagnosed(rig, "carriage-fluctuation:relative=0.002,frequency_hz=0.37", 72)
     assert found.answers.best == "carriage-fluctuation"
     assert CARRIAGE in {one.step for one in found.walk.steps if one.is_beyond_noise}
-    assert [stage.value for stage in found.walk.stages] == ["carriage"]

@@ -69,7 +69,10 @@ def test_the_walk_names_what_is_ten_tolerances_off_and_not_what_is_one(
     rig: SimulatedRig, effect: str, name: str, step: float
 ) -> None:
     within = walk(problem_of(rig, record(rig, [build(effect.format(step))], 61)))
-    assert not any(one.is_off for one in within.steps if one.step != TIMING)  # its pulses scatter
+    for one in within.steps:
+        if one.step != TIMING:  # its pulses scatter
+            assert not one.is_beyond_noise
+            assert not one.strained
     assert _off(rig, effect.format(10.0 * step), name) > 3.0
 
 

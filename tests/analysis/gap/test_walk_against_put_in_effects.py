@@ -29,7 +29,6 @@ from sim.acquisition.amplifier import LowPass
 from sim.acquisition.channels import Digitiser
 from sim.drive.prescribed_drive import DriveSettings
 from sim.effects.catalogue import build
-from sim.effects.effect import StageName
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import POINTS, problem_of, record
 
@@ -69,16 +68,21 @@ def strained(found: Walk, what: str) -> Mapping[str, float]:
     return step.strained
 
 
+def acquits(found: Walk, what: str) -> bool:
+    """Tell whether a step that was fed a measured input has no gap, and would show one."""
+    (step,) = (one for one in found.steps if one.step == what)
+    return step.tells and not step.is_beyond_noise
+
+
 @pytest.mark.slow
 def test_a_ripple_of_the_shaft_goes_where_the_measured_shaft_is_fed(rig: SimulatedRig) -> None:
     found = walked(rig, RIPPLE)
     seen = beyond(found)
     assert "ripple 1 sine" in strained(found, SHAFT)
     assert not strained(found, MOTION)  # the same ripple: said once, where it comes in
-    assert not seen[MOTION_FED]
+    assert acquits(found, MOTION_FED)
     assert not seen[FORCE_FED]
     assert FORCE_BY_SHAFT not in seen
-    assert found.stages == (StageName.DRIVE,)
 
 
 @pytest.mark.slow
@@ -90,25 +94,22 @@ def test_a_rod_in_place_of_a_yoke_stays_where_the_measured_shaft_is_fed(
     assert not seen[SHAFT]
     assert seen[MOTION_FED]
     assert not seen[FORCE_FED]
-    assert StageName.MECHANISM in found.stages
 
 
 @pytest.mark.slow
 def test_without_struts_sensors_the_measured_shaft_is_fed_to_the_forces(rig: SimulatedRig) -> None:
     ripple = walked(rig, RIPPLE, DISPLACEMENTS)
     assert strained(ripple, SHAFT)
-    assert not beyond(ripple)[FORCE_BY_SHAFT]
-    assert ripple.stages == (StageName.DRIVE,)
+    assert acquits(ripple, FORCE_BY_SHAFT)
     friction = walked(rig, "coulomb-friction:friction_n=0.3", DISPLACEMENTS)
     assert beyond(friction)[FORCE_BY_SHAFT]
-    assert StageName.STRUCTURE in friction.stages
 
 
 @pytest.mark.slow
 def test_without_an_encoder_nothing_stands_for_the_shaft(rig: SimulatedRig) -> None:
     found = walked(rig, RIPPLE, (SHAFT_ANGLE.name,))
     assert not {SHAFT, MOTION_FED, FORCE_BY_SHAFT} & beyond(found).keys()
-    assert {StageName.DRIVE, StageName.MECHANISM} <= {*found.stages}
+    assert beyond(found)[MOTION] or strained(found, MOTION)
 
 
 @pytest.mark.slow
@@ -151,7 +152,9 @@ def test_the_measured_frequency_takes_the_place_of_the_one_that_was_set(rig: Sim
 def test_a_large_ripple_is_the_drives_wherever_it_puts_the_pulse(
     rig: SimulatedRig, ripple: str
 ) -> None:
-    assert walked(rig, f"speed-ripple:{ripple}").stages == (StageName.DRIVE,)
+    found = walked(rig, f"speed-ripple:{ripple}")
+    assert strained(found, SHAFT) or beyond(found)[SHAFT]
+    assert acquits(found, MOTION_FED)
 
 
 @pytest.mark.slow
