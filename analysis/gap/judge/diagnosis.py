@@ -82,7 +82,6 @@ class Diagnosis:
     before: tuple[Predicted, ...]
     after: tuple[Predicted, ...]
     shrinkage: Shrinkage | None
-    rival_shrinkage: Shrinkage | None
     proposals: tuple[Proposal, ...]
 
     @property
@@ -165,8 +164,6 @@ def _conclude(
     withheld = settings.withheld or regimes(problem.simulator.stack.runs)
     before = predict_withheld(problem, None, withheld)
     after = before if best is None else predict_withheld(problem, best, withheld)
-    rival_after = before if rival is None else predict_withheld(problem, rival, withheld)
-    named = best is not None and bool(before)
     progress("choosing the next run")
     return Diagnosis(
         problem,
@@ -178,8 +175,7 @@ def _conclude(
         classes,
         before,
         after,
-        shrinkage(before, after) if named else None,
-        shrinkage(before, rival_after) if named and rival is not None else None,
+        shrinkage(before, after) if best is not None and before else None,
         _proposals(problem, weighed, settings, free),
     )
 
