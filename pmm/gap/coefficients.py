@@ -95,12 +95,6 @@ class CoefficientRow:
         return abs(value) > 2.0 * u
 
     @property
-    def moved(self) -> bool:
-        """Whether it is off what is stated, or an effect moves it, by more than its uncertainty."""
-        value, u = self.reference
-        return self.off or abs(value - self.stated) > 2.0 * math.hypot(u, self.u_stated)
-
-    @property
     def where(self) -> str:
         """Its name, and the frequency and speed that it holds at."""
         pairs = ((self.frequency_hz, "Hz"), (self.speed_m_s, "m/s"))

@@ -12,7 +12,6 @@ from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.forward.dead_weight import with_dead_weight
 from analysis.gap.forward.powers import on_noise
@@ -82,12 +81,6 @@ class Simulator:
     def with_rig(self, rig: SimulatedRig) -> "Simulator":
         """Return the simulator of another rig."""
         return replace(self, rig=rig)
-
-    def among(self, numbers: NDArray[np.intp]) -> "Simulator":
-        """Return the simulator of some of the runs, with what is simulated of them already."""
-        simulator = replace(self, stack=Stack.of([self.stack.runs[at] for at in numbers]))
-        simulator._records.update(self._records)
-        return simulator
 
     def predict(self, effects: Sequence[Effect]) -> FloatArray:
         """Return every component of every run, shape ``(observations,)``.

@@ -204,12 +204,6 @@ def misfit(residual: FloatArray, nuisances: Nuisances) -> float:
     return float(residual @ nuisances.whiten(residual))
 
 
-def cosine(a: FloatArray, b: FloatArray, nuisances: Nuisances) -> float:
-    """Return the largest cosine between what the nuisances leave of two effects' columns."""
-    first, second = (np.linalg.qr(rooted(nuisances, columns))[0] for columns in (a, b))
-    return float(min(1.0, np.linalg.svd(first.T @ second, compute_uv=False)[0]))
-
-
 def left_over(columns: FloatArray, nuisances: Nuisances) -> float:
     """Return the norm of a signature after the nuisances have taken what they can, in sigma."""
     return float(np.sqrt(max(float(np.sum(columns * nuisances.whiten(columns))), 0.0)))

@@ -40,15 +40,11 @@ class WeighedHypotheses:
     ----------
     singles, pairs
         The refined ones, most probable first.
-    skipped
-        Effects of whose traces the recordings show nothing, so that they were not simulated.
     """
 
-    problem: Problem
     singles: tuple[Fit, ...]
     pairs: tuple[Fit, ...]
     first_looks: tuple[FirstLook, ...]
-    skipped: tuple[str, ...]
     answers: Answers
 
     @property
@@ -114,10 +110,7 @@ def weigh(
         )
         for fits in (singles, pairs)
     )
-    skipped = tuple(kind.name for kind in kinds if kind not in worth)
-    return WeighedHypotheses(
-        problem, tuple(singles), tuple(pairs), tuple(looked), skipped, answer_set
-    )
+    return WeighedHypotheses(tuple(singles), tuple(pairs), tuple(looked), answer_set)
 
 
 def _complete_forms(

@@ -13,7 +13,6 @@ from analysis.gap.inference.constants import VISIBLE
 from analysis.gap.inference.gaussian import (
     Nuisances,
     any_size,
-    cosine,
     left_over,
     null_evidence,
     posterior,
@@ -127,4 +126,3 @@ def test_roots_make_the_nuisances_metric(seed: int) -> None:
     assert left_over(residual, nuisances) ** 2 == pytest.approx(residual @ inverse @ residual)
     root = rooted(nuisances, columns)
     assert root.T @ root == pytest.approx(columns.T @ inverse @ columns)
-    assert cosine(columns, columns @ [[1.0, 2.0], [0.5, -1.0]], nuisances) == pytest.approx(1.0)
