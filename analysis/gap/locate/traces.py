@@ -10,10 +10,11 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analysis.gap.forward.problem import Problem
 from analysis.gap.locate.walk import left_by_step
-from analysis.gap.observe.components import STEADY_PARTS, TRENDS, Component, Part
+from analysis.gap.observe.components import STEADY_PARTS, TRENDS, Part
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import DISPLACEMENTS, SHAFT_ANGLE
 from sim.effects.effect import DeviationTrace, Effect
@@ -45,9 +46,7 @@ def deviating_traces(problem: Problem) -> frozenset[DeviationTrace]:
     # An effect may show in what every rig has a little of.
     bare = replace(problem, nuisances=problem.nuisances.without_always_on)
     remainder = left_by_step(bare, problem.residual)
-    kinds: dict[Component, list[int]] = {}
-    for at, component in enumerate(stack.components):
-        kinds.setdefault(component, []).append(at)
+    kinds = stack.rows_by_component
     deviating = [component for component, rows in kinds.items() if _deviates(remainder, rows)]
     traces = {
         trace
@@ -67,7 +66,7 @@ def _show(deviating: Iterable[str], channels: Set[str]) -> bool:
     return any(channel in channels or not (channel and channels) for channel in deviating)
 
 
-def _deviates(remainder: FloatArray, rows: list[int]) -> bool:
+def _deviates(remainder: FloatArray, rows: NDArray[np.intp]) -> bool:
     values = remainder[rows]
     limit = len(rows) + BEYOND * (2.0 * len(rows)) ** 0.5
     return bool(values @ values > limit or np.abs(values).max() > _LONE)

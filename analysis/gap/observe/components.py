@@ -251,3 +251,11 @@ class Stack:
     def steady(self) -> BoolArray:
         """Which observations a steady state tells, shape ``(observations,)``."""
         return np.concatenate([run.observed.layout.steady for run in self.runs])
+
+    @cached_property
+    def rows_by_component(self) -> dict[Component, NDArray[np.intp]]:
+        """Where each component stands among the observations, over all runs that have it."""
+        places: dict[Component, list[int]] = {}
+        for at, component in enumerate(self.components):
+            places.setdefault(component, []).append(at)
+        return {component: np.array(rows) for component, rows in places.items()}

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from analysis.gap.inference.evidence import Background, Kind
 from analysis.gap.inference.kernel import Kernel
-from analysis.gap.inference.shapes import Shapes, SignatureOfEffect
+from analysis.gap.inference.shapes import Shapes
 from analysis.gap.pendulum.causes import DAMPED, LINES, READ, RESTORED
 from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.swings import KINDS
-from analysis.gap.search.first_look import FirstLook
+from analysis.gap.search.first_look import FirstLook, signatures
 from hardware.description.arrays import BoolArray, FloatArray
 
 _OWN: Final = 0.2  # share of a deviation's variance that is each record's own
@@ -42,11 +42,7 @@ def background(problem: PendulumProblem, looked: Sequence[FirstLook]) -> Backgro
     """
     scale = units(problem) / problem.uncertainty
     columns = problem.nuisances.columns
-    shown = [
-        SignatureOfEffect(look.name, look.fit.stages[0], look.fit.signature, look.fit.columns)
-        for look in looked
-        if look.fit is not None
-    ]
+    shown = signatures(looked)
     stages, everywhere = (
         tuple(dict.fromkeys(effect.stage for effect in shown)),
         np.ones_like(scale) > 0.0,

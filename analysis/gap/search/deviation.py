@@ -9,15 +9,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analysis.gap.forward.problem import Problem
 from analysis.gap.inference.evidence import Background, Kind
 from analysis.gap.inference.kernel import Kernel
-from analysis.gap.inference.shapes import Shapes, SignatureOfEffect
+from analysis.gap.inference.shapes import Shapes
 from analysis.gap.observe.components import SETTLING, TRENDS, Component, Part, Stack
 from analysis.gap.observe.observation import SPEED
-from analysis.gap.search.first_look import FirstLook
+from analysis.gap.search.first_look import FirstLook, signatures
 from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.channels import DISPLACEMENTS, FORCES
 from hardware.description.setpoint import Medium, SetPoint
@@ -70,12 +69,8 @@ def background(problem: Problem, looked: Sequence[FirstLook], sought: BoolArray)
     columns = problem.nuisances.columns
     wide = np.zeros(columns.shape[1], dtype=bool)
     wide[: len(sought)] = sought
-    shown = [
-        SignatureOfEffect(look.name, look.fit.stages[0], look.fit.signature, look.fit.columns)
-        for look in looked
-        if look.fit is not None
-    ]
-    cells = _cells(stack)
+    shown = signatures(looked)
+    cells = list(stack.rows_by_component.values())
     alike = likeness([run.set_point for run in stack.runs])
     each = [alike[np.ix_(stack.run[rows], stack.run[rows])] for rows in cells]
     return Background(
@@ -108,13 +103,6 @@ def _place(set_point: SetPoint) -> tuple[float, ...]:
         2.0 * (set_point.medium is Medium.AIR),
         set_point.drift_rad / _DRIFT_RAD,
     )
-
-
-def _cells(stack: Stack) -> list[NDArray[np.intp]]:
-    places: dict[Component, list[int]] = {}
-    for at, component in enumerate(stack.components):
-        places.setdefault(component, []).append(at)
-    return [np.array(rows) for rows in places.values()]
 
 
 def units(stack: Stack, nominal: FloatArray) -> FloatArray:

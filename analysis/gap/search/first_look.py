@@ -5,7 +5,7 @@ look begins where the effect is about as large as what there is to explain.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Final
@@ -16,6 +16,7 @@ from analysis.gap.forward.candidate import STEP, Candidate, candidates, turned_s
 from analysis.gap.forward.powers import are_powers, scaled_change
 from analysis.gap.forward.problem import ComparedProblem, Problem
 from analysis.gap.inference.gaussian import left_over, misfit, null_evidence
+from analysis.gap.inference.shapes import SignatureOfEffect
 from analysis.gap.search.fit import (
     Fit,
     expected_evidence,
@@ -67,6 +68,15 @@ class FirstLook:
     def fit(self) -> Fit | None:
         """The one that explains most by itself."""
         return self.fits[0] if self.fits else None
+
+
+def signatures(looked: Iterable[FirstLook]) -> list[SignatureOfEffect]:
+    """Return what the first looks show, of the effects that could be looked at."""
+    return [
+        SignatureOfEffect(look.name, look.fit.stages[0], look.fit.signature, look.fit.columns)
+        for look in looked
+        if look.fit is not None
+    ]
 
 
 def look(problem: Problem, kind: type[Effect]) -> FirstLook:
