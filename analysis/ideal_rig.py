@@ -17,7 +17,6 @@ from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator, Plane
 from hardware.description.setpoint import Medium, SetPoint
-from hardware.description.struts import to_motion
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 
 
@@ -128,9 +127,3 @@ def rod_series(eccentricity_m: float, rod_length_m: float, terms: int) -> FloatA
     series = rod_length_m * series * hyp2f1(m - 0.5, m + 0.5, 2 * m + 1, square)
     series[0] = series[0] / 2.0 - rod_length_m
     return np.asarray(series, dtype=np.float64)
-
-
-def motion(struts: ComplexArray, half_spacing_m: float, plane: Plane) -> ComplexArray:
-    """Turn strut displacements ``(..., 2)`` into translation (m) and rotation (rad)."""
-    pair = to_motion(struts[..., 0], struts[..., 1], half_spacing_m, plane)
-    return np.stack(pair, axis=-1)

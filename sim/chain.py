@@ -1,6 +1,6 @@
 """Stages in order, run whole or in blocks, with every signal between them kept."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from typing import Any
@@ -157,12 +157,6 @@ class Chain:
                     f"be supplied for every block"
                 )
         return {name: _as_signal(signals[name], values, count) for name, values in supply.items()}
-
-
-def join(parts: Iterable[Signals]) -> dict[str, FloatArray]:
-    """Join the signals of consecutive blocks into those of the whole stretch."""
-    blocks = list(parts)
-    return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
 
 
 def _as_signal(signal: Signal, values: FloatArray, count: int) -> FloatArray:

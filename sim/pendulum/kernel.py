@@ -20,7 +20,7 @@ from sim.pendulum.two_lines import combine, suspended, times
 from sim.solve.array_loops import copy, solve
 from sim.solve.compilation import compile_loop
 
-LINEAR, PENDULUM, SUSPENSION = 0, 1, 2
+PENDULUM, SUSPENSION = 1, 2
 COULOMB = 5  # column of ``loads``
 
 

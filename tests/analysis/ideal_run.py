@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from analysis.ideal_rig import incidence, mass_matrix, motion, strut_displacements, weight_matrix
+from analysis.ideal_rig import incidence, mass_matrix, strut_displacements, weight_matrix
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.body import Body
 from hardware.description.oscillator import Oscillator, Plane
 from hardware.description.setpoint import Medium, SetPoint
-from hardware.description.struts import to_strut_forces
+from hardware.description.struts import to_motion, to_strut_forces
 
 
 def _nothing() -> FloatArray:
@@ -41,6 +41,12 @@ class LinearHull:
     added_mass: FloatArray = field(default_factory=_nothing)
     damping: FloatArray = field(default_factory=_nothing)
     restoring: FloatArray = field(default_factory=_nothing)
+
+
+def motion(struts: ComplexArray, half_spacing_m: float, plane: Plane) -> ComplexArray:
+    """Turn strut displacements ``(..., 2)`` into translation (m) and rotation (rad)."""
+    pair = to_motion(struts[..., 0], struts[..., 1], half_spacing_m, plane)
+    return np.stack(pair, axis=-1)
 
 
 def derivative(phasors: ComplexArray, frequency_hz: float, times: int = 1) -> ComplexArray:

@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis.ideal_rig import motion, rod_series, strut_displacements
+from analysis.ideal_rig import rod_series, strut_displacements
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963, Plane
 from hardware.description.setpoint import Medium, SetPoint
 from hardware.description.struts import to_motion, to_strut_forces
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
-from tests.analysis.ideal_run import LinearHull, derivative, ideal_run, through_water
+from tests.analysis.ideal_run import LinearHull, derivative, ideal_run, motion, through_water
 from tests.sim.effects.against_theory import STRETCH, small_angles
 
 RATE_HZ = 200.0

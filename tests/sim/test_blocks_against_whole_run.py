@@ -10,12 +10,13 @@ from hypothesis import strategies as st
 from hardware.description.setpoint import SetPoint
 from sim.acquisition.channels import Acquisition, Digitiser
 from sim.acquisition.photocell import PhotocellStage
-from sim.chain import Chain, join
+from sim.chain import Chain
 from sim.drive.prescribed_drive import DriveSettings
 from sim.mechanism.linkage import Mechanism
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.signals import FORCE_AFT, SHAFT_ANGLE, Signal, Signals
 from sim.stage import Block
+from tests.sim.blocks import join
 
 
 @dataclass(frozen=True)

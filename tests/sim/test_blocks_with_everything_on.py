@@ -13,7 +13,6 @@ from hardware.description.setpoint import SetPoint
 from sim.acquisition.amplifier import BridgeCarrier, FilterKind, LowPass
 from sim.acquisition.channels import Acquisition, Digitiser
 from sim.acquisition.photocell import PhotocellStage
-from sim.chain import join
 from sim.drive.carriage import CarriageSettings, Fluctuation
 from sim.drive.prescribed_drive import DriveSettings, SpeedRipple
 from sim.gauges.dynamometer import Dynamometer, Dynamometers
@@ -24,6 +23,7 @@ from sim.model.mounting import Mounting
 from sim.model.water.radiation import Radiation
 from sim.model.water.tank import Tank, with_walls
 from sim.rig import SimulatedRig, vertical_rig
+from tests.sim.blocks import join
 
 MEMORY = Radiation(
     np.array([[40.0, 3.0], [3.0, 12.0]]),

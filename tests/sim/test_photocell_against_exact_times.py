@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from sim.acquisition.photocell import PhotocellStage
-from sim.chain import Chain, join
+from sim.chain import Chain
 from sim.drive.prescribed_drive import ConstantSpeedDrive, DriveSettings
 from sim.signals import SHAFT_ACCELERATION, SHAFT_ANGLE, SHAFT_SPEED
+from tests.sim.blocks import join
 
 TURN = 2.0 * math.pi
 

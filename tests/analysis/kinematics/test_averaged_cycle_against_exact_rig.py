@@ -5,7 +5,7 @@ import pytest
 
 from analysis.coefficients.body_axes import labels, of_struts
 from analysis.coefficients.phasors import Phasors, interleaved
-from analysis.ideal_rig import mass_matrix, motion, weight_matrix
+from analysis.ideal_rig import mass_matrix, weight_matrix
 from analysis.kinematics.cycle import driven, harmonics
 from analysis.kinematics.motion import motion as moved
 from analysis.kinematics.rigid_body import inertia, weight
@@ -15,7 +15,7 @@ from hardware.description.body import Body
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium
 from hardware.description.struts import to_strut_forces
-from tests.analysis.ideal_run import LinearHull, loads, through_water
+from tests.analysis.ideal_run import LinearHull, loads, motion, through_water
 from tests.analysis.kinematics.exact import geometry_of, in_axes, measured, rows, stacked, truth
 from tests.exact.rigs import ARRANGEMENTS, exact_rig
 from tests.exact.run import DISPLACEMENTS, READINGS

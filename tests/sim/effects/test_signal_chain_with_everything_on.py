@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from hardware.description.setpoint import Medium, SetPoint
-from sim.chain import join
 from sim.effects.agreement import mismatch
 from sim.effects.campaign import in_order
 from sim.effects.catalogue import catalogue
@@ -17,6 +16,7 @@ from sim.effects.situation import Situation
 from sim.effects.switching import switch_on
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.run import simulate, steady_run
+from tests.sim.blocks import join
 from tests.sim.effects.in_time import between, in_time
 
 KINDS = [kind for kind in catalogue().values() if kind.code[0] in "MAH"]

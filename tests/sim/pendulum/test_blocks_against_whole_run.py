@@ -11,12 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import sim.solve.compilation
-from sim.chain import join
 from sim.pendulum import kernel, two_lines
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.benches import MODEL_HULL_2014, bifilar_bench, swing_bench
 from sim.pendulum.effects import make_effect
 from sim.solve import array_loops
+from tests.sim.blocks import join
 
 
 def busy_suspension() -> PendulumBench:
