@@ -17,6 +17,7 @@ from typing import Any, BinaryIO, Final
 import numpy as np
 
 from analysis.foreign.columns import LONGEST_ANSWER, ForeignColumns
+from analysis.process_memory import limit_memory
 from analysis.reading_limits import MOST_COLUMNS
 from hardware.description.errors import DataError
 
@@ -29,7 +30,7 @@ def main() -> None:
     os.dup2(2, 1)  # what a library prints is no answer
     for line in sys.stdin.buffer:
         request = json.loads(line)
-        _limit_memory(int(request["memory_bytes"]))
+        limit_memory(int(request["memory_bytes"]))
         # A thread of C, not of Python: it ends the process whatever that is at.
         faulthandler.dump_traceback_later(request["seconds"] + _GRACE_S, exit=True)
         _answer(request["reader"], Path(request["path"]), answers)
@@ -65,19 +66,6 @@ def _hand_on(content: ForeignColumns, answers: BinaryIO) -> None:
 
 def _say(answer: Mapping[str, Any], answers: BinaryIO) -> None:
     answers.write(json.dumps(answer).encode() + b"\n")
-
-
-def _limit_memory(most: int) -> None:
-    """Take no more memory than that, where the system can; Windows and macOS cannot."""
-    if sys.platform == "win32":
-        return
-    import resource
-
-    hard = resource.getrlimit(resource.RLIMIT_AS)[1]
-    try:
-        resource.setrlimit(resource.RLIMIT_AS, (most, hard))
-    except (OSError, ValueError):
-        return  # a system that knows no such limit, or has a lower one
 
 
 if __name__ == "__main__":

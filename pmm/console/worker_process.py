@@ -3,7 +3,6 @@
 import asyncio
 import os
 import signal
-import sys
 import threading
 import time
 from collections.abc import Awaitable, Callable
@@ -14,6 +13,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnProcess
 from typing import Any, Final, Generic, ParamSpec, TypeVar
 
+from analysis.process_memory import limit_memory
 from hardware.description.errors import PmmError
 from pmm.console.limits import CHECK_MEMORY, CHECK_S, MOST_CHECKS
 
@@ -181,7 +181,7 @@ def _work(connection: Connection, bounds: WorkLimits) -> None:
     """Do what is asked until nobody asks any more."""
     yield_to_the_loop()
     os.environ |= dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"), "1")
-    _limit_memory(bounds.memory_bytes)
+    limit_memory(bounds.memory_bytes)
     clock = _ProcessorTime(bounds.seconds)
     clock.start()
     while True:
@@ -200,19 +200,6 @@ def _work(connection: Connection, bounds: WorkLimits) -> None:
             connection.send((result, error))
         except (TypeError, AttributeError, ValueError) as raised:  # it cannot be pickled
             connection.send((None, NotWorkedOutError(f"{error!r}: {raised}")))
-
-
-def _limit_memory(most_bytes: int) -> None:
-    """Take no more memory than that, where the system can; Windows and macOS cannot."""
-    if sys.platform == "win32" or not most_bytes:
-        return
-    import resource
-
-    hard = resource.getrlimit(resource.RLIMIT_AS)[1]
-    try:
-        resource.setrlimit(resource.RLIMIT_AS, (most_bytes, hard))
-    except (OSError, ValueError):
-        return  # a system that knows no such limit, or has a lower one
 
 
 def yield_to_the_loop() -> None:
