@@ -12,6 +12,7 @@ from hardware.description.channels import Channel
 from hardware.description.errors import DataError
 from hardware.description.setpoint import SetPoint
 from hardware.roles import Reading
+from pmm.recorder.line_shapes import is_integer, is_text
 
 _NOTHING: Mapping[str, Any] = MappingProxyType({})
 
@@ -139,30 +140,22 @@ class RunHeader:
         return header
 
 
-def _is_text(value: object) -> bool:
-    return isinstance(value, str)
-
-
-def _is_whole(value: object) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool) and abs(value) < 2**53
-
-
 def _is_rate(value: object) -> bool:
     return isinstance(value, int | float) and 0.0 < value < math.inf
 
 
 def _are_texts(value: object) -> bool:
-    return isinstance(value, Mapping) and all(map(_is_text, value.values()))
+    return isinstance(value, Mapping) and all(map(is_text, value.values()))
 
 
 _KINDS: Final[Mapping[str, Callable[[object], bool]]] = {
-    "run_name": _is_text,
-    "started_utc": _is_text,
-    "kind": _is_text,
-    "plan_json": _is_text,
+    "run_name": is_text,
+    "started_utc": is_text,
+    "kind": is_text,
+    "plan_json": is_text,
     "sample_rate_hz": _is_rate,
-    "number": _is_whole,
-    "first_sync": _is_whole,
+    "number": is_integer,
+    "first_sync": is_integer,
     "configuration_sha256": _are_texts,
     "provenance": _are_texts,
 }

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from hardware.description.flags import Flag
+from hardware.description.toml import is_number
 from pmm.recorder.files import CYCLES, EVENTS, HARMONICS, LINES, MARKER, PULSES, RECOVERED
 
 Shape = Callable[[Any], bool]
@@ -58,19 +59,17 @@ def _list_of(shape: Shape) -> Shape:
     return lambda value: isinstance(value, list) and all(map(shape, value))
 
 
-def _number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
 def _finite(value: Any) -> bool:
-    return _number(value) and abs(value) < 1e300 and math.isfinite(value)
+    return is_number(value) and abs(value) < 1e300 and math.isfinite(value)
 
 
-def _integer(value: Any) -> bool:
+def is_integer(value: Any) -> bool:
+    """Tell whether a value is a whole number that any program reads exactly."""
     return isinstance(value, int) and not isinstance(value, bool) and abs(value) < 2**53
 
 
-def _text(value: Any) -> bool:
+def is_text(value: Any) -> bool:
+    """Tell whether a value is text."""
     return isinstance(value, str)
 
 
@@ -92,28 +91,28 @@ def _table_of(shape: Shape) -> Shape:
     return lambda value: isinstance(value, dict) and all(map(shape, value.values()))
 
 
-_files: Final = _table_of(_table(bytes=_integer, sha256=_text))
-_flags: Final = _list_of(_table(code=_text, severity=_text, message=_text))
+_files: Final = _table_of(_table(bytes=is_integer, sha256=is_text))
+_flags: Final = _list_of(_table(code=is_text, severity=is_text, message=is_text))
 _FLAGGED: Final = _table(flags=_flags)
-_MARKER: Final = _table(outcome=_text, files=_files, flags=_flags)
+_MARKER: Final = _table(outcome=is_text, files=_files, flags=_flags)
 _MARKER_MORE: Final[Mapping[str, Shape]] = {
-    "first_sync": _integer,
-    "last_sync": _integer,
+    "first_sync": is_integer,
+    "last_sync": is_integer,
     "noise_rms": _table_of(_finite),
 }
 _READING: Final = _table(
     opened_s=_finite,
     closed_s=_finite,
-    periods=_integer,
-    channels=_list_of(_text),
-    coefficients=_list_of(_list_of(_number)),
+    periods=is_integer,
+    channels=_list_of(is_text),
+    coefficients=_list_of(_list_of(is_number)),
 )
 _SHAPES: Final[Mapping[str, Shape]] = {
-    PULSES: _row(_integer, _finite, _finite_or_none),
-    EVENTS: _table(cycle=_integer, time_s=_finite, kind=_text, text=_text),
+    PULSES: _row(is_integer, _finite, _finite_or_none),
+    EVENTS: _table(cycle=is_integer, time_s=_finite, kind=is_text, text=is_text),
     HARMONICS: _reading,
-    LINES: _row(_integer, _text, _bytes),
-    CYCLES: _row(_integer, _finite, _finite, _finite, _integer),
+    LINES: _row(is_integer, is_text, _bytes),
+    CYCLES: _row(is_integer, _finite, _finite, _finite, is_integer),
 }
 
 
