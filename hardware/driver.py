@@ -3,12 +3,11 @@
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
-from functools import cache
 from importlib.metadata import EntryPoint
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 from hardware.description.errors import ConfigurationError
-from hardware.description.toml import dotted, not_finite
+from hardware.description.toml import adapter, dotted, not_finite
 from hardware.dictionary import Entry, PdoLayout, layout, load
 from hardware.installed import installed
 from hardware.roles import Device, Role
@@ -186,7 +185,7 @@ def read_settings(kind: type[T], table: Mapping[str, object], where: str) -> T:
     faults += [f"{where}.{dotted(place)} has to be a finite number" for place in not_finite(values)]
     settings: T | None = None
     try:
-        settings = _adapter(cast("Any", kind)).validate_json(json.dumps(values), strict=True)
+        settings = adapter(cast("Any", kind)).validate_json(json.dumps(values), strict=True)
     except ValidationError as error:
         for fault in error.errors(include_url=False):
             place = ".".join(map(str, (where, *fault["loc"])))
@@ -209,10 +208,3 @@ def _hint(key: str, keys: Iterable[str]) -> str:
     names = list(keys)
     near = get_close_matches(key, names, n=1, cutoff=0.5)
     return f"did you mean {near[0]}?" if near else f"known: {', '.join(names)}"
-
-
-@cache
-def _adapter(kind: type) -> Any:
-    from pydantic import TypeAdapter
-
-    return TypeAdapter(kind)

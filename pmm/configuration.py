@@ -4,18 +4,14 @@ import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from difflib import get_close_matches
-from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
+from typing import Any, Final, NamedTuple, TypeVar
 
 from hardware.description.errors import ConfigurationError
-from hardware.description.toml import is_number, parse_toml
+from hardware.description.toml import adapter, is_number, parse_toml
 from pmm.places import Place as Place
 from pmm.places import find
-
-if TYPE_CHECKING:
-    from pydantic import TypeAdapter
 
 T = TypeVar("T")
 
@@ -92,7 +88,7 @@ def validate(
     key: Any = kind
     try:
         # By way of JSON: there pydantic is strict about numbers and yet takes arrays for tuples.
-        instance: T = _adapter(key).validate_json(json.dumps(table), strict=True)
+        instance: T = adapter(key).validate_json(json.dumps(table), strict=True)
     except ValidationError as error:
         for entry in error.errors(include_url=False):
             match = find(kind, entry["loc"], table)
@@ -112,13 +108,6 @@ def validate(
         faults.append(Fault((), str(error)))
         return None
     return instance
-
-
-@cache
-def _adapter(kind: Any) -> "TypeAdapter[Any]":
-    from pydantic import TypeAdapter
-
-    return TypeAdapter(kind)
 
 
 def _problem(message: str) -> str:

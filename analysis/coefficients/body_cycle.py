@@ -37,7 +37,8 @@ _SAME_MOTION = 1e-2
 _STEPS = 720  # of a base period, in which the peak of many lines is sought
 
 
-def _zero_matrix() -> FloatArray:
+def zero_matrix() -> FloatArray:
+    """Return the restoring of a body that nothing holds, shape ``(2, 2)``."""
     return np.zeros((2, 2))
 
 
@@ -106,7 +107,7 @@ class BodyCycle:
     orders: int
     medium: Medium = Medium.WATER
     body: Body | None = None
-    restoring: FloatArray = field(default_factory=_zero_matrix)
+    restoring: FloatArray = field(default_factory=zero_matrix)
     point_ahead_m: float = 0.0
     drift_rad: float = 0.0
     mean_known: bool = False

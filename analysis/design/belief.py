@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from analysis.coefficients.body_axes import labels
-from analysis.coefficients.body_cycle import BodyCycle
+from analysis.coefficients.body_cycle import BodyCycle, zero_matrix
 from analysis.coefficients.hull_cycle import loads_asked, stated_at_instants
 from analysis.coefficients.identifiability import identifiable_motions
 from analysis.coefficients.linear_fit import term_at
@@ -39,10 +39,6 @@ _LOADS = 3
 CHANNELS = (*DISPLACEMENTS, *FORCES)
 
 
-def _zero_matrix() -> FloatArray:
-    return np.zeros((2, 2))
-
-
 @dataclass(frozen=True, eq=False)
 class Belief:
     """What is believed before the test.
@@ -61,7 +57,7 @@ class Belief:
     body: Body
     values: Mapping[str, float]
     form: Form = Form.MANOEUVRING
-    restoring: FloatArray = field(default_factory=_zero_matrix)
+    restoring: FloatArray = field(default_factory=zero_matrix)
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:

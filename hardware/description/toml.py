@@ -4,9 +4,13 @@ import datetime
 import math
 import tomllib
 from collections.abc import Iterator
-from typing import Any, Final, TypeGuard
+from functools import cache
+from typing import TYPE_CHECKING, Any, Final, TypeGuard
 
 from hardware.description.errors import ConfigurationError
+
+if TYPE_CHECKING:
+    from pydantic import TypeAdapter
 
 # Tables in tables: the deepest of ours has 5. Without a limit 1,000 would end every walk over them.
 DEEPEST: Final = 32
@@ -77,3 +81,11 @@ def _values(tables: dict[str, Any]) -> Iterator[tuple[Any, Any, Any, Place]]:
 def is_number(value: object) -> TypeGuard[int | float]:
     """Tell whether a TOML value is a number; true and false are none."""
     return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+@cache
+def adapter(kind: Any) -> "TypeAdapter[Any]":
+    """Return what builds a class from a table of its values, made once for each class."""
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(kind)
