@@ -12,7 +12,6 @@ import tempfile
 import threading
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
-from datetime import UTC, datetime
 from hashlib import sha256
 from pathlib import Path
 from typing import Final, Self, TypeVar
@@ -20,6 +19,7 @@ from typing import Final, Self, TypeVar
 from filelock import FileLock, Timeout
 
 from hardware.description.errors import DataError
+from hardware.wall_clock import utc_now
 
 # A reader that asks who the owner is holds the lock for an instant; an owner-to-be outlasts it.
 # Halved, a busy machine might refuse for a reader's sake; doubled, a refusal takes a second.
@@ -183,8 +183,7 @@ def _locked(path: Path, message: str, patience_s: float) -> FileLock:
 def _sign(handle: int) -> None:
     """Write who owns it into the lock file."""
     command = " ".join([Path(sys.argv[0]).name, *sys.argv[1:]])[:_LONGEST_COMMAND]
-    since = datetime.now(UTC).isoformat(timespec="seconds")
-    mine = Owner(os.getpid(), command, since, platform.node())
+    mine = Owner(os.getpid(), command, utc_now(), platform.node())
     with suppress(OSError):  # on a full disk the lock holds, only its owner stays unnamed
         os.ftruncate(handle, 0)
         os.lseek(handle, 0, os.SEEK_SET)

@@ -1,6 +1,5 @@
 """``pmm archive``: any number of campaign folders in one file, found and compared."""
 
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -56,6 +55,7 @@ def add(folders: tuple[str, ...], analysed: bool, gap: bool, jobs: int | None,
     pmm archive add 2025-03-kvlcc2 2025-09-kvlcc2 --analyse
     """  # noqa: D301
     from hardware.description.errors import PmmError
+    from hardware.wall_clock import utc_now
     from pmm.archive.database import open_archive
     from pmm.archive.indexing import add_folders
     from pmm.archive.results import Analyses
@@ -74,7 +74,7 @@ def add(folders: tuple[str, ...], analysed: bool, gap: bool, jobs: int | None,
         open_archive(Path(file), create=True) as connection,
         open_executor(1 if scheduler is None and jobs is None else jobs, scheduler) as executor,
     ):
-        outcomes = add_folders(connection, map(Path, folders), analyses, _now_utc(), executor)
+        outcomes = add_folders(connection, map(Path, folders), analyses, utc_now(), executor)
         for outcome in show_progress(outcomes, "folders", len(folders)):
             if isinstance(outcome, PmmError):
                 error_line(str(outcome))
@@ -85,10 +85,6 @@ def add(folders: tuple[str, ...], analysed: bool, gap: bool, jobs: int | None,
     statuses += [1 for folder in added_folders if folder.refused]
     if statuses:
         click.get_current_context().exit(min(statuses))
-
-
-def _now_utc() -> str:
-    return datetime.now(UTC).isoformat(timespec="seconds")
 
 
 @archive.command("list")
@@ -180,6 +176,7 @@ def note(run: str, text: str, campaign: str | None, author: str | None, file: st
     """  # noqa: D301
     from getpass import getuser
 
+    from hardware.wall_clock import utc_now
     from pmm.archive.database import open_archive
     from pmm.archive.indexing import note_run
     from pmm.archive.notebook import NoteLine
@@ -188,7 +185,7 @@ def note(run: str, text: str, campaign: str | None, author: str | None, file: st
 
     with open_archive(Path(file)) as connection:
         filed_run = the_run(connection, run, campaign)
-        line = NoteLine(_now_utc(), run, author or getuser(), text)
+        line = NoteLine(utc_now(), run, author or getuser(), text)
         path = note_run(connection, filed_run, line)
     messages().print(f"written: {path}")
 

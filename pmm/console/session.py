@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final, cast
 
 from hardware.description.version import program
 from hardware.pacing import RealTime
+from hardware.wall_clock import utc_now
 from pmm.console.answers import BrowserAnswers
 from pmm.console.app_settings import ConsoleSettings
 from pmm.console.limits import LARGEST_HEADERS, LARGEST_MESSAGE
@@ -27,7 +28,6 @@ from pmm.plan.rig_file import RigFile
 from pmm.real_time import Priority, step_back
 from pmm.run.journal import Taps
 from pmm.run.operator import Interrupts
-from pmm.run.recorder_factory import utc_now
 from pmm.run.session import keep_time, tapped_rig
 
 if TYPE_CHECKING:

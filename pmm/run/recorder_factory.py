@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from datetime import UTC, datetime
 from functools import cached_property, partial
 from pathlib import Path
 from typing import Final
@@ -27,11 +26,6 @@ from pmm.run.measurement import Measurement, recorder_faults
 
 _FRAMES_A_CYCLE: Final = 3.0  # of each node: process data both ways, and its share of the rest
 _MEGA: Final = 1e6
-
-
-def utc_now() -> str:
-    """Return date and time in ISO 8601, to the second."""
-    return datetime.now(UTC).isoformat(timespec="seconds")
 
 
 @dataclass

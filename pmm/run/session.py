@@ -14,6 +14,7 @@ from hardware.description.version import program
 from hardware.driver import Prompt
 from hardware.pacing import FreeRunning, Pacer, RealTime
 from hardware.rig import Rig
+from hardware.wall_clock import utc_now
 from pmm.plan.campaign_writer import write_campaign
 from pmm.plan.checks import require_possible
 from pmm.plan.findings import PlanFinding
@@ -32,7 +33,7 @@ from pmm.run.campaign_folder import (
 )
 from pmm.run.journal import Taps
 from pmm.run.operator import Interrupts, OperatorAnswers
-from pmm.run.recorder_factory import RecorderFactory, plan_provenance, utc_now
+from pmm.run.recorder_factory import RecorderFactory, plan_provenance
 from pmm.run.rehearsal import rehearse
 from pmm.run.run_control import RunControl
 from pmm.run.run_origin import change_lines
