@@ -1,13 +1,13 @@
 """Which runs of a campaign are solved together, and what is refused before anything is solved."""
 
 import math
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Final
 
 from analysis.coefficients.body_cycle import BodyCycle
+from analysis.coefficients.cycle_checks import named_twice, other_geometry
 from analysis.coefficients.identifiability import fundamental_velocities, identifiable_motions
 from analysis.coefficients.line_cycles import names_of_lines
 from analysis.coefficients.names import Form
@@ -75,10 +75,7 @@ def check_campaign(cycles: Sequence[BodyCycle]) -> None:
         Naming all faults: names twice, inconsistent geometry, missing inertia, values that are not
         finite.
     """
-    if not cycles:
-        raise ConfigurationError("no run was given; one or more are needed")
-    twice = [name for name, count in Counter(cycle.name for cycle in cycles).items() if count > 1]
-    faults = [f"two runs are called {name!r}; rename one" for name in twice]
+    faults = named_twice(cycles)
     for cycle in cycles:
         faults += [*_other_rig(cycle, cycles[0]), *_missing_data(cycle)]
     faults += _other_bodies(cycles)
@@ -89,10 +86,7 @@ def check_campaign(cycles: Sequence[BodyCycle]) -> None:
 def _other_rig(cycle: BodyCycle, first: BodyCycle) -> Iterator[str]:
     if cycle.plane is not first.plane:
         yield f"{cycle.name} is {cycle.plane}, {first.name} {first.plane}; solve each plane alone"
-    for name in ("half_spacing_m", "point_ahead_m"):
-        value, first_value = getattr(cycle, name), getattr(first, name)
-        if value != first_value:
-            yield f"{cycle.name} has {name} = {value:g}, {first.name} {first_value:g}"
+    yield from other_geometry(cycle, first)
 
 
 def _other_bodies(cycles: Sequence[BodyCycle]) -> Iterator[str]:

@@ -27,6 +27,28 @@ _STILL = 1e-3  # of a term's typical size: pure yaw has less of v v r than this 
 _APART = 1e-2  # least over greatest singular value of the terms' scaled columns
 
 
+def named_twice(cycles: Sequence[BodyCycle]) -> list[str]:
+    """Return what is wrong with the runs' names.
+
+    Raises
+    ------
+    ConfigurationError
+        If there is no run.
+    """
+    if not cycles:
+        raise ConfigurationError("no run was given; one or more are needed")
+    twice = [name for name, count in Counter(cycle.name for cycle in cycles).items() if count > 1]
+    return [f"two runs are called {name!r}; rename one" for name in twice]
+
+
+def other_geometry(cycle: BodyCycle, first: BodyCycle) -> Iterator[str]:
+    """Yield where a run was made with other lengths of the rig than the first one."""
+    for name in ("half_spacing_m", "point_ahead_m"):
+        value, first_value = getattr(cycle, name), getattr(first, name)
+        if value != first_value:
+            yield f"{cycle.name} has {name} = {value:g}, {first.name} {first_value:g}"
+
+
 def check_cycles(cycles: Sequence[BodyCycle], orders: tuple[int, ...]) -> None:
     """Refuse cycles that cannot be fitted together.
 
@@ -35,10 +57,7 @@ def check_cycles(cycles: Sequence[BodyCycle], orders: tuple[int, ...]) -> None:
     ConfigurationError
         Naming every run and what does not fit.
     """
-    if not cycles:
-        raise ConfigurationError("no run was given; one or more are needed")
-    twice = [name for name, count in Counter(cycle.name for cycle in cycles).items() if count > 1]
-    faults = [f"two runs are called {name!r}; rename one" for name in twice]
+    faults = named_twice(cycles)
     for cycle in cycles:
         faults += _unfit(cycle, cycles[0])
         moves = cycle.frequency_hz > 0.0
@@ -55,10 +74,7 @@ def check_cycles(cycles: Sequence[BodyCycle], orders: tuple[int, ...]) -> None:
 def _unfit(cycle: BodyCycle, first: BodyCycle) -> Iterator[str]:
     if cycle.plane is not first.plane:
         yield f"{cycle.name} is {cycle.plane}, {first.name} {first.plane}"
-    for name in ("half_spacing_m", "point_ahead_m"):
-        value, first_value = getattr(cycle, name), getattr(first, name)
-        if value != first_value:
-            yield f"{cycle.name} has {name} = {value:g}, {first.name} {first_value:g}"
+    yield from other_geometry(cycle, first)
     if cycle.medium is not Medium.WATER:
         yield f"{cycle.name} was run in air; take it off as a dry run"
     if not np.isfinite(cycle.phasors.values).all():
