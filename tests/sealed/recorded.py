@@ -164,7 +164,7 @@ def _values(one: "Recording", name: str) -> FloatArray:
     return values
 
 
-_ROLL: Final = """name = "roll decay"
+ROLL: Final = """name = "roll decay"
 [measured]
 record = "{0}"
 channel = "phi"
@@ -177,7 +177,7 @@ restoring = 0.01
 amplitude_period = 0.05
 nonlinear_restoring = 1.0
 """
-_ROD: Final = """name = "rod"
+ROD: Final = """name = "rod"
 gyradius_m = 0.343
 gravity_m_s2 = 9.81
 swings = 60
@@ -210,9 +210,9 @@ def _measured(output: Path, shared: Path) -> Iterator[tuple[str, str, tuple[str,
         _thinned(decay / "model_test_21337.csv.gz", record, first, last, rate_hz)
         right = (BEYOND_LINEAR, UNTOLD) if name == "second-half" else (BEYOND_LINEAR,)
         simulated = decay / "fnpf_kvlcc2_rolldecay_0kn.csv.gz"
-        yield f"roll-{name}", "roll decay", right, _ROLL.format(record.absolute(), simulated)
+        yield f"roll-{name}", "roll decay", right, ROLL.format(record.absolute(), simulated)
     for name, (first, last) in _HALVES.items():
-        rows = [_ROD]
+        rows = [ROD]
         for gates in sorted((shared / "bifilar").glob("*.csv")):
             own = output / f"{gates.stem}-{name}.csv"
             head, lines = _lines(gates)

@@ -20,25 +20,10 @@ from hardware.description.errors import ConfigurationError, DataError
 from pmm.gap.pendulum import load_problem
 from pmm.gap.pendulum_file import read_case
 from sim.pendulum.effects import body, setup
+from tests.sealed.recorded import ROD, ROLL
 
 SHARED = Path(__file__).parents[3].parent / "shared" / "data"
 measured = pytest.mark.skipif(not SHARED.exists(), reason="no shared measured data")
-
-ROLL = """
-name = "roll decay"
-[measured]
-record = "{1}"
-channel = "phi"
-[simulated]
-record = "{0}/fnpf_kvlcc2_rolldecay_0kn.csv.gz"
-channel = "phi"
-[tolerances]
-inertia = 0.01
-restoring = 0.01
-amplitude_period = 0.05
-nonlinear_restoring = 1.0
-"""
-
 
 RELEASED_S = 26.2  # of the model test's record; before that the body is held
 
@@ -46,7 +31,7 @@ RELEASED_S = 26.2  # of the model test's record; before that the body is held
 def roll(folder: Path, record: str) -> PendulumProblem:
     """Return the problem of one record of the roll decay."""
     path = folder / "roll.toml"
-    path.write_text(ROLL.format(SHARED / "roll_decay", record))
+    path.write_text(ROLL.format(record, SHARED / "roll_decay" / "fnpf_kvlcc2_rolldecay_0kn.csv.gz"))
     return load_problem(path)
 
 
@@ -98,20 +83,6 @@ def test_quadratic_drag_foretells_the_roll_decay(tmp_path: Path) -> None:
     quadratic = fit(problem, [cause(body.QuadraticDrag)])
     for regime in predict_withheld(problem, [quadratic]):
         assert regime.foretold[0].shrinkage > 0.9
-
-
-ROD = """
-name = "rod"
-gyradius_m = 0.343
-gravity_m_s2 = 9.81
-swings = 60
-[tolerances]
-inertia = 0.05
-restoring = 3e-4
-amplitude_period = 0.02
-line_excess = 5e-4
-spacing = 2.5e-4
-"""
 
 
 def rod(folder: Path, half: int | None = None) -> PendulumProblem:
