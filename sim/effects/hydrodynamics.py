@@ -6,7 +6,6 @@ No effect itself. Matrices are (force, moment) per (translation, rotation), as i
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,12 +15,9 @@ from sim.effects.situation import Situation
 from sim.effects.situation import at_struts as at_struts_of
 from sim.model.force_law import ForceLaw
 from sim.model.law_point import Acting, Point
-from sim.model.water.hydrostatics import Matrix
+from sim.model.parameters import HullCoefficients, Matrix
 from sim.model.water.radiation import Radiation, constant
 from sim.rig import SimulatedRig
-
-if TYPE_CHECKING:
-    from sim.model.parameters import HullCoefficients
 
 HIGHEST = 3  # order that a signature names
 STRUTS = (Point.AFT, Point.FORE)

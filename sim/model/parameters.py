@@ -1,6 +1,7 @@
 """Parameters of a model, its mounting and the water around it."""
 
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
 from hardware.description.arrangement import Arrangement
 from hardware.description.body import Body
@@ -11,9 +12,11 @@ from sim.model.law_point import Acting
 from sim.model.mounting import Mounting
 from sim.model.steering import Steering
 from sim.model.water.force_laws import CrossFlow, SurgeForces
-from sim.model.water.hydrostatics import Matrix
 from sim.model.water.radiation import Radiation
 from sim.model.waves import MetWaves
+
+# Rows are force and moment, columns translation and rotation about the midpoint of the struts.
+Matrix: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
 _NONE: Matrix = ((0.0, 0.0), (0.0, 0.0))
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from hardware.description.errors import ConfigurationError
-from sim.model.water.hydrostatics import Matrix
+from sim.model.parameters import Matrix
 
 Powers: TypeAlias = tuple[tuple[int, int], tuple[int, int]]
 

@@ -31,7 +31,7 @@ from sim.effects.m5_zero_offset import ZeroOffset
 from sim.rig import SimulatedRig
 
 if TYPE_CHECKING:
-    from sim.model.water.hydrostatics import Matrix
+    from sim.model.parameters import Matrix
 
 Change = Callable[[SimulatedRig, float], SimulatedRig]
 

@@ -5,6 +5,5 @@
 * :mod:`sim.model.water.memory` fits the state space to such a table, by
   :mod:`sim.model.water.vector_fitting` and :mod:`sim.model.water.passive_fit`;
 * :mod:`sim.model.water.fitted_memory` is the result, with what the fit leaves of the table;
-* :mod:`sim.model.water.tank` adds the tank's walls to it;
-* :mod:`sim.model.water.hydrostatics` gives the restoring coefficients.
+* :mod:`sim.model.water.tank` adds the tank's walls to it.
 """
