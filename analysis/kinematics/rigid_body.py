@@ -10,20 +10,12 @@ import numpy as np
 
 from analysis.kinematics.geometry import Waves
 from analysis.kinematics.motion import MotionWaves
-from hardware.description.arrays import FloatArray
-from hardware.description.body import Body
 from hardware.description.oscillator import Plane
 from hardware.description.units import STANDARD_GRAVITY_M_S2
 
 
-def moments(body: Body) -> FloatArray:
-    """Return mass, m x_G, m z_G and I: kg, kg m, kg m and kg m^2."""
-    mass = body.mass_kg
-    return np.array([mass, mass * body.cg_x_m, mass * body.cg_z_m, body.inertia_kg_m2])
-
-
-def inertia(body: Body, motion: MotionWaves, plane: Plane) -> Waves:
-    """Return the loads from the body's inertia, shape ``(..., 3, instants)``.
+def inertia_terms(motion: MotionWaves, plane: Plane) -> Waves:
+    """Return the loads per unit of m, m x_G, m z_G and I, shape ``(..., 4, 3, instants)``.
 
     With the centre of gravity x_G ahead and z_G down (nothing to the side):
 
@@ -32,11 +24,6 @@ def inertia(body: Body, motion: MotionWaves, plane: Plane) -> Waves:
         Z = m (w' - u q - x_G q' - z_G q^2)      M = I q' - m x_G (w' - u q) + m z_G (u' + w q)
         X = m (u' + w q + z_G q' - x_G q^2)
     """
-    return _sum(moments(body), inertia_terms(motion, plane))
-
-
-def inertia_terms(motion: MotionWaves, plane: Plane) -> Waves:
-    """Return the loads per unit of each of the :func:`moments`, shape ``(..., 4, 3, instants)``."""
     u, v, r = np.moveaxis(motion.velocity, -2, 0)
     u_rate, v_rate, r_rate = np.moveaxis(motion.rate, -2, 0)
     vertical = plane is Plane.VERTICAL
@@ -85,27 +72,16 @@ def heel_terms(motion: MotionWaves, heel: Waves) -> Waves:
     )
 
 
-def weight(body: Body, motion: MotionWaves) -> Waves:
-    """Return the loads on the struts from the weight, in air and in the vertical plane.
-
-    Shape ``(..., 3, instants)``; against the load, so ``Z = -m g cos(theta)``.
-    """
-    return _sum(moments(body)[:3], weight_terms(motion.rotation_rad))
-
-
 def weight_terms(pitch_rad: Waves) -> Waves:
     """Return the weight's loads per mass, m x_G and m z_G, shape ``(..., 3, 3, instants)``.
 
-    Of buoyancy they are the same per displaced mass and its moments, with the other sign.
+    In air and in the vertical plane; against the load, so ``Z = -m g cos(theta)``. Of buoyancy
+    they are the same per displaced mass and its moments, with the other sign.
     """
     sine = STANDARD_GRAVITY_M_S2 * np.sin(pitch_rad)
     cosine = STANDARD_GRAVITY_M_S2 * np.cos(pitch_rad)
     none = np.zeros_like(sine)
     return _stacked((-cosine, none, sine), (none, cosine, none), (none, sine, none))
-
-
-def _sum(values: FloatArray, terms: Waves) -> Waves:
-    return np.asarray(np.einsum("k,...krt->...rt", values, terms))
 
 
 def _stacked(*terms: tuple[Waves, ...]) -> Waves:

@@ -164,17 +164,6 @@ class Radiation:
         """Return B(w), shape ``(*omega.shape, 2, 2)``."""
         return self.memory(omega_rad_s).real
 
-    def kernel(self, time_s: ArrayLike) -> FloatArray:
-        """Return the retardation function C exp(A t) B, shape ``(*time.shape, 2, 2)``; t >= 0."""
-        from scipy.linalg import expm
-
-        time = np.asarray(time_s, dtype=np.float64)
-        decayed = (
-            expm(time[..., None, None] * self.state_matrix) if self.states else self.state_matrix
-        )
-        kernel: FloatArray = self.output_matrix @ decayed @ self.input_matrix
-        return np.broadcast_to(kernel, (*time.shape, 2, 2))
-
     def at(self, time_s: float) -> "Radiation":
         """Return the memory with the inputs that it has so long after the start of a run."""
         heard = self.onset_s <= time_s

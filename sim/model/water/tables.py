@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
@@ -100,31 +99,6 @@ class RadiationTable:
                 f"be negative; an irregular frequency, or a wrong sign"
             )
 
-    def at(self, omega_rad_s: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Return A and B between the table's frequencies, each ``(*omega.shape, 2, 2)``.
-
-        The interpolation is a cubic that stays monotonic where the table is.
-
-        Raises
-        ------
-        ConfigurationError
-            If a frequency is outside the table: it is never extrapolated.
-        """
-        from scipy.interpolate import PchipInterpolator
-
-        omega = np.asarray(omega_rad_s, dtype=np.float64)
-        low, high = self.omega_rad_s[0], self.omega_rad_s[-1]
-        # Not (inside) instead of (outside): a NaN is neither.
-        if not bool(np.all((omega >= low) & (omega <= high))):
-            raise ConfigurationError(
-                f"{self.name} reaches from {low:.4g} to {high:.4g} rad/s, and "
-                f"{omega.min():.4g} to {omega.max():.4g} rad/s was asked for; extend the table, or "
-                f"use the fitted memory"
-            )
-        matrices = (self.added_mass, self.damping)
-        a, b = (PchipInterpolator(self.omega_rad_s, values)(omega) for values in matrices)
-        return a, b
-
     def asymmetry(self) -> float:
         """Return the largest ``|A_12 - A_21|`` or ``|B_12 - B_21|``, relative to the diagonal.
 
@@ -156,11 +130,6 @@ class RadiationTable:
             damping=_symmetric(self.damping),
             added_mass_infinite=None if infinite is None else _symmetric(infinite),
         )
-
-    def about(self, ahead_m: float) -> "RadiationTable":
-        """Return the table about a point that lies ``ahead_m`` forward of the present one."""
-        arm = ahead_m if self.plane is Plane.VERTICAL else -ahead_m
-        return self._transformed(np.array([[1.0, arm], [0.0, 1.0]]))
 
     def froude_scaled(self, length_ratio: float, density_ratio: float = 1.0) -> "RadiationTable":
         """Return the table of a geometrically similar hull at equal Froude number.

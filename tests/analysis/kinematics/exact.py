@@ -10,6 +10,7 @@ from analysis.kinematics.body_frame import in_body_axes
 from analysis.kinematics.cycle import INSTANTS, driven, waves
 from analysis.kinematics.geometry import Geometry
 from analysis.kinematics.motion import MotionWaves, motion
+from analysis.kinematics.rigid_body import inertia_terms, weight_terms
 from hardware.description.body import Body
 from hardware.description.oscillator import Plane
 from tests.exact.forces import State, state
@@ -52,6 +53,16 @@ def body_of(body: ExactBody) -> Body:
     )
 
 
+def inertia(body: Body, moved: MotionWaves, plane: Plane) -> NDArray[np.float64]:
+    """Return the product's loads from a body's inertia: force, moment, surge force."""
+    return _sum((*_hanging(body), body.inertia_kg_m2), inertia_terms(moved, plane))
+
+
+def weight(body: Body, moved: MotionWaves) -> NDArray[np.float64]:
+    """Return the product's loads on the struts from a body's weight in the vertical plane."""
+    return _sum(_hanging(body), weight_terms(moved.rotation_rad))
+
+
 def in_axes(geometry: Geometry, parts: NDArray[np.float64], omega: float) -> NDArray[np.float64]:
     """Return the product's channels over the instants, of :func:`measured` parts."""
     shaped = parts.reshape(-1, 5, 2)
@@ -80,3 +91,11 @@ def measured(rig: ExactRig, orders: int) -> NDArray[np.float64]:
     moved[: len(rig.coordinates)] = rig.coordinates
     whole = np.concatenate((moved, cycle(rig, orders)), axis=1)
     return interleaved(whole.ravel())
+
+
+def _hanging(body: Body) -> tuple[float, float, float]:
+    return body.mass_kg, body.mass_kg * body.cg_x_m, body.mass_kg * body.cg_z_m
+
+
+def _sum(values: tuple[float, ...], terms: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(np.einsum("k,krt->rt", values, terms))

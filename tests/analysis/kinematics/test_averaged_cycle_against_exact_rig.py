@@ -8,7 +8,6 @@ from analysis.coefficients.phasors import Phasors, interleaved
 from analysis.ideal_rig import mass_matrix, weight_matrix
 from analysis.kinematics.cycle import driven, harmonics
 from analysis.kinematics.motion import motion as moved
-from analysis.kinematics.rigid_body import inertia, weight
 from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.arrangement import Arrangement, DriftBy, Gauges, Joint
 from hardware.description.body import Body
@@ -16,7 +15,16 @@ from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium
 from hardware.description.struts import to_strut_forces
 from tests.analysis.ideal_run import LinearHull, loads, motion, through_water
-from tests.analysis.kinematics.exact import geometry_of, in_axes, measured, rows, stacked, truth
+from tests.analysis.kinematics.exact import (
+    geometry_of,
+    in_axes,
+    inertia,
+    measured,
+    rows,
+    stacked,
+    truth,
+    weight,
+)
 from tests.exact.rigs import ARRANGEMENTS, exact_rig
 from tests.exact.run import DISPLACEMENTS, READINGS
 

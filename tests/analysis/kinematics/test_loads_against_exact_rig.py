@@ -9,12 +9,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis.kinematics.projection import loads, readings
-from analysis.kinematics.rigid_body import inertia, weight
 from hardware.description.arrangement import Arrangement, DriftBy, Gauges
 from hardware.description.body import Body
 from hardware.description.errors import DataError
 from hardware.description.oscillator import Plane
-from tests.analysis.kinematics.exact import body_of, geometry_of, motion_of, rows, truth
+from tests.analysis.kinematics.exact import (
+    body_of,
+    geometry_of,
+    inertia,
+    motion_of,
+    rows,
+    truth,
+    weight,
+)
 from tests.exact.rigs import ARRANGEMENTS, exact_rig
 
 RELATIVE = 1e-9

@@ -12,6 +12,7 @@ from sim.model.water.memory import fit_memory
 from sim.model.water.tables import RadiationTable
 from tests.sim.model.water.ladder import Ladder
 from tests.sim.model.water.passivity import is_passive
+from tests.sim.model.water.retardation import retardation
 
 OMEGA = np.geomspace(0.3, 20.0, 30)
 POLES = np.array([-1.2 + 3.0j, -2.5 + 7.0j])
@@ -74,7 +75,7 @@ def test_the_fitted_kernel_gives_added_mass_and_damping_by_ogilvie() -> None:
     """A = A_inf - int K sin / w, B = int K cos: by quadrature of the fitted kernel alone."""
     water = fit_memory(heave(OMEGA, rational(1j * OMEGA))).radiation
     time = np.linspace(0.0, 16.0, 3201)
-    kernel = water.kernel(time)[:, 0, 0]
+    kernel = retardation(water, time)[:, 0, 0]
     for omega in (1.0, 3.0, 8.0):
         both = simpson(kernel * np.array([np.sin(omega * time), np.cos(omega * time)]), time)
         memory = complex(rational(np.array([1j * omega]))[0])

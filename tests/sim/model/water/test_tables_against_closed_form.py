@@ -153,18 +153,6 @@ def test_heave_csv_with_comments(tmp_path: Path) -> None:
         read_heave_csv(path)
 
 
-def test_about_a_point_ahead() -> None:
-    """Kinetic energy stays: the old point's heave is z + d pitch, its sway y - d yaw."""
-    velocity = np.array([0.3, -0.7])
-    for plane, sign in ((Plane.VERTICAL, 1.0), (Plane.HORIZONTAL, -1.0)):
-        old, new = table(plane), table(plane).about(0.4)
-        before = velocity + np.array([sign * 0.4 * velocity[1], 0.0])
-        for x, y in ((old.added_mass, new.added_mass), (old.damping, new.damping)):
-            np.testing.assert_allclose(velocity @ y @ velocity, before @ x @ before, rtol=1e-14)
-        back = new.about(-0.4)
-        np.testing.assert_allclose(back.added_mass, old.added_mass, atol=1e-14)
-
-
 def test_froude_scaling() -> None:
     """Model to ship, 1 to 25 in salt water: masses 25^3, moments 25^4 and 25^5, w 1/5."""
     ship = table().froude_scaled(25.0, 1.025)
@@ -174,18 +162,6 @@ def test_froude_scaling() -> None:
     np.testing.assert_allclose(ship.damping, table().damping * 1.025 * 25.0 ** (powers - 0.5))
     with pytest.raises(ConfigurationError, match="length_ratio = 0"):
         table().froude_scaled(0.0)
-
-
-def test_interpolation_passes_through_the_table_and_stays_inside() -> None:
-    made = table()
-    for found, given in zip(made.at(OMEGA), (made.added_mass, made.damping), strict=True):
-        np.testing.assert_allclose(found, given, rtol=1e-14)
-    between = made.at(3.0)[1][0, 0]
-    assert 4.0 < between < 8.0
-    assert made.at(1.5)[0].shape == (2, 2)
-    for outside in (0.4, 4.1, np.nan):
-        with pytest.raises(ConfigurationError, match=r"reaches from 0\.5 to 4 rad/s"):
-            made.at([1.0, outside])
 
 
 def test_asymmetry_is_measured_averaged_or_refused() -> None:
