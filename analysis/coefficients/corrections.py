@@ -120,24 +120,10 @@ def calibration(matrix: FloatArray) -> FloatArray:
     return matrix
 
 
-@dataclass(frozen=True, eq=False)
-class ZeroReading:
-    """What the channels read at rest.
-
-    Attributes
-    ----------
-    at_s
-        Middle of the reading, on the clock of the whole campaign.
-    offsets
-        Means, as real phasors of order 0.
-    """
-
-    at_s: float
-    offsets: Phasors
-
-
-def zero_reading(recording: Recording, at_s: float, names: tuple[str, ...] = FORCES) -> ZeroReading:
+def zero_reading(recording: Recording, names: tuple[str, ...] = FORCES) -> Phasors:
     """Read a zero run: the mean of each channel, with the scatter between ten blocks.
+
+    The means are real phasors of order 0.
 
     Raises
     ------
@@ -158,23 +144,11 @@ def zero_reading(recording: Recording, at_s: float, names: tuple[str, ...] = FOR
     source = Contribution(f"zero run {recording.name}", ZERO_BLOCKS - 1.0, rows, parts)
     units = tuple(recording.channels[recording.index(name)].unit for name in names)
     means: ComplexArray = values.mean(axis=1).astype(np.complex128)
-    return ZeroReading(at_s, Phasors.of(tuple(names), units, means, (source,)))
+    return Phasors.of(tuple(names), units, means, (source,))
 
 
-def zero_at(before: ZeroReading, after: ZeroReading, at_s: float) -> Phasors:
-    """Return the offsets at a time between two zero runs, on the straight line between them.
-
-    Raises
-    ------
-    ConfigurationError
-        If the time does not lie between the two.
-    """
-    if not before.at_s <= at_s <= after.at_s or before.at_s == after.at_s:
-        raise ConfigurationError(
-            f"{at_s:g} s does not lie between the zero runs at {before.at_s:g} s and "
-            f"{after.at_s:g} s; take zero runs before and after"
-        )
-    part = (at_s - before.at_s) / (after.at_s - before.at_s)
-    count = len(before.offsets.values)
-    first = before.offsets.mapped((1.0 - part) * np.eye(count))
-    return first.minus(after.offsets.mapped(-part * np.eye(count)))
+def zero_at(before: Phasors, after: Phasors, share: float) -> Phasors:
+    """Return the offsets after a share of the time between two zero runs, on a straight line."""
+    count = len(before.values)
+    first = before.mapped((1.0 - share) * np.eye(count))
+    return first.minus(after.mapped(-share * np.eye(count)))

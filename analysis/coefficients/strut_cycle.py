@@ -11,7 +11,7 @@ import numpy as np
 
 from analysis.coefficients.body_axes import at_order, labels, of_struts
 from analysis.coefficients.body_cycle import BodyCycle
-from analysis.coefficients.corrections import Response, ZeroReading, calibration, response_factors
+from analysis.coefficients.corrections import Response, calibration, response_factors
 from analysis.coefficients.phasors import Phasors, interleaved, joined
 from analysis.coefficients.strut_phasors import (
     CHANNELS_INDEPENDENT,
@@ -254,10 +254,9 @@ def _carriage(
 
 def static_cycle(
     name: str,
-    reading: ZeroReading,
+    reading: Phasors,
     oscillator: Oscillator,
     set_point: SetPoint,
-    zero: Phasors | None = None,
 ) -> StrutCycle:
     """Return a run that does not oscillate: its means, displacements at rest taken as none.
 
@@ -265,14 +264,11 @@ def static_cycle(
     ----------
     reading
         Of the forces at speed (:func:`analysis.coefficients.corrections.zero_reading` reads any
-        record that stands still).
-    zero
-        Offsets of the zero runs at that time; without them the means are not known to be loads.
+        record that stands still); until a zero run is taken off, they are not known to be loads.
     """
     still = Phasors.of(
         tuple(at_order(channel, 0) for channel in DISPLACEMENTS), ("m", "m"), np.zeros(2, complex)
     )
-    names = tuple(at_order(name, 0) for name in reading.offsets.names)
-    forces = replace(reading.offsets, names=names)
-    run = StrutCycle(name, oscillator, set_point, 0.0, joined(still, forces), 0)
-    return run if zero is None else run.without_zero(zero)
+    names = tuple(at_order(name, 0) for name in reading.names)
+    forces = replace(reading, names=names)
+    return StrutCycle(name, oscillator, set_point, 0.0, joined(still, forces), 0)

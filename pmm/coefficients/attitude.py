@@ -92,6 +92,6 @@ def _flag(reason: str) -> Flag:
 def _means(
     recording: Recording, names: tuple[str, str]
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    offsets = zero_reading(recording, 0.0, names).offsets
+    offsets = zero_reading(recording, names)
     (first, second), (first_u, second_u) = offsets.values.real, offsets.standard_uncertainty.real
     return (float(first), float(second)), (float(first_u), float(second_u))

@@ -68,7 +68,7 @@ def as_driven(task: Task, recording: Recording) -> tuple[Task, tuple[float, floa
     means = [point.carriage_speed_m_s, point.turn_rate_rad_s]
     for k, name in enumerate((CARRIAGE_SPEED.name, TURN_RATE.name)):
         if name in recording.channel_names:
-            mean = zero_reading(recording, 0.0, (name,)).offsets.real
+            mean = zero_reading(recording, (name,)).real
             means[k] = float(mean.values[0])
             spread[k] = float(mean.standard_uncertainty[0])
     speed, rate = means

@@ -145,7 +145,7 @@ def _check_units(recording: Recording, joint: Joint) -> None:
 
 
 def _at_rest(task: Task, recording: Recording) -> ReadRecording:
-    reading = zero_reading(recording, 0.0, (*FORCES, *_other_channels(task, recording)))
+    reading = zero_reading(recording, (*FORCES, *_other_channels(task, recording)))
     point = task.set_point
     position, flags = rest_of(task, recording)
     zero = Zero(
@@ -199,7 +199,7 @@ def _towed(task: Task, recording: Recording) -> ReadRecording:
     spread = (0.0, 0.0)
     if task.kind is RunKind.CIRCLE:
         task, spread = as_driven(task, recording)
-    reading = zero_reading(recording, 0.0, (*FORCES, *_other_channels(task, recording)))
+    reading = zero_reading(recording, (*FORCES, *_other_channels(task, recording)))
     struts = static_cycle(task.name, reading, task.oscillator, task.set_point)
     struts, flags = zeroed(struts, task, recording)
     if not struts.mean_known:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 from analysis.attitude import Attitude, RestPosition
 from analysis.coefficients.body_cycle import BodyCycle
-from analysis.coefficients.corrections import ZeroReading
+from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.steady_turns import SteadyTurn
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.reference_choice import ReferenceChoice
@@ -36,7 +36,7 @@ class Zero:
     number
         Place among all runs of the campaign; ``None`` where the file does not tell.
     reading
-        Its ``at_s`` says nothing.
+        Means of the channels, as :func:`analysis.coefficients.corrections.zero_reading` has them.
     drift_rad, heel_rad
         Drift (trim) and heel at which the model stood.
     position
@@ -46,7 +46,7 @@ class Zero:
     name: str
     utc_s: float | None
     number: int | None
-    reading: ZeroReading
+    reading: Phasors
     drift_rad: float = 0.0
     position: RestPosition | None = None
     heel_rad: float = 0.0

@@ -220,7 +220,7 @@ def coefficients_of(
         extra = dry_checks(in_air, body, stated, settings.level)
         result = replace(result, checks=(*result.checks, *extra))
     zeros = [run.zero for part in parts for run in part.runs if run.zero is not None]
-    at_heels = [(zero.name, zero.heel_rad, zero.reading.offsets) for zero in zeros]
+    at_heels = [(zero.name, zero.heel_rad, zero.reading) for zero in zeros]
     righting = righting_checks(at_heels, first.heel, body, settings.level)
     result = replace(result, checks=(*result.checks, *righting))
     rest = measured_matrices(result)

@@ -5,7 +5,7 @@ from dataclasses import replace
 from datetime import datetime
 from typing import Final
 
-from analysis.coefficients.corrections import ZeroReading, zero_at
+from analysis.coefficients.corrections import zero_at
 from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.strut_cycle import StrutCycle
 from analysis.recording import Recording
@@ -29,13 +29,9 @@ def zeroed(
         assert only is not None  # noqa: S101 - one of them is there
         text = f"only one zero run, {only.name}: what drifted since is not known"
         one_sided = Flag("zero_one_sided", Severity.NOTE, text, None, (task.name,))
-        return _without_zero(struts, only.reading.offsets), (one_sided, *elsewhere)
-    places = _places(before, after, task, recording)
-    first, last = (
-        ZeroReading(at, zero.reading.offsets)
-        for at, zero in ((places[0], before), (places[2], after))
-    )
-    return _without_zero(struts, zero_at(first, last, places[1])), elsewhere
+        return _without_zero(struts, only.reading), (one_sided, *elsewhere)
+    share = _share(before, after, task, recording)
+    return _without_zero(struts, zero_at(before.reading, after.reading, share)), elsewhere
 
 
 def _elsewhere_flags(task: Task) -> tuple[Flag, ...]:
@@ -70,10 +66,8 @@ def _without_zero(struts: StrutCycle, offsets: Phasors) -> StrutCycle:
     return struts.without_zero(offsets.select([name for name in offsets.names if name in channels]))
 
 
-def _places(
-    before: Zero, after: Zero, task: Task, recording: Recording
-) -> tuple[float, float, float]:
-    """Places of zero, run and zero on one clock: UTC, else the order of the runs.
+def _share(before: Zero, after: Zero, task: Task, recording: Recording) -> float:
+    """Return where a run lies between its zero runs, 0 to 1: by UTC, else the order of the runs.
 
     A rig that is simulated faster than time has UTC that its records' lengths do not fit into.
     """
@@ -82,8 +76,8 @@ def _places(
     for clock in (utc, numbers):
         places = [float(place) for place in clock if place is not None]
         if len(places) == 3 and places[0] < places[1] < places[2]:
-            return places[0], places[1], places[2]
-    return 0.0, 0.5, 1.0
+            return (places[1] - places[0]) / (places[2] - places[0])
+    return 0.5
 
 
 def utc_s(recording: Recording) -> float | None:

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from analysis.coefficients.body_cycle import BodyCycle
-from analysis.coefficients.corrections import ZeroReading, zero_reading
+from analysis.coefficients.corrections import zero_reading
+from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.tows import tow_of
 from analysis.recording import Recording
 from hardware.description.channels import (
@@ -72,19 +73,17 @@ class SteeredRun:
         return math.atan2(-self.motion[1], self.motion[0])
 
 
-def read_gauge_zeros(task: Task) -> ZeroReading | FailedRecording:
+def read_gauge_zeros(task: Task) -> Phasors | FailedRecording:
     """Return what the gauges behind the model read in a zero run, as far as it has them."""
     try:
         recording = open_recording(task.source)
         names = tuple(name for name in _TARED if name in recording.channel_names)
-        return zero_reading(recording, 0.0, names)
+        return zero_reading(recording, names)
     except DataError as error:
         return FailedRecording(task.name, str(task.source.path), str(error), error.exit_status)
 
 
-def read_steered(
-    task: Task, zeros: Mapping[str, ZeroReading]
-) -> list[SteeredRun] | FailedRecording:
+def read_steered(task: Task, zeros: Mapping[str, Phasors]) -> list[SteeredRun] | FailedRecording:
     """Read a run; ``task`` has its zero runs, ``zeros`` what the gauges behind the model read."""
     result = read_cycle(task)
     if isinstance(result, FailedRecording):
@@ -96,9 +95,7 @@ def read_steered(
         return FailedRecording(task.name, result.file, str(error), error.exit_status)
 
 
-def _steered(
-    task: Task, cycle: BodyCycle, zeros: Mapping[str, ZeroReading]
-) -> Iterator[SteeredRun]:
+def _steered(task: Task, cycle: BodyCycle, zeros: Mapping[str, Phasors]) -> Iterator[SteeredRun]:
     recording = open_recording(task.source)
     channels = recording.channel_names
     lacking = [name for name in (*GAUGES, FORCE_X.name) if name not in channels]
@@ -139,7 +136,7 @@ def _instants(
     if task.kind.oscillates:
         return instants(task, recording, cycle, gauges)
     tow = tow_of(task.kind, cycle)
-    read = zero_reading(recording, 0.0, gauges).offsets.real
+    read = zero_reading(recording, gauges).real
     speed, drift = tow.speed_m_s, tow.drift_rad
     motion = (speed * math.cos(drift), -speed * math.sin(drift), 0.0)
     loads = (-tow.resistance_n, tow.force_n, tow.moment_n_m)
@@ -148,7 +145,7 @@ def _instants(
     return [Instant("", motion, loads, loads_u, tuple(values), tuple(spread))]
 
 
-def _angle(task: Task, recording: Recording, zeros: Mapping[str, ZeroReading]) -> float:
+def _angle(task: Task, recording: Recording, zeros: Mapping[str, Phasors]) -> float:
     if RUDDER_ANGLE.name not in recording.channel_names:
         return task.set_point.rudder_angle_rad
     offset, _ = _rest_reading(recording, RUDDER_ANGLE.name, zeros, tared=task.tared)
@@ -171,13 +168,13 @@ def _rate(task: Task, recording: Recording) -> float:
 
 
 def _rest_reading(
-    recording: Recording, name: str, zeros: Mapping[str, ZeroReading], *, tared: bool
+    recording: Recording, name: str, zeros: Mapping[str, Phasors], *, tared: bool
 ) -> tuple[float, dict[str, float]]:
     """Return what a channel reads at rest, and the uncertainty that each zero run adds to it."""
     rest = {
-        zero: reading.offsets.select([name]).real
+        zero: reading.select([name]).real
         for zero, reading in zeros.items()
-        if name in reading.offsets.names
+        if name in reading.names
     }
     if not rest and not tared:
         level = "neutral" if name == RUDDER_ANGLE.name else "zero"

@@ -7,7 +7,6 @@ from typing import Final
 
 import numpy as np
 
-from analysis.coefficients.corrections import ZeroReading
 from analysis.steering.identification import SteeringParameters, identified
 from analysis.steering.observations import Particulars, SteeringRuns
 from hardware.description.arrays import FloatArray
@@ -149,7 +148,7 @@ def _tows(work: Work) -> tuple[list[SteeredRun], list[FailedRecording]]:
         ]
         if not isinstance(struts, FailedRecording) and struts.zero is not None:
             strut_zeros[task.name] = struts.zero
-        if isinstance(gauges, ZeroReading):
+        if not isinstance(gauges, FailedRecording):
             gauge_zeros[task.name] = gauges
     runs: list[SteeredRun] = []
     for task in wanted:

@@ -65,7 +65,7 @@ def observe_at_rest(recording: Recording) -> Observation:
         raise DataError(
             f"{recording.name}: no channel {' or '.join(FORCES)}; the diagnosis compares forces"
         )
-    means = zero_reading(recording, 0.0, names).offsets
+    means = zero_reading(recording, names)
     parts = tuple(Component(name, Part.MEAN) for name in names)
     steps = steps_of(recording.select(names))
     return Observation(parts, means.values.real, means.standard_uncertainty.real, steps=steps)

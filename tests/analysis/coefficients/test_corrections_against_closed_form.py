@@ -12,7 +12,6 @@ from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.corrections import (
     AmplifierFilter,
     Delay,
-    ZeroReading,
     response_at,
     zero_at,
     zero_reading,
@@ -131,9 +130,9 @@ def zero_run(name: str, aft: float, fore: float, seed: int) -> Recording:
 
 
 def test_zero_runs_are_interpolated_in_time() -> None:
-    before = zero_reading(zero_run("before", 1.0, -2.0, 1), at_s=0.0)
-    after = zero_reading(zero_run("after", 2.0, -2.0, 2), at_s=1000.0)
-    offsets = zero_at(before, after, 250.0)
+    before = zero_reading(zero_run("before", 1.0, -2.0, 1))
+    after = zero_reading(zero_run("after", 2.0, -2.0, 2))
+    offsets = zero_at(before, after, 0.25)
     np.testing.assert_allclose(offsets.values.real, [1.25, -2.0], atol=0.01)
     spread = offsets.standard_uncertainty.real
     white = 0.1 / math.sqrt(4000) * math.hypot(0.75, 0.25)
@@ -147,13 +146,10 @@ def test_zero_runs_are_interpolated_in_time() -> None:
 
 
 def test_zero_runs_that_cannot_serve() -> None:
-    good = zero_reading(zero_run("good", 0.0, 0.0, 3), at_s=10.0)
-    with pytest.raises(ConfigurationError, match="does not lie between"):
-        zero_at(good, ZeroReading(20.0, good.offsets), 30.0)
     gap = zero_run("gap", 0.0, 0.0, 4)
     gap.samples[0:1, 0:1][0, 0] = np.nan  # type: ignore[index]
     with pytest.raises(DataError, match="1 of them missing"):
-        zero_reading(gap, at_s=0.0)
+        zero_reading(gap)
 
 
 def test_referred_to_its_own_motion_against_trials() -> None:
@@ -186,7 +182,7 @@ def test_runs_of_any_kind_know_that_they_share_a_zero_run() -> None:
     """What a zero run adds has one sign and one set of deviates, in a tow and in a heave."""
     samples = np.random.default_rng(6).standard_normal((2, 400))
     rest = Recording("zero", (FORCE_AFT, FORCE_FORE), samples, 100.0)
-    offsets = zero_reading(rest, 0.0).offsets
+    offsets = zero_reading(rest)
     few = Phasors.of(FORCES, ("N", "N"), np.array([5.0, 6.0]))
     more = Phasors.of(("a", *FORCES), ("m", "N", "N"), np.array([1.0, 5.0, 6.0]))
     first = few.minus(offsets).real.contributions[-1].dense(4)

@@ -49,7 +49,7 @@ def moving(rig: SimulatedRig, point: SetPoint, name: str) -> BodyCycle:
 def still(rig: SimulatedRig, drift_rad: float, name: str, speed_m_s: float = SPEED) -> BodyCycle:
     point = SetPoint(0.5, 0.0, 0.0, speed_m_s, drift_rad=drift_rad)
     record = simulate(rig, point, periods=10, sample_rate_hz=100.0, seed=len(name), name=name)
-    reading = zero_reading(from_dataset(record), 0.0, REST)
+    reading = zero_reading(from_dataset(record), REST)
     struts = static_cycle(name, reading, rig.oscillator, point)
     cycle = replace(struts, mean_known=True).model()
     return cycle.without(rig.body, np.array(rig.water.restoring))

@@ -46,8 +46,8 @@ def zeros(sign: float = 1.0, heels: tuple[float, ...] = (-10, -5, 0, 5, 10)) -> 
             Channel(HEEL_ANGLE.name, HEEL_ANGLE.unit),
         )
         record = Recording(f"zero {degrees}", channels, values, 50.0)
-        reading = zero_reading(record, 0.0, (ROLL_MOMENT.name, HEEL_ANGLE.name))
-        found.append((record.name, 0.0, reading.offsets))
+        reading = zero_reading(record, (ROLL_MOMENT.name, HEEL_ANGLE.name))
+        found.append((record.name, 0.0, reading))
     return found
 
 

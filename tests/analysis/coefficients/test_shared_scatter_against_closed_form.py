@@ -9,9 +9,10 @@ from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign import Request, campaign_coefficients
 from analysis.coefficients.campaign_budget import budget
 from analysis.coefficients.campaign_result import CampaignCoefficients
-from analysis.coefficients.corrections import ZeroReading, zero_reading
+from analysis.coefficients.corrections import zero_reading
 from analysis.coefficients.linear_fit import linear_fit
 from analysis.coefficients.names import Form
+from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.strut_cycle import measured_cycle, static_cycle
 from analysis.readers.dataset import from_dataset
@@ -30,14 +31,14 @@ CHANNELS = ("displacement_aft", "displacement_fore", "force_aft", "force_fore")
 SPEED_M_S = 1.2
 
 
-def at_rest(name: str, mean_n: tuple[float, float], noise_n: float) -> ZeroReading:
+def at_rest(name: str, mean_n: tuple[float, float], noise_n: float) -> Phasors:
     """Ten blocks of both gauges, independent of each other."""
     generator = np.random.default_rng(len(name))
     samples = np.array(mean_n)[:, None] + noise_n * generator.standard_normal((2, 1000))
-    return zero_reading(Recording(name, (FORCE_AFT, FORCE_FORE), samples, 100.0), 0.0)
+    return zero_reading(Recording(name, (FORCE_AFT, FORCE_FORE), samples, 100.0))
 
 
-def drift_runs(zero: ZeroReading) -> list[BodyCycle]:
+def drift_runs(zero: Phasors) -> list[BodyCycle]:
     """Five drift angles, nearly without noise, that one noisy zero run is taken off."""
     runs = []
     for k, angle in enumerate(np.radians(ANGLES_DEG)):
@@ -45,22 +46,22 @@ def drift_runs(zero: ZeroReading) -> list[BodyCycle]:
         reading = at_rest(f"drift {k}", (force / 2.0, force / 2.0), 1e-6)
         point = SetPoint(0.0, 0.0, 0.0, SPEED_M_S, drift_rad=float(angle))
         struts = static_cycle(f"drift {k}", reading, HORIZONTAL_1963, point)
-        runs.append(struts.without_zero(zero.offsets).model().without())
+        runs.append(struts.without_zero(zero).model().without())
     return runs
 
 
 @pytest.fixture(scope="module")
-def drift() -> tuple[CampaignCoefficients, ZeroReading]:
+def drift() -> tuple[CampaignCoefficients, Phasors]:
     zero = at_rest("common", (0.0, 0.0), 0.5)
     return campaign_coefficients(drift_runs(zero), Request(trials=4000, seed=3)), zero
 
 
 def test_a_zero_run_of_all_moves_the_constant_by_all_of_its_scatter(
-    drift: tuple[CampaignCoefficients, ZeroReading],
+    drift: tuple[CampaignCoefficients, Phasors],
 ) -> None:
     """Every force is off by the same ``e``: so is Y_0, and Y_v not at all."""
     found, zero = drift
-    own = zero.offsets.covariance[::2, ::2]
+    own = zero.covariance[::2, ::2]
     half = HORIZONTAL_1963.half_spacing_m
     force, moment = (np.array(lever) @ own @ lever for lever in ((1.0, 1.0), (-half, half)))
     spread = dict(
@@ -72,7 +73,7 @@ def test_a_zero_run_of_all_moves_the_constant_by_all_of_its_scatter(
 
 
 def test_the_budget_and_the_trials_know_it_too(
-    drift: tuple[CampaignCoefficients, ZeroReading],
+    drift: tuple[CampaignCoefficients, Phasors],
 ) -> None:
     found, _ = drift
     for name in ("Y_0", "N_0"):

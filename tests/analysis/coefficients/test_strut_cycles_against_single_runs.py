@@ -118,7 +118,7 @@ def still(value: float, name: str) -> Recording:
 
 
 def test_zero_runs_come_off_the_means_alone(analysis: Analysis) -> None:
-    zero = zero_reading(still(1.5, "zero"), 0.0).offsets
+    zero = zero_reading(still(1.5, "zero"))
     before = measured_cycle(analysis, RIG.oscillator)
     after = before.without_zero(zero)
     assert after.mean_known
@@ -156,10 +156,10 @@ def test_set_points_stand_in_for_displacements() -> None:
 
 
 def test_a_run_that_stands_still() -> None:
-    reading = zero_reading(still(6.0, "drift"), 10.0)
-    zero = zero_reading(still(1.0, "zero"), 0.0).offsets
+    reading = zero_reading(still(6.0, "drift"))
+    zero = zero_reading(still(1.0, "zero"))
     point = SetPoint(0.0, 0.0, 0.0, 1.2, drift_rad=0.1)
-    cycle = static_cycle("drift", reading, HORIZONTAL_1963, point, zero).model()
+    cycle = static_cycle("drift", reading, HORIZONTAL_1963, point).without_zero(zero).model()
     assert cycle.frequency_hz == 0.0
     assert cycle.mean_known
     assert cycle.phasors["force 0"].real == pytest.approx(15.0, abs=0.01)
