@@ -12,11 +12,12 @@ from pathlib import Path
 from benchmarks.campaign_folder import make_campaign
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from pmm.archive.database import open_archive
-from pmm.archive.indexing import add_folder
+from pmm.archive.indexing import AddedFolder, add_folders
 from pmm.archive.queries import campaigns, find_coefficients, find_runs
 from pmm.archive.results import AnalysedCampaign, Analyses
 from pmm.archive.trends import coefficient_trends, repeat_trends
 from pmm.cli.archive_analyses import analysed_folder
+from pmm.parallel import InThisProcess
 
 _RUNS, _SECONDS = 20, 20.0  # of a campaign, and of each of its runs
 _TIMES = 15
@@ -100,8 +101,9 @@ def _added(file: Path, folders: list[Path], analyses: Analyses, report: Report) 
     report(f"taking {len(folders)} folders in")
     began = time.perf_counter()
     with open_archive(file, create=True) as connection:
-        for one in folders:
-            add_folder(connection, one, analyses, _NOW)
+        for outcome in add_folders(connection, folders, analyses, _NOW, InThisProcess()):
+            if not isinstance(outcome, AddedFolder):
+                raise outcome
     return time.perf_counter() - began
 
 

@@ -16,7 +16,9 @@ def toml_table(name: str, table: Mapping[str, Any], *, array: bool = False) -> s
     """
     heading = f"[[{name}]]" if array else f"[{name}]"
     lines = [
-        f"{_key(key)} = {toml_value(value)}" for key, value in table.items() if value is not None
+        f"{toml_key(key)} = {toml_value(value)}"
+        for key, value in table.items()
+        if value is not None
     ]
     return "\n".join([heading, *lines]) + "\n"
 
@@ -40,7 +42,7 @@ def toml_value(value: Any) -> str:
         return repr(value)
     if isinstance(value, Mapping):
         inner = (
-            f"{_key(key)} = {toml_value(entry)}"
+            f"{toml_key(key)} = {toml_value(entry)}"
             for key, entry in value.items()
             if entry is not None
         )
@@ -50,6 +52,7 @@ def toml_value(value: Any) -> str:
     raise TypeError(f"{value!r} cannot be written as TOML")
 
 
-def _key(key: str) -> str:
+def toml_key(key: str) -> str:
+    """Return a key as TOML has it: in quotes where it needs them."""
     plain = key.isascii() and key.replace("_", "").replace("-", "").isalnum()
     return key if plain else toml_value(key)

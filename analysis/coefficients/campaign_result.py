@@ -1,6 +1,6 @@
 """The coefficients of a whole campaign, with all that was found on the way; kept as data."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,7 +21,6 @@ from analysis.coefficients.names import Form
 from analysis.coefficients.terms import load_of
 from analysis.uncertainty.values import UncertainValues
 from hardware.description.arrays import FloatArray
-from hardware.description.errors import DataError
 from hardware.description.flags import Flag
 from hardware.description.oscillator import Plane
 
@@ -140,24 +139,6 @@ class CampaignCoefficients:
         rows = [k for k, entry in enumerate(self.entries) if wanted(entry)]
         return sorted(rows, key=lambda k: _order(self.entries[k]))
 
-    def row(self, name: str, *, method: str | None = None) -> int:
-        """Return the place of a coefficient that stands once.
-
-        Raises
-        ------
-        DataError
-            If there is none, or more than one; the message says which there are.
-        """
-        rows = self.rows(name, method=method)
-        if len(rows) != 1:
-            names = ", ".join(dict.fromkeys(entry.name for entry in self.entries))
-            reasons = "; ".join(missing.message for missing in self.missing if missing.name == name)
-            raise DataError(
-                f"{name} stands {len(rows)} times in the campaign's table (there are: {names})"
-                + (f": {reasons}" if reasons else "")
-            )
-        return rows[0]
-
     def is_nonlinear(self, name: str, speed_m_s: float) -> bool:
         """Whether a coefficient's load was found not to be linear in oscillations at a speed."""
         rows = self.rows(name, speed_m_s=speed_m_s)
@@ -187,10 +168,6 @@ class CampaignCoefficients:
             for choice in self.choices
             if choice.load == load and wanted_runs & set(choice.runs)
         )
-
-    def shares(self, row: int) -> Mapping[str, float]:
-        """Return what part of one value's variance each input has, largest first."""
-        return self.uncertain.shares(row)
 
     def select(self, rows: Sequence[int]) -> "CampaignCoefficients":
         """Return some of the entries, with all that was found."""

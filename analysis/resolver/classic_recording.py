@@ -16,7 +16,7 @@ from analysis.resolver.classic_gate import SAMPLE_SLACK, GatedIntegrator
 from analysis.resolver.classic_gate_state import GateReading, IntegratorState
 from analysis.resolver.reference import PhaseReference
 from hardware.description.arrays import FloatArray
-from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.errors import DataError
 
 _BLOCK_SAMPLES = 65_536  # taken at a time
 
@@ -27,7 +27,6 @@ def running_average(
     *,
     time_constant_s: float | None = None,
     harmonics: int = 3,
-    keep_every: int = 1,
 ) -> NeedleReadings:
     """Watch the needles over a whole recording.
 
@@ -35,8 +34,6 @@ def running_average(
     ----------
     time_constant_s
         By default the shortest allowed, 1.5 periods.
-    keep_every
-        Keep the needles of every such sample only, for long records; all samples are averaged.
 
     Raises
     ------
@@ -48,35 +45,21 @@ def running_average(
     recording.check_even("the running average")
     if recording.sample_count == 0:
         raise DataError(f"{recording.name}: no samples; give a recording that has some")
-    if keep_every < 1:
-        raise ConfigurationError(f"keep_every = {keep_every}: at least 1 is needed")
     frequency_hz = reference.frequency_hz
     tau = LEAST_TIME_CONSTANT_PERIODS / frequency_hz if time_constant_s is None else time_constant_s
     mode = RunningAverage(
         recording.channel_names, recording.sample_rate_hz, frequency_hz, tau, harmonics
     )
     state, parts = AverageState(recording.start_s), []
-    length = keep_every * max(1, _BLOCK_SAMPLES // keep_every)
-    for start in range(0, recording.sample_count, length):
-        values = recording.samples[:, start : start + length]
+    for start in range(0, recording.sample_count, _BLOCK_SAMPLES):
+        values = recording.samples[:, start : start + _BLOCK_SAMPLES]
         state, needles = mode.advance(state, values, reference.cycles_at)
-        parts.append(_decimated(needles, keep_every))
+        parts.append(needles)
     return NeedleReadings(
         np.concatenate([part.times_s for part in parts]),
         np.concatenate([part.in_phase for part in parts], axis=-1),
         np.concatenate([part.quadrature for part in parts], axis=-1),
         np.concatenate([part.settled for part in parts]),
-    )
-
-
-def _decimated(needles: NeedleReadings, stride: int) -> NeedleReadings:
-    """Copy, so that what is not kept can be freed."""
-    selection = slice(None, None, stride)
-    return NeedleReadings(
-        needles.times_s[selection].copy(),
-        needles.in_phase[..., selection].copy(),
-        needles.quadrature[..., selection].copy(),
-        needles.settled[selection].copy(),
     )
 
 

@@ -110,22 +110,6 @@ def add_folders(
     yield from results
 
 
-def add_folder(
-    connection: sqlite3.Connection, folder: Path, analyses: Analyses, now_utc: str
-) -> AddedFolder:
-    """Take a folder in, and compute what is asked for and not known of these very files.
-
-    Raises
-    ------
-    ConfigurationError
-        As :func:`pmm.archive.contents.read_contents`.
-    DataError
-        If the folder changes while it is analysed.
-    """
-    task = _taken_in(connection, folder, analyses, now_utc)
-    return _keep_results(connection, compute(task))
-
-
 def compute(task: FolderTask) -> ComputedFolder:
     """Compute what is due of a folder, wherever its task was sent."""
     analysed, verdict = None, None

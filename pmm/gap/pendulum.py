@@ -25,7 +25,7 @@ from analysis.readers import read_recording
 from analysis.readers.damage import check_whole
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.gap.forced_runs import forced_problem
-from pmm.gap.pendulum_file import GateTable, PendulumCase, Record, read_case
+from pmm.gap.pendulum_file import GateTable, PendulumCase, Record
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.benches import bifilar_bench, compound_bench, decay_bench
 from sim.pendulum.effects import make_effect
@@ -42,8 +42,15 @@ _OWN = ("line_excess", "spacing", "amplitude_period")  # each suspension has its
 _OWN_DRIVEN = ("sensor_delay",)  # each record has its own clock
 
 
-def load_problem(path: Path) -> PendulumProblem:
-    """Read a file and its records.
+def problem_of(
+    case: PendulumCase, path: Path, more: Mapping[str, type[Any]] | None = None
+) -> PendulumProblem:
+    """Read the records of a file that has been read.
+
+    Parameters
+    ----------
+    more
+        Effects of the user's own, by name; the file may have one on.
 
     Raises
     ------
@@ -51,21 +58,6 @@ def load_problem(path: Path) -> PendulumProblem:
         If the file is wrong.
     DataError
         If a record is.
-    """
-    return problem_of(read_case(path), path)
-
-
-def problem_of(
-    case: PendulumCase, path: Path, more: Mapping[str, type[Any]] | None = None
-) -> PendulumProblem:
-    """Read the records of a file that has been read.
-
-    It raises what :func:`load_problem` raises.
-
-    Parameters
-    ----------
-    more
-        Effects of the user's own, by name; the file may have one on.
     """
     scaled = bool(case.suspensions)
     own_names = _OWN if scaled else _OWN_DRIVEN

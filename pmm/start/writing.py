@@ -1,6 +1,5 @@
 """Templates filled in, tried, and only then put where they belong."""
 
-import re
 import shutil
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -9,6 +8,7 @@ from typing import Any
 
 from hardware.description.errors import ConfigurationError
 from pmm.recorder.campaign_owner import own_campaign
+from pmm.toml_text import toml_key, toml_value
 
 
 def render(template: str, values: Mapping[str, Any]) -> str:
@@ -25,22 +25,6 @@ def render(template: str, values: Mapping[str, Any]) -> str:
     )
     environment.filters |= {"toml": toml_value, "key": toml_key}
     return environment.get_template(template).render(values)
-
-
-def toml_value(value: object) -> str:
-    """Return a text, a number or a table of them as TOML has it, in one line."""
-    if isinstance(value, Mapping):
-        inside = ", ".join(f"{toml_key(key)} = {toml_value(item)}" for key, item in value.items())
-        return f"{{ {inside} }}"
-    if isinstance(value, str):
-        escaped = value.replace("\\", "\\\\").replace('"', '\\"').replace("\t", "\\t")
-        return f'"{escaped}"'
-    return f"{value!r}" if isinstance(value, float) else str(value)
-
-
-def toml_key(name: str) -> str:
-    """Return the name of a key as TOML has it: in quotes where it needs them."""
-    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else toml_value(name)
 
 
 def check_free(folder: Path, names: Sequence[str], *, force: bool) -> None:

@@ -17,6 +17,7 @@ from benchmarks.coefficients_campaigns import (
     pure_pair,
 )
 from hardware.description.oscillator import Plane
+from tests.analysis.coefficients.single_row import single_row
 
 STATED = StatedUncertainties(
     mass_kg=0.1, inertia_kg_m2=0.2, lag_s=2e-4, force_gain_relative=1e-3, cross_talk_aft=1e-3,
@@ -37,7 +38,7 @@ def campaign(frequency_hz: float, stated: StatedUncertainties = STATED) -> Campa
 @pytest.mark.parametrize("name", ["a33", "b33", "a55", "b53"])
 def test_lines_add_up_to_gtcs_uncertainty(name: str) -> None:
     found = campaign(0.8)
-    row = found.row(name)
+    row = single_row(found, name)
     own = budget(found, row)
     assert sum(line.share for line in own.lines) == pytest.approx(1.0)
     assert own.standard_uncertainty == pytest.approx(found.uncertain.standard_uncertainty[row])
@@ -56,7 +57,7 @@ def test_repeats_behind_the_inertia_widen_the_interval_and_the_trials() -> None:
               zip(("heave", "pitch"), pure_pair(0.8, 0.02, 0.0), strict=True)]  # fmt: skip
     request = Request(Form.SEAKEEPING, stated, trials=40_000, seed=2, nonlinear=False)
     found = campaign_coefficients(cycles, request)
-    row = found.row("a55")
+    row = single_row(found, "a55")
     assert found.uncertain.standard_uncertainty[row] == pytest.approx(0.2, rel=1e-6)
     assert found.uncertain.degrees_of_freedom[row] == pytest.approx(4.0)
     assert found.half_widths[row] == pytest.approx(2.776445 * 0.2, rel=1e-6)
@@ -67,7 +68,9 @@ def test_repeats_behind_the_inertia_widen_the_interval_and_the_trials() -> None:
 
 
 def test_the_mass_acts_in_full_on_the_added_mass() -> None:
-    lines = {line.source: line for line in budget(campaign(0.8), campaign(0.8).row("a33")).lines}
+    lines = {
+        line.source: line for line in budget(campaign(0.8), single_row(campaign(0.8), "a33")).lines
+    }
     assert lines["mass"].contribution == pytest.approx(0.1, rel=1e-6)
     assert lines["harmonic scatter"].degrees_of_freedom == pytest.approx(7.0)
 
@@ -83,9 +86,9 @@ def test_what_two_coefficients_share_is_their_correlation() -> None:
 
 def test_low_frequency_says_how_many_digits_are_lost() -> None:
     slow, fast = campaign(0.1), campaign(0.8)
-    assert "2.3 digits are lost" in budget(slow, slow.row("a33")).digits
-    assert budget(fast, fast.row("a33")).digits == ""
-    restoring = {line.source for line in budget(slow, slow.row("a33")).lines[:2]}
+    assert "2.3 digits are lost" in budget(slow, single_row(slow, "a33")).digits
+    assert budget(fast, single_row(fast, "a33")).digits == ""
+    restoring = {line.source for line in budget(slow, single_row(slow, "a33")).lines[:2]}
     assert restoring & {"density", "calibration, both gauges"}
 
 

@@ -37,6 +37,7 @@ from benchmarks.coefficients_campaigns import (
 from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
+from tests.analysis.coefficients.single_row import single_row
 
 ALL = {**HORIZONTAL, **CUBIC}
 STATED = StatedUncertainties(mass_kg=0.05, speed_m_s=0.003, density_relative=1e-3, lag_s=1e-4)
@@ -118,7 +119,7 @@ def test_static_drift_agrees_with_pure_sway(horizontal: CampaignCoefficients) ->
     told = {c.name: c for c in horizontal.checks if c.kind == "static drift"}
     assert set(told) == {"Y_v", "N_v", "Y_vvv", "N_vvv"}
     assert all(one.agrees for one in told.values())
-    k = horizontal.row("Y_v", method=STATIC_DRIFT)
+    k = single_row(horizontal, "Y_v", method=STATIC_DRIFT)
     assert horizontal.values[k] == pytest.approx(-120.0, abs=2.0)
 
 
@@ -189,7 +190,7 @@ def test_seakeeping_campaign_with_restoring_and_monte_carlo() -> None:
         for k in found.rows(name, method=LINEAR):
             assert abs(found.values[k] - put_in) <= found.uncertain.half_width(0.999)[k]
             assert found.trials.low[k] < found.values[k] < found.trials.high[k]
-        k = found.row(name, method=ZERO_FREQUENCY)
+        k = single_row(found, name, method=ZERO_FREQUENCY)
         assert abs(found.values[k] - put_in) <= found.uncertain.half_width(0.999)[k]
         assert math.isnan(found.trials.low[k])
     told = {c.name: c for c in found.checks if c.kind == "restoring"}
@@ -224,7 +225,7 @@ def test_a_wrong_body_shows_as_the_closed_form_says_and_in_the_budget(
     stated = StatedUncertainties(**wrong)
     found = campaign_coefficients(exact, Request(Form.SEAKEEPING, stated))
     truth = {"a33": 75.0, "b33": 190.0, "a55": 22.0}[name]
-    k = found.row(name)
+    k = single_row(found, name)
     assert found.values[k] - truth == pytest.approx(change(1.0), abs=1e-9)
     assert found.uncertain.standard_uncertainty[k] == pytest.approx(abs(change(1.0)), abs=1e-6)
 
@@ -241,13 +242,13 @@ def test_a_wrong_lag_and_phase_show_as_the_closed_form_says() -> None:
     dynamic = 6900.0 - omega**2 * (70.0 + 75.0) + 1j * omega * 190.0
     seen = dynamic * np.exp(-1j * omega * lag)
     a33 = (6900.0 - seen.real) / omega**2 - 70.0
-    assert found.values[found.row("a33")] == pytest.approx(a33, rel=1e-9)
-    assert found.values[found.row("b33")] == pytest.approx(seen.imag / omega, rel=1e-9)
+    assert found.values[single_row(found, "a33")] == pytest.approx(a33, rel=1e-9)
+    assert found.values[single_row(found, "b33")] == pytest.approx(seen.imag / omega, rel=1e-9)
     spread = found.uncertain.standard_uncertainty
     # to first order about what was seen: b u on a33, and the load in phase times u on b33
-    assert spread[found.row("a33")] == pytest.approx(seen.imag / omega * lag, rel=1e-5)
-    assert spread[found.row("b33")] == pytest.approx(abs(seen.real) * lag, rel=1e-5)
-    assert found.shares(found.row("b33")) == {"lag_s": 1.0}
+    assert spread[single_row(found, "a33")] == pytest.approx(seen.imag / omega * lag, rel=1e-5)
+    assert spread[single_row(found, "b33")] == pytest.approx(abs(seen.real) * lag, rel=1e-5)
+    assert found.uncertain.shares(single_row(found, "b33")) == {"lag_s": 1.0}
 
 
 def test_an_executor_gives_the_same_numbers() -> None:

@@ -19,6 +19,7 @@ from sim.acquisition.channels import Digitiser
 from sim.model.water.force_laws import CrossFlow, SurgeForces
 from sim.rig import SimulatedRig, horizontal_rig, vertical_rig
 from sim.run import simulate
+from tests.analysis.coefficients.single_row import single_row
 
 SPEED = 1.2
 ALONG = SurgeForces(x_u=-1.5, x_uu=-8.0, x_vv=-60.0, x_vr=45.0, x_rr=-8.0)
@@ -66,7 +67,7 @@ def test_static_drift_gives_the_linear_and_the_cubic_derivatives() -> None:
         # What goes with u and not with its square differs in v^2 as the turned model loses u.
         ("X_vv", -60.0 - 1.5 / (2.0 * SPEED)),
     ):  # fmt: skip
-        row = found.row(name, method="surge" if name[0] == "X" else "static drift")
+        row = single_row(found, name, method="surge" if name[0] == "X" else "static drift")
         assert abs(found.values[row] - put_in) < 1.5 * found.half_widths[row], name
         assert found.trials.low[row] < found.values[row] < found.trials.high[row]
 
@@ -75,7 +76,7 @@ def test_a_straight_tow_tells_the_resistance() -> None:
     rig = with_gauge(horizontal_rig())
     for speed in (0.6, 1.2):
         found = campaign_coefficients([still(rig, 0.0, f"tow-{speed}", speed)], Request())
-        row = found.row("X_0")
+        row = single_row(found, "X_0")
         expected = -1.5 * speed - 8.0 * speed**2
         assert abs(found.values[row] - expected) < 1.5 * found.half_widths[row]
         assert not found.rows("Y_v")  # one heading says nothing of it, and the message what would
@@ -94,10 +95,10 @@ def test_yaw_with_drift_and_pure_motions_give_surge_terms_less_the_models_own() 
     ]
     found = campaign_coefficients(runs, Request())
     for name, put_in in (("X_vv", -60.0), ("X_vr", 45.0), ("X_rr", -8.0)):
-        row = found.row(name, method="surge")
+        row = single_row(found, name, method="surge")
         assert abs(found.values[row] - put_in) < 1.5 * found.half_widths[row], name
     for name, put_in in (("Y_v", -120.0), ("Y_r", 15.0), ("N_v", -40.0), ("N_r", -35.0)):
-        row = found.row(name, method="higher order, several runs")
+        row = single_row(found, name, method="higher order, several runs")
         assert abs(found.values[row] - put_in) < 2.0 * found.half_widths[row], name
 
 

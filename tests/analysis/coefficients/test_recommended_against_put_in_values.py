@@ -90,7 +90,7 @@ def test_what_an_undecided_form_leaves_open_is_in_the_intervals() -> None:
     names = [found.entries[k].name for k in recommended(found)]
     assert not [name for name in names if name not in HORIZONTAL]  # no term of a form in doubt
     k = next(k for k in recommended(found) if found.entries[k].name == "Y_v")
-    assert any(source.startswith("form of the force") for source in found.shares(k))
+    assert any(source.startswith("form of the force") for source in found.uncertain.shares(k))
     assert abs(found.values[k] - HORIZONTAL["Y_v"]) <= found.half_widths[k]
 
 

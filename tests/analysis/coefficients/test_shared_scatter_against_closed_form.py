@@ -25,6 +25,7 @@ from hardware.description.oscillator import HORIZONTAL_1963
 from hardware.description.setpoint import Medium, SetPoint
 from sim.rig import vertical_rig
 from sim.run import simulate
+from tests.analysis.coefficients.single_row import single_row
 
 ANGLES_DEG = (-8.0, -4.0, 0.0, 4.0, 8.0)
 CHANNELS = ("displacement_aft", "displacement_fore", "force_aft", "force_fore")
@@ -77,7 +78,7 @@ def test_the_budget_and_the_trials_know_it_too(
 ) -> None:
     found, _ = drift
     for name in ("Y_0", "N_0"):
-        row = found.row(name)
+        row = single_row(found, name)
         one = budget(found, row)
         assert one.standard_uncertainty == pytest.approx(
             found.uncertain.standard_uncertainty[row], rel=1e-9
@@ -107,7 +108,7 @@ def test_a_dry_run_of_two_repeats_does_not_average_out() -> None:
     of_dry = [of_source(fit.uncertain, "scatter of dry") for fit in both]
     np.testing.assert_allclose(of_dry[1], of_dry[0], rtol=0.01)
     table = campaign_coefficients(cycles, Request(Form.SEAKEEPING, nonlinear=False))
-    row = table.row("a33", method="linear")
+    row = single_row(table, "a33", method="linear")
     spread = of_source(table.uncertain, "scatter of dry")[row]
     assert spread == pytest.approx(of_dry[0][0], rel=0.01)
 

@@ -15,6 +15,7 @@ from analysis.coefficients.form_choice import BOTH, CUBIC, LINEAR_FORM, QUADRATI
 from analysis.coefficients.phasors import Phasors
 from analysis.kinematics.body_frame import CHANNELS, UNITS
 from hardware.description.oscillator import Plane
+from tests.analysis.coefficients.single_row import single_row
 from tests.analysis.coefficients.sources import of_covariance
 
 SPEED_M_S = 1.2
@@ -67,7 +68,7 @@ def towed(
 
 def slope(found: CampaignCoefficients) -> tuple[float, float, float]:
     """Value, half-width and misfit of Y_v."""
-    row = found.row("Y_v", method=STATIC_DRIFT)
+    row = single_row(found, "Y_v", method=STATIC_DRIFT)
     return float(found.values[row]), float(found.half_widths[row]), found.entries[row].misfit
 
 
@@ -91,8 +92,8 @@ def test_a_hull_that_no_form_describes_widens_the_interval_and_is_named() -> Non
     value, half_width, misfit = slope(found)
     assert misfit > 10.0
     assert abs(value - Y_V) < 1.5 * half_width
-    row = found.row("Y_v", method=STATIC_DRIFT)
-    largest, share = next(iter(found.shares(row).items()))
+    row = single_row(found, "Y_v", method=STATIC_DRIFT)
+    largest, share = next(iter(found.uncertain.shares(row).items()))
     assert largest.startswith("misfit of the force, static drift")
     assert share > 0.9
     assert "no form describes these runs" in found.choices[0].message

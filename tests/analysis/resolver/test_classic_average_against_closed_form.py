@@ -127,14 +127,6 @@ def joined(parts: list[NeedleReadings], name: str) -> FloatArray:
     return np.concatenate([getattr(part, name) for part in parts], axis=-1)
 
 
-def test_thinned_needles_are_some_of_all() -> None:
-    samples = np.random.default_rng(1).standard_normal((1, 70_001))
-    everything = running_average(*record(samples))
-    thinned = running_average(*record(samples), keep_every=7)
-    assert np.array_equal(thinned.in_phase, everything.in_phase[..., ::7])
-    assert np.array_equal(thinned.times_s, everything.times_s[::7])
-
-
 def test_a_short_time_constant_is_refused_with_its_limit() -> None:
     with pytest.raises(ConfigurationError, match=r"time_constant_s = 2\.9 s is below 3 s"):
         RunningAverage(("c",), 100.0, 0.5, 2.9)

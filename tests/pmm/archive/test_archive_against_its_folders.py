@@ -13,11 +13,11 @@ from click.testing import CliRunner, Result
 import pmm
 from hardware.description.errors import ConfigurationError, DataError
 from pmm.archive.database import open_archive
-from pmm.archive.indexing import add_folder
 from pmm.archive.notebook import NoteLine, read_notes, write_note
 from pmm.archive.queries import campaigns
 from pmm.archive.results import AnalysedCampaign, Analyses, GapVerdict
 from pmm.cli import cli
+from tests.pmm.archive.one_folder import add_folder
 from tests.pmm.coefficients.campaigns import vertical_campaign
 
 NOW = "2026-01-01T00:00:00+00:00"

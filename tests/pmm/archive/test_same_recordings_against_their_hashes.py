@@ -10,7 +10,6 @@ from click.testing import CliRunner, Result
 from hardware.description.errors import DataError
 from pmm.archive import database
 from pmm.archive.database import open_archive
-from pmm.archive.indexing import add_folder
 from pmm.archive.notebook import NOTES_FILE
 from pmm.archive.results import (
     AnalysedCampaign,
@@ -20,6 +19,7 @@ from pmm.archive.results import (
     HarmonicValue,
 )
 from pmm.cli import cli
+from tests.pmm.archive.one_folder import add_folder
 from tests.pmm.coefficients.campaigns import vertical_campaign
 
 NOW = "2026-01-01T00:00:00+00:00"

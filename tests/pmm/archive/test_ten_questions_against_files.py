@@ -9,9 +9,9 @@ import pytest
 from click.testing import CliRunner
 
 from pmm.archive.database import open_archive
-from pmm.archive.indexing import add_folder
 from pmm.archive.results import Analyses, GapVerdict
 from pmm.cli import cli
+from tests.pmm.archive.one_folder import add_folder
 from tests.pmm.archive.questions import QUESTIONS, Asked, asked, spoil
 from tests.pmm.coefficients.campaigns import head, pair, record, vertical_rig
 

@@ -20,6 +20,7 @@ from pmm.evaluation.evaluation import Evaluation
 from pmm.evaluation.water_tests import InWater, in_water
 from pmm.report.evaluation_document import evaluation_document
 from pmm.report.slow_tests import drift_figure
+from tests.analysis.coefficients.single_row import single_row
 
 HALF_M = 0.5
 RATE_HZ = 50.0
@@ -215,7 +216,7 @@ def test_derivatives_of_a_drifting_model(tmp_path: Path) -> None:
         ("Y_vvv", "N s3/m3", Y_VVV),
         ("Y_0", "N", 0.0),
     ):
-        k = told.row(name, method="static drift")
+        k = single_row(told, name, method="static drift")
         assert told.entries[k].unit == unit
         assert told.entries[k].speed_m_s == U
         assert abs(told.values[k] - truth) < 1.5 * told.half_widths[k]
@@ -254,7 +255,7 @@ def test_few_angles_make_a_line_and_two_an_interval_from_within_the_runs(tmp_pat
     told = evaluated(tmp_path, campaign_of_tows(tmp_path, (4.0,)), "horizontal").derivatives
     assert told is not None
     assert not told.rows("N_vvv")
-    k = told.row("N_v", method="static drift")
+    k = single_row(told, "N_v", method="static drift")
     assert math.isnan(told.entries[k].misfit)
     assert 0.0 < told.half_widths[k] < 2.0
     assert abs(told.values[k] - N_V) < 1.5 * told.half_widths[k]

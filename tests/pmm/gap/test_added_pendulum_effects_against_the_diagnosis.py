@@ -10,12 +10,12 @@ import pytest
 from click.testing import CliRunner, Result
 
 from pmm.cli import cli
-from pmm.gap.pendulum import load_problem
 from sim.pendulum.benches import bifilar_bench
 from sim.pendulum.effects import make_effect
 from sim.pendulum.effects.base import PendulumEffect
 from sim.pendulum.record import record
 from sim.pendulum.suspension import Suspension
+from tests.pmm.gap.pendulum_problem import load_problem
 
 HOUSE = Path(__file__).parents[3]
 DECAY = HOUSE / "examples" / "decay"

@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from pmm.cli import cli
-from pmm.gap.pendulum import load_problem
+from tests.pmm.gap.pendulum_problem import load_problem
 
 FOLDER = Path(__file__).parents[3] / "examples" / "afloat"
 BODY = """

@@ -14,7 +14,7 @@ from click.testing import CliRunner
 
 from analysis.gap.pendulum.swings import KINDS
 from pmm.cli import cli
-from pmm.gap.pendulum import load_problem
+from tests.pmm.gap.pendulum_problem import load_problem
 
 MASS_KG, DAMPING, STIFFNESS = 70.0, 60.0, 1000.0
 RUNS = ((0.4, 30.0), (0.55, 30.0), (0.6, 30.0), (0.9, 30.0))

@@ -17,9 +17,9 @@ from analysis.gap.pendulum.withheld import predict_withheld
 from analysis.inertia.spread import SURE
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError, DataError
-from pmm.gap.pendulum import load_problem
 from pmm.gap.pendulum_file import read_case
 from sim.pendulum.effects import body, setup
+from tests.pmm.gap.pendulum_problem import load_problem
 from tests.sealed.recorded import ROD, ROLL
 
 SHARED = Path(__file__).parents[3].parent / "shared" / "data"
