@@ -146,11 +146,6 @@ class Amplifier:
             )
         self._zero = [float(value) for value in mean]
 
-    @property
-    def zero(self) -> tuple[float, ...]:
-        """What the tare takes off each channel, in the channels' units."""
-        return tuple(self._zero)
-
     def carried(self) -> dict[str, Any]:
         """Return the tare; see :mod:`hardware.carry_over`."""
         return {"zero": self._zero}

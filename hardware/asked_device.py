@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Final
 
 from hardware.analogue_link import AnalogueNumber
 from hardware.asked_link import READ, WRITE, Answer, AskedSettings, RegisterRequest
@@ -19,7 +18,6 @@ from hardware.line_registers import LineCommand, LineNumber, LineStatus
 from hardware.modbus_registers import CommandRegister, Register, StatusRegister
 from hardware.roles import Cycle
 
-_HOLDING: Final = READ["holding"]
 Place = tuple[int, int]  # function that reads it, address
 Number = Register | LineNumber | AnalogueNumber
 Status = StatusRegister | LineStatus

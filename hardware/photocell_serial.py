@@ -38,11 +38,6 @@ class ClockFit:
         self._offset_s = 0.0
 
     @property
-    def drift(self) -> float:
-        """How much faster the rig's clock runs: 1e-6 is one microsecond a second."""
-        return self._slope - 1.0
-
-    @property
     def marks(self) -> list[tuple[float, float]]:
         """The marks that count now: the device's time and the rig's time when it had arrived."""
         return list(zip(self._device, self._rig, strict=True))

@@ -61,11 +61,6 @@ class Phasors:
         return self.names.index(name)
 
     @property
-    def covariance(self) -> FloatArray:
-        """Of the real numbers, shape ``(2 n, 2 n)``."""
-        return self.real.covariance()
-
-    @property
     def standard_uncertainty(self) -> ComplexArray:
         """One standard deviation of each, in phase as real and quadrature as imaginary part."""
         return from_interleaved(self.real.standard_uncertainty)

@@ -95,16 +95,6 @@ class _State:
         return np.asarray(np.maximum(short, 0.0).sum(axis=1))
 
 
-def covariance(regression: Regression, chosen: Sequence[int]) -> FloatArray:
-    """Return what the chosen candidates leave of the coefficients, shape ``(p, p)``."""
-    state = _State(regression, 1 + max((*regression.members, *chosen), default=0))
-    for candidate in chosen:
-        state.add(candidate)
-    scale = 1.0 / np.sqrt(np.diagonal(state.normal))
-    inverse = np.linalg.inv(state.normal * np.outer(scale, scale)) * np.outer(scale, scale)
-    return np.asarray(inverse @ (state.meat + state.pull @ state.pull.T) @ inverse)
-
-
 def select(
     prospects: Prospects,
     targets: Sequence[DesignTarget],

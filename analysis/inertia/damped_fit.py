@@ -60,11 +60,6 @@ class DampedMode:
         omega = 2.0 * math.pi / self.period_s
         return self.decay_1_s / math.hypot(self.decay_1_s, omega)
 
-    @property
-    def undamped_period_s(self) -> float:
-        """The period without damping: ``T_0 = T / sqrt(1 + (lambda T/(2 pi))^2)``."""
-        return self.period_s / math.hypot(1.0, self.decay_1_s * self.period_s / (2.0 * math.pi))
-
 
 @dataclass(frozen=True)
 class DampedFit:
@@ -102,12 +97,6 @@ class DampedFit:
     def period_uncertainty_s(self, mode: int = 0) -> float:
         """Standard uncertainty of a period from this fit alone: never a budget's only line."""
         return float(np.sqrt(self.covariance[4 * mode, 4 * mode]))
-
-    def correlation(self) -> FloatArray:
-        """Return the parameters' correlation matrix, shape ``(P, P)``; 0 where a variance is 0."""
-        spread = np.sqrt(np.diag(self.covariance))
-        spread[spread == 0.0] = np.inf
-        return np.asarray(self.covariance / np.outer(spread, spread))
 
     def values(self, time_s: FloatArray) -> FloatArray:
         """Return the fitted oscillations with offset (without a trend) at some times."""

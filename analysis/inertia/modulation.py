@@ -37,11 +37,6 @@ class ModulatedPeriods:
     modulation_depth: float
     fit: DampedFit
 
-    def sway_period_s(self, *, yaw_slower: bool = True) -> float:
-        """Return the sway period that beats with the yaw so: ``1/T_s = 1/T_y +- 1/T_m``."""
-        sign = 1.0 if yaw_slower else -1.0
-        return 1.0 / (1.0 / self.period_s + sign / self.modulation_period_s)
-
 
 def remove_modulation(time_s: FloatArray, period_s: FloatArray) -> ModulatedPeriods:
     """Fit equation 14 to successive yaw periods.

@@ -28,8 +28,6 @@ class RepeatedValue:
         The mean with the larger of scatter and fit errors, and its degrees of freedom.
     scatter
         Standard deviation of a single run; NaN for one run.
-    fit_uncertainty
-        Root mean square of the runs' own errors.
     redundancy
         How the runs agree; none for one run.
     """
@@ -37,7 +35,6 @@ class RepeatedValue:
     estimate: Estimate
     runs: tuple[float, ...]
     scatter: float
-    fit_uncertainty: float
     flags: tuple[Flag, ...] = ()
     redundancy: tuple[Redundancy, ...] = ()
 
@@ -103,7 +100,7 @@ def combine_runs(
         *_scatter_flags(subject, spread, fit_u),
         *(flag for redundancy in agreements for flag in redundancy.flags()),
     )
-    return RepeatedValue(estimate, tuple(values.tolist()), scatter, fit_u, flags, agreements)
+    return RepeatedValue(estimate, tuple(values.tolist()), scatter, flags, agreements)
 
 
 def _scatter_ratio(scatter: float, fit_u: float) -> float:
@@ -164,4 +161,4 @@ def single_run(local: LocalPeriods, zero: Estimate, *, subject: str = "period") 
     )
     estimate = zero.widened(spread, float(local.period_s.size - 1))
     flag = Flag("single_run", Severity.WARNING, message)
-    return RepeatedValue(estimate, (zero.value,), spread, zero.uncertainty, (flag,))
+    return RepeatedValue(estimate, (zero.value,), spread, (flag,))

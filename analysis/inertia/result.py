@@ -8,7 +8,6 @@ from itertools import combinations
 from analysis.inertia.elementary_functions import Value
 from analysis.uncertainty.budget import Budget, derived
 from analysis.uncertainty.estimate import Estimate, joint
-from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
 from hardware.description.flags import Flag
 from hardware.description.oscillator import Plane
@@ -56,12 +55,6 @@ class MassProperties:
         inputs = {"mass": self.mass, "gyradius": self._gyradius(axis), "ahead": self.cg_x}
         below = {"below": self.cg_z} if plane is Plane.VERTICAL else {}
         return derived("I", _inertia, "kg m2", **inputs, **below)
-
-    def body(self, plane: Plane) -> Body:
-        """Return the model as campaigns, simulator and coefficients know it."""
-        return Body(
-            self.mass.value, self.about_midpoint(plane).value, self.cg_x.value, self.cg_z.value
-        )
 
     def _gyradius(self, axis: str) -> Estimate:
         if axis not in self.gyradii:

@@ -82,13 +82,6 @@ class SpreadCause:
     degrees_of_freedom: int
     predicts: float = 0.0
 
-    @property
-    def explains(self) -> bool:
-        """Whether its residuals are within chance (1 %)."""
-        from scipy.stats import chi2
-
-        return float(chi2.sf(self.chi_squared, self.degrees_of_freedom)) >= DISAGREE
-
     def __str__(self) -> str:
         parts = zip(self.names, self.sizes, self.units, strict=True)
         return " and ".join(

@@ -56,7 +56,7 @@ def stopwatch_period(
     count = len(reading_periods)
     mean = Estimate(joint(reading_periods).mapped(np.full((1, count), 1.0 / count)), "s")
     if count < 2:
-        return RepeatedValue(mean, (usual,), math.nan, mean.uncertainty)
+        return RepeatedValue(mean, (usual,), math.nan)
     names = [f"reading {k}" for k in range(1, count + 1)]
     agreement = scattered_fit(
         np.ones((count, 1)),
@@ -78,7 +78,6 @@ def stopwatch_period(
         estimate,
         tuple(periods.tolist()),
         scatter,
-        reading_periods[0].uncertainty,
         agreement.flags(),
         (agreement,),
     )

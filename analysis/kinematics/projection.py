@@ -12,7 +12,6 @@ from hardware.description.arrangement import DriftBy, Joint
 from hardware.description.errors import DataError
 
 ROWS = ("force", "moment", "surge force")
-_PIVOT, _SLIDE, _ALONG = range(3)
 
 
 def loads(geometry: Geometry, line_rad: Waves, readings: Waves) -> Waves:

@@ -40,14 +40,6 @@ class DecimationFilter:
     half: int
     decimation: int
 
-    def gain(self, frequency: FloatArray) -> FloatArray:
-        """Return the gain (real, no phase) at frequencies over the input's sample rate."""
-        from scipy.signal import freqz
-
-        at = 2.0 * np.pi * np.asarray(frequency, dtype=np.float64)
-        response = freqz(self.taps, worN=at)[1]
-        return np.asarray((response * np.exp(1j * at * self.half)).real)
-
     def valid(self, values: NDArray[np.inexact]) -> NDArray[np.inexact]:
         """Filter and decimate, keeping only outputs that need no sample beyond the ends.
 

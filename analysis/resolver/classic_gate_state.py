@@ -36,11 +36,6 @@ class GateReading:
     quadrature: FloatArray
     flags: tuple[Flag, ...] = ()
 
-    @property
-    def gate_time_s(self) -> float:
-        """Measured time of the gate, by which the integrals were divided."""
-        return self.closed_s - self.opened_s
-
 
 @dataclass(frozen=True)
 class IntegratorState:

@@ -15,7 +15,8 @@ from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from hardware.description.lines import Line, peak_of
 
-_POINTS_PER_LINE = 16  # of a period, per harmonic of the highest line: the peak to 0.5 %
+_POINTS_PER_LINE = 16  # of a period, per harmonic of the highest line
+_LEAST_SHARE = 1e-3  # of the largest line: what is smaller is none
 
 
 def schroeder_phases(amplitudes: FloatArray) -> FloatArray:
@@ -34,21 +35,6 @@ def schroeder_phases(amplitudes: FloatArray) -> FloatArray:
     power = np.asarray(amplitudes, dtype=np.float64) ** 2
     until = np.concatenate(([0.0], np.cumsum(power / power.sum())[:-1]))
     return np.asarray(-2.0 * np.pi * np.cumsum(until) % (2.0 * np.pi))
-
-
-def waveform(orders: FloatArray, amplitudes: FloatArray, phases_rad: FloatArray) -> FloatArray:
-    """Return one period of ``sum a_k sin(n_k theta + phase_k)``, finely sampled."""
-    count = _POINTS_PER_LINE * int(np.max(orders))
-    theta = 2.0 * np.pi * np.arange(count) / count
-    return np.asarray(
-        amplitudes @ np.sin(np.outer(orders, theta) + np.asarray(phases_rad)[:, None])
-    )
-
-
-def crest_factor(orders: FloatArray, amplitudes: FloatArray, phases_rad: FloatArray) -> float:
-    """Return peak over root mean square: 1.41 of a single sine, about 1.9 by Schroeder."""
-    wave = waveform(orders, amplitudes, phases_rad)
-    return float(np.abs(wave).max() / np.sqrt((np.asarray(amplitudes) ** 2).sum() / 2.0))
 
 
 def odd_lines_with_gaps(lowest: int, highest: int, group: int, seed: int) -> tuple[int, ...]:
@@ -119,10 +105,10 @@ def with_strut_phases(lines: Sequence[Line], strut_phases_rad: Sequence[float]) 
     return tuple(replace(line, share=line.share / peak) for line in turned)
 
 
-def lines_of(samples: FloatArray, highest: int, least: float = 1e-3) -> tuple[Line, ...]:
+def lines_of(samples: FloatArray, highest: int) -> tuple[Line, ...]:
     """Return the lines of one period of any motion: a chirp, or one that was recorded.
 
-    The mean is left out, and what is smaller than ``least`` of the largest line.
+    The mean is left out, and what is smaller than a thousandth of the largest line.
 
     Parameters
     ----------
@@ -145,7 +131,7 @@ def lines_of(samples: FloatArray, highest: int, least: float = 1e-3) -> tuple[Li
     spectrum = 2j * np.fft.rfft(samples)[: highest + 1] / len(samples)
     size = np.abs(spectrum)
     size[0] = 0.0
-    places = np.flatnonzero((size > least * size.max()) & (size > 0.0))
+    places = np.flatnonzero((size > _LEAST_SHARE * size.max()) & (size > 0.0))
     if not places.size:
         raise ConfigurationError("the motion given does not move; give one period that does")
     lines = [Line(int(n), float(size[n]), float(np.angle(spectrum[n]))) for n in places]

@@ -55,10 +55,6 @@ class Calibration:
     file: str = ""
     sha256: str = ""
 
-    def loads(self, readings: FloatArray) -> FloatArray:
-        """Return the loads behind readings, shape ``(channels, n)`` both."""
-        return np.asarray(np.linalg.solve(self.matrix, readings))
-
     @property
     def force_uncertainty(self) -> FloatArray:
         """Standard uncertainty of force i for a newton on gauge j, shape as the matrix.

@@ -8,10 +8,9 @@ import numpy as np
 
 from analysis.speed_loop.identification import SpeedRecord
 from hardware.command_limits import check_speed
-from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
 from hardware.rig import Rig
-from hardware.roles import SampleBlock, Shaft
+from hardware.roles import Shaft
 from pmm.devices.axis_move import NOTHING_MOVED, move, turn
 
 _TURN: Final = 2.0 * math.pi
@@ -93,7 +92,3 @@ class SpeedTest:
     def _settle(self, rig: Rig) -> None:
         for _ in range(round(self.settle_s * rig.configuration.sample_rate_hz)):
             rig.cycle()
-
-
-def _numbers(block: SampleBlock) -> FloatArray:
-    return block.first + np.arange(float(block.values.shape[1]))

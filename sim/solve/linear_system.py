@@ -84,15 +84,6 @@ class Hold:
         """Return the states at the samples, shape ``(samples, n)``; inputs as for `forcing`."""
         return follow(self.step, self.forcing(inputs), state)
 
-    def response(self, z: ComplexArray) -> ComplexArray:
-        """Return the discrete transfer matrices from input to state at ``z``: ``(k, n, p)``."""
-        column = z[:, np.newaxis, np.newaxis]
-        driven = np.zeros((z.size, *self.weights.shape[1:]), dtype=np.complex128)
-        for j, weight in enumerate(self.weights):
-            driven += column ** (j - self.past) * weight
-        matrix = np.eye(len(self.step)) - self.step / column
-        return np.linalg.solve(matrix, driven).astype(np.complex128)
-
 
 def causal_hold(system: LinearSystem, step_s: float, degree: int) -> Hold:
     """Return the step under the polynomial through the newest ``degree + 1`` samples."""

@@ -162,7 +162,7 @@ def test_referred_to_its_own_motion_against_trials() -> None:
     assert referred["displacement_aft 1"].imag == pytest.approx(0.0, abs=SMALL * 1e-15)
     spread = referred.standard_uncertainty
     assert spread[0].imag == pytest.approx(0.0, abs=SMALL * 1e-12)
-    root = np.linalg.cholesky(turned.covariance)
+    root = np.linalg.cholesky(turned.real.covariance())
     draws = generator.standard_normal((4000, 8)) @ root.T
     values = turned.values + draws[:, 0::2] + 1j * draws[:, 1::2]
     own = values * np.exp(-1j * np.angle(values[:, :1]))
@@ -190,7 +190,7 @@ def test_runs_of_any_kind_know_that_they_share_a_zero_run() -> None:
     taken = offsets.mapped(place, more.names, more.units)
     other = more.minus(taken).select(FORCES).real.contributions[-1].dense(4)
     np.testing.assert_allclose(first, other, atol=1e-15)
-    np.testing.assert_allclose(first @ other.T, offsets.covariance, atol=1e-15)
+    np.testing.assert_allclose(first @ other.T, offsets.real.covariance(), atol=1e-15)
     np.testing.assert_allclose(first, -offsets.real.contributions[0].dense(4), atol=1e-15)
 
 

@@ -77,7 +77,7 @@ def test_joint_covariance_matters() -> None:
     generator = np.random.default_rng(3)
     run = scattered(ideal_struts(pair()[0]), covariance(0.9), 5000, generator)
     joint = run.model().phasors.select(["force 1", "moment 1"]).standard_uncertainty
-    variance = np.diag(np.diagonal(run.phasors.covariance))
+    variance = np.diag(np.diagonal(run.phasors.real.covariance()))
     source = of_covariance("each by itself", variance, np.inf)
     alone = replace(run, phasors=scattering(run.phasors, source))
     independent = alone.model().phasors.select(["force 1", "moment 1"]).standard_uncertainty

@@ -69,7 +69,7 @@ def test_a_tapered_reading_says_that_channels_count_as_independent() -> None:
     tapered = measured_cycle(resolved(hann=True), RIG.oscillator)
     assert [flag.code for flag in tapered.flags][-1] == "channels_independent"
     first = tapered.phasors.select([f"{name} 1" for name in CHANNELS])
-    assert np.abs(first.covariance[:2, 2:]).max() == 0.0
+    assert np.abs(first.real.covariance()[:2, 2:]).max() == 0.0
 
 
 def test_what_is_missing_is_said() -> None:

@@ -62,7 +62,7 @@ def test_a_zero_run_of_all_moves_the_constant_by_all_of_its_scatter(
 ) -> None:
     """Every force is off by the same ``e``: so is Y_0, and Y_v not at all."""
     found, zero = drift
-    own = zero.covariance[::2, ::2]
+    own = zero.real.covariance()[::2, ::2]
     half = HORIZONTAL_1963.half_spacing_m
     force, moment = (np.array(lever) @ own @ lever for lever in ((1.0, 1.0), (-half, half)))
     spread = dict(

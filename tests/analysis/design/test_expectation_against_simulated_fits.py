@@ -13,10 +13,9 @@ from analysis.design.design_fits import DesignTarget
 from analysis.design.expectation import REPEATS, SCATTER, expected_coefficients, made_up
 from analysis.design.noise import Noise
 from analysis.design.regression import prospects
-from analysis.design.selection import covariance
 from benchmarks import coefficients_campaigns as exact
 from hardware.description.setpoint import SetPoint
-from tests.analysis.design.designs import EXACT, LINEAR, WHOLE
+from tests.analysis.design.designs import EXACT, LINEAR, WHOLE, covariance
 
 PERIODS, TRIALS = 12, 40
 RUNS = [

@@ -11,11 +11,11 @@ from analysis.design.belief import Belief
 from analysis.design.candidate import CandidateRun
 from analysis.design.design_fits import DesignTarget
 from analysis.design.regression import Prospects, prospects
-from analysis.design.selection import covariance, select
+from analysis.design.selection import select
 from benchmarks.coefficients_campaigns import BODY, HORIZONTAL
 from hardware.description.oscillator import HORIZONTAL_1963
 from hardware.description.setpoint import SetPoint
-from tests.analysis.design.designs import EXACT, LINEAR, NOISE, WHOLE, grid
+from tests.analysis.design.designs import EXACT, LINEAR, NOISE, WHOLE, covariance, grid
 
 
 def _shortest(known: Prospects, targets: list[DesignTarget]) -> float:

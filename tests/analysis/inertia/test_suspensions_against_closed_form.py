@@ -142,8 +142,6 @@ def test_modulation_is_removed_from_gate_periods() -> None:
     assert found.modulation_period_s == pytest.approx(28.3, rel=5e-3)
     assert found.modulation_depth == pytest.approx(0.018, rel=0.05)
     assert found.uncertainty_s < 5e-4
-    expected = 1.0 / (1.0 / 4.391 + 1.0 / 28.3)
-    assert found.sway_period_s() == pytest.approx(expected, rel=2e-3)
     with pytest.raises(DataError, match="at least 16"):
         remove_modulation(t[:10], period[:10])
 

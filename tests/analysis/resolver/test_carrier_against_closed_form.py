@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.signal import freqz
 
 from analysis.recording import Recording
 from analysis.resolver.carrier import DecimationFilter, demodulate, design_low_pass
@@ -95,6 +96,12 @@ def test_a_wrong_carrier_frequency_is_flagged() -> None:
     assert "carrier_quadrature" in [flag.code for flag in out.flags]
 
 
+def gain(low_pass: DecimationFilter, frequency: FloatArray) -> FloatArray:
+    """Return a filter's gain (real, no phase) at frequencies over the input's sample rate."""
+    at = 2.0 * np.pi * frequency
+    return np.asarray((freqz(low_pass.taps, worN=at)[1] * np.exp(1j * at * low_pass.half)).real)
+
+
 @pytest.mark.parametrize(
     ("rate_hz", "carrier_hz", "bandwidth_hz", "output_rate_hz"),
     [
@@ -109,15 +116,15 @@ def test_pass_band_is_flat_and_stop_band_is_shut(
     rate_hz: float, carrier_hz: float, bandwidth_hz: float, output_rate_hz: float | None
 ) -> None:
     low_pass = design_low_pass(rate_hz, carrier_hz, bandwidth_hz, output_rate_hz)
-    passed = low_pass.gain(np.linspace(0.0, bandwidth_hz, 2001) / rate_hz)
+    passed = gain(low_pass, np.linspace(0.0, bandwidth_hz, 2001) / rate_hz)
     assert np.abs(passed - 1.0).max() < 1e-6
     image_hz = abs(2.0 * carrier_hz - rate_hz * round(2.0 * carrier_hz / rate_hz))
     for centre in (carrier_hz, image_hz):
         around = np.linspace(centre - bandwidth_hz, centre + bandwidth_hz, 2001) / rate_hz
-        assert -20.0 * np.log10(np.abs(low_pass.gain(around)).max()) > 100.0
+        assert -20.0 * np.log10(np.abs(gain(low_pass, around)).max()) > 100.0
     if low_pass.decimation > 1:
         folding = np.linspace(rate_hz / low_pass.decimation - bandwidth_hz, rate_hz / 2.0, 20_001)
-        assert -20.0 * np.log10(np.abs(low_pass.gain(folding / rate_hz)).max()) > 100.0
+        assert -20.0 * np.log10(np.abs(gain(low_pass, folding / rate_hz)).max()) > 100.0
 
 
 def test_outputs_do_not_depend_on_where_the_record_is_cut() -> None:

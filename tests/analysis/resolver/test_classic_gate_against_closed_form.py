@@ -51,7 +51,7 @@ def test_harmonics_come_back_to_the_error_of_the_edges(periods: int) -> None:
         wanted = amplitude * np.exp(1j * phase)
         got = complex(reading.in_phase[0, n - 1], reading.quadrature[0, n - 1])
         assert abs(got - wanted) < np.sqrt(2.0) * 1.05 * bound
-    assert reading.gate_time_s == pytest.approx(periods / 1.0137, rel=1e-12)
+    assert reading.closed_s - reading.opened_s == pytest.approx(periods / 1.0137, rel=1e-12)
     assert not reading.flags
 
 

@@ -74,7 +74,7 @@ def test_a_reset_while_open_starts_over() -> None:
 def test_one_block_may_hold_opening_and_closing() -> None:
     state = fed(machine(3), IntegratorState(0.0), 6.0, [1.51, 2.51, 3.51, 4.51])
     assert state.reading is not None
-    assert state.reading.gate_time_s == pytest.approx(3.0)
+    assert state.reading.closed_s - state.reading.opened_s == pytest.approx(3.0)
 
 
 def test_the_start_state_is_not_changed() -> None:

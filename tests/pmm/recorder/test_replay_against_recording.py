@@ -206,7 +206,7 @@ def test_what_devices_carry_over_is_json_and_goes_on() -> None:
         assert json.loads(json.dumps(opening)) == json.loads(json.dumps(opening_of(rig.rig)))
         assert set(opening) == {"shaft", "forces[0]", "forces[1]", "photocell"}
         carry_on(rig.rig, {"forces[0]": {"zero": [3.5]}})
-        assert rig.rig.forces[0].zero == (3.5,)
+        assert rig.rig.forces[0].carried() == {"zero": [3.5]}
 
 
 def test_a_count_goes_on_where_another_stood() -> None:

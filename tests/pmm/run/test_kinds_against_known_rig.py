@@ -45,9 +45,6 @@ def test_check_weights_give_the_scale_that_the_rig_has_wrong(tmp_path: Path) -> 
     assert found.channels == ("force_aft", "force_fore")
     assert found.matrix == pytest.approx(np.diag([1.02, 1.0]), abs=2e-3)
     assert found.hysteresis == pytest.approx([0.0, 0.0], abs=1e-3)
-    assert found.loads(np.array([[102.0], [50.0]])) == pytest.approx(
-        np.array([[100.0], [50.0]]), rel=3e-3
-    )
     path = write_calibration(found, tmp_path / "calibration.toml")
     again = read_calibration(path)
     assert again.matrix == pytest.approx(found.matrix)
