@@ -84,7 +84,7 @@ _GUARD: Final = threading.RLock()
 _HELD: Final[dict[Path, Ownership]] = {}
 
 
-def acquire(path: Path, message: str, *, patience_s: float = PATIENCE_S) -> Ownership:
+def acquire(path: Path, message: str) -> Ownership:
     """Own what a lock file stands for.
 
     Parameters
@@ -93,8 +93,6 @@ def acquire(path: Path, message: str, *, patience_s: float = PATIENCE_S) -> Owne
         The lock file; it is made, and stays when it is let go of, empty.
     message
         What is owned, for the message: "out is being written".
-    patience_s
-        How long to wait for it; 0 in a loop that must not wait.
 
     Raises
     ------
@@ -105,7 +103,7 @@ def acquire(path: Path, message: str, *, patience_s: float = PATIENCE_S) -> Owne
     with _GUARD:
         if _key(path) in _HELD:
             raise OwnedElsewhereError(f"{message} by this very process")
-        return _owned(path, message, patience_s, Ownership)
+        return _owned(path, message, PATIENCE_S, Ownership)
 
 
 def own_together(path: Path, message: str, kind: type[T], *, patience_s: float = PATIENCE_S) -> T:
@@ -115,6 +113,8 @@ def own_together(path: Path, message: str, kind: type[T], *, patience_s: float =
     ----------
     kind
         What is shared: an ownership that carries more.
+    patience_s
+        How long to wait for it; 0 in a loop that must not wait.
     """
     with _GUARD:
         held = _HELD.get(_key(path))

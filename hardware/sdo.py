@@ -16,6 +16,7 @@ from hardware.errors import SdoAbortError, SdoInCallbackError, SdoTimeoutError
 
 Number = int | float
 T = TypeVar("T")
+_TIMEOUT_S = 0.3  # for each answer
 _REQUEST, _RESPONSE = 0x600, 0x580
 _WRONG_LENGTH = 0x06070010  # CiA 301: data type does not match, length of service parameter
 
@@ -65,13 +66,7 @@ class _Client(SdoClient):
 
 
 class Sdo:
-    """Reads and writes the objects of one node.
-
-    Parameters
-    ----------
-    timeout_s
-        How long to wait for each answer.
-    """
+    """Reads and writes the objects of one node."""
 
     def __init__(
         self,
@@ -79,13 +74,12 @@ class Sdo:
         node_id: int,
         dictionary: canopen.ObjectDictionary,
         carrier: Carrier,
-        timeout_s: float = 0.3,
     ) -> None:
         self._name = f"{name} (node {node_id})"
         self._carrier = carrier
         self._dictionary = dictionary
         self._client = _Client(node_id, dictionary, carrier)
-        self._client.RESPONSE_TIMEOUT = timeout_s
+        self._client.RESPONSE_TIMEOUT = _TIMEOUT_S
 
     def read(self, at: Entry) -> Number | str:
         """Return an object's value, decoded after the EDS.

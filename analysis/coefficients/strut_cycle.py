@@ -187,12 +187,12 @@ def measured_cycle(
     analysis: Analysis,
     oscillator: Oscillator,
     *,
-    reading_index: int = 0,
     set_point: SetPoint | None = None,
 ) -> StrutCycle:
-    """Return all harmonics of one reading; a set-point stands in for displacements not measured.
+    """Return all harmonics of the first reading.
 
-    Of one strut that was measured alone, the other is taken in step with it.
+    A set-point stands in for displacements that were not measured. Of one strut that was measured
+    alone, the other is taken in step with it.
 
     Of a carriage that follows the struts' path the speed is read likewise.
 
@@ -201,7 +201,7 @@ def measured_cycle(
     DataError
         If a force channel is missing, there is no set-point, or nothing tells the motion's phase.
     """
-    reading = analysis.readings[reading_index]
+    reading = analysis.readings[0]
     set_point = analysis.recording.set_point if set_point is None else set_point
     if set_point is None:
         raise DataError(

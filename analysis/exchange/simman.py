@@ -23,6 +23,7 @@ from hardware.description.errors import DataError
 from hardware.description.oscillator import Plane
 
 SAMPLES: Final = 200  # of the averaged cycle
+_ORDERS: Final = 6  # of a cycle that comes without its harmonics
 
 # Of each plane: force, moment, displacements, velocities and accelerations.
 NAMES: Final[Mapping[Plane, tuple[str, ...]]] = {
@@ -155,12 +156,12 @@ def _wave(phasors: ComplexArray, samples: int) -> FloatArray:
 
 
 def fourier(
-    columns: Mapping[str, FloatArray], orders: int = 6
+    columns: Mapping[str, FloatArray],
 ) -> tuple[dict[str, float], dict[str, FloatArray], dict[str, FloatArray]]:
     """Return mean, sines and cosines of an evenly sampled cycle that does not repeat its start."""
     count = len(columns["t"])
     angle = 2.0 * math.pi * np.arange(count) / count
-    highest = min(orders, (count - 1) // 2)
+    highest = min(_ORDERS, (count - 1) // 2)
     turns = 2.0 / count * np.exp(-1j * np.arange(1, highest + 1)[:, None] * angle)
     mean, sine, cosine = {}, {}, {}
     for name, values in columns.items():

@@ -83,7 +83,7 @@ def yaw_from_ratio(
 
 
 def yaw_from_beats(
-    count: BeatCount, half_spacing: Estimate, *, yaw_slower: bool = True, seed: int = 0
+    count: BeatCount, half_spacing: Estimate, *, yaw_slower: bool = True
 ) -> Assessment:
     """Return the yaw gyradius from counted beats (eq 13).
 
@@ -100,7 +100,7 @@ def yaw_from_beats(
         return half_spacing_m * ratio_from_beats(oscillations, yaw_slower=yaw_slower)
 
     inputs = {"oscillations": count.per_beat(), "half_spacing_m": half_spacing}
-    return assess("k_yaw", gyradius, inputs, unit="m", seed=seed)
+    return assess("k_yaw", gyradius, inputs, unit="m")
 
 
 def resonance_flags(yaw_period_s: float, first_pitch_period_s: float) -> tuple[Flag, ...]:

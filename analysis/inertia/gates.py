@@ -16,6 +16,7 @@ from hardware.description.flags import Flag, Severity
 SHORTEST_SHARE = 0.15  # of the usual width: a bounce between or a scratch on the flag
 LONGEST_SHARE = 3.0  # of the usual width: an edge was lost
 OFF_BEAT = 0.25  # of half a period
+_REACH = 7  # widths to either side, of which the usual one is the median
 
 
 @dataclass(frozen=True)
@@ -199,9 +200,9 @@ def _one_gate(
     return 0.5 * (start + stop)[good], width[good], flags
 
 
-def _running_median(width: FloatArray, reach: int = 7) -> FloatArray:
-    padded = np.pad(width, reach, mode="edge")
-    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1)
+def _running_median(width: FloatArray) -> FloatArray:
+    padded = np.pad(width, _REACH, mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * _REACH + 1)
     return np.asarray(np.median(windows, axis=1))
 
 

@@ -75,12 +75,10 @@ def _respond(
     return np.asarray(np.linalg.svd(response, compute_uv=False)[..., 0])
 
 
-def let_through(
-    analysis: Analysis, frequencies_hz: FloatArray, reading_index: int = 0
-) -> FloatArray:
-    """Return how much of a vibration that is no harmonic leaks into each harmonic of a reading.
+def let_through(analysis: Analysis, frequencies_hz: FloatArray) -> FloatArray:
+    """Return how much of a vibration that is no harmonic leaks into each harmonic of a gate.
 
-    Found by feeding the very gate with them; see :func:`measured_leakage`.
+    Found by feeding the very gate of the first reading with them; see :func:`measured_leakage`.
 
     It is the part of the vibration's amplitude that appears in each harmonic at the worst phase,
     shape ``(frequencies, harmonics)``.
@@ -96,9 +94,8 @@ def let_through(
             f"a vibration's frequency must lie between 0 and {nyquist_hz:g} Hz, half the sample "
             "rate; faster ones appear at another frequency"
         )
-    size = analysis.readings[reading_index].periods
-    start = analysis.stretch.start + reading_index * size
-    gate = analysis.sums[start : start + size]
+    start = analysis.stretch.start
+    gate = analysis.sums[start : start + analysis.readings[0].periods]
     reference, settings = analysis.reference, analysis.settings
 
     def estimator(probe: Recording) -> Harmonics:

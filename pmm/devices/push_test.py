@@ -60,7 +60,6 @@ def judge(
     rest: Records,
     pushed: Records,
     noise_times: float = NOISE_TIMES,
-    least_share: float = LEAST_SHARE,
 ) -> Push:
     """Return which gauge was pushed and to which side.
 
@@ -69,9 +68,9 @@ def judge(
     rest, pushed
         For each channel its samples, shape ``(samples,)``, in the channel's unit: nobody touches
         the gauges, and one is pushed for some part of the time. Offsets do not matter.
-    noise_times, least_share
-        The threshold: so many standard deviations at rest, and at least that part of the full
-        scale.
+    noise_times
+        The threshold: so many standard deviations at rest, and at least :data:`LEAST_SHARE` of the
+        full scale.
 
     Raises
     ------
@@ -84,7 +83,7 @@ def judge(
     limits = {
         channel.name: max(
             noise_times * float(np.std(rest[channel.name])),
-            least_share * (channel.full_scale or 0.0),
+            LEAST_SHARE * (channel.full_scale or 0.0),
         )
         for channel in channels
     }

@@ -80,8 +80,6 @@ def points(
     positions: Sequence[float],
     label: str,
     number: int,
-    *,
-    joined: bool = True,
 ) -> None:
     """Draw values with their intervals, in the order of ``positions``."""
     order = np.argsort(positions)
@@ -90,7 +88,7 @@ def points(
         np.asarray(positions)[order],
         coefficients.values[sorted_rows],
         coefficients.half_widths[sorted_rows],
-        fmt=f"{MARKS[number % len(MARKS)]}{'-' if joined else ''}",
+        fmt=f"{MARKS[number % len(MARKS)]}-",
         color=PALETTE[number % len(PALETTE)],
         ms=4.0,
         lw=0.8,

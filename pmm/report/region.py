@@ -66,12 +66,12 @@ def confidence_ellipse(covariance: FloatArray, factor: float) -> Ellipse | None:
     return Ellipse(float(major), float(minor), float(np.arctan2(axes[1, 1], axes[0, 1])))
 
 
-def ellipses(reading: Harmonics, level: float = 0.95) -> list[list[Ellipse | None]]:
+def ellipses(reading: Harmonics) -> list[list[Ellipse | None]]:
     """Return the ellipse of each channel (outer list) and harmonic (inner list) of a reading."""
     blocks = reading.phasor_covariance()
     freedom = reading.degrees_of_freedom[1:].reshape(reading.order, 2).min(axis=1)
     one_variance = reading.interval_source is IntervalSource.BINS
-    factors = [region_factor(float(nu), level, one_variance=one_variance) for nu in freedom]
+    factors = [region_factor(float(nu), one_variance=one_variance) for nu in freedom]
     return [
         [confidence_ellipse(block, factor) for block, factor in zip(row, factors, strict=True)]
         for row in blocks

@@ -8,6 +8,8 @@ from sim.chain import Chain
 from sim.devices.plant import Passage
 
 _MARK_EVERY_S = 1.0
+_CLOCK_RATE = 1.0 + 20e-6  # of the timestamper's clock over the rig's
+_CLOCK_BEGAN_S = 100.0  # what it shows when the simulation begins
 _BLOCK = 256
 
 
@@ -54,19 +56,10 @@ class _Sayer:
 
 
 class Timestamper(_Sayer):
-    """Stamps the photocell's pulses with its own clock.
+    """Stamps the photocell's pulses with its own clock."""
 
-    Parameters
-    ----------
-    drift
-        How much faster its clock runs than the rig's, relative.
-    offset_s
-        What its clock shows when the simulation begins.
-    """
-
-    def __init__(self, drift: float = 20e-6, offset_s: float = 100.0) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._rate, self._offset_s = 1.0 + drift, offset_s
         self._pulses = 0
         self._marked_s = -_MARK_EVERY_S
 
@@ -80,7 +73,7 @@ class Timestamper(_Sayer):
             self.say(LineKind.TIME, self._ticks(time_s), self._pulses)
 
     def _ticks(self, time_s: float) -> int:
-        return round((self._offset_s + time_s * self._rate) * 1e6)
+        return round((_CLOCK_BEGAN_S + time_s * _CLOCK_RATE) * 1e6)
 
 
 Angles = Callable[[int], float]

@@ -16,6 +16,7 @@ from sim.rig import SimulatedRig
 LED_LAG_S: Final = 0.05
 """Of a carriage beside struts that are led, unless the rig says its own: a position loop's 20 per
 second. Half follows better than drives do, twice lags by 1 % of a speed that varies by as much."""
+_PROTOCOL: Final = 0x08  # class of an error frame: a violation of the protocol
 
 
 class World:
@@ -105,10 +106,10 @@ class World:
         for node in self.nodes.values():
             node.answer()
 
-    def put_error_frame(self, *, bus_off: bool = False) -> None:
+    def put_error_frame(self) -> None:
         """Put an error frame on the bus, as an adapter hands it up."""
-        kind = 0x40 if bus_off else 0x08
-        self.wire.put(can.Message(is_error_frame=True, arbitration_id=kind, data=bytes(8)))
+        frame = can.Message(is_error_frame=True, arbitration_id=_PROTOCOL, data=bytes(8))
+        self.wire.put(frame)
 
     def _passages(self) -> tuple[Passage, ...]:
         passages = self.plant.passed()

@@ -113,7 +113,7 @@ class Sensors:
         return tuple(after for after, _ in pairs), readings
 
 
-def inclinometer(radius_m: float, gravity_m_s2: float = STANDARD_GRAVITY_M_S2) -> Sensor:
+def inclinometer(radius_m: float) -> Sensor:
     """Return a gravity-referenced inclinometer of +-3 degrees, carried at a radius.
 
     It feels the tangential acceleration too and reads ``alpha + alpha'' r/g``, so
@@ -125,7 +125,7 @@ def inclinometer(radius_m: float, gravity_m_s2: float = STANDARD_GRAVITY_M_S2) -
     radius_m
         Depth of the instrument below the pivot; negative above it.
     """
-    weights = ((ANGLE.displacement, 1.0), (ANGLE.acceleration, radius_m / gravity_m_s2))
+    weights = ((ANGLE.displacement, 1.0), (ANGLE.acceleration, radius_m / STANDARD_GRAVITY_M_S2))
     channel = Channel("inclinometer_angle", "rad", INCLINOMETER_RANGE_RAD)
     return Sensor(channel, weights, non_linearity=5e-4, non_repeatability=2e-4)
 

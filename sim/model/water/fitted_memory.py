@@ -9,6 +9,8 @@ from hardware.description.arrays import FloatArray
 from sim.model.water.radiation import Radiation
 from sim.model.water.tables import RadiationTable
 
+# Part of its peak below which a diagonal value counts as that, in weights and deviations.
+_FLOOR: Final = 0.01
 _ROUNDING: Final = 1e-3  # of the peak: negative damping of a table that is not worth a word
 _LOSS: Final = 1.1  # of agreement by the condition of passivity, as a factor, likewise
 
@@ -21,8 +23,6 @@ class FittedMemory:
     ----------
     table
         With the coupling of both directions averaged.
-    floor
-        A diagonal value below this part of its peak counts as that in all deviations.
     uncertainty
         Standard uncertainty of the table's values, relative, that the fit was to reach.
     loss
@@ -31,7 +31,6 @@ class FittedMemory:
 
     radiation: Radiation
     table: RadiationTable
-    floor: float
     uncertainty: float
     loss: float
 
@@ -46,7 +45,7 @@ class FittedMemory:
         omega = self.table.omega_rad_s[rows]
         values = (self.radiation.added_mass(omega), self.radiation.damping(omega))
         true = (self.table.added_mass[rows], self.table.damping[rows])
-        scale = [matrices[rows] for matrices in scales(self.table, self.floor)]
+        scale = [matrices[rows] for matrices in scales(self.table)]
         parts = zip(values, true, scale, strict=True)
         return np.array([(value - true_value) / size for value, true_value, size in parts])
 
@@ -71,7 +70,7 @@ class FittedMemory:
         at = min(max(omega_rad_s, float(omega[0])), float(omega[-1]))
         sizes = [
             np.array([[np.interp(at, omega, scale[:, i, j]) for j in (0, 1)] for i in (0, 1)])
-            for scale in (np.where(np.isfinite(s), s, 0.0) for s in scales(self.table, self.floor))
+            for scale in (np.where(np.isfinite(s), s, 0.0) for s in scales(self.table))
         ]
         return relative[0] * sizes[0], relative[1] * sizes[1]
 
@@ -109,16 +108,16 @@ class FittedMemory:
         return float(values[lowest]), float(self.table.omega_rad_s[lowest])
 
 
-def scales(table: RadiationTable, floor: float) -> tuple[FloatArray, FloatArray]:
+def scales(table: RadiationTable) -> tuple[FloatArray, FloatArray]:
     """Return what a deviation of added mass, of damping counts relative to, each ``(k, 2, 2)``.
 
     Infinite where the table has nothing.
     """
-    return _scale(table.added_mass, floor), _scale(table.damping, floor)
+    return _scale(table.added_mass), _scale(table.damping)
 
 
-def _scale(matrices: FloatArray, floor: float) -> FloatArray:
+def _scale(matrices: FloatArray) -> FloatArray:
     diagonal = np.abs(matrices[:, (0, 1), (0, 1)])
-    diagonal = np.maximum(diagonal, floor * diagonal.max(axis=0))
+    diagonal = np.maximum(diagonal, _FLOOR * diagonal.max(axis=0))
     diagonal = np.sqrt(np.where(diagonal > 0.0, diagonal, np.inf))
     return np.asarray(diagonal[:, :, None] * diagonal[:, None, :])

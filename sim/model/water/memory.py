@@ -44,7 +44,6 @@ def fit_memory(
     states: int | None = None,
     *,
     uncertainty: float = UNCERTAINTY,
-    floor: float = 0.01,
 ) -> FittedMemory:
     """Return the passive memory that comes nearest to the table.
 
@@ -58,18 +57,16 @@ def fit_memory(
         not above the uncertainty of the table; where none reaches it, those that come nearest.
     uncertainty
         Standard uncertainty of the table's values, relative.
-    floor
-        Part of its peak below which a value counts as that, in the weights and in the errors.
 
     Raises
     ------
     ConfigurationError
-        If ``states``, ``uncertainty`` or ``floor`` is out of range.
+        If ``states`` or ``uncertainty`` is out of range.
     DataError
         If the table has fewer frequencies than states, or its coupling is not symmetric.
     """
-    _check(table, states, uncertainty, floor)
-    target = _Target(table.symmetrised(), floor)
+    _check(table, states, uncertainty)
+    target = _Target(table.symmetrised())
     fits = [(dofs, *_fitted(target.of(dofs), states, uncertainty)) for dofs in target.groups()]
     infinite = target.table.added_mass_infinite
     added = np.array(target.table.added_mass[-1] if infinite is None else infinite)
@@ -79,7 +76,7 @@ def fit_memory(
         added[np.ix_(dofs, dofs)] = symmetric(fit.infinite) * target.unit[np.ix_(dofs, dofs)]
     radiation = replace(radiation, added_mass_infinite=added)
     loss = max((loss for *_, loss in fits), default=1.0)
-    return FittedMemory(radiation, target.table, floor, uncertainty, loss)
+    return FittedMemory(radiation, target.table, uncertainty, loss)
 
 
 def _fitted(
@@ -124,7 +121,6 @@ class _Target:
     """
 
     table: RadiationTable
-    floor: float
 
     @property
     def rows(self) -> slice:
@@ -156,7 +152,7 @@ class _Target:
     def coupling(self) -> float:
         """Largest coupling, relative to the diagonal."""
         matrices = (self.table.added_mass, self.table.damping)
-        parts = zip(matrices, scales(self.table, self.floor), strict=True)
+        parts = zip(matrices, scales(self.table), strict=True)
         return float(max(np.abs(x[self.rows] / s[self.rows])[:, 0, 1].max() for x, s in parts))
 
     def of(self, dofs: tuple[int, ...]) -> SampledTable:
@@ -168,7 +164,7 @@ class _Target:
         def elements(matrices: FloatArray) -> FloatArray:
             return np.asarray(matrices[self.rows][:, first, second].T / unit[:, None])
 
-        scale_a, scale_b = map(elements, scales(self.table, self.floor))
+        scale_a, scale_b = map(elements, scales(self.table))
         values = elements(self.table.added_mass) - 1j * elements(self.table.damping) / omega
         infinite = self.table.added_mass_infinite
         infinite_mass = None if infinite is None else infinite[first, second] / unit
@@ -208,14 +204,13 @@ def symmetric(elements: FloatArray) -> FloatArray:
     return elements[[[0]]] if elements.size == 1 else elements[[[0, 1], [1, 2]]]
 
 
-def _check(table: RadiationTable, states: int | None, uncertainty: float, floor: float) -> None:
+def _check(table: RadiationTable, states: int | None, uncertainty: float) -> None:
     if states is not None and not _FEWEST <= states <= _MOST:
         raise ConfigurationError(
             f"states = {states} must be {_FEWEST} to {_MOST} for each degree of freedom"
         )
-    for name, value in (("uncertainty", uncertainty), ("floor", floor)):
-        if not 0.0 < value <= 1.0:
-            raise ConfigurationError(f"{name} = {value} must be above 0 and at most 1")
+    if not 0.0 < uncertainty <= 1.0:
+        raise ConfigurationError(f"uncertainty = {uncertainty} must be above 0 and at most 1")
     count = int(np.count_nonzero(table.omega_rad_s))
     needed = _FEWEST if states is None else states
     if count < needed:
