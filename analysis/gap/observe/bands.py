@@ -18,7 +18,10 @@ MAINS_HZ: Final = (50, 60)
 OF_MAINS: Final = (1, 2, 3)  # the double of what is rectified, the triple of what is saturated
 TAKEN_OUT: Final = 12  # harmonics whose leakage is taken out of what lies between them
 _BESIDE = 1.5  # bins on either side of a line that its own leakage may reach
-_LEAKS = 2  # bins further that a line of the mains, which is strong, may reach
+# Of the noise's power: what lines of the mains leak at most into lines that tell of the noise. Half
+# or twice as much moves the edge by a tenth of its distance, some 10 lines from a strong line.
+_LEAKS = 1e-3
+_FURTHEST = 64  # bins, where a millionth of a millionth of a line leaks
 _ABOUT = 51  # lines whose median says how loud it is about one of them
 _FEW_LINES = 12
 _FEWEST_LINES = 2  # where the mains fold to: at least that many of those that they reach
@@ -94,7 +97,8 @@ def between_harmonics(
     free = free_of_harmonics(lines_hz, frequency, bin_hz)
     mains = of_the_mains(lines_hz, rate_hz, bin_hz)
     reached = np.any([*mains.values()], axis=0)
-    quiet = free & (np.convolve(reached, np.ones(2 * _LEAKS + 1), "same") == 0.0)
+    leaked = _leaked(np.where(reached, power, 0.0))
+    quiet = free & ~reached & (leaked <= _LEAKS * np.median(power))
     for number, (low, high) in bands.items():
         inside = quiet & (lines_hz > low * frequency) & (lines_hz < high * frequency)
         yield from band(name, number, power[inside])
@@ -104,9 +108,26 @@ def between_harmonics(
     shared = reached & ~free & (lines_hz > (TAKEN_OUT + 0.5) * frequency)
     noise = noise * _high_harmonics(lines_hz / frequency, power / noise, shared)
     for mains_hz, lines in mains.items():
-        own = lines & (free | shared)
+        # Below the oscillation slow noise rises more steeply than its neighbours tell.
+        own = lines & (free | shared) & (lines_hz > frequency)
         if np.count_nonzero(own) >= _FEWEST_LINES:
             yield Component(name, Part.MAINS, mains_hz), *_amplitude(power, noise, own)
+
+
+def _leaked(power: FloatArray) -> FloatArray:
+    """Return the most that lines leak into the others under a Hann taper (Harris 1978, table 1).
+
+    Parameters
+    ----------
+    power
+        Of all lines, 0 but for those whose leakage is asked, shape ``(lines,)``.
+    """
+    from scipy.ndimage import convolve1d
+
+    away = np.abs(np.arange(-_FURTHEST, _FURTHEST + 1, dtype=np.float64))
+    away[away < 2.0] = np.inf  # what its neighbours hold belongs to the line
+    spread = (np.pi * away * (away**2 - 1.0)) ** -2.0
+    return np.asarray(convolve1d(power, spread, mode="constant"))
 
 
 def _high_harmonics(orders: FloatArray, ratio: FloatArray, shared: BoolArray) -> FloatArray:

@@ -12,7 +12,7 @@ from analysis.gap.observe.bands import (
     folded_hz,
     of_the_mains,
 )
-from analysis.gap.observe.components import Part
+from analysis.gap.observe.components import Component, Part
 from analysis.gap.observe.observation import BANDS
 
 
@@ -147,3 +147,39 @@ def test_noise_alone_is_no_line_however_loud() -> None:
         found += [value for part, value, _ in entries if part.part is Part.MAINS]
     assert len(found) == 200
     assert np.count_nonzero(found) <= 6  # one is expected, and more than six in one of ten thousand
+
+
+@pytest.mark.parametrize("hum_hz", [50.0, 49.97])
+@pytest.mark.parametrize("hum", [0.3, 5.0, 100.0])
+def test_the_loudest_hum_leaves_the_noise_about_it_as_it_is(hum: float, hum_hz: float) -> None:
+    """Its leakage under a Hann taper falls with the third power of the distance, however strong."""
+    time_s, rng = np.arange(4000) / 210.0, np.random.default_rng(9)
+    quiet = 0.05 * rng.standard_normal(len(time_s))
+    loud = quiet + hum * np.sin(2.0 * np.pi * hum_hz * time_s + 0.4)
+    without, beside = (
+        {
+            (part.part, part.order): (value, uncertainty)
+            for part, value, uncertainty in between_harmonics(
+                "force_aft", values, 210.0, 0.83, BANDS
+            )
+            if part.part is not Part.MAINS
+        }
+        for values in (quiet, loud)
+    )
+    assert without.keys() == beside.keys()
+    for part, (value, uncertainty) in without.items():
+        assert abs(beside[part][0] - value) < 0.5 * uncertainty, part
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_zero_that_wanders_is_no_hum_that_folds_to_it(seed: int) -> None:
+    """100 Hz at 100.2 samples a second is a line at 0.2 Hz, where a wandering zero is loud."""
+    count, rng = 2000, np.random.default_rng(seed)
+    wandering = np.cumsum(rng.standard_normal(count)) * 0.02
+    values = 0.1 * rng.standard_normal(count) + wandering
+    found = [
+        value
+        for part, value, _ in between_harmonics("force_aft", values, 100.2, 0.83, BANDS)
+        if part == Component("force_aft", Part.MAINS, 50)
+    ]
+    assert found == [0.0]
