@@ -13,7 +13,7 @@ from hardware.description.arrays import FloatArray
 # 0.8 of themselves, over this by 0.01, and rounding is a millionth of it.
 FINE: Final = 0.01
 _USUAL: Final = 0.1  # of a parameter, by which slopes are found before its uncertainty is known
-# Of the size of what is simulated in time: hum of 0.3 N reads 0.29 to 0.31 N, known to 0.04 N. By
+# Of the size of what is simulated in time: hum of 0.3 N reads 0.28 to 0.31 N, known to 0.04 N. By
 # half as much to 0.03 N, by twice as much the same; by a tenth 0.27 to 0.31 N, as if known to 0.02.
 _COARSE: Final = 0.5
 
