@@ -6,6 +6,7 @@ recording is; only what such effects change is taken from there, with and withou
 noise. What noise does by itself is taken from several draws of it.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -111,13 +112,14 @@ class Simulator:
         repeating = (effect for effect in effects if effect.repeats)
         steady = self._steady(run, (*self._repeating, *repeating))
         if sure and run.applied is None:  # of what is done to a standing rig, what repeats is told
-            steady = steady + self._record(number, sure) - self._record(number)
+            steady = steady + np.nan_to_num(self._record(number, sure) - self._record(number))
         repeats = run.observed.layout.steady
         if repeats.all():
             return steady
         alone, base = self._record(number, moving), self._record(number)
-        noisy = on_noise(run.observed.components, alone, base, self._typical_in_time(number))
-        return np.where(repeats, steady, noisy)
+        usual = self._typical_in_time(number)
+        noisy = on_noise(run.observed.components, alone, base, usual)
+        return np.where(repeats, steady, np.where(np.isfinite(noisy), noisy, usual))
 
     def steady(self, effects: Sequence[Effect]) -> FloatArray:
         """Return the components that repeat with the shaft; 0 for all others."""
@@ -132,12 +134,20 @@ class Simulator:
         return self._records[key]
 
     def _typical_in_time(self, number: int) -> FloatArray:
-        """Return what a run shows in time without what does not repeat, as noise has it at mean."""
-        name = self.stack.runs[number].name
-        if name not in self._means:
-            draws = [self._record(number, (), draw) for draw in range(DRAWS)]
-            self._means[name] = np.asarray(np.mean(draws, axis=0), np.float64)
-        return self._means[name]
+        """Return what a run shows in time without what does not repeat, as noise has it at mean.
+
+        What no draw has, for want of lines or of a period, is as it was measured: what cannot be
+        compared is no gap.
+        """
+        run = self.stack.runs[number]
+        if run.name not in self._means:
+            draws = np.array([self._record(number, (), draw) for draw in range(DRAWS)])
+            there = np.isfinite(draws)
+            count = np.count_nonzero(there, axis=0)
+            total = np.sum(draws, axis=0, where=there)
+            mean = np.divide(total, count, out=run.observed.values.copy(), where=count > 0)
+            self._means[run.name] = mean
+        return self._means[run.name]
 
     def state(self, run: GapRun, effects: Sequence[Effect]) -> SteadyState:
         """Return the steady state of a run that turns, with these effects and no others."""
@@ -230,12 +240,10 @@ def _stated_drift(rig: SimulatedRig, channel: str) -> float:
 def align(simulated: Observation, measured: Observation) -> FloatArray:
     """Return a simulated observation's values in the order of a measured one's components.
 
-    Where the simulated record does not have one, for want of lines or of a period, it is as it was
-    measured: what cannot be compared is no gap.
+    Those that the simulated record does not have, for want of lines or of a period, are no numbers.
     """
     at = dict(zip(simulated.components, simulated.values, strict=True))
-    pairs = zip(measured.components, measured.values, strict=True)
-    return np.array([at.get(component, value) for component, value in pairs])
+    return np.array([at.get(component, math.nan) for component in measured.components])
 
 
 def read_steady(

@@ -9,7 +9,7 @@ from analysis.gap.forward.powers import scaled_change
 from analysis.gap.forward.problem import Problem
 from analysis.gap.forward.simulator import DRAWS, Simulator
 from analysis.gap.forward.tolerances import Tolerances
-from analysis.gap.observe.components import Component, Part, Stack
+from analysis.gap.observe.components import Component, GapRun, Part, Stack
 from analysis.gap.search.first_look import look
 from analysis.gap.search.fit import most_probable
 from sim.effects.a5_trigger_jitter import TriggerJitter
@@ -70,3 +70,23 @@ def test_jitter_says_nothing_of_the_harmonics_beforehand(rig: SimulatedRig) -> N
     change = simulator.predict((TriggerJitter(5e-3),)) - simulator.nominal
     assert not change[simulator.stack.steady].any()
     assert change[~simulator.stack.steady].any()
+
+
+def test_a_draw_that_lacks_a_number_does_not_count_for_it(
+    rig: SimulatedRig, clean: tuple[GapRun, ...]
+) -> None:
+    """As it was measured is not how the others are: only where none has it, it is no gap."""
+    stack = Stack.of(clean)
+    simulator = Simulator(rig, stack)
+    run = stack.runs[0]
+    rows = np.flatnonzero(~run.observed.layout.steady)
+    some, none = rows[0], rows[1]
+    for draw in range(DRAWS):
+        drawn = np.full(len(run.observed.values), float(draw))
+        drawn[none] = np.nan
+        drawn[some] = np.nan if draw == 3 else 10.0
+        simulator._records[run.name, (), draw] = drawn
+    predicted = simulator.predict(())[: len(run.observed.values)]
+    assert predicted[some] == 10.0
+    assert predicted[none] == run.observed.values[none]
+    assert predicted[rows[2]] == 1.5
