@@ -61,6 +61,4 @@ def _kind(component: Component) -> tuple[str, int]:
     """Return what a component is one number of, and its harmonic."""
     if component.part in (Part.MEAN, Part.IN_PHASE, Part.QUADRATURE):
         return HARMONIC, component.order
-    if component.part is Part.MAINS:
-        return f"{component.part} of {component.order} Hz", 0
-    return (str(Part.TREND) if component.part in TRENDS else str(component.part)), 0
+    return (str(Part.TREND) if component.part in TRENDS else component.what), 0

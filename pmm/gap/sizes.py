@@ -170,7 +170,7 @@ def _of_order(which: Component) -> str:
     if which.order == 0:
         return "the mean"
     if which.part is Part.MAINS:
-        return f"the line of the mains of {which.order} Hz"
+        return f"the {which.what}"
     return (
         f"harmonic {which.order}" if which.part is Part.MEAN else f"harmonic {which.order}'s trend"
     )

@@ -55,8 +55,14 @@ class Component:
     part: Part
     order: int = 0
 
+    @property
+    def what(self) -> str:
+        """Which number it is of a channel or a harmonic; of a line of the mains with its Hz."""
+        return f"{self.part} of {self.order} Hz" if self.part is Part.MAINS else str(self.part)
+
     def __str__(self) -> str:
-        return f"{self.channel} n={self.order} {self.part}" if self.channel else str(self.part)
+        order = "" if self.part is Part.MAINS else f"n={self.order} "
+        return f"{self.channel} {order}{self.what}" if self.channel else self.what
 
 
 @dataclass(frozen=True, eq=False)
