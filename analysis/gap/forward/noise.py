@@ -19,6 +19,7 @@ import numpy as np
 from analysis.gap.forward.simulator import DRAWS
 from analysis.gap.forward.tolerances import Tolerances
 from analysis.gap.observe.components import SETTLING, STEADY_PARTS, TRENDS, Component, GapRun, Part
+from analysis.gap.observe.sensors import heard_rms
 from analysis.gap.observe.spectrum import Loudness, levels, loudness
 from analysis.gap.observe.wander import wander, wandered
 from hardware.description.channels import SHAFT_ANGLE
@@ -43,7 +44,9 @@ def pooled(runs: Sequence[GapRun], rig: SimulatedRig, tolerances: Tolerances) ->
     The rig's encoder says what its steps leave in the shaft's harmonics.
     """
     usual = Usual.of(runs)
-    encoder_rad = encoder_floor_rad(rig.acquisition.shaft_angle)
+    encoder_rad = encoder_floor_rad(
+        rig.acquisition.shaft_angle, heard_rms(runs, SHAFT_ANGLE.name)
+    )
     wandering = wander(rig, runs, tolerances.wander)
     return tuple(wandered(_with_usual_noise(run, usual, encoder_rad), wandering) for run in runs)
 
@@ -180,14 +183,22 @@ def _floor(run: GapRun, channel: str, encoder_rad: float) -> float:
     return SIMULATION * math.hypot(*parts) if np.isfinite(parts).all() else 0.0
 
 
-def encoder_floor_rad(encoder: Digitiser | None) -> float:
+def encoder_floor_rad(encoder: Digitiser | None, recorded_rms: float = 0.0) -> float:
     """Return the largest line that an encoder's steps leave in an even turn, in rad.
 
     The error of rounding to steps of q is a saw of first amplitude q / pi; noise of standard
     deviation s ahead of it leaves exp(-2 pi² s² / q²) of it (Widrow and Kollár 2008, the
     characteristic function of the quantiser's input at 2 pi / q).
+
+    Parameters
+    ----------
+    recorded_rms
+        Of the noise in the records, white or coloured, with the rounding's own q² / 12; 0 where
+        there are too few lines, and the noise is the one that is stated.
     """
     if encoder is None or not encoder.resolution:
         return ENCODER_RAD
     dither = encoder.noise_rms / encoder.resolution
+    if recorded_rms:
+        dither = math.sqrt(max((recorded_rms / encoder.resolution) ** 2 - 1.0 / 12.0, 0.0))
     return encoder.resolution / math.pi * math.exp(-2.0 * (math.pi * dither) ** 2)

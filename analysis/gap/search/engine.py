@@ -181,6 +181,12 @@ class _Chance:
     promise: float
     fit: Fit
 
+    def is_better_than(self, other: "_Chance") -> bool:
+        """Tell whether it promises more, or as much and has kept more of it already."""
+        if abs(self.promise - other.promise) > _WORSE:
+            return self.promise > other.promise
+        return self.fit.log_evidence > other.fit.log_evidence
+
 
 def _join(
     problem: ComparedProblem,
@@ -188,16 +194,19 @@ def _join(
     partners: Sequence[Fit],
     chances: dict[frozenset[str], _Chance],
 ) -> None:
-    """Give each effect each partner; of two ways to see the same set the better one is kept."""
+    """Give each effect each partner; of two ways to see the same set the better one is kept.
+
+    Of two that promise as much it is the one that is nearer to what it promises.
+    """
     for first in firsts:
         for second in partners:
             if not set(second.names) & set(first.names):
                 key = frozenset((*first.names, *second.names))
                 # in one order: two ways that differ by rounding alone are the same one
                 joint_fit = joined(problem, *sorted((first, second), key=lambda fit: fit.names))
-                promise = expected_evidence(problem, joint_fit)
-                if key not in chances or promise > chances[key].promise:
-                    chances[key] = _Chance(promise, joint_fit)
+                chance = _Chance(expected_evidence(problem, joint_fit), joint_fit)
+                if key not in chances or chance.is_better_than(chances[key]):
+                    chances[key] = chance
 
 
 def _worth_refining(chances: Mapping[frozenset[str], _Chance], least: float) -> list[_Chance]:

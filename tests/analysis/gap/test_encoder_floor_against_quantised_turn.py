@@ -22,6 +22,18 @@ def test_the_largest_line_of_the_rounding_error(dither: float) -> None:
     assert line == pytest.approx(floor, rel=1e-3)
 
 
+@pytest.mark.parametrize("dither", [0.2, 0.35, 0.5])
+def test_the_noise_is_the_one_that_the_records_hold(dither: float) -> None:
+    """Whatever share of it was taken for white: a pole beyond the lines looks like white noise."""
+    turn = np.linspace(0.0, 777.3, SAMPLES)  # steps
+    noisy = turn + dither * np.random.default_rng(26).standard_normal(SAMPLES)
+    recorded = float(np.std(np.round(noisy) - turn)) * STEP
+    encoder = Digitiser(noise_rms=0.0, walk_per_sqrt_s=1.0, resolution=STEP)
+    true_floor = encoder_floor_rad(Digitiser(noise_rms=dither * STEP, resolution=STEP))
+    assert encoder_floor_rad(encoder, recorded) == pytest.approx(true_floor, rel=0.15)
+    assert encoder_floor_rad(encoder, STEP / math.sqrt(12.0)) == pytest.approx(STEP / math.pi)
+
+
 def _rounded(values: FloatArray, dither: float) -> FloatArray:
     """Return what rounding to whole numbers gives on average under normal noise."""
     if not dither:

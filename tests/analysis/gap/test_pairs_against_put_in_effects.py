@@ -1,11 +1,17 @@
 """Two effects at once: each is found beside the other, however far its usual size is off."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from analysis.gap.forward.candidate import candidates
+from analysis.gap.inference.gaussian import null_evidence
 from analysis.gap.judge.diagnosis import Settings, diagnose
+from analysis.gap.search.engine import Engine, fit_pairs
 from analysis.gap.search.first_look import look
+from analysis.gap.search.fit import weighed_at
+from analysis.gap.search.refinement import refine
 from sim.effects.catalogue import build, catalogue, find
 from sim.rig import SimulatedRig
 from tests.analysis.gap.small import problem_of, record
@@ -46,6 +52,27 @@ def test_neither_need_be_among_the_likeliest_alone(rig: SimulatedRig) -> None:
     assert found.answers.best == "coulomb-friction+quadratic-damping"
     assert found.rival is not None
     assert not {*found.best.names} & set(found.rival.names)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("is_first", [True, False])
+def test_a_pair_is_fitted_from_the_nearer_of_two_ways(rig: SimulatedRig, is_first: bool) -> None:
+    """Beside pulses that are missing a fit has few steps, too few to find a ripple anew."""
+    said = ("missed-pulse:every=5", "speed-ripple:relative=0.005,phase_rad=-2.9")
+    problem = problem_of(rig, record(rig, [build(one) for one in said], 85))
+    missed, ripple = (look(problem, find(one.split(":")[0])) for one in said)
+    assert missed.fit is not None
+    assert ripple.fit is not None
+    near = refine(problem, ripple.fit)
+    astray = near.units + np.array([0.0, 1.2])  # where its slopes lead, which are wrong
+    started = 1.5 * astray
+    signature = near.signature + near.columns @ (started - astray)
+    far = weighed_at(problem, near.candidates, started, near.columns, signature)
+    ways = [near, far] if is_first else [far, near]
+    seen = replace(ripple, fits=tuple(ways))
+    none = null_evidence(problem.residual, problem.nuisances)
+    (pair,) = fit_pairs(problem, [missed.fit], [seen], none, Engine())
+    assert pair.units == pytest.approx(near.units, abs=0.05)
 
 
 def test_every_start_is_within_its_range() -> None:
