@@ -44,9 +44,7 @@ def pooled(runs: Sequence[GapRun], rig: SimulatedRig, tolerances: Tolerances) ->
     The rig's encoder says what its steps leave in the shaft's harmonics.
     """
     usual = Usual.of(runs)
-    encoder_rad = encoder_floor_rad(
-        rig.acquisition.shaft_angle, heard_rms(runs, SHAFT_ANGLE.name)
-    )
+    encoder_rad = encoder_floor_rad(rig.acquisition.shaft_angle, heard_rms(runs, SHAFT_ANGLE.name))
     wandering = wander(rig, runs, tolerances.wander)
     return tuple(wandered(_with_usual_noise(run, usual, encoder_rad), wandering) for run in runs)
 
