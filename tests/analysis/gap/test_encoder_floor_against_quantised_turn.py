@@ -1,13 +1,17 @@
 """What an encoder's steps leave of an even turn, against a turn that is rounded."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from analysis.gap.forward.noise import ENCODER_RAD, encoder_floor_rad
+from analysis.gap.observe.sensors import as_recorded
 from hardware.description.arrays import FloatArray
 from sim.acquisition.channels import Digitiser
+from sim.rig import SimulatedRig
+from tests.analysis.gap.small import problem_of, record
 
 STEP = 1e-4
 SAMPLES = 20_000
@@ -32,6 +36,23 @@ def test_the_noise_is_the_one_that_the_records_hold(dither: float) -> None:
     true_floor = encoder_floor_rad(Digitiser(noise_rms=dither * STEP, resolution=STEP))
     assert encoder_floor_rad(encoder, recorded) == pytest.approx(true_floor, rel=0.15)
     assert encoder_floor_rad(encoder, STEP / math.sqrt(12.0)) == pytest.approx(STEP / math.pi)
+
+
+@pytest.mark.parametrize("seed", [2, 13])
+def test_a_shaft_is_known_alike_whatever_its_noise_is_taken_for(
+    rig: SimulatedRig, seed: int
+) -> None:
+    """The first seed's flat noise is fitted as white, the second's with a pole beyond the lines."""
+    encoder = Digitiser(noise_rms=0.5 * STEP, resolution=STEP)
+    believed = replace(rig, acquisition=replace(rig.acquisition, shaft_angle=encoder))
+    runs = record(believed, (), seed)
+    stack = problem_of(as_recorded(believed, runs, None), runs).simulator.stack
+    known = [
+        sigma
+        for component, sigma in zip(stack.components, stack.uncertainty, strict=True)
+        if component.channel == "shaft_angle" and component.order
+    ]
+    assert 1.5e-6 < np.median(known) < 4e-6
 
 
 def _rounded(values: FloatArray, dither: float) -> FloatArray:
