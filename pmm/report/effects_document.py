@@ -9,8 +9,8 @@ from typing import Any, Final
 from hardware.description.setpoint import SetPoint
 from pmm.document.content import Column, Data, Document, Section, Table, Text, number, word
 from sim.effects.effect import Effect, Lines, Signature
+from sim.effects.parameter import parameters_of
 from sim.pendulum.effects import CATALOGUE as PENDULUM_CATALOGUE
-from sim.pendulum.effects.base import plausible
 
 SCHEMA: Final = "pmm-effects-1"
 _SMALL = 1e-4  # of a channel's largest change: not worth a row
@@ -95,40 +95,30 @@ def _description(kind: type[Effect]) -> str:
     return inspect.cleandoc(kind.__doc__ or "")
 
 
+_PARAMETERS: Final[tuple[Column[type[Any]], ...]] = (
+    Column(None, lambda kind: [asdict(one) for one in parameters_of(kind)], "parameters"),
+    Column(
+        "parameters: typical (low to high)",
+        lambda kind: "\n".join(
+            f"{one.name} = {one.typical:g} ({one.plausible}) {one.unit}"
+            for one in parameters_of(kind)
+        ),
+    ),
+)
 _EFFECTS: Final[tuple[Column[type[Effect]], ...]] = (
     word("code", "code"),
     word("name", "name"),
     word("stage", "stage"),
     word("what it is", "title"),
     Column(None, _description, "description"),
-    Column(None, lambda kind: [asdict(parameter) for parameter in kind.parameters()], "parameters"),
-    Column(
-        "parameters: typical (low to high)",
-        lambda kind: "\n".join(
-            f"{parameter.name} = {parameter.typical:g} ({parameter.plausible}) {parameter.unit}"
-            for parameter in kind.parameters()
-        ),
-    ),
+    *_PARAMETERS,
 )
 _PENDULUMS: Final[tuple[Column[type[Any]], ...]] = (
     word("name", "name"),
     word("stage", "stage"),
     Column("what it does", lambda kind: kind.summary, "title"),
     Column(None, lambda kind: kind.signature, "signature"),
-    Column(
-        None,
-        lambda kind: [
-            {"name": key, **asdict(parameter)} for key, parameter in plausible(kind).items()
-        ],
-        "parameters",
-    ),
-    Column(
-        "parameters: typical (plausible range)",
-        lambda kind: "\n".join(
-            f"{key} = {parameter.typical:g} ({parameter.text})"
-            for key, parameter in plausible(kind).items()
-        ),
-    ),
+    *_PARAMETERS,
 )
 
 

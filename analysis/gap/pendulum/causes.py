@@ -16,9 +16,8 @@ from analysis.gap.pendulum.problem import Tolerance
 from analysis.gap.pendulum.trial import Trial
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import ConfigurationError
-from sim.effects.effect import Parameter
+from sim.effects.parameter import Parameter, parameters_of
 from sim.pendulum.effects import CATALOGUE, by_name
-from sim.pendulum.effects.base import plausible
 from sim.pendulum.effects.setup import ON_LINES
 from sim.pendulum.floating import Floating
 from sim.pendulum.suspension import Suspension
@@ -29,8 +28,6 @@ _UNDER_A_FORCE: Final = ("force", "force_sign", "sensor_sign", "sensor_delay")
 _NOT_UNDER_A_FORCE: Final = ("sensor_offset", "sensor_noise")
 _NEEDS_LINES: Final = ("line_stretch", "line_creep", "off_level", "yaw_pitch_resonance")
 _HUNG: Final = tuple(effect.name for effect in ON_LINES)
-# A reading's noise shows in the scatter; a power law's damping ratio is that at this amplitude.
-_HELD: Final = {"sensor_noise": {"noise_rms": 0.0}, "power_drag": {"amplitude": 0.1}}
 
 DAMPING: Final = (
     "bearing_friction",
@@ -61,24 +58,9 @@ def cause(kind: type[Any], channel: str = "") -> Candidate:
     channel
         The one on which it acts; empty for all.
     """
-    held = _HELD.get(kind.name, {})
-    parameters = [
-        Parameter(
-            name,
-            parameter.unit,
-            parameter.typical,
-            parameter.low,
-            parameter.high,
-            "",
-            starts=parameter.starts,
-        )
-        for name, parameter in plausible(kind).items()
-    ]
-    axes = [
-        _axis(parameter, tuple(parameters))
-        for parameter in parameters
-        if parameter.name not in held
-    ]
+    parameters = parameters_of(kind)
+    axes = [_axis(parameter, parameters) for parameter in parameters if not parameter.held]
+    held = {one.name: (*one.starts, one.typical)[0] for one in parameters if one.held}
     return Candidate(kind, tuple(axes), held, _stage(kind), channel=channel)
 
 

@@ -11,8 +11,9 @@ from typing import Any, Final
 
 from hardware.description.errors import ConfigurationError
 from sim.effects.own_file import import_file, refuse_taken
+from sim.effects.parameter import check_ranges, parameters_of
 from sim.pendulum.effects import body, instruments, light_gates, lines, setup
-from sim.pendulum.effects.base import PendulumEffect, check_plausible, plausible
+from sim.pendulum.effects.base import PendulumEffect
 
 CATALOGUE: Final[tuple[type[Any], ...]] = (
     body.BearingFriction,
@@ -86,14 +87,14 @@ def make_effect(
     """
     kind = find(name, more)
     names = list(kind.__dataclass_fields__)
-    numbers = plausible(kind)
+    numbers = [declared.name for declared in parameters_of(kind)]
     for key, value in parameters.items():
         if key not in names:
             raise ConfigurationError(f"{name} has no parameter {key!r}{_suggestion(key, names)}")
         if key in numbers and not isinstance(value, int | float):
             raise ConfigurationError(f"{name}: {key} = {value!r} is no number")
     effect: PendulumEffect = kind(**parameters)
-    check_plausible(effect)
+    check_ranges(effect)
     return effect
 
 

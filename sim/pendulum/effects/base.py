@@ -5,7 +5,7 @@ a coordinate are N or, for angles, N m. The nominal test has none of them on.
 """
 
 import math
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from hardware.description.errors import ConfigurationError
@@ -15,36 +15,6 @@ from sim.pendulum.suspension import Suspension
 
 if TYPE_CHECKING:
     from sim.pendulum.resistance import Resistance
-
-
-@dataclass(frozen=True)
-class Plausible:
-    """What is known beforehand of an effect's parameter.
-
-    Attributes
-    ----------
-    starts
-        Values from which it is sought; the typical one where left out.
-    """
-
-    unit: str
-    low: float
-    high: float
-    typical: float
-    starts: tuple[float, ...] = ()
-
-    @property
-    def text(self) -> str:
-        """The range with its unit, if it has one."""
-        return f"{self.low:g} to {self.high:g}" + (f" {self.unit}" if self.unit != "1" else "")
-
-
-def parameter(
-    unit: str, low: float, high: float, typical: float, starts: tuple[float, ...] = ()
-) -> Any:
-    """Return a dataclass field with that knowledge; its default is the typical value."""
-    span = Plausible(unit, low, high, typical, starts)
-    return field(default=typical, metadata={"plausible": span})
 
 
 class PendulumEffect(Protocol):
@@ -66,28 +36,6 @@ class PendulumEffect(Protocol):
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
         ...
-
-
-def plausible(effect: type[Any]) -> dict[str, Plausible]:
-    """Return what is known of each parameter of an effect, by name."""
-    ranges = {item.name: item.metadata.get("plausible") for item in fields(effect)}
-    return {name: span for name, span in ranges.items() if span is not None}
-
-
-def check_plausible(effect: PendulumEffect) -> None:
-    """Refuse parameters outside their plausible range.
-
-    Raises
-    ------
-    ConfigurationError
-        Naming effect, parameter, value and range.
-    """
-    for name, span in plausible(type(effect)).items():
-        value = getattr(effect, name)
-        if not span.low <= value <= span.high:
-            raise ConfigurationError(
-                f"{effect.name}: {name} = {value:g} is outside its plausible range of {span.text}"
-            )
 
 
 def resist(bench: PendulumBench, coordinate: str, **added: float) -> PendulumBench:

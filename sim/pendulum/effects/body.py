@@ -9,21 +9,18 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any, cast
 
+from sim.effects.parameter import parameter
 from sim.pendulum.bench import PendulumBench
-from sim.pendulum.effects.base import parameter, resist, slope_to_restoring, small_swing
+from sim.pendulum.effects.base import resist, slope_to_restoring, small_swing
 
 
 @dataclass(frozen=True)
 class BearingFriction:
-    """Dry friction of a bearing, a knife edge or a guide.
+    """Dry friction of a bearing, a knife edge or a guide."""
 
-    Attributes
-    ----------
-    dead_zone
-        Displacement up to which the friction holds the body: friction over restoring.
-    """
-
-    dead_zone: float = parameter("rad or m", 0.0, 0.02, 1e-4)
+    dead_zone: float = parameter(
+        1e-4, 0.0, 0.02, "rad or m", "displacement that it holds: friction over restoring"
+    )
     coordinate: str = ""
 
     name = "bearing_friction"
@@ -39,15 +36,9 @@ class BearingFriction:
 
 @dataclass(frozen=True)
 class ViscousDamping:
-    """Linear damping.
+    """Linear damping."""
 
-    Attributes
-    ----------
-    damping_ratio
-        Share of critical damping.
-    """
-
-    damping_ratio: float = parameter("1", 0.0, 0.3, 0.002)
+    damping_ratio: float = parameter(0.002, 0.0, 0.3, "1", "share of critical damping")
     coordinate: str = ""
 
     name = "viscous_damping"
@@ -64,15 +55,11 @@ class ViscousDamping:
 
 @dataclass(frozen=True)
 class QuadraticDrag:
-    """Drag with the square of the rate.
+    """Drag with the square of the rate; the loss is 8/3 of drag over inertia."""
 
-    Attributes
-    ----------
-    loss
-        Amplitude lost in a cycle over the square of the amplitude: 8/3 of drag over inertia.
-    """
-
-    loss: float = parameter("1/rad or 1/m", 0.0, 10.0, 0.1)
+    loss: float = parameter(
+        0.1, 0.0, 10.0, "1/rad or 1/m", "amplitude lost in a cycle over its square"
+    )
     coordinate: str = ""
 
     name = "quadratic_drag"
@@ -88,15 +75,11 @@ class QuadraticDrag:
 
 @dataclass(frozen=True)
 class CubicRateDamping:
-    """Damping with the third power of the rate.
+    """Damping with the third power of the rate."""
 
-    Attributes
-    ----------
-    loss
-        Amplitude lost in a cycle over the third power of the amplitude.
-    """
-
-    loss: float = parameter("1/rad2 or 1/m2", 0.0, 100.0, 1.0)
+    loss: float = parameter(
+        1.0, 0.0, 100.0, "1/rad2 or 1/m2", "amplitude lost in a cycle over its third power"
+    )
     coordinate: str = ""
 
     name = "cubic_damping"
@@ -113,21 +96,15 @@ class CubicRateDamping:
 
 @dataclass(frozen=True)
 class PowerDrag:
-    """Drag between linear and quadratic: a time constant that grows as amplitude^-beta.
+    """Drag between linear and quadratic: a time constant that grows as amplitude^-beta."""
 
-    Attributes
-    ----------
-    beta
-        The law's power less one; 0.3 for hulls in air.
-    damping_ratio
-        Equivalent share of critical damping at ``amplitude``.
-    amplitude
-        In the coordinate's unit.
-    """
-
-    beta: float = parameter("1", 0.0, 1.0, 0.3)
-    damping_ratio: float = parameter("1", 0.0, 0.3, 0.002, (0.002, 0.03, 0.15))
-    amplitude: float = parameter("rad or m", 1e-4, 1.0, 0.1)
+    beta: float = parameter(0.3, 0.0, 1.0, "1", "the law's power less one; 0.3 for hulls in air")
+    damping_ratio: float = parameter(
+        0.002, 0.0, 0.3, "1", "damping ratio at that amplitude", starts=(0.002, 0.03, 0.15)
+    )
+    amplitude: float = parameter(
+        0.1, 1e-4, 1.0, "rad or m", "at which the damping ratio is stated", held=True
+    )
     coordinate: str = ""
 
     name = "power_drag"
@@ -150,15 +127,11 @@ class PowerDrag:
 
 @dataclass(frozen=True)
 class AmplitudePeriod:
-    """A period that grows in proportion to the amplitude, as measured on hulls.
+    """A period that grows in proportion to the amplitude, as measured on hulls."""
 
-    Attributes
-    ----------
-    slope
-        Relative change of the period per amplitude.
-    """
-
-    slope: float = parameter("1/rad or 1/m", -0.5, 0.5, 0.02)
+    slope: float = parameter(
+        0.02, -0.5, 0.5, "1/rad or 1/m", "relative change of the period per amplitude"
+    )
     coordinate: str = ""
 
     name = "amplitude_period"
@@ -175,15 +148,9 @@ class AmplitudePeriod:
 
 @dataclass(frozen=True)
 class CubicRestoring:
-    """Restoring that changes with the square of the displacement, as the righting arm of a hull.
+    """Restoring that changes with the square of the displacement, as the righting arm of a hull."""
 
-    Attributes
-    ----------
-    cubic
-        Restoring is C q (1 + cubic q^2).
-    """
-
-    cubic: float = parameter("1/rad2 or 1/m2", -5.0, 5.0, -0.5)
+    cubic: float = parameter(-0.5, -5.0, 5.0, "1/rad2 or 1/m2", "restoring is C q (1 + cubic q^2)")
     coordinate: str = ""
 
     name = "nonlinear_restoring"
@@ -215,19 +182,15 @@ class FiniteAmplitude:
 
 @dataclass(frozen=True)
 class AirAround:
-    """Buoyancy of the body in air, and air that moves along with it.
+    """Buoyancy of the body in air, and air that moves along with it."""
 
-    Attributes
-    ----------
-    buoyancy_ratio
-        Density of the air over the body's.
-    added_mass_ratio, added_inertia_ratio
-        Air that moves along, over the body's mass and over its moments of inertia.
-    """
-
-    buoyancy_ratio: float = parameter("1", 0.0, 0.02, 0.0015)
-    added_mass_ratio: float = parameter("1", 0.0, 0.05, 0.002)
-    added_inertia_ratio: float = parameter("1", 0.0, 0.05, 0.002)
+    buoyancy_ratio: float = parameter(0.0015, 0.0, 0.02, "1", "density of the air over the body's")
+    added_mass_ratio: float = parameter(
+        0.002, 0.0, 0.05, "1", "air that moves along, over the body's mass"
+    )
+    added_inertia_ratio: float = parameter(
+        0.002, 0.0, 0.05, "1", "the same over its moments of inertia"
+    )
 
     name = "air"
     stage = "body"

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 
 from hardware.description.errors import ConfigurationError
 from sim.acquisition.channels import Digitiser
+from sim.effects.parameter import parameter
 from sim.pendulum.bench import PendulumBench
-from sim.pendulum.effects.base import parameter
 from sim.pendulum.sensors import Sensor
 
 # From each a delay is found that turns the phase by less than half a turn more, up to 5 Hz.
@@ -19,15 +19,9 @@ _DELAYS_S = (0.01, *(sign * 0.1 * step for step in range(1, 5) for sign in (1.0,
 
 @dataclass(frozen=True)
 class WrongClock:
-    """A recorder or timer whose clock runs fast.
+    """A recorder or timer whose clock runs fast."""
 
-    Attributes
-    ----------
-    clock_error
-        Reading over true time, less one.
-    """
-
-    clock_error: float = parameter("1", -0.01, 0.01, 1e-4)
+    clock_error: float = parameter(1e-4, -0.01, 0.01, "1", "reading over true time, less one")
     channel: str = ""
 
     name = "wrong_clock"
@@ -44,15 +38,11 @@ class WrongClock:
 
 @dataclass(frozen=True)
 class SensorDelay:
-    """A recorder that stamps a sensor late, or early: its clock was set wrong, or it takes time.
+    """A recorder that stamps a sensor late, or early: its clock was set wrong, or it takes time."""
 
-    Attributes
-    ----------
-    delay_s
-        Stamp less true time, the same at any frequency.
-    """
-
-    delay_s: float = parameter("s", -0.5, 0.5, 0.01, _DELAYS_S)
+    delay_s: float = parameter(
+        0.01, -0.5, 0.5, "s", "stamp less true time, the same at any frequency", starts=_DELAYS_S
+    )
     channel: str = ""
 
     name = "sensor_delay"
@@ -68,15 +58,9 @@ class SensorDelay:
 
 @dataclass(frozen=True)
 class SensorLag:
-    """First-order lag of a sensor.
+    """First-order lag of a sensor."""
 
-    Attributes
-    ----------
-    lag_s
-        Its time constant.
-    """
-
-    lag_s: float = parameter("s", 0.0, 1.0, 0.05)
+    lag_s: float = parameter(0.05, 0.0, 1.0, "s", "its time constant")
     channel: str = ""
 
     name = "sensor_lag"
@@ -93,15 +77,9 @@ class SensorLag:
 
 @dataclass(frozen=True)
 class SensorOffset:
-    """A sensor that does not read zero at rest.
+    """A sensor that does not read zero at rest."""
 
-    Attributes
-    ----------
-    offset
-        In the channel's unit.
-    """
-
-    offset: float = parameter("rad or m", -0.1, 0.1, 1e-3)
+    offset: float = parameter(1e-3, -0.1, 0.1, "rad or m", "reading at zero")
     channel: str = ""
 
     name = "sensor_offset"
@@ -118,15 +96,9 @@ class SensorOffset:
 
 @dataclass(frozen=True)
 class SensorGain:
-    """A sensor whose scale is off.
+    """A sensor whose scale is off."""
 
-    Attributes
-    ----------
-    gain_error
-        Reading over truth, less one.
-    """
-
-    gain_error: float = parameter("1", -0.1, 0.1, 0.005)
+    gain_error: float = parameter(0.005, -0.1, 0.1, "1", "reading over truth, less one")
     channel: str = ""
 
     name = "sensor_gain"
@@ -160,18 +132,12 @@ class SensorSign:
 
 @dataclass(frozen=True)
 class SensorNoise:
-    """White noise and a linear drift on a channel.
+    """White noise and a linear drift on a channel."""
 
-    Attributes
-    ----------
-    noise_rms
-        Standard deviation, in the channel's unit.
-    drift_per_s
-        Slope.
-    """
-
-    noise_rms: float = parameter("rad or m", 0.0, 0.05, 1e-4)
-    drift_per_s: float = parameter("rad/s or m/s", -1e-3, 1e-3, 0.0)
+    noise_rms: float = parameter(
+        1e-4, 0.0, 0.05, "rad or m", "standard deviation of each sample", starts=(0.0,), held=True
+    )
+    drift_per_s: float = parameter(0.0, -1e-3, 1e-3, "rad/s or m/s", "slope of the reading")
     channel: str = ""
 
     name = "sensor_noise"

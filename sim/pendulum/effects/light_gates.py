@@ -4,22 +4,16 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from hardware.description.errors import ConfigurationError
+from sim.effects.parameter import parameter
 from sim.pendulum.bench import PendulumBench
-from sim.pendulum.effects.base import parameter
 from sim.pendulum.photogate import Photogate
 
 
 @dataclass(frozen=True)
 class FlagWidth:
-    """A flag of another width in the photogates.
+    """A flag of another width in the photogates."""
 
-    Attributes
-    ----------
-    flag_width_m
-        Its width.
-    """
-
-    flag_width_m: float = parameter("m", 1e-4, 0.1, 0.01)
+    flag_width_m: float = parameter(0.01, 1e-4, 0.1, "m", "its width")
 
     name = "flag_width"
     stage = "photogate"
@@ -33,15 +27,11 @@ class FlagWidth:
 
 @dataclass(frozen=True)
 class GateOffset:
-    """A beam beside the rest position.
+    """A beam beside the rest position."""
 
-    Attributes
-    ----------
-    beam_offset_m
-        How far.
-    """
-
-    beam_offset_m: float = parameter("m", -0.05, 0.05, 0.002)
+    beam_offset_m: float = parameter(
+        0.002, -0.05, 0.05, "m", "how far the beam is from where the flag hangs"
+    )
 
     name = "gate_offset"
     stage = "photogate"
@@ -57,15 +47,9 @@ class GateOffset:
 
 @dataclass(frozen=True)
 class MissedPassages:
-    """Passages that a photogate does not notice.
+    """Passages that a photogate does not notice."""
 
-    Attributes
-    ----------
-    missed_share
-        Probability of each.
-    """
-
-    missed_share: float = parameter("1", 0.0, 0.3, 0.02)
+    missed_share: float = parameter(0.02, 0.0, 0.3, "1", "probability of each")
 
     name = "missed_passages"
     stage = "photogate"
@@ -79,15 +63,9 @@ class MissedPassages:
 
 @dataclass(frozen=True)
 class GateJitter:
-    """Edges that come a little early or late.
+    """Edges that come a little early or late."""
 
-    Attributes
-    ----------
-    jitter_rms_s
-        Standard deviation.
-    """
-
-    jitter_rms_s: float = parameter("s", 0.0, 0.01, 1e-4)
+    jitter_rms_s: float = parameter(1e-4, 0.0, 0.01, "s", "standard deviation of an edge's delay")
 
     name = "gate_jitter"
     stage = "photogate"

@@ -5,21 +5,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hardware.description.errors import ConfigurationError
+from sim.effects.parameter import parameter
 from sim.pendulum.bench import PendulumBench
-from sim.pendulum.effects.base import parameter, suspension_of
+from sim.pendulum.effects.base import suspension_of
 
 
 @dataclass(frozen=True)
 class LineStretch:
-    """Lines longer under load than they were when measured.
+    """Lines longer under load than they were when measured."""
 
-    Attributes
-    ----------
-    stretch_ratio
-        Extension over length.
-    """
-
-    stretch_ratio: float = parameter("1", 0.0, 0.05, 0.005)
+    stretch_ratio: float = parameter(0.005, 0.0, 0.05, "1", "extension over length")
 
     name = "line_stretch"
     stage = "body"
@@ -35,15 +30,11 @@ class LineStretch:
 
 @dataclass(frozen=True)
 class LineCreep:
-    """Lines that go on growing under load.
+    """Lines that go on growing under load."""
 
-    Attributes
-    ----------
-    creep_per_decade
-        Relative extension per decade of (1 + time in minutes).
-    """
-
-    creep_per_decade: float = parameter("1", 0.0, 0.02, 0.001)
+    creep_per_decade: float = parameter(
+        0.001, 0.0, 0.02, "1", "relative extension per decade of 1 + time in minutes"
+    )
 
     name = "line_creep"
     stage = "body"
@@ -60,15 +51,9 @@ class LineCreep:
 
 @dataclass(frozen=True)
 class OffLevel:
-    """A hull that hangs off level: the lines see the inertia about another axis of it.
+    """A hull that hangs off level: the lines see the inertia about another axis of it."""
 
-    Attributes
-    ----------
-    pitch_rad
-        Bow up.
-    """
-
-    pitch_rad: float = parameter("rad", -0.5, 0.5, 0.02)
+    pitch_rad: float = parameter(0.02, -0.5, 0.5, "rad", "bow up")
 
     name = "off_level"
     stage = "body"
@@ -87,17 +72,12 @@ class YawPitchResonance:
     """Lines of a length at which yaw and the slow pitch mode have nearly one period.
 
     With yaw and sway let go together the pitch then grows at the yaw's expense.
-
-    Attributes
-    ----------
-    period_ratio
-        T_y over T_1.
-    pitch_seed_rad
-        Pitch that the release leaves, from which the exchange starts.
     """
 
-    period_ratio: float = parameter("1", 0.9, 1.1, 1.0)
-    pitch_seed_rad: float = parameter("rad", 0.0, 0.05, 0.002)
+    period_ratio: float = parameter(1.0, 0.9, 1.1, "1", "T_y over T_1")
+    pitch_seed_rad: float = parameter(
+        0.002, 0.0, 0.05, "rad", "pitch that the release leaves, from which the exchange starts"
+    )
 
     name = "yaw_pitch_resonance"
     stage = "body"
@@ -149,15 +129,11 @@ def _yaw_over_slow_pitch(mass: np.ndarray, stiffness: np.ndarray) -> float:
 
 @dataclass(frozen=True)
 class UnsteadyRelease:
-    """A hand that lets go with some rate of its own, other each time.
+    """A hand that lets go with some rate of its own, other each time."""
 
-    Attributes
-    ----------
-    rate_rms
-        Standard deviation of each coordinate's rate at the release.
-    """
-
-    rate_rms: float = parameter("rad/s or m/s", 0.0, 0.2, 0.005)
+    rate_rms: float = parameter(
+        0.005, 0.0, 0.2, "rad/s or m/s", "standard deviation of each coordinate's rate"
+    )
 
     name = "unsteady_release"
     stage = "release"

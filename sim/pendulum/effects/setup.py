@@ -8,10 +8,11 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final, cast
 
+from sim.effects.parameter import parameter
 from sim.pendulum.bench import PendulumBench
 from sim.pendulum.body import SwingingBody
 from sim.pendulum.driven import DrivenBody
-from sim.pendulum.effects.base import parameter, resist, suspension_of
+from sim.pendulum.effects.base import resist, suspension_of
 from sim.pendulum.floating import Floating
 from sim.pendulum.suspension import Suspension
 
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 class StatedInertiaError:
     """The body's inertia is other than stated, by a share of the whole."""
 
-    share: float = parameter("1", -0.3, 0.3, 0.01)
+    share: float = parameter(0.01, -0.3, 0.3, "1", "more than stated, of the whole")
 
     name = "inertia"
     stage = "body"
@@ -49,7 +50,7 @@ class StatedInertiaError:
 class RestoringError:
     """The restoring is other than stated: metacentric height, gravity, lever."""
 
-    share: float = parameter("1", -0.3, 0.3, 0.01)
+    share: float = parameter(0.01, -0.3, 0.3, "1", "more than stated, of the whole")
 
     name = "restoring"
     stage = "body"
@@ -72,7 +73,7 @@ class RestoringError:
 class PendulumDampingError:
     """The linear damping is other than stated."""
 
-    share: float = parameter("1", -0.9, 3.0, 0.1)
+    share: float = parameter(0.1, -0.9, 3.0, "1", "more than stated, of the linear damping")
     coordinate: str = ""
 
     name = "damping"
@@ -92,7 +93,7 @@ class PendulumDampingError:
 class ForceError:
     """The force on a driven body is other than recorded: its scale, or a wave's transfer."""
 
-    share: float = parameter("1", -0.5, 0.5, 0.02)
+    share: float = parameter(0.02, -0.5, 0.5, "1", "more than recorded")
 
     name = "force"
     stage = "force"
@@ -130,7 +131,7 @@ def _pushed(bench: PendulumBench, factor: float) -> PendulumBench:
 class LineExcess:
     """Lines that are longer than measured by one length: knots, clamps, give at the ends."""
 
-    excess_m: float = parameter("m", -0.1, 0.1, 0.005)
+    excess_m: float = parameter(0.005, -0.1, 0.1, "m", "longer than measured, each line")
 
     name = "line_excess"
     stage = "body"
@@ -148,7 +149,9 @@ class LineExcess:
 class SpacingError:
     """Lines that hang further apart than measured."""
 
-    half_spacing_error_m: float = parameter("m", -0.02, 0.02, 0.002)
+    half_spacing_error_m: float = parameter(
+        0.002, -0.02, 0.02, "m", "half of the spacing wider than measured"
+    )
 
     name = "spacing"
     stage = "body"
@@ -166,7 +169,7 @@ class SpacingError:
 class ClampMass:
     """Clamps that move with the lines: their mass is in the motion and not in the body's."""
 
-    share: float = parameter("1", 0.0, 0.3, 0.01)
+    share: float = parameter(0.01, 0.0, 0.3, "1", "their mass over the body's")
 
     name = "clamp_mass"
     stage = "body"
@@ -184,15 +187,11 @@ class ClampMass:
 
 @dataclass(frozen=True)
 class LineTwist:
-    """Lines that resist being twisted, or clamps that hold them straight.
+    """Lines that resist being twisted, or clamps that hold them straight."""
 
-    Attributes
-    ----------
-    stiffness_m
-        Stiffness in yaw over the body's weight, both lines together.
-    """
-
-    stiffness_m: float = parameter("m", 0.0, 0.02, 5e-4)
+    stiffness_m: float = parameter(
+        5e-4, 0.0, 0.02, "m", "stiffness in yaw over the body's weight, both lines together"
+    )
 
     name = "line_twist"
     stage = "body"
@@ -208,18 +207,14 @@ class LineTwist:
 
 @dataclass(frozen=True)
 class ReleaseError:
-    """A release from elsewhere, or with a rate.
+    """A release from elsewhere, or with a rate."""
 
-    Attributes
-    ----------
-    further
-        Displacement and rate further than assumed, as a share.
-    turned
-        Rate towards the release, over frequency and displacement.
-    """
-
-    further: float = parameter("1", -0.9, 2.0, 0.02)
-    turned: float = parameter("rad", -1.0, 1.0, 0.02)
+    further: float = parameter(
+        0.02, -0.9, 2.0, "1", "displacement and rate further than assumed, as a share"
+    )
+    turned: float = parameter(
+        0.02, -1.0, 1.0, "rad", "rate towards the release, over frequency and displacement"
+    )
     coordinate: str = ""
     omega_rad_s: float = 1.0
 

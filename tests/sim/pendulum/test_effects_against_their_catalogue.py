@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from hardware.description.errors import ConfigurationError
+from sim.effects.parameter import parameters_of
 from sim.pendulum.benches import (
     KVLCC2_ROLL,
     MODEL_HULL_2014,
@@ -14,7 +15,6 @@ from sim.pendulum.benches import (
     decay_bench,
 )
 from sim.pendulum.effects import CATALOGUE, make_effect
-from sim.pendulum.effects.base import plausible
 from sim.pendulum.record import record
 from sim.pendulum.resistance import Resistance
 
@@ -28,7 +28,10 @@ def effects_table() -> str:
         "|---|---|---|---|---|",
     ]
     for effect in CATALOGUE:
-        known = [f"`{key}` {p.text} ({p.typical:g})" for key, p in plausible(effect).items()]
+        known = [
+            f"`{one.name}` {one.plausible}{f' {one.unit}' * (one.unit != '1')} ({one.typical:g})"
+            for one in parameters_of(effect)
+        ]
         cells = (
             f"`{effect.name}`",
             effect.stage,
@@ -49,9 +52,10 @@ def test_every_effect_is_described_and_typical_values_are_plausible(effect) -> N
     made = make_effect(effect.name)
     assert made.summary
     assert made.signature
-    for key, known in plausible(effect).items():
+    for known in parameters_of(effect):
+        assert known.meaning
         assert known.low <= known.typical <= known.high
-        assert getattr(made, key) == known.typical
+        assert getattr(made, known.name) == known.typical
 
 
 @pytest.mark.sample(11)
@@ -92,7 +96,7 @@ _SMALL = (
 def test_an_effect_adds_to_what_the_test_has_already(name: str) -> None:
     effect = make_effect(name)
     twice = make_effect(
-        name, **{key: 2.0 * getattr(effect, key) for key in plausible(type(effect))}
+        name, **{one.name: 2.0 * one.typical for one in parameters_of(type(effect))}
     )
     bench = bifilar_bench(MODEL_HULL_2014, sway_m=0.03)
     rows = []
