@@ -54,6 +54,7 @@ NAMES = (
     "evidence",
     "campaign_boards",
     "gap_worlds",
+    "gap_odds",
     "forced",
     "gap_loop",
     "signs",

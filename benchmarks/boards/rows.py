@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from benchmarks.boards import beside, friction, loops
+from benchmarks.boards import beside, friction, loops, weighings
 from benchmarks.boards.campaigns import NULLS
 from benchmarks.boards.worlds import CASES, WORLDS
 from benchmarks.machine import ROOT
@@ -15,11 +15,11 @@ RESULTS: Final = ROOT / "benchmarks" / "results" / "boards"
 FOLDERS: Final = 10_000  # mutated folders that go through the door
 TYPED: Final = 300  # of them through whole commands
 _SLICES: Final[Mapping[str, tuple[int, int]]] = {"mutations": (FOLDERS, 50), "commands": (TYPED, 5)}
-_WORLDS, _BESIDE, _LOOPS = "worlds", "beside", "loops"
+_WORLDS, _BESIDE, _LOOPS, _WEIGHINGS = "worlds", "beside", "loops", "weighings"
 SEALED: Final = (_WORLDS, _BESIDE, _LOOPS)
 SEEDED_BY: Final = {_BESIDE: _WORLDS}  # the board whose cases these are
 BOARDS: Final = ("nulls", "friction", *_SLICES)
-EVERY: Final = (*BOARDS, *SEALED)
+EVERY: Final = (*BOARDS, *SEALED, _WEIGHINGS)
 
 Line = dict[str, Any]
 
@@ -80,6 +80,8 @@ def _counts(board: str) -> Mapping[str, int]:
         return dict.fromkeys(WORLDS, beside.CASES)
     if board == _LOOPS:
         return dict.fromkeys(loops.WORLDS, loops.CASES)
+    if board == _WEIGHINGS:
+        return dict.fromkeys(weighings.WORLDS, weighings.CASES)
     return friction.SEEDS if board == "friction" else {n: one.seeds for n, one in NULLS.items()}
 
 
@@ -97,6 +99,8 @@ def measured(job: Job) -> Line:
         return beside.compared(job.campaign, job.first, job.frozen, CASES)
     if job.board == _LOOPS:
         return loops.pursued(job.campaign, job.first, job.frozen)
+    if job.board == _WEIGHINGS:
+        return weighings.weighed(job.campaign, job.first)
     from benchmarks.boards.judged import null, planted
 
     judge = null if job.board == "nulls" else planted

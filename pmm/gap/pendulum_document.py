@@ -148,7 +148,7 @@ def _best_answer(diagnosis: PendulumDiagnosis) -> tuple[str, ...]:
 
 
 def _answer_contents(diagnosis: PendulumDiagnosis) -> Iterator[Content]:
-    sets = {" and ".join(cause_names(fit)): fit for fit in diagnosis.weighed.sets.values()}
+    sets = {" and ".join(cause_names(fit)): fit for fit in diagnosis.weighed.ranked}
     sets[" and ".join(cause_names(diagnosis.best))] = diagnosis.settled.best
     answers: tuple[Column[tuple[str, float]], ...] = (
         Column("answer", lambda row: row[0]),

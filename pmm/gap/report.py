@@ -94,7 +94,7 @@ def gap_report(examined: Examined) -> GapReport:
         dict(sorted(diagnosis.stages.items(), key=lambda pair: -pair[1])),
         ranking,
         examined.effects,
-        tuple(sorted(diagnosis.weighed.hidden)),
+        diagnosis.weighed.hidden,
         tuple(_controls(examined)),
         tuple(_regimes(examined)),
         convention,

@@ -123,7 +123,7 @@ def _steps(conclusion: Conclusion) -> str:
 
 def how_large_it_is(conclusion: Conclusion, large: HowLarge, effect_sizes: Sequence[str]) -> str:
     """Return how large the difference is, and by how much it puts a coefficient off."""
-    sizes, worst = " and ".join(size.sentence for size in large.sizes), large.coefficient
+    sizes, worst = _listed([size.sentence for size in large.sizes]), large.coefficient
     if conclusion.adds:
         put = f"it puts {worst.name} off by {worst.percentage}" if worst else _WITHIN
         return f"{'; '.join([f'It changes {sizes}', put, *effect_sizes])}."
@@ -134,6 +134,12 @@ def how_large_it_is(conclusion: Conclusion, large: HowLarge, effect_sizes: Seque
     if conclusion.verdict == UNKNOWN:
         return f"They differ in {sizes}, little more than noise; {fitted}."
     return f"They differ in {sizes}, no more than noise; {fitted}."
+
+
+def _listed(parts: Sequence[str]) -> str:
+    """Return parts of a sentence with commas between them, and "and" before the last."""
+    *others, last = parts
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def what_to_do(conclusion: Conclusion, todo: Remedies) -> str:

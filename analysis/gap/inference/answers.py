@@ -1,7 +1,7 @@
 """From evidence and prior odds to probabilities; nothing is patched afterwards."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -57,24 +57,17 @@ class ConsideredHypotheses:
 
     Attributes
     ----------
-    singles, pairs, triples
-        What was fitted.
+    sets
+        What was fitted: single effects, pairs, sets of three.
     count
         How many effects were considered.
     concealed
         How many these runs cannot show, or do not: as good as none.
     """
 
-    singles: Sequence[Hypothesis]
-    pairs: Sequence[Hypothesis]
+    sets: Sequence[Hypothesis]
     count: int
     concealed: int
-    triples: Sequence[Hypothesis] = ()
-
-    @property
-    def sets(self) -> Sequence[Hypothesis]:
-        """All that was fitted."""
-        return (*self.singles, *self.pairs, *self.triples)
 
     @property
     def prior_of_none(self) -> float:
@@ -144,9 +137,8 @@ def _beside_odd_runs(
 ) -> dict[str, dict[str, float]]:
     """Return by single effect and run the log weight of both, of those that lead."""
     each = math.log(ODDS.mistake / max(len(beside.run_columns), 1))
-    leading = sorted(considered.singles, key=lambda hypothesis: -logs[answer_of(hypothesis.names)])[
-        :_LEADING
-    ]
+    singles = [hypothesis for hypothesis in considered.sets if len(hypothesis.names) == 1]
+    leading = sorted(singles, key=lambda hypothesis: -logs[answer_of(hypothesis.names)])[:_LEADING]
     oddest = sorted(odd, key=lambda run: -odd[run])[:_ODDEST]
     return {
         name: {
@@ -192,6 +184,29 @@ def answer_of(names: Sequence[str]) -> str:
 def effects_in(answer: str) -> tuple[str, ...]:
     """Return the effects that an answer names; none for one that names no effect."""
     return () if answer in NAMELESS else tuple(answer.split("+"))
+
+
+def by_effect(by_answer: Mapping[str, float]) -> dict[str, float]:
+    """Return the probability of each effect in any answer, most probable first.
+
+    Parameters
+    ----------
+    by_answer
+        Probabilities of answers, as :class:`Answers` has them.
+    """
+    names = {name for answer in by_answer for name in effects_in(answer)}
+    shares = {name: of_any(by_answer, [name]) for name in names}
+    return dict(sorted(shares.items(), key=lambda pair: (-pair[1], pair[0])))
+
+
+def of_any(by_answer: Mapping[str, float], *groups: Collection[str]) -> float:
+    """Return the probability of all answers with an effect of each group; 0 of no group."""
+    total = math.fsum(
+        share
+        for answer, share in by_answer.items()
+        if groups and all(set(effects_in(answer)).intersection(group) for group in groups)
+    )
+    return min(total, 1.0)
 
 
 def _any_size() -> FloatArray:

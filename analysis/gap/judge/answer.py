@@ -8,6 +8,7 @@ import numpy as np
 
 from analysis.gap.design.forecast import Forecast
 from analysis.gap.judge.diagnosis import Diagnosis
+from analysis.gap.judge.withheld import share_gone
 from analysis.gap.observe.components import Stack
 from analysis.gap.search.fit import Fit
 from hardware.description.arrays import FloatArray
@@ -77,12 +78,10 @@ def predicted_shrinkage(
         off = root @ rng.standard_normal(root.shape[1])
         size = math.exp(_FORM_KNOWN * float(rng.standard_normal()))
         off = off + size * (form @ rng.standard_normal(form.shape[1]))
-        shares.append(_reduction(gap + off, off))
+        shares.append(share_gone(_rms(gap + off), _rms(off)))
     low, middle, high = np.quantile(shares, _LEVELS)
     return float(low), float(middle), float(high)
 
 
-def _reduction(before: FloatArray, after: FloatArray) -> float:
-    """Return the part of a gap that goes away; negative where it grows."""
-    old, new = float(np.sqrt(np.mean(before**2))), float(np.sqrt(np.mean(after**2)))
-    return 1.0 - new / old if old > 0.0 else 0.0
+def _rms(values: FloatArray) -> float:
+    return float(np.sqrt(np.mean(values**2)))

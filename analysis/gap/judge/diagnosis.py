@@ -18,7 +18,8 @@ from analysis.gap.locate.walk import Walk, walk
 from analysis.gap.observe.components import GapRun, Part, Stack
 from analysis.gap.observe.regimes import Regime, regimes
 from analysis.gap.search.fit import Fit
-from analysis.gap.search.hypotheses import WeighedHypotheses, weigh
+from analysis.gap.search.hypotheses import weigh
+from analysis.gap.search.weighed import WeighedHypotheses
 from hardware.description.errors import DataError
 from sim.effects.a5_trigger_jitter import TriggerJitter
 from sim.effects.effect import Effect
@@ -72,9 +73,8 @@ class Diagnosis:
         Withheld runs predicted without and with the best hypothesis.
     """
 
-    problem: Problem
     walk: Walk
-    weighed: WeighedHypotheses
+    weighed: WeighedHypotheses[Problem]
     stages: Mapping[str, float]
     best: Fit | None
     rival: Fit | None
@@ -83,6 +83,11 @@ class Diagnosis:
     after: tuple[Predicted, ...]
     shrinkage: Shrinkage | None
     proposals: tuple[Proposal, ...]
+
+    @property
+    def problem(self) -> Problem:
+        """What was diagnosed."""
+        return self.weighed.problem
 
     @property
     def answers(self) -> Answers:
@@ -125,7 +130,7 @@ def diagnose(
     progress("walking along the chain")
     walked = walk(problem)
     weighed = weigh(problem, settings.catalogue, executor, progress, free)
-    return _conclude(problem, walked, weighed, settings, free, progress)
+    return _conclude(walked, weighed, settings, free, progress)
 
 
 def problem_of(
@@ -150,14 +155,14 @@ def _always_on(rig: SimulatedRig, stack: Stack, tolerances: Tolerances) -> tuple
 
 
 def _conclude(
-    problem: Problem,
     walked: Walk,
-    weighed: WeighedHypotheses,
+    weighed: WeighedHypotheses[Problem],
     settings: Settings,
     free: tuple[Free, ...],
     progress: Callable[[str], None],
 ) -> Diagnosis:
-    ranked, calm = weighed.ranked, weighed.answers.best in (NONE, COEFFICIENTS)
+    problem, ranked = weighed.problem, weighed.ranked
+    calm = weighed.answers.best in (NONE, COEFFICIENTS)
     best = None if calm or not ranked else ranked[0]
     classes = {} if best is None else equivalents(problem, best, weighed.singles)
     rival = _rival(best, ranked, classes)
@@ -166,7 +171,6 @@ def _conclude(
     after = before if best is None else predict_withheld(problem, best, withheld)
     progress("choosing the next run")
     return Diagnosis(
-        problem,
         walked,
         weighed,
         stage_probabilities(weighed.answers, settings.catalogue),
@@ -176,7 +180,7 @@ def _conclude(
         before,
         after,
         shrinkage(before, after) if best is not None and before else None,
-        _proposals(problem, weighed, settings, free),
+        _proposals(weighed, settings, free),
     )
 
 
@@ -193,8 +197,8 @@ def _rival(
 
 
 def _proposals(
-    problem: Problem, weighed: WeighedHypotheses, settings: Settings, free: tuple[Free, ...]
+    weighed: WeighedHypotheses[Problem], settings: Settings, free: tuple[Free, ...]
 ) -> tuple[Proposal, ...]:
     if settings.choices is None:
         return ()
-    return proposals(problem, leading(weighed), settings.choices, free, settings.tolerances)
+    return proposals(weighed.problem, leading(weighed), settings.choices, free, settings.tolerances)

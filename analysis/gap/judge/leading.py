@@ -9,15 +9,16 @@ from analysis.gap.design.beside import (
     Unnamed,
     odd,
 )
+from analysis.gap.forward.problem import Problem
 from analysis.gap.inference.answers import COEFFICIENTS, NONE, ODD_RUN, UNKNOWN
 from analysis.gap.search.fit import Fit
-from analysis.gap.search.hypotheses import WeighedHypotheses
+from analysis.gap.search.weighed import WeighedHypotheses
 
 _MOST: Final = 4
 _DOUBTED: Final = 0.05  # least share of a rival: odds are overconfident
 
 
-def leading(weighed: WeighedHypotheses) -> list[tuple[Fit | Unnamed, float]]:
+def leading(weighed: WeighedHypotheses[Problem]) -> list[tuple[Fit | Unnamed, float]]:
     """Return the best named answer, those that share no effect with it, and all unnamed ones.
 
     Each has its probability beside it.

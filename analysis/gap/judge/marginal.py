@@ -1,12 +1,12 @@
 """How probable each effect is, whatever else is there too, and what these runs tell from it."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
 from analysis.gap.forward.problem import Problem
-from analysis.gap.inference.answers import effects_in
+from analysis.gap.inference.answers import by_effect, of_any
 from analysis.gap.inference.gaussian import misfit, posterior
 from analysis.gap.judge.diagnosis import Diagnosis
 from analysis.gap.judge.verdict import ALIKE, beside_rest, equivalents
@@ -41,28 +41,6 @@ class Marginal:
     size_sigma: float
     alike: Mapping[str, float]
     class_probability: float
-
-
-def by_effect(by_answer: Mapping[str, float]) -> dict[str, float]:
-    """Return the probability of each effect in any answer, most probable first.
-
-    Parameters
-    ----------
-    by_answer
-        Probabilities of answers, as :class:`analysis.gap.inference.answers.Answers` has them.
-    """
-    names = {name for answer in by_answer for name in effects_in(answer)}
-    shares = {name: of_any(by_answer, [name]) for name in names}
-    return dict(sorted(shares.items(), key=lambda pair: (-pair[1], pair[0])))
-
-
-def of_any(by_answer: Mapping[str, float], names: Sequence[str]) -> float:
-    """Return the probability of all answers with any of some effects, each counted once."""
-    wanted = set(names)
-    total = math.fsum(
-        share for answer, share in by_answer.items() if wanted & {*effects_in(answer)}
-    )
-    return min(total, 1.0)
 
 
 def marginals(diagnosis: Diagnosis) -> tuple[Marginal, ...]:

@@ -114,11 +114,12 @@ def shrinkage(before: Sequence[Predicted], after: Sequence[Predicted]) -> Shrink
         old = np.concatenate([pairs[at][0] for at in chosen])
         new = np.concatenate([pairs[at][1] for at in chosen])
         noise = generator.standard_normal() * math.sqrt(2.0 / len(new))
-        shares.append(_share(gap_of(old), gap_of(new, noise)))
+        shares.append(share_gone(gap_of(old), gap_of(new, noise)))
     low, high = np.quantile(shares, (0.025, 0.975))
     old_gap, new_gap = gap_of(first), gap_of(second)
-    return Shrinkage(old_gap, new_gap, _share(old_gap, new_gap), float(low), float(high))
+    return Shrinkage(old_gap, new_gap, share_gone(old_gap, new_gap), float(low), float(high))
 
 
-def _share(before: float, after: float) -> float:
+def share_gone(before: float, after: float) -> float:
+    """Return the part of a gap that goes away; negative where it grows, 0 where there is none."""
     return 1.0 - after / before if before > 0.0 else 0.0

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from analysis.gap.forward.candidate import Candidate
-from analysis.gap.inference.answers import effects_in
 from analysis.gap.pendulum.causes import DAMPING, causes_for
 from analysis.gap.pendulum.further import FurtherRecord, Reach, propose
 from analysis.gap.pendulum.laws import (
@@ -18,7 +17,7 @@ from analysis.gap.pendulum.laws import (
 )
 from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.remainder import KindOfGap, gap_by_kind
-from analysis.gap.pendulum.search import MOST_CAUSES, WeighedCauses, cause_names, weigh
+from analysis.gap.pendulum.search import MOST_CAUSES, Weighed, cause_names, weigh
 from analysis.gap.pendulum.settle import Settled, settle
 from analysis.gap.pendulum.verdict import CAUSE, TOLD_APART, Verdict, judge
 from analysis.gap.pendulum.withheld import WithheldSwings, predict_withheld
@@ -47,7 +46,7 @@ class PendulumDiagnosis:
         Further records that tell them apart, best first.
     """
 
-    weighed: WeighedCauses
+    weighed: Weighed
     verdict: Verdict
     settled: Settled
     gap_by_kind: tuple[KindOfGap, ...]
@@ -164,9 +163,7 @@ def _with_withheld(
     return tuple(tested_laws)
 
 
-def _prediction_sets(
-    weighed: WeighedCauses, best: Fit, laws: Sequence[DampingLaw]
-) -> tuple[Fit, ...]:
+def _prediction_sets(weighed: Weighed, best: Fit, laws: Sequence[DampingLaw]) -> tuple[Fit, ...]:
     """Return what to foretell with: the best set, laws not far behind, the best wrong cause."""
     sets = {best.answer: best}
     for law in laws:
@@ -178,11 +175,7 @@ def _prediction_sets(
     return tuple(sets.values())
 
 
-def _wrong_cause(weighed: WeighedCauses, best: Fit) -> Fit | None:
+def _wrong_cause(weighed: Weighed, best: Fit) -> Fit | None:
     """Return the best single cause among those that the best set has nothing to do with."""
-    wrong = [
-        fit
-        for answer, fit in weighed.sets.items()
-        if len(effects_in(answer)) == 1 and answer not in (*best.names, *DAMPING)
-    ]
+    wrong = [fit for fit in weighed.singles if fit.answer not in (*best.names, *DAMPING)]
     return max(wrong, key=lambda fit: fit.log_evidence, default=None)

@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from analysis.gap.design.information_gain import expected_log_odds
 from analysis.gap.inference.gaussian import Nuisances, posterior
 from analysis.gap.pendulum.driven import DrivenTrial
 from analysis.gap.pendulum.problem import PendulumProblem
@@ -83,14 +84,12 @@ def propose(
     records = []
     for label, trial in planned_records:
         try:
-            by_first, by_second = (_predict(problem, trial, answer) for answer in (first, second))
+            expected = [_predict(problem, trial, answer) for answer in (first, second)]
         except PmmError:  # an answer's friction holds the body at rest
             continue
-        records.append(
-            FurtherRecord(
-                label, (_divergence(by_first, by_second), _divergence(by_second, by_first))
-            )
-        )
+        means = np.column_stack([answer.mean for answer in expected])
+        odds = expected_log_odds(means, [answer.covariance for answer in expected])
+        records.append(FurtherRecord(label, (float(odds[0, 1]), float(odds[1, 0]))))
     return tuple(sorted(records, key=lambda record: -record.gain))
 
 
@@ -192,12 +191,3 @@ def _shared_and_separate(
     if same_body:  # the same body in the same set-up: only the release is new
         return np.hstack([problem.shared_columns, problem.set_ups]), np.hstack(record_columns)
     return problem.shared_columns, np.hstack([*record_columns, problem.set_ups])
-
-
-def _divergence(right: _Prediction, rival: _Prediction) -> float:
-    """Return the ln evidence that the right answer is expected to gain on the other one."""
-    solved = np.linalg.solve(rival.covariance, right.covariance)
-    apart = rival.mean - right.mean
-    square = float(apart @ np.linalg.solve(rival.covariance, apart))
-    spread = float(np.trace(solved)) - apart.size - float(np.linalg.slogdet(solved)[1])
-    return 0.5 * (square + spread)

@@ -8,7 +8,7 @@ from typing import Final
 
 from analysis.gap.forward.candidate import Candidate
 from analysis.gap.pendulum.causes import DAMPING
-from analysis.gap.pendulum.search import WeighedCauses, fit
+from analysis.gap.pendulum.search import Weighed, fit
 from analysis.gap.pendulum.verdict import TOLD_APART
 from analysis.gap.search.fit import Fit, expected_evidence, joined
 from hardware.description.errors import PmmError
@@ -65,7 +65,7 @@ def open_laws(laws: Sequence[DampingLaw]) -> tuple[DampingLaw, ...]:
 
 
 def damping_laws(
-    weighed: WeighedCauses, best: Fit, causes: Sequence[Candidate]
+    weighed: Weighed, best: Fit, causes: Sequence[Candidate]
 ) -> tuple[DampingLaw, ...]:
     """Fit every law of damping that the causes make beside the best set's others; best first.
 
@@ -83,8 +83,8 @@ def damping_laws(
     best_law = _law(
         law_names
     )  # from its typical size a fit may go astray, where the search did not
-    fitted[best_law] = max((best, fitted.get(best_law, best)), key=weighed.weight)
-    weights = {name: weighed.weight(law_fit) for name, law_fit in fitted.items()}
+    fitted[best_law] = max((best, fitted.get(best_law, best)), key=weighed.log_weight)
+    weights = {name: weighed.log_weight(law_fit) for name, law_fit in fitted.items()}
     top = max(weights.values(), default=0.0)
     laws = [DampingLaw(name, law_fit, weights[name] - top) for name, law_fit in fitted.items()]
     return tuple(sorted(laws, key=lambda law: -law.log_ratio))
@@ -110,7 +110,7 @@ class Alternative:
     log_ratio: float
 
 
-def alternatives(weighed: WeighedCauses, best: Fit) -> tuple[Alternative, ...]:
+def alternatives(weighed: Weighed, best: Fit) -> tuple[Alternative, ...]:
     """Return which causes could stand in the place of each one, weights within a factor of 20."""
     rows = [
         Alternative(candidate.name, name, ratio)
@@ -121,9 +121,9 @@ def alternatives(weighed: WeighedCauses, best: Fit) -> tuple[Alternative, ...]:
     return tuple(sorted(rows, key=lambda row: (row.instead_of, -row.log_ratio)))
 
 
-def _in_place(weighed: WeighedCauses, best: Fit, at: int) -> Iterator[tuple[str, float]]:
+def _in_place(weighed: Weighed, best: Fit, at: int) -> Iterator[tuple[str, float]]:
     """Yield the causes in the place of one of a set's, and their weight over the set's."""
-    problem, reference = weighed.problem, weighed.weight(best)
+    problem, reference = weighed.problem, weighed.log_weight(best)
     base = fit(
         problem, [candidate for number, candidate in enumerate(best.candidates) if number != at]
     )
@@ -137,4 +137,4 @@ def _in_place(weighed: WeighedCauses, best: Fit, at: int) -> Iterator[tuple[str,
             refit = fit(problem, rough.candidates, rough.units)
         except PmmError:  # cannot act on these tests
             continue
-        yield look.name, weighed.weight(refit) - reference
+        yield look.name, weighed.log_weight(refit) - reference

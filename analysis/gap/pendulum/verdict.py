@@ -1,18 +1,28 @@
 """From weighed hypotheses to what is said: the verdict, classes, what cannot be told apart."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from analysis.gap.inference.answers import COEFFICIENTS, NONE, ODD_RUN, UNKNOWN, effects_in
+from analysis.gap.inference.answers import (
+    COEFFICIENTS,
+    NONE,
+    ODD_RUN,
+    UNKNOWN,
+    by_effect,
+    effects_in,
+    of_any,
+)
+from analysis.gap.inference.constants import ODDS
 from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING, STIFFNESS
-from analysis.gap.pendulum.search import WeighedCauses, cause_names
+from analysis.gap.pendulum.search import Weighed, cause_names
 from analysis.gap.search.fit import Fit, no_effect
 
 CAUSE: Final = "cause"
 UNTOLD: Final = "untold"
 TOLD_APART: Final = 20.0  # ratio of weights from which one answer is preferred to another
+_TINY: Final = 1e-300  # least share, for its logarithm
 _LIKELY: Final = 0.8  # probability from which an answer is said
 
 
@@ -42,43 +52,42 @@ class Verdict:
     by_class: Mapping[str, float]
 
 
-def judge(weighed: WeighedCauses) -> Verdict:
+def judge(weighed: Weighed) -> Verdict:
     """Return what is said: what is the most probable, where it is probable enough.
 
     Something unknown is said only where the records prefer it to every set of causes; where its
     prior odds alone do, the cause cannot be told.
     """
     shares = weighed.answers.by_answer
-    first = weighed.ranked[0] if weighed.sets else no_effect(weighed.problem)
+    first = weighed.ranked[0] if weighed.ranked else no_effect(weighed.problem)
     chances = {
         NONE: shares[NONE] + shares[COEFFICIENTS],
         UNKNOWN: shares[UNKNOWN],
         ODD_RUN: shares[ODD_RUN],
-        CAUSE: _with_any(shares, [alike(weighed, name) for name in cause_names(first)]),
+        CAUSE: of_any(shares, *(alike(weighed, name) for name in cause_names(first))),
     }
     said = max(chances, key=lambda name: chances[name])
     probability = chances[said]
-    unfounded = said == UNKNOWN and weighed.strangeness < math.log(TOLD_APART)
+    unfounded = said == UNKNOWN and _strangeness(weighed) < math.log(TOLD_APART)
     if said != NONE and (probability < _LIKELY or unfounded):
         said = UNTOLD
-    causes = sorted({name for answer in shares for name in effects_in(answer)})
     return Verdict(
         said,
         no_effect(weighed.problem) if said == NONE else first,
         probability,
-        {name: _with_any(shares, [(name,)]) for name in causes},
+        by_effect(shares),
         _classes(shares),
     )
 
 
-def alike(weighed: WeighedCauses, name: str) -> tuple[str, ...]:
+def alike(weighed: Weighed, name: str) -> tuple[str, ...]:
     """Return the causes that pass for one: laws of damping of its kind, and its twins."""
     twins = weighed.background.shapes.alike.get(name, frozenset((name,)))
     kin = next((kind for kind in (BEYOND_LINEAR, DAMPING) if name in kind), ())
     return tuple(sorted({name, *twins, *kin}))
 
 
-def open_causes(weighed: WeighedCauses, verdict: Verdict) -> dict[str, dict[str, float]]:
+def open_causes(weighed: Weighed, verdict: Verdict) -> dict[str, dict[str, float]]:
     """Return by cause of the best set what these records cannot tell from it, with probabilities.
 
     The cause itself comes first, the others by their probability. A cause that is probable enough
@@ -102,21 +111,22 @@ def open_causes(weighed: WeighedCauses, verdict: Verdict) -> dict[str, dict[str,
     return groups
 
 
-def _with_any(shares: Mapping[str, float], groups: Sequence[Sequence[str]]) -> float:
-    """Return the probability of the answers that have a cause of each group; 0 of no group."""
-    return sum(
-        share
-        for answer, share in shares.items()
-        if groups and all(set(effects_in(answer)) & set(group) for group in groups)
+def _strangeness(weighed: Weighed) -> float:
+    """Return the log of how much better something unknown does than any set, priors left out."""
+    shares = weighed.answers.by_answer
+    unknown = math.log(max(shares[UNKNOWN] / ODDS.unknown, _TINY))
+    named = (
+        math.log(max(shares[fit.answer], _TINY)) - weighed.log_prior(fit) for fit in weighed.ranked
     )
+    return unknown - max(named, default=math.log(_TINY))
 
 
 def _classes(shares: Mapping[str, float]) -> dict[str, float]:
     # dry friction beside linear damping is not "beyond linear": it grows more slowly
     return {
-        "damping": _with_any(shares, [DAMPING]),
-        "damping beyond linear": _with_any(shares, [BEYOND_LINEAR]),
-        "inertia or stiffness": _with_any(shares, [STIFFNESS]),
+        "damping": of_any(shares, DAMPING),
+        "damping beyond linear": of_any(shares, BEYOND_LINEAR),
+        "inertia or stiffness": of_any(shares, STIFFNESS),
         "only inertia or stiffness": sum(
             share
             for answer, share in shares.items()

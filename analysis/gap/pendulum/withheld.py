@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.gap.inference.gaussian import Nuisances, posterior
+from analysis.gap.judge.withheld import gap_of, share_gone
 from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.search import cause_names, fit
 from analysis.gap.pendulum.trial import Trial
@@ -213,8 +214,9 @@ def _prediction(
     absolute = remainder[0] * problem.uncertainty[rows]
     share, low, high = 0.0, 0.0, 0.0
     if causes:
-        share = _reduction(plain[0][chosen], remainder[0][chosen])
-        shares = [_reduction(plain[0][chosen], draw[chosen]) for draw in remainder[1]]
+        share = share_gone(gap_of(plain[0][chosen]), gap_of(remainder[0][chosen]))
+        old = gap_of(plain[0][chosen])
+        shares = [share_gone(old, gap_of(draw[chosen])) for draw in remainder[1]]
         low, high = (float(value) for value in np.quantile(shares, (0.025, 0.975)))
     return WithheldPrediction(
         causes,
@@ -229,9 +231,3 @@ def _prediction(
 
 def _rms(remainder: FloatArray) -> float:
     return float(np.sqrt(np.mean(remainder**2))) if remainder.size else math.nan
-
-
-def _reduction(before: FloatArray, after: FloatArray) -> float:
-    """Return the share of a gap that goes away, the noise floor of 1 u taken off both."""
-    old, new = (math.sqrt(max(_rms(gap) ** 2 - 1.0, 0.0)) for gap in (before, after))
-    return 1.0 - new / old if old > 0.0 else 0.0

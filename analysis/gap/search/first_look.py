@@ -65,6 +65,11 @@ class FirstLook:
     reason: str = ""
 
     @property
+    def is_hidden(self) -> bool:
+        """Whether there is one that these records cannot show."""
+        return self.fit is not None and self.visible < HIDDEN
+
+    @property
     def fit(self) -> Fit | None:
         """The one that explains most by itself."""
         return self.fits[0] if self.fits else None

@@ -3,14 +3,12 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from analysis.gap.forward.free_numbers import Free
 from analysis.gap.forward.problem import Problem
-from analysis.gap.inference.answers import Answers, ConsideredHypotheses, answers
 from analysis.gap.inference.gaussian import null_evidence
 from analysis.gap.locate.traces import deviating_traces, worth_a_look
 from analysis.gap.search.deviation import background
@@ -25,43 +23,12 @@ from analysis.gap.search.engine import (
 from analysis.gap.search.first_look import HIDDEN, FirstLook
 from analysis.gap.search.fit import Fit
 from analysis.gap.search.joint import fit_jointly
-from analysis.gap.search.linear_hypothesis import hypothesis, in_form, settled_fit, with_forms
+from analysis.gap.search.linear_hypothesis import in_form, with_forms
+from analysis.gap.search.weighed import WeighedHypotheses, weighed
 from sim.effects.effect import Effect
 
 # What these change are the coefficients, and those are free in every hypothesis.
 COEFFICIENTS: Final = ("added-mass-error", "damping-error")
-
-
-@dataclass(frozen=True, eq=False)
-class WeighedHypotheses:
-    """All hypotheses, and how probable each is.
-
-    Attributes
-    ----------
-    singles, pairs
-        The refined ones, most probable first.
-    """
-
-    singles: tuple[Fit, ...]
-    pairs: tuple[Fit, ...]
-    first_looks: tuple[FirstLook, ...]
-    answers: Answers
-
-    @property
-    def ranked(self) -> list[Fit]:
-        """The named hypotheses, most probable first."""
-        shares = self.answers.by_answer
-        return sorted((*self.singles, *self.pairs), key=lambda fit: -shares[fit.answer])
-
-    @property
-    def hidden(self) -> Mapping[str, float]:
-        """Effects that cannot be seen, with the typical signature's size in sigma, by name."""
-        return _hidden(self.first_looks)
-
-    @property
-    def refused(self) -> Mapping[str, str]:
-        """Effects that this rig cannot have, with the reason, by name."""
-        return {look.name: look.reason for look in self.first_looks if look.fit is None}
 
 
 def weigh(
@@ -70,8 +37,10 @@ def weigh(
     executor: Executor | None = None,
     progress: Callable[[str], None] = lambda _: None,
     free: Sequence[Free] = (),
-) -> WeighedHypotheses:
+) -> WeighedHypotheses[Problem]:
     """Fit and weigh every hypothesis.
+
+    It raises what :func:`~analysis.gap.search.weighed.weighed` does.
 
     Parameters
     ----------
@@ -96,21 +65,9 @@ def weigh(
     singles += _unfitted(looks, singles)
     progress("weighing")
     sought = np.array([number.is_sought for number in free], dtype=bool)
-    considered = ConsideredHypotheses(
-        [hypothesis(problem, fit) for fit in singles],
-        [hypothesis(problem, fit) for fit in pairs],
-        len(kinds),
-        len(_hidden(looked)) + len(kinds) - len(worth),
-    )
-    answer_set = answers(considered, background(problem, looked, sought))
-    singles, pairs = (
-        sorted(
-            (settled_fit(fit, answer_set.settled[fit.answer]) for fit in fits),
-            key=lambda fit: -answer_set.by_answer[fit.answer],
-        )
-        for fits in (singles, pairs)
-    )
-    return WeighedHypotheses(tuple(singles), tuple(pairs), tuple(looked), answer_set)
+    beside = background(problem, looked, sought)
+    concealed = sum(look.is_hidden for look in looked) + len(kinds) - len(worth)
+    return weighed(problem, [*singles, *pairs], looked, beside, len(kinds), concealed)
 
 
 def _complete_forms(
@@ -133,7 +90,3 @@ def _unfitted(looks: Sequence[FirstLook], fits: Sequence[Fit]) -> list[Fit]:
     """
     names = {fit.names[0] for fit in fits}
     return [look.fit for look in looks if look.fit is not None and look.name not in names]
-
-
-def _hidden(looked: Sequence[FirstLook]) -> dict[str, float]:
-    return {look.name: look.visible for look in looked if look.fit and look.visible < HIDDEN}

@@ -8,9 +8,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis.gap.inference.answers import COEFFICIENTS, NAMELESS, NONE, UNKNOWN
+from analysis.gap.inference.answers import (
+    COEFFICIENTS,
+    NAMELESS,
+    NONE,
+    UNKNOWN,
+    by_effect,
+    of_any,
+)
 from analysis.gap.judge.diagnosis import Diagnosis, Settings, diagnose
-from analysis.gap.judge.marginal import LEAST, Marginal, by_effect, marginals, of_any
+from analysis.gap.judge.marginal import LEAST, Marginal, marginals
 from analysis.gap.judge.verdict import ALIKE
 from sim.effects.catalogue import build, find
 from sim.rig import SimulatedRig

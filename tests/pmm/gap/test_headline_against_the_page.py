@@ -203,6 +203,16 @@ def reports(draw: st.DrawFn) -> GapReport:
     )  # fmt: skip
 
 
+def test_sizes_of_several_steps_stand_in_a_list() -> None:
+    weighing = Weighing({"none": 0.9}, "", {}, {}, math.nan, "", "")
+    large = HowLarge(
+        tuple(Size("forces", 1.0, "N", what, "one", math.nan) for what in ("a", "b", "c")), None
+    )
+    _, size, _ = sentences(Conclusion("none", weighing, (), ()), large, (), Remedies())
+    each = [f"{what} by up to 1 N (run one)" for what in ("a", "b", "c")]
+    assert size.startswith(f"They differ in {each[0]}, {each[1]} and {each[2]}, no more than")
+
+
 def test_what_is_unknown_is_neither_noise_nor_nothing_to_be_done() -> None:
     weighing = Weighing({"unknown": 0.45, "none": 0.3}, "", {}, {}, math.nan, "structure", "")
     size = Size("forces", 0.1, "N", "harmonic 1 of force_aft", "run-1", 1.0)

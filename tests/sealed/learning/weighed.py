@@ -1,12 +1,15 @@
 """What the diagnosis makes of each hypothesis: evidence, size, overlap and share, by effect."""
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from analysis.gap.forward.problem import Problem
 from hardware.description.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from analysis.gap.search.weighed import WeighedHypotheses
 
 
 def weighed_of(case: Path) -> dict[str, Any]:
@@ -17,16 +20,10 @@ def weighed_of(case: Path) -> dict[str, Any]:
     ``overlap``, the cosine between what the recordings leave and its signature; and of each answer
     its ``share``, how probable the diagnosis holds it to be.
     """
-    from analysis.gap.judge.diagnosis import problem_of
     from analysis.gap.search.fit import no_effect
-    from analysis.gap.search.hypotheses import weigh
-    from pmm.gap.preparation import prepare
-    from sim.effects.catalogue import catalogue
 
-    ready = prepare(case, catalogue())
-    free = ready.recentred.free
-    problem = problem_of(ready.recentred.rig, ready.fitted, ready.settings, free)
-    weighed = weigh(problem, catalogue(), free=free)
+    weighed = weighed_hypotheses(case)
+    problem = weighed.problem
     found: dict[str, Any] = {
         f"{name}|share": share for name, share in weighed.answers.by_answer.items()
     }
@@ -37,6 +34,19 @@ def weighed_of(case: Path) -> dict[str, Any]:
             found[f"{one.name}|size"] = float(one.visible)
             found[f"{one.name}|overlap"] = cosine(left, _left(problem, one.fit.signature))
     return found
+
+
+def weighed_hypotheses(case: Path) -> "WeighedHypotheses[Problem]":
+    """Return a case's hypotheses, with how probable the diagnosis holds each to be."""
+    from analysis.gap.judge.diagnosis import problem_of
+    from analysis.gap.search.hypotheses import weigh
+    from pmm.gap.preparation import prepare
+    from sim.effects.catalogue import catalogue
+
+    ready = prepare(case, catalogue())
+    free = ready.recentred.free
+    problem = problem_of(ready.recentred.rig, ready.fitted, ready.settings, free)
+    return weigh(problem, catalogue(), free=free)
 
 
 def cosine(one: FloatArray, other: FloatArray) -> float:

@@ -65,7 +65,7 @@ def test_loss_is_named_with_its_size(name: str) -> None:
     problem = decay(LOSSES[name], seed=3)
     found = weigh(problem, some(problem), most=1)
     assert found.answers.best == name
-    best = found.sets[name]
+    best = next(one for one in found.ranked if one.answer == name)
     (axis,) = best.axes
     assert axis.value(float(best.units[0])) == pytest.approx(SIZES[name], rel=0.03)
 
@@ -104,7 +104,7 @@ def test_withheld_swings_are_foretold_by_the_true_loss() -> None:
 def test_inertia_and_restoring_are_twins() -> None:
     problem = decay(np.full(TIME_S.size, RELEASE), seed=13, phase=-0.02 * math.pi * CYCLES)
     found = weigh(problem, some(problem), most=1)
-    sets, shares = found.sets, found.answers.by_answer
+    sets, shares = {one.answer: one for one in found.ranked}, found.answers.by_answer
     assert sets["inertia"].cost == pytest.approx(sets["restoring"].cost, abs=2.0)
     assert sets["inertia"].cost < misfit(problem.residual, problem.nuisances) - 100.0
     assert shares["inertia"] == pytest.approx(shares["restoring"], rel=0.5)

@@ -8,7 +8,7 @@ import pytest
 from analysis.gap.pendulum.causes import causes_for
 from analysis.gap.pendulum.laws import damping_laws
 from analysis.gap.pendulum.problem import PendulumProblem
-from analysis.gap.pendulum.search import WeighedCauses, weigh
+from analysis.gap.pendulum.search import Weighed, weigh
 from analysis.gap.pendulum.verdict import CAUSE, judge
 from tests.analysis.gap.pendulum.driven_bodies import MASS_KG, STIFFNESS, Made, driven
 
@@ -48,7 +48,7 @@ def problem_with(name: str) -> PendulumProblem:
     return driven(PUT_IN[name][0], RUNS, 3, KNOWN)
 
 
-def weighed_without(problem: PendulumProblem, names: tuple[str, ...] = ()) -> WeighedCauses:
+def weighed_without(problem: PendulumProblem, names: tuple[str, ...] = ()) -> Weighed:
     left = [name for name in TRIED if name not in names]
     return weigh(problem, [one for one in causes_for(problem.trials) if one.name in left], most=1)
 
@@ -59,7 +59,7 @@ def test_what_is_put_in_is_named_with_its_size(name: str) -> None:
     weighed = weighed_without(problem_with(name))
     assert judge(weighed).outcome == CAUSE
     assert weighed.answers.best == name
-    best = weighed.sets[name]
+    best = next(fit for fit in weighed.ranked if fit.answer == name)
     (axis,) = best.axes
     assert axis.value(float(best.units[0])) == pytest.approx(PUT_IN[name][1], rel=0.02)
 
