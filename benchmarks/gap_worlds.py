@@ -5,13 +5,23 @@ here their lines are counted and held to the limits of ``tests/sealed/worlds.tom
 """
 
 from collections.abc import Iterator, Sequence
+from typing import Final
 
 from benchmarks.boards.beside import CASES as FEW
 from benchmarks.boards.beside import figures_beside
+from benchmarks.boards.learned import figures_by_row
 from benchmarks.boards.rows import Line, kept
 from benchmarks.boards.worlds import CASES, WORLDS, marks_in
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
-from tests.sealed.scoring.by_world import Held, figures_of, held_to
+from tests.sealed.answering import DIAGNOSIS
+from tests.sealed.scoring.by_world import Figure, Held, figures_of, held_to
+
+_LEARNED: Final = {
+    "class": "top-1 by class",
+    "stage": "stage",
+    "sure_and_wrong": "wrong at 0.9",
+    "calibration_excess": "calibration error in excess",
+}
 
 
 def _rows(lines: Sequence[Line], beside: Sequence[Line]) -> Iterator[Row]:
@@ -35,13 +45,51 @@ def _row(world: str, one: Held) -> Row:
     }
 
 
-def counted(lines: Sequence[Line], beside: Sequence[Line] = ()) -> Outcome:
+def _learned_rows(lines: Sequence[Line]) -> Iterator[Row]:
+    for world in WORLDS:
+        there = [line for line in lines if line["campaign"] == world]
+        for name, figures, mean in figures_by_row(there):
+            shown = {what: _with_count(figures[key]) for key, what in _LEARNED.items()}
+            yield {"world": world, "row": name, **shown, "mean of columns": f"{mean:.3f}"}
+
+
+def _with_count(figure: Figure) -> str:
+    value, low, high, count = figure
+    return "-" if value is None else f"{value:.2f} ({low:.2f} to {high:.2f}) of {count}"
+
+
+def _same(lines: Sequence[Line], learned: Sequence[Line]) -> str:
+    """Say in how many cases the diagnosis beside rows that learn has the marks of the worlds'."""
+    marks = {(one["campaign"], one["seed"]): one for one in lines}
+    pairs = [
+        (marks[key], one["rows"][DIAGNOSIS])
+        for one in learned
+        if (key := (one["campaign"], one["seed"])) in marks
+    ]
+    same = sum(
+        whole["stated"] == again["stated"]
+        and all(whole["values"][key] == again["values"][key] for key in whole["values"])
+        for whole, again in pairs
+    )
+    trained = ", ".join(sorted({str(one["trained_on"]) for one in learned}))
+    return (
+        f"Rows that learn: boosted ones trained on {trained} campaigns of worlds A and B, "
+        "calibrated ones fitted to the cases of the prior odds. The diagnosis beside them has the "
+        f"marks of the worlds' lines in {same} of {len(pairs)} cases."
+    )
+
+
+def counted(
+    lines: Sequence[Line], beside: Sequence[Line] = (), learned: Sequence[Line] = ()
+) -> Outcome:
     """Hold the figures of all lines to the limits of their worlds.
 
     Parameters
     ----------
     beside
         Lines of the first cases with the oracle's answers, other rows' and those to other records.
+    learned
+        Lines of the first cases with the answers of rows that learn.
     """
     there = {world: sum(one["campaign"] == world for one in lines) for world in WORLDS}
     notes = [
@@ -53,9 +101,14 @@ def counted(lines: Sequence[Line], beside: Sequence[Line] = ()) -> Outcome:
         "cases of each world: `python -m benchmarks.boards beside` goes on with them.",
         *(f"Frozen at commit {one}, whose hash is the seed." for one in _frozen(lines)),
     ]
-    rows = list(_rows(lines, beside))
+    if learned:
+        notes.append(_same(lines, learned))
+    tables = {
+        "Figures by world": list(_rows(lines, beside)),
+        "Rows that learn": list(_learned_rows(learned)),
+    }
     measured = {f"cases_{world.lower()}": float(count) for world, count in there.items() if count}
-    return Outcome({"Figures by world": rows} if rows else {}, measured, tuple(notes))
+    return Outcome({name: rows for name, rows in tables.items() if rows}, measured, tuple(notes))
 
 
 def _frozen(lines: Sequence[Line]) -> list[str]:
@@ -66,7 +119,7 @@ def run(quick: bool, report: Report) -> Outcome:
     """Count what is there; with ``quick`` a few of it."""
     report("counting")
     few = 40 if quick else None
-    return counted(kept("worlds")[:few], kept("beside")[:few])
+    return counted(kept("worlds")[:few], kept("beside")[:few], kept("learned")[:few])
 
 
 BENCHMARK = Benchmark("gap_worlds", "Diagnosis of sealed cases, world by world", run)

@@ -57,32 +57,33 @@ def compared(world: str, index: int, commit: str, size: int) -> Line:
     began = time.process_time()
     with scratch() as folder:
         name = made(world, index, commit, size, folder)
-        _answer(folder, name, (DIAGNOSIS, *known_rows()))
-        _answer(told(folder), name, (DIAGNOSIS,))
+        ask(folder, name, (DIAGNOSIS, *known_rows()))
+        ask(told(folder), name, (DIAGNOSIS,))
         answered_as(folder, folder / ORACLE)
         for again in varied(folder, folder / _VARIED, 1):
-            _answer(folder / _VARIED, again, (DIAGNOSIS,))
+            ask(folder / _VARIED, again, (DIAGNOSIS,))
         truth = read_truth(folder / "keys" / name / "truth.json")
         alike = {
             one.name: [one.same_class, one.near]
             for one in agreements(folder, folder / _VARIED)
         }  # fmt: skip
-        rows = dict(_marks(folder, truth))
+        rows = dict(marks_by_row(folder, truth, (DIAGNOSIS, ORACLE, *known_rows())))
     line = {"campaign": world, "seed": index, "frozen": commit, "rows": rows, "alike": alike}
     counts = {"counts": BINS[-1].holds(truth), "verdict": truth.verdict}
     return {**line, **counts, "cpu_s": round(time.process_time() - began, 2)}
 
 
-def _answer(board: Path, case: str, rows: Sequence[str]) -> None:
+def ask(board: Path, case: str, rows: Sequence[str]) -> None:
+    """Have a case answered by some rows of a board."""
     asked = Asked(board, case, tuple(rows))
     for row in asked.rows:
         asked.target(row).parent.mkdir(exist_ok=True)
     answer_case(asked)
 
 
-def _marks(folder: Path, truth: Truth) -> Iterator[tuple[str, Line]]:
+def marks_by_row(folder: Path, truth: Truth, names: Sequence[str]) -> Iterator[tuple[str, Line]]:
     """Yield every row's marks, with all its columns and what it gives to "unknown"."""
-    answers = {name: _read(folder, name, truth) for name in (DIAGNOSIS, ORACLE, *known_rows())}
+    answers = {name: _read(folder, name, truth) for name in names}
     rows = tuple(Row(name, (answer,)) for name, answer in answers.items())
     board = Board(folder, "", (truth,), rows, {})
     for row in rows:

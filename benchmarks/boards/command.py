@@ -8,10 +8,12 @@ from pathlib import Path
 
 from benchmarks.boards.rows import (
     EVERY,
+    LEARNED,
     RESULTS,
     SEALED,
     SEEDED_BY,
     Job,
+    Line,
     jobs_of,
     keep,
     kept,
@@ -32,15 +34,24 @@ def main(arguments: Sequence[str]) -> int:
     now = commit()
     rows = kept(request.board, request.output)
     jobs = jobs_of(request.board, request.campaign, request.seeds)
+    seeded = rows or kept(SEEDED_BY.get(request.board, ""), request.output)
     if request.board in SEALED:
-        commit_measured = frozen(rows or kept(SEEDED_BY.get(request.board, ""), request.output))
-        jobs = [replace(job, frozen=commit_measured) for job in jobs]
+        jobs = [replace(job, frozen=frozen(seeded)) for job in jobs]
+    if request.board == LEARNED:
+        jobs = [replace(job, frozen=_seed(seeded), training=request.training) for job in jobs]
     todo = list(missing(jobs, rows, now if request.again else None))
     print(
         f"{request.board}: {len(jobs) - len(todo)} of {len(jobs)} there, commit {now}", flush=True
     )
     _measure(todo, request, now)
     return 0
+
+
+def _seed(rows: Sequence[Line]) -> str:
+    """Return the commit whose hash is the seed of a board's cases."""
+    if not rows:
+        raise SystemExit("there are no lines of worlds, whose cases these rows answer")
+    return str(rows[0]["frozen"])
 
 
 def _measure(todo: Sequence[Job], request: argparse.Namespace, now: str) -> None:
@@ -74,6 +85,12 @@ def _parse(arguments: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("--seeds", type=_span, metavar="A:B", help="from A to before B")
     parser.add_argument("--seconds", type=float, metavar="S", help="begin nothing more after that")
     parser.add_argument("--workers", type=int, default=1, metavar="N", help="processes")
+    parser.add_argument(
+        "--training",
+        default="training",
+        metavar="FOLDER",
+        help="campaigns that rows learn from, of python -m tests.sealed.learning campaigns",
+    )
     parser.add_argument("--again", action="store_true", help="also what another commit measured")
     parser.add_argument("--output", type=Path, default=RESULTS, metavar="FOLDER")
     return parser.parse_args(arguments)

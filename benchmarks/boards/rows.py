@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from benchmarks.boards import beside, friction, loops, weighings
+from benchmarks.boards import beside, friction, learned, loops, weighings
 from benchmarks.boards.campaigns import NULLS
 from benchmarks.boards.worlds import CASES, WORLDS
 from benchmarks.machine import ROOT
@@ -16,10 +16,11 @@ FOLDERS: Final = 10_000  # mutated folders that go through the door
 TYPED: Final = 300  # of them through whole commands
 _SLICES: Final[Mapping[str, tuple[int, int]]] = {"mutations": (FOLDERS, 50), "commands": (TYPED, 5)}
 _WORLDS, _BESIDE, _LOOPS, _WEIGHINGS = "worlds", "beside", "loops", "weighings"
+LEARNED: Final = "learned"
 SEALED: Final = (_WORLDS, _BESIDE, _LOOPS)
-SEEDED_BY: Final = {_BESIDE: _WORLDS}  # the board whose cases these are
+SEEDED_BY: Final = {_BESIDE: _WORLDS, LEARNED: _WORLDS}  # the board whose cases these are
 BOARDS: Final = ("nulls", "friction", *_SLICES)
-EVERY: Final = (*BOARDS, *SEALED, _WEIGHINGS)
+EVERY: Final = (*BOARDS, *SEALED, LEARNED, _WEIGHINGS)
 
 Line = dict[str, Any]
 
@@ -28,7 +29,8 @@ Line = dict[str, Any]
 class Job:
     """A case of a board, or a slice of mutated folders: seeds ``first`` to before ``stop``.
 
-    ``frozen`` is the commit that is measured, for sealed cases alone.
+    ``frozen`` is the commit that is measured, for sealed cases alone; ``training`` is the folder of
+    the campaigns that rows learn from.
     """
 
     board: str
@@ -36,6 +38,7 @@ class Job:
     first: int
     stop: int
     frozen: str = ""
+    training: str = ""
 
     @property
     def key(self) -> tuple[str, int]:
@@ -76,7 +79,7 @@ def _counts(board: str) -> Mapping[str, int]:
     """Return how many seeds of each campaign, or cases of each world, are asked for."""
     if board == _WORLDS:
         return dict.fromkeys(WORLDS, 2 * CASES)
-    if board == _BESIDE:
+    if board in (_BESIDE, LEARNED):
         return dict.fromkeys(WORLDS, beside.CASES)
     if board == _LOOPS:
         return dict.fromkeys(loops.WORLDS, loops.CASES)
@@ -97,6 +100,8 @@ def measured(job: Job) -> Line:
         return marked(job.campaign, job.first, job.frozen)
     if job.board == _BESIDE:
         return beside.compared(job.campaign, job.first, job.frozen, CASES)
+    if job.board == LEARNED:
+        return learned.answered(job.campaign, job.first, job.frozen, CASES, Path(job.training))
     if job.board == _LOOPS:
         return loops.pursued(job.campaign, job.first, job.frozen)
     if job.board == _WEIGHINGS:

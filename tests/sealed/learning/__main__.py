@@ -24,13 +24,12 @@ def main() -> None:
 @main.command("campaigns")
 @click.option("--output", required=True, type=FOLDER)
 @click.option("--count", default=2000, show_default=True, type=click.IntRange(1))
-@LOOK
 @click.option("--workers", default=os.cpu_count() or 1, show_default="one per core",
               type=click.IntRange(1))  # fmt: skip
-def campaigns_command(output: Path, count: int, look: str, workers: int) -> None:
+def campaigns_command(output: Path, count: int, workers: int) -> None:
     """Make training campaigns of worlds A and B; those that are there are kept."""
-    jobs = count - len(list(output.glob(f"{look}-*.json")))
-    for line in told("campaigns made", jobs, made(output, count, look, workers)):
+    jobs = count - len(list(output.glob("*.json")))
+    for line in told("campaigns made", jobs, made(output, count, workers)):
         if not line.endswith(".json"):
             click.echo(line, err=True)
 

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final
@@ -57,7 +58,7 @@ class Classifier:
             raise DataError("scikit-learn is not installed: pip install -e .[peers]")
         if len({name for one in found for name in one.right}) < 2:
             raise DataError(
-                f"{len(found)} campaigns of {look}: make more (campaigns --look {look})"
+                f"{len(found)} campaigns: make more (python -m tests.sealed.learning campaigns)"
             )
         rows = [FEATURES[look](one.numbers) for one in found]
         names = tuple(sorted({name for row in rows for name in row}))
@@ -80,8 +81,9 @@ class Classifier:
                      scene(case).foretold())  # fmt: skip
 
 
+@cache
 def classifier(campaigns: Path, look: str) -> Classifier:
-    """Return the classifier fitted to all campaigns of a folder."""
+    """Return the classifier fitted to all campaigns of a folder; once in a process."""
     return Classifier.fitted(examples(campaigns, look), look)
 
 

@@ -1,7 +1,7 @@
 """Training campaigns of worlds A and B: what a peer sees of each, and what is right.
 
-A campaign is made, written as a case without key, looked at and thrown away; one file of numbers
-stays of it. A folder that was broken off, or is asked for more, goes on where it was.
+A campaign is made, written as a case without key, looked at in every way and thrown away; one file
+of numbers stays of it. A folder that was broken off, or is asked for more, goes on where it was.
 """
 
 import json
@@ -16,6 +16,7 @@ from tests.sealed.learning.weighed import weighed_of
 from tests.sealed.pool import each
 
 SEED: Final = 60
+_LIMIT_S: Final = 600.0  # of one campaign
 WORLDS: Final = ("A", "B")
 NULL_EACH: Final = 3
 """One campaign in so many is a null."""
@@ -30,16 +31,15 @@ LOOKS: Final[Mapping[str, Callable[[Path], Numbers]]] = {
 
 @dataclass(frozen=True)
 class Asked:
-    """A campaign to be made, and what is kept of it."""
+    """A campaign to be made."""
 
     folder: Path
     index: int
-    look: str
 
     @property
     def target(self) -> Path:
-        """Its file."""
-        return self.folder / f"{self.look}-{self.index:05d}.json"
+        """The file of what is kept of it."""
+        return self.folder / f"{self.index:05d}.json"
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Example:
 
 
 def make_one(asked: Asked) -> str:
-    """Make a campaign and keep what is asked of it; return its file's name."""
+    """Make a campaign and keep what each look says of it; return its file's name."""
     from tests.sealed.generator.case import make
     from tests.sealed.generator.files import write_open
 
@@ -69,7 +69,7 @@ def make_one(asked: Asked) -> str:
     case = make(SEED, asked.index, null=null, where=world)
     with TemporaryDirectory() as room:
         write_open(case, Path(room))
-        numbers = LOOKS[asked.look](Path(room) / case.name)
+        numbers = {name: look(Path(room) / case.name) for name, look in LOOKS.items()}
     verdict = case.content.verdict
     right = case.content.right[0] if verdict == "gap" else (verdict,)
     kept = {"index": asked.index, "right": right, "stages": case.content.stages, "numbers": numbers}
@@ -79,23 +79,23 @@ def make_one(asked: Asked) -> str:
     return asked.target.name
 
 
-def made(folder: Path, count: int, look: str, workers: int) -> Iterator[str]:
+def made(folder: Path, count: int, workers: int) -> Iterator[str]:
     """Make what is missing of the first ``count`` campaigns; yield a line on each.
 
     A campaign that fails is named and left out; it is tried again when called again.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    jobs = [Asked(folder.absolute(), index, look) for index in range(1, count + 1)]
-    for done in each(make_one, [one for one in jobs if not one.target.exists()], workers):
+    jobs = [Asked(folder.absolute(), index) for index in range(1, count + 1)]
+    missing = [one for one in jobs if not one.target.exists()]
+    for done in each(make_one, missing, workers, _LIMIT_S if workers > 1 else None):
         yield done.value or f"campaign {done.job.index}: {done.failed}"
 
 
 def examples(folder: Path, look: str) -> list[Example]:
-    """Return the campaigns that were made, in their order."""
+    """Return the campaigns that were made, in their order, as one look has them."""
     found = []
-    for path in sorted(folder.glob(f"{look}-*.json")):
+    for path in sorted(folder.glob("*.json")):
         kept = json.loads(path.read_text())
-        found.append(
-            Example(kept["index"], tuple(kept["right"]), tuple(kept["stages"]), kept["numbers"])
-        )
+        right, stages = tuple(kept["right"]), tuple(kept["stages"])
+        found.append(Example(kept["index"], right, stages, kept["numbers"][look]))
     return found

@@ -1,0 +1,123 @@
+"""Rows that learn, on a world's first cases: boosted ones, and the diagnosis calibrated by others.
+
+Marks alone are kept, those of the diagnosis that made the hypotheses too: where they are those of
+:mod:`benchmarks.boards.worlds`, it is the same diagnosis.
+"""
+
+import json
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from functools import cache
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from analysis.gap.inference.constants import ODDS
+from benchmarks.boards.beside import ask, marks_by_row, row_means
+from benchmarks.boards.worlds import made
+from tests.sealed.answering import DIAGNOSIS
+from tests.sealed.learning.calibration import LEAST, Conformal, Isotonic
+from tests.sealed.learning.campaigns import LOOKS
+from tests.sealed.learning.rows import boosted, with_shares
+from tests.sealed.scoring.answers import VERDICTS
+from tests.sealed.scoring.by_world import Figure, Marks, figures_of
+from tests.sealed.scoring.keys import read_truth
+
+Line = dict[str, Any]
+
+_BOOSTED: Final = tuple(f"boosted-{look}" for look in LOOKS)
+_CALIBRATED: Final = (f"{DIAGNOSIS}-isotonic", f"{DIAGNOSIS}-conformal")
+ROWS: Final = (DIAGNOSIS, *_BOOSTED, *_CALIBRATED)
+
+
+def answered(world: str, index: int, commit: str, size: int, training: Path) -> Line:
+    """Make a case, have it answered by the rows that learn, and return the marks.
+
+    Parameters
+    ----------
+    index, commit, size
+        As in :func:`benchmarks.boards.beside.compared`.
+    training
+        Campaigns that ``python -m tests.sealed.learning campaigns`` made.
+
+    Raises
+    ------
+    DataError
+        If scikit-learn is not installed or there are too few campaigns.
+    """
+    from benchmarks.boards.judged import scratch
+
+    began = time.process_time()
+    with scratch() as folder:
+        name = made(world, index, commit, size, folder)
+        ask(folder, name, (DIAGNOSIS,))
+        for look in LOOKS:
+            for said in boosted(folder, training, look)[1]:
+                if "Error" in said:
+                    print(world, index, said, flush=True)
+        found = json.loads((folder / "answers" / f"{name}.json").read_text())
+        for row, fit in _calibrators().items():
+            room = folder / f"answers-{row}"
+            room.mkdir()
+            (room / f"{name}.json").write_text(json.dumps(with_shares(found, fit)))
+        truth = read_truth(folder / "keys" / name / "truth.json")
+        rows = dict(marks_by_row(folder, truth, ROWS))
+    line = {"campaign": world, "seed": index, "frozen": commit, "rows": rows}
+    counts = {"trained_on": len(list(training.glob("*.json"))), "verdict": truth.verdict}
+    return {**line, **counts, "cpu_s": round(time.process_time() - began, 2)}
+
+
+@cache
+def _calibrators() -> dict[str, Isotonic | Conformal]:
+    """Return a calibration by row, fitted to the cases that the prior odds were fitted to."""
+    from benchmarks.boards.rows import kept
+    from benchmarks.boards.weighings import reweighed
+
+    lines = [line for line in kept("weighings") if line["is_clear"]]
+    shares = [reweighed(line, asdict(ODDS)) for line in lines]
+    return dict(zip(_CALIBRATED, calibrations(lines, shares), strict=True))
+
+
+def calibrations(
+    lines: Sequence[Line], shares: Sequence[dict[str, float]]
+) -> tuple[Isotonic, Conformal]:
+    """Return both calibrations of some cases' answers.
+
+    Parameters
+    ----------
+    lines
+        As :mod:`benchmarks.boards.weighings` keeps them; which of the answers are right.
+    shares
+        Of each case, how probable each answer is.
+    """
+    pairs = [
+        (share, float(name in line["right"]))
+        for line, said in zip(lines, shares, strict=True)
+        for name, share in said.items()
+    ]
+    isotonic = Isotonic.fitted([share for share, _ in pairs], [hit for _, hit in pairs])
+    strange: dict[str, list[float]] = {"any": []}
+    for line, said in zip(lines, shares, strict=True):
+        group = line["verdict"] if line["verdict"] in VERDICTS else "effect"
+        best = max((said[name] for name in line["right"]), default=0.0)
+        for one in ("any", group):
+            strange.setdefault(one, []).append(1.0 - best)
+    kept = {
+        name: np.sort(values)
+        for name, values in strange.items()
+        if name == "any" or len(values) >= LEAST
+    }
+    return isotonic, Conformal(kept)
+
+
+def figures_by_row(lines: Sequence[Line]) -> Iterator[tuple[str, dict[str, Figure], float]]:
+    """Yield each row's name, its figures as of a world's diagnosis, and its mean of columns."""
+    means = row_means(lines)
+    for name in ROWS if lines else ():
+        marks = [
+            Marks(one["is_clear"], one["values"], one["stated"])
+            for one in (line["rows"][name] for line in lines)
+        ]
+        yield name, figures_of({DIAGNOSIS: marks}), means[name]
